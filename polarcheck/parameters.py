@@ -1,0 +1,103 @@
+"""Control parameters by their own names: what the user copies from the control, turned into values of the profile."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import msgspec
+
+from polarcheck.errors import MachineError
+
+
+@dataclass(frozen=True, slots=True)
+class Origin:
+    """Where a value of a profile comes from: the profile, the source it names, whether that is in doubt."""
+
+    profile: str
+    source: str
+    doubtful: bool = False
+
+
+class Meaning(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """
+    What a control parameter sets.
+
+    title: what the manual calls it. key, factor: the value of the profile that it is, times the factor. values: for
+    settings, each with the values of the profile that it stands for; "= control.x" takes over another value. A number
+    that is not among the values goes to the key.
+    """
+
+    title: str
+    key: str = ""
+    factor: float = 1.0
+    values: dict[str, dict[str, Any]] = {}
+
+
+def apply(merged: dict[str, Any], table: Mapping[str, Any], profile: str, origins: dict[str, Origin]) -> None:
+    """
+    Set in `merged` what the [parameters] of one profile say; keys that the same profile gives itself stay.
+
+    Raises MachineError, naming profile and parameter, for an unknown parameter or setting.
+    """
+    meanings = _meanings(merged, profile)
+    given = merged["parameters"]
+    for name in table["parameters"]:
+        if name not in meanings:
+            raise MachineError(f"{profile}: parameters: {_unknown(name, meanings)}")
+    # In the order of the meanings, so that the order in which the user lists them makes no difference.
+    copies = []
+    for name, meaning in meanings.items():
+        if name not in table["parameters"]:
+            continue
+        for key, value in _values(name, meaning, given[name], profile).items():
+            if _is_given(table, key):
+                continue
+            origins[key] = Origin(profile, f"parameter {name} = {given[name]}: {meaning.title}")
+            if isinstance(value, str) and value.startswith("= "):
+                copies.append((key, value[2:]))
+            else:
+                _set(merged, key, value)
+    for key, other in copies:
+        group, _, last = other.partition(".")
+        _set(merged, key, merged.get(group, {}).get(last))
+
+
+def _meanings(merged: Mapping[str, Any], profile: str) -> dict[str, Meaning]:
+    try:
+        return msgspec.convert(merged.get("meanings", {}), dict[str, Meaning])
+    except msgspec.ValidationError as error:
+        raise MachineError(f"{profile}: meanings: {error}") from None
+
+
+def _values(name: str, meaning: Meaning, given: Any, profile: str) -> Mapping[str, Any]:
+    is_number = isinstance(given, int | float)
+    spelled = f"{given:g}" if is_number else str(given)
+    for setting, values in meaning.values.items():
+        if setting.upper() == spelled.upper():
+            return values
+    if not meaning.key or not is_number:
+        known = " or ".join(meaning.values) or "a number"
+        raise MachineError(f"{profile}: parameters.{name}: expected {known}, not {given}")
+    return {meaning.key: given if meaning.factor == 1 else given * meaning.factor}
+
+
+def _is_given(table: Mapping[str, Any], key: str) -> bool:
+    group, _, last = key.partition(".")
+    values = table.get(group)
+    return isinstance(values, Mapping) and last in values
+
+
+def _set(merged: dict[str, Any], key: str, value: Any) -> None:
+    group, _, last = key.partition(".")
+    values = merged.setdefault(group, {})
+    if isinstance(values, dict):  # else the profile is wrong, and said to be when it is converted
+        values[last] = value
+
+
+def _unknown(name: str, meanings: Mapping[str, Meaning]) -> str:
+    near = difflib.get_close_matches(name, list(meanings), 1)
+    hint = f"did you mean {near[0]}?" if near else f"known are {', '.join(meanings) or 'none'}"
+    return f"no meaning is known for {name}; {hint}"
