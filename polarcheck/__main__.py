@@ -1,0 +1,5 @@
+"""`python -m polarcheck`."""
+
+from polarcheck.cli import run
+
+run()

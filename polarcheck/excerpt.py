@@ -1,0 +1,79 @@
+"""Lines of a program as a terminal can show them. What comes from a program or a path is data: nothing in it acts."""
+
+from __future__ import annotations
+
+import unicodedata
+from typing import NamedTuple
+
+_TAB = 4
+_CUT = "..."
+#: Before the fault this many characters are kept of a line that is too long.
+_BEFORE = 24
+
+
+class Excerpt(NamedTuple):
+    """What to show of a line, and where to underline it: cells from the left, number of cells."""
+
+    text: str
+    first: int
+    marked: int
+
+
+def visible(text: str) -> str:
+    """The text with every control, invisible or direction-changing character spelled out, as in `\\x1b`."""
+    return text if text.isprintable() else "".join(map(_shown, text))
+
+
+def cells(text: str) -> int:
+    """The width of visible text in the cells of a terminal."""
+    return len(text) if text.isascii() else sum(map(_cells, text))
+
+
+def excerpt(line: str, start: int, end: int, room: int) -> Excerpt:
+    """A line cut to `room` cells around the characters from start (0 is the first) to end, which are underlined."""
+    begin = _first_shown(line, start, room)
+    lead = _CUT if begin else ""
+    pieces: list[str] = []
+    edges = [len(lead)]
+    for character in line[begin:]:
+        pieces.append(_expanded(character, edges[-1]))
+        edges.append(edges[-1] + cells(pieces[-1]))
+        if edges[-1] > room:
+            break
+    is_cut = edges[-1] > room
+    while is_cut and edges[-1] > room - len(_CUT):
+        pieces.pop()
+        edges.pop()
+    first = edges[min(max(start - begin, 0), len(pieces))]
+    last = edges[min(max(end - begin, 0), len(pieces))]
+    return Excerpt(lead + "".join(pieces) + (_CUT if is_cut else ""), first, max(last - first, 1))
+
+
+def _first_shown(line: str, start: int, room: int) -> int:
+    """The character to begin with: in a line that is too long some way before the fault, half the room at most."""
+    if len(line) <= room and cells(visible(line)) <= room:
+        return 0
+    begin = max(start - _BEFORE, 0)
+    while begin < start and cells(visible(line[begin:start])) > room // 2:
+        begin += 1
+    return begin
+
+
+def _expanded(character: str, width: int) -> str:
+    """A tab as blanks to the next stop; CR, which belongs to the line end wherever a transfer put it, as nothing."""
+    if character == "\t":
+        return " " * (_TAB - width % _TAB)
+    return "" if character == "\r" else _shown(character)
+
+
+def _shown(character: str) -> str:
+    if character.isprintable():
+        return character
+    number = ord(character)
+    return f"\\x{number:02x}" if number < 256 else f"\\u{number:04x}" if number < 65536 else f"\\U{number:08x}"
+
+
+def _cells(character: str) -> int:
+    if unicodedata.category(character) in ("Mn", "Me"):
+        return 0
+    return 2 if unicodedata.east_asian_width(character) in ("W", "F") else 1

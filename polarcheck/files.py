@@ -1,0 +1,164 @@
+"""Which files are NC programs, and writing a file whole or not at all."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import re
+import stat
+import sys
+from collections.abc import Callable, Collection, Iterable, Iterator
+from pathlib import Path
+
+from polarcheck.errors import PolarcheckError, SourceError
+
+STANDARD_INPUT = "-"
+EXTENSIONS = (
+    *(".nc", ".ncc", ".cnc", ".tap", ".eia", ".min", ".mpf", ".spf", ".ngc", ".prg"),
+    *(".ptp", ".dnc", ".fnc", ".iso", ".din", ".pim", ".gcode", ".gco", ".g"),
+)
+_SKIPPED_FOLDERS = frozenset(("node_modules", "__pycache__"))
+#: O1234, O0001(SB12 RG FRONT), O1234.bak: as controls and transfer programs name what they punch out.
+_O_NAME = r"(?i)O\d{2,8}(?:\([^)]*\))?(?:\.[^.]*)?"
+_SNIFFED = frozenset(("", ".txt"))
+_SNIFFED_BYTES = 4096
+_HEAD = r"%(?!PDF|!|%)|[O:]\s?\d{1,8}\b"
+_BLOCK = r"(?i)/?\d?\s*(?:N\s?\d+\s*)?(?:[A-Z]\s?[-+]?(?:\d+(?:\.\d*)?|\.\d+)\s*)+(?:\([^)]*\)\s*)*;?"
+_BLOCKS_NEEDED, _LINES_LOOKED_AT = 2, 10
+
+
+def extensions(names: Iterable[str]) -> list[str]:
+    """Extensions as they are compared: lower case, with the point."""
+    return [f".{name.strip().lower().lstrip('.')}" for name in names if name.strip(" .")]
+
+
+def walk(folder: str, wanted: Collection[str], failed: Callable[[str], None]) -> Iterator[str]:
+    """
+    The programs below a folder, in order of their names, as paths that begin with the folder as it is given.
+
+    Hidden files and folders are passed over; a folder that links lead to twice is entered once. failed is told, in one
+    line, of folders that cannot be read.
+    """
+    yield from _walk(folder, frozenset(wanted), failed, set())
+
+
+def _walk(
+    folder: str, wanted: frozenset[str], failed: Callable[[str], None], seen: set[tuple[int, int]]
+) -> Iterator[str]:
+    try:
+        status = Path(folder).stat()
+        identity = (status.st_dev, status.st_ino)
+        if identity in seen:
+            return
+        seen.add(identity)
+        with os.scandir(folder) as found:
+            entries = sorted(found, key=lambda entry: entry.name)
+    except OSError as error:
+        failed(f"{folder}: {error.strerror}")
+        return
+    for entry in entries:
+        if entry.name.startswith(".") or entry.name in _SKIPPED_FOLDERS:
+            continue
+        path = entry.name if folder == "." else os.path.join(folder, entry.name)  # noqa: PTH118  pathlib rewrites paths
+        if _is_folder(entry):
+            yield from _walk(path, wanted, failed, seen)
+        elif is_program(path, wanted):
+            yield path
+
+
+def _is_folder(entry: os.DirEntry[str]) -> bool:
+    try:
+        return entry.is_dir()
+    except OSError:
+        return False
+
+
+def is_program(path: str, wanted: Collection[str]) -> bool:
+    """Whether a file of a folder is an NC program, by its extension, its name, or its first lines."""
+    name = Path(path).name
+    suffix = os.path.splitext(name)[1].lower()  # noqa: PTH122  Path.suffix differs for names that end in a point
+    if suffix in wanted or re.fullmatch(_O_NAME, name):
+        return not _is_special(path)
+    return suffix in _SNIFFED and not _is_special(path) and _looks_like_program(path)
+
+
+def _is_special(path: str) -> bool:
+    """A pipe or device, which would be read for ever. A broken link is not: that it cannot be read must be said."""
+    try:
+        return not stat.S_ISREG(Path(path).stat().st_mode)
+    except OSError:
+        return False
+
+
+def _looks_like_program(path: str) -> bool:
+    try:
+        with Path(path).open("rb") as file:
+            data = file.read(_SNIFFED_BYTES)
+    except OSError:
+        return False
+    wide = data.startswith((b"\xff\xfe", b"\xfe\xff"))
+    text = data.decode("utf-16" if wide else "latin-1", "replace").lstrip("\ufeff\xef\xbb\xbf\0\x11\x12\x13\x14 \t\r\n")
+    if re.match(_HEAD, text):
+        return True
+    lines = [line.strip("\0\r \t") for line in text.split("\n")[:_LINES_LOOKED_AT]]
+    return sum(re.fullmatch(_BLOCK, line) is not None for line in lines) >= _BLOCKS_NEEDED
+
+
+def read(path: str) -> bytes:
+    """
+    All bytes of a file, or of standard input for `-`.
+
+    Raises SourceError where it cannot be read.
+    """
+    try:
+        return sys.stdin.buffer.read() if path == STANDARD_INPUT else Path(path).read_bytes()
+    except OSError as error:
+        raise SourceError(f"{shown(path)}: {error.strerror or error}") from None
+
+
+def shown(path: str) -> str:
+    """A path as reports hold it: with slashes, and with the bytes spelled out that are no characters."""
+    text = path.encode("utf-8", "surrogateescape").decode("utf-8", "backslashreplace")
+    return text.replace(os.sep, "/") if os.sep != "/" else text
+
+
+def write(path: Path, text: str) -> None:
+    """
+    Write a file whole or not at all, whoever reads it at that moment.
+
+    Raises PolarcheckError where it cannot be written.
+    """
+    data = text.encode("utf-8")
+    target = Path(os.path.realpath(path))
+    try:
+        if target.exists() and not target.is_file():
+            target.write_bytes(data)
+        else:
+            _replace(target, data)
+    except OSError as error:
+        raise PolarcheckError(f"{shown(str(path))}: {error.strerror or error}") from None
+
+
+def _replace(target: Path, data: bytes) -> None:
+    import tempfile
+
+    handle, name = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.", suffix=".new")
+    beside = Path(name)
+    try:
+        with os.fdopen(handle, "wb") as file:
+            file.write(data)
+        beside.chmod(_mode(target))
+        beside.replace(target)
+    except BaseException:
+        with contextlib.suppress(OSError):
+            beside.unlink()
+        raise
+
+
+def _mode(target: Path) -> int:
+    """The permissions that the file has, or that a new one gets."""
+    if target.exists():
+        return stat.S_IMODE(target.stat().st_mode)
+    mask = os.umask(0)
+    os.umask(mask)
+    return 0o666 & ~mask

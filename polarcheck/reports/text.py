@@ -1,0 +1,188 @@
+"""The report for people at a shell: the block, what is wrong with it, why, and what to do."""
+
+from __future__ import annotations
+
+import re
+import textwrap
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, NamedTuple
+
+from polarcheck.excerpt import excerpt, visible
+from polarcheck.reports import SEVERITIES, Background, counted
+
+if TYPE_CHECKING:
+    from polarcheck.finding import FileReport, Finding, Fix, NotEvaluated, Report
+    from polarcheck.rule import Rule
+
+#: Line numbers and labels end at this column; the text beside them begins three further.
+_GUTTER = 6
+_NARROWEST = 60
+#: Of more files than this, those that pass are counted, not listed, and what was not evaluated is told for all at once.
+_LISTED = 10
+#: Places that are listed where many files lack the same.
+_PLACES = 3
+_STYLES = {
+    "error": "1;31",
+    "warning": "1;33",
+    "note": "1;36",
+    "not evaluated": "1;35",
+    "fail": "1;31",
+    "unverified": "1;35",
+    "pass": "1;32",
+    "message": "1",
+    "aside": "2",
+}
+_SENTENCE_END = re.compile(r"(?<!\be\.g\.)(?<!\bi\.e\.)(?<!\bp\.)(?<=[.?!])\s+(?=[A-Z0-9(])")
+
+
+class _Page(NamedTuple):
+    """How to write: the width in columns, and whether in color."""
+
+    columns: int
+    color: bool
+
+    def paint(self, style: str, text: str) -> str:
+        return f"\x1b[{_STYLES[style]}m{text}\x1b[0m" if self.color and text else text
+
+    def heading(self, word: str, text: str) -> Iterator[str]:
+        indent = len(word) + 2
+        first, *more = _wrapped(visible(text), self.columns - indent)
+        yield f"{self.paint(word, word)}: {self.paint('message', first)}"
+        yield from (" " * indent + self.paint("message", line) for line in more)
+
+    def labelled(self, label: str, text: str) -> Iterator[str]:
+        indent = _GUTTER + 3
+        first, *more = _wrapped(visible(text), self.columns - indent)
+        yield f"{self.paint('aside', label.rjust(_GUTTER))}   {first}"
+        yield from (" " * indent + line for line in more)
+
+
+def text(report: Report, background: Background) -> str:
+    """Findings with excerpts, then what was not evaluated, then the verdict of each file and one line over all."""
+    page = _Page(max(background.columns, _NARROWEST), background.color)
+    return "".join(line + "\n" for line in _report(report, background, page))
+
+
+def _report(report: Report, background: Background, page: _Page) -> Iterator[str]:
+    explained: set[str] = set()
+    for file in report.files:
+        lines = background.lines.get(file.path, {})
+        for found in file.findings:
+            rule = background.rules.get(found.rule)
+            yield from _finding(found, file, lines, None if found.rule in explained else rule, page)
+            yield ""
+            explained.add(found.rule)
+        if not background.quiet and len(report.files) <= _LISTED:
+            yield from _not_evaluated([file], page)
+    if background.quiet or not report.files:
+        return
+    if len(report.files) > _LISTED:
+        yield from _not_evaluated(report.files, page)
+    yield from _verdicts(report.files, page)
+    yield ""
+    yield _summary(report)
+    known = [found.rule for file in report.files for found in file.findings if found.rule in background.rules]
+    if known:
+        yield page.paint("aside", f"More about a rule: polarcheck explain {known[0]}")
+
+
+def _finding(
+    found: Finding, file: FileReport, lines: Mapping[int, str], rule: Rule | None, page: _Page
+) -> Iterator[str]:
+    yield from page.heading(found.severity, found.message)
+    place = f"{file.path}:{found.line}:{found.column}"
+    if found.program and len(file.programs) > 1:
+        place += f", program {found.program}"
+    if found.count > 1:
+        place += f", in {found.count} runs of the block"
+    yield from page.labelled("at", place)
+    yield from _excerpt(found, lines, page)
+    yield from page.labelled("rule", f"{found.rule}, alarm {found.alarm}" if found.alarm else found.rule)
+    why = first_sentence(rule.page) if rule else ""
+    if why:
+        yield from page.labelled("why", why)
+    if found.fix is not None:
+        yield from page.labelled("fix", _fix(found.fix))
+
+
+def _excerpt(found: Finding, lines: Mapping[int, str], page: _Page) -> Iterator[str]:
+    """The G12.1 that the block belongs to, the block, and a mark under the words at fault."""
+    room = page.columns - _GUTTER - 3
+    related = found.section_line
+    if related is not None and related != found.line and related in lines:
+        yield _numbered(related, excerpt(lines[related], 0, 0, room).text, page)
+    if found.line not in lines:
+        return
+    line = lines[found.line]
+    end = found.end_column - 1 if found.end_line == found.line else len(line)
+    shown = excerpt(line, found.column - 1, end, room)
+    yield _numbered(found.line, shown.text, page)
+    mark = page.paint(found.severity, "^" * shown.marked)
+    yield f"{page.paint('aside', ' ' * _GUTTER + ' |')} {' ' * shown.first}{mark}"
+
+
+def _numbered(line: int, text: str, page: _Page) -> str:
+    return f"{page.paint('aside', f'{line:{_GUTTER}} |')} {text}".rstrip()
+
+
+def first_sentence(page: str) -> str:
+    """The first sentence below the title of a manual page; it says why."""
+    body = page.partition("\n")[2].strip().partition("\n\n")[0]
+    return _SENTENCE_END.split(" ".join(body.split()), maxsplit=1)[0]
+
+
+def _fix(fix: Fix) -> str:
+    return f"{fix.title} ({'moves as meant' if fix.safe else 'look at it before you take it'})"
+
+
+def _not_evaluated(files: Sequence[FileReport], page: _Page) -> Iterator[str]:
+    """One paragraph for each reason, whatever the number of rules that it silences."""
+    reasons: dict[str, list[tuple[str, NotEvaluated]]] = {}
+    for file in files:
+        for missing in file.not_evaluated:
+            reasons.setdefault(missing.reason, []).append((file.path, missing))
+    for reason, group in reasons.items():
+        yield from page.heading("not evaluated", reason)
+        paths = list(dict.fromkeys(path for path, _ in group))
+        for path in paths[:_PLACES]:
+            yield from page.labelled("at", _place(path, [missing for its, missing in group if its == path]))
+        if len(paths) > _PLACES:
+            yield from page.labelled("", f"and in {counted(len(paths) - _PLACES, 'more file')}")
+        rules = dict.fromkeys(missing.rule for _, missing in group)
+        yield from page.labelled("rule" if len(rules) == 1 else "rules", ", ".join(rules))
+        yield ""
+
+
+def _place(path: str, group: Sequence[NotEvaluated]) -> str:
+    return f"{path}, {counted(max(missing.blocks for missing in group), 'block')}"
+
+
+def _verdicts(files: Sequence[FileReport], page: _Page) -> Iterator[str]:
+    shown = [file for file in files if file.verdict != "pass" or len(files) <= _LISTED]
+    width = max((len(file.verdict) for file in shown), default=0)
+    for file in shown:
+        sections = counted(file.sections, "polar section") if file.sections else "no polar section"
+        facts = [_severities(file.findings), sections, counted(file.blocks, "block")]
+        word = page.paint(file.verdict, file.verdict) + " " * (width - len(file.verdict))
+        yield f"{word}  {visible(file.path)}: {', '.join(facts)}"
+
+
+def _summary(report: Report) -> str:
+    files, total = report.files, report.summary
+    verdicts = Counter(file.verdict for file in files)
+    counts = [f"{verdicts[verdict]} {verdict}" for verdict in ("fail", "unverified", "pass") if verdicts[verdict]]
+    parts = [_severities([found for file in files for found in file.findings])]
+    if total.silenced:
+        parts.append(f"{total.silenced} silenced")
+    of_verdicts = f": {', '.join(counts)}" if len(files) > 1 else ""
+    return f"{counted(len(files), 'file')} checked for {visible(report.machine)}{of_verdicts}; {', '.join(parts)}"
+
+
+def _severities(findings: Sequence[Finding]) -> str:
+    number = Counter(found.severity for found in findings)
+    return ", ".join(counted(number[one], one) for one in SEVERITIES if number[one]) or "no findings"
+
+
+def _wrapped(text: str, columns: int) -> list[str]:
+    return textwrap.wrap(text, columns, break_long_words=False, break_on_hyphens=False) or [""]

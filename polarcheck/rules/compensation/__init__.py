@@ -1,0 +1,1 @@
+"""Cutter compensation in the polar plane."""

@@ -1,0 +1,38 @@
+from __future__ import annotations
+
+from polarcheck.rule import ERROR, Mask, Trace, rule
+
+
+@rule(ERROR, "G40 takes effect on an arc; cancel in a G1 block after the arc", at=("G40", "G2", "G3"))
+def cancel_on_arc(trace: Trace) -> Mask:
+    """
+    Cutter compensation cancelled on an arc.
+
+    G40 takes effect with the next move, and that must be a straight one: the control stops with an alarm at G2 or G3.
+    Finish the arc with compensation, and ramp off in G1.
+
+    Source: FANUC B-63324EN/03, p. 402; alarm 034; builder's guide to G12.1.
+
+    Bad, tool 1:radius=4:
+
+        T0101
+        G98 G0 X60. C0
+        G12.1
+        G1 G41 X40. F200
+        C-10.
+        G40 G2 X30. C-15. I-5. J0   (expect: cancel-on-arc)
+        G1 X60.
+        G13.1
+
+    Good, tool 1:radius=4:
+
+        T0101
+        G98 G0 X60. C0
+        G12.1
+        G1 G41 X40. F200
+        C-10.
+        G2 X30. C-15. I-5. J0
+        G1 G40 C-25.
+        G13.1
+    """
+    return trace.cancels & trace.ramps.on_arc

@@ -1,0 +1,54 @@
+from __future__ import annotations
+
+from polarcheck.rule import ERROR, Hits, Trace, rule
+
+
+@rule(ERROR, "ramp-off {fault}", at=("G40",), needs=("radius", "length"), where="ramps.off_of_length")
+def cancel_shorter_than_radius(trace: Trace) -> Hits:
+    """
+    Ramp-off shorter than the cutter radius.
+
+    Cutter compensation is taken back in the G1 block with G40, or in the next one that moves. That block must move at
+    least the R of the tool offset: along X twice R where X is a diameter, along C once R, at an angle R on the plane.
+    After a shorter one, or a G40 after which nothing moves on the plane, the tool is not where the program takes it to
+    be, and it may turn back into the contour.
+
+    Source: builder's guide to G12.1, cutter compensation function and sample program.
+
+    Bad, tool 8:radius=9.525:
+
+        T0808
+        G98 G0 X65. C0
+        G12.1
+        G1 C13. F1500
+        G1 G41 X44. F180
+        C-13.
+        G40 X50. F1500     (expect: cancel-shorter-than-radius)
+        G13.1
+
+    Bad, tool 8:radius=9.525:
+
+        T0808
+        G98 G0 X65. C0
+        G12.1
+        G1 C13. F1500
+        G1 G41 X44. F180
+        C-13.
+        G40                (expect: cancel-shorter-than-radius)
+        G13.1
+
+    Good, tool 8:radius=9.525:
+
+        T0808
+        G98 G0 X65. C0
+        G12.1
+        G1 C13. F1500
+        G1 G41 X44. F180
+        C-13.
+        G40
+        Z2.
+        X65. F1500
+        G13.1
+    """
+    short = trace.cancels & trace.ramps.too_short & ~trace.ramps.on_arc
+    return short | (trace.cancels_standing & trace.ramps.has_radius), {"fault": trace.ramps.fault}

@@ -1,0 +1,37 @@
+from __future__ import annotations
+
+from polarcheck.rule import ERROR, Mask, Trace, rule
+
+
+@rule(ERROR, "{D} in the polar mode: on a lathe R comes with the tool offset, as in T0808", at=("D",))
+def d_word_on_lathe(trace: Trace) -> Mask:
+    """
+    D word for cutter compensation.
+
+    On machining centers D calls the radius of the cutter. A lathe takes R from the tool offset that T calls, and does
+    not know D: it is an alarm, or the radius is not the one that D was to call. Delete D, put R into the offset table,
+    and call the offset with T before G12.1.
+
+    Source: builder's guide to G12.1, cutter compensation data setting and notes.
+
+    Bad:
+
+        T0808
+        G98 G0 X60. C0
+        G12.1
+        G1 G41 D8 X40. F200   (expect: d-word-on-lathe)
+        C-10.
+        G40 X60.
+        G13.1
+
+    Good:
+
+        T0808
+        G98 G0 X60. C0
+        G12.1
+        G1 G41 X40. F200
+        C-10.
+        G40 X60.
+        G13.1
+    """
+    return trace.in_polar & trace.uses_axes & trace.has("D")

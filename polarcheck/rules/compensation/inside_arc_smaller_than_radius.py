@@ -1,0 +1,62 @@
+from __future__ import annotations
+
+from polarcheck.rule import ERROR, Hits, Trace, rule
+
+
+@rule(
+    ERROR,
+    "arc of {arc_radius:length} with the tool on its inner side; R {radius:length} must be smaller",
+    at=("G2", "G3", "R", "I", "J"),
+    needs=("radius",),
+    where="ramps.compensated",
+)
+def inside_arc_smaller_than_radius(trace: Trace) -> Hits:
+    """
+    Arc into which the cutter does not fit.
+
+    With the tool on the inner side of an arc the tool center runs on a radius smaller by R. Where the radius of the
+    arc is not above R nothing is left of it, and the control stops with an alarm before this block. Take a smaller
+    cutter, or make the radius of the contour larger. Often G41 stands where G42 is meant.
+
+    Source: FANUC B-63664EN, p. 184; alarm 041.
+
+    Bad, tool 1:radius=4:
+
+        T0101
+        G98 G0 X80. C0
+        G12.1
+        G1 C20. F500
+        G41 X40. F200
+        C0.
+        G3 X46. C-3. R3.   (expect: inside-arc-smaller-than-radius)
+        G1 X60.
+        G40 X80.
+        G13.1
+
+    Good, tool 1:radius=2.5:
+
+        T0101
+        G98 G0 X80. C0
+        G12.1
+        G1 C20. F500
+        G41 X40. F200
+        C0.
+        G3 X46. C-3. R3.
+        G1 X60.
+        G40 X80.
+        G13.1
+
+    Good, tool 1:radius=4:
+
+        T0101
+        G98 G0 X80. C0
+        G12.1
+        G1 C20. F500
+        G41 X40. F200
+        C0.
+        G2 X34. C-3. R3.
+        G1 X20.
+        G40 C-20.
+        G13.1
+    """
+    return trace.ramps.arc_too_small, {"arc_radius": trace.ramps.arc_radius}

@@ -1,0 +1,53 @@
+from __future__ import annotations
+
+from polarcheck.rule import ERROR, Mask, Trace, rule
+
+
+@rule(
+    ERROR,
+    "tool center would run backwards here: the contour is too narrow or too short for R {radius:length}",
+    needs=("radius",),
+    where="ramps.compensated",
+)
+def interference(trace: Trace) -> Mask:
+    """
+    Contour too narrow for the cutter.
+
+    In a groove narrower than the cutter, or beside a step or block shorter than it, the path of the tool center crosses
+    itself: it would run against the direction of the program, and cut into what is left standing before and behind.
+    The control finds this by its interference check and stops with an alarm. Take a smaller cutter, or leave the
+    narrow place out. Of neighbouring blocks the first is reported.
+
+    Source: FANUC 30i B-63944EN-2, interference check; B-63664EN, p. 184; alarm 041.
+
+    Bad, tool 1:radius=4:
+
+        T0101
+        G98 G0 X100. C0
+        G12.1
+        G1 C20. F500
+        G41 X60. F200
+        C3.
+        X40.
+        C-3.               (expect: interference)
+        X60.
+        C-20.
+        G40 X100.
+        G13.1
+
+    Good, tool 1:radius=2.5:
+
+        T0101
+        G98 G0 X100. C0
+        G12.1
+        G1 C20. F500
+        G41 X60. F200
+        C3.
+        X40.
+        C-3.
+        X60.
+        C-20.
+        G40 X100.
+        G13.1
+    """
+    return trace.ramps.runs_backwards

@@ -1,0 +1,63 @@
+from __future__ import annotations
+
+from polarcheck.rule import WARNING, Hits, Trace, rule
+
+
+@rule(
+    WARNING,
+    "{why}; the tool center ends perpendicular to this block, not where the next one needs it",
+    needs=("radius",),
+    where="ramps.compensated",
+)
+def movement_missing_in_offset_mode(trace: Trace) -> Hits:
+    """
+    Too many blocks without movement between two moves with compensation.
+
+    To find the way round a corner the control must know the next move on the plane. It reads a few blocks ahead, and Z
+    moves, M and S codes, dwell and empty moves use them up; M0 and M1 stop the reading altogether. Then the tool center
+    goes to R beside the end of this block, cuts into an inside corner, and after a ramp on may stand on the wrong side.
+    Bring the blocks to another place, or join them: one Z move to depth is harmless, two are not.
+
+    Source: FANUC B-63664EN, p. 170; B-63944EN-2, p. 146.
+
+    Bad, tool 1:radius=4:
+
+        T0101
+        G98 G0 X100. Z5. C0
+        G12.1
+        G1 C20. F500
+        G41 X60. F200      (expect: movement-missing-in-offset-mode)
+        Z1.
+        Z-3.
+        C-20.
+        G40 X100.
+        G13.1
+
+    Bad, tool 1:radius=4:
+
+        T0101
+        G98 G0 X100. Z5. C0
+        G12.1
+        G1 C20. F500
+        G41 X60. F200
+        C-20.              (expect: movement-missing-in-offset-mode)
+        M0
+        X20.
+        G40 X-100.
+        G13.1
+
+    Good, tool 1:radius=4:
+
+        T0101
+        G98 G0 X100. Z5. C0
+        G12.1
+        G1 C20. F500
+        G41 X60. F200
+        Z-3.
+        C-20.
+        G4 X1.
+        X20.
+        G40 X-100.
+        G13.1
+    """
+    return trace.ramps.next_not_read, {"why": trace.ramps.why_not_read}

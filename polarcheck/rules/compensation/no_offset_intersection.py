@@ -1,0 +1,48 @@
+from __future__ import annotations
+
+from polarcheck.rule import ERROR, Mask, Trace, rule
+
+
+@rule(
+    ERROR,
+    "paths of the tool center in this block and the next do not meet with R {radius:length}",
+    needs=("radius",),
+    where="ramps.compensated",
+)
+def no_offset_intersection(trace: Trace) -> Mask:
+    """
+    Inside corner without a meeting point for the tool center.
+
+    At an inside corner the tool center turns where its two paths meet. Beside an arc that is short or strongly curved
+    for the cutter they may not meet at all, and the control stops with an alarm at the end of the block before. Take a
+    smaller cutter, or change the corner.
+
+    Source: FANUC B-63664EN, p. 178; alarm 033.
+
+    Bad, tool 1:radius=4:
+
+        T0101
+        G98 G0 X110. C0
+        G12.1
+        G1 C20. F500
+        G41 X60. F200
+        C0.                (expect: no-offset-intersection)
+        G3 X70. C0. R5.
+        G1 C-20.
+        G40 X110.
+        G13.1
+
+    Good, tool 1:radius=2:
+
+        T0101
+        G98 G0 X110. C0
+        G12.1
+        G1 C20. F500
+        G41 X60. F200
+        C0.
+        G3 X70. C0. R5.
+        G1 C-20.
+        G40 X110.
+        G13.1
+    """
+    return trace.ramps.does_not_meet

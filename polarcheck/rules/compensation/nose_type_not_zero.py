@@ -1,0 +1,42 @@
+from __future__ import annotations
+
+from polarcheck.rule import ERROR, Hits, Trace, rule
+
+
+@rule(
+    ERROR,
+    "offset {offset_number} has nose type T{nose:.0f}; for a mill it must be {allowed}",
+    at=("G41", "G42"),
+    once="section",
+)
+def nose_type_not_zero(trace: Trace) -> Hits:
+    """
+    Nose type of a turning tool in the offset of a mill.
+
+    T of the tool offset says where on the nose the programmed point lies. For a mill it is the cutter center, type 0
+    (or 9); with another type compensation shifts the contour by R in X, in C, or both. Set T to 0 in the offset table.
+
+    Source: builder's guide to G12.1, cutter compensation data setting; FANUC B-62754EN/01, tool nose radius
+    compensation.
+
+    Bad, tool 8:radius=4, tool 8:nose=3:
+
+        T0808
+        G98 G0 X60. C0
+        G12.1
+        G1 G41 X40. F200   (expect: nose-type-not-zero)
+        C-10.
+        G40 X60.
+        G13.1
+
+    Good, tool 8:radius=4, tool 8:nose=0:
+
+        T0808
+        G98 G0 X60. C0
+        G12.1
+        G1 G41 X40. F200
+        C-10.
+        G40 X60.
+        G13.1
+    """
+    return trace.starts_up & trace.ramps.nose_wrong, {"allowed": trace.ramps.nose_types}

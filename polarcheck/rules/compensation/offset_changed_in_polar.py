@@ -1,0 +1,42 @@
+from __future__ import annotations
+
+from polarcheck.rule import ERROR, Hits, Trace, rule
+
+
+@rule(ERROR, "tool offset changed in the polar mode by {changed_by}; write it {outside}", at=("T", "G10"))
+def offset_changed_in_polar(trace: Trace) -> Hits:
+    """
+    Tool offset changed in the polar mode.
+
+    The offset must be set before G12.1 and cannot be changed before G13.1: a T word with another tool or offset, T0800,
+    or G10 on an offset stops the control or shifts the plane off the center of the spindle, and the contour with it.
+    Leave the mode, change the offset, position, and enter again.
+
+    Source: FANUC B-62764EN/01, p. 52; Mitsubishi M700V programming manual, P485.
+
+    Bad:
+
+        T0101
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. F200
+        T0111             (expect: offset-changed-in-polar)
+        C10.
+        G10 P11 X0.1      (expect: offset-changed-in-polar)
+        X60.
+        G13.1
+
+    Good:
+
+        T0101
+        G98 G0 X60. C0
+        G10 P1 R4.
+        G12.1
+        G1 X40. F200
+        T0101
+        C10.
+        X60.
+        G13.1
+        T0111
+    """
+    return trace.ramps.offset_changes, {"changed_by": trace.ramps.offset_changed_by, "outside": trace.modes.outside}

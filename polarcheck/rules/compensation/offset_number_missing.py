@@ -1,0 +1,39 @@
+from __future__ import annotations
+
+from polarcheck.rule import ERROR, Hits, Trace, rule
+
+
+@rule(ERROR, "{side} begins and no tool offset is in force, so that R is 0", at=("G41", "G42"), once="section")
+def offset_number_missing(trace: Trace) -> Hits:
+    """
+    Cutter compensation without a tool offset.
+
+    On a lathe R comes with the tool offset: T0808 calls tool 8 with offset 8. With T0800, or no T at all, R is 0, the
+    cutter center runs along the contour, and the part is too small by the cutter diameter. In an excerpt without T the
+    offset is taken to be called before.
+
+    Source: builder's guide to G12.1, cutter compensation data setting; FANUC B-62764EN/01, p. 52.
+
+    Bad:
+
+        T0800
+        G98 G0 X60. C0
+        G12.1
+        G1 G41 X40. F200   (expect: offset-number-missing)
+        C-10.
+        G40 X60.
+        G13.1
+
+    Good:
+
+        T0808
+        G98 G0 X60. C0
+        G12.1
+        G1 G41 X40. F200
+        C-10.
+        G40 X60.
+        G13.1
+        T0800
+    """
+    missing = trace.starts_up & (trace.offset_number == 0) & trace.ramps.tool_is_called
+    return missing, {"side": trace.ramps.side}

@@ -1,0 +1,68 @@
+from __future__ import annotations
+
+from polarcheck.rule import ERROR, Hits, Trace, rule
+
+
+@rule(
+    ERROR,
+    "the cutter goes {depth:length} deep into {place}",
+    needs=("radius",),
+    where="ramps.offset_mode",
+    worst="overcutting.depth",
+    unless=(
+        "inside-arc-smaller-than-radius",
+        "interference",
+        "no-offset-intersection",
+        "movement-missing-in-offset-mode",
+        "side-changed-in-offset-mode",
+        "side-repeated-in-offset-mode",
+        "start-up-shorter-than-radius",
+    ),
+)
+def overcut(trace: Trace) -> Hits:
+    """
+    Tool cuts into the contour.
+
+    The path of the tool center comes nearer than the cutter radius to another block of the same contour, and takes away
+    material that the part keeps: a groove narrower than the cutter, a step lower than its radius, a corner that turns
+    back. The control does not always see it, since it compares one block with the next. Use a smaller cutter or another
+    order of the contour. Each contour is judged by itself, from the ramp on to the ramp off and depth by depth; passes
+    inside each other and spirals do not count as cuts into each other.
+
+    Source: FANUC B-63944EN-1, p. 216 (what interference check cannot find); B-63664EN, p. 184.
+
+    Bad, tool 1:radius=4:
+
+        T0101
+        G98 G0 X100. C0
+        G12.1
+        G1 C3. F500
+        G41 X60. F200
+        X30.              (expect: overcut)
+        C20.
+        X-20.
+        C-20.
+        X30.
+        C-3.
+        X60.              (expect: overcut)
+        G40 X100.
+        G13.1
+
+    Good, tool 1:radius=3:
+
+        T0101
+        G98 G0 X100. C0
+        G12.1
+        G1 C3. F500
+        G41 X60. F200
+        X30.
+        C20.
+        X-20.
+        C-20.
+        X30.
+        C-3.
+        X60.
+        G40 X100.
+        G13.1
+    """
+    return trace.overcutting.depth > 0, {"depth": trace.overcutting.depth, "place": trace.overcutting.place}

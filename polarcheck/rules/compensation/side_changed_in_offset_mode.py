@@ -1,0 +1,42 @@
+from __future__ import annotations
+
+from polarcheck.rule import WARNING, Hits, Trace, rule
+
+
+@rule(WARNING, "{side} while {before} is active; write G40 with a move between them", at=("G41", "G42"))
+def side_changed_in_offset_mode(trace: Trace) -> Hits:
+    """
+    Side of compensation changed without G40.
+
+    From G41 to G42 the tool crosses the contour, and where it does so depends on the corner and on the control. Cancel
+    with G40 in a move away from the part, and ramp on again on the other side.
+
+    Source: FANUC B-63324EN/03, p. 405; B-63944EN-2, p. 158.
+
+    Bad, tool 1:radius=4:
+
+        T0101
+        G98 G0 X80. C0
+        G12.1
+        G1 C20. F500
+        G41 X40. F200
+        C5.
+        G42 C-20.         (expect: side-changed-in-offset-mode)
+        G40 X80.
+        G13.1
+
+    Good, tool 1:radius=4:
+
+        T0101
+        G98 G0 X80. C0
+        G12.1
+        G1 C20. F500
+        G41 X40. F200
+        C-20.
+        G40 X80.
+        G42 X40.
+        C20.
+        G40 X80.
+        G13.1
+    """
+    return trace.ramps.side_changes, {"side": trace.ramps.side, "before": trace.ramps.side_before}

@@ -1,0 +1,49 @@
+from __future__ import annotations
+
+from polarcheck.rule import WARNING, Hits, Trace, rule
+
+
+@rule(
+    WARNING,
+    "{side} again: it is active already, and the tool center does not turn into the corner before it",
+    at=("G41", "G42"),
+    once="section",
+)
+def side_repeated_in_offset_mode(trace: Trace) -> Hits:
+    """
+    G41 or G42 written again while it is active.
+
+    The control sets up the tool center perpendicular to the end of the block before, whether the corner is an inside or
+    an outside one: an inside corner is cut into, and an arc next to it gets the wrong radius. Delete the second code.
+    The first one of a section is reported.
+
+    Source: FANUC B-63944EN-2, p. 158.
+
+    Bad, tool 1:radius=4:
+
+        T0101
+        G98 G0 X80. C0
+        G12.1
+        G1 C20. F500
+        G41 X40. F200
+        C5.
+        G41 C-20.         (expect: side-repeated-in-offset-mode)
+        G40 X80.
+        G13.1
+
+    Good, tool 1:radius=4:
+
+        T0101
+        G98 G0 X80. C0
+        G12.1
+        G1 C20. F500
+        G41
+        G41 X40. F200
+        C-20.
+        G40 X80.
+        G41 X40. C20.
+        C-20.
+        G40 X80.
+        G13.1
+    """
+    return trace.ramps.side_repeats, {"side": trace.ramps.side}

@@ -1,0 +1,52 @@
+from __future__ import annotations
+
+from polarcheck.rule import ERROR, Hits, Trace, rule
+
+
+@rule(ERROR, "ramp-on {fault}", at=("G41", "G42"), needs=("radius", "length"), where="ramps.on_of_length")
+def start_up_shorter_than_radius(trace: Trace) -> Hits:
+    """
+    Ramp-on shorter than the cutter radius.
+
+    Cutter compensation is built up in the G1 block with G41 or G42, or in the next one that moves. That block must move
+    at least the R of the tool offset: along X twice R where X is a diameter, along C once R, at an angle R on the
+    plane. A shorter one starts inside the offset and cuts into the contour, or turns the tool back. A G41 after which
+    nothing moves before G40 or G13.1 builds up nothing.
+
+    Source: builder's guide to G12.1, cutter compensation function.
+
+    Bad, tool 8:radius=9.525:
+
+        T0808
+        G98 G0 X54. C0
+        G12.1
+        G1 C13. F1500
+        G1 G41 X44. F180   (expect: start-up-shorter-than-radius)
+        C-13.
+        G40 X65. F1500
+        G13.1
+
+    Bad, tool 8:radius=9.525:
+
+        T0808
+        G98 G0 X65. C0
+        G12.1
+        G1 C13. F1500
+        G41                (expect: start-up-shorter-than-radius)
+        G13.1
+
+    Good, tool 8:radius=9.525:
+
+        T0808
+        G98 G0 X65. C0
+        G12.1
+        G1 C13. F1500
+        G41
+        Z-5.
+        X44. F180
+        C-13.
+        G40 X65. F1500
+        G13.1
+    """
+    short = trace.starts_up & trace.ramps.too_short & ~trace.ramps.on_arc
+    return short | (trace.ramps.begins_standing & trace.ramps.has_radius), {"fault": trace.ramps.fault}

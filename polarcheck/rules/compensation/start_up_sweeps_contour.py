@@ -1,0 +1,54 @@
+from __future__ import annotations
+
+from polarcheck.rule import ERROR, Hits, Trace, rule
+
+
+@rule(
+    ERROR,
+    "the ramp goes {depth:length} deep into {place}",
+    at=("G40", "G41", "G42"),
+    unless=(
+        "overcut",
+        "start-up-shorter-than-radius",
+        "cancel-shorter-than-radius",
+        "start-up-on-arc",
+        "cancel-on-arc",
+        "movement-missing-in-offset-mode",
+    ),
+)
+def start_up_sweeps_contour(trace: Trace) -> Hits:
+    """
+    Ramp on or off that cuts the contour.
+
+    With start-up type A the ramp ends perpendicular to the first block of the contour. Where it comes from the other
+    side of a corner, the straight way there leads over the corner and takes it off; the ramp off likewise. Start from
+    the side that the contour runs to, or let the ramp end where the contour goes straight on.
+
+    Source: FANUC B-63944EN-2, start-up and cancel of cutter compensation; parameter 5003#0, #1.
+
+    Bad, tool 1:radius=5:
+
+        T0101
+        G98 G0 X20. C0
+        G12.1
+        G1 G41 X60. C0 F200   (expect: start-up-sweeps-contour)
+        C-30.
+        X20.
+        G40 C-50.
+        G13.1
+
+    Good, tool 1:radius=5:
+
+        T0101
+        G98 G0 X120. C0
+        G12.1
+        G1 G41 X60. C0 F200
+        C-30.
+        X20.
+        G40 C-50.
+        G13.1
+    """
+    return trace.overcutting.sweep_depth > 0, {
+        "depth": trace.overcutting.sweep_depth,
+        "place": trace.overcutting.sweep_place,
+    }

@@ -1,0 +1,42 @@
+from __future__ import annotations
+
+from polarcheck.rule import ERROR, Hits, Trace, rule
+
+
+@rule(
+    ERROR,
+    "tool length offset cannot be switched in the polar mode; write it {outside}",
+    at=("G43", "G44", "G49"),
+)
+def tool_length_offset_in_polar(trace: Trace) -> Hits:
+    """
+    Tool length offset switched in the polar mode.
+
+    G43, G44 and G49 belong before G12.1 or after G13.1; in the mode the control stops with an alarm. Lathes take the
+    length from the tool offset that T calls, and need none of them.
+
+    Source: FANUC B-62764EN/01, p. 52.
+
+    Bad:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. F200
+        C10.
+        G43               (expect: tool-length-offset-in-polar)
+        X60.
+        G49               (expect: tool-length-offset-in-polar)
+        G13.1
+
+    Good:
+
+        G49
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. F200
+        C10.
+        X60.
+        G13.1
+        G49
+    """
+    return trace.modes.sets_length_offset, {"outside": trace.modes.outside}

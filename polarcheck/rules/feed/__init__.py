@@ -1,0 +1,1 @@
+"""F, and the speed of the C axis."""

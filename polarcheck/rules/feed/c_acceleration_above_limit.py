@@ -1,0 +1,44 @@
+from __future__ import annotations
+
+from polarcheck.rule import WARNING, Hits, Trace, rule
+
+
+@rule(
+    WARNING,
+    "C axis would need {c_acceleration:.0f} deg/s2, {machine.title} has {machine.limits.c_acceleration:.0f}; "
+    "nearest distance {nearest:length}, highest F here: {allowed:feed}",
+    at=("F",),
+    needs=("c_acceleration",),
+    where="feeds.is_limited_in_acceleration",
+    unless=("c-feed-above-limit",),
+    worst="c_acceleration",
+)
+def c_acceleration_above_limit(trace: Trace) -> Hits:
+    """
+    Feed too high for the acceleration of the C axis.
+
+    Where the tool comes to the center and leaves it again, C must speed up and slow down in a short way. The servo lags
+    behind, the shape is not true, or the drive stops with an alarm. On a line C needs 0.65 * F^2 / d^2, with d the
+    distance of the line from the center: half of F is a quarter of that.
+
+    Source: the second derivative of the angle along the path; the limit is limits.c_acceleration of the profile.
+
+    Bad, set limits.c_acceleration=500, set limits.c_feed=20000:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X2. C10. F200
+        C-10. F300        (expect: c-acceleration-above-limit)
+        X60. F200
+        G13.1
+
+    Good, set limits.c_acceleration=500, set limits.c_feed=20000:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X2. C10. F200
+        C-10. F200
+        X60.
+        G13.1
+    """
+    return trace.feeds.above_acceleration, {"allowed": trace.feeds.allowed_by_acceleration}

@@ -1,0 +1,61 @@
+from __future__ import annotations
+
+from polarcheck.rule import ERROR, WARNING, Hits, Machine, Trace, rule
+
+
+@rule(
+    ERROR,
+    "C axis would turn at {c_feed:.0f} deg/min, {verdict}; nearest distance {nearest:length}; {advice}",
+    at=("F",),
+    needs=("c_feed",),
+    where="cuts",
+    worst="c_feed",
+)
+def c_feed_above_limit(trace: Trace, machine: Machine) -> Hits:
+    """
+    Feed too high for the distance from the center.
+
+    F is the speed of the tool center on the plane. The nearer the tool center comes to the center of the C axis, the
+    faster C must turn for it: F / L, where L is their smallest distance. Above the limit the control stops with an
+    alarm or, with automatic override, slows down. Use F < L * R * pi / 180, with R the limit of C in deg/min, or keep
+    away from the center. limits.c_feed of the profile is R; without it only a rate that no C axis cuts with is
+    reported.
+
+    Source: FANUC B-62764EN/01, p. 52; B-63324EN/03, p. 192.
+
+    Bad, set limits.c_feed=3600:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X4. C5. F100
+        C-5. F500         (expect: c-feed-above-limit)
+        G13.1
+
+    Bad:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 C.1 F50
+        X-40. F1000       (expect: c-feed-above-limit)
+        G13.1
+
+    Bad, set limits.c_feed=3600, set limits.automatic_override=true:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 C1. F50
+        X-40. F200        (expect: c-feed-above-limit)
+        G13.1
+
+    Good, set limits.c_feed=3600:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X4. C5. F100
+        C-5. F120
+        G13.1
+    """
+    limit = machine.limits.c_feed
+    above = trace.reach.cuts_off_center & (trace.c_feed > trace.c_feed_limit)
+    severity = WARNING if machine.limits.automatic_override or limit != limit else ERROR  # NaN: not known
+    return above * severity, {"verdict": trace.feeds.c_verdict, "advice": trace.feeds.c_advice}

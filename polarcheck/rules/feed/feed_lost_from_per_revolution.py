@@ -1,0 +1,50 @@
+from __future__ import annotations
+
+from polarcheck.rule import ERROR, Mask, Trace, rule
+
+
+@rule(
+    ERROR,
+    "no F in the mode: the feed per revolution before G12.1 is not taken over",
+    at=("G1", "G2", "G3"),
+    unless=("feed-missing-in-polar",),
+)
+def feed_lost_from_per_revolution(trace: Trace) -> Mask:
+    """
+    Feed per revolution before G12.1, and no F in the mode.
+
+    Some controls take the F in force over into the mode only if it is per minute. After G99 (G95) the mode needs an F
+    of its own, which then is per minute; without one the control stops at the first cutting move. After G13.1 the feed
+    per revolution is there again.
+
+    Source: Mitsubishi M700V programming manual, p. 73: alarm P62.
+
+    Bad, set feed.inheritance="per-minute-only":
+
+        G99 G0 X60. C0
+        G1 Z-5. F.2
+        G12.1
+        X40.              (expect: feed-lost-from-per-revolution)
+        C10.
+        G13.1
+
+    Bad, set feed.inheritance="per-minute-only":
+
+        G99 G0 X60. C0
+        G1 Z-5. F.2
+        G12.1
+        G98
+        X40.              (expect: feed-lost-from-per-revolution)
+        C10. F200
+        G13.1
+
+    Good, set feed.inheritance="per-minute-only":
+
+        G99 G0 X60. C0
+        G1 Z-5. F.2
+        G12.1
+        X40. F200
+        C10.
+        G13.1
+    """
+    return trace.first_in_section(trace.feeds.lost)

@@ -1,0 +1,40 @@
+from __future__ import annotations
+
+from polarcheck.rule import ERROR, Mask, Trace, rule
+
+
+@rule(ERROR, "cutting move without F: none is in force", at=("G1", "G2", "G3", "F"))
+def feed_missing_in_polar(trace: Trace) -> Mask:
+    """
+    Cutting move without a feed.
+
+    No F stands above this block, or F0 does. The control stops with an alarm at the first G1, G2 or G3 that moves.
+
+    Source: FANUC alarm 011; Mitsubishi alarm P62.
+
+    Bad:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X40.           (expect: feed-missing-in-polar)
+        C10.
+        G13.1
+
+    Bad:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. F0        (expect: feed-missing-in-polar)
+        C10. F200
+        G13.1
+
+    Good:
+
+        G98 G0 X60. C0
+        G1 Z-5. F200
+        G12.1
+        X40.
+        C10.
+        G13.1
+    """
+    return trace.first_in_section(trace.feeds.missing)

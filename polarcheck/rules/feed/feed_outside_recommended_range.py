@@ -1,0 +1,47 @@
+from __future__ import annotations
+
+from polarcheck.rule import NOTE, Hits, Trace, rule
+
+
+@rule(NOTE, "F is {feed:feed}; recommended in the polar mode: {recommended}", at=("F",))
+def feed_outside_recommended_range(trace: Trace) -> Hits:
+    """
+    Feed outside what the builder recommends for the polar mode.
+
+    Builders recommend one range of F for cutting and a higher one for positioning in the mode. Too high an F costs
+    accuracy of the shape, as X and C do not follow. This F lies in neither range; it is reported where it comes into
+    force.
+
+    Source: builder's guide to G12.1, feed and positioning command.
+
+    Bad, machine turning-center, tool 8:radius=.375:
+
+        T0808
+        M5
+        M35
+        G28 H0
+        G97 S2000 M33
+        G98 G0 X3. C0
+        G12.1
+        G1 C.6 F40.
+        G41 X1.75 F20.    (expect: feed-outside-recommended-range)
+        C-.6
+        G40 X3. F40.
+        G13.1
+
+    Good, machine turning-center, tool 8:radius=.375:
+
+        T0808
+        M5
+        M35
+        G28 H0
+        G97 S2000 M33
+        G98 G0 X3. C0
+        G12.1
+        G1 C.6 F40.
+        G41 X1.75 F7.
+        C-.6
+        G40 X3. F40.
+        G13.1
+    """
+    return trace.feeds.begins & trace.feeds.outside_recommended, {"recommended": trace.feeds.recommended}

@@ -1,0 +1,47 @@
+from __future__ import annotations
+
+from polarcheck.rule import WARNING, Mask, Trace, rule
+
+
+@rule(
+    WARNING,
+    "feed per revolution of a spindle that turns as the C axis now; write feed per minute",
+    at=("G99", "G95", "G1", "G2", "G3"),
+    unless=("feed-missing-in-polar",),
+)
+def feed_per_revolution_in_polar(trace: Trace) -> Mask:
+    """
+    Feed per revolution in the polar mode.
+
+    The spindle that F counts is the C axis now. Unless the lathe counts the turns of the live tool, the tool stands
+    still or creeps. G98 (G94) gives the feed per minute, also for what comes after G13.1.
+
+    Source: FANUC B-62764EN/01, p. 51; builder's guide to G12.1, feed command.
+
+    Bad:
+
+        G99 G0 X60. C0
+        G1 Z-5. F.2
+        G12.1
+        X40.              (expect: feed-per-revolution-in-polar)
+        C10.
+        G13.1
+
+    Bad:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 G99 X40. F.2   (expect: feed-per-revolution-in-polar)
+        C10.
+        G13.1
+
+    Good:
+
+        G99 G0 X60. C0
+        G12.1
+        G98 G1 X40. F200
+        C10.
+        G13.1
+        G99 G0 X60.
+    """
+    return trace.first_in_section(trace.feeds.per_revolution)

@@ -1,0 +1,49 @@
+from __future__ import annotations
+
+from polarcheck.rule import WARNING, Hits, Machine, Trace, rule
+
+
+@rule(
+    WARNING,
+    "tool center comes within {nearest:length} of the center of the C axis; keep {keep_out:length} away",
+    at=("X", "U", "C", "H"),
+    unless=("c-feed-above-limit",),
+    worst="c_feed",
+)
+def path_near_center(trace: Trace, machine: Machine) -> Hits:
+    """
+    Path very close to the center of the C axis.
+
+    Half of a half turn of C falls on a way of twice the distance from the center. So close to it C turns at once, the
+    servo lags behind and leaves a mark on the part. Lead the path around, or through no closer than limits.keep_out of
+    the profile.
+
+    Source: FANUC B-62764EN/01, p. 52.
+
+    Bad:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. F.5
+        C.008
+        X-40.             (expect: path-near-center)
+        G13.1
+
+    Bad, set limits.keep_out=2:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 C1.5 F200
+        X-40.             (expect: path-near-center)
+        G13.1
+
+    Good, set limits.keep_out=2:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 C3. F200
+        X-40.
+        G13.1
+    """
+    keep_out = machine.limits.keep_out
+    return trace.reach.cuts_off_center & (trace.nearest < keep_out), {"keep_out": keep_out}

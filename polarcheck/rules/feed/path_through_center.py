@@ -1,0 +1,56 @@
+from __future__ import annotations
+
+from polarcheck.rule import ERROR, Hits, Trace, rule
+
+
+@rule(ERROR, "tool center {meeting}", at=("X", "U", "C", "H"))
+def path_through_center(trace: Trace) -> Hits:
+    """
+    Path through the center of the C axis.
+
+    At the center C has no angle. A path across it wants C half a turn further in no time, whatever F is; one that stops
+    there leaves the angle of the next move open. The control stops with an alarm, or leaves a mark on the part. Lead
+    the path around the center. With cutter compensation it is the tool center that counts, not the contour.
+
+    A move along a radius that ends at the center or begins there belongs here, too, though C does not turn on the way.
+
+    Source: FANUC B-62764EN/01, p. 52: do not come close to the center; Siemens alarm 21617, pole.
+
+    Bad:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X-40. F200     (expect: path-through-center)
+        C10.
+        G13.1
+
+    Bad:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X0 F200        (expect: path-through-center)
+        C10.
+        G13.1
+
+    Bad, tool 1:radius=5:
+
+        T0101
+        G98 G0 X60. C0
+        G12.1
+        G1 C15. F200
+        G41 X-10.
+        C-15.             (expect: path-through-center)
+        X40.
+        G40 C20.
+        G13.1
+
+    Good:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 C5. F200
+        X-40.
+        C10.
+        G13.1
+    """
+    return trace.reach.meets_center, {"meeting": trace.reach.meeting}

@@ -1,0 +1,36 @@
+from __future__ import annotations
+
+from polarcheck.rule import WARNING, Hits, Trace, rule
+
+
+@rule(WARNING, "{what}", over="faults")
+def duplicate_sequence_number(trace: Trace) -> Hits:
+    """
+    Jump to a sequence number that stands there twice.
+
+    The control searches forward from the jump and then from the head of the program, and takes the first N of that
+    number that it meets: which one depends on where the jump stands. Number the targets of jumps once only.
+
+    Source: FANUC B-62754EN/01, chapter 16.
+
+    Bad:
+
+        O0001
+        #0=1                 (expect: read-only-variable)
+        #1=1
+        IF[#1 EQ 1]GOTO 10   (expect: duplicate-sequence-number)
+        N10 G0 X50.
+        N10 G0 X60.
+        M30
+
+    Good:
+
+        O0001
+        #1=1
+        IF[#1 EQ 1]GOTO 10
+        N10 G0 X50.
+        N20 G0 X60.
+        N20 G0 X70.
+        M30
+    """
+    return trace.faults_of("duplicate-sequence-number"), {"what": trace.fault_text}

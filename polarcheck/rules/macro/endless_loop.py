@@ -1,0 +1,43 @@
+from __future__ import annotations
+
+from polarcheck.rule import ERROR, Hits, Trace, rule
+
+
+@rule(ERROR, "{what}", over="faults")
+def endless_loop(trace: Trace) -> Hits:
+    """
+    Program that never ends.
+
+    A jump or loop that comes back again and again with nothing changed never ends; the machine repeats it until it is
+    reset. Also reported where a program is still running after the blocks, statements or seconds that a check may take
+    (--max-blocks, --max-statements, --max-seconds): what comes after that is not checked.
+
+    Source: FANUC B-62754EN/01, chapter 16.
+
+    Bad:
+
+        O0001
+        #0=1             (expect: read-only-variable)
+        N10 G0 X50.
+        GOTO 10          (expect: endless-loop)
+        M30
+
+    Bad:
+
+        O0001
+        #1=0
+        WHILE[#1 LT 3]DO1
+        G0 X50.
+        END1             (expect: endless-loop)
+        M30
+
+    Good:
+
+        O0001
+        #1=0
+        WHILE[#1 LT 3]DO1
+        #1=#1+1
+        END1
+        M30
+    """
+    return trace.faults_of("endless-loop"), {"what": trace.fault_text}

@@ -1,0 +1,34 @@
+from __future__ import annotations
+
+from polarcheck.rule import ERROR, Hits, Trace, rule
+
+
+@rule(ERROR, "{what}", over="faults")
+def loop_number_out_of_range(trace: Trace) -> Hits:
+    """
+    Loop number other than 1, 2 and 3.
+
+    DO and END take the numbers 1, 2 and 3; the control stops with an alarm at any other.
+
+    Source: FANUC alarm 126.
+
+    Bad:
+
+        O0001
+        #0=1             (expect: read-only-variable)
+        #1=0
+        WHILE[#1 LT 3]DO4   (expect: loop-number-out-of-range)
+        #1=#1+1
+        END4             (expect: loop-number-out-of-range)
+        M30
+
+    Good:
+
+        O0001
+        #1=0
+        WHILE[#1 LT 3]DO3
+        #1=#1+1
+        END3
+        M30
+    """
+    return trace.faults_of("loop-number-out-of-range"), {"what": trace.fault_text}

@@ -1,0 +1,41 @@
+from __future__ import annotations
+
+from polarcheck.rule import ERROR, Hits, Trace, rule
+
+
+@rule(ERROR, "{what}", over="faults")
+def loop_unbalanced(trace: Trace) -> Hits:
+    """
+    Loop that does not close.
+
+    Each DO 1, 2 or 3 needs an END of the same number behind it; loops lie one inside the other and do not cross, and
+    a loop does not hold another of its own number. The control stops with an alarm.
+
+    Source: FANUC B-62754EN/01, chapter 16; alarms 124 and 1124.
+
+    Bad:
+
+        O0001
+        #0=1             (expect: read-only-variable)
+        #1=0
+        WHILE[#1 LT 3]DO1   (expect: loop-unbalanced)
+        #1=#1+1
+        M30
+
+    Bad:
+
+        O0001
+        G0 X50.
+        END1             (expect: loop-unbalanced)
+        M30
+
+    Good:
+
+        O0001
+        #1=0
+        WHILE[#1 LT 3]DO1
+        #1=#1+1
+        END1
+        M30
+    """
+    return trace.faults_of("loop-unbalanced"), {"what": trace.fault_text}

@@ -1,0 +1,35 @@
+from __future__ import annotations
+
+from polarcheck.rule import ERROR, Hits, Trace, rule
+
+
+@rule(ERROR, "{what}", over="faults")
+def macro_argument(trace: Trace) -> Hits:
+    """
+    Address that cannot hand over an argument.
+
+    G, L, N, O and P are not arguments of a macro call, and I J K can be repeated ten times at most. The control stops
+    with an alarm.
+
+    Source: FANUC alarms 129 and 1095; B-63684EN/01 p. 304.
+
+    Bad:
+
+        O0001
+        #0=1             (expect: read-only-variable)
+        G65 P9000 A1. G2   (expect: macro-argument)
+        M30
+        O9000
+        G0 X#1
+        M99
+
+    Good:
+
+        O0001
+        G65 P9000 A1. B2.
+        M30
+        O9000
+        G0 X#1 Z#2
+        M99
+    """
+    return trace.faults_of("macro-argument"), {"what": trace.fault_text}

@@ -1,0 +1,38 @@
+from __future__ import annotations
+
+from polarcheck.rule import ERROR, Hits, Trace, rule
+
+
+@rule(ERROR, "{what}", over="faults")
+def macro_syntax(trace: Trace) -> Hits:
+    """
+    Macro statement that cannot be read.
+
+    The control stops with an alarm at an expression or a statement that does not follow the rules of custom macro: a
+    bracket too few, an operator without a value, IF without GOTO or THEN. What cannot be read is taken as unknown.
+
+    Source: FANUC B-62754EN/01, chapter 16; alarms 114, 125, 1131 to 1138.
+
+    Bad:
+
+        O0001
+        #0=1             (expect: read-only-variable)
+        #1=[2+3         (expect: macro-syntax)
+        M30
+
+    Bad:
+
+        O0001
+        #1 5             (expect: macro-syntax)
+        IF[#1 EQ 5]M8    (expect: macro-syntax)
+        M30
+
+    Good:
+
+        O0001
+        #1=[2+3]*2
+        IF[#1 EQ 10]GOTO 10
+        #1=10
+        N10 M30
+    """
+    return trace.faults_of("macro-syntax"), {"what": trace.fault_text}

@@ -1,0 +1,31 @@
+from __future__ import annotations
+
+from polarcheck.rule import ERROR, Hits, Trace, rule
+
+
+@rule(ERROR, "{what}", over="faults")
+def mixed_macro_and_nc(trace: Trace) -> Hits:
+    """
+    NC words and a macro statement in one block.
+
+    The control stops with an alarm: a macro statement stands in a block of its own.
+
+    Source: FANUC alarm 127.
+
+    Bad:
+
+        O0001
+        #0=1             (expect: read-only-variable)
+        #1=5
+        G0 X50. #1=6     (expect: mixed-macro-and-nc)
+        M30
+
+    Good:
+
+        O0001
+        #1=5
+        G0 X50.
+        #1=6
+        M30
+    """
+    return trace.faults_of("mixed-macro-and-nc"), {"what": trace.fault_text}

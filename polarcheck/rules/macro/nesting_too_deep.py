@@ -1,0 +1,41 @@
+from __future__ import annotations
+
+from polarcheck.rule import ERROR, Hits, Trace, rule
+
+
+@rule(ERROR, "{what}", over="faults")
+def nesting_too_deep(trace: Trace) -> Hits:
+    """
+    Calls, loops or brackets nested too deep.
+
+    A control knows a few levels only: of brackets in an expression, of loops, of subprograms and of macros that call
+    each other; a program that calls itself passes them at once. It stops with an alarm. The call is not followed here.
+
+    Source: FANUC alarms 077, 118 and 122; B-62754EN/01 p. 287; B-63684EN/01 p. 304.
+
+    Bad:
+
+        O0001
+        #0=1             (expect: read-only-variable)
+        M98 P2
+        M30
+        O0002
+        M98 P2           (expect: nesting-too-deep)
+        M99
+
+    Bad:
+
+        O0001
+        #1=[[[[[[5]]]]]]   (expect: nesting-too-deep)
+        M30
+
+    Good:
+
+        O0001
+        M98 P2
+        M30
+        O0002
+        #1=[[[[[5]]]]]
+        M99
+    """
+    return trace.faults_of("nesting-too-deep"), {"what": trace.fault_text}

@@ -1,0 +1,35 @@
+from __future__ import annotations
+
+from polarcheck.rule import NOTE, Hits, Trace, rule
+
+
+@rule(NOTE, "{what}", over="faults")
+def unreachable_block(trace: Trace) -> Hits:
+    """
+    Blocks that no run of the program comes to.
+
+    Behind a GOTO, M30 or M99 and without an N number that anything jumps to: left over, or a jump goes to the wrong
+    place. Said once for each stretch of such blocks, and only where every condition of the program is known.
+
+    Source: FANUC B-62754EN/01, chapter 16.
+
+    Bad:
+
+        O0001
+        #0=1                 (expect: read-only-variable)
+        GOTO 20
+        G0 X50.          (expect: unreachable-block)
+        G0 X60.
+        N20 G0 X70.
+        M30
+
+    Good:
+
+        O0001
+        #1=1
+        IF[#1 EQ 1]GOTO 20
+        G0 X50.
+        N20 G0 X70.
+        M30
+    """
+    return trace.faults_of("unreachable-block"), {"what": trace.fault_text}

@@ -1,0 +1,1 @@
+"""Arcs, words and travel."""

@@ -1,0 +1,55 @@
+from __future__ import annotations
+
+from polarcheck.rule import ERROR, Hits, Machine, Trace, rule
+
+
+@rule(
+    ERROR,
+    "the arc starts {start_radius:length} from its center and ends {end_radius:length} from it; "
+    "{tolerance:length} of difference is allowed",
+    at=("X", "U", "C", "H", "I", "J"),
+    needs=("arcs.end_radius",),
+    where="arcs.by_center",
+    unless=("arc-center-on-path", "diameter-radius-mixed"),
+)
+def arc_end_off_circle(trace: Trace, machine: Machine) -> Hits:
+    """
+    Arc whose end is not on its circle.
+
+    I and J lead from the start of the arc to its center, I along X and J along C, both as they are and not on the
+    diameter. From there the end must be as far away as the start. Beyond the tolerance the control stops with an alarm;
+    older ones go on straight, others spiral. A word of C that is missing, or an X that is not on the diameter, shows
+    here.
+
+    Source: FANUC B-62754EN/01, p. 67; parameter 3410; alarm 020.
+
+    Bad:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. F200
+        G3 X20. C20. I-10. J5.  (expect: arc-end-off-circle)
+        G1 X60.
+        G13.1
+
+    Bad:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. C10. F200
+        G3 X24. I-8. J6.  (expect: arc-end-off-circle)
+        G1 X60.
+        G13.1
+
+    Good:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. C10. F200
+        G3 X24. C26. I-8. J6.
+        G1 X60.
+        G13.1
+    """
+    arcs = trace.arcs
+    radii = {"start_radius": arcs.start_radius, "end_radius": arcs.end_radius, "tolerance": machine.arcs.tolerance}
+    return arcs.ends_off_circle, radii

@@ -1,0 +1,51 @@
+from __future__ import annotations
+
+from polarcheck.rule import WARNING, Hits, Machine, Trace, rule
+
+#: What the last digit of the coordinates may turn an arc by [deg].
+ROUNDING = 0.1
+
+
+@rule(
+    WARNING,
+    "arc of {sweep:.0f} deg; {machine.title} takes {machine.arcs.sweep_limit:.0f} in one block",
+    at=("X", "U", "C", "H", "I", "J", "R"),
+)
+def arc_sweep_above_limit(trace: Trace, machine: Machine) -> Hits:
+    """
+    Arc through more degrees than this control takes in one block.
+
+    Some controls take the shorter of two arcs for a longer one, or go wrong about its center; posts for them cut arcs
+    at 180, 120 or 90 degrees. Cut the arc into two. arcs.sweep_limit of the profile says where; 360 is no limit.
+
+    Source: OSP-P200L programming manual 5238-E, p. 93; Autodesk turn-mill posts.
+
+    Bad, set arcs.sweep_limit=180:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. F200
+        G3 X0 C-20. I-20. J0  (expect: arc-sweep-above-limit)
+        G1 X60.
+        G13.1
+
+    Bad, set arcs.sweep_limit=180:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. F200
+        G2 I-20.          (expect: arc-sweep-above-limit)
+        G1 X60.
+        G13.1
+
+    Good, set arcs.sweep_limit=180:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. F200
+        G3 X-40. C0 I-20. J0
+        X0 C-20. I20. J0
+        G1 X60.
+        G13.1
+    """
+    return trace.arcs.sweep > machine.arcs.sweep_limit + ROUNDING, {"sweep": trace.arcs.sweep}

@@ -1,0 +1,43 @@
+from __future__ import annotations
+
+from polarcheck.rule import ERROR, Mask, Trace, rule
+
+
+@rule(ERROR, "arc without R, I or J", at=("G2", "G3", "X", "U", "C", "H"))
+def arc_without_center(trace: Trace) -> Mask:
+    """
+    Arc with neither radius nor center.
+
+    A move in G2 or G3 needs R, or I and J, in its own block; neither of them stays in force. The control stops with an
+    alarm or, with parameter 3403#5 CIR = 0, moves straight. G1 forgotten after an arc looks the same.
+
+    Source: FANUC alarm 022; parameter 3403#5.
+
+    Bad:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. C10. F200
+        G3 X20. C20.      (expect: arc-without-center)
+        G1 X60.
+        G13.1
+
+    Bad:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. C10. F200
+        G3 X20. C20. R10.
+        X-20.             (expect: arc-without-center)
+        G13.1
+
+    Good:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. C10. F200
+        G3 X20. C20. R10.
+        G1 X-20.
+        G13.1
+    """
+    return trace.arcs.without_center

@@ -1,0 +1,43 @@
+from __future__ import annotations
+
+from polarcheck.rule import ERROR, Hits, Trace, rule
+
+
+@rule(ERROR, "{word} is not of the polar plane; the center is {center}", at=("K",))
+def arc_word_of_other_plane(trace: Trace) -> Hits:
+    """
+    Center of an arc with K.
+
+    The letters of the center follow the linear axis of the polar plane: with X they are I and J, I along X and J along
+    C. K belongs to Z. The control stops with an alarm, or takes the center to be where I and J say without it.
+
+    Source: FANUC B-62764EN/01, p. 51.
+
+    Bad:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. C10. F200
+        G3 X20. C20. K-10.  (expect: arc-word-of-other-plane)
+        G1 X60.
+        G13.1
+
+    Bad:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. C10. F200
+        G3 X20. C20. I-10. K5.  (expect: arc-word-of-other-plane)
+        G1 X60.
+        G13.1
+
+    Good:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. C10. F200
+        G3 X20. C20. I-10. J0 K0
+        G1 X60.
+        G13.1
+    """
+    return trace.arcs.has_word_of_other_plane, {"word": trace.own.other_center, "center": trace.own.center_along}

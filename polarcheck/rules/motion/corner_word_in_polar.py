@@ -1,0 +1,44 @@
+from __future__ import annotations
+
+from polarcheck.rule import WARNING, Mask, Trace, rule
+
+
+@rule(WARNING, "chamfer, corner or angle word in the polar mode", at=(",C", ",R", ",A"))
+def corner_word_in_polar(trace: Trace) -> Mask:
+    """
+    Chamfer or corner by ,C ,R or ,A in the polar mode.
+
+    Drawing dimensions are made for the plane of X and Z. In the mode the control stops with an alarm or does not know
+    the word. Write the chamfer as a line and the corner as an arc. The path here is judged without them.
+
+    Source: FANUC alarm 212.
+
+    Bad:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. F200
+        C20.,R3.          (expect: corner-word-in-polar)
+        X-40.
+        G13.1
+
+    Bad:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. F200
+        C20. ,C2.         (expect: corner-word-in-polar)
+        X-40.
+        G13.1
+
+    Good:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. F200
+        C17.
+        G3 X34. C20. R3.
+        G1 X-40.
+        G13.1
+    """
+    return trace.in_polar & trace.has(",C", ",R", ",A")

@@ -1,0 +1,43 @@
+from __future__ import annotations
+
+from polarcheck.rule import WARNING, Mask, Trace, rule
+
+
+@rule(WARNING, "arc by radius that ends where it starts: nothing moves; a full circle needs I or J", at=("X", "C", "R"))
+def full_circle_by_radius(trace: Trace) -> Mask:
+    """
+    Full circle with R.
+
+    With R an arc that ends at its start is one of 0 degrees: the tool stays where it is, and the circle is not cut.
+    Write a full circle with I or J and without an end, or in two arcs.
+
+    Source: FANUC B-62754EN/01, p. 67; builder's guide to G12.1, circular interpolation.
+
+    Bad:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. F200
+        G3 X40. C0 R20.   (expect: full-circle-by-radius)
+        G1 X60.
+        G13.1
+
+    Bad:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. F200
+        G3 R20.           (expect: full-circle-by-radius)
+        G1 X60.
+        G13.1
+
+    Good:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. F200
+        G3 I-20.
+        G1 X60.
+        G13.1
+    """
+    return trace.arcs.circle_by_radius

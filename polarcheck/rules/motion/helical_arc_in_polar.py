@@ -1,0 +1,44 @@
+from __future__ import annotations
+
+from polarcheck.rule import WARNING, Mask, Trace, rule
+
+
+@rule(WARNING, "arc that moves Z, too: only with the helical option, else an alarm", at=("Z", "W"))
+def helical_arc_in_polar(trace: Trace) -> Mask:
+    """
+    Arc in the polar mode that moves Z.
+
+    Z moves along with an arc only where the control has helical interpolation; else it stops with an alarm for the
+    wrong plane. Posts break such arcs up into short lines. Move Z in a block of its own, or along lines.
+
+    Source: FANUC alarm 021; Autodesk turn-mill posts, which avoid helical arcs in the mode.
+
+    Bad:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. C10. F200
+        G3 X20. C20. R10. Z-2.  (expect: helical-arc-in-polar)
+        G1 X60.
+        G13.1
+
+    Bad:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. C10. F200
+        G3 I-10. J0 W-2.  (expect: helical-arc-in-polar)
+        G1 X60.
+        G13.1
+
+    Good:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. C10. F200
+        Z-2.
+        G3 X20. C20. R10.
+        G1 X60.
+        G13.1
+    """
+    return trace.arcs.helical

@@ -1,0 +1,45 @@
+from __future__ import annotations
+
+from polarcheck.rule import WARNING, Mask, Trace, rule
+
+
+@rule(
+    WARNING, "negative radius of an arc: more than 180 deg, or an alarm", at=("R",), unless=("full-circle-by-radius",)
+)
+def negative_arc_radius(trace: Trace) -> Mask:
+    """
+    Arc with a negative R.
+
+    Where the control takes it, a negative R means the longer of the two arcs, of more than 180 degrees. Older lathe
+    controls stop with an alarm. Two arcs of less than 180 degrees, or I and J, are understood by all.
+
+    Source: FANUC alarm 023; B-62754EN/01, p. 67.
+
+    Bad:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. C10. F200
+        G3 X20. C20. R-10.  (expect: negative-arc-radius)
+        G1 X60.
+        G13.1
+
+    Bad, machine fanuc-16i:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. C10. F200
+        G2 X20. C20. R-15.  (expect: negative-arc-radius)
+        G1 X60.
+        G13.1
+
+    Good:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. C10. F200
+        G3 X20. C20. I0. J10.
+        G1 X60.
+        G13.1
+    """
+    return trace.arcs.radius < 0

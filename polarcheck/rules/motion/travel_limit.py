@@ -1,0 +1,47 @@
+from __future__ import annotations
+
+from polarcheck.rule import ERROR, Hits, Trace, rule
+
+
+@rule(ERROR, "{travel}", at=("X", "U", "C", "H", "Z", "W"), needs=("reach.most_x",), where="reach.is_limited_in_x")
+def travel_limit(trace: Trace) -> Hits:
+    """
+    Move beyond the travel of X or Z.
+
+    In the mode X of the machine is the distance of the tool center from the center of C, never negative, and largest
+    where the contour is farthest out: for the corner of a square more than X says. Outside the mode it is X as
+    programmed. Limits are those of the profile in the coordinates of the program; without them nothing is looked at.
+
+    Source: limits.x_minimum to limits.z_maximum of the machine profile; FANUC B-62764EN/01, p. 51.
+
+    Bad, set limits.x_maximum=40:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X60. C20. F200
+        C30.              (expect: travel-limit)
+        X20. C0
+        G13.1
+
+    Bad, set limits.x_minimum=-5, set limits.z_minimum=-20:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. F200
+        Z-25.             (expect: travel-limit)
+        X60.
+        G13.1
+        G0 X-20.          (expect: travel-limit)
+        X60.
+
+    Good, set limits.x_maximum=40, set limits.x_minimum=-5:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X60. C20. F200
+        X-60.
+        C0
+        G13.1
+        G0 X70.
+    """
+    return trace.reach.leaves_travel, {"travel": trace.reach.travel}

@@ -1,0 +1,68 @@
+from __future__ import annotations
+
+from polarcheck.rule import ERROR, WARNING, Hits, Trace, rule
+
+
+@rule(ERROR, "{codes} cannot be used in the polar mode; write it {outside}")
+def code_not_allowed_in_polar(trace: Trace) -> Hits:
+    """
+    Code that cannot be used in the polar mode.
+
+    While the mode is on the control accepts moves in G1, G2, G3, dwell, cutter compensation, macro calls and the choice
+    of feed, and stops with an alarm at anything else: reference return, drilling and turning cycles, thread cutting,
+    spindle speed control, change of units. Write it before G12.1 or after G13.1. A hole pattern needs no polar mode: in
+    a drilling cycle C is the angle of the hole. G50 with S alone moves nothing and is a warning.
+
+    Source: FANUC B-62764EN/01, p. 51; 30i alarm list, PS0146; Mitsubishi M700V programming manual, p. 76, P481.
+
+    Bad:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. F200
+        C10. G97 S2000    (expect: code-not-allowed-in-polar)
+        C-10.
+        X60.
+        G13.1
+
+    Bad:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. F200
+        C10.
+        G50 S3000         (expect: code-not-allowed-in-polar)
+        C-10.
+        X60.
+        G13.1
+
+    Bad:
+
+        G98 G0 X60. C0
+        G12.1
+        G83 X40. C90. Z-10. F100   (expect: code-not-allowed-in-polar)
+        C180.
+        G80
+        G13.1
+
+    Good:
+
+        G50 S3000
+        G97 S2000
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. F200
+        G4 X1.
+        C10.
+        X60.
+        G13.1
+        G83 X40. C90. Z-10. F100
+        C180.
+        G80
+    """
+    severity = trace.modes.not_allowed * ERROR + trace.modes.limits_speed * WARNING
+    return severity, {
+        "codes": trace.modes.codes_not_allowed,
+        "outside": trace.modes.outside,
+        "at": trace.modes.names_not_allowed,
+    }

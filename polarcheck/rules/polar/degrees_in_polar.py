@@ -1,0 +1,64 @@
+from __future__ import annotations
+
+from polarcheck.rule import WARNING, Hits, Trace, rule
+
+
+@rule(
+    WARNING,
+    "{word} is a length of {virtual_length:length} in the polar mode and looks like an angle: "
+    "the rest of the section lies within {reach:length} of the center",
+    once="section",
+)
+def degrees_in_polar(trace: Trace) -> Hits:
+    """
+    Angle written where the polar mode takes a length.
+
+    In the mode C is no angle but a coordinate of the face, in mm or inch like X. C180. does not turn the part by half a
+    turn: it sends the tool 180 mm away from the center. Write the point on the contour, half as large as a diameter, or
+    turn C before G12.1. Suspected are 30, 45, 60, 90 and other usual angles more than twice as far out as anything else
+    in the section, unless the same length stands there with both signs.
+
+    Source: FANUC B-62764EN/01, p. 51; builder's guide to G12.1, layout of the plane.
+
+    Bad:
+
+        G98 G0 X40. C0
+        G12.1
+        G1 X25. F200
+        C-180.            (expect: degrees-in-polar)
+        X40.
+        G13.1
+
+    Bad:
+
+        G98 G0 X30. C0
+        G12.1
+        G1 X20. F200
+        C90.              (expect: degrees-in-polar)
+        C180.
+        C270.
+        C360.
+        G13.1
+
+    Good:
+
+        G98 G0 X150. C0
+        G12.1
+        G1 X80. F200
+        C30.
+        X150.
+        G13.1
+        G0 C180.
+        G12.1
+        G1 X8. F200
+        C45.
+        C-45.
+        X150.
+        G13.1
+    """
+    return trace.modes.looks_like_angle, {
+        "word": trace.modes.virtual_word,
+        "virtual_length": trace.modes.virtual_length,
+        "reach": trace.modes.reach,
+        "at": trace.modes.virtual_axis,
+    }

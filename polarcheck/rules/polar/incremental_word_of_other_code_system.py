@@ -1,0 +1,65 @@
+from __future__ import annotations
+
+from polarcheck.rule import ERROR, Hits, Trace, rule
+
+
+@rule(
+    ERROR,
+    "{meaning}; if the lathe runs another system, set control.g_code_system",
+    once="program",
+)
+def incremental_word_of_other_code_system(trace: Trace) -> Hits:
+    """
+    Absolute, incremental or feed word of another G-code system.
+
+    Lathe controls know three G-code systems. In system A, X and C are absolute, U and H incremental, G90 and G94 are
+    turning cycles, and feed is per minute with G98. In systems B and C, G90 and G91 choose between absolute and
+    incremental, and feed is per minute with G94. A word of the wrong system in the polar mode is an alarm or a move to
+    another place. One finding stands for the program, since the mistake is one: the program was written for another
+    lathe, or the profile names the wrong system.
+
+    Source: FANUC B-62754EN/01, G-code systems; builder's guide to G12.1, incremental axis move command; 30i alarm
+    list, PS0146.
+
+    Bad:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. F200
+        G91 C10.          (expect: incremental-word-of-other-code-system)
+        X20.
+        G90
+        G13.1
+
+    Bad, set control.g_code_system="B":
+
+        G94 G90 G0 X60. C0
+        G12.1
+        G1 X40. F200
+        H10.              (expect: incremental-word-of-other-code-system)
+        U20.
+        G13.1
+
+    Good:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. F200
+        H10.
+        U20.
+        G13.1
+
+    Good, set control.g_code_system="B":
+
+        G94 G90 G0 X60. C0
+        G12.1
+        G1 X40. F200
+        G91 C10.
+        X20.
+        G90
+        G13.1
+    """
+    return trace.modes.is_of_other_system, {
+        "meaning": trace.modes.meaning_in_this_system,
+        "at": trace.modes.names_of_other_system,
+    }

@@ -1,0 +1,57 @@
+from __future__ import annotations
+
+from polarcheck.rule import ERROR, WARNING, Hits, Trace, rule
+
+
+@rule(ERROR, "{codes} still in force at {switch}; write {ends} before it", at=("on",))
+def modal_state_wrong_at_entry(trace: Trace) -> Hits:
+    """
+    Cycle, scaling, rotation, mirror image or constant surface speed in force on entry.
+
+    The control stops with an alarm if a drilling cycle (cancelled by G80 or by G0, G1, G2, G3), scaling, rotation or
+    mirror image is still in force at G12.1. Constant surface speed (G96) makes the speed follow X, which in the mode
+    moves with every turn of C; write G97 with S.
+
+    Source: 30i alarm list, PS0146; FANUC B-62764EN/01, p. 51; Mitsubishi M700V programming manual, P485.
+
+    Bad:
+
+        G98 G0 X60. C0
+        G83 X40. C90. Z-10. F100
+        C180.
+        G12.1             (expect: modal-state-wrong-at-entry)
+        G1 X40. C0 F200
+        C10.
+        X60.
+        G13.1
+
+    Bad:
+
+        G96 S120
+        G98 G0 X60. C0
+        G12.1             (expect: modal-state-wrong-at-entry)
+        G1 X40. F200
+        C10.
+        X60.
+        G13.1
+
+    Good:
+
+        G96 S120
+        G97 S1000
+        G83 X40. C90. Z-10. F100
+        G80
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. F200
+        C10.
+        X60.
+        G13.1
+    """
+    wrong = trace.modes.state_wrong_at_entry
+    severity = wrong * ERROR + (trace.modes.constant_speed_at_entry & ~wrong) * WARNING
+    return severity, {
+        "codes": trace.modes.codes_in_force,
+        "ends": trace.modes.codes_to_end_them,
+        "switch": trace.modes.switch,
+    }

@@ -1,0 +1,58 @@
+from __future__ import annotations
+
+from polarcheck.rule import ERROR, Hits, Trace, rule
+
+
+@rule(
+    ERROR,
+    "{codes} changes the coordinate system in the polar mode; its origin must stay the center of the spindle, "
+    "so write {codes} {outside}",
+    at=("G10", "G50", "G92", "G52", "G53", "G54", "G55", "G56", "G57", "G58", "G59", "G54.1"),
+)
+def origin_shifted_in_polar(trace: Trace) -> Hits:
+    """
+    Origin shifted in the polar mode.
+
+    The mode turns X and C of the program into X and C of the lathe about the center of the spindle, which must be the
+    origin when it begins and stay it until it ends. Another work offset, a local shift, G50 (G92 in systems B and C)
+    with axis words, machine coordinates, or G10 on a work offset stop the control or displace the contour. Set the
+    origin before G12.1.
+
+    Source: FANUC B-62764EN/01, p. 51; builder's guide to G12.1, coordinate system origin; 30i alarm list, PS0146.
+
+    Bad:
+
+        G54 G98 G0 X60. C0
+        G12.1
+        G1 X40. F200
+        C10.
+        G55               (expect: origin-shifted-in-polar)
+        C-10.
+        X60.
+        G13.1
+
+    Bad:
+
+        G98 G0 X60. C0
+        G12.1
+        G52 X2. C0        (expect: origin-shifted-in-polar)
+        G1 X40. F200
+        C10.
+        G50 X50.          (expect: origin-shifted-in-polar)
+        G1 C-10.
+        G10 L2 P1 X1.     (expect: origin-shifted-in-polar)
+        X60.
+        G13.1
+
+    Good:
+
+        G50 S3000
+        G54 G98 G0 X60. C0
+        G12.1
+        G1 X40. F200
+        C10.
+        X60.
+        G13.1
+        G55
+    """
+    return trace.modes.shifts_origin, {"codes": trace.modes.codes_shifting, "outside": trace.modes.outside}

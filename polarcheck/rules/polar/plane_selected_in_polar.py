@@ -1,0 +1,50 @@
+from __future__ import annotations
+
+from polarcheck.rule import ERROR, Hits, Trace, rule
+
+
+@rule(
+    ERROR,
+    "{plane} in the polar mode: its plane is always that of X and C; delete it or write it {outside}",
+    at=("G17", "G18", "G19"),
+)
+def plane_selected_in_polar(trace: Trace) -> Hits:
+    """
+    Plane selected in the polar mode.
+
+    In the mode the plane is that of X and C, whatever G17, G18 or G19 was in force before; that one comes back at
+    G13.1. Selecting a plane in the mode stops the control with an alarm. Delete the code, or write it before G12.1.
+
+    Source: FANUC B-62764EN/01, p. 50; 30i alarm list, PS0146; Mitsubishi M700V programming manual, P485.
+
+    Bad:
+
+        G98 G0 X60. C0
+        G12.1
+        G17               (expect: plane-selected-in-polar)
+        G1 X40. F200
+        G17 G3 X30. C5. I-5. J0   (expect: plane-selected-in-polar)
+        G1 X60.
+        G13.1
+
+    Bad, machine turning-center:
+
+        G98 G18 G0 X2.4 C0
+        G12.1
+        G1 G18 X1.6 F40.  (expect: plane-selected-in-polar)
+        G1 G41 X.8 C.4 F5.
+        C-.4
+        G40 X2.4
+        G13.1
+
+    Good:
+
+        G98 G18 G0 X60. C0
+        G12.1
+        G1 X40. F200
+        G3 X30. C5. I-5. J0
+        G1 X60.
+        G13.1
+        G17
+    """
+    return trace.modes.selects_plane, {"plane": trace.modes.plane, "outside": trace.modes.outside}

@@ -1,0 +1,51 @@
+from __future__ import annotations
+
+from polarcheck.rule import ERROR, Hits, Trace, rule
+
+
+@rule(ERROR, "{plane} is in force at {switch}; {wanted} must be, write it before", at=("on",))
+def plane_wrong_at_entry(trace: Trace) -> Hits:
+    """
+    Polar mode entered in another plane than the lathe wants.
+
+    Most controls set the plane in force aside at G12.1. Some lathes are set up for one plane, and stop or read arcs
+    and compensation in the wrong one. Write that plane code before G12.1; it is in the machine's profile
+    (polar.plane_before). Where the program selects no plane, the one after power-on is taken to be right.
+
+    Source: builder's guide to G12.1, plane selection.
+
+    Bad, machine turning-center:
+
+        G17 G98 G0 X2.4 C0
+        G12.1             (expect: plane-wrong-at-entry)
+        G1 C.4 F40.
+        G1 G41 X.8 F5.
+        C-.4
+        G40 X2.4
+        G13.1
+
+    Good, machine turning-center:
+
+        G17
+        G18 G98 G0 X2.4 C0
+        G12.1
+        G1 C.4 F40.
+        G1 G41 X.8 F5.
+        C-.4
+        G40 X2.4
+        G13.1
+
+    Good:
+
+        G17 G98 G0 X60. C0
+        G12.1
+        G1 X40. F200
+        C10.
+        X60.
+        G13.1
+    """
+    return trace.modes.plane_wrong_at_entry, {
+        "plane": trace.modes.plane,
+        "switch": trace.modes.switch,
+        "wanted": trace.modes.plane_wanted,
+    }

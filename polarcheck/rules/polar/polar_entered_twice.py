@@ -1,0 +1,42 @@
+from __future__ import annotations
+
+from polarcheck.rule import WARNING, Hits, Trace, rule
+
+
+@rule(WARNING, "{switch} again: the polar mode is on since line {since}", at=("on",))
+def polar_entered_twice(trace: Trace) -> Hits:
+    """
+    Polar mode switched on while it is on.
+
+    Either the second G12.1 is left over, or the G13.1 of the first section is missing. Controls differ: some stop with
+    an alarm, others take the present position for C0 again, so that the rest of the contour is turned.
+
+    Source: Mitsubishi M700V programming manual, P486; FANUC B-62764EN/01, p. 51.
+
+    Bad:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. F200
+        C10.
+        G12.1             (expect: polar-entered-twice)
+        C-10.
+        X60.
+        G13.1
+
+    Good:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. F200
+        C10.
+        X60.
+        G13.1
+        G0 C90.
+        G12.1
+        G1 X40. F200
+        C10.
+        X60.
+        G13.1
+    """
+    return trace.enters_again, {"switch": trace.modes.switch, "since": trace.modes.entered_at}

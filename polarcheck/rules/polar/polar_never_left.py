@@ -1,0 +1,56 @@
+from __future__ import annotations
+
+from polarcheck.rule import ERROR, Hits, Trace, rule
+
+
+@rule(ERROR, "polar mode is never left: {missing_before}", over="sections", at=("on",))
+def polar_never_left(trace: Trace) -> Hits:
+    """
+    Polar mode still on at the tool change or the end of the program.
+
+    A forgotten G13.1: what follows is read on the polar plane, with C as a length, X across the center and G0 not
+    allowed. One fault is reported here, at the G12.1, with the first block that can only stand outside; from there on
+    the program is read as if the G13.1 stood before it.
+
+    Source: FANUC B-62764EN/01, p. 50; builder's guide to G12.1.
+
+    Bad:
+
+        G98 G0 X60. C0
+        G12.1             (expect: polar-never-left)
+        G1 X40. F200
+        C10.
+        X60.
+        G0 Z50.
+        G28 U0
+        M30
+
+    Bad:
+
+        T0101
+        G98 G0 X60. C0
+        G112              (expect: polar-never-left)
+        G1 X40. F200
+        C10.
+        X60.
+        T0202
+        G0 X50. C0
+        G112
+        G1 X40. F200
+        C10.
+        X60.
+        G113
+
+    Good:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. F200
+        C10.
+        X60.
+        G13.1
+        G0 Z50.
+        G28 U0
+        M30
+    """
+    return ~trace.sections.left, {"missing_before": trace.modes.missing_before}

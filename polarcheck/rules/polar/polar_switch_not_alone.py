@@ -1,0 +1,42 @@
+from __future__ import annotations
+
+from polarcheck.rule import ERROR, Hits, Trace, rule
+
+
+@rule(ERROR, "{switch} shares its block with {others}; it must stand in a block of its own")
+def polar_switch_not_alone(trace: Trace) -> Hits:
+    """
+    G12.1 or G13.1 not in a block of its own.
+
+    What the control does with other words beside them is not specified: they may be ignored, or be read already on the
+    polar plane or no longer there. Only a sequence number, the block skip sign and comments may share the block. A
+    G13.1 outside the mode, as at the head of a program for safety, is not meant.
+
+    Source: FANUC B-62764EN/01, p. 50.
+
+    Bad:
+
+        G98 G0 X60. C0
+        G12.1 M8          (expect: polar-switch-not-alone)
+        G1 X40. F200
+        C10.
+        X60.
+        G13.1 G0 Z50.     (expect: polar-switch-not-alone)
+
+    Good:
+
+        G40 G80 G13.1
+        G98 G0 X60. C0 M8
+        N10 G12.1 (ON)
+        G1 X40. F200
+        C10.
+        X60.
+        /N20 G13.1
+        G13.1
+        G0 Z50.
+    """
+    return trace.modes.switch_not_alone, {
+        "switch": trace.modes.switch,
+        "others": trace.modes.beside_switch,
+        "at": trace.modes.names_beside_switch,
+    }

@@ -1,0 +1,52 @@
+from __future__ import annotations
+
+from polarcheck.rule import ERROR, Hits, Trace, rule
+
+
+@rule(ERROR, "{switch} while {side} is active; G40 must be in force here", at=("on", "off"))
+def polar_switched_in_offset_mode(trace: Trace) -> Hits:
+    """
+    Polar mode switched on or off while G41 or G42 is active.
+
+    The control stops with an alarm. Cutter compensation begins and ends inside the mode: G40 on entry, then G41 or G42
+    with the move onto the part, then G40 with the move away from it, then G13.1.
+
+    Source: FANUC B-62764EN/01, p. 51; builder's guide to G12.1.
+
+    Bad, tool 1:radius=4:
+
+        T0101
+        G98 G0 X60. C0
+        G12.1
+        G1 G41 X40. F200
+        C-10.
+        G13.1             (expect: polar-switched-in-offset-mode)
+        G0 X60. C0
+        G12.1
+        G1 G41 X40. F200
+        C-10.
+        G40 X60.
+        G13.1
+
+    Bad, tool 1:radius=4:
+
+        T0101
+        G98 G0 X60. C0
+        G42
+        G12.1             (expect: polar-switched-in-offset-mode)
+        G1 X40. F200
+        C10.
+        G40 X60.
+        G13.1
+
+    Good, tool 1:radius=4:
+
+        T0101
+        G98 G0 X60. C0
+        G12.1
+        G1 G41 X40. F200
+        C-10.
+        G40 X60.
+        G13.1
+    """
+    return trace.ramps.switched_in_offset_mode, {"switch": trace.modes.switch, "side": trace.ramps.side_before}

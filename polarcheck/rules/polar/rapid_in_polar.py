@@ -1,0 +1,43 @@
+from __future__ import annotations
+
+from polarcheck.rule import ERROR, Mask, Trace, rule
+
+
+@rule(ERROR, "G0 cannot be used in the polar mode; write G1 with a high F", at=("G0",))
+def rapid_in_polar(trace: Trace) -> Mask:
+    """
+    Rapid traverse in the polar mode.
+
+    The control stops with an alarm at a block with G0, and just so at a move without a code of its own while G0 is
+    still in force, as it is after the approach. Positioning in the mode is done in G1 with a high feed, around 30 to 60
+    inch per minute.
+
+    Source: builder's guide to G12.1; FANUC B-62764EN/01, p. 51; 30i alarm list, PS0146.
+
+    Bad:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. F200
+        G0 C5.            (expect: rapid-in-polar)
+        G1 C-5.
+        G13.1
+
+    Bad:
+
+        G98 G0 X60. C0
+        G12.1
+        X40. F200         (expect: rapid-in-polar)
+        G1 C5.
+        G13.1
+
+    Good:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. F1500
+        C5. F200
+        G13.1
+        G0 X60.
+    """
+    return trace.modes.rapid

@@ -1,0 +1,46 @@
+from __future__ import annotations
+
+from polarcheck.rule import ERROR, Hits, Trace, rule
+
+
+@rule(
+    ERROR,
+    "{word} is no coordinate of the polar plane: its second axis is {machine.polar.virtual_axis} here{other_controls}",
+    once="section",
+)
+def wrong_axis_address_in_polar(trace: Trace) -> Hits:
+    """
+    Second axis of the polar plane under the address of another control.
+
+    Controls that keep to the ISO dialect of lathes call it by the rotary axis, C; others give it the letter Y. A Y on
+    a lathe that expects C is an unknown address, or moves a real Y axis. The machine's profile says which is right
+    (polar.virtual_axis). One finding stands for the section.
+
+    Source: FANUC B-62764EN/01, p. 51; Mitsubishi M700V programming manual, p. 73, parameter 1517.
+
+    Bad:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. F200
+        Y10.              (expect: wrong-axis-address-in-polar)
+        G3 X30. Y15. R5.
+        G1 X60.
+        G13.1
+
+    Good:
+
+        G98 G0 X60. Y0 C0
+        G12.1
+        G1 X40. F200
+        C10.
+        G3 X30. C15. R5.
+        G1 X60.
+        G13.1
+        G28 V0
+    """
+    return trace.modes.other_axis, {
+        "word": trace.modes.other_axis_word,
+        "other_controls": trace.modes.other_controls,
+        "at": trace.modes.names_of_other_axis,
+    }

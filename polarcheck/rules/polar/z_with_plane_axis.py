@@ -1,0 +1,51 @@
+from __future__ import annotations
+
+from polarcheck.rule import WARNING, Mask, Trace, rule
+
+
+@rule(
+    WARNING,
+    "Z moves together with X or C in the polar mode; write Z in a block of its own",
+    at=("X", "U", "C", "H", "Z", "W"),
+)
+def z_with_plane_axis(trace: Trace) -> Mask:
+    """
+    Z in one block with X or C.
+
+    Z is not part of the polar plane. Some lathes cannot interpolate it with X or C in the mode, others move it along
+    independently; compensation may take such a block for one more corner. Move Z in a block of its own: in the plane
+    first and then in on approach, out first and then in the plane on retract. A block that repeats X and C as they are
+    moves Z only.
+
+    Source: builder's guide to G12.1, linear interpolation; FANUC B-62764EN/01, p. 51.
+
+    Bad:
+
+        G98 G0 X60. Z2. C0
+        G12.1
+        G1 X40. Z-5. F200   (expect: z-with-plane-axis)
+        C10.
+        X60.
+        G13.1
+
+    Bad, machine turning-center:
+
+        G98 G0 X2.4 Z.1 C0
+        G12.1
+        G1 C.4 Z-.2 F40.    (expect: z-with-plane-axis)
+        G1 G41 X.8 F5.
+        C-.4
+        G40 X2.4
+        G13.1
+
+    Good:
+
+        G98 G0 X60. Z2. C0
+        G12.1
+        G1 X40. F200
+        X40. Z-5.
+        C10.
+        X60.
+        G13.1
+    """
+    return trace.modes.interpolates_z

@@ -1,0 +1,70 @@
+from __future__ import annotations
+
+from polarcheck.rule import ERROR, WARNING, Hits, Trace, rule
+
+
+@rule(
+    ERROR,
+    "X stands at {x:diameter} at {switch}; stock {stock:length} and cutter {cutter_diameter:length} need "
+    "{needed:diameter} or more",
+    at=("on",),
+    needs=("cutter_diameter",),
+    where="entry.approaches_stock",
+)
+def approach_inside_stock(trace: Trace) -> Hits:
+    """
+    Approach point inside the stock.
+
+    X is the place of the cutter center, not of its edge. To clear the bar the approach needs X = diameter of the stock
+    + diameter of the cutter + clearance; nearer, the cutter goes down into the bar beside the shape. It is a warning
+    where only the clearance is missing. Sections that stay inside the bar, as pockets do, are not meant.
+
+    Source: builder's guide to G12.1, programming the tool approach point.
+
+    Bad, tool 8:diameter=16, set job.stock.diameter=60:
+
+        T0808
+        G98 G0 X70. C0
+        G12.1             (expect: approach-inside-stock)
+        G1 X40. F200
+        C10.
+        X70.
+        G13.1
+
+    Bad, tool 8:diameter=16, set job.stock.diameter=60, set job.stock.clearance=2:
+
+        T0808
+        G98 G0 X77. C0
+        G12.1             (expect: approach-inside-stock)
+        G1 X40. F200
+        C10.
+        X77.
+        G13.1
+
+    Good, tool 8:diameter=16, set job.stock.diameter=60, set job.stock.clearance=2:
+
+        T0808
+        G98 G0 X78. C0
+        G12.1
+        G1 X40. F200
+        C10.
+        X78.
+        G13.1
+
+    Good, tool 8:diameter=16, set job.stock.diameter=60:
+
+        T0808
+        G98 G0 X40. C0
+        G12.1
+        G1 Z-5. F100
+        G3 X-40. I-20. J0 F200
+        X40. I20. J0
+        G1 Z2. F1500
+        G13.1
+    """
+    severity = trace.entry.inside_stock * ERROR + trace.entry.inside_clearance * WARNING
+    return severity, {
+        "stock": trace.entry.stock_diameter,
+        "needed": trace.entry.x_needed,
+        "switch": trace.modes.switch,
+    }

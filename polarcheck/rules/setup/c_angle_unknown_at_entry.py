@@ -1,0 +1,58 @@
+from __future__ import annotations
+
+from polarcheck.rule import WARNING, Hits, Trace, rule
+
+
+@rule(
+    WARNING,
+    "C has not been positioned before {switch}; the shape stands wherever the spindle stopped",
+    at=("on",),
+    unless=("c-axis-not-engaged", "c-axis-not-referenced"),
+)
+def c_angle_unknown_at_entry(trace: Trace) -> Hits:
+    """
+    C never positioned before the polar mode.
+
+    The angle of C at G12.1 becomes the direction of X on the plane: after G0 C60. the whole shape is turned by 60 deg.
+    Where the program has not positioned C at all, the shape comes out at a chance angle. Write G0 C0 with the approach.
+
+    Source: builder's guide to G12.1, angular orientation of the plane.
+
+    Bad:
+
+        O0001
+        T0101
+        G98 G0 X60. Z2.
+        G12.1             (expect: c-angle-unknown-at-entry)
+        G1 X40. F200
+        C10.
+        X60.
+        G13.1
+        M30
+
+    Good:
+
+        O0001
+        T0101
+        G98 G0 X60. Z2. C0
+        G12.1
+        G1 X40. F200
+        C10.
+        X60.
+        G13.1
+        M30
+
+    Good:
+
+        O0001
+        T0101
+        G28 H0
+        G98 G0 X60. Z2.
+        G12.1
+        G1 X40. F200
+        C10.
+        X60.
+        G13.1
+        M30
+    """
+    return trace.entry.c_angle_unknown, {"switch": trace.modes.switch}

@@ -1,0 +1,60 @@
+from __future__ import annotations
+
+from polarcheck.rule import WARNING, Hits, Trace, rule
+
+
+@rule(WARNING, "the C axis is not engaged; {codes} is missing before {switch}", at=("on",))
+def c_axis_not_engaged(trace: Trace) -> Hits:
+    """
+    Polar mode without the spindle as C axis.
+
+    The spindle has to be switched to C axis by an M code of the builder before it can be positioned. Without it the
+    control stops at the first C, or the spindle is not held at all. Stop the spindle, engage the C axis, then go to its
+    reference point: M5, M35, G28 H0. Nothing is said where the machine profile names no such code, nor in an excerpt
+    that has none.
+
+    Source: builder's guide to G12.1, sample program.
+
+    Bad, set m_codes.c_axis_on=["M35"], set m_codes.c_axis_off=["M34"]:
+
+        O0001
+        T0808 M5
+        G97 S2000 M33
+        G98 G0 X60. C0
+        G12.1             (expect: c-axis-not-engaged)
+        G1 C10. F1500
+        X40. F200
+        C-10.
+        X60. F1500
+        G13.1
+        M30
+
+    Bad, set m_codes.c_axis_on=["M35"], set m_codes.c_axis_off=["M34"]:
+
+        M35
+        G28 H0
+        M34
+        G98 G0 X60. C0
+        M33
+        G12.1             (expect: c-axis-not-engaged)
+        G1 C10. F1500
+        X60.
+        G13.1
+
+    Good, set m_codes.c_axis_on=["M35"], set m_codes.c_axis_off=["M34"]:
+
+        O0001
+        T0808 M5
+        M35
+        G28 H0
+        G97 S2000 M33
+        G98 G0 X60. C0
+        G12.1
+        G1 C10. F1500
+        X40. F200
+        C-10.
+        X60. F1500
+        G13.1
+        M30
+    """
+    return trace.entry.c_axis_missing, {"codes": trace.entry.c_axis_codes, "switch": trace.modes.switch}

@@ -1,0 +1,49 @@
+from __future__ import annotations
+
+from polarcheck.rule import WARNING, Hits, Trace, rule
+
+
+@rule(WARNING, "C has not gone to its reference point since it was engaged; write G28 H0 before {switch}", at=("on",))
+def c_axis_not_referenced(trace: Trace) -> Hits:
+    """
+    C axis engaged but not referenced.
+
+    When the spindle becomes the C axis, its angle is wherever the spindle stopped. G28 H0 takes C to its reference
+    point; without it the control stops with an alarm, or the shape stands at a chance angle on the part.
+
+    Source: builder's guide to G12.1, sample program; 30i alarm list, PS0303.
+
+    Bad, set m_codes.c_axis_on=["M35"], set m_codes.c_axis_off=["M34"]:
+
+        M35
+        G97 S2000 M33
+        G98 G0 X60. C0
+        G12.1             (expect: c-axis-not-referenced)
+        G1 C10. F1500
+        X60.
+        G13.1
+
+    Bad, set m_codes.c_axis_on=["M35"], set m_codes.c_axis_off=["M34"]:
+
+        M35
+        G28 H0
+        M34
+        M35
+        G97 S2000 M33
+        G98 G0 X60. C0
+        G12.1             (expect: c-axis-not-referenced)
+        G1 C10. F1500
+        X60.
+        G13.1
+
+    Good, set m_codes.c_axis_on=["M35"], set m_codes.c_axis_off=["M34"]:
+
+        M35 G28 H0
+        G97 S2000 M33
+        G98 G0 X60. C0
+        G12.1
+        G1 C10. F1500
+        X60.
+        G13.1
+    """
+    return trace.entry.c_axis_not_referenced, {"switch": trace.modes.switch}

@@ -1,0 +1,48 @@
+from __future__ import annotations
+
+from polarcheck.rule import ERROR, Hits, Trace, rule
+
+
+@rule(ERROR, "offset {offset_number} is a flat end mill that points at the outer diameter", at=("on",))
+def flat_end_mill_at_od(trace: Trace) -> Hits:
+    """
+    Flat end mill that points at the outer diameter of the part.
+
+    The shape is made by the periphery of a mill that points at the face. A flat end mill that points at the outer
+    diameter touches the part with its bottom edge, now on one side of its center and now on the other, and cannot make
+    an acceptable shape; a ball-nose mill can, touched off at the center of its ball. Known from the job:
+    `[tools.8] mount = "radial", shape = "flat"`.
+
+    Source: builder's guide to G12.1, cutting tools and tool offset data.
+
+    Bad, set job.tools.8.mount="radial", set job.tools.8.shape="flat":
+
+        T0808
+        G98 G0 X60. C0
+        G12.1             (expect: flat-end-mill-at-od)
+        G1 X40. F200
+        C10.
+        X60.
+        G13.1
+
+    Good, set job.tools.8.mount="radial", set job.tools.8.shape="ball":
+
+        T0808
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. F200
+        C10.
+        X60.
+        G13.1
+
+    Good, set job.tools.8.mount="axial", set job.tools.8.shape="flat":
+
+        T0808
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. F200
+        C10.
+        X60.
+        G13.1
+    """
+    return trace.entry.flat_from_the_side

@@ -1,0 +1,54 @@
+from __future__ import annotations
+
+from polarcheck.rule import ERROR, Hits, Trace, rule
+
+
+@rule(ERROR, "the live tool is not running in this cutting move; {codes} is missing", at=("G1", "G2", "G3"))
+def live_tool_stopped_in_cut(trace: Trace) -> Hits:
+    """
+    Cutting move in the polar mode with the live tool stopped.
+
+    The cutter is pressed into the part without turning, and breaks. Start the live tool before the approach and stop it
+    after the retract: `G97 S2000 M33`. Nothing is said where the machine profile names no such code, nor in an excerpt
+    that has none.
+
+    Source: builder's guide to G12.1, sample program.
+
+    Bad, set m_codes.live_tool_on=["M33"], set m_codes.live_tool_off=["M5"]:
+
+        O0001
+        T0808
+        G98 G0 X60. C0
+        G12.1
+        G1 C10. F1500     (expect: live-tool-stopped-in-cut)
+        X40. F200
+        C-10.
+        X60. F1500
+        G13.1
+        M30
+
+    Bad, set m_codes.live_tool_on=["M33"], set m_codes.live_tool_off=["M5"]:
+
+        G98 G0 X60. C0
+        S2000 M33
+        G12.1
+        G1 C10. F1500
+        M5
+        G1 X40. F200      (expect: live-tool-stopped-in-cut)
+        C-10.
+        X60. F1500
+        G13.1
+
+    Good, set m_codes.live_tool_on=["M33"], set m_codes.live_tool_off=["M5"]:
+
+        G98 G0 X60. C0
+        S2000 M33
+        G12.1
+        G1 C10. F1500
+        X40. F200
+        C-10.
+        X60. F1500
+        G13.1
+        M5
+    """
+    return trace.entry.live_tool_stopped, {"codes": trace.entry.live_tool_codes}

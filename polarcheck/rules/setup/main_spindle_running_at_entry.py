@@ -1,0 +1,51 @@
+from __future__ import annotations
+
+from polarcheck.rule import ERROR, NOTE, Hits, Machine, Trace, rule
+
+
+@rule(ERROR, "M3 or M4 is in force at {switch}{what}", at=("on",))
+def main_spindle_running_at_entry(trace: Trace, machine: Machine) -> Hits:
+    """
+    Main spindle not stopped before the polar mode.
+
+    The main spindle is the C axis in the mode. It has to be stopped, M5, before it can be engaged and positioned. Many
+    lathes start the live tool with M3, too; where the machine profile does not name codes of its own for the live tool,
+    this is a note.
+
+    Source: builder's guide to G12.1, sample program.
+
+    Bad, set m_codes.live_tool_on=["M33"]:
+
+        S1000 M3
+        G98 G0 X60. C0
+        M33
+        G12.1             (expect: main-spindle-running-at-entry)
+        G1 C10. F1500
+        X60.
+        G13.1
+
+    Bad:
+
+        S1000 M3
+        G98 G0 X60. C0
+        G12.1             (expect: main-spindle-running-at-entry)
+        G1 X40. F200
+        C10.
+        X60.
+        G13.1
+
+    Good, set m_codes.live_tool_on=["M33"]:
+
+        S1000 M3
+        M5
+        G98 G0 X60. C0
+        M33
+        G12.1
+        G1 C10. F1500
+        X60.
+        G13.1
+    """
+    of_main_spindle = machine.polar.main_spindle_must_stop or trace.entry.has_live_tool_codes
+    severity = ERROR if of_main_spindle else NOTE
+    what = "; write M5 before the C axis is engaged" if of_main_spindle else ": if that is the main spindle, stop it"
+    return (trace.enters & trace.spindle) * severity, {"switch": trace.modes.switch, "what": what}

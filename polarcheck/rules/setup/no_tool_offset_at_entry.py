@@ -1,0 +1,49 @@
+from __future__ import annotations
+
+from polarcheck.rule import WARNING, Hits, Trace, rule
+
+
+@rule(WARNING, "no tool offset is in force at {switch}", at=("on",))
+def no_tool_offset_at_entry(trace: Trace) -> Hits:
+    """
+    Polar mode without a tool offset.
+
+    The offset must be called before the mode and cannot be changed in it. Without one, X is not the distance of the
+    cutter center from the spindle axis, and the whole shape is wrong. Call it with the tool, T0808, before the
+    approach. Nothing is said in an excerpt that has no T.
+
+    Source: FANUC B-62764EN/01, p. 52; builder's guide to G12.1, cutting tools and tool offset data.
+
+    Bad:
+
+        T0800
+        G98 G0 X60. C0
+        G12.1             (expect: no-tool-offset-at-entry)
+        G1 X40. F200
+        C10.
+        X60.
+        G13.1
+
+    Bad:
+
+        O0001
+        G98 G0 X60. C0
+        G12.1             (expect: no-tool-offset-at-entry)
+        G1 X40. F200
+        C10.
+        X60.
+        G13.1
+        M30
+
+    Good:
+
+        T0808
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. F200
+        C10.
+        X60.
+        G13.1
+        T0800
+    """
+    return trace.entry.offset_missing, {"switch": trace.modes.switch}

@@ -1,0 +1,56 @@
+from __future__ import annotations
+
+from polarcheck.rule import ERROR, Hits, Trace, rule
+
+
+@rule(ERROR, "{name} puts X0 {shift:length} off the spindle axis at {switch}", at=("on",))
+def origin_off_center(trace: Trace) -> Hits:
+    """
+    Origin of the polar plane off the spindle axis.
+
+    The control takes X0 as the center that C turns about. If the work offset or a local shift in force puts X0
+    elsewhere, every radius and every angle of the shape is wrong. Set X of the work offset to the spindle axis and
+    cancel G52 before G12.1. Known are the work offsets of the job, `[work_offsets.G54] x = 0`, and G52 in the program.
+
+    Source: FANUC B-62764EN/01, p. 51; builder's guide to G12.1, coordinate system origin.
+
+    Bad:
+
+        G52 X2.
+        G98 G0 X60. C0
+        G12.1             (expect: origin-off-center)
+        G1 X40. F200
+        C10.
+        X60.
+        G13.1
+        G52 X0.
+
+    Bad, set job.work_offsets.G55.x=0.5:
+
+        G55
+        G98 G0 X60. C0
+        G12.1             (expect: origin-off-center)
+        G1 X40. F200
+        C10.
+        X60.
+        G13.1
+
+    Good, set job.work_offsets.G55.x=0.5:
+
+        G55
+        G0 X80. C0
+        G52 X2.
+        G52 X0.
+        G54
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. F200
+        C10.
+        X60.
+        G13.1
+    """
+    return trace.entry.origin_off_center, {
+        "name": trace.entry.origin_name,
+        "shift": trace.entry.origin_shift,
+        "switch": trace.modes.switch,
+    }

@@ -1,0 +1,59 @@
+from __future__ import annotations
+
+from polarcheck.rule import NOTE, WARNING, Hits, Trace, rule
+
+
+@rule(WARNING, "{codes} in the polar mode{what}")
+def spindle_code_in_polar(trace: Trace) -> Hits:
+    """
+    Main spindle started or stopped, or the C axis released, in the polar mode.
+
+    In the mode the spindle is the C axis and the part of every move. A code that starts it as a spindle, or releases
+    the C axis, takes it out of the control's hands in the middle of the contour. Such codes belong before G12.1 or
+    after G13.1. Many lathes use M3 and M5 for the live tool, too; where the machine profile does not name codes of its
+    own for the live tool, these are a note.
+
+    Source: builder's guide to G12.1, sample program; FANUC B-62764EN/01, p. 50.
+
+    Bad, set m_codes.c_axis_on=["M35"], set m_codes.c_axis_off=["M34"]:
+
+        M35
+        G28 H0
+        G98 G0 X60. C0
+        M33
+        G12.1
+        G1 C10. F1500
+        X40. F200
+        M34               (expect: spindle-code-in-polar)
+        C-10.
+        X60. F1500
+        G13.1
+
+    Bad:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. F200
+        C10.
+        X60.
+        M5                (expect: spindle-code-in-polar)
+        G13.1
+
+    Good:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. F200
+        C10.
+        M8
+        X60.
+        G13.1
+        M5
+    """
+    of_main_spindle = trace.entry.c_axis_code | trace.entry.has_live_tool_codes
+    severity = (trace.entry.spindle_code & of_main_spindle) * WARNING
+    return severity + (trace.entry.spindle_code & ~of_main_spindle) * NOTE, {
+        "codes": trace.entry.spindle_codes,
+        "at": trace.entry.spindle_names,
+        "what": "; the spindle is the C axis here",
+    }

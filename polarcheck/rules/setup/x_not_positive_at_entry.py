@@ -1,0 +1,34 @@
+from __future__ import annotations
+
+from polarcheck.rule import WARNING, Hits, Trace, rule
+
+
+@rule(WARNING, "X stands at {x:diameter} at {switch}; enter the polar mode above 0", at=("on",))
+def x_not_positive_at_entry(trace: Trace) -> Hits:
+    """
+    X at the center or beyond it where the polar mode begins.
+
+    In the mode the tool stays on the plus side of X and C turns the part. Entered at X0 the control has no angle to
+    start from; entered below 0 it would have to begin with half a turn. Approach from the plus side.
+
+    Source: builder's guide to G12.1, deciding the machining method; Mitsubishi M700V programming manual, p. 77.
+
+    Bad:
+
+        G98 G0 X-60. C0
+        G12.1             (expect: x-not-positive-at-entry)
+        G1 X-40. F200
+        C10.
+        X-60.
+        G13.1
+
+    Good:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. F200
+        C10.
+        X60.
+        G13.1
+    """
+    return trace.entry.x_not_positive, {"switch": trace.modes.switch}

@@ -1,0 +1,66 @@
+from __future__ import annotations
+
+from polarcheck.rule import WARNING, Hits, Trace, rule
+
+
+@rule(WARNING, "X has not been positioned before {switch}", at=("on",))
+def x_unknown_at_entry(trace: Trace) -> Hits:
+    """
+    X not positioned before the polar mode.
+
+    The plane begins at the present X. If X was not programmed since the head of the program, the last reference return
+    or tool change, the first move starts from where the turret happens to be, and neither the ramp of the compensation
+    nor the speed of C can be foreseen. Position X outside the part first, then write G12.1.
+
+    Source: builder's guide to G12.1, programming the tool approach point.
+
+    Bad:
+
+        O0001
+        T0101
+        G98 G0 Z2. C0
+        G12.1             (expect: x-unknown-at-entry)
+        G1 X40. F200
+        C10.
+        X60.
+        G13.1
+        M30
+
+    Bad:
+
+        O0001
+        T0101
+        G0 X60. Z2.
+        G28 U0
+        T0202
+        G98 G0 C0
+        G12.1             (expect: x-unknown-at-entry)
+        G1 X40. F200
+        C10.
+        X60.
+        G13.1
+        M30
+
+    Good:
+
+        O0001
+        T0101
+        G98 G0 X60. Z2. C0
+        G12.1
+        G1 X40. F200
+        C10.
+        X60.
+        G13.1
+        M30
+
+    Good:
+
+        O0002
+        G12.1
+        G1 X40. F200
+        C10.
+        X60.
+        G13.1
+        M99
+    """
+    return trace.entry.x_unknown, {"switch": trace.modes.switch}

@@ -1,0 +1,1 @@
+"""What the reader itself cannot accept."""

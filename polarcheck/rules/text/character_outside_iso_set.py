@@ -1,0 +1,37 @@
+from __future__ import annotations
+
+from polarcheck.rule import NOTE, Hits, Trace, rule
+
+
+@rule(NOTE, "{characters} not in the ISO set of controls", over="foreign")
+def character_outside_iso_set(trace: Trace) -> Hits:
+    """
+    Character that controls have no code for.
+
+    Programs are sent in the ISO code: control characters, NUL and anything beyond plain ASCII may come out as another
+    character, or raise a TH alarm on the way into the control, even in a comment. Each line is reported once. NUL at
+    the head of a file is the leader of a tape, and harmless on a control that skips it.
+
+    Source: FANUC B-63524EN/01, p. 649 and tape code list.
+
+    Bad:
+
+        T0101 (FRÄSER Ø16)            (expect: character-outside-iso-set)
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. F200
+        C10.
+        X60.
+        G13.1
+
+    Good:
+
+        T0101 (MILL DIA.16)
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. F200
+        C10.
+        X60.
+        G13.1
+    """
+    return trace.lexical.is_first_foreign, {"characters": trace.lexical.foreign_characters}

@@ -1,0 +1,28 @@
+from __future__ import annotations
+
+from polarcheck.rule import ERROR, Mask, Text, rule
+
+
+@rule(ERROR, "this comment is not closed on its line", over="comments")
+def comment_not_closed(text: Text) -> Mask:
+    """
+    Comment without its closing parenthesis.
+
+    The control looks for the `)` beyond the end of the line: it stops with an alarm, or swallows blocks up to the next
+    one. Here the comment is taken to end with its line.
+
+    Source: FANUC B-62754EN/01, configuration of a program, control-out and control-in.
+
+    Bad:
+
+        O0001 (TWO FLATS  (expect: comment-not-closed)
+        T0101 (MILL)
+        M30
+
+    Good:
+
+        O0001 (TWO FLATS)
+        T0101 (MILL)
+        M30
+    """
+    return text.unclosed

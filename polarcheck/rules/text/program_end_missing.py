@@ -1,0 +1,48 @@
+from __future__ import annotations
+
+from polarcheck.rule import WARNING, Mask, Trace, rule
+
+
+@rule(WARNING, "the program ends here without M30, M02 or M99", over="words")
+def program_end_missing(trace: Trace) -> Mask:
+    """
+    Program without an end.
+
+    A main program ends with M30 or M02, a subprogram with M99. Without it the control runs on to the % and stops with
+    an alarm, or goes on with what it stores next. Often the rest of the file was lost on the way. Nothing is said of
+    excerpts, which have neither a program number nor %.
+
+    Source: FANUC alarm 5010; B-62754EN/01, configuration of a program.
+
+    Bad:
+
+        O0001
+        T0101
+        G0 X60.
+        M9                (expect: program-end-missing)
+
+    Bad:
+
+        %
+        T0101
+        G0 X60.
+        M9                (expect: program-end-missing)
+        %
+
+    Good:
+
+        %
+        O0001
+        M98 P1000
+        M30
+        O1000
+        G0 X60.
+        M99
+        %
+
+    Good:
+
+        G0 X60.
+        M9
+    """
+    return trace.lexical.lacks_end

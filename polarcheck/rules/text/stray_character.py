@@ -1,0 +1,46 @@
+from __future__ import annotations
+
+from polarcheck.rule import ERROR, Hits, Trace, rule
+
+
+@rule(ERROR, "{stray}", over="strays")
+def stray_character(trace: Trace) -> Hits:
+    """
+    Character that is no part of a word.
+
+    A block holds letters with their numbers, and nothing else outside comments. The control stops at any other
+    character. A % inside a block is the end of the program to it. Of several in a block the first is reported; what can
+    be read around them is read.
+
+    Source: FANUC alarms 009 and 5010.
+
+    Bad:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. F200 & !  (expect: stray-character)
+        C10.,5            (expect: stray-character)
+        X60. C0
+        G13.1
+
+    Bad:
+
+        O0001
+        G0 X60. % M3      (expect: stray-character)
+        M30
+
+    Good:
+
+        %
+        O0001
+        T0101
+        G98 G0 X60. C0 (50% & MORE)
+        G1 Z-1. ,R1. F200;
+        G12.1
+        /2 G1 X40. F200
+        C10.
+        X60.
+        G13.1
+        M30 %
+    """
+    return trace.lexical.is_first_stray, {"stray": trace.lexical.stray}

@@ -1,0 +1,44 @@
+from __future__ import annotations
+
+from polarcheck.rule import NOTE, Mask, Trace, rule
+
+
+@rule(NOTE, "not stored by the control: it stands outside the program", over="outside")
+def text_outside_program(trace: Trace) -> Mask:
+    """
+    Text before the program or after its end.
+
+    A control stores what stands between the first % or program number and the last %. Titles of listings, notes and
+    what is left of a transfer stand outside and are lost, harmless as such; but a % in the wrong place cuts the program
+    in two. Lines without a letter or digit are not meant.
+
+    Source: FANUC B-63524EN/01, p. 649; Mitsubishi M700V programming manual, p. 7.
+
+    Bad:
+
+        TWO FLATS, SECOND OPERATION   (expect: text-outside-program)
+        %
+        O0001
+        T0101
+        M30
+        %
+
+    Bad:
+
+        %
+        O0001
+        T0101
+        M30
+        %                             (expect: text-outside-program)
+        CHECK THE CLAMP FIRST
+
+    Good:
+
+        ============
+        %
+        O0001 (TWO FLATS, SECOND OPERATION)
+        T0101
+        M30
+        %
+    """
+    return trace.lexical.is_text_outside

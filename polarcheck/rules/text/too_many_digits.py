@@ -1,0 +1,35 @@
+from __future__ import annotations
+
+from polarcheck.rule import ERROR, Hits, Machine, Trace, rule
+
+
+@rule(ERROR, "{text} has more than {limit} digits", over="words")
+def too_many_digits(trace: Trace, machine: Machine) -> Hits:
+    """
+    Number with too many digits.
+
+    A word can hold eight or nine digits, counted in least increments: X100000.000 has nine. The control stops at a
+    longer one. Leading zeros do not count here, nor do decimals beyond the least increment, which the control drops.
+    Mostly the point or the blank between two words is lost.
+
+    Source: FANUC alarm 003.
+
+    Bad, set control.digit_limit=8:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X40000000000 F200   (expect: too-many-digits)
+        C100000.000            (expect: too-many-digits)
+        X60. C0
+        G13.1
+
+    Good, set control.digit_limit=8:
+
+        G98 G0 X0000000060. C0
+        G12.1
+        G1 X40.123456789 F200
+        C10.
+        X60.
+        G13.1
+    """
+    return trace.lexical.has_too_many_digits, {"limit": machine.control.digit_limit}

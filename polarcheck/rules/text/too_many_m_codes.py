@@ -1,0 +1,28 @@
+from __future__ import annotations
+
+from polarcheck.rule import WARNING, Hits, Machine, Trace, rule
+
+
+@rule(WARNING, "{count} M codes in a block; this control takes {limit}", over="words")
+def too_many_m_codes(trace: Trace, machine: Machine) -> Hits:
+    """
+    More M codes in a block than the control takes.
+
+    Depending on a parameter a block may have one M code or up to three, on newer controls up to five. What is too much
+    raises an alarm or is lost, and it may be the coolant or the clamp. Put them into blocks of their own.
+
+    Source: FANUC parameter 3404#7; alarm 5016.
+
+    Bad, set control.m_code_limit=3:
+
+        T0101
+        M5 M8 M10 M46     (expect: too-many-m-codes)
+
+    Good, set control.m_code_limit=3:
+
+        T0101
+        M5 M8 M10
+        M46
+    """
+    limit = machine.control.m_code_limit
+    return trace.lexical.place_of_m_code == limit + 1, {"count": trace.lexical.m_codes_in_block, "limit": limit}

@@ -1,0 +1,25 @@
+from __future__ import annotations
+
+from polarcheck.rule import WARNING, Hits, Machine, Trace, rule
+
+
+@rule(WARNING, "{count} words in a block; this control takes {limit}", over="words")
+def words_too_many(trace: Trace, machine: Machine) -> Hits:
+    """
+    More words in a block than the control takes.
+
+    The control stops at a block with more words than it can hold, 26 as a rule. Divide the block.
+
+    Source: FANUC alarm 5006.
+
+    Bad, set control.word_limit=4:
+
+        G40 G80 G97 G98 M8   (expect: words-too-many)
+
+    Good, set control.word_limit=4:
+
+        /G40 G80 G97 G98
+        M8
+    """
+    limit = machine.control.word_limit
+    return trace.lexical.place_in_block == limit + 1, {"count": trace.lexical.words_in_block, "limit": limit}

@@ -1,0 +1,35 @@
+from __future__ import annotations
+
+from polarcheck.rule import ERROR, Mask, Words, rule
+
+
+@rule(ERROR, "{text} is written with a dash of print; write a minus sign", over="words")
+def wrong_dash(words: Words) -> Mask:
+    """
+    Dash where a minus sign is meant.
+
+    Programs copied from web pages or manuals have the dashes of print, U+2013, U+2014 or U+2212, in place of the minus
+    sign. They look alike on the screen. The control does not know the character and stops, or loses it and moves to the
+    other side. Here the word is read as negative.
+
+    Source: FANUC alarm 009; tape code list of B-63524EN/01.
+
+    Bad:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. F200
+        C–10.             (expect: wrong-dash)
+        X60. C0
+        G13.1
+
+    Good:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. F200
+        C-10.
+        X60. C0
+        G13.1
+    """
+    return words.has_wrong_dash

@@ -1,0 +1,613 @@
+"""The commands: what they print where, and the exit code."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import click
+import jsonschema
+import msgspec
+import pytest
+from click.testing import CliRunner, Result
+
+from polarcheck import __version__, batch, machine, schema
+from polarcheck.cli import main
+from polarcheck.machine import names
+from polarcheck.rule import load_all
+
+RAPID = "G98 G0 X60. C0\nG12.1\nG1 X40. F200\nG0 C5.\nG1 C-5.\nG13.1\n"
+GOOD = RAPID.replace("G0 C5.", "C5.")
+COMPENSATED = "T0101\nG98 G0 X60. C0\nG12.1\nG1 G41 X40. F200\nC-10.\nG40 X60.\nG13.1\n"
+RAPID_ONLY = ("--select", "rapid-in-polar")
+RAMP_ONLY = ("--select", "start-up-shorter-than-radius")
+
+
+@pytest.fixture(autouse=True)
+def _in_a_folder_of_its_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    for name in list(os.environ):
+        if name.startswith("POLARCHECK_") or name in ("NO_COLOR", "FORCE_COLOR"):
+            monkeypatch.delenv(name)
+
+
+def make(**texts: str) -> None:
+    """Files by name, `__` for the point."""
+    for name, text in texts.items():
+        Path(name.replace("__", ".")).write_text(text, "utf-8", newline="")
+
+
+def call(*arguments: Any, given: str | None = None, **environment: str) -> Result:
+    return CliRunner().invoke(main, [str(argument) for argument in arguments], input=given, env=environment)
+
+
+def check(*arguments: Any, **options: Any) -> Result:
+    return call("check", *arguments, **options)
+
+
+def findings(*arguments: Any, **options: Any) -> list[tuple[str, str]]:
+    """Rule and severity of all findings."""
+    shown = json.loads(check(*arguments, "--format", "json", **options).stdout)
+    return [(found["rule"], found["severity"]) for file in shown["files"] for found in file["findings"]]
+
+
+def process(*arguments: str, **options: Any) -> subprocess.Popen[str]:
+    here = os.fspath(Path(batch.__file__).parent.parent)
+    environment = {**os.environ, "PYTHONPATH": here, "PYTHONUTF8": "1"}
+    command = [sys.executable, "-m", "polarcheck", *arguments]
+    pipes = {"stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE, **options}
+    return subprocess.Popen(command, env=environment, text=True, encoding="utf-8", **pipes)
+
+
+# ---- exit codes ----
+
+
+def test_findings_fail() -> None:
+    make(a__nc=RAPID)
+    result = check("a.nc", *RAPID_ONLY)
+    assert result.exit_code == 1
+    assert "at   a.nc:4:1\n" in result.stdout
+    assert "2 | G12.1\n" in result.stdout
+    assert "4 | G0 C5.\n       | ^^\n" in result.stdout
+    assert result.stderr == ""
+
+
+def test_a_good_program_passes() -> None:
+    make(a__nc=GOOD)
+    result = check("a.nc", *RAPID_ONLY)
+    assert (result.exit_code, result.stderr) == (0, "")
+    assert result.stdout.startswith("pass  a.nc: no findings, 1 polar section, 6 blocks\n")
+
+
+@pytest.mark.parametrize(
+    ("severity", "fail_on", "code"),
+    [
+        ("error", "error", 1),
+        ("error", "never", 0),
+        ("warning", "error", 0),
+        ("warning", "warning", 1),
+        ("note", "warning", 0),
+        ("note", "note", 1),
+        ("off", "note", 0),
+    ],
+)
+def test_the_least_severity_that_fails_can_be_chosen(severity: str, fail_on: str, code: int) -> None:
+    make(a__nc=RAPID)
+    result = check("a.nc", *RAPID_ONLY, "--severity", f"rapid-in-polar={severity}", "--fail-on", fail_on)
+    assert result.exit_code == code
+    assert result.stdout.splitlines()[-4 if severity != "off" else -3].split()[0] == ("fail" if code else "pass")
+
+
+def test_what_is_not_evaluated_fails_only_where_that_is_asked_for() -> None:
+    make(a__nc=COMPENSATED)
+    result = check("a.nc", *RAMP_ONLY)
+    assert result.exit_code == 0
+    assert "not evaluated: no radius for T0101" in result.stdout
+    assert "unverified  a.nc: no findings" in result.stdout
+    assert check("a.nc", *RAMP_ONLY, "--strict").exit_code == 1
+    assert check("a.nc", *RAMP_ONLY, "--strict", "--tool", "1:radius=4").exit_code == 0
+
+
+def test_an_unreadable_file_does_not_stop_the_others() -> None:
+    make(a__nc=RAPID, b__nc=GOOD)
+    result = check("a.nc", "gone\x1b[2J.nc", "b.nc", *RAPID_ONLY, "--format", "json")
+    assert result.exit_code == 2
+    assert result.stderr == "polarcheck: gone\\x1b[2J.nc: No such file or directory\n"
+    assert [file["path"] for file in json.loads(result.stdout)["files"]] == ["a.nc", "b.nc"]
+
+
+def test_bytes_that_are_not_of_the_encoding_asked_for_are_told() -> None:
+    Path("a.nc").write_bytes(b"G0 (\xff)\n")
+    result = check("a.nc", "--encoding", "utf-8")
+    assert result.exit_code == 2
+    assert result.stderr == "polarcheck: a.nc: byte 4 is not utf-8\n"
+    assert check("a.nc", "--encoding", "cp1252", *RAPID_ONLY).exit_code == 0
+
+
+def test_a_bug_is_no_finding(monkeypatch: pytest.MonkeyPatch) -> None:
+    make(a__nc=GOOD)
+    monkeypatch.setattr("polarcheck.check.check_file", lambda *given, **options: 1 / 0)
+    result = check("a.nc")
+    assert result.exit_code == 3
+    assert result.stdout == ""
+    assert result.stderr == (
+        "polarcheck: internal error: ZeroDivisionError: division by zero, while checking a.nc; "
+        "run with --debug for the traceback\n"
+    )
+    for arguments in (["check", "--debug", "a.nc"], ["--debug", "check", "a.nc"]):
+        traced = call(*arguments)
+        assert traced.exit_code == 3
+        assert "Traceback (most recent call last)" in traced.stderr
+        assert "in _check\n" in traced.stderr
+
+
+def test_an_interrupt_has_its_own_code(monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupted(*given: Any) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(batch, "plan", interrupted)
+    result = check("a.nc")
+    assert result.exit_code == 130
+    assert "internal" not in result.stderr
+
+
+@pytest.mark.skipif(os.name == "nt", reason="other signals there")
+def test_an_interrupted_process_says_so_in_a_word() -> None:
+    running = process("check", "-", stdin=subprocess.PIPE)
+    assert running.stdin is not None
+    running.stdin.write(GOOD)  # and no end of file: it waits for more
+    running.stdin.flush()
+    try:
+        running.wait(1.5)
+    except subprocess.TimeoutExpired:
+        running.send_signal(signal.SIGINT)
+    _, told = running.communicate(timeout=30)
+    assert running.returncode == 130
+    assert "Traceback" not in told
+
+
+def test_a_reader_who_goes_away_changes_no_exit_code() -> None:
+    make(a__nc=RAPID, b__nc=GOOD)
+    for name, code in (("a.nc", 1), ("b.nc", 0)):
+        running = process("check", name, *RAPID_ONLY)
+        assert running.stdout is not None
+        running.stdout.close()
+        assert running.stderr is not None
+        assert running.stderr.read() == ""
+        assert running.wait(30) == code
+        running.stderr.close()
+
+
+# ---- what cannot be understood ----
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        (["--slect", "x"], "No such option"),
+        (["--fail-on", "fatal"], "'fatal' is not one of 'error', 'warning', 'note', 'never'"),
+        (["--format", "xml"], "'xml' is not one of"),
+        (["--select", "rapid-in-poler"], "--select: unknown rule 'rapid-in-poler'; did you mean rapid-in-polar?"),
+        (["--ignore", "poler"], "--ignore: unknown rule 'poler'; did you mean polar?"),
+        (["--select", "PS9999"], "--select: no rule is known to give alarm PS9999 on FANUC lathe control"),
+        (["--select", "polar", "--ignore", "polar"], "no rule is left to check"),
+        (["--severity", "rapid-in-polar"], "--severity rapid-in-polar: expected RULE=error|warning|note|off"),
+        (["--severity", "rapid-in-polar=fatal"], "expected RULE=error|warning|note|off"),
+        (["--severity", "x-y=off"], "--severity: unknown rule 'x-y'"),
+        (["--machine", "fanuk"], "unknown machine 'fanuk'; did you mean fanuc?"),
+        (["--machine", "mine.toml"], "machine mine.toml: no such file"),
+        (["--set", "limits.c_fed=3"], "unknown key limits.c_fed; did you mean c_feed?"),
+        (["--set", "limits.c_feed=fast"], "limits.c_feed"),
+        (["--set", "c_feed=3"], "--set c_feed=3: expected TABLE.KEY=VALUE as in limits.c_feed=3600"),
+        (["--set", "limits.c_feed"], "expected TABLE.KEY=VALUE"),
+        (["--tool", "radius=3"], "--tool radius=3: expected NUMBER:KEY=VALUE as in 8:radius=0.375"),
+        (["--tool", "8:radus=3"], "--tool 8:radus=3: radus: did you mean radius?"),
+        (["--tool", "8:radius=big"], "--tool 8:radius=big: radius: expected"),
+        (["--offsets", "gone.txt"], "'gone.txt' does not exist"),
+        (["--offsets", "a.nc"], "a.nc: no offsets found"),
+        (["--config", "gone.toml"], "'gone.toml' does not exist"),
+        (["--encoding", "utf-99"], "unknown encoding 'utf-99'"),
+        (["--output", "report.json"], "'report.json': expected FORMAT:FILE"),
+        (["--output", "xml:a.xml"], "expected FORMAT:FILE, the format one of concise, json, text"),
+        (["--units", "cm"], "'cm' is not one of 'mm', 'inch'"),
+    ],
+)
+def test_what_means_nothing_is_named_in_one_line(arguments: list[str], told: str) -> None:
+    make(a__nc=GOOD)
+    result = check("a.nc", *arguments)
+    assert result.exit_code == 2
+    assert result.stdout == ""
+    assert result.stderr.startswith("polarcheck: ")
+    assert result.stderr.count("\n") == 1
+    assert told in result.stderr
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("machin = 'x'\n", "polarcheck.toml: unknown key machin; did you mean machine?"),
+        ("x =\n", "polarcheck.toml: Invalid value"),
+        ("[tools.8]\nradius = 'big'\n", "polarcheck.toml: "),
+        ("machine = 'fanuk'\n", "unknown machine 'fanuk'"),
+        ("select = ['poler']\n", "polarcheck.toml: select: unknown rule 'poler'"),
+        ("ignore = ['poler']\n", "polarcheck.toml: ignore: unknown rule 'poler'"),
+        ("severities = { poler = 'off' }\n", "polarcheck.toml: severities: unknown rule 'poler'"),
+        ("[limits]\nc_fed = 3\n", "unknown key limits.c_fed"),
+        ("offsets = 'gone.txt'\n", "gone.txt: No such file"),
+    ],
+)
+def test_a_broken_job_file_is_named_with_its_key(text: str, told: str) -> None:
+    make(a__nc=GOOD, polarcheck__toml=text)
+    result = check("a.nc")
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert result.stderr.count("\n") == 1
+    assert told in result.stderr
+    assert check("a.nc", "--no-config", *RAPID_ONLY).exit_code == 0
+
+
+def test_without_a_command_or_a_path_something_is_missing() -> None:
+    assert call().exit_code == 2
+    assert "Usage: " in call().stderr
+    result = check()
+    assert (result.exit_code, result.stderr) == (2, "polarcheck: Missing argument 'PATH...'.\n")
+
+
+# ---- paths ----
+
+
+def test_folders_files_and_standard_input_are_checked_in_order_and_once() -> None:
+    Path("sub").mkdir()
+    make(b__nc=GOOD, a__nc=GOOD)
+    Path("sub/O0001").write_text(RAPID, "utf-8")
+    result = check("-", "sub", "b.nc", ".", *RAPID_ONLY, "--format", "json", given=RAPID)
+    shown = json.loads(result.stdout)
+    assert [file["path"] for file in shown["files"]] == ["-", "sub/O0001", "b.nc", "a.nc"]
+    assert [file["verdict"] for file in shown["files"]] == ["fail", "fail", "pass", "pass"]
+    assert shown["summary"] == {"files": 4, "errors": 2, "warnings": 0, "notes": 0, "silenced": 0}
+
+
+def test_a_folder_without_programs_is_a_warning() -> None:
+    make(readme__md="")
+    result = check(".")
+    assert (result.exit_code, result.stdout) == (0, "")
+    assert result.stderr.startswith("polarcheck: warning: .: no NC programs in this folder")
+    assert json.loads(check(".", "--format", "json").stdout)["files"] == []
+
+
+def test_extensions_are_those_asked_for() -> None:
+    make(a__lst=GOOD, b__nc=GOOD, c__p3=GOOD, polarcheck__toml="extensions = ['p3']\n")
+    result = check(".", *RAPID_ONLY, "--format", "json")
+    assert [file["path"] for file in json.loads(result.stdout)["files"]] == ["c.p3"]
+    result = check(".", *RAPID_ONLY, "--extensions", "LST,.p3", "--format", "json")
+    assert [file["path"] for file in json.loads(result.stdout)["files"]] == ["a.lst", "c.p3"]
+    assert check("b.nc", "--extensions", "lst", *RAPID_ONLY).stdout.startswith("pass  b.nc")
+
+
+# ---- the job and the machine ----
+
+
+def test_the_nearest_job_applies_and_the_command_line_beats_it() -> None:
+    make(a__nc=COMPENSATED, polarcheck__toml="tools.1.radius = 15\n")
+    Path("sub").mkdir()
+    Path("sub/polarcheck.toml").write_text("tools.1.radius = 4\n", "utf-8")
+    Path("sub/b.nc").write_text(COMPENSATED, "utf-8")
+    ramp = ("start-up-shorter-than-radius", "error")
+    assert findings("a.nc", "sub/b.nc", *RAMP_ONLY) == [ramp]
+    assert findings("a.nc", "sub/b.nc", *RAMP_ONLY, "--tool", "1:radius=4") == []
+    assert findings("a.nc", "sub/b.nc", *RAMP_ONLY, "--tool", "1:radius=15") == [ramp, ramp]
+    assert findings("a.nc", "sub/b.nc", *RAMP_ONLY, "--config", "sub/polarcheck.toml") == []
+    assert findings("-", *RAMP_ONLY, given=COMPENSATED) == [ramp]
+    assert "no radius for T0101" in check("a.nc", *RAMP_ONLY, "--no-config").stdout
+
+
+def test_an_offset_table_of_the_control_gives_radii() -> None:
+    make(a__nc=COMPENSATED, offsets__txt="%\nG10 P10001 X0 Z0 R15. Q0\n%\n")
+    assert findings("a.nc", *RAMP_ONLY, "--offsets", "offsets.txt") == [("start-up-shorter-than-radius", "error")]
+    assert findings("a.nc", *RAMP_ONLY, "--offsets", "offsets.txt", "--tool", "1:radius=4") == []
+
+
+def test_rules_and_severities_come_from_the_job_unless_the_command_line_names_others() -> None:
+    make(a__nc=RAPID, polarcheck__toml="select = ['rapid-in-polar']\nseverities = { polar = 'note' }\n")
+    assert findings("a.nc") == [("rapid-in-polar", "note")]
+    assert findings("a.nc", "--severity", "rapid-in-polar=warning") == [("rapid-in-polar", "warning")]
+    assert findings("a.nc", "--select", "bad-number") == []
+    make(polarcheck__toml="select = ['rapid-in-polar', 'bad-number']\nignore = ['rapid-in-polar']\n")
+    assert findings("a.nc") == []
+    assert findings("a.nc", *RAPID_ONLY) == [("rapid-in-polar", "error")]
+
+
+@pytest.mark.parametrize("names", ["rapid-in-polar", "RAPID_IN_POLAR", "PS0146", "146"])
+def test_rules_are_selected_by_name_group_and_alarm(names: str) -> None:
+    make(a__nc=RAPID)
+    assert ("rapid-in-polar", "error") in findings("a.nc", "--select", names)
+    assert findings("a.nc", "--select", "rapid-in-polar,bad-number", "--ignore", names) == []
+
+
+def test_a_rule_selected_by_name_is_not_switched_off_by_a_profile() -> None:
+    make(a__nc=RAPID, mine__toml="inherits = 'fanuc'\n[severities]\nrapid-in-polar = 'off'\n")
+    make(polarcheck__toml="select = ['rapid-in-polar', 'bad-number']\n")
+    assert findings("a.nc", "--machine", "mine.toml") == []
+    assert findings("a.nc", "--machine", "mine.toml", *RAPID_ONLY) == [("rapid-in-polar", "error")]
+    assert findings("a.nc", "--machine", "mine.toml", *RAPID_ONLY, "--severity", "rapid-in-polar=off") == []
+
+
+def test_limits_of_the_command_line_beat_the_job_which_beats_the_machine() -> None:
+    fast = "G98 G0 X60. C0\nG12.1\nG1 X4. C5. F100\nC-5. F500\nG13.1\n"
+    make(
+        a__nc=fast,
+        polarcheck__toml="machine = 'mine.toml'\n",
+        mine__toml="inherits = 'fanuc'\n[limits]\nc_feed = 3600\n",
+    )
+    only = ("--select", "c-feed-above-limit")
+    rules = [("c-feed-above-limit", "error")]
+    assert findings("a.nc", *only) == rules
+    make(polarcheck__toml="machine = 'mine.toml'\n[limits]\nc_feed = 90000\n")
+    assert findings("a.nc", *only) == []
+    assert findings("a.nc", *only, "--set", "limits.c_feed=3600") == rules
+
+
+def test_the_machine_of_a_job_lies_beside_it_and_the_report_names_it() -> None:
+    Path("sub").mkdir()
+    Path("sub/a.nc").write_text(GOOD, "utf-8")
+    Path("sub/polarcheck.toml").write_text("machine = 'mine.toml'\n", "utf-8")
+    Path("sub/mine.toml").write_text("inherits = 'fanuc-30i'\n", "utf-8")
+    only = (*RAPID_ONLY, "--format", "json")
+    named = [json.loads(check(path, *only).stdout)["machine"] for path in ("sub/a.nc", "sub")]
+    assert named == [str(Path("sub/mine.toml"))] * 2
+    asked = check("sub", "--machine", "fanuc-16i", *only)
+    assert json.loads(asked.stdout)["machine"] == "fanuc-16i"
+
+
+def test_units_are_those_of_programs_that_do_not_say() -> None:
+    inch = "G98 G0 X2. C0\nG12.1\nG1 X.2 C.2 F5.\nC-.2\nG13.1\n"
+    make(a__nc=inch)
+    only = ("--select", "c-feed-above-limit", "--set", "limits.c_feed=1000")
+    assert findings("a.nc", *only, "--units", "inch") == findings("a.nc", *only, "--units", "mm")
+    messages = {
+        unit: json.loads(check("a.nc", *only, "--set", "limits.c_feed=100", "--units", unit, "--format", "json").stdout)
+        for unit in ("inch", "mm")
+    }
+    assert "inch" in str(messages["inch"]["files"][0]["findings"])
+    assert "inch" not in str(messages["mm"]["files"][0]["findings"])
+
+
+# ---- output ----
+
+
+def test_reports_go_to_files_beside_the_one_on_standard_output() -> None:
+    make(a__nc=RAPID)
+    result = check("a.nc", *RAPID_ONLY, "-o", "json:out.json", "-o", "concise:out.txt", "--color", "always")
+    assert result.exit_code == 1
+    assert "\x1b[1;31merror" in result.stdout
+    assert Path("out.txt").read_text("utf-8").startswith("a.nc:4:1: error: G0 ")
+    assert json.loads(Path("out.json").read_text("utf-8"))["summary"]["errors"] == 1
+
+
+def test_a_report_that_cannot_be_written_is_told_and_the_other_one_printed() -> None:
+    make(a__nc=GOOD)
+    result = check("a.nc", *RAPID_ONLY, "-o", "json:no/out.json")
+    assert result.exit_code == 2
+    assert "no/out.json: No such file or directory" in result.stderr
+    assert "pass  a.nc" in result.stdout
+
+
+@pytest.mark.parametrize(
+    ("arguments", "environment", "colored"),
+    [
+        ([], {}, False),
+        (["--color", "always"], {"NO_COLOR": "1"}, True),
+        (["--color", "never"], {"FORCE_COLOR": "1"}, False),
+        ([], {"FORCE_COLOR": "1"}, True),
+        ([], {"FORCE_COLOR": "1", "NO_COLOR": "1"}, False),
+        ([], {"FORCE_COLOR": "1", "NO_COLOR": ""}, True),
+        ([], {"POLARCHECK_COLOR": "always"}, True),
+    ],
+)
+def test_color_is_the_option_then_no_color_then_force_color(
+    arguments: list[str], environment: dict[str, str], colored: bool
+) -> None:
+    make(a__nc=RAPID)
+    result = check("a.nc", *RAPID_ONLY, *arguments, **environment)
+    assert ("\x1b[" in result.stdout) == colored
+    assert "\x1b[" not in check("a.nc", "--format", "json", *arguments, **environment).stdout
+
+
+def test_options_come_from_the_environment_too() -> None:
+    make(a__nc=RAPID)
+    result = check("a.nc", POLARCHECK_SELECT="rapid-in-polar", POLARCHECK_FORMAT="concise", POLARCHECK_FAIL_ON="never")
+    assert result.exit_code == 0
+    assert re.fullmatch(r"a\.nc:4:1: error: .* \[rapid-in-polar\]\n", result.stdout)
+    assert call("rules", POLARCHECK_FORMAT="concise").exit_code == 0
+    for command in main.commands.values():
+        for option in command.params:
+            if isinstance(option, click.Option) and command.name != "rules":
+                written = max(option.opts, key=len).lstrip("-").upper().replace("-", "_")
+                assert option.envvar == f"POLARCHECK_{written}"
+
+
+def test_the_concise_report_says_elsewhere_that_something_was_not_evaluated() -> None:
+    make(a__nc=COMPENSATED)
+    result = check("a.nc", *RAMP_ONLY, "--format", "concise")
+    assert result.stdout == ""
+    assert "could not be evaluated" in result.stderr
+    assert check("a.nc", *RAMP_ONLY, "--format", "concise", "-q").stderr == ""
+
+
+def test_names_and_comments_are_data() -> None:
+    name = "a\x1b[31m\u202e.nc"
+    Path(name).write_text(RAPID.replace("C5.", "C5. (\x1b[2J[red])"), "utf-8")
+    for form in ("text", "concise", "json"):
+        shown = check(name, *RAPID_ONLY, "--format", form).stdout
+        assert "\x1b" not in shown
+        assert "\u202e" not in shown
+        assert "a\\" in shown
+
+
+def test_quiet_says_nothing_of_what_is_good() -> None:
+    make(a__nc=GOOD)
+    result = check("a.nc", *RAPID_ONLY, "-q")
+    assert (result.stdout, result.stderr) == ("", "")
+
+
+# ---- the other commands ----
+
+
+@pytest.mark.parametrize("name", ["rapid-in-polar", "Rapid_In_Polar"])
+def test_explain_shows_the_manual_page(name: str) -> None:
+    result = call("explain", name)
+    assert result.exit_code == 0
+    assert result.stdout.startswith("rapid-in-polar (polar, error, alarm PS0146 on FANUC lathe control)\n====")
+    assert load_all()["rapid-in-polar"].page in result.stdout
+
+
+def test_explain_knows_alarms_of_the_machine_that_is_chosen() -> None:
+    for number in ("PS0146", "ps146", "146"):
+        assert "rapid-in-polar (polar" in call("explain", number).stdout
+    make(
+        mine__toml="inherits = 'fanuc'\n[alarms]\nrapid-in-polar = 'P62'\n", polarcheck__toml="machine = 'mine.toml'\n"
+    )
+    assert "rapid-in-polar (polar" in call("explain", "P62").stdout
+    assert "rapid-in-polar (polar" in call("explain", "62", "--machine", "mine.toml").stdout
+    result = call("explain", "P62", "--machine", "fanuc")
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert result.stderr == "polarcheck: no rule is known to give alarm P62 on FANUC lathe control\n"
+
+
+def test_explain_suggests_the_nearest_name() -> None:
+    result = call("explain", "rapid-in-poler")
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert result.stderr == "polarcheck: unknown rule 'rapid-in-poler'; did you mean rapid-in-polar?\n"
+
+
+def test_rules_lists_all_of_them_by_group() -> None:
+    known = load_all()
+    lines = call("rules").stdout.splitlines()
+    assert re.search(
+        r"^polar: .+\n(?:  .*\n)*  error    rapid-in-polar +Rapid traverse in", "\n".join(lines), re.MULTILINE
+    )
+    assert [line.split()[1] for line in lines if line.startswith("  ")] == list(known)
+    shown = json.loads(call("rules", "--format", "json").stdout)
+    assert [entry["name"] for entry in shown] == list(known)
+    keys = ["name", "group", "severity", "title", "source"]
+    assert all(list(entry) == keys and all(entry.values()) for entry in shown)
+
+
+def test_machines_lists_all_of_them() -> None:
+    lines = call("machines").stdout.splitlines()
+    assert [line.split()[0] for line in lines] == names()
+    default = next(line for line in lines if line.startswith(f"{machine.DEFAULT} "))
+    assert default.endswith("FANUC lathe control, the default")
+    assert any(line.endswith("< fanuc") for line in lines)
+
+
+@pytest.mark.parametrize("name", names())
+def test_a_profile_is_shown_as_a_profile_that_says_the_same(name: str) -> None:
+    shown = call("machines", name).stdout
+    Path("copy.toml").write_text(shown, "utf-8")
+    said, meant = (
+        msgspec.structs.replace(machine.load(of).machine, meanings={}, notes=[]) for of in ("copy.toml", name)
+    )
+    assert repr(said) == repr(meant)  # NaN differs from itself
+
+
+def test_a_profile_shows_where_each_value_comes_from() -> None:
+    make(mine__toml="inherits = 'fanuc'\nnotes = ['a b c']\n[limits]\nc_feed = { value = 3600, source = 'plate' }\n")
+    shown = call("machines", "mine.toml").stdout
+    assert re.search(r"^c_feed = 3600\.0 +# mine\.toml: plate$", shown, re.MULTILINE)
+    assert re.search(r"^units = \"mm\" +# \? fanuc: assumed where", shown, re.MULTILINE)
+    assert re.search(r"^polar_feed = nan +# not known$", shown, re.MULTILINE)
+    assert call("machines", "gone").exit_code == 2
+
+
+def test_the_version_is_shown() -> None:
+    assert call("--version").stdout == f"polarcheck {__version__}\n"
+
+
+# ---- schemas ----
+
+
+@pytest.mark.parametrize("name", ["report", "job", "machine"])
+def test_schemas_are_valid_and_say_what_they_are(name: str) -> None:
+    shown = json.loads(call("schema", name).stdout, parse_constant=pytest.fail)
+    jsonschema.Draft202012Validator.check_schema(shown)
+    assert shown["$schema"] == "https://json-schema.org/draft/2020-12/schema"
+    assert shown["$id"] == f"urn:polarcheck:{name}:1"
+
+
+def test_built_in_machines_fit_their_schema_and_wrong_ones_do_not() -> None:
+    import tomllib
+
+    valid = jsonschema.Draft202012Validator(schema.schema("machine"))
+    for path in machine.FOLDER.glob("*.toml"):
+        valid.validate(tomllib.loads(path.read_text("utf-8")))
+    for wrong in ({"limits": {"c_fed": 3}}, {"limits": {"c_feed": "fast"}}, {"limits": {"c_feed": {"source": "x"}}}):
+        assert not valid.is_valid(wrong)
+
+
+def test_jobs_fit_their_schema_and_wrong_ones_do_not() -> None:
+    valid = jsonschema.Draft202012Validator(schema.schema("job"))
+    valid.validate(
+        {"machine": "fanuc", "tools": {"8": {"radius": 0.375}}, "limits": {"c_feed": 3600}, "select": ["feed"]}
+    )
+    for wrong in (
+        {"machin": "fanuc"},
+        {"tools": {"T8": {}}},
+        {"limits": {"c_fed": 3}},
+        {"severities": {"feed": "bad"}},
+    ):
+        assert not valid.is_valid(wrong)
+
+
+def test_a_report_fits_its_schema() -> None:
+    make(a__nc=RAPID, b__nc=COMPENSATED)
+    result = check(".", "--select", "rapid-in-polar,start-up-shorter-than-radius", "--format", "json")
+    shown = json.loads(result.stdout, parse_constant=pytest.fail)
+    jsonschema.Draft202012Validator(schema.schema("report")).validate(shown)
+
+
+# ---- what is imported ----
+
+
+@pytest.mark.parametrize(
+    ("arguments", "unwanted"),
+    [
+        (["--help"], {"numpy", "shapely", "rich", "msgspec", "tomllib"}),
+        (["--version"], {"numpy", "shapely", "rich", "msgspec", "tomllib"}),
+        (["check", "--help"], {"numpy", "shapely", "rich"}),
+        (["explain", "rapid-in-polar"], {"numpy", "shapely", "rich"}),
+        (["rules"], {"numpy", "shapely", "rich"}),
+        (["machines", "fanuc"], {"numpy", "shapely", "rich"}),
+        (["schema", "job"], {"numpy", "shapely", "rich"}),
+        (["check", "a.nc", *RAPID_ONLY], {"shapely", "rich"}),
+    ],
+)
+def test_commands_import_what_they_need_and_no_more(arguments: list[str], unwanted: set[str]) -> None:
+    make(a__nc=GOOD)
+    here = os.fspath(Path(batch.__file__).parent.parent)
+    code = (
+        f"import sys; sys.path.insert(0, {here!r}); sys.argv = {['polarcheck', *arguments]}\n"
+        "from polarcheck.cli import run\n"
+        "try: run()\n"
+        f"except SystemExit as end: print(end.code, *sorted({unwanted!r} & set(sys.modules)), file=sys.stderr)"
+    )
+    result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert result.stderr.split() == ["0"]
+
+
+def test_standard_output_of_any_encoding_takes_any_program() -> None:
+    make(a__nc=RAPID.replace("C5.", "C5. (\u89d2\u5ea6)"))
+    running = subprocess.run(
+        [sys.executable, "-m", "polarcheck", "check", "a.nc", *RAPID_ONLY],
+        env={**os.environ, "PYTHONPATH": os.fspath(Path(batch.__file__).parent.parent), "PYTHONIOENCODING": "cp1252"},
+        capture_output=True,
+        check=False,
+    )
+    assert running.returncode == 1
+    assert b"G0 C5. (\\u89d2\\u5ea6)" in running.stdout
+    assert running.stderr == b""

@@ -1,0 +1,524 @@
+"""Each control behaves as its manual says: its examples, tables and cycles, and what a wrong machine shows."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from polarcheck import check, job, machine, native, source
+from polarcheck.finding import FileReport
+from polarcheck.modal import Motion
+from polarcheck.rule import load_all
+from polarcheck.trace import Trace
+
+SAMPLES = Path(__file__).parent.parent / "sample_programs"
+FOLDERS = [name for name in machine.names() if name != "fanuc"]
+
+M700V = """
+G17 G90 G94 G0 X40. C0 Z0
+G12.1
+G1 G42 X20. F2000
+C10.
+G3 X10. C20. R10.
+G1 X-20.
+C-10.
+G3 X-10. C-20. I10. J0
+G1 X20.
+C0
+G40 X40.
+G13.1
+"""
+GSK_SINGLE = """
+T0202
+G0 X150. C0 Z0
+G12.1
+G42 G1 X80. F200
+C20.
+G3 X40. C40. R20.
+G1 X-40.
+G3 X-80. C20. R20.
+G1 C-20.
+G3 X-40. C-40. R20.
+G1 X40.
+G3 X80. C-20. R20.
+G1 C0
+G40 X150.
+G13.1
+"""
+GSK_CYCLE = """
+T0202
+G0 X348. C30.
+G12.1 E8.
+G42 G1 X300. C0 F2000
+C80.
+G3 X220. C120. R40.
+G1 X-220.
+G3 X-300. C80. R40.
+G1 C-80.
+G3 X-220. C-120. R40.
+G1 X220.
+G3 X300. C-80. R40.
+G1 C0
+G40 X300.
+G13.1
+"""
+LSIS = """
+G112 % Polar coordinate interpolation mode On
+G01 C10 F100
+G01 X-8 % feed
+G03 X-10. C8. R2.
+G113
+"""
+HAAS = """
+G20 G98 G0 X3. C0
+G17
+G112
+G1 X.875 Y0. F5.
+Y.5
+G3 X.25 Y1.125 R.625
+G1 X-.75
+G0 Z.1
+G113
+"""
+
+
+def trace_of(program: str, name: str, changes: dict[str, Any] | None = None, *tools: str) -> Trace:
+    work = job.Job()
+    for tool in tools:
+        work = job.with_tool(work, tool)
+    return check.read_traces(program.encode(), machine.load(name, changes).machine, work)[0][1]
+
+
+def report_of(program: str, name: str, changes: dict[str, Any] | None = None, *tools: str) -> FileReport:
+    work = job.Job()
+    for tool in tools:
+        work = job.with_tool(work, tool)
+    return check.check_file(program.encode(), machine.load(name, changes).machine, work, list(load_all().values()))
+
+
+def said(report: FileReport) -> list[tuple[int, str]]:
+    return sorted((finding.line, finding.rule) for finding in report.findings)
+
+
+# ---- the samples of each control ----
+
+
+def samples() -> list[Any]:
+    found = [path for name in FOLDERS for path in sorted((SAMPLES / name).glob("*")) if path.suffix in (".nc", ".mpf")]
+    return [pytest.param(path, id=f"{path.parent.name}/{path.name}") for path in found]
+
+
+@pytest.mark.parametrize("path", samples())
+def test_samples_give_what_they_expect(path: Path) -> None:
+    text = path.read_text("utf-8")
+    expected = [
+        (number, name.strip())
+        for number, line in enumerate(text.split("\n"), 1)
+        for found in re.findall(r"\(expect: ([a-z0-9, -]+)\)", line)
+        for name in found.split(",")
+    ]
+    work = job.load(path.parent / "polarcheck.toml")
+    assert work.machine == path.parent.name
+    plain = re.sub(r"[ \t]*;?[ \t]*\(expect: [^)\n]*\)", "", text)
+    report = check.check_file(plain.encode(), machine.load(path.parent.name).machine, work, list(load_all().values()))
+    assert said(report) == sorted(expected)
+
+
+@pytest.mark.parametrize("name", FOLDERS)
+def test_each_control_has_a_good_and_a_bad_sample(name: str) -> None:
+    texts = [path.read_text("utf-8") for path in (SAMPLES / name).glob("*.[nm][cp]*")]
+    assert any("(expect: " in text for text in texts)
+    assert any("(expect: " not in text for text in texts)
+
+
+# ---- diameter or radius ----
+
+
+@pytest.mark.parametrize(
+    ("program", "name", "right"),
+    [
+        (M700V, "mitsubishi-m700", "radius"),
+        (GSK_SINGLE, "gsk-988", "diameter"),
+        (GSK_CYCLE, "gsk-988", "diameter"),
+    ],
+)
+def test_the_example_of_the_manual_closes_in_one_reading_of_x(program: str, name: str, right: str) -> None:
+    assert machine.load(name).machine.polar.x == right
+    for reading in ("diameter", "radius"):
+        trace = trace_of(program, name, {"polar": {"x": reading}, "control": {"x": reading}})
+        assert trace.is_arc.any()
+        assert trace.arcs.is_no_circle.any() == (reading != right), reading
+
+
+def test_the_haas_example_is_a_quarter_of_a_circle_with_x_as_a_radius() -> None:
+    trace = trace_of(HAAS, "haas-lathe")
+    assert trace.center[trace.is_arc] == pytest.approx(25.4 * (0.25 + 0.5j))
+    assert np.nanmax(trace.arcs.sweep) == pytest.approx(90)
+    assert np.nanmax(trace_of(HAAS, "haas-lathe", {"polar": {"x": "diameter"}}).arcs.sweep) < 80
+    rules = {finding.rule for finding in report_of(HAAS, "haas-lathe").findings}
+    assert not rules & {"rapid-in-polar", "wrong-axis-address-in-polar", "plane-selected-in-polar"}
+
+
+def test_the_lsis_example_is_a_quarter_of_a_circle_with_x_as_a_radius() -> None:
+    """Its only arc is written with R, which a shorter chord fits, too: the quarter is what tells."""
+    trace = trace_of(LSIS, "lsis")
+    assert np.nanmax(trace.arcs.sweep) == pytest.approx(90)
+    assert trace.center[trace.is_arc] == pytest.approx(-8 + 8j)
+    as_diameter = trace_of(LSIS, "lsis", {"polar": {"x": "diameter"}})
+    assert np.nanmax(as_diameter.arcs.sweep) < 80
+    assert not report_of(LSIS, "lsis").findings
+
+
+@pytest.mark.parametrize("name", ["gsk-988", "fanuc-16i", "turning-center"])
+def test_the_m700v_example_is_wrong_where_x_is_a_diameter(name: str) -> None:
+    rules = {finding.rule for finding in report_of(M700V, name).findings}
+    assert rules & {"arc-end-off-circle", "diameter-radius-mixed"}
+
+
+def test_x_follows_the_words_that_switch_it() -> None:
+    program = "G90 G94 G0 X40. C0\n{}\nG12.1\nG1 X20. F200\nG13.1\n{}\nG0 X40.\n"
+    trace = trace_of(program.format("G10.9 X0", "G10.9 X1"), "mazak-eia")
+    assert trace.x.tolist() == [20, 20, 20, 20, 20, 20, 20]
+    trace = trace_of(program.format("", ""), "mazak-eia")
+    assert trace.x.tolist() == [20, 20, 10, 10, 20]
+    trace = trace_of("G0 X40 Y0\nDIAMOF\nTRANSMIT\nG1 X20 F9\nTRAFOOF\nDIAMON\nG0 X40\n", "siemens-transmit")
+    assert trace.x.tolist() == [20, 20, 20, 20, 20, 20, 20]
+
+
+# ---- F in the mode and after it: both tables of M700V p. 73 ----
+
+PER_MINUTE = {"B": "G94", "A": "G98"}
+PER_REVOLUTION = {"B": "G95", "A": "G99"}
+
+
+def feeds(mode: str, in_mode: str, system: str) -> tuple[float, float, FileReport]:
+    """F at the first cutting move in the mode [mm/min], F in force after it, and the report."""
+    before = {"per minute": PER_MINUTE, "per revolution": PER_REVOLUTION}[mode][system]
+    value = {"per minute": 100, "per revolution": 0.2}[mode]
+    program = f"{before}\nG1 X50. Z5. F{value}\nG0 X40. C0\nG12.1\nG1 X30. {in_mode}\nX20.\nG13.1\nG1 X30.\n"
+    changes = {"control": {"g_code_system": system}}
+    trace = trace_of(program, "mitsubishi-m700", changes)
+    return float(trace.feed[4]), float(trace.feed_number[7]), report_of(program, "mitsubishi-m700", changes)
+
+
+@pytest.mark.parametrize("system", ["A", "B"])
+@pytest.mark.parametrize(
+    ("mode", "in_mode", "used", "after", "alarm"),
+    [
+        ("per minute", "", 100, 100, None),  # no F in the mode, G94(G98): previous F is used, and stays
+        ("per revolution", "", np.nan, 0.2, "P62"),  # no F in the mode, G95(G99): P62; F just before G12.1
+        ("per minute", "F300", 300, 300, None),  # F in the mode, G94(G98): commanded F is used, and stays
+        ("per revolution", "F300", 300, 0.2, None),  # F in the mode, G95(G99): per minute; F just before G12.1
+    ],
+)
+def test_feed_in_the_mode_and_after_it(
+    mode: str, in_mode: str, used: float, after: float, alarm: str | None, system: str
+) -> None:
+    in_polar, behind, report = feeds(mode, in_mode, system)
+    np.testing.assert_equal(in_polar, used)
+    assert behind == after
+    found = [(finding.rule, finding.alarm, finding.line) for finding in report.findings if finding.severity == "error"]
+    assert found == ([("feed-lost-from-per-revolution", "P62", 5)] if alarm else [])
+
+
+def test_last_of_several_feeds_of_the_mode_stays_after_it() -> None:
+    program = "G94 F100\nG0 X40. C0\nG12.1\nG1 X30. F300\nX20. F400\nG13.1\nG1 X30.\n"
+    assert trace_of(program, "mitsubishi-m700").feed_number[-1] == 400
+    again = "G95 F0.2\nG0 X40. C0\nG12.1\nG1 X30. F300\nG13.1\nG12.1\nG1 X30. F500\nG13.1\nG1 X30.\n"
+    assert trace_of(again, "mitsubishi-m700").feed_number[-1] == 0.2
+    written = "G95 F0.2\nG0 X40. C0\nG12.1\nG1 X30. F300\nG13.1\nG1 X30. F0.3\n"
+    assert trace_of(written, "mitsubishi-m700").feed_number[-1] == 0.3
+
+
+def test_f_is_one_modal_word_on_other_controls() -> None:
+    trace = trace_of("G99 F0.2\nG0 X40. C0\nG12.1\nG1 X30. F300\nG13.1\nG1 X30.\n", "fanuc")
+    assert trace.feed_number[-1] == 300
+
+
+# ---- the infeed cycle ----
+
+
+def test_infeed_cycle_pass_by_pass() -> None:
+    """X348 is 24 mm outside of the contour at X300: passes at 16 and 8 mm, then the contour."""
+    moves = trace_of(GSK_CYCLE, "gsk-988", None, "2:radius=0").tool_moves
+    assert len(moves) == 30
+    assert moves.start[0] == 174
+    for number, offset in enumerate((16, 8, 0)):
+        cut = moves.chosen(np.arange(len(moves)) // 10 == number)
+        assert cut.end[0] == pytest.approx(150 + offset)
+        assert cut.end[-1] == pytest.approx(cut.end[0]), "the pass closes"
+        corners = cut.kind == Motion.CCW
+        assert np.abs(cut.start - cut.center)[corners] == pytest.approx(40 + offset)
+        assert cut.start.imag.max() == pytest.approx(120 + offset)
+        assert cut.known.all()
+        assert cut.nearest.min() == pytest.approx(120 + offset)
+        assert cut.c_feed.max() == pytest.approx(np.degrees(2000 / (120 + offset)))
+    assert moves.start[1:] == pytest.approx(moves.end[:-1]), "the path has no gap"
+    turned = moves.c_angles[1] - moves.c_angles[0]
+    assert turned.sum() == pytest.approx(3 * 360)
+    assert moves.c_angles[0][0] == 30
+
+
+def test_infeed_cycle_with_a_cutter() -> None:
+    moves = trace_of(GSK_CYCLE, "gsk-988", None, "2:radius=10").tool_moves
+    assert sorted({round(float(value), 6) for value in moves.end.real[::10]}) == [160, 168, 176]
+    unknown = trace_of(GSK_CYCLE, "gsk-988").tool_moves
+    assert len(unknown) == 30
+    assert not unknown.known.any()
+
+
+@pytest.mark.parametrize(
+    ("infeed", "passes"),
+    [("", 1), ("E0", 1), ("E8.", 3), ("E-8.", 3), ("E12.", 2), ("E24.", 1), ("E30.", 1), ("E5.", 5)],
+)
+def test_how_many_passes(infeed: str, passes: int) -> None:
+    trace = trace_of(GSK_CYCLE.replace("E8.", infeed), "gsk-988", None, "2:radius=0")
+    assert len(trace.tool_moves) == 10 * passes
+
+
+def test_infeed_cycle_along_the_path_of_the_tool_center() -> None:
+    """Without G41 and G42 the passes lie on the side from which the tool comes."""
+    square = "G98 G0 X{} C0\nG12.1 E4.\nG1 X40. F100\nC20.\nX-40.\nC-20.\nX40.\nC0\nX{}\nG13.1\n"
+    outside = trace_of(square.format("60.", "60."), "gsk-988").tool_moves
+    assert outside.end[0] == 28
+    assert np.abs(outside.end).max() == pytest.approx(abs(28 + 28j))
+    inside = trace_of(square.format("20.", "20."), "gsk-988").tool_moves
+    assert inside.end[0] == 12
+    assert np.abs(inside.end).min() == pytest.approx(10)
+
+
+def test_every_pass_is_checked() -> None:
+    """A pass that the contour alone would hide: inside a pocket the first passes are nearest to the center."""
+    pocket = "G98 G0 X4. C0\nG12.1 E4.\nG1 X40. F100\nC20.\nX-40.\nC-20.\nX40.\nC0\nG13.1\n"
+    limit = {"limits": {"c_feed": 700}}
+    assert (5, "c-feed-above-limit") in said(report_of(pocket, "gsk-988", limit))
+    assert (5, "c-feed-above-limit") not in said(report_of(pocket.replace(" E4.", ""), "gsk-988", limit))
+
+
+def test_what_is_not_simulated_is_said() -> None:
+    program = GSK_CYCLE.replace("G12.1 E8.", "G12.1 X10. P2 Q3 E.001")
+    reasons = [entry.reason for entry in report_of(program, "gsk-988", None, "2:radius=0").not_evaluated]
+    assert "P names another linear axis than 1, which is not simulated" in reasons
+    assert "the center of the C axis shifted by X is not simulated" in reasons
+    assert "of an infeed cycle only the passes next to the contour are simulated" in reasons
+    assert not any(reason.startswith("Q names") for reason in reasons)
+    moves = trace_of(program, "gsk-988", None, "2:radius=0").tool_moves
+    assert len(moves) == 10 * 201
+
+
+def test_an_open_contour_is_one_pass() -> None:
+    program = GSK_CYCLE.replace("G1 C0\nG40 X300.", "G1 C-10.\nG40 X340.")
+    trace = trace_of(program, "gsk-988", None, "2:radius=10")
+    assert len(trace.tool_moves) < 15
+    assert (4, "contour-open-with-infeed") in said(report_of(program, "gsk-988", None, "2:radius=10"))
+
+
+def test_infeed_is_a_word_of_one_control() -> None:
+    assert not trace_of(GSK_CYCLE, "fanuc").infeed.depth.any()
+    assert (4, "polar-switch-not-alone") in said(report_of(GSK_CYCLE, "fanuc"))
+
+
+# ---- automatic override ----
+
+FAST = "G98 G0 X60. C0\nG12.1\nG1 X4. C5. F100\nC-5. F500\nG13.1\n"
+
+
+def test_excess_speed_is_an_alarm_or_an_override() -> None:
+    off = report_of(FAST, "fanuc-30i", {"parameters": {"1422": 3600}}).findings[0]
+    assert (off.rule, off.severity, off.alarm) == ("c-feed-above-limit", "error", "OT0512")
+    parameters = {"1422": 3600, "5450#1": 1, "5463": 80}
+    on = report_of(FAST, "fanuc-30i", {"parameters": parameters}).findings[0]
+    assert (on.rule, on.severity, on.alarm) == ("c-feed-above-limit", "warning", None)
+    # C turns at 500 / 2 mm, that is 14324 deg/min; 80 % of 3600 is 2880, a share of 20.1 %.
+    assert "20 %, 100 mm/min" in on.message
+
+
+def test_override_and_true_feed() -> None:
+    trace = trace_of(FAST, "fanuc", {"limits": {"c_feed": 3600, "automatic_override": True}})
+    rate = float(np.degrees(500 / 2))
+    assert trace.own.override[3] == pytest.approx(100 * 3240 / rate)
+    assert trace.own.true_feed[3] == pytest.approx(500 * 3240 / rate)
+    assert trace.own.override[2] == 100
+    assert (trace_of(FAST, "fanuc", {"limits": {"c_feed": 3600}}).own.override == 100).all()
+    slightly = trace_of(FAST, "fanuc", {"limits": {"c_feed": rate / 0.95, "automatic_override": True}})
+    assert slightly.own.override[3] == pytest.approx(100 * 90 / 95)
+
+
+# ---- words of other controls ----
+
+
+def test_native_words_keep_every_position() -> None:
+    words = {"TRANSMIT": "G12.1", "CR=": "R", "TRAFOOF": "G13.1", "AB": ""}
+    text = "N10 transmit\nG3X5CR=2.5 XTRANSMIT TRANSMITX\nTRAFOOF(1) AB CAB AB1\n"
+    found = native.translated(source.read(text.encode()), words)
+    assert found.code.tobytes() == b"N10    G12.1\nG3X5  R2.5 XTRANSMIT TRANSMITX\n  G13.1(1)    CAB AB1\n"
+    assert found.excerpt(4, 12) == "transmit"
+    assert native.translated(found, {}) is found
+
+
+def test_messages_name_the_native_word() -> None:
+    program = "G0 X60 Y0\nTRANSMIT\nG1 X40 F9\nY5\nM30\n"
+    finding = next(f for f in report_of(program, "siemens-transmit").findings if f.rule == "polar-never-left")
+    assert "TRAFOOF is missing" in finding.message
+    assert finding.block == "TRANSMIT"
+
+
+def test_codes_of_other_numbers_move() -> None:
+    program = "G94 G0 X120. C0\nG137 C0\nG101 X20. Y0 F200\nG101 Y10.\nG103 X10. Y20. L10.\nG136\n"
+    trace = trace_of(program, "okuma-osp")
+    assert trace.motion.tolist()[2:5] == [Motion.LINE, Motion.LINE, Motion.CCW]
+    assert trace.center[4] == pytest.approx(10 + 10j)
+    assert trace.end[4] == pytest.approx(10 + 20j)
+
+
+def test_virtual_axis_as_a_diameter() -> None:
+    trace = trace_of("G98 G0 X60. C0\nG12.1\nG1 X40. C20. F100\nG13.1\n", "fanuc", {"parameters": {"5450#0": 1}})
+    assert trace.end[2] == 20 + 10j
+
+
+def test_center_words_follow_the_linear_axis() -> None:
+    """I and J, J and K, K and I (B-62764EN/01 p. 51; M700V p. 76)."""
+    program = "G94 G90 G0 X40. C0\nG12.1\nG1 X20. C10. F100\nG3 X10. C20. {}-10. {}0\nG13.1\n"
+    for axis, (along, across) in {"X": "IJ", "Y": "JK", "Z": "KI"}.items():
+        changes = {"parameters": {"1533": axis}}
+        trace = trace_of(program.format(along, across), "mitsubishi-m700", changes)
+        assert trace.center[3] == pytest.approx(10 + 10j)
+        other = ({"I", "J", "K"} - {along, across}).pop()
+        wrong = report_of(program.format(other, across), "mitsubishi-m700", changes)
+        assert "arc-word-of-other-plane" in {finding.rule for finding in wrong.findings}
+
+
+def test_words_beside_the_switch_are_no_move() -> None:
+    trace = trace_of("G98 G0 X60. C0\nG12.1 X10. C5.\nG1 X40. F100\nG13.1\n", "gsk-988")
+    assert trace.start[2] == 30
+
+
+# ---- alarms ----
+
+
+@pytest.mark.parametrize(
+    ("program", "name", "rule", "alarm"),
+    [
+        ("G98 G0 X60. C0\nG12.1\nG1 X40. F100\nG0 C5.\nG1 C0\nG13.1\n", "fanuc-16i", "rapid-in-polar", "146"),
+        ("G98 G0 X60. C0\nG12.1\nG1 X40. F100\nG0 C5.\nG1 C0\nG13.1\n", "fanuc-30i", "rapid-in-polar", "PS0146"),
+        ("G98 G0 X60. C0\nG12.1\nG1 X40. F100\nG0 C5.\nG1 C0\nG13.1\n", "turning-center", "rapid-in-polar", "PS0146"),
+        ("T0101\nG98 G0 X60. C0\nG41\nG12.1\nG13.1\n", "fanuc-16i", "polar-switched-in-offset-mode", "145"),
+        ("T0101\nG98 G0 X60. C0\nG41\nG12.1\nG13.1\n", "fanuc-30i", "polar-switched-in-offset-mode", "PS0146"),
+        ("T0101\nG94 G0 X60. C0\nG41\nG12.1\nG13.1\n", "mitsubishi-m700", "polar-switched-in-offset-mode", "P485"),
+        ("T0101\nG98 G0 X60. C0\nG41\nG12.1\nG13.1\n", "gsk-988", "polar-switched-in-offset-mode", "polar "),
+        ("G94 G0 X60. C0\nG12.1\nG1 X40. F100\nG12.1\nG13.1\n", "mitsubishi-m700", "polar-entered-twice", "P486"),
+        ("G94 G0 X60. C0\nG12.1\nG1 X40. F9\nG28 X0\nG13.1\n", "mitsubishi-m700", "code-not-allowed-in-polar", "P481"),
+        ("G94 G0 X60. C0\nG12.1\nG1 X40. F100\nG18\nG13.1\n", "mitsubishi-m700", "plane-selected-in-polar", "P485"),
+        ("G94 G0 X60. C0\nG12.1\nG1 X40.\nG13.1\n", "mitsubishi-m700", "feed-missing-in-polar", "P62"),
+        ("G98 G0 X60. C0\nG112\nG1 X40. Y5. F9\nG2 X30. Y9. R1.\nG113\n", "haas-lathe", "arc-radius-too-small", "302"),
+    ],
+)  # fmt: skip
+def test_alarm_of_the_control(program: str, name: str, rule: str, alarm: str) -> None:
+    found = [finding for finding in report_of(program, name).findings if finding.rule == rule]
+    assert [str(finding.alarm).startswith(alarm) for finding in found] == [True]
+
+
+@pytest.mark.parametrize("name", ["haas-lathe", "siemens-transmit"])
+def test_rapid_traverse_is_silent_where_the_control_takes_it(name: str) -> None:
+    on, off = machine.load(name).machine.polar.on[0], machine.load(name).machine.polar.off[0]
+    program = f"G17 G98 G0 X60. C0\n{on}\nG0 X40. Y0\nG1 Y5. F100\n{off}\n"
+    assert "rapid-in-polar" not in {finding.rule for finding in report_of(program, name).findings}
+
+
+# ---- the wrong machine ----
+
+
+def other(program: str, name: str) -> str:
+    found = [finding for finding in report_of(program, name).findings if finding.rule == "other-machine-fits"]
+    assert all(finding.severity == "note" for finding in found)
+    assert len(found) < 2
+    return found[0].message if found else ""
+
+
+def test_a_program_for_another_machine_is_known() -> None:
+    assert "--machine mitsubishi-m700" in other(M700V, "fanuc")
+    assert "X is a radius" in other(M700V, "fanuc")
+    assert "--machine haas-lathe" in other(HAAS, "fanuc")
+    assert "Y is the second axis" in other(HAAS, "fanuc")
+    okuma = "G94 G0 X120. C0\nG137 C0\nG101 X20. Y0 F200\nG103 X10. Y10. L10.\nG136\n"
+    assert "--machine okuma-osp" in other(okuma, "fanuc")
+    assert "G137 begins the polar mode there" in other(okuma, "fanuc")
+    transmit = "G0 X60 Y0\nTRANSMIT\nG1 X40 Y5 F9\nTRAFOOF\n"
+    assert "TRANSMIT begins the polar mode there" in other(transmit, "fanuc")
+    assert "--machine gsk-988" in other(GSK_CYCLE, "haas-lathe")
+    assert "--machine fanuc" not in other(GSK_CYCLE, "haas-lathe")
+    of_c = "G98 G0 X60. C0\nG12.1\nG1 X40. F100\nC5.\nG13.1\n"
+    assert "G12.1 begins the polar mode there" in other(of_c, "haas-lathe")
+
+
+def test_a_program_under_its_own_machine_is_left_alone() -> None:
+    for program, name in ((M700V, "mitsubishi-m700"), (GSK_SINGLE, "gsk-988"), (LSIS, "lsis"), (HAAS, "haas-lathe")):
+        assert not other(program, name)
+
+
+def test_a_program_that_no_machine_reads_well_gets_no_advice() -> None:
+    """All sixteen readings of the arcs of en.cncarea.com fail."""
+    program = (
+        "G94\nT0101\nG0 X120. C0\nG12.1\nG1 G42 X40. F100.\nG3 X0 C40. I-20.\nG1 X-25.\nG3 X-40. C25. K-15.\nG1 C0\n"
+    )
+    assert not other(program + "G3 X20. I20.\nG1 G40 X120.\nG13.1\n", "mitsubishi-m700")
+
+
+def test_messages_name_the_virtual_axis_of_the_control() -> None:
+    program = "T0101\nG98 G17 G0 X60. C0\nG112\nG1 Y5. F200\nG41 Y7.\nX20.\nG40 Y30.\nG113\n"
+    found = report_of(program, "haas-lathe", {"control": {"units": "mm"}}, "1:radius=5", "1:nose=0").findings
+    assert "2 mm in Y" in next(f.message for f in found if f.rule == "start-up-shorter-than-radius")
+
+
+# ---- the real programs beside the checkout ----
+
+CORPUS = Path(__file__).parent.parent.parent / "shared" / "corpus" / "polar"
+SYSTEM_B = {"control": {"g_code_system": "B"}, "parameters": {"1422": 3600}}
+JUDGED: list[tuple[str, str, dict[str, Any], list[tuple[int, str, str]]]] = [
+    ("polar-seed-gsk-o0001-single.nc", "gsk-988", {}, []),
+    ("polar-seed-gsk-o0002-cycle-e8.nc", "gsk-988", {}, [(29, "warning", "cancel-shorter-than-radius")]),
+    ("polar-web-lsis-xgt-g112.nc", "lsis", {}, []),
+    (
+        "polar-web-imd-lynx220-fix-g01.nc",
+        "doosan",
+        {},
+        [(line, "warning", "z-with-plane-axis") for line in (3, 4, 5, 6)],
+    ),
+    (
+        "polar-web-imd-mazak-qts-cdegrees.nc",
+        "mazak-eia",
+        {},
+        [
+            (2, "error", "polar-never-left"),
+            (5, "error", "wrong-axis-address-in-polar"),
+            (5, "warning", "degrees-in-polar"),
+        ],
+    ),
+    (
+        "polar-web-fanuc15i-autovelocity.nc",
+        "fanuc",
+        SYSTEM_B,
+        [(3, "error", "c-feed-above-limit"), (4, "error", "c-feed-above-limit")],
+    ),
+    (
+        "polar-web-fanuc15i-autovelocity.nc",
+        "fanuc",
+        {**SYSTEM_B, "parameters": {"1422": 3600, "5450#1": 1}},
+        [(3, "warning", "c-feed-above-limit"), (4, "warning", "c-feed-above-limit")],
+    ),
+]
+
+
+@pytest.mark.corpus
+@pytest.mark.skipif(not CORPUS.is_dir(), reason="the real programs are not beside this checkout")
+@pytest.mark.parametrize(("name", "lathe", "changes", "expected"), JUDGED)
+def test_judged_under_its_own_machine(
+    name: str, lathe: str, changes: dict[str, Any], expected: list[tuple[int, str, str]]
+) -> None:
+    report = report_of((CORPUS / name).read_text("utf-8"), lathe, changes, "2:radius=10", "2:nose=0")
+    found = [(finding.line, finding.severity, finding.rule) for finding in report.findings]
+    assert sorted(entry for entry in found if entry[1] != "note") == sorted(expected)

@@ -1,0 +1,124 @@
+"""Arcs, feeds and the center of C beyond the examples of the pages: what gives way, and what is not evaluated."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from polarcheck import check, job, machine
+from polarcheck.finding import FileReport
+from polarcheck.rule import load_all
+
+RULES = [rule for rule in load_all().values() if rule.group in ("motion", "feed")]
+ENTRY = "O1 T0808\nG98 G0 X60. C0\nG12.1\n"
+
+
+def report(program: str, *tools: str, name: str = "fanuc", **changes: dict[str, Any]) -> FileReport:
+    work = job.Job()
+    for tool in tools:
+        work = job.with_tool(work, tool)
+    return check.check_file(program.encode(), machine.load(name, changes).machine, work, RULES)
+
+
+def said(found: FileReport) -> list[tuple[int, str]]:
+    return [(finding.line, finding.rule) for finding in found.findings]
+
+
+def reasons(found: FileReport) -> list[tuple[str, int]]:
+    return [(entry.reason, entry.blocks) for entry in found.not_evaluated]
+
+
+def test_an_arc_that_is_no_circle_has_no_rate_of_c() -> None:
+    """R too small near the center: one finding, though C would be far too fast along any such arc."""
+    found = report(ENTRY + "G1 X.2 C5. F1000\nG2 X.2 C-.1 R.5\n")
+    assert said(found) == [(5, "arc-radius-too-small")]
+
+
+def test_a_missing_c_is_not_taken_for_a_radius() -> None:
+    """A quarter of a circle without its C closes by chance with X as a radius."""
+    quarter = "G1 X40. C10. F200\nG3 X24. I-8. J6.\n"
+    assert said(report(ENTRY + quarter)) == [(5, "arc-end-off-circle")]
+    assert said(report(ENTRY + quarter + "G1 X40. C10.\nG3 X24. I-8. J6.\n")) == [
+        (5, "arc-end-off-circle"),
+        (7, "arc-end-off-circle"),
+    ]
+
+
+def test_a_stop_at_the_center_is_reported_once() -> None:
+    """The way to the center is named, not the way back; and so where the start of that way is not known."""
+    assert said(report(ENTRY + "G1 X0 F200\nX60.\n")) == [(4, "path-through-center")]
+    assert said(report("G12.1\nG1 X0 C0 F200\nX60.\n")) == [(2, "path-through-center")]
+    assert said(report("O1\nG98 G0 X0 C0\nG12.1\nG1 X60. F200\nC5.\n")) == [(4, "path-through-center")]
+
+
+def test_helical_arcs_are_errors_where_the_builder_forbids_them() -> None:
+    program = ENTRY + "G1 X40. C10. F5.\nG3 X20. C20. R10. Z-1.\n"
+    severity = {name: report(program, name=name).findings[-1].severity for name in ("fanuc", "turning-center")}
+    assert severity == {"fanuc": "warning", "turning-center": "error"}
+
+
+@pytest.mark.parametrize(
+    ("program", "texts"),
+    [
+        ("G20 G98 G0 X2.5 C0\nG12.1\nG1 C1\n", ["C1 has no decimal point: the control takes it as 0.0001 inch"]),
+        ("G98 G0 X60. C5\nG12.1\n", ["C5 has no decimal point: the control takes it as 0.005 deg"]),
+        (
+            "G98 G0 X60. C0\nG12.1\nG1 C1 F200\nX40\nX50.5 C3\n",
+            ["C1 has no decimal point: the control takes it as 0.001 mm; 2 more coordinates of this section have none"],
+        ),
+        ("G98 G0 X60000 C0\nG12.1\nG1 C1000 F200\n", []),
+        ("G98 G1 X60 F200\nG0 X60. C0\nG12.1\nG1 X50.\n", []),
+    ],
+)
+def test_number_without_point_says_what_it_is_taken_as(program: str, texts: list[str]) -> None:
+    found = report(program).findings
+    assert [finding.message for finding in found if finding.rule == "number-without-point"] == texts
+
+
+def test_a_word_in_a_loop_is_reported_once() -> None:
+    program = ENTRY + "#1=0\nWHILE[#1LT3]DO1\nG1 X40. C5 F200\nC-5.\nX50.\n#1=#1+1\nEND1\nG13.1\nM30\n"
+    assert said(report(program)) == [(6, "number-without-point")]
+
+
+LIMIT = "FANUC lathe control gives no limit of the C axis; highest rate found {} deg/min, line {}"
+
+
+def test_the_highest_rate_is_told_where_there_is_nothing_to_compare_it_with() -> None:
+    program = ENTRY + "G1 C10. F200\nX-60.\nC-10.\n"
+    assert reasons(report(program)) == [(LIMIT.format(1146, 5), 3)]
+    assert reasons(report(program, limits={"c_feed": 3600})) == []
+
+
+def test_why_the_rate_of_c_is_not_known() -> None:
+    """The radius, the feed, the position: each with what to do about it; nothing where a finding says it already."""
+    limits = {"c_feed": 3600}
+    compensated = ENTRY + "G1 C10. F200\nG41 X40.\nC-10.\nG40 X60.\n"
+    text = "no radius for T0808: give --tool 8:radius=... or [tools.8] radius in polarcheck.toml"
+    assert reasons(report(compensated, limits=limits)) == [(text, 3)]
+    assert reasons(report(compensated, "8:radius=4", limits=limits)) == []
+    per_revolution = report(ENTRY + "G1 G99 C10. F.2\n", limits=limits)
+    assert reasons(per_revolution) == [("the feed is not known: F is per revolution of a spindle", 1)]
+    excerpt = report("G12.1\nG1 X40. C10.\nC5.\n", limits=limits)
+    assert said(excerpt) == []
+    assert reasons(excerpt) == [
+        ("the position is not known: X was not programmed before the polar mode", 1),
+        ("the feed is not known: no F is in force", 1),
+    ]
+    missing = report(ENTRY + "G1 C10.\n", limits=limits)
+    assert (said(missing), reasons(missing)) == ([(4, "feed-missing-in-polar")], [])
+
+
+def test_feed_of_the_mode_is_per_minute_where_the_control_takes_nothing_else() -> None:
+    program = "O1\nG99 G0 X60. C0\nG1 Z-5. F.2\nG12.1\nX4. C5. F500\nC-5.\nG13.1\n"
+    changes: dict[str, Any] = {"limits": {"c_feed": 3600}, "feed": {"inheritance": "per-minute-only"}}
+    assert said(report(program, **changes)) == [(5, "c-feed-above-limit"), (6, "c-feed-above-limit")]
+
+
+def test_travel_in_the_mode_is_the_distance_of_the_tool_center() -> None:
+    """Compensation counts, and one way out is one finding."""
+    program = ENTRY + "G1 C20. F200\nG41 X50.\nC-20.\nX-50.\nG40 C-60.\n"
+    limits = {"x_maximum": 37}
+    assert said(report(program, "8:radius=4", limits=limits)) == [(6, "travel-limit")]
+    assert said(report(program, "8:radius=0", limits=limits)) == [(8, "travel-limit")]
+    assert [blocks for _, blocks in reasons(report(program, limits=limits | {"c_feed": 9000}))] == [4, 4]

@@ -1,0 +1,277 @@
+"""What a machinist would nod at: the same program written otherwise is the same program."""
+
+from __future__ import annotations
+
+import cmath
+import math
+import re
+from dataclasses import dataclass, replace
+
+import msgspec
+import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from polarcheck import check, machine
+from polarcheck.finding import FileReport
+from polarcheck.job import Job, with_tool
+from polarcheck.rule import load_all
+from polarcheck.trace import Trace
+
+RULES = list(load_all().values())
+FANUC = machine.load("fanuc", {"limits": {"c_feed": 7200.0}}).machine
+EXAMPLES = 40
+
+
+@dataclass(frozen=True)
+class Move:
+    """To a plane point by a line, or by an arc about a center."""
+
+    end: complex
+    center: complex | None = None
+    ccw: bool = True
+    feed: float | None = None
+
+
+def coordinate(low: float, high: float) -> st.SearchStrategy[float]:
+    return st.integers(round(low * 500), round(high * 500)).map(lambda n: n / 500)  # X on the diameter: 0.004 mm
+
+
+@st.composite
+def contours(draw: st.DrawFn) -> list[Move]:
+    """Lines between points of the plane and quarter arcs whose ends are exact in 0.002 mm."""
+    here = complex(40, 0)
+    moves = []
+    for _ in range(draw(st.integers(1, 8))):
+        feed = draw(st.one_of(st.none(), st.sampled_from([50.0, 200.0, 900.0])))
+        if draw(st.booleans()):
+            radius = draw(coordinate(1, 15))
+            turned = draw(st.sampled_from([1, 1j, -1, -1j]))
+            ccw = draw(st.booleans())
+            center = here - radius * turned
+            end = center + radius * turned * (1j if ccw else -1j)
+            moves.append(Move(end, center, ccw, feed))
+            here = end
+        else:
+            here = complex(draw(coordinate(-40, 40)), draw(coordinate(-40, 40)))
+            moves.append(Move(here, None, True, feed))
+    return moves
+
+
+def words(value: float) -> str:
+    return f"{value:.9f}".rstrip("0")
+
+
+def program(moves: list[Move], *, unit: float = 1.0, incremental: bool = False, x_factor: float = 2.0) -> str:
+    lines = [
+        "O1",
+        "G20" if unit != 1.0 else "G21",
+        "T0101",
+        f"G98 G0 X{words(80 / unit)} C0. Z{words(5 / unit)}",
+        "G12.1",
+    ]
+    here = complex(40, 0)
+    for number, move in enumerate(moves):
+        feed = move.feed if move.feed is not None or number else 300.0
+        step = move.end - here if incremental else move.end
+        x, c = ("U", "H") if incremental else ("X", "C")
+        block = f"{x}{words(step.real * x_factor / unit)} {c}{words(step.imag / unit)}"
+        if move.center is None:
+            block = "G1 " + block
+        else:
+            to_center = move.center - here
+            block = ("G3 " if move.ccw else "G2 ") + block
+            block += f" I{words(to_center.real / unit)} J{words(to_center.imag / unit)}"
+        if feed is not None:
+            block += f" F{words(feed / unit)}"
+        lines.append(block)
+        here = move.end
+    return "\n".join([*lines, "G13.1", f"G0 X{words(90 / unit)}", "M30", ""])
+
+
+def trace_of(text: str, lathe: machine.Machine = FANUC, job: Job | None = None) -> Trace:
+    return check.read_traces(text.encode(), lathe, job or Job())[0][1]
+
+
+def report_of(text: str, lathe: machine.Machine = FANUC, job: Job | None = None) -> FileReport:
+    return check.check_file(text.encode(), lathe, job or Job(), RULES)
+
+
+def said(report: FileReport) -> list[tuple[str, str]]:
+    return [(finding.rule, finding.severity) for finding in report.findings]
+
+
+def same_path(ours: Trace, theirs: Trace, tolerance: float = 1e-6, relative: float = 1e-6) -> None:
+    for name in ("start", "end", "center", "feed", "c_feed", "nearest"):
+        np.testing.assert_allclose(
+            getattr(ours.tool_moves, name), getattr(theirs.tool_moves, name), relative, tolerance, err_msg=name
+        )
+    np.testing.assert_array_equal(ours.tool_moves.kind, theirs.tool_moves.kind)
+    for angle, other in zip(ours.tool_moves.c_angles, theirs.tool_moves.c_angles, strict=True):
+        np.testing.assert_allclose(angle, other, atol=1e-4)
+
+
+@given(contours(), st.data())
+@settings(max_examples=EXAMPLES, deadline=None)
+def test_spelling_changes_nothing(moves: list[Move], data: st.DataObject) -> None:
+    text = program(moves)
+    spelled = []
+    for number, line in enumerate(text.split("\n")):
+        if data.draw(st.booleans()) and line:
+            line = re.sub(r"\b([GM])(\d)\b", r"\g<1>0\2", line)
+        if data.draw(st.booleans()):
+            line = line.replace(" ", data.draw(st.sampled_from(["", "  ", "\t"])))
+        if data.draw(st.booleans()) and line and not line.startswith("O"):
+            line = f"N{10 * number + 10} {line}"
+        if data.draw(st.booleans()):
+            line += data.draw(st.sampled_from([" (COMMENT G0)", ";", "  "]))
+        spelled.append(line)
+    other = data.draw(st.sampled_from(["\n", "\r\n", "\n\r\r"])).join(spelled)
+    same_path(trace_of(text), trace_of(other), 0)
+    ours, theirs = report_of(text), report_of(other)
+    assert [(f.line, f.rule, f.values) for f in ours.findings] == [(f.line, f.rule, f.values) for f in theirs.findings]
+
+
+@given(contours())
+@settings(max_examples=EXAMPLES, deadline=None)
+def test_incremental_twin_has_the_same_path(moves: list[Move]) -> None:
+    same_path(trace_of(program(moves)), trace_of(program(moves, incremental=True)))
+
+
+@given(contours())
+@settings(max_examples=EXAMPLES, deadline=None)
+def test_inch_twin_has_the_same_path(moves: list[Move]) -> None:
+    # 1e-9 inch of rounding is 1e-5 of the nearest distance that these contours can have, 0.001 mm.
+    same_path(trace_of(program(moves)), trace_of(program(moves, unit=25.4)), 1e-4, 3e-5)
+
+
+@given(contours())
+@settings(max_examples=EXAMPLES, deadline=None)
+def test_radius_twin_has_the_same_path(moves: list[Move]) -> None:
+    by_radius = machine.load("fanuc", {"limits": {"c_feed": 7200.0}, "polar": {"x": "radius"}}).machine
+    same_path(trace_of(program(moves)), trace_of(program(moves, x_factor=1.0), by_radius))
+
+
+@given(contours(), st.floats(-math.pi, math.pi))
+@settings(max_examples=EXAMPLES, deadline=None)
+def test_turning_the_entry_shifts_only_c(moves: list[Move], angle: float) -> None:
+    """The C angle at G12.1 turns the whole plane."""
+    degrees = round(math.degrees(angle), 3)
+    plain = trace_of(program(moves))
+    turned = trace_of(program(moves).replace("C0.", f"C{degrees:.3f}", 1))
+    np.testing.assert_array_equal(plain.tool_moves.end, turned.tool_moves.end)
+    for ours, theirs in zip(plain.tool_moves.c_angles, turned.tool_moves.c_angles, strict=True):
+        np.testing.assert_allclose(theirs - ours, degrees, atol=1e-9)
+
+
+@given(contours(), st.floats(-math.pi, math.pi))
+@settings(max_examples=EXAMPLES, deadline=None)
+def test_turning_the_contour_keeps_speed_and_distance(moves: list[Move], angle: float) -> None:
+    turn = cmath.exp(1j * angle)
+
+    table = trace_of(program(moves)).programmed_moves
+    other = replace(table, start=table.start * turn, end=table.end * turn, center=table.center * turn)
+    off_center = table.nearest > 1e-3
+    np.testing.assert_allclose(other.nearest[off_center], table.nearest[off_center], rtol=1e-6, atol=1e-9)
+    np.testing.assert_allclose(other.c_feed[off_center], table.c_feed[off_center], rtol=1e-5)
+
+
+COMPENSATED = """O1
+G21 G98
+T0101
+G0 X120. C0 Z5.
+G12.1
+G1 {on} X60. F500
+C{half}
+G3 X{inner} C30. R{corner}
+G1 X-{inner}
+G3 X-60. C{half} R{corner}
+G1 C-{half}
+G3 X-{inner} C-30. R{corner}
+G1 X{inner}
+G3 X60. C-{half} R{corner}
+G1 C0
+G40 X120.
+G13.1
+G0 X130.
+M30
+"""
+
+
+def rounded_square(corner: float, on: str) -> str:
+    half = 30 - corner
+    return COMPENSATED.format(on=on, half=words(half), inner=words(2 * half), corner=words(corner))
+
+
+@given(coordinate(0.5, 25), coordinate(0, 12))
+@settings(max_examples=EXAMPLES, deadline=None)
+def test_a_rounded_square_is_followed_at_its_distance(corner: float, radius: float) -> None:
+    trace = trace_of(rounded_square(corner, "G42"), job=with_tool(Job(), f"1:radius={radius}"))
+    table = trace.tool_moves
+    assert table.known.all()
+    np.testing.assert_allclose(np.max(np.abs(table.end.real[1:-1])), 30 + radius, atol=1e-9)
+    arcs = table.kind == 3
+    np.testing.assert_allclose(np.abs(table.end - table.center)[arcs], corner + radius, atol=1e-9)
+
+
+@given(coordinate(0.5, 25), coordinate(0.1, 12))
+@settings(max_examples=EXAMPLES, deadline=None)
+def test_mirroring_swaps_the_sides(corner: float, radius: float) -> None:
+    job = with_tool(Job(), f"1:radius={radius}")
+    text = rounded_square(corner, "G42")
+    mirrored = re.sub(r"C(-?)(\d)", lambda m: f"C{'' if m[1] else '-'}{m[2]}", text).replace("C-0", "C0")
+    mirrored = mirrored.replace("G42", "G41").replace("G3 ", "G2 ")
+    ours, theirs = trace_of(text, job=job).tool_moves, trace_of(mirrored, job=job).tool_moves
+    np.testing.assert_allclose(theirs.end, np.conj(ours.end), atol=1e-9)
+    np.testing.assert_allclose(theirs.c_feed, ours.c_feed, rtol=1e-9)
+
+
+@given(coordinate(0.5, 25))
+@settings(max_examples=EXAMPLES, deadline=None)
+def test_radius_zero_gives_the_programmed_path(corner: float) -> None:
+    trace = trace_of(rounded_square(corner, "G42"), job=with_tool(Job(), "1:radius=0"))
+    ours, programmed = trace.tool_moves, trace.programmed_moves
+    moved = programmed.length > 1e-9
+    np.testing.assert_allclose(ours.end, programmed.end[moved], atol=1e-9)
+
+
+@given(contours(), st.floats(500, 20_000), st.floats(1, 3))
+@settings(max_examples=EXAMPLES, deadline=None)
+def test_raising_a_limit_adds_no_finding(moves: list[Move], limit: float, more: float) -> None:
+    text = program(moves)
+    low, high = (
+        report_of(text, machine.load("fanuc", {"limits": {"c_feed": value}}).machine) for value in (limit, limit * more)
+    )
+    assert {(f.line, f.rule) for f in high.findings} <= {(f.line, f.rule) for f in low.findings}
+
+
+@given(contours())
+@settings(max_examples=EXAMPLES, deadline=None)
+def test_splitting_a_move_changes_no_finding(moves: list[Move]) -> None:
+    split: list[Move] = []
+    here = complex(40, 0)
+    for move in moves:
+        if move.center is None:
+            middle = (here + move.end) / 2
+            middle = complex(round(middle.real * 1000) / 1000, round(middle.imag * 1000) / 1000)
+            exact = abs(middle - (here + move.end) / 2) < 1e-12
+            if exact and middle not in (here, move.end):
+                split.append(Move(middle, None, True, move.feed))
+        split.append(move)
+        here = move.end
+    ours, theirs = report_of(program(moves)), report_of(program(split))
+    assert set(said(ours)) == set(said(theirs))
+
+
+@given(st.binary(max_size=400))
+@settings(max_examples=200, deadline=None)
+def test_any_bytes_give_a_report(data: bytes) -> None:
+    report = check.check_file(data, FANUC, Job(), RULES)
+    assert msgspec.json.decode(msgspec.json.encode(report))["path"] == "-"
+
+
+@given(st.text(alphabet="GMXYZCUWHIJKRFTSNO%();/#[]=.-+0123456789 \n<>ABWHILEDOT", max_size=300))
+@settings(max_examples=200, deadline=None)
+def test_any_text_like_a_program_gives_a_report(text: str) -> None:
+    report = check.check_file(text.encode(), FANUC, Job(), RULES)
+    assert msgspec.json.decode(msgspec.json.encode(report))["blocks"] >= 0
