@@ -1,0 +1,106 @@
+"""
+Blocks per second and peak memory of each stage, beside a bare regex over the same file: the ratio carries over.
+
+    python benchmarks/throughput.py [--blocks 200000] [--file FILE] [--rounds 5]
+
+Each figure is the median of the rounds; the regex runs in turn with the rest, so that both see the same machine.
+"""
+
+from __future__ import annotations
+
+import argparse
+import re
+import resource
+import statistics
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from generate import program
+
+from polarcheck import check, machine, source
+from polarcheck.flow import straight
+from polarcheck.job import Job, with_tool
+from polarcheck.rule import load_all
+from polarcheck.trace import Trace
+from polarcheck.words import read_words
+
+WORD = re.compile(rb"([A-Z])([-+]?[0-9.]+)")
+CUTTERS = range(4, 13)
+
+
+def stages(data: bytes) -> dict[str, Callable[[], Any]]:
+    """What is measured, by name; each stage does all that it needs."""
+    lathe = machine.load(machine.DEFAULT).machine
+    rules = list(load_all().values())
+    without = Job()
+    with_cutter = without
+    for number in CUTTERS:
+        with_cutter = with_tool(with_cutter, f"{number}:radius=2")
+
+    def read() -> Any:
+        return read_words(source.read(data))
+
+    def trace(job: Job) -> Trace:
+        table = Trace(straight(read()), lathe, job)
+        _ = table.section, table.c_angle, table.center
+        return table
+
+    return {
+        "bare regex": lambda: WORD.findall(data),
+        "read": read,
+        "read, trace": lambda: trace(without),
+        "read, trace, all rules": lambda: check.check_file(data, lathe, without, rules),
+        "the same with a 4 mm cutter": lambda: check.check_file(data, lathe, with_cutter, rules),
+    }
+
+
+def main() -> None:
+    """Measure and print."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--blocks", type=int, default=200_000)
+    parser.add_argument("--file", type=Path)
+    parser.add_argument("--rounds", type=int, default=5)
+    asked = parser.parse_args()
+    data = asked.file.read_bytes() if asked.file else program(asked.blocks)
+    blocks = data.count(b"\n")
+    taken: dict[str, list[float]] = {}
+    parts = stages(data)
+    for _ in range(asked.rounds):
+        for name, run in parts.items():
+            began = time.perf_counter()
+            result = run()
+            taken.setdefault(name, []).append(time.perf_counter() - began)
+            del result  # freed here, so that the next does not pay for it
+    bare = statistics.median(taken["bare regex"])
+    print(f"{blocks} blocks, {len(data) / 1e6:.1f} MB, median of {asked.rounds}")
+    for name, times in taken.items():
+        median = statistics.median(times)
+        print(f"{name:<30} {median:7.3f} s {blocks / median:12,.0f} blocks/s {median / bare:6.2f} regex passes")
+    for name in parts:
+        print(f"{name:<30} {peak_of(name, data):7.0f} MB peak of a process of its own")
+
+
+def peak_of(name: str, data: bytes) -> float:
+    """The peak memory [MB] of a fresh process that runs one stage."""
+    import multiprocessing
+
+    with tempfile.NamedTemporaryFile(suffix=".nc") as file:
+        Path(file.name).write_bytes(data)
+        context = multiprocessing.get_context("spawn")
+        with context.Pool(1) as pool:
+            return pool.apply(_peak, (name, file.name))
+
+
+def _peak(name: str, path: str) -> float:
+    stages(Path(path).read_bytes())[name]()
+    status = Path("/proc/self/status")
+    if status.exists():  # ru_maxrss would begin with that of the parent
+        return next(int(line.split()[1]) for line in status.read_text().splitlines() if line.startswith("VmHWM")) / 1024
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+
+
+if __name__ == "__main__":
+    main()

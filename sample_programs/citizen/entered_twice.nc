@@ -1,0 +1,12 @@
+O0002
+G98 G40 G97
+T0101
+G0 X60. C0 Z5.
+G12.1 D0 E=C
+G1 X10. Y0 F200
+G12.1 D0 E=C      (expect: polar-entered-twice)
+Y5.
+X30.
+G13.1
+G0 Z100.
+M30

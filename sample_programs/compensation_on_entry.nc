@@ -1,0 +1,21 @@
+%
+O1003 (G42 BEFORE THE MODE)
+G21 G98
+T0101
+M5
+G28 H0
+G97 S3000 M13
+G0 X70. Z2. C0
+G42
+G12.1 (expect: polar-switched-in-offset-mode)
+G1 X30. F200
+C8.
+X-30.
+C-8.
+X30.
+C0
+G40 X60. F1500
+G13.1
+G0 X100. Z50.
+M30
+%

@@ -1,0 +1,17 @@
+%
+O1010 (NO F ANYWHERE)
+G21 G98 G40
+T0101
+M5
+G28 H0
+G97 S3000 M13
+G0 X70. Z2. C0
+G12.1
+G1 X60. C12. (expect: feed-missing-in-polar)
+G41 X40.
+C-12.
+G40 X60.
+G13.1
+G0 X100. Z50.
+M30
+%

@@ -1,0 +1,18 @@
+O00002 (C IS NOT THE VIRTUAL AXIS HERE)
+G20 G40 G97 G98
+M5
+M154
+G28 H0
+T0101
+G17
+P2500 M133
+G0 X4. C0 Z.1
+G112
+G1 X1. F15.
+C.5               (expect: wrong-axis-address-in-polar)
+Y.25
+G113
+G18
+M135
+M155
+M30

@@ -1,0 +1,17 @@
+O0002 (RADII WITHOUT G10.9 X0)
+G90 G94 G40 G97
+T0101
+M200
+G28 H0
+G0 X120. C0 Z5.
+G17 XC
+G12.1             (expect: diameter-radius-mixed, other-machine-fits)
+G1 X20. C10. F200
+G3 X10. C20. I-10. J0
+G1 X-10.
+G3 X-20. C10. I0 J-10.
+G1 C0
+G13.1
+G0 Z100.
+M202
+M30

@@ -1,0 +1,12 @@
+O0003 (G12.1 IN THE MODE: P486)
+G17 G90 G94 G40 G97
+T0101
+G0 X40. C0 Z5.
+G12.1
+G1 X20. F200
+G12.1             (expect: polar-entered-twice)
+C10.
+X40.
+G13.1
+G0 Z100.
+M30

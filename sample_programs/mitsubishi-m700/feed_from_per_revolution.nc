@@ -1,0 +1,12 @@
+O0002 (G95 BEFORE THE MODE AND NO F IN IT: P62)
+G17 G90 G40 G97
+T0101
+G0 X40. C0 Z5.
+G95 F0.2
+G12.1
+G1 G42 X20.       (expect: feed-lost-from-per-revolution)
+C10.
+G40 X40.
+G13.1
+G0 Z100.
+M30

@@ -1,0 +1,16 @@
+O0002 (AN ARC OF MORE THAN 180 DEG)
+G97 G40 G94
+M110
+T0101
+G0 X120. C0 Z5.
+M13
+G137 C0
+G17
+G101 X20. Y0 F200
+G103 X0 Y-20. L-20. (expect: arc-sweep-above-limit, negative-arc-radius)
+G101 X40.
+G136
+G0 Z100.
+M12
+M109
+M30

@@ -1,0 +1,10 @@
+O0002
+G17 G90 G94 G40 G97
+T0101
+G0 X120. C0 Z5.
+G12.1
+G1 X40. F200
+C10.
+G0 X60.           (expect: rapid-in-polar)
+G13.1
+M30
