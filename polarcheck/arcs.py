@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from polarcheck import polar
+from polarcheck import plane
 from polarcheck.message import MM_PER_INCH
 from polarcheck.modal import Motion, Units
 
@@ -147,7 +147,7 @@ class Arcs:
         """Angle of each arc about its own center [deg], 360 for a full circle; NaN for other rows and unknown arcs."""
         trace, rows = self.trace, np.flatnonzero(self.trace.is_arc)
         column = np.full(len(trace), np.nan)
-        angle = polar.arc_sweep(trace.start[rows], trace.end[rows], trace.center[rows], trace.motion[rows])
+        angle = plane.arc_sweep(trace.start[rows], trace.end[rows], trace.center[rows], trace.motion[rows])
         column[rows] = np.abs(np.degrees(angle))
         return column
 

@@ -290,9 +290,11 @@ def _in_color(choice: str) -> bool:
 
 
 def _columns() -> int:
+    if not sys.stdout.isatty():
+        return COLUMNS
     import shutil
 
-    return min(shutil.get_terminal_size().columns, COLUMNS) if sys.stdout.isatty() else COLUMNS
+    return min(shutil.get_terminal_size().columns, COLUMNS)
 
 
 @main.command(context_settings=_SETTINGS)

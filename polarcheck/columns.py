@@ -145,6 +145,13 @@ class Columns:
         return self.text.blocks.line[self.run.block]
 
     @cached_property
+    def row_of_block(self) -> Numbers:
+        """Per block of the file the first row that runs it, -1 where none does."""
+        rows = np.full(len(self.text.blocks), -1, np.int64)
+        rows[self.run.block[::-1]] = np.arange(len(self) - 1, -1, -1)
+        return rows
+
+    @cached_property
     def program(self) -> Numbers:
         """Number of the program in the file, from 0."""
         return np.cumsum(self.starts) - 1

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
-from fractions import Fraction
 from typing import TYPE_CHECKING
 
+import msgspec
 import numpy as np
 
 if TYPE_CHECKING:
@@ -26,8 +25,7 @@ _OF_TOOL = re.compile(r"^\W*T\s*0*(\d+)\b")
 _LARGEST = 100.0
 
 
-@dataclass(frozen=True, slots=True)
-class Found:
+class Found(msgspec.Struct, frozen=True):
     """A radius [mm] that a comment gives to an offset, and the comment."""
 
     radius: float
@@ -41,10 +39,10 @@ def radius_in(comment: str, inch: bool) -> float | None:
         found = pattern.search(text)
         if not found:
             continue
-        try:
-            value = float(Fraction(found[1].replace(" ", "")))
-        except (ZeroDivisionError, ValueError):
+        above, _, below = found[1].partition("/")
+        if below and not float(below):
             continue
+        value = float(above) / (float(below) if below else 1.0)
         unit = found[2] or ("IN" if inch else "MM")
         radius = value / divisor * (1.0 if unit == "MM" else MM_PER_INCH)
         if 0 < radius < _LARGEST:

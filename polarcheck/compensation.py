@@ -9,8 +9,8 @@ into X and C of the lathe (B-62764EN p. 51).
 from __future__ import annotations
 
 import enum
-from dataclasses import dataclass, replace
 
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
@@ -34,8 +34,7 @@ class Phase(enum.IntEnum):
     CANCEL = 3
 
 
-@dataclass(frozen=True, slots=True)
-class ToolPath:
+class ToolPath(msgspec.Struct, frozen=True):
     """
     The moves of the tool center in order, and what the control would object to.
 
@@ -69,8 +68,7 @@ class ToolPath:
 _LEAD, _CORNER, _BLOCK, _TRAIL = range(4)
 
 
-@dataclass(frozen=True, slots=True)
-class _Moves:
+class _Moves(msgspec.Struct, frozen=True):
     """Some moves of the tool center, columns as in ToolPath; `order` sorts them among all others."""
 
     order: Rows
@@ -83,8 +81,7 @@ class _Moves:
     known: Mask
 
 
-@dataclass(frozen=True, slots=True)
-class _Blocks:
+class _Blocks(msgspec.Struct, frozen=True):
     """
     The programmed moves with compensation; all arrays of length m.
 
@@ -232,7 +229,7 @@ def _erase(programmed: Programmed, vectors: Vectors, blocks: _Blocks, rows: Mask
                 break
         else:
             helpless[row] = True
-    return replace(vectors, used=used), helpless
+    return msgspec.structs.replace(vectors, used=used), helpless
 
 
 def _leads(programmed: Programmed, blocks: _Blocks, vectors: Vectors) -> _Moves:
@@ -316,5 +313,5 @@ def _lines(order: Rows, row: Rows, start: Points, end: Points, phase: NDArray[np
 def _merged(*parts: _Moves) -> _Moves:
     """All moves in the order in which they are run."""
     order = np.argsort(np.concatenate([part.order for part in parts]), kind="stable")
-    columns = (np.concatenate([getattr(part, name) for part in parts])[order] for name in _Moves.__slots__)
+    columns = (np.concatenate([getattr(part, name) for part in parts])[order] for name in _Moves.__struct_fields__)
     return _Moves(*columns)

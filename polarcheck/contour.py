@@ -31,7 +31,7 @@ import shapely  # type: ignore[import-untyped]
 from numpy.typing import NDArray
 
 from polarcheck.modal import Motion
-from polarcheck.polar import arc_sweep
+from polarcheck.plane import arc_sweep
 
 Points = NDArray[np.complex128]
 Floats = NDArray[np.float64]

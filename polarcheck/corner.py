@@ -7,8 +7,7 @@ towards the tool, R the tool radius; 1 the move before, 2 the one after.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
@@ -23,8 +22,7 @@ STRAIGHT = 1e-6
 ROUNDING = 1e-6
 
 
-@dataclass(frozen=True, slots=True)
-class Corners:
+class Corners(msgspec.Struct, frozen=True):
     """
     Ends of a move at which another begins, one per row; all arrays of one length.
 
@@ -46,7 +44,7 @@ class Corners:
 
     def __getitem__(self, rows: NDArray[np.int64] | Mask) -> Corners:
         """The corners of these rows."""
-        return Corners(*(getattr(self, name)[rows] for name in self.__slots__))
+        return Corners(*(getattr(self, name)[rows] for name in self.__struct_fields__))
 
     @property
     def vector_before(self) -> Points:

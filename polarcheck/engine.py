@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import hashlib
+import bisect
 import re
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from operator import attrgetter
 from typing import Any
 
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
@@ -26,8 +26,7 @@ LISTED = 1000
 _BLOCK_LENGTH = 200
 
 
-@dataclass(frozen=True, slots=True)
-class Hit:
+class Hit(msgspec.Struct, frozen=True):
     """One element of a mask: its place in the file and its row in the trace (-1 where it has none)."""
 
     start: int
@@ -48,6 +47,13 @@ def program_heads(trace: Trace) -> list[tuple[int, str]]:
         if int(block) in bare:
             heads.append((block, start, end))
     return [(int(block), squeezed(text.source.excerpt(int(start), int(end)))) for block, start, end in sorted(heads)]
+
+
+def _fingerprint(rule: str, block: str) -> str:
+    """The same for the same rule in the same block, wherever that stands."""
+    import hashlib
+
+    return hashlib.sha256(f"{rule}\0{squeezed(block)}".encode("utf-8", "replace")).hexdigest()[:16]
 
 
 def squeezed(text: str) -> str:
@@ -158,12 +164,12 @@ class Engine:
             values=values,
             count=count,
             source=rule.source,
-            fingerprint=hashlib.sha256(f"{rule.name}\0{squeezed(block)}".encode("utf-8", "replace")).hexdigest()[:16],
+            fingerprint=_fingerprint(rule.name, block),
         )
 
     def _program_name(self, block: int) -> str | None:
-        found = [name for head, name in self.heads if head <= block]
-        return found[-1] if found else None
+        at = bisect.bisect_right(self.heads, block, key=lambda head: head[0])
+        return self.heads[at - 1][1] if at else None
 
     def _look_up(self, over: str, hit: Hit, columns: dict[str, Any]) -> Callable[[str], Any]:
         trace, row = self.trace, hit.row
@@ -200,8 +206,7 @@ def _written(trace: Trace, address: str, row: int) -> str:
 
 
 def _row_of_block(trace: Trace, block: int) -> int:
-    rows = np.flatnonzero(trace.run.block == block)
-    return int(rows[0]) if len(rows) else -1
+    return int(trace.row_of_block[block])
 
 
 def _place_of_row(trace: Trace, index: int) -> Hit:

@@ -185,7 +185,7 @@ class Entry:
         trace = self.trace
         called = fill_down(trace.has("T"), trace.has("T") | trace.starts, False).astype(bool)
         missing = trace.enters & (trace.offset_number == 0) & (called | self._is_lacking())
-        compensated = np.unique(trace.section[trace.in_polar & (trace.side != Side.OFF) & (trace.offset_number == 0)])
+        compensated = trace.section[trace.in_polar & (trace.side != Side.OFF) & (trace.offset_number == 0)]
         return np.asarray(missing & ~np.isin(trace.section, compensated))
 
     @cached_property
@@ -222,6 +222,8 @@ class Entry:
     @cached_property
     def origin_off_center(self) -> Mask:
         """X0 lies off the spindle axis at G12.1."""
+        if not self.trace.job.work_offsets and not self.trace.codes("G52").any():
+            return np.zeros(len(self.trace), bool)
         return np.asarray(self.trace.enters & (np.abs(self.origin_shift) > _ROUNDING))
 
     def origin_name(self, row: int) -> str:

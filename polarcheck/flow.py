@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
 from polarcheck.words import Text, Words
 
 
-@dataclass(frozen=True, slots=True)
-class FlowFault:
+class FlowFault(msgspec.Struct, frozen=True):
     """Something wrong in a macro statement or in the flow: the rule that reports it, its place, and what is wrong."""
 
     rule: str
@@ -22,8 +20,7 @@ class FlowFault:
     row: int = -1
 
 
-@dataclass(frozen=True, slots=True)
-class Run:
+class Run(msgspec.Struct, frozen=True):
     """
     The executed blocks of one file in order.
 

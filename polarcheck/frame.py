@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import itertools
 import re
-from dataclasses import dataclass
 from typing import Any
 
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
@@ -38,8 +38,7 @@ _READS_AS_BLOCKS = re.compile(
 )
 
 
-@dataclass(frozen=True, slots=True)
-class Ranges:
+class Ranges(msgspec.Struct, frozen=True):
     """Places in a text, from start to end (exclusive), in order."""
 
     start: Positions
@@ -53,8 +52,7 @@ class Ranges:
         return Ranges(self.start[chosen], self.end[chosen])
 
 
-@dataclass(frozen=True, slots=True)
-class Frame:
+class Frame(msgspec.Struct, frozen=True):
     """
     What stands around the words of a file.
 

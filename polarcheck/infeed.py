@@ -11,11 +11,11 @@ point, the farthest first; the control goes straight from the end of a pass to t
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec.structs import replace
 from numpy.typing import NDArray
 
 from polarcheck import polar
@@ -127,29 +127,34 @@ class InfeedCycle:
                 continue
             at = int(first[place])
             parts.append(_between(moves, done, at))
-            start = complex(moves.start[at])
-            for offset in found.tolist():
-                cut = _from(start, self._pass(contour, offset))
-                start = complex(cut.end[-1])
-                added += len(cut)
-                parts.append(cut)
-            moves = _from(start, moves, at)
+            cuts = self._passes(contour, found, complex(moves.start[at]))
+            parts.append(cuts)
+            added += len(cuts)
+            start = moves.start.copy()
+            start[at] = cuts.end[-1]
+            moves = replace(moves, start=start)
             done = at
         return joined([*parts, _between(moves, done, len(moves))])
 
-    def _pass(self, contour: Rows, offset: float) -> Moves:
-        """One round at an offset: the contour as if the cutter were larger by it."""
-        trace = self.trace
-        path = compensation_path(trace, contour)
+    def _passes(self, contour: Rows, found: Floats, start: complex) -> Moves:
+        """The rounds at some offsets from a start point: the contour as if the cutter were larger by each of them."""
+        trace, count = self.trace, len(contour)
+        rows, offset = np.tile(contour, len(found)), np.repeat(found, count)
+        path = replace(compensation_path(trace, rows), section=np.repeat(np.arange(len(found)), count))
+        is_known = np.ones(len(rows), bool)
         if (path.side == Side.OFF).all():
-            side = np.full(len(contour), self._side_of_start(contour), np.int8)
-            path = replace(path, side=side, radius=np.full(len(contour), offset))
-            return of_tool(trace, tool_center_path(trace, path), contour)
-        # Of an unknown radius the pass shows where it lies to the contour, and is marked as not known.
-        radius = np.nan_to_num(path.radius)
-        larger = replace(path, radius=np.where(radius < 0, radius - offset, radius + offset))
-        moves = of_tool(trace, tool_center_path(trace, larger), contour)
-        return replace(moves, known=moves.known & ~np.isnan(trace.radius[moves.row]))
+            side = np.full(len(rows), self._side_of_start(contour), np.int8)
+            path = replace(path, side=side, radius=offset)
+        else:
+            # Of an unknown radius the pass shows where it lies to the contour, and is marked as not known.
+            is_known = ~np.isnan(path.radius)
+            radius = np.nan_to_num(path.radius)
+            path = replace(path, radius=np.where(radius < 0, radius - offset, radius + offset))
+        tool = tool_center_path(trace, path)
+        first = np.flatnonzero(np.diff(tool.row // count, prepend=-1))
+        begin = tool.start.copy()
+        begin[first] = np.append(start, tool.end[first[1:] - 1])
+        return replace(of_tool(trace, tool, rows), start=begin, known=tool.known & is_known[tool.row])
 
     def _side_of_start(self, contour: Rows) -> Side:
         """The side of the contour on which the start point lies, where the tool center itself is programmed."""
@@ -176,10 +181,3 @@ class InfeedCycle:
 def _between(moves: Moves, first: int, end: int) -> Moves:
     index = np.arange(len(moves))
     return moves.chosen((index >= first) & (index < end))
-
-
-def _from(point: complex, moves: Moves, at: int = 0) -> Moves:
-    """The moves, one of them from another point."""
-    start = moves.start.copy()
-    start[at] = point
-    return replace(moves, start=start)

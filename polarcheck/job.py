@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import math
 import re
 from collections.abc import Mapping
@@ -125,6 +124,8 @@ def from_table(table: Mapping[str, Any], title: str) -> Job:
         if "unknown field" in text:
             unknown = text.split("`")[1]
             known = {field for kind in (Job, Tool, Stock, Origin, Running) for field in kind.__struct_fields__}
+            import difflib
+
             near = difflib.get_close_matches(unknown, known, 1)
             hint = f"; did you mean {near[0]}?" if near else ""
             raise JobError(f"{title}: unknown key {f'{key}.{unknown}' if key else unknown}{hint}") from None
@@ -144,6 +145,8 @@ def with_tool(job: Job, option: str) -> Job:
     for pair in pairs.split(","):
         key, equals, value = (part.strip() for part in pair.partition("="))
         if key not in Tool.__struct_fields__ or not equals:
+            import difflib
+
             near = difflib.get_close_matches(key, Tool.__struct_fields__, 1)
             meant = f"did you mean {near[0]}?" if near else f"keys are {', '.join(Tool.__struct_fields__)}"
             raise UsageError(f"--tool {option}: {key or 'no key'}: {meant}")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,8 +20,10 @@ if TYPE_CHECKING:
 Mask = NDArray[np.bool_]
 Numbers = NDArray[np.int64]
 
-#: Words that may stand in a block as often as there is reason to.
-_MAY_REPEAT = b"GMN/"
+#: A bit for each address that should stand once in a block: A to Z, and a to z behind a comma, are 58 neighbours.
+_ADDRESS_BITS = np.zeros(256, np.uint64)
+_ADDRESS_BITS[65:123] = np.uint64(1) << np.arange(58, dtype=np.uint64)
+_ADDRESS_BITS[list(b"GMN")] = 0
 #: In macro calls, argument specification II.
 _ARGUMENT_SETS = b"IJK"
 _MACRO_CALLS = ("G65", "G66", "G66.1")
@@ -47,81 +49,78 @@ class Lexical:
 
     # ---- words of a block ----
 
-    @cached_property
-    def _first_of_block(self) -> Numbers:
-        """Index of the first word of the block of each word."""
-        block = self.words.block
-        is_first = np.ones(len(block), bool)
-        is_first[1:] = block[1:] != block[:-1]
-        first = np.flatnonzero(is_first)
-        return np.repeat(first, np.diff(np.append(first, len(block))))
+    def _in_broken_block(self, index: Numbers) -> Mask:
+        """Whether something in the block of a word cannot be read, so that what else is there means little."""
+        broken = np.union1d(self.words.block[self.words.is_unreadable], self.text.strays.block)
+        return np.isin(self.words.block[index], broken)
+
+    def _beyond(self, counted: Mask, limit: int) -> Mask:
+        """Of the counted words the first in each block that is one too many."""
+        index = np.flatnonzero(counted)
+        block = self.words.block[index]
+        is_next = np.append(np.ones(min(limit, len(index)), bool), block[limit:] != block[: max(len(block) - limit, 0)])
+        beyond = ~is_next
+        beyond[1:] &= is_next[:-1] | (block[1:] != block[:-1])
+        found = np.zeros(len(self.words), bool)
+        index = index[beyond]
+        found[index[~self._in_broken_block(index)]] = True
+        return found
 
     @cached_property
-    def _broken_block(self) -> Mask:
-        """Per word: something in its block cannot be read, so that what else is there means little."""
-        broken = np.zeros(len(self.text.blocks), bool)
-        broken[self.words.block[self.words.is_unreadable]] = True
-        broken[self.text.strays.block] = True
-        return broken[self.words.block]
-
-    def _place(self, counted: Mask) -> Numbers:
-        """Of the counted words the number of each in its block, from 1; 0 for the others."""
-        total = np.cumsum(counted)
-        at_head: Numbers = (total - counted)[self._first_of_block]
-        return np.where(counted & ~self._broken_block, total - at_head, 0)
+    def has_too_many_words(self) -> Mask:
+        """The first word of a block beyond the limit, block skip not counted."""
+        return self._beyond(self.words.address != ord("/"), self.machine.control.word_limit)
 
     @cached_property
-    def place_in_block(self) -> Numbers:
-        """The number of the word in its block, block skip not counted."""
-        return self._place(self.words.address != ord("/"))
+    def has_too_many_m_codes(self) -> Mask:
+        """The first M word of a block beyond the limit."""
+        return self._beyond(self.words.address == ord("M"), self.machine.control.m_code_limit)
 
-    @cached_property
-    def place_of_m_code(self) -> Numbers:
-        """The number of the M word among those of its block."""
-        return self._place(self.words.address == ord("M"))
-
-    def _how_many(self, index: int, counted: Mask) -> int:
-        first = int(self._first_of_block[index])
-        same = self._first_of_block[first:] == first
-        return int(np.count_nonzero(counted[first:][same]))
+    def _addresses(self, index: int) -> NDArray[np.uint8]:
+        low, high = np.searchsorted(self.words.block, self.words.block[index] + np.array([0, 1]))
+        return self.words.address[low:high]
 
     def words_in_block(self, index: int) -> int:
         """How many words the block of a word has."""
-        return self._how_many(index, self.words.address != ord("/"))
+        return int(np.count_nonzero(self._addresses(index) != ord("/")))
 
     def m_codes_in_block(self, index: int) -> int:
         """How many M words."""
-        return self._how_many(index, self.words.address == ord("M"))
+        return int(np.count_nonzero(self._addresses(index) == ord("M")))
 
-    def _repeated(self, words: Numbers, kind: NDArray[np.uint64]) -> Numbers:
-        """Of the words those in whose block a word of the same kind (below 64) stands before; where that one is."""
-        none = np.full(len(self.words), -1)
-        if not len(words):
-            return none
-        block = self.words.block[words]
+    def _suspects(self, index: Numbers, bits: NDArray[np.uint64]) -> Numbers:
+        """Of the words with bits those of blocks in which a bit stands twice, or something that cannot be read."""
+        if not len(index):
+            return index
+        block = self.words.block[index]
         head = np.flatnonzero(np.append(True, block[1:] != block[:-1]))
-        bit = np.uint64(1) << kind
         # Bits that are all different add up to what they are joined by `or`.
-        differs = np.add.reduceat(bit, head) != np.bitwise_or.reduceat(bit, head)
+        differs = np.add.reduceat(bits, head) != np.bitwise_or.reduceat(bits, head)
         if not differs.any():
-            return none
-        suspect = np.flatnonzero(np.repeat(differs, np.diff(np.append(head, len(words)))))
-        order = suspect[np.lexsort((suspect, kind[suspect], block[suspect]))]
-        same = (block[order][1:] == block[order][:-1]) & (kind[order][1:] == kind[order][:-1])
-        none[words[order[1:][same]]] = words[order[:-1][same]]
-        return none
+            return index[:0]
+        chosen = index[np.repeat(differs, np.diff(np.append(head, len(index)))) & (bits > 0)]
+        return chosen[~self._in_broken_block(chosen)]
+
+    def _again(self, index: Numbers, kind: NDArray[Any]) -> tuple[Numbers, Numbers]:
+        """Of the words those before which one of the same kind stands in the block, and that one."""
+        order = np.lexsort((index, kind, self.words.block[index]))
+        index, kind = index[order], kind[order]
+        block = self.words.block[index]
+        same = (block[1:] == block[:-1]) & (kind[1:] == kind[:-1])
+        return index[1:][same], index[:-1][same]
 
     @cached_property
     def repeats(self) -> Mask:
-        """A word whose address stood in the block before."""
-        address = self.words.address
-        in_call = np.zeros(len(self.text.blocks), bool)
-        in_call[self.words.block[self._g_words[code_set(_MACRO_CALLS)[self._g_codes]]]] = True
-        counted = ~np.isin(address, list(_MAY_REPEAT)) & (address > 0) & ~self._broken_block
-        counted &= ~(np.isin(address, list(_ARGUMENT_SETS)) & in_call[self.words.block])
-        index = np.flatnonzero(counted)
-        # A to Z, and a to z behind a comma, are 58 neighbours.
-        return self._repeated(index, (address[index] - np.uint8(ord("A"))).astype(np.uint64)) >= 0
+        """The first word of a block whose address stood in it before."""
+        words = self.words
+        suspects = self._suspects(np.arange(len(words)), _ADDRESS_BITS[words.address])
+        calls = words.block[self._g_words[code_set(_MACRO_CALLS)[self._g_codes]]]
+        is_argument = np.isin(words.address[suspects], list(_ARGUMENT_SETS)) & np.isin(words.block[suspects], calls)
+        suspects = suspects[~is_argument]
+        again = np.sort(self._again(suspects, words.address[suspects])[0])
+        found = np.zeros(len(words), bool)
+        found[again[np.append(True, words.block[again][1:] != words.block[again][:-1])[: len(again)]]] = True
+        return found
 
     # ---- G codes ----
 
@@ -144,10 +143,13 @@ class Lexical:
             group[code_set(_OF_OTHER_SYSTEMS)] = 0
         group[NO_CODE] = 0
         kind = group[self._g_codes]
-        counted = (kind > 0) & ~self._broken_block[self._g_words]
-        other = self._repeated(self._g_words[counted], kind[counted].astype(np.uint64))
-        same_code = self.words.value[other] == self.words.value
-        return np.where(same_code, -1, other)
+        bits = np.where(kind > 0, np.uint64(1) << kind.astype(np.uint64), np.uint64(0))
+        suspects = self._suspects(self._g_words, bits)
+        later, other = self._again(suspects, kind[np.searchsorted(self._g_words, suspects)])
+        differs = self.words.value[other] != self.words.value[later]
+        found = np.full(len(self.words), -1)
+        found[later[differs]] = other[differs]
+        return found
 
     @cached_property
     def overrules(self) -> Mask:
@@ -177,6 +179,8 @@ class Lexical:
         known |= code_set([*machine.polar.on, *machine.polar.off, *machine.polar.allowed_codes])
         wrong = ~known[self._g_codes] & (self.words.fault[self._g_words] == Fault.NONE)
         words = self._g_words[wrong]
+        if not len(words):
+            return np.zeros(len(self.words), bool), np.zeros(len(self.words), np.int64)
         _, first, count = np.unique(self.words.value[words], return_index=True, return_counts=True)
         mask, counts = np.zeros(len(self.words), bool), np.zeros(len(self.words), np.int64)
         mask[words[first]], counts[words[first]] = True, count
@@ -203,12 +207,16 @@ class Lexical:
     @cached_property
     def has_too_many_digits(self) -> Mask:
         """More digits than a word can have; leading zeros and digits beyond the least increment do not count."""
-        control = self.machine.control
-        places = round(-np.log10(control.least_increment))
-        counted = np.minimum(self.words.decimals, places)
-        digits = self.words.digits - self.words.decimals + counted
-        large = np.abs(np.nan_to_num(self.words.value)) >= 10.0 ** (control.digit_limit - counted)
-        return np.asarray((digits > control.digit_limit) & large & ~self._broken_block)
+        control, words = self.machine.control, self.words
+        long = np.flatnonzero(words.digits > control.digit_limit)
+        counted = np.minimum(words.decimals[long], round(-np.log10(control.least_increment)))
+        digits = words.digits[long] - words.decimals[long] + counted
+        # A number of more than 22 digits has a value that is only about right.
+        is_large = np.abs(words.value[long]) >= 10.0 ** (control.digit_limit - counted)
+        long = long[(digits > control.digit_limit) & is_large]
+        found = np.zeros(len(words), bool)
+        found[long[~self._in_broken_block(long)]] = True
+        return found
 
     @cached_property
     def is_first_lower_case(self) -> Mask:
@@ -216,8 +224,8 @@ class Lexical:
         found = np.zeros(len(self.words), bool)
         code = self.text.source.code
         letter = code[self.words.start]
-        index = np.flatnonzero((letter >= ord("a")) & (letter <= ord("z")) & ~self._broken_block)
-        found[index[:1]] = True
+        index = np.flatnonzero((letter >= ord("a")) & (letter <= ord("z")))
+        found[index[~self._in_broken_block(index)][:1]] = True
         return found
 
     # ---- the end of a program ----
@@ -228,14 +236,18 @@ class Lexical:
         m_words = np.flatnonzero(self.words.address == ord("M"))
         ends = code_set([*self.machine.m_codes.program_end, _RETURN])
         ending = self.words.block[m_words[ends[code_numbers(self.words.value[m_words])]]]
-        found = np.zeros(len(self.words), bool)
+        programs = find_programs(self.text).programs
+        first = np.array([program.first for program in programs], np.int64)
+        end = np.array([program.end for program in programs], np.int64)
+        has_end = np.searchsorted(ending, first) < np.searchsorted(ending, end)
         in_tape = len(self.text.tape_marks) > 0
-        for program in find_programs(self.text).programs:
-            low, high = np.searchsorted(ending, (program.first, program.end))
-            last = int(np.searchsorted(self.words.block, program.end)) - 1
-            is_empty = last < 1 or self.words.block[last - 1] < program.first
-            if low == high and (program.has_head or in_tape) and not is_empty:
-                found[last] = not self._ends_in_macro(program.first, program.end)
+        lacking = ~has_end & (np.array([program.has_head for program in programs], bool) | in_tape)
+        # A head alone is no program.
+        words_before = np.searchsorted(self.words.block, np.array([first, end]))
+        lacking &= words_before[1] - words_before[0] > 1
+        found = np.zeros(len(self.words), bool)
+        for index in np.flatnonzero(lacking).tolist():
+            found[words_before[1, index] - 1] = not self._ends_in_macro(int(first[index]), int(end[index]))
         return found
 
     def _ends_in_macro(self, first: int, end: int) -> bool:
@@ -255,7 +267,7 @@ class Lexical:
         strays = self.text.strays
         first = np.ones(len(strays), bool)
         first[1:] = strays.block[1:] != strays.block[:-1]
-        unreadable = np.unique(self.words.block[self.words.is_unreadable])
+        unreadable = self.words.block[self.words.is_unreadable]
         is_left_over = self.text.source.code[strays.start] == ord(")")
         is_left_over &= np.isin(strays.block, self.text.comments.block[self.text.nested])
         return np.asarray(first & ~np.isin(strays.block, unreadable) & ~is_left_over)

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import difflib
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal, get_origin
 
@@ -191,8 +189,7 @@ class Machine(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     parameters: dict[str, int | float | str] = {}
 
 
-@dataclass(frozen=True, slots=True)
-class Profile:
+class Profile(msgspec.Struct, frozen=True):
     """A machine with the name it was asked for by, its chain of inheritance, and the origin of each value."""
 
     name: str
@@ -323,5 +320,7 @@ def _fields(group: str) -> tuple[msgspec.structs.FieldInfo, ...]:
 
 
 def _suggestion(wrong: str, known: Any) -> str:
+    import difflib
+
     near = difflib.get_close_matches(wrong, list(known), 1)
     return f"; did you mean {near[0]}?" if near else ""

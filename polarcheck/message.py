@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import string
 from collections.abc import Callable
 from typing import Any
 
@@ -78,25 +77,11 @@ def _rounded_down(value: float) -> str:
     return f"{scaled:.{max(places, 0)}f}".rstrip("0").rstrip(".") if places > 0 else f"{scaled:.0f}"
 
 
-class _Template(string.Formatter):
-    """Names in a template are looked up by a function, dots go to attributes."""
-
-    def __init__(self, look_up: Callable[[str], Any]) -> None:
-        self.look_up = look_up
-        self.used: dict[str, Any] = {}
-
-    def get_value(self, key: int | str, args: Any, kwargs: Any) -> Any:
-        value = self.look_up(str(key))
-        if isinstance(value, Quantity):
-            self.used[str(key)] = value.data
-        elif isinstance(value, str | int | float):
-            self.used[str(key)] = value
-        return value
-
-
 def fill(template: str, look_up: Callable[[str], Any]) -> tuple[str, dict[str, Any]]:
     """The message, and the values in it as data."""
-    formatter = _Template(look_up)
+    from polarcheck.template import Template
+
+    formatter = Template(look_up)
     return formatter.vformat(template, (), {}), formatter.used
 
 

@@ -326,7 +326,7 @@ class Modes:
     def _reach(self) -> Floats:
         """Per section: how far X, and C where it is no likely angle, lie from the center [mm]."""
         trace = self.trace
-        c = np.where(np.isin(np.abs(self._virtual_value), _ANGLES), np.nan, self._virtual_length)
+        c = np.where(_is_angle(np.abs(self._virtual_value)), np.nan, self._virtual_length)
         reach = np.zeros(len(trace.sections))
         for column in (np.abs(trace.x), np.abs(c)):
             known = (trace.section >= 0) & np.isfinite(column)
@@ -352,7 +352,8 @@ class Modes:
         that the mode does not allow, since C is an angle once the cycle stands outside.
         """
         trace = self.trace
-        is_angle = np.isin(np.abs(self._virtual_value), _ANGLES)
+        size = np.abs(self._virtual_value)
+        is_angle = _is_angle(size)
         rows = np.flatnonzero(is_angle)
         if not len(rows):
             return is_angle
@@ -385,3 +386,8 @@ class Modes:
         trace = self.trace
         moving = trace.in_polar & trace.moves_plane & trace.moves_z & (trace.motion == Motion.LINE)
         return np.asarray(moving & (trace.length > 0))
+
+
+def _is_angle(size: Floats) -> Mask:
+    """Whether a number is one of the angles; NumPy's isin would load its masked arrays for doubles."""
+    return np.asarray(_ANGLES[np.searchsorted(_ANGLES, size) % len(_ANGLES)] == size)

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from polarcheck import compensation, polar
+from polarcheck import compensation, polar, rates
 from polarcheck.modal import Motion
 
 if TYPE_CHECKING:
@@ -22,8 +22,7 @@ Mask = NDArray[np.bool_]
 Rows = NDArray[np.int64]
 
 
-@dataclass(frozen=True)
-class Moves:
+class Moves(msgspec.Struct, frozen=True, dict=True):
     """
     One element per move, in order.
 
@@ -70,12 +69,12 @@ class Moves:
     @cached_property
     def c_feed(self) -> Floats:
         """Highest rate of C on the way [deg/min]; NaN where feed, radius or position is not known."""
-        return np.where(self.known, polar.c_feed(*self.shape, self.feed), np.nan)
+        return np.where(self.known, rates.c_feed(*self.shape, self.feed), np.nan)
 
     @cached_property
     def c_acceleration(self) -> Floats:
         """Highest acceleration of C on the way [deg/s2]."""
-        return np.where(self.known, polar.c_acceleration(*self.shape, self.feed), np.nan)
+        return np.where(self.known, rates.c_acceleration(*self.shape, self.feed), np.nan)
 
     @cached_property
     def time(self) -> Floats:
@@ -89,17 +88,17 @@ class Moves:
 
     def feed_allowed(self, limit: float | Floats) -> Floats:
         """Highest F that keeps C at or below the limit [mm/min]."""
-        return np.where(self.known, polar.feed_allowed(*self.shape, limit), np.nan)
+        return np.where(self.known, rates.feed_allowed(*self.shape, limit), np.nan)
 
     def chosen(self, rows: Mask) -> Moves:
         """Some of the moves."""
-        columns: dict[str, Any] = {name: getattr(self, name) for name in self.__dataclass_fields__}
+        columns: dict[str, Any] = {name: getattr(self, name) for name in self.__struct_fields__}
         return Moves(**{name: column if name == "entry" else column[rows] for name, column in columns.items()})
 
 
 def joined(parts: Sequence[Moves]) -> Moves:
     """Moves of the same trace one after another."""
-    names = [name for name in Moves.__dataclass_fields__ if name != "entry"]
+    names = [name for name in Moves.__struct_fields__ if name != "entry"]
     columns: dict[str, Any] = {name: np.concatenate([getattr(part, name) for part in parts]) for name in names}
     return Moves(entry=parts[0].entry, **columns)
 

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Any
 
 import msgspec
@@ -12,8 +10,7 @@ import msgspec
 from polarcheck.errors import MachineError
 
 
-@dataclass(frozen=True, slots=True)
-class Origin:
+class Origin(msgspec.Struct, frozen=True):
     """Where a value of a profile comes from: the profile, the source it names, whether that is in doubt."""
 
     profile: str
@@ -98,6 +95,8 @@ def _set(merged: dict[str, Any], key: str, value: Any) -> None:
 
 
 def _unknown(name: str, meanings: Mapping[str, Meaning]) -> str:
+    import difflib
+
     near = difflib.get_close_matches(name, list(meanings), 1)
     hint = f"did you mean {near[0]}?" if near else f"known are {', '.join(meanings) or 'none'}"
     return f"no meaning is known for {name}; {hint}"

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any, TypedDict
 
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
@@ -18,8 +18,7 @@ Codes = NDArray[np.int8]
 ZERO = 1e-9
 
 
-@dataclass(frozen=True, slots=True)
-class Settings:
+class Settings(msgspec.Struct, frozen=True):
     """How the control compensates; all from the machine profile."""
 
     #: Start-up and cancel, No. 5003 #0 SUP, #1 SUV: "A", "B", or "C", where G41 or G40 alone shifts the tool at once.
@@ -44,8 +43,7 @@ class Settings:
         return self.start_up == "C"
 
 
-@dataclass(frozen=True, slots=True)
-class Path:
+class Path(msgspec.Struct, frozen=True):
     """
     Rows of the polar sections in order, one per executed block; all arrays of one length n.
 
@@ -72,8 +70,7 @@ class Path:
     stops_reading: Mask
 
 
-@dataclass(frozen=True, slots=True)
-class Programmed:
+class Programmed(msgspec.Struct, frozen=True):
     """
     The m rows of a Path that move, by a length or round a full circle; all arrays of length m.
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import bisect
 import re
-from dataclasses import dataclass, field
 
+import msgspec
 import numpy as np
 
 from polarcheck.codes import code_numbers, code_set
@@ -16,8 +16,7 @@ CALLS = ("G65", "G66", "G66.1", "G67", "M98", "M99", "M198")
 _SEQUENCE_NUMBER = re.compile(r"[\s/]*(?:/\s*\d\s*)?(?:[O:]\s*\d+\s*)?N\s*(\d+)", re.IGNORECASE)
 
 
-@dataclass(frozen=True, slots=True)
-class Program:
+class Program(msgspec.Struct, frozen=True):
     """
     One program: its number and name (None where it has none), the blocks from first to before end, and whether it has
     a head at all; what stands before the first head is a program, too.
@@ -30,13 +29,12 @@ class Program:
     has_head: bool
 
 
-@dataclass(slots=True)
-class Programs:
+class Programs(msgspec.Struct):
     """All programs of a file and its N numbers."""
 
     text: Text
     programs: list[Program]
-    sequence: dict[int, list[tuple[int, int]]] = field(default_factory=dict)
+    sequence: dict[int, list[tuple[int, int]]] = msgspec.field(default_factory=dict)
 
     def of_number(self, number: int) -> Program | None:
         """The first program of this O number."""

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
@@ -19,8 +19,7 @@ _AXES = b"XYZUVWCH"
 _KEPT_ROWS = 10_000
 
 
-@dataclass(frozen=True, slots=True)
-class _Range:
+class _Range(msgspec.Struct, frozen=True):
     """Words of a range of plain blocks: their indices, the row of each within the range, and the block of each row."""
 
     words: NDArray[np.int64]
@@ -134,7 +133,7 @@ class Rows:
         unknown[[at for at in self.unknown if at < self.count]] = True
         return Run(
             self.text,
-            Words(*(getattr(table, name)[index] for name in Words.__slots__)),
+            Words(*(getattr(table, name)[index] for name in Words.__struct_fields__)),
             np.concatenate((none, *self.row)),
             np.concatenate((none, *self.block)),
             starts,
@@ -175,5 +174,5 @@ def _joined(words: Words, blocks: Blocks, computed: Sequence[tuple[int, Word, fl
         begin + np.array([word.end for _, word, _ in computed], np.int64),
     )
     return Words(
-        *(np.concatenate((getattr(words, name), new)) for name, new in zip(Words.__slots__, more, strict=True))
+        *(np.concatenate((getattr(words, name), new)) for name, new in zip(Words.__struct_fields__, more, strict=True))
     )

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import functools
 import importlib
-import inspect
 import re
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+import msgspec
 
 from polarcheck.errors import RuleError, UsageError
 from polarcheck.finding import ERROR, NOTE, WARNING, Severity
@@ -57,8 +57,7 @@ FOLDER = Path(__file__).parent / "rules"
 TABLES = ("rows", "words", "sections", "comments", "strays", "foreign", "dots", "outside", "programs", "faults")
 
 
-@dataclass(frozen=True, slots=True)
-class Rule:
+class Rule(msgspec.Struct, frozen=True):
     """
     One rule: its function and what is said about it.
 
@@ -86,6 +85,8 @@ class Rule:
     @property
     def page(self) -> str:
         """The manual page: the docstring."""
+        import inspect
+
         return inspect.getdoc(self.function) or ""
 
     @property
@@ -119,7 +120,7 @@ def rule(
         name = function.__name__.replace("_", "-")
         if over not in TABLES:
             raise RuleError(f"rule {name}: over={over!r}: expected one of {', '.join(TABLES)}")
-        parameters = tuple(inspect.signature(function).parameters)
+        parameters = function.__code__.co_varnames[: function.__code__.co_argcount]
         return Rule(name, group, severity, message, function, over, at, needs, where, once, unless, worst, parameters)
 
     return make
@@ -148,8 +149,7 @@ _HEADING = re.compile(r"^(Bad|Good)((?:, (?:machine|tool|set) [^\n,:]+(?:[:=][^\
 _EXPECT = re.compile(r"\(expect: ([a-z0-9, -]+)\)")
 
 
-@dataclass(frozen=True, slots=True)
-class Example:
+class Example(msgspec.Struct, frozen=True):
     """
     A program of a manual page and what must be said of it.
 

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import codecs
-from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
@@ -26,8 +26,7 @@ LF, CR, CTRL_Z = 10, 13, 26
 _BOMS = ((codecs.BOM_UTF8, "utf-8"), (codecs.BOM_UTF16_LE, "utf-16-le"), (codecs.BOM_UTF16_BE, "utf-16-be"))
 
 
-@dataclass(frozen=True)
-class Source:
+class Source(msgspec.Struct, frozen=True, dict=True):
     """
     One file: its bytes, its encoding, and one code per character.
 
@@ -90,7 +89,7 @@ def joined(source: Source, called: Source) -> Source:
     text = source.text.rstrip("\n") + "\n"
     first = text.count("\n") + 1
     whole = read((text + called.text).encode("utf-8", "surrogatepass"), source.path)
-    return replace(whole, parts=(*source.parts, (first, called.path)))
+    return msgspec.structs.replace(whole, parts=(*source.parts, (first, called.path)))
 
 
 def _recognised(data: bytes, path: str, encoding: str | None) -> tuple[bytes, str]:

@@ -7,6 +7,7 @@ from operator import attrgetter
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from polarcheck.finding import NotEvaluated
 from polarcheck.rule import Rule
@@ -41,13 +42,20 @@ def needs(trace: Trace, rule: Rule) -> Iterator[NotEvaluated]:
         if name in _OF_MOVES:
             rows = rows[~(trace.feeds.missing | trace.feeds.lost)[rows]]  # a finding says so
         reasons: dict[str, int] = {}
-        _, first, counts = np.unique(_cause(trace, name, rows), return_index=True, return_counts=True)
+        first, counts = _groups(_cause(trace, name, rows))
         for row, count in sorted(zip(rows[first].tolist(), counts.tolist(), strict=True)):
             reason = _REASONS.get(name, _plain(name))(trace, row)
             reasons[reason] = reasons.get(reason, 0) + count
         for reason, count in reasons.items():
             yield NotEvaluated(rule=rule.name, reason=reason, blocks=count)
     yield from _SAID_OF.get(rule.name, _nothing)(trace, rule)
+
+
+def _groups(values: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Where each value stands first, and how often; NumPy's unique would load its masked arrays."""
+    order = np.argsort(values, kind="stable")
+    begins = np.flatnonzero(np.append(True, np.diff(values[order]) != 0)) if len(order) else order
+    return order[begins], np.diff(np.append(begins, len(order)))
 
 
 def _cause(trace: Trace, name: str, rows: Any) -> Any:

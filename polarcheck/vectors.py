@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
@@ -14,8 +13,7 @@ from polarcheck.programmed import Programmed, Rows, Settings, fits
 BEFORE, CORNER, ACROSS, AFTER = range(4)
 
 
-@dataclass(frozen=True, slots=True)
-class Vectors:
+class Vectors(msgspec.Struct, frozen=True):
     """
     Ends of the offset vectors at the end of each of m moves.
 
@@ -72,8 +70,7 @@ def _known(programmed: Programmed) -> Mask:
     return np.asarray(programmed.known & (alone | next_known))
 
 
-@dataclass(frozen=True, slots=True)
-class _Joints:
+class _Joints(msgspec.Struct, frozen=True):
     """
     What becomes of the end of each move but the last, bool[m - 1] each. Where none of the first four is set, the one
     vector is perpendicular to the move before.

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import enum
 import re
-from dataclasses import dataclass, replace
 from typing import Any
 
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
@@ -67,8 +67,7 @@ _STATEMENTS = {b"GOTO": False, b"GO": True, b"DO": True, b"END": True, b"EN": Tr
 _BEGINS_STATEMENT = np.isin(np.arange(256), [letters[0] for letters in _STATEMENTS])
 
 
-@dataclass(frozen=True, slots=True)
-class Words:
+class Words(msgspec.Struct, frozen=True):
     """
     The words of a file in order, one element each.
 
@@ -108,8 +107,7 @@ class Words:
         return _FAULT_TEXT[Fault(int(self.fault[index]))]
 
 
-@dataclass(frozen=True, slots=True)
-class Blocks:
+class Blocks(msgspec.Struct, frozen=True):
     """
     The blocks of a file in order, empty ones included; a block ends at a line end or `;`.
 
@@ -126,8 +124,7 @@ class Blocks:
         return len(self.start)
 
 
-@dataclass(frozen=True, slots=True)
-class Spans:
+class Spans(msgspec.Struct, frozen=True):
     """Places in the text, from start to end (exclusive), each at a block."""
 
     start: Positions
@@ -138,8 +135,7 @@ class Spans:
         return len(self.start)
 
 
-@dataclass(frozen=True, slots=True)
-class Text:
+class Text(msgspec.Struct, frozen=True):
     """
     All that the reader knows of one file.
 
@@ -218,8 +214,7 @@ _PIECE = 1 << 18
 _CUT = re.compile(rb"[\nBD-QS-Zbd-qs-z]")
 
 
-@dataclass(frozen=True, slots=True)
-class _Table:
+class _Table(msgspec.Struct, frozen=True):
     """What is read of a text or of a piece of it; breaks: the ends of its blocks; macro: signs of macro statements."""
 
     words: Words
@@ -241,10 +236,10 @@ def _read_pieces(text: bytes) -> _Table:
             end = cut.start() if cut else len(text)
         table = _read_piece(text[begin:end], size(begin), size(blocks))
         in_line = end < len(text) and text[end] != LF
-        tables.append(replace(table, breaks=table.breaks[:-1]) if in_line else table)
+        tables.append(msgspec.structs.replace(table, breaks=table.breaks[:-1]) if in_line else table)
         blocks += len(tables[-1].breaks)
         begin = end if in_line else end + 1
-    return _Table(*(_joined([getattr(table, name) for table in tables]) for name in _Table.__slots__))
+    return _Table(*(_joined([getattr(table, name) for table in tables]) for name in _Table.__struct_fields__))
 
 
 def _joined(parts: list[Any]) -> Any:
@@ -254,7 +249,7 @@ def _joined(parts: list[Any]) -> Any:
 
 
 def _columns(table: Words | Ranges) -> tuple[NDArray[Any], ...]:
-    return tuple(getattr(table, name) for name in table.__slots__)
+    return tuple(getattr(table, name) for name in table.__struct_fields__)
 
 
 def _read_piece(text: bytes, offset: np.signedinteger[Any], blocks: np.signedinteger[Any]) -> _Table:
@@ -273,8 +268,7 @@ def _read_piece(text: bytes, offset: np.signedinteger[Any], blocks: np.signedint
     return _Table(words, marks.at[breaks[1:]], dots, strays, macro)
 
 
-@dataclass(frozen=True, slots=True)
-class _Marks:
+class _Marks(msgspec.Struct, frozen=True):
     """
     The characters of words and the ends of blocks, without anything between.
 

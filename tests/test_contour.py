@@ -424,6 +424,19 @@ def depths(of: Loop) -> np.ndarray:
     return of.radius - shapely.distance(walls[:, None], ways[None, :]).min(axis=1)
 
 
+def sharpest(blocks: list[Block]) -> float:
+    """Smallest angle [rad] that two blocks enclose, on either side."""
+    arriving, leaving, here = [], [], complex(0)
+    for block in blocks:
+        kind, end, center = block if isinstance(block, tuple) else (Motion.LINE, block, NAN)
+        turn = 1j if kind == Motion.CCW else -1j
+        leaving.append(end - here if kind == Motion.LINE else turn * (here - center))
+        arriving.append(end - here if kind == Motion.LINE else turn * (end - center))
+        here = end
+    corners = zip(arriving[1:-1], leaving[2:], strict=True)
+    return min(abs(float(np.angle(-after / before))) for before, after in corners)
+
+
 @st.composite
 def contours(draw: st.DrawFn, most: int = 10) -> tuple[list[Block], Side, float]:
     """A closed contour that does not cross itself, from the middle of a side, with some arcs; the side; R."""
@@ -443,6 +456,7 @@ def contours(draw: st.DrawFn, most: int = 10) -> tuple[list[Block], Side, float]
         else:
             blocks.append(after)
     blocks.append(middle)
+    assume(sharpest(blocks) > math.radians(1))
     side = draw(st.sampled_from([LEFT, RIGHT]))
     return blocks, side, draw(st.floats(0.3, 6))
 
@@ -459,7 +473,7 @@ def is_simple(of: Loop) -> bool:
     return bool(shapely.LinearRing(np.concatenate(points)).is_simple)
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=120, deadline=None)
 @given(contours())
 def test_random_contours_of_one_turn(drawn: tuple[list[Block], Side, float]) -> None:
     """Nothing is taken out of the test: found is exactly what is nearer than R."""
@@ -474,22 +488,28 @@ def test_random_contours_of_one_turn(drawn: tuple[list[Block], Side, float]) -> 
             assert row not in depth
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=60, deadline=None)
 @given(contours(most=6), st.lists(st.floats(0.05, 0.9), min_size=1, max_size=4), st.booleans())
 def test_random_passes_one_in_the_other(
     drawn: tuple[list[Block], Side, float], steps: list[float], shrinking: bool
 ) -> None:
-    """Passes that are each legal stay so in one loop, whichever comes first."""
+    """Only the pass that the part keeps is judged, whichever comes first: the largest pocket, the smallest boss."""
     blocks, side, radius = [block if isinstance(block, complex) else block[1] for block in drawn[0]], drawn[1], drawn[2]
     reach = max(abs((b.conjugate() * (b - a)).imag / abs(b - a)) for a, b in itertools.pairwise(blocks))
     factors = 1 - np.cumsum([0, *steps]) * 2 * radius / reach
     factors = factors[factors > 0.3][:: 1 if shrinking else -1]
+    assume(len(factors) > 1)
     passes = [[block * factor for block in blocks] for factor in factors]
-    assume(len(passes) > 1 and is_simple(around(passes[0], side, radius)))
+    assume(is_simple(around(passes[0], side, radius)))
     assume(all(depths(around(each, side, radius)).max() < 1e-6 for each in passes))
     whole = around([block for each in passes for block in each], side, radius)
-    # The step from one pass to the next is a block like others, with corners that may not fit.
-    step = np.isin(whole.path.row, np.cumsum([len(each) for each in passes[:-1]]))
     assume(not whole.alarm)
-    path = Moves(*(getattr(whole.path, name)[~step] for name in Moves.__slots__))
-    assert list(overcuts(whole.contour, whole.left, path, np.full(len(path.row), radius)).row) == []
+    kept = int(np.argmax(factors) if side == LEFT else np.argmin(factors))
+    first = kept * len(blocks) + 1
+    expected = {
+        int(row)
+        for row, depth in zip(whole.contour.row, depths(whole), strict=True)
+        if first <= row < first + len(blocks) - 1 and depth > TOLERANCE
+    }
+    # On their way round the corners of the step to the next pass the tool may well cut the wall opposite.
+    assert set(whole.overcuts().row) == expected

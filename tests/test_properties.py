@@ -5,12 +5,13 @@ from __future__ import annotations
 import cmath
 import math
 import re
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import msgspec
 import numpy as np
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from msgspec.structs import replace
 
 from polarcheck import check, machine
 from polarcheck.finding import FileReport
@@ -259,6 +260,8 @@ def test_splitting_a_move_changes_no_finding(moves: list[Move]) -> None:
                 split.append(Move(middle, None, True, move.feed))
         split.append(move)
         here = move.end
+    # At the center a piece may lie just beside it where the whole lay on it.
+    assume(trace_of(program(moves)).nearest.min() > 0.02)
     ours, theirs = report_of(program(moves)), report_of(program(split))
     assert set(said(ours)) == set(said(theirs))
 

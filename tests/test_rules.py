@@ -75,7 +75,7 @@ def test_rule_is_complete(rule: Rule) -> None:
 @pytest.mark.parametrize("value", [True, False])
 def test_a_constant_mask_fails(rule: Rule, value: bool) -> None:
     """A rule that always or never fires is found out by its own examples."""
-    from dataclasses import replace
+    from msgspec.structs import replace
 
     def constant(*arguments: Any) -> Any:
         result = rule.function(*arguments)

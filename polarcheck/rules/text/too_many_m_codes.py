@@ -25,4 +25,4 @@ def too_many_m_codes(trace: Trace, machine: Machine) -> Hits:
         M46
     """
     limit = machine.control.m_code_limit
-    return trace.lexical.place_of_m_code == limit + 1, {"count": trace.lexical.m_codes_in_block, "limit": limit}
+    return trace.lexical.has_too_many_m_codes, {"count": trace.lexical.m_codes_in_block, "limit": limit}

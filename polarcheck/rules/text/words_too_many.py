@@ -22,4 +22,4 @@ def words_too_many(trace: Trace, machine: Machine) -> Hits:
         M8
     """
     limit = machine.control.word_limit
-    return trace.lexical.place_in_block == limit + 1, {"count": trace.lexical.words_in_block, "limit": limit}
+    return trace.lexical.has_too_many_words, {"count": trace.lexical.words_in_block, "limit": limit}

@@ -1,0 +1,140 @@
+"""The state of the lathe where the polar mode is entered: columns of the setup rules."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from polarcheck import check, job, machine
+from polarcheck.rule import load_all
+from polarcheck.trace import Trace
+
+RULES = [rule for rule in load_all().values() if rule.group == "setup"]
+SECTION = "G12.1\nG1 X40. F200\nC10.\nX60.\nG13.1\n"
+
+
+def traced(program: str, profile: str = machine.DEFAULT, work: dict[str, Any] | None = None) -> Trace:
+    given = job.from_table(work or {}, "test")
+    return check.read_traces(program.encode(), machine.load(profile).machine, given)[0][1]
+
+
+def said(program: str, profile: str = machine.DEFAULT, work: dict[str, Any] | None = None) -> list[str]:
+    found = check.check_trace(traced(program, profile, work), RULES, {})
+    return [finding.rule for finding in found.findings]
+
+
+@pytest.mark.parametrize(
+    ("program", "whole"),
+    [
+        ("G0 X1.\nM30", [False, False]),
+        ("O1\nG0 X1.\nM30", [True, True, True]),
+        ("O<PART>\nG0 X1.\nM30", [True, True, True]),
+        ("<PART>\nG0 X1.\nM30", [True, True]),
+        ("%\nG0 X1.\nM30\n%", [True, True]),
+        ("O1\nG0 X1.\nM99", [False, False, False]),
+        ("O1\nM98 P2\nM30\nO2\nG0 X1.\nM99", [True, True, True, True, True, True]),
+        ("", []),
+    ],
+)
+def test_whole_program(program: str, whole: list[bool]) -> None:
+    assert traced(program).whole_program.tolist() == whole
+
+
+def test_of_an_excerpt_nothing_is_asked() -> None:
+    assert said(SECTION) == []
+    assert said(SECTION, "turning-center") == []
+    assert said("O1\n" + SECTION + "M99") == []
+
+
+def test_of_a_whole_program_all_is_asked() -> None:
+    assert said("O1\n" + SECTION + "M30") == [
+        "c-angle-unknown-at-entry",
+        "no-tool-offset-at-entry",
+        "x-unknown-at-entry",
+    ]
+
+
+def test_after_an_unknown_block_nothing_is_asked() -> None:
+    assert said("O1\nM98 P1234\n" + SECTION + "M30") == []
+    assert said("O1\nM98 P1234\n" + SECTION + "M30", "turning-center") == []
+
+
+@pytest.mark.parametrize(
+    ("before", "unknown"),
+    [
+        ("G0 X60.", False),
+        ("G0 U-5.", False),
+        ("G50 X200. Z100.", False),
+        ("G0 X60.\nG28 U0", True),
+        ("G28 U0\nG0 X60.", False),
+        ("G0 X60.\nG28 W0", False),
+        ("G0 X60.\nT0202", True),
+        ("G0 X60. T0202", False),
+        ("G0 X60.\nT0102", False),
+        ("G4 X2.", True),
+    ],
+)
+def test_x_unknown(before: str, unknown: bool) -> None:
+    found = said(f"O1\nT0101\nG0 C0\n{before}\n{SECTION}M30")
+    assert found == (["x-unknown-at-entry"] if unknown else [])
+
+
+def test_c_is_positioned_again_after_it_was_engaged_again() -> None:
+    """A spindle that ran in between stands anywhere."""
+    first = "O1\nT0101\nM35\nG28 H0\nM33\nG0 X60. C0\n"
+    assert said(first + SECTION + "M30", "turning-center") == []
+    again = first + SECTION + "M34\nM3\nM5\nM35\nM33\nG0 X60.\n" + SECTION + "M30"
+    assert said(again, "turning-center") == ["c-axis-not-referenced"]
+    referenced = first + SECTION + "M34\nM35\nG28 H0\nM33\nG0 X60.\n" + SECTION + "M30"
+    assert said(referenced, "turning-center") == []
+
+
+OFFSETS = {"work_offsets": {"G54": {"x": 0.0}, "G55": {"x": 0.5}, "G54.1 P3": {"x": 1.0}}}
+
+
+@pytest.mark.parametrize(
+    ("before", "name"),
+    [
+        ("", ""),
+        ("G55", "G55"),
+        ("G55\nG54", ""),
+        ("G54.1 P3", "G54.1 P3"),
+        ("G54.1 P3\nG4 P100", "G54.1 P3"),
+        ("G54.1 P4", ""),
+        ("G54.1 P3\nG54", ""),
+        ("G52 X1.", "G52"),
+        ("G52 X1.\nG52 Z0", "G52"),
+        ("G52 X1.\nG52 X0", ""),
+        ("G55\nG52 X1.", "G55 and G52"),
+    ],
+)
+def test_origin(before: str, name: str) -> None:
+    trace = traced(f"{before}\nG0 X60. C0\n{SECTION}", work=OFFSETS)
+    assert trace.entry.origin_off_center.any() == bool(name)
+    assert trace.entry.origin_name(int(trace.sections.enter[0])) == name
+
+
+INSIDE = ["approach-inside-stock"]
+
+
+@pytest.mark.parametrize(
+    ("units", "x", "expected"),
+    [
+        ("mm", "43.9", INSIDE),
+        ("mm", "44.", []),
+        ("mm", "20.", []),  # stays inside: a pocket
+        ("inch", "1117.5", INSIDE),
+        ("inch", "1117.6", []),
+    ],
+)
+def test_stock_is_in_the_units_of_the_job(units: str, x: str, expected: list[str]) -> None:
+    work = {"units": units, "stock": {"diameter": 30, "clearance": 4}, "tools": {1: {"diameter": 10}}}
+    assert said(f"T0101\nG0 X{x} C0\nG12.1\nG1 X10. F200\nX{x}\nG13.1", work=work) == expected
+
+
+def test_an_unknown_cutter_is_said() -> None:
+    trace = traced(f"T0101\nG0 X60. C0\n{SECTION}", work={"stock": {"diameter": 30}})
+    report = check.check_trace(trace, RULES, {})
+    assert [entry.rule for entry in report.not_evaluated] == ["approach-inside-stock"]
+    assert "cutter diameter" in report.not_evaluated[0].reason

@@ -1,0 +1,212 @@
+"""What words and characters say of themselves: columns of the text rules."""
+
+from __future__ import annotations
+
+from collections import Counter
+from functools import cache
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from polarcheck import check, machine
+from polarcheck.finding import Finding
+from polarcheck.job import Job
+from polarcheck.rule import load_all
+
+RULES = [rule for rule in load_all().values() if rule.group in ("text", "setup")]
+
+
+@cache
+def profile(**control: int) -> machine.Machine:
+    return machine.load(machine.DEFAULT, {"control": control} if control else None).machine
+
+
+def findings(program: str | bytes, rule: str = "", **control: int) -> list[Finding]:
+    data = program if isinstance(program, bytes) else program.encode()
+    chosen = [item for item in RULES if not rule or item.name == rule]
+    return check.check_file(data, profile(**control), Job(), chosen).findings
+
+
+def places(program: str | bytes, rule: str, **control: int) -> list[tuple[int, int]]:
+    return [(finding.line, finding.column) for finding in findings(program, rule, **control)]
+
+
+@pytest.mark.parametrize(
+    ("block", "expected"),
+    [
+        ("X1. Z2. X3.", [9]),
+        ("X1. X2. X3. Z1. Z2.", [5]),
+        ("G1 G40 M3 M8 N5 N6", []),
+        ("C1. ,C2. R1. ,R2. ,C3.", [19]),
+        ("X1. X", []),
+        ("X1. $ X2.", []),
+        ("G65 P1 I1. J2. I3. A1. A2.", [24]),
+        ("I1. J2. I3.", [9]),
+        ("/X1. /Z1.", []),
+    ],
+)
+def test_word_repeated(block: str, expected: list[int]) -> None:
+    assert places(block, "word-repeated") == [(1, column) for column in expected]
+
+
+@pytest.mark.parametrize(
+    ("block", "expected"),
+    [
+        ("G0 G1 X1.", ["G0 and G1"]),
+        ("G01 G1 X1.", []),
+        ("G0 G90 X1.", []),
+        ("G40 G0 G41", ["G40 and G41"]),
+        ("G0 G40 G1 G2 G42", ["G0 and G1", "G1 and G2", "G40 and G42"]),
+        ("G50 S1000 G51", []),
+        ("G1.234 G1", []),
+        ("G54 G55", ["G54 and G55"]),
+    ],
+)
+def test_codes_of_one_group(block: str, expected: list[str]) -> None:
+    said = [finding.message for finding in findings(block, "codes-of-one-group")]
+    assert len(said) == len(expected)
+    for text in expected:
+        first, _, second = text.partition(" and ")
+        assert any(message.startswith(f"{second} and {first} ") for message in said)
+
+
+FITS = ["X99999999", "X0000000001", "X99999.999", "X1.23456789"]
+TOO_LONG = ["X999999999", "X999999.999", "X123456.7891", "N123456789", "X12345678901234567890123456789"]
+
+
+@pytest.mark.parametrize(("word", "wrong"), [(word, word in TOO_LONG) for word in [*FITS, *TOO_LONG]])
+def test_digits_are_counted_in_least_increments(word: str, wrong: bool) -> None:
+    assert bool(places(word, "too-many-digits", digit_limit=8)) == wrong
+
+
+def test_limits_of_words_and_codes() -> None:
+    program = "G1 X1. Z1. F1 S1 M3\nG1 X1. Z1. F1\nM3 M8\nM3 M8 M10 M11\n/M3 /M8 M10\n"
+    assert places(program, "words-too-many", word_limit=4) == [(1, 15)]
+    assert places(program, "too-many-m-codes", m_code_limit=2) == [(4, 7), (5, 9)]
+    assert findings(program, "too-many-m-codes", m_code_limit=2)[0].message.startswith("4 M codes")
+    assert findings(program, "words-too-many", word_limit=4)[0].message.startswith("6 words")
+
+
+def test_an_unknown_code_is_reported_once() -> None:
+    found = findings("G145\nG0\nG145\nG1.23\nG600 X1\nG12.1\nG112\nG\nG-1\n", "unknown-code")
+    assert [(finding.line, finding.severity) for finding in found] == [
+        (1, "error"),
+        (4, "error"),
+        (5, "warning"),
+        (9, "error"),
+    ]
+    assert found[0].message == "G145 is no code of this control (2 times in this file)"
+
+
+@pytest.mark.parametrize(
+    ("program", "expected"),
+    [
+        ("G0 X1.", []),
+        ("O1\nG0 X1.", [2]),
+        ("O1\nG0 X1.\nM02", []),
+        ("O1\nG0 X1.\nM99\nO2\nG0 X1.\nZ1.\nO3\nM30", [6]),
+        ("%\nG0 X1.\n%", [2]),
+        ("O1\nG0 X1.\nGOTO 5", []),
+        ("O1\nM98 P2\nM99 P#1", []),
+        ("O1\nO1\nG0\nM30", []),
+        ("<PART>\nG0\nX1.", [3]),
+        ("O1\nM3 M130", [2]),
+    ],
+)
+def test_program_end_missing(program: str, expected: list[int]) -> None:
+    assert [line for line, _ in places(program, "program-end-missing")] == expected
+
+
+def test_stray_characters_of_a_block_are_one_finding() -> None:
+    program = "G1 X1. $ &\n(A (B) C1.)\nPROSE $\nX1. % Z1.\n! G0 ; ?"
+    found = findings(program, "stray-character")
+    assert [(finding.line, finding.message.split()[0]) for finding in found] == [(1, "$"), (4, "%"), (5, "!")]
+
+
+def test_foreign_characters_are_counted_by_line() -> None:
+    program = "\0\0\n\0%\nO1 (\u00c4\u00d6)\nG1 \x01X1\u2013 (\u00fc)\x02\nX\u00b0\nM30\n%\n\u00c4\n"
+    found = findings(program, "character-outside-iso-set")
+    assert [(finding.line, finding.message.split()[0]) for finding in found] == [(1, "3"), (3, "2"), (4, "3")]
+
+
+def test_lower_case_is_reported_once() -> None:
+    assert places("O1 (abc)\nG0 x1.\nz2. ,r5.\nM30", "lower-case-word") == [(2, 4)]
+    assert places("O1\nprose in a line\nX1. r5.\nM30", "lower-case-word") == [(3, 5)]
+
+
+def test_separators_outside_a_program_are_no_text() -> None:
+    assert places("=====\n(A)\nTITLE\n%\nO1\nM30\n%\n-----\n", "text-outside-program") == [(1, 1)]
+    assert places("=====\n(A)\n%\nO1\nM30\n%\n-----\n", "text-outside-program") == []
+
+
+BLOCKS = st.lists(
+    st.tuples(st.sampled_from("GXZFMNIJTSx/$"), st.sampled_from(["0", "1", "2", "40", "41", "3.", "", "505", "99"])),
+    max_size=8,
+)
+
+
+@given(st.lists(BLOCKS, max_size=6))
+@settings(max_examples=100, deadline=None)
+def test_repeated_words_are_those_that_a_count_finds(blocks: list[list[tuple[str, str]]]) -> None:
+    program = "\n".join("".join(letter + number for letter, number in block) for block in blocks)
+    expected = []
+    for line, block in enumerate(blocks, 1):
+        # A stray character stands between a letter and what is then no number of its own.
+        words = [(letter, number) for letter, number in block]
+        unreadable = any(letter == "$" or (not number and letter != "/") for letter, number in words)
+        counts = Counter(letter.upper() for letter, _ in words if letter not in "GMN/$")
+        if not unreadable and any(count > 1 for count in counts.values()):
+            expected.append(line)
+    assert [line for line, _ in places(program, "word-repeated")] == expected
+
+
+PARTS = [
+    "O1",
+    "%",
+    "\n",
+    "\n",
+    "(",
+    ")",
+    "G12.1",
+    "G13.1",
+    "G1",
+    "X1.",
+    "C2.",
+    "X",
+    "T0101",
+    "M3",
+    "M35",
+    "$",
+    "\0",
+    "\u00c4",
+]
+MORE = [
+    "....",
+    "GOTO1",
+    "#1=2",
+    "G52X1.",
+    "G54.1P1",
+    "M99",
+    "M30",
+    ";",
+    "/",
+    ":",
+    "\u2013",
+    "<A>",
+    "M98P1",
+    "123456789012",
+]
+
+
+@given(
+    st.one_of(
+        st.binary(max_size=80), st.lists(st.sampled_from(PARTS + MORE)).map(lambda parts: "".join(parts).encode())
+    )
+)
+@settings(max_examples=150, deadline=None)
+def test_the_rules_of_text_and_setup_take_any_bytes(data: bytes) -> None:
+    for finding in findings(data):
+        assert finding.message
+        assert finding.line >= 1
+        assert finding.column >= 1
