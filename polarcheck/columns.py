@@ -4,18 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cached_property
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from polarcheck import comments
 from polarcheck.axes import before
 from polarcheck.codes import code_numbers, code_set, fill_down, group_tables, renumbered
 from polarcheck.flow import Run
 from polarcheck.job import Job
 from polarcheck.machine import Machine
 from polarcheck.modal import TAKES_AXIS_WORDS, Distance, FeedMode, Motion, Side, Units
+
+if TYPE_CHECKING:
+    from polarcheck.comments import Found
 
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -276,8 +278,12 @@ class Columns:
         return self._offset_column({n: tool.radius for n, tool in self.job.tools.items()}) * self.job_scale
 
     @cached_property
-    def _comments(self) -> dict[int, comments.Found]:
-        return comments.radii(self) if self.job.radius_from_comments else {}
+    def _comments(self) -> dict[int, Found]:
+        if not self.job.radius_from_comments:
+            return {}
+        from polarcheck import comments
+
+        return comments.radii(self)
 
     @cached_property
     def _radius_of_comments(self) -> Floats:

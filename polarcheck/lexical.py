@@ -51,7 +51,7 @@ class Lexical:
 
     def _in_broken_block(self, index: Numbers) -> Mask:
         """Whether something in the block of a word cannot be read, so that what else is there means little."""
-        broken = np.union1d(self.words.block[self.words.is_unreadable], self.text.strays.block)
+        broken = np.concatenate((self.words.block[self.words.is_unreadable], self.text.strays.block))
         return np.isin(self.words.block[index], broken)
 
     def _beyond(self, counted: Mask, limit: int) -> Mask:
@@ -60,7 +60,7 @@ class Lexical:
         block = self.words.block[index]
         is_next = np.append(np.ones(min(limit, len(index)), bool), block[limit:] != block[: max(len(block) - limit, 0)])
         beyond = ~is_next
-        beyond[1:] &= is_next[:-1] | (block[1:] != block[:-1])
+        beyond[1:] &= is_next[:-1]
         found = np.zeros(len(self.words), bool)
         index = index[beyond]
         found[index[~self._in_broken_block(index)]] = True

@@ -55,8 +55,8 @@ def _in_each(byte: int) -> np.uint64:
     return np.uint64(byte * 0x0101010101010101)
 
 
-#: The last 0 to 8 of eight characters; none of them for longer numbers.
-_LAST = np.array([0, *(2**64 - 2 ** (64 - 8 * count) for count in range(1, 9)), 0], np.uint64)
+#: The last 0 to 8 of eight characters.
+_LAST = np.array([0, *(2**64 - 2 ** (64 - 8 * count) for count in range(1, 9))], np.uint64)
 #: Takes the lowest bit of byte k to the number k + 1 in the highest four bits.
 _TO_PLACE = np.uint64(sum((k + 1) << (60 - 8 * k) for k in range(8)) & (2**64 - 1))
 #: By place of the point (0 for none): decimals, and by what to divide; the point itself is read as a 0 at the end. Two
@@ -76,7 +76,7 @@ def read_numbers(code: Codes, start: Positions, end: Positions) -> Numbers:
     length = end - start - signed
     padded = np.concatenate((np.zeros(_EIGHT, np.uint8), code))
     window = np.ndarray((len(code) + 1,), f"V{_EIGHT}", padded.data, strides=(1,))
-    last = _LAST[np.minimum(length, _EIGHT + 1)]
+    last = _LAST[np.minimum(length, _EIGHT)]
     eight: Masks = window[end].view("<u8") & last
 
     # The top bit of each byte that is a point; exact, no carry leaves a byte.

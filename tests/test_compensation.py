@@ -5,7 +5,6 @@ from __future__ import annotations
 import cmath
 import json
 import math
-from dataclasses import fields, replace
 from itertools import pairwise
 from pathlib import Path as FilePath
 
@@ -14,6 +13,7 @@ import pytest
 from compensation_oracle import Block, Rules, simulate
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from msgspec.structs import fields, replace
 
 from polarcheck.compensation import Path, Phase, Settings, ToolPath, tool_center_path
 from polarcheck.modal import Motion, Side

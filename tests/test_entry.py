@@ -115,6 +115,12 @@ def test_origin(before: str, name: str) -> None:
     assert trace.entry.origin_name(int(trace.sections.enter[0])) == name
 
 
+@pytest.mark.parametrize(("before", "expected"), [("", True), ("G54.1 P1", False), ("G55", False)])
+def test_without_a_work_offset_g54_is_in_force(before: str, expected: bool) -> None:
+    trace = traced(f"{before}\nG0 X60. C0\n{SECTION}", work={"work_offsets": {"G54": {"x": 1.0}}})
+    assert trace.entry.origin_off_center.any() == expected
+
+
 INSIDE = ["approach-inside-stock"]
 
 

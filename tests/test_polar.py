@@ -257,6 +257,13 @@ def test_arc_from_the_center_turns_c_evenly() -> None:
     assert Move(0, 0, 5, CCW).of(polar.c_sweep) == pytest.approx(180)
 
 
+def test_arc_that_ends_at_the_center_but_for_rounding() -> None:
+    arc = Move(10, 3e-10j, 5 + 4e-10, CCW)
+    assert arc.of(rates.c_feed, 600) == pytest.approx(math.degrees(600 / 10))
+    assert arc.of(rates.c_acceleration, 600) == 0
+    assert arc.of(polar.nearest) == 0
+
+
 def test_arc_on_a_circle_through_the_center_that_stays_away_from_it() -> None:
     arc = Move(5 - 5j, 5 + 5j, 5, CCW)
     assert arc.of(rates.c_feed, 600) == pytest.approx(math.degrees(600 / 10))
@@ -363,6 +370,12 @@ def test_center_from_radius(end: complex, radius: float, kind: Motion, center: c
         np.array([20 + 10j]), np.array([end]), np.array([radius]), np.array([kind], dtype=np.int8), 0.00101
     )
     assert [found[0].real, found[0].imag] == pytest.approx([center.real, center.imag], nan_ok=True)
+
+
+def test_center_of_a_half_circle_whose_radius_is_short_by_rounding() -> None:
+    start, end, kind = np.array([0.1 + 0.2j]), np.array([7.3 - 4.9j]), np.array([CCW], dtype=np.int8)
+    radius = np.nextafter(np.abs(end - start) / 2, 0)
+    assert polar.center_from_radius(start, end, radius, kind)[0] == pytest.approx(3.7 - 2.35j)
 
 
 @few
@@ -508,6 +521,14 @@ def test_c_after_an_unknown_move_goes_on_from_where_it_was_known() -> None:
     c_from, c_to = c_angles(*around(10, 10j, -10, -10j), Move(-10j, NAN), Move(NAN, 5), *around(5, 5j))
     assert c_from == pytest.approx([0, 90, 180, math.nan, math.nan, 360], nan_ok=True)
     assert c_to == pytest.approx([90, 180, 270, math.nan, math.nan, 450], nan_ok=True)
+
+
+def test_a_section_that_begins_unknown_takes_nothing_from_the_one_before() -> None:
+    before, after = [complex(10 * np.exp(1j * math.radians(turn))) for turn in (-170, 170)]
+    c_from, _ = c_angles(
+        *around(10, -10j, before), Move(NAN, after), Move(after, 10j), section=[0, 0, 1, 1], entry=[0, 0]
+    )
+    assert c_from == pytest.approx([0, -90, math.nan, 170], nan_ok=True)
 
 
 def test_c_outside_sections_is_unknown() -> None:
