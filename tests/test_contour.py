@@ -153,6 +153,9 @@ LEGAL = {
     **{f"spiral inwards by {step}": loop(0, *spiral(30, step, 3), 0, side=LEFT) for step in (0.02, 1, 3, 4.5, 8)},
     **{f"spiral outwards by {step}": loop(0, *spiral(30, step, 3)[::-1], 0) for step in (0.02, 1, 3, 4.5, 8)},
     "spiral of half circles": loop(0, 12, ccw(-14, -1), ccw(16, 1), ccw(-18, -1), ccw(20, 1), ccw(20, 0), 0, side=LEFT),
+    "spiral of half circles in wide steps": loop(0, 12, ccw(-16, -2), ccw(20, 2), ccw(-24, -2), ccw(28, 2),
+                                                 ccw(-32, -2), ccw(36, 2), 0, side=LEFT),
+    "hexagons shrinking to a small boss": loop(60, *(p for size in (10, 7, 4) for p in polygon(size, 6)), 60),
     "circles one in the other": loop(0, 16, ccw(16, 0), 19, ccw(19, 0), 22, ccw(22, 0), 0, side=LEFT),
     **{f"lead in and out on arcs of {size}": loop(
         complex(-size, 60), complex(-size, 20 + size), ccw(20j, (20 + size) * 1j), *BELOW_TOP,
@@ -292,6 +295,39 @@ def test_only_the_loop_at_fault_is_found(numbers: tuple[int, ...]) -> None:
     assert found.place == pytest.approx(alone.place)
 
 
+@pytest.mark.parametrize("numbers", [(0, 1, 2), (7, 3, 5)])
+def test_loops_above_each_other_do_not_see_each_other(numbers: tuple[int, ...]) -> None:
+    slots = [
+        loop(-20, 0, 20, 20 - 4j, 26 - 4j, 26, 46, 60 + 20j, side=LEFT),
+        loop(-20, 0, 21, 21 - 4j, 28 - 4j, 28, 46, 60 + 20j, side=LEFT),
+        loop(-20, 0.5j, 20 + 0.5j, 20 - 4.5j, 29 - 4.5j, 29 + 0.5j, 46, 60 + 20j, side=LEFT),
+    ]
+    alone = [each.overcuts() for each in slots]
+    found = overcuts(*together(*(numbered(each, number) for each, number in zip(slots, numbers, strict=True))))
+    assert list(found.row) == [100 * k + row for k, each in enumerate(alone) for row in each.row]
+    assert found.depth == pytest.approx(np.concatenate([each.depth for each in alone]))
+    assert found.place == pytest.approx(np.concatenate([each.place for each in alone]))
+
+
+def test_a_side_that_another_turn_takes_away_in_part() -> None:
+    """Row 1 is cut by 1 mm from row 2 opposite, and by 2 mm where row 3 asks for more anyway."""
+    contour = by_hand((0, 40), (40 + 9j, 22 + 9j), (-2j, 20 - 2j))
+    path = by_hand((5j, 40 + 5j), (40 + 4j, 22 + 4j), (3j, 20 + 3j))
+    found = overcuts(contour, np.full(3, True), path, np.full(3, 5.0))
+    assert list(found.row) == [1, 2]
+    assert found.depth == pytest.approx([1, 1])
+    assert list(found.move) == [1, 0]
+    assert found.place[0].real > 21.9
+
+
+def by_hand(*lines: tuple[complex, complex]) -> Moves:
+    """Lines of one loop, rows from 1."""
+    start, end = np.array(lines, dtype=complex).T
+    count = len(lines)
+    kind, loops = np.full(count, Motion.LINE, dtype=np.int8), np.zeros(count, dtype=np.int64)
+    return Moves(start, end, np.full(count, NAN), kind, loops, np.arange(1, count + 1))
+
+
 def test_a_loop_is_judged_by_its_own_radius() -> None:
     contour, left, path, radius = together(numbered(LEGAL["square"], 0), numbered(LEGAL["hexagon"], 1))
     radius[path.loop == 1] += 0.01
@@ -328,12 +364,10 @@ def test_what_is_unknown_is_left_out() -> None:
 
 
 def test_a_gap_in_the_path_cuts_nothing() -> None:
-    """A row that is left out leaves a gap, whose bridge would run right over the part."""
+    """Rows that are left out leave a gap, whose bridge would run right across the part."""
     square = LEGAL["square"]
-    kept = np.isin(square.path.row, [1, 2, 4, 5])
-    path = Moves(*(getattr(square.path, name)[kept] for name in Moves.__slots__))
-    ends = np.isin(path.row, [1, 5])
-    path = Moves(*(getattr(path, name)[ends] for name in Moves.__slots__))
+    kept = np.isin(square.path.row, [1, 3])
+    path = Moves(*(getattr(square.path, name)[kept] for name in ("start", "end", "center", "kind", "loop", "row")))
     shortened = replace(path, end=np.where(path.row == 1, path.start + 1j, path.end))
     assert list(overcuts(square.contour, square.left, shortened, np.full(2, 5.0)).row) == []
 

@@ -49,6 +49,22 @@ def test_judged_program(name: str, lathe: str, tools: tuple[str, ...], expected:
     assert [(f.line, f.rule) for f in found if f.severity != "note"] == expected
 
 
+#: File, machine, and an offset of a cutter that is too large for its ramps, with the blocks that say so.
+TOO_LARGE = [
+    ("polar-seed-sample-two-flats.nc", "turning-center", "8:radius=0.375", {13, 18}),
+    ("polar-seed-flats-method-a.nc", "turning-center", "1:radius=0.5", {13, 16, 22, 25}),
+    ("polar-seed-flats-method-b.nc", "turning-center", "1:radius=0.5", {13, 18}),
+    ("polar-seed-gsk-o0001-single.nc", "gsk-988", "2:radius=36", {11, 31}),
+]
+
+
+@pytest.mark.parametrize(("name", "lathe", "tool", "lines"), TOO_LARGE, ids=[row[0] for row in TOO_LARGE])
+def test_a_cutter_too_large_for_its_ramps_is_found(name: str, lathe: str, tool: str, lines: set[int]) -> None:
+    found = report_of(f"polar/{name}", lathe, (tool,)).findings
+    ramps = {f.line for f in found if f.rule in ("start-up-shorter-than-radius", "cancel-shorter-than-radius")}
+    assert ramps == lines
+
+
 #: File, machine, and the defects that are known: each must be named, at its block.
 DEFECTS: list[tuple[str, str, set[tuple[int, str]]]] = [
     (
