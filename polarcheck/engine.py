@@ -240,6 +240,10 @@ def _place_of_program(trace: Trace, index: int) -> Hit:
     return Hit(place.start, place.end, place.block, place.row, index)
 
 
+def _place_of_file(trace: Trace, index: int) -> Hit:
+    return Hit(0, 0, 0, -1, index)
+
+
 def _place_of_fault(trace: Trace, index: int) -> Hit:
     fault = trace.run.faults[index]
     row = min(fault.row, len(trace) - 1)
@@ -266,6 +270,7 @@ _PLACES: dict[str, Callable[[Trace, int], Hit]] = {
     "sections": _place_of_section,
     "programs": _place_of_program,
     "faults": _place_of_fault,
+    "files": _place_of_file,
     **{name: _place_in(name) for name in ("comments", "strays", "foreign", "dots", "outside")},
 }
 

@@ -47,6 +47,11 @@ class Lexical:
         self.words = trace.text.words
         self.machine = trace.machine
 
+    @property
+    def is_empty(self) -> Mask:
+        """One element: the file has no words and no macro statements."""
+        return np.array([not len(self.words) and not bool(self.text.blocks.is_macro.any())])
+
     # ---- words of a block ----
 
     def _in_broken_block(self, index: Numbers) -> Mask:

@@ -54,7 +54,19 @@ __all__ = [
 FOLDER = Path(__file__).parent / "rules"
 
 #: What the elements of a mask can stand for.
-TABLES = ("rows", "words", "sections", "comments", "strays", "foreign", "dots", "outside", "programs", "faults")
+TABLES = (
+    "rows",
+    "words",
+    "sections",
+    "comments",
+    "strays",
+    "foreign",
+    "dots",
+    "outside",
+    "programs",
+    "faults",
+    "files",
+)
 
 
 class Rule(msgspec.Struct, frozen=True):

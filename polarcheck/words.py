@@ -91,10 +91,11 @@ class Words(msgspec.Struct, frozen=True):
 
     @property
     def is_unreadable(self) -> Mask:
-        """The control cannot read the number; of a run of such words, as in prose, only the first."""
+        """The control cannot read the number; of a run of words without digits, as in prose, only the first."""
         bad = (self.fault != Fault.NONE) & (self.fault != Fault.WRONG_DASH)
+        empty = self.fault == Fault.NO_DIGITS
         follows = np.zeros(len(self), bool)
-        follows[1:] = bad[:-1] & (self.block[1:] == self.block[:-1])
+        follows[1:] = empty[:-1] & empty[1:] & (self.block[1:] == self.block[:-1])
         return np.asarray(bad & ~follows)
 
     @property

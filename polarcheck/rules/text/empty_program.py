@@ -1,0 +1,29 @@
+from __future__ import annotations
+
+from polarcheck.rule import WARNING, Mask, Trace, rule
+
+
+@rule(WARNING, "there is no block in this file", over="files")
+def empty_program(trace: Trace) -> Mask:
+    """
+    File without any block.
+
+    Nothing was looked at: the file is empty, holds only comments, or all of it stands outside the program. A transfer
+    that broke off or a post that failed leaves such a file behind.
+
+    Source: FANUC B-63524EN/01, p. 649 (what a control stores of a file).
+
+    Bad:
+
+        %  (expect: empty-program)
+        (TRANSFER BROKE OFF)
+        %
+
+    Good:
+
+        %
+        O0001
+        M30
+        %
+    """
+    return trace.lexical.is_empty
