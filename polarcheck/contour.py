@@ -30,20 +30,18 @@ import numpy as np
 import shapely  # type: ignore[import-untyped]
 from numpy.typing import NDArray
 
-from polarcheck.modal import Motion
-from polarcheck.plane import arc_sweep
+from polarcheck.segments import ZERO, Ints, Mask, Moves, Points, Segments, members, segments
 
-Points = NDArray[np.complex128]
 Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Mask = NDArray[np.bool_]
 Lines = NDArray[Any]
+
+__all__ = ["TOLERANCE", "Moves", "Overcut", "overcuts", "sweeps"]
 
 #: Depth [mm] up to which nothing is said; two roundings to the least increment.
 TOLERANCE = 0.002
 
-#: A length [mm] below this is none; a point within this of a line is on it.
-_ZERO, _TOUCH = 1e-9, 1e-6
+#: A point within this of a line [mm] is on it.
+_TOUCH = 1e-6
 #: Longest piece of contour that is judged as one, in R; how many pieces a segment may become; how many to test at once.
 _PIECE, _PIECES, _CHUNK = 0.25, 64, 16
 #: How far behind the contour to look for other turns, in R, since a tool reaches 2R from its own block; where first.
@@ -54,23 +52,6 @@ _ASIDE = (20.0, -20.0, 40.0, -40.0, 60.0, -60.0, 80.0, -80.0)
 _OFF_CORNER = 100
 #: Looks worked on at a time, for the sake of memory.
 _BATCH = 16384
-
-
-@dataclass(frozen=True, slots=True)
-class Moves:
-    """
-    Moves of a contour or of a tool center path, n of them in the order in which they run.
-
-    start, end, center: complex128[n] [mm], center NaN for lines. kind: int8[n], Motion.
-    loop: int[n], number of the run of blocks from a start-up to its cancel at one depth. row: int[n], programmed row.
-    """
-
-    start: Points
-    end: Points
-    center: Points
-    kind: NDArray[np.int8]
-    loop: NDArray[np.integer]
-    row: NDArray[np.integer]
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,7 +78,7 @@ def overcuts(contour: Moves, left: Mask, path: Moves, radius: Floats, tolerance:
     of its block. radius: float64[moves of path] [mm], |R|; the smallest of a loop is taken. `move` counts the path.
     Moves with anything unknown are left out.
     """
-    walls, ways = _segments(contour, tolerance), _segments(path, tolerance)
+    walls, ways = segments(contour, tolerance), segments(path, tolerance)
     ways = ways[(radius[ways.move] > tolerance) & np.isin(ways.loop, walls.loop)]
     loops, first = np.unique(ways.loop, return_index=True)
     smallest = np.minimum.reduceat(radius[ways.move], first) if len(first) else np.zeros(0)
@@ -106,7 +87,7 @@ def overcuts(contour: Moves, left: Mask, path: Moves, radius: Floats, tolerance:
         return _nothing()
 
     pieces = _pieces(walls, loops[close], smallest[close], left, tolerance)
-    here, group = _members(ways.loop, loops[close])
+    here, group = members(ways.loop, loops[close])
     ways = ways[here].shifted(pieces.pitch * group)
     paths = _polylines(ways)
     shapely.prepare(paths)
@@ -131,7 +112,7 @@ def sweeps(contour: Moves, left: Mask, ramps: Moves, radius: Floats, tolerance: 
     ends in the open. So within R of that end, along the contour, only what the tool center cuts from behind the block
     counts, and only where it is more than the slant makes unavoidable.
     """
-    walls, ways = _segments(contour, tolerance), _segments(ramps, tolerance)
+    walls, ways = segments(contour, tolerance), segments(ramps, tolerance)
     ways = ways[(radius[ways.move] > tolerance) & np.isin(ways.loop, walls.loop)]
     ways = ways[_close(walls, ways.loop, _lines(ways.start, ways.end), radius[ways.move] - tolerance)]
     if not len(ways.move):
@@ -163,67 +144,15 @@ def _nothing() -> Overcut:
     return Overcut(none, none, np.zeros(0), np.zeros(0, dtype=np.complex128))
 
 
-# ---- moves to segments to lines ----
+# ---- segments to lines ----
 
 
-@dataclass(frozen=True, slots=True)
-class _Segments:
-    """Straight parts of moves, those of one loop together: start, end [mm], the move they are of, its loop."""
-
-    start: Points
-    end: Points
-    move: Ints
-    loop: Ints
-
-    def __getitem__(self, rows: Ints | Mask) -> _Segments:
-        return _Segments(self.start[rows], self.end[rows], self.move[rows], self.loop[rows])
-
-    def shifted(self, by: NDArray[np.floating]) -> _Segments:
-        return _Segments(self.start + by, self.end + by, self.move, self.loop)
-
-
-def _segments(moves: Moves, tolerance: float) -> _Segments:
-    """All moves that are known and have a length; arcs with a sagitta of a quarter of the tolerance."""
-    start, end, center = moves.start, moves.end, moves.center
-    arcs = (moves.kind == Motion.CW) | (moves.kind == Motion.CCW)
-    known = ~(np.isnan(start) | np.isnan(end) | (arcs & np.isnan(center)))
-    count = known.astype(np.int64)
-    round_ = np.flatnonzero(arcs & known)
-    spoke, last = start[round_] - center[round_], end[round_] - center[round_]
-    sweep = arc_sweep(start[round_], end[round_], center[round_], moves.kind[round_])
-    flat = np.clip(tolerance / 4 / np.maximum(np.maximum(np.abs(spoke), np.abs(last)), _ZERO), 0, 0.25)
-    count[round_] = np.maximum(np.ceil(np.abs(sweep) / (2 * np.arccos(1 - flat))), 1)
-
-    move = np.repeat(np.arange(len(start)), count)
-    begin, until = start[move], end[move]
-    on_arc = np.flatnonzero(arcs[move])
-    which = np.searchsorted(round_, move[on_arc])
-    share = (on_arc - (np.cumsum(count) - count)[move[on_arc]]) / count[move[on_arc]]
-    # An end that is not quite on the circle is reached in a spiral, at the same angles as by the tool center.
-    growth = np.where(spoke == 0, 0, np.abs(last) / np.maximum(np.abs(spoke), _ZERO) - 1)
-    turned = spoke[which] * (1 + growth[which] * share) * np.exp(1j * sweep[which] * share)
-    begin[on_arc] = np.where(share == 0, begin[on_arc], center[move[on_arc]] + turned)
-    inner = np.flatnonzero(move[1:] == move[:-1])
-    until[inner] = begin[inner + 1]
-    result = _Segments(begin, until, move, moves.loop[move].astype(np.int64))[np.abs(until - begin) > _ZERO]
-    in_order = np.all(result.loop[1:] >= result.loop[:-1])
-    return result if in_order else result[np.argsort(result.loop, kind="stable")]
-
-
-def _members(loop: Ints, wanted: Ints) -> tuple[Ints, Ints]:
-    """Rows of each wanted loop, one after the other, and which of the wanted each row is for."""
-    low, high = np.searchsorted(loop, wanted), np.searchsorted(loop, wanted, side="right")
-    group = np.repeat(np.arange(len(wanted)), high - low)
-    before = np.cumsum(high - low) - (high - low)
-    return np.arange(len(group)) - before[group] + low[group], group
-
-
-def _polylines(segments: _Segments) -> Lines:
+def _polylines(parts: Segments) -> Lines:
     """One line for each loop; where segments do not join, a line between bridges the gap."""
-    start, end = segments.start, segments.end
+    start, end = parts.start, parts.end
     if not len(start):
         return np.zeros(0, dtype=object)
-    _, number = np.unique(segments.loop, return_inverse=True)
+    _, number = np.unique(parts.loop, return_inverse=True)
     goes_on = (end[:-1] == start[1:]) & (number[1:] == number[:-1])
     ends = np.flatnonzero(np.append(~goes_on, True))
     numbers = np.insert(number, ends + 1, number[ends])
@@ -238,7 +167,7 @@ def _coordinates(points: Points) -> Floats:
     return np.ascontiguousarray(points).view(np.float64).reshape(*points.shape, 2)
 
 
-def _close(walls: _Segments, loops: Ints, paths: Lines, limit: Floats) -> Ints:
+def _close(walls: Segments, loops: Ints, paths: Lines, limit: Floats) -> Ints:
     """Which paths come nearer than the limit to the contour of their loop."""
     contours = _polylines(walls)
     shapely.prepare(contours)
@@ -280,8 +209,8 @@ class _Pieces:
         return _lines(self.start[rows], self.end[rows])
 
 
-def _pieces(walls: _Segments, loops: Ints, radius: Floats, left: Mask, tolerance: float) -> _Pieces:
-    here, group = _members(walls.loop, loops)
+def _pieces(walls: Segments, loops: Ints, radius: Floats, left: Mask, tolerance: float) -> _Pieces:
+    here, group = members(walls.loop, loops)
     walls = walls[here]
     way = walls.end - walls.start
     count = np.clip(np.ceil(np.abs(way) / (_PIECE * radius[group])), 1, _PIECES).astype(np.int64)
@@ -305,16 +234,16 @@ def _length_from_end(pieces: _Pieces, from_start: Mask) -> Floats:
     return np.asarray(np.where(from_start, total - length - (total - length)[first], total[last] - total))
 
 
-def _may_reach(pieces: _Pieces, ways: _Segments) -> Mask:
+def _may_reach(pieces: _Pieces, ways: Segments) -> Mask:
     """Which pieces could be within R of their way, judged from their middle."""
     way = ways.end - ways.start
     to_middle = (pieces.start + pieces.end) / 2 - ways.start
-    share = np.clip((to_middle * way.conj()).real / np.maximum(np.abs(way) ** 2, _ZERO), 0, 1)
+    share = np.clip((to_middle * way.conj()).real / np.maximum(np.abs(way) ** 2, ZERO), 0, 1)
     reach = pieces.radius[pieces.group] + np.abs(pieces.end - pieces.start) / 2
     return np.asarray(np.abs(to_middle - share * way) < reach)
 
 
-def _behind(pieces: _Pieces, ways: _Segments, only_there: Mask, tolerance: float) -> tuple[_Segments, Mask]:
+def _behind(pieces: _Pieces, ways: Segments, only_there: Mask, tolerance: float) -> tuple[Segments, Mask]:
     """The parts of ways that lie behind a piece of contour, where only those count; False where none is left."""
     before = ((ways.start - pieces.start) * pieces.normal.conj()).real + tolerance
     after = ((ways.end - pieces.start) * pieces.normal.conj()).real + tolerance
@@ -322,7 +251,7 @@ def _behind(pieces: _Pieces, ways: _Segments, only_there: Mask, tolerance: float
     share = np.divide(before, before - after, where=before != after, out=np.zeros(len(before)))
     crossing = ways.start + (ways.end - ways.start) * share
     start, end = np.where(cut_start, crossing, ways.start), np.where(cut_end, crossing, ways.end)
-    return _Segments(start, end, ways.move, ways.loop), ~(cut_start & cut_end)
+    return Segments(start, end, ways.move, ways.loop), ~(cut_start & cut_end)
 
 
 def _slant(way: Points, radius: Floats) -> Floats:
@@ -367,7 +296,7 @@ def _close_pieces(pieces: _Pieces, paths: Lines, tolerance: float) -> Ints:
     return np.asarray(rows[~_another_turn(pieces, rows, pieces.middle(rows), _REACH, (0.0,))])
 
 
-def _on_way(ways: _Segments, point: Points) -> Ints:
+def _on_way(ways: Segments, point: Points) -> Ints:
     """The way that each point lies on; -1 where that is but the bridge over a gap."""
     tree = shapely.STRtree(_lines(ways.start, ways.end))
     aside = (1 + 1j) * _TOUCH
@@ -385,7 +314,7 @@ def _touching(contour: Moves, row: NDArray[np.integer], pieces: _Pieces, cuts: _
     order = np.argsort(contour.row, kind="stable")
     own = order[np.minimum(np.searchsorted(contour.row[order], row), len(order) - 1)]
     start, way = contour.start[own] + pieces.pitch * pieces.group[cuts.piece], contour.end[own] - contour.start[own]
-    long = np.maximum(np.abs(way), _ZERO)
+    long = np.maximum(np.abs(way), ZERO)
     margin = np.minimum(_OFF_CORNER * pieces.behind / long, 0.5)
     share = np.clip(((cuts.tool - start) * way.conj()).real / long**2, margin, 1 - margin)
     is_line = (contour.row[own] == row) & np.isnan(contour.center[own])
@@ -407,16 +336,13 @@ def _worst(contour: Moves, pieces: _Pieces, cuts: _Cuts, move: Ints, by_row: boo
 
 def _bounds_part(pieces: _Pieces, cuts: _Cuts, touching: Points) -> Mask:
     """
-    Whether the finished part ends where it is cut: no block asks for the material behind, in the middle of the piece
-    or at the place itself, whichever way one looks, above all towards the point where the tool touches its own block.
+    Whether the finished part ends where it is cut: no block asks for the material behind, whichever way one looks from
+    there, above all towards the point where the tool touches its own block.
     """
     place = _off_corner(pieces, cuts.piece, cuts.place)
-    result = np.ones(len(place), dtype=np.bool_)
-    for point in (pieces.middle(cuts.piece), place):
-        left = np.flatnonzero(result)
-        result[left] = ~_another_turn(pieces, cuts.piece[left], point[left], _REACH, (0.0, *_ASIDE))
-        left = np.flatnonzero(result)
-        result[left] = ~_in_view(pieces, cuts.piece[left], point[left], touching[left])
+    result = ~_another_turn(pieces, cuts.piece, place, _REACH, (0.0, *_ASIDE))
+    left = np.flatnonzero(result)
+    result[left] = ~_in_view(pieces, cuts.piece[left], place[left], touching[left])
     left = np.flatnonzero(result)
     result[left] = ~_is_blade(pieces, cuts.piece[left], place[left])
     return result
@@ -425,7 +351,7 @@ def _bounds_part(pieces: _Pieces, cuts: _Cuts, touching: Points) -> Mask:
 def _off_corner(pieces: _Pieces, rows: Ints, place: Points) -> Points:
     """These places of pieces, but not right at their ends; behind one side of a sharp edge is in front of the other."""
     inwards = pieces.middle(rows) - place
-    share = np.minimum(1, _OFF_CORNER * pieces.behind / np.maximum(np.abs(inwards), _ZERO))
+    share = np.minimum(1, _OFF_CORNER * pieces.behind / np.maximum(np.abs(inwards), ZERO))
     return np.asarray(place + share * inwards)
 
 
@@ -446,7 +372,7 @@ def _in_view(pieces: _Pieces, rows: Ints, point: Points, target: Points) -> Mask
     start = point - pieces.behind * pieces.normal[rows]
     ray = target - start
     # A little beyond, to be sure to cross what is there.
-    beyond = 0.01 * pieces.radius[pieces.group[rows]] / np.maximum(np.abs(ray), _ZERO)
+    beyond = 0.01 * pieces.radius[pieces.group[rows]] / np.maximum(np.abs(ray), ZERO)
     return _shows_tool_side(pieces, start, ray * (1 + beyond))
 
 

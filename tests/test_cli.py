@@ -8,6 +8,7 @@ import re
 import signal
 import subprocess
 import sys
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -159,12 +160,14 @@ def test_an_interrupt_has_its_own_code(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.skipif(os.name == "nt", reason="other signals there")
 def test_an_interrupted_process_says_so_in_a_word() -> None:
-    running = process("check", "-", stdin=subprocess.PIPE)
+    # A shell that starts something in the background has it ignore the interrupt, which is inherited.
+    heed = partial(signal.signal, signal.SIGINT, signal.SIG_DFL)
+    running = process("check", "-", stdin=subprocess.PIPE, preexec_fn=heed)
     assert running.stdin is not None
     running.stdin.write(GOOD)  # and no end of file: it waits for more
     running.stdin.flush()
     try:
-        running.wait(1.5)
+        running.wait(4)
     except subprocess.TimeoutExpired:
         running.send_signal(signal.SIGINT)
     _, told = running.communicate(timeout=30)
