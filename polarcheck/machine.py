@@ -1,7 +1,5 @@
 """The control and the lathe: profiles read from TOML, each inheriting from another, every value with its source."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from pathlib import Path

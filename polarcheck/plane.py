@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
@@ -55,7 +54,7 @@ def arc_sweep(start: Points, end: Points, center: Points, kind: Codes) -> Floats
     return sweep
 
 
-class Lines(NamedTuple):
+class Lines(msgspec.Struct, frozen=True):
     """Lines seen from the center: d, and the way from the foot of the perpendicular to start and end [mm]."""
 
     offset: Floats
@@ -85,12 +84,12 @@ def lines_from_center(start: Points, end: Points) -> Lines:
     return Lines(offset, before, after, near, far)
 
 
-class Arcs(NamedTuple):
+class Arcs(msgspec.Struct, frozen=True):
     """
     Arcs seen from the center of C.
 
     away: e. inside: R - e, above 0 where the center of C lies in the circle. around: R + e. sweep: signed [rad].
-    through: the circle passes_toward through the center. crosses: so does the arc, between start and end.
+    through: the circle passes through the center. crosses: so does the arc, between start and end.
     passes_near, passes_far: the arc has the nearest, the farthest point of its circle between start and end.
     unknown: 0 to add where all is known, else NaN.
     """

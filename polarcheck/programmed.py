@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, TypedDict
+from typing import Any
 
 import msgspec
 import numpy as np
@@ -174,18 +174,7 @@ def _direction(vector: Points) -> Points:
     return vector / np.where(length > 0, length, np.nan)
 
 
-class _Ways(TypedDict):
-    has_next: Mask
-    cancelled: Mask
-    read: Mask
-    written: Mask
-    before_on: Mask
-    left_over: Mask
-    shifts_at: Rows
-    clears_at: Rows
-
-
-def _ways(path: Path, row: Rows, on: Mask, still: Mask, settings: Settings) -> _Ways:
+def _ways(path: Path, row: Rows, on: Mask, still: Mask, settings: Settings) -> dict[str, Any]:
     """The columns of Programmed that speak of the way from one moving row to the next."""
     off = path.side == Side.OFF
     # A block without movement counts one, a move of no length two (FANUC 16i-LB B-63664EN p. 170).
