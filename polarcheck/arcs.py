@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from polarcheck import plane
-from polarcheck.message import MM_PER_INCH
-from polarcheck.modal import Motion, Units
+from polarcheck.corner import ROUNDING
+from polarcheck.modal import MM_PER_INCH, Motion, Units
 
 if TYPE_CHECKING:
     from polarcheck.trace import Trace
@@ -20,8 +20,6 @@ Points = NDArray[np.complex128]
 Mask = NDArray[np.bool_]
 Rows = NDArray[np.int64]
 
-#: Of coordinates as doubles [mm].
-_ROUNDING = 1e-6
 #: One arc alone speaks for the other reading of X where it misses its circle by this many tolerances.
 _CLEARLY = 10
 
@@ -64,7 +62,7 @@ class Arcs:
 
     @cached_property
     def _ends_at_start(self) -> Mask:
-        return np.asarray(np.abs(self.trace.end - self.trace.start) <= _ROUNDING)
+        return np.asarray(np.abs(self.trace.end - self.trace.start) <= ROUNDING)
 
     @cached_property
     def off_plane(self) -> Mask:
@@ -107,7 +105,7 @@ class Arcs:
     @cached_property
     def center_on_path(self) -> Mask:
         """Arcs whose center by I and J is their start or their end."""
-        return np.asarray(np.fmin(self.start_radius, self.end_radius) <= _ROUNDING)
+        return np.asarray(np.fmin(self.start_radius, self.end_radius) <= ROUNDING)
 
     @cached_property
     def chord(self) -> Floats:
@@ -169,7 +167,7 @@ class Arcs:
         tolerance = trace.machine.arcs.tolerance
         to_center, step, other = self._to_center[arc], (trace.end - trace.start)[arc], self._step_otherwise[arc]
         moves_x, moves_c = np.abs(step.real) > tolerance, np.abs(step.imag) > tolerance
-        center, radius = (self.start_radius > _ROUNDING)[arc], self.by_radius[arc]
+        center, radius = (self.start_radius > ROUNDING)[arc], self.by_radius[arc]
         miss = np.abs(np.abs(to_center) - np.abs(step - to_center))
         miss_otherwise = np.abs(np.abs(to_center) - np.abs(other - to_center))
         limit = 2 * np.abs(self.radius[arc]) + tolerance

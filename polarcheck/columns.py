@@ -14,7 +14,7 @@ from polarcheck.codes import code_numbers, code_set, fill_down, group_tables, re
 from polarcheck.flow import Run
 from polarcheck.job import Job
 from polarcheck.machine import Machine
-from polarcheck.modal import TAKES_AXIS_WORDS, Distance, FeedMode, Motion, Side, Units
+from polarcheck.modal import MM_PER_INCH, TAKES_AXIS_WORDS, Distance, FeedMode, Motion, Side, Units
 
 if TYPE_CHECKING:
     from polarcheck.comments import Found
@@ -24,7 +24,6 @@ Mask = NDArray[np.bool_]
 Numbers = NDArray[np.int64]
 Column = TypeVar("Column")
 
-MM_PER_INCH = 25.4
 #: Without a point, a length of this many units can only be meant in least increments: no lathe moves a meter.
 _INCREMENTS_FROM = 1000.0
 _BEFORE = {"motion": Motion.NONE, "side": Side.OFF, "feed_mode": FeedMode.PER_MINUTE, "distance": Distance.ABSOLUTE}

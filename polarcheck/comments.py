@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING
 import msgspec
 import numpy as np
 
+from polarcheck.modal import MM_PER_INCH
+
 if TYPE_CHECKING:
     from polarcheck.columns import Columns
 
-MM_PER_INCH = 25.4
 
 _NUMBER = r"(\d+\s*/\s*\d+|\d*\.?\d+)"
 _UNIT = r"\s*(\"|''|IN\b\.?|INCH\b|MM\b)?"

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from polarcheck.axes import before
 from polarcheck.codes import code_set, fill_down, spelled
+from polarcheck.corner import ROUNDING
 from polarcheck.modal import COORDINATE_SETTING, Side
 from polarcheck.programs import find_programs
 
@@ -19,8 +20,6 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
-#: Of coordinates as doubles [mm].
-_ROUNDING = 1e-6
 _FIRST_WORK_OFFSET = 54
 
 
@@ -119,7 +118,7 @@ class Entry:
     @cached_property
     def x_not_positive(self) -> Mask:
         """X is 0 or below at G12.1."""
-        return np.asarray(self.trace.enters & (self.trace.x < _ROUNDING))
+        return np.asarray(self.trace.enters & (self.trace.x < ROUNDING))
 
     # ---- spindle and live tool ----
 
@@ -224,7 +223,7 @@ class Entry:
         """X0 lies off the spindle axis at G12.1."""
         if not self.trace.job.work_offsets and not self.trace.codes("G52").any():
             return np.zeros(len(self.trace), bool)
-        return np.asarray(self.trace.enters & (np.abs(self.origin_shift) > _ROUNDING))
+        return np.asarray(self.trace.enters & (np.abs(self.origin_shift) > ROUNDING))
 
     def origin_name(self, row: int) -> str:
         """What shifts it."""
@@ -252,7 +251,7 @@ class Entry:
         farthest = np.full(len(trace.sections) + 1, -np.inf)
         np.fmax.at(farthest, trace.section, np.fmax(np.abs(trace.start), np.abs(trace.end)))
         reach = 2 * farthest[trace.section] + np.nan_to_num(trace.cutter_diameter)
-        return np.asarray(trace.enters & (reach > self.stock_diameter + _ROUNDING))
+        return np.asarray(trace.enters & (reach > self.stock_diameter + ROUNDING))
 
     @cached_property
     def x_needed(self) -> Floats:
@@ -262,12 +261,12 @@ class Entry:
     @cached_property
     def inside_stock(self) -> Mask:
         """The approach stands where the cutter reaches into the stock."""
-        return np.asarray(self.approaches_stock & (self.trace.x < self.x_needed - self.clearance / 2 - _ROUNDING))
+        return np.asarray(self.approaches_stock & (self.trace.x < self.x_needed - self.clearance / 2 - ROUNDING))
 
     @cached_property
     def inside_clearance(self) -> Mask:
         """The approach stands nearer to the stock than the clearance."""
-        return np.asarray(self.approaches_stock & (self.trace.x < self.x_needed - _ROUNDING) & ~self.inside_stock)
+        return np.asarray(self.approaches_stock & (self.trace.x < self.x_needed - ROUNDING) & ~self.inside_stock)
 
     @cached_property
     def flat_from_the_side(self) -> Mask:

@@ -14,8 +14,6 @@ from polarcheck.errors import JobError, UsageError
 
 FILE_NAME = "polarcheck.toml"
 
-Length = Annotated[float, msgspec.Meta(description="in the program's own units, unless `units` is given")]
-
 
 class Tool(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """An entry of the offset table and what is mounted there; NaN is unknown."""

@@ -7,9 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from polarcheck.modal import Units
-
-MM_PER_INCH = 25.4
+from polarcheck.modal import MM_PER_INCH, Units
 
 
 class Quantity:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import enum
 
+MM_PER_INCH = 25.4
+
 
 class Motion(enum.IntEnum):
     """What a block does with its axis words."""

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from polarcheck.message import MM_PER_INCH, Quantity
-from polarcheck.modal import Side, Units
+from polarcheck.corner import ROUNDING
+from polarcheck.message import Quantity
+from polarcheck.modal import MM_PER_INCH, Side, Units
 from polarcheck.moves import any_in_row, per_row
 
 if TYPE_CHECKING:
@@ -17,9 +18,6 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
-
-#: Of coordinates as doubles [mm].
-_ROUNDING = 1e-6
 
 
 class Reach:
@@ -107,8 +105,8 @@ class Reach:
         trace, limits = self.trace, self.trace.machine.limits
         if np.all(np.isnan((limits.x_minimum, limits.x_maximum, limits.z_minimum, limits.z_maximum))):
             return np.zeros(len(trace), bool)
-        x = (self.most_x > limits.x_maximum + _ROUNDING) | (self.least_x < limits.x_minimum - _ROUNDING)
-        z = (trace.z > limits.z_maximum + _ROUNDING) | (trace.z < limits.z_minimum - _ROUNDING)
+        x = (self.most_x > limits.x_maximum + ROUNDING) | (self.least_x < limits.x_minimum - ROUNDING)
+        z = (trace.z > limits.z_maximum + ROUNDING) | (trace.z < limits.z_minimum - ROUNDING)
         return self._first(x, np.isfinite(self.most_x)) | self._first(z, trace.moves_z)
 
     def _first(self, beyond: Mask, moving: Mask) -> Mask:
@@ -130,7 +128,7 @@ class Reach:
             ("Z", "length", float(trace.z[row]), limits.z_minimum, -1),
         )
         for axis, form, value, limit, sign in reaches:
-            if np.isfinite(value) and sign * value > sign * limit + _ROUNDING:
+            if np.isfinite(value) and sign * value > sign * limit + ROUNDING:
                 reach, end = (Quantity(length, inch, diameter) for length in (value, limit))
                 return f"{axis} would go to {reach:{form}}, its travel ends at {end:{form}}"
         return ""
