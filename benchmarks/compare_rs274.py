@@ -29,8 +29,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from polarcheck.compensation import Path, Phase, Settings, ToolPath, tool_center_path
-from polarcheck.modal import Motion, Side
+from polarcheck.geometry.compensation import Method, Path, Phase, ToolPath, tool_center_path
+from polarcheck.machines.modal import Motion, Side
 
 NAN = complex(math.nan, math.nan)
 
@@ -120,7 +120,7 @@ def ours(contour: Contour) -> ToolPath:
         cancel_vector=np.full(count, NAN),
         stops_reading=np.zeros(count, dtype=np.bool_),
     )
-    return tool_center_path(path, Settings())
+    return tool_center_path(path, Method())
 
 
 def theirs(contour: Contour, rs274: str, folder: FilePath) -> Other:

@@ -20,12 +20,14 @@ from typing import Any
 
 from generate import program
 
-from polarcheck import check, machine, source
-from polarcheck.flow import straight
-from polarcheck.job import Job, with_tool
-from polarcheck.rule import load_all
-from polarcheck.trace import Trace
-from polarcheck.words import read_words
+from polarcheck.checking import check
+from polarcheck.checking.rule import load_all
+from polarcheck.execution.run import straight
+from polarcheck.machines import profiles
+from polarcheck.machines.job import Job, with_tool
+from polarcheck.reading import source
+from polarcheck.reading.words import read_words
+from polarcheck.table.trace import Trace
 
 WORD = re.compile(rb"([A-Z])([-+]?[0-9.]+)")
 CUTTERS = range(4, 13)
@@ -33,7 +35,7 @@ CUTTERS = range(4, 13)
 
 def stages(data: bytes) -> dict[str, Callable[[], Any]]:
     """What is measured, by name; each stage does all that it needs."""
-    lathe = machine.load(machine.DEFAULT).machine
+    lathe = profiles.load(profiles.DEFAULT).machine
     rules = list(load_all().values())
     without = Job()
     with_cutter = without

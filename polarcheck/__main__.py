@@ -1,5 +1,5 @@
 """`python -m polarcheck`."""
 
-from polarcheck.cli import run
+from polarcheck.commands import run
 
 run()

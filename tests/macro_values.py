@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from polarcheck.expression import Characters, Expression, evaluate, read_expression
-from polarcheck.macro import Variables
+from polarcheck.execution.expression import Characters, Expression, evaluate, read_expression
+from polarcheck.execution.macro import Variables
 
 
 def variables(**values: float | None) -> Variables:

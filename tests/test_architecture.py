@@ -1,45 +1,178 @@
-"""Modules import in one direction only, and what a small run does not need is imported late."""
+"""Packages import in the order of the data, modules in no circle, and what a small run does not need comes late."""
 
 from __future__ import annotations
 
 import ast
+import functools
 import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
 PACKAGE = Path(__file__).parent.parent / "polarcheck"
-MODULES = sorted(PACKAGE.glob("*.py"))
+#: From the top down; each may import those below it, and those that stand beside it in one tuple not.
+ORDER = (
+    ("__main__",),
+    ("commands",),
+    ("reports",),
+    ("rules",),
+    ("checking",),
+    ("table",),
+    ("execution",),
+    ("reading",),
+    ("geometry",),
+    ("machines",),
+    ("arrays", "errors"),
+)
+FLOOR = {name: number for number, names in enumerate(reversed(ORDER)) for name in names}
 LINE_LIMIT = 420
 
+Imports = dict[str, set[str]]
 
-def imports(path: Path) -> set[str]:
-    """The modules of the package that are imported at the top or inside functions, but not for types only."""
-    tree = ast.parse(path.read_text("utf-8"))
-    types_only = {
-        id(node)
-        for branch in ast.walk(tree)
-        if isinstance(branch, ast.If) and "TYPE_CHECKING" in ast.unparse(branch.test)
-        for node in ast.walk(branch)
-    }
-    found = set()
+
+def modules(folder: Path) -> dict[str, Path]:
+    """The modules of a package by dotted name, without the name of the package itself; a package is its __init__."""
+    found = {}
+    for path in sorted(folder.rglob("*.py")):
+        parts = path.relative_to(folder).with_suffix("").parts
+        found[".".join(parts[:-1] if parts[-1] == "__init__" else parts)] = path
+    return found
+
+
+@functools.cache
+def imports_of_package() -> Imports:
+    return imports(PACKAGE)
+
+
+def imports(folder: Path) -> Imports:
+    """
+    Every import of a module of the package by another: at the top, in functions, under TYPE_CHECKING, by
+    import_module with a constant name. `from polarcheck.table import moves` is an import of polarcheck.table.moves.
+    """
+    known = modules(folder)
+    found: Imports = {}
+    for name, path in known.items():
+        here = name if path.name == "__init__.py" else name.rpartition(".")[0]
+        found[name] = set(_targets(ast.parse(path.read_text("utf-8")), here, known)) - {name, ""}
+    return found
+
+
+def _targets(tree: ast.Module, here: str, known: dict[str, Path]) -> Iterator[str]:
     for node in ast.walk(tree):
-        if isinstance(node, ast.ImportFrom) and node.module and id(node) not in types_only:
-            parts = node.module.split(".")
-            if parts[0] == "polarcheck":
-                found |= {parts[1]} if len(parts) > 1 else {alias.name for alias in node.names}
-    return found - {"__version__"}
+        if isinstance(node, ast.Import):
+            names = [alias.name for alias in node.names]
+        elif isinstance(node, ast.ImportFrom):
+            parts = here.split(".")[: len(here.split(".")) - node.level + 1] if node.level else []
+            stem = ".".join([*(["polarcheck", *parts] if node.level else []), *([node.module] if node.module else [])])
+            names = [f"{stem}.{alias.name}" for alias in node.names]
+        elif isinstance(node, ast.Constant) and isinstance(node.value, str) and node.value.startswith("polarcheck."):
+            names = [node.value.partition(":")[0]]
+        else:
+            continue
+        for name in names:
+            inside = name.removeprefix("polarcheck").removeprefix(".") if name.startswith("polarcheck") else ""
+            if inside in known:
+                yield inside
+            elif inside.rpartition(".")[0] in known:
+                yield inside.rpartition(".")[0]
 
 
+def upward(found: Imports) -> list[str]:
+    """The imports that point to a package above, or to one beside."""
+    wrong = []
+    for name, targets in found.items():
+        own = name.partition(".")[0]
+        for target in targets:
+            other = target.partition(".")[0]
+            if own and own != other and FLOOR[other] >= FLOOR[own]:
+                wrong.append(f"{name} imports {target}")
+    return sorted(wrong)
+
+
+def circles(found: Imports) -> list[str]:
+    """The modules on a circle or between two: what is left when loose ends are taken away, again and again."""
+    left = {name: set(targets) for name, targets in found.items()}
+    while True:
+        imported = set().union(*left.values()) if left else set()
+        free = [name for name, targets in left.items() if not targets & left.keys() or name not in imported]
+        if not free:
+            return sorted(left)
+        for name in free:
+            del left[name]
+
+
+def test_every_package_has_its_floor() -> None:
+    assert {name.partition(".")[0] for name in modules(PACKAGE)} - {""} == set(FLOOR)
+
+
+@pytest.mark.xfail(reason="the trace still makes its own tables", strict=True)
+def test_imports_go_downwards_only() -> None:
+    assert not upward(imports_of_package())
+
+
+@pytest.mark.xfail(reason="the trace still makes its own tables", strict=True)
 def test_imports_have_no_circles() -> None:
-    graph = {path.stem: imports(path) for path in MODULES if path.stem != "__init__"}
-    graph = {name: targets & set(graph) for name, targets in graph.items()}
-    order: list[str] = []
-    while len(order) < len(graph):
-        ready = [name for name in graph if name not in order and graph[name] <= set(order)]
-        assert ready, {name: graph[name] - set(order) for name in graph if name not in order}
-        order += ready
+    assert not circles(imports_of_package())
+
+
+@pytest.fixture
+def house(tmp_path: Path) -> Path:
+    """Two rooms and a module each, to plant faults in."""
+    for name in ("table/__init__", "table/trace", "checking/__init__", "checking/engine"):
+        path = tmp_path / f"{name}.py"
+        path.parent.mkdir(exist_ok=True)
+        path.write_text("", "utf-8")
+    (tmp_path / "checking" / "engine.py").write_text("from polarcheck.table.trace import Trace\n", "utf-8")
+    assert not upward(imports(tmp_path))
+    assert not circles(imports(tmp_path))
+    return tmp_path
+
+
+@pytest.mark.parametrize(
+    "planted",
+    [
+        "from polarcheck.checking.engine import Engine",
+        "from polarcheck.checking import engine",
+        "import polarcheck.checking.engine",
+        "from ..checking import engine",
+        "def late():\n    from polarcheck.checking import engine",
+        "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    from polarcheck.checking.engine import Engine",
+        "import typing\nif typing.TYPE_CHECKING:\n    import polarcheck.checking.engine as engine",
+        "import importlib\nengine = importlib.import_module('polarcheck.checking.engine')",
+    ],
+)
+def test_a_planted_upward_import_is_seen(house: Path, planted: str) -> None:
+    (house / "table" / "trace.py").write_text(planted + "\n", "utf-8")
+    assert upward(imports(house)) == ["table.trace imports checking.engine"]
+    assert circles(imports(house)) == ["checking.engine", "table.trace"]
+
+
+@pytest.mark.parametrize("planted", ["from polarcheck.table import trace", "from . import trace"])
+def test_a_planted_circle_inside_a_package_is_seen(house: Path, planted: str) -> None:
+    (house / "table" / "trace.py").write_text(
+        "if TYPE_CHECKING:\n    from polarcheck.table.moves import Moves\n", "utf-8"
+    )
+    (house / "table" / "moves.py").write_text(planted + "\n", "utf-8")
+    assert circles(imports(house)) == ["table.moves", "table.trace"]
+    assert not upward(imports(house))
+
+
+ARRAY_TYPES = ("Mask", "Floats", "Points", "Rows", "States")
+
+
+@pytest.mark.parametrize("path", sorted(PACKAGE.rglob("*.py")), ids=lambda path: path.stem)
+def test_array_types_are_defined_once(path: Path) -> None:
+    assigned = [
+        target.id
+        for node in ast.walk(ast.parse(path.read_text("utf-8")))
+        if isinstance(node, ast.Assign | ast.AnnAssign)
+        for target in (node.targets if isinstance(node, ast.Assign) else [node.target])
+        if isinstance(target, ast.Name) and target.id in ARRAY_TYPES
+    ]
+    stand_in = path.name == "rule.py"  # where they are spared at run time, they are Any
+    assert not assigned or path.name == "arrays.py" or stand_in
 
 
 @pytest.mark.parametrize("path", sorted(PACKAGE.rglob("*.py")), ids=lambda path: path.stem)
@@ -50,7 +183,9 @@ def test_modules_can_be_read_in_one_sitting(path: Path) -> None:
 @pytest.mark.parametrize("path", sorted((PACKAGE / "rules").glob("*/*.py")), ids=lambda path: path.stem)
 def test_rules_neither_loop_nor_load_numpy(path: Path) -> None:
     tree = ast.parse(path.read_text("utf-8"))
-    assert imports(path) <= {"rule", "modal"}
+    allowed = {"checking.rule", "machines.modal", "geometry.tolerances"}
+    name = ".".join(path.relative_to(PACKAGE).with_suffix("").parts)
+    assert imports_of_package()[name.removesuffix(".__init__")] <= allowed
     assert not any(isinstance(node, ast.For | ast.While) for node in ast.walk(tree))
 
 
@@ -59,9 +194,9 @@ def test_rules_neither_loop_nor_load_numpy(path: Path) -> None:
 )
 def test_what_reads_no_program_loads_no_numpy(arguments: list[str]) -> None:
     code = (
-        "import sys, polarcheck.cli\n"
+        "import sys, polarcheck.commands\n"
         f"sys.argv = ['polarcheck', *{arguments!r}]\n"
-        "try:\n    polarcheck.cli.run()\nexcept SystemExit as end:\n    assert not end.code, end.code\n"
+        "try:\n    polarcheck.commands.run()\nexcept SystemExit as end:\n    assert not end.code, end.code\n"
         "assert not {'numpy', 'shapely'} & set(sys.modules)\n"
     )
     subprocess.run([sys.executable, "-c", code], check=True, capture_output=True)
@@ -82,5 +217,5 @@ def test_no_control_is_named_in_code() -> None:
         for node in ast.walk(tree):
             if isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in documents:
                 named = [name for name in controls if name in node.value.lower()]
-                is_default = path.name == "machine.py" and node.value == "fanuc"
+                is_default = path.name == "profiles.py" and node.value == "fanuc"
                 assert not named or is_default, (path.name, node.value)

@@ -18,10 +18,13 @@ import msgspec
 import pytest
 from click.testing import CliRunner, Result
 
-from polarcheck import __version__, batch, machine, schema
-from polarcheck.cli import main
-from polarcheck.machine import names
-from polarcheck.rule import load_all
+from polarcheck import __version__
+from polarcheck.checking import batch
+from polarcheck.checking.rule import load_all
+from polarcheck.commands import main
+from polarcheck.machines import profiles
+from polarcheck.machines.profiles import names
+from polarcheck.reports.pages import schema
 
 RAPID = "G98 G0 X60. C0\nG12.1\nG1 X40. F200\nG0 C5.\nG1 C-5.\nG13.1\n"
 GOOD = RAPID.replace("G0 C5.", "C5.")
@@ -133,7 +136,7 @@ def test_bytes_that_are_not_of_the_encoding_asked_for_are_told() -> None:
 
 def test_a_bug_is_no_finding(monkeypatch: pytest.MonkeyPatch) -> None:
     make(a__nc=GOOD)
-    monkeypatch.setattr("polarcheck.check.check_file", lambda *given, **options: 1 / 0)
+    monkeypatch.setattr("polarcheck.checking.check.check_file", lambda *given, **options: 1 / 0)
     result = check("a.nc")
     assert result.exit_code == 3
     assert result.stdout == ""
@@ -504,7 +507,7 @@ def test_rules_lists_all_of_them_by_group() -> None:
 def test_machines_lists_all_of_them() -> None:
     lines = call("machines").stdout.splitlines()
     assert [line.split()[0] for line in lines] == names()
-    default = next(line for line in lines if line.startswith(f"{machine.DEFAULT} "))
+    default = next(line for line in lines if line.startswith(f"{profiles.DEFAULT} "))
     assert default.endswith("FANUC lathe control, the default")
     assert any(line.endswith("< fanuc") for line in lines)
 
@@ -514,7 +517,7 @@ def test_a_profile_is_shown_as_a_profile_that_says_the_same(name: str) -> None:
     shown = call("machines", name).stdout
     Path("copy.toml").write_text(shown, "utf-8")
     said, meant = (
-        msgspec.structs.replace(machine.load(of).machine, meanings={}, notes=[]) for of in ("copy.toml", name)
+        msgspec.structs.replace(profiles.load(of).machine, meanings={}, notes=[]) for of in ("copy.toml", name)
     )
     assert repr(said) == repr(meant)  # NaN differs from itself
 
@@ -547,7 +550,7 @@ def test_built_in_machines_fit_their_schema_and_wrong_ones_do_not() -> None:
     import tomllib
 
     valid = jsonschema.Draft202012Validator(schema.schema("machine"))
-    for path in machine.FOLDER.glob("*.toml"):
+    for path in profiles.FOLDER.glob("*.toml"):
         valid.validate(tomllib.loads(path.read_text("utf-8")))
     for wrong in ({"limits": {"c_fed": 3}}, {"limits": {"c_feed": "fast"}}, {"limits": {"c_feed": {"source": "x"}}}):
         assert not valid.is_valid(wrong)
@@ -595,7 +598,7 @@ def test_commands_import_what_they_need_and_no_more(arguments: list[str], unwant
     here = os.fspath(Path(batch.__file__).parent.parent)
     code = (
         f"import sys; sys.path.insert(0, {here!r}); sys.argv = {['polarcheck', *arguments]}\n"
-        "from polarcheck.cli import run\n"
+        "from polarcheck.commands import run\n"
         "try: run()\n"
         f"except SystemExit as end: print(end.code, *sorted({unwanted!r} & set(sys.modules)), file=sys.stderr)"
     )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from polarcheck.comments import radius_in
+from polarcheck.table.radius_comments import radius_in
 
 
 @pytest.mark.parametrize(

@@ -15,8 +15,8 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from msgspec.structs import fields, replace
 
-from polarcheck.compensation import Path, Phase, Settings, ToolPath, tool_center_path
-from polarcheck.modal import Motion, Side
+from polarcheck.geometry.compensation import Method, Path, Phase, ToolPath, tool_center_path
+from polarcheck.machines.modal import Motion, Side
 
 CASES = FilePath(__file__).parents[1] / ".." / "shared" / "facts" / "compensation_cases.json"
 NAN = complex(math.nan, math.nan)
@@ -67,8 +67,8 @@ def path_of(*sections: Program) -> Path:
     return Path(*(np.array(column, dtype=kind) for column, kind in zip(columns, types, strict=True)))
 
 
-def control(rules: Rules) -> Settings:
-    return Settings(rules.start_up, rules.start_up_moving, rules.read_ahead, rules.interference, rules.tangent)
+def control(rules: Rules) -> Method:
+    return Method(rules.start_up, rules.start_up_moving, rules.read_ahead, rules.interference, rules.tangent)
 
 
 def transformed(program: Program, turn: complex = 1, mirror: bool = False, scale: float = 1) -> Program:
@@ -140,7 +140,7 @@ def test_closed_cases(turn, mirror, scale):
     assert len(cases) >= 24
     for case in cases:
         program = transformed(read_case(case), turn, mirror, scale)
-        tool = tool_center_path(path_of(program), Settings(start_up=case["type"]))
+        tool = tool_center_path(path_of(program), Method(start_up=case["type"]))
         if "alarm" in case:
             check_alarm(case, tool)
             continue
@@ -248,12 +248,12 @@ EXAMPLES = {
     "G41 alone, type C": (
         "-20,0 | G41 | 0,0 | 0,30 | G40 | 30,30",
         "0: -20,5 | 1: -5,5 | 2: -5,30 | 3: 0,30 | 4: 30,30",
-        Settings(start_up="C"),
+        Method(start_up="C"),
     ),
     "ramps with movement, type C as B": (
         "0,0 | G41 20,0 | 20,-30 | G40 0,-30",
         "0: 20,5 | 1: 25,5 | 1: 25,-35 | 2: 20,-35 | 2: 0,-30",
-        Settings(start_up="C", start_up_moving="B"),
+        Method(start_up="C", start_up_moving="B"),
     ),
     "ramps, type A": (
         "0,0 | G41 20,0 | 20,-30 | G40 0,-30",
@@ -270,22 +270,22 @@ EXAMPLES = {
     "three blocks without movement, five known": (
         "-20,0 | G41 0,0 | 40,0 | - | - | - | 40,30",
         "0: 0,5 | 1: 35,5 | 5: 35,30",
-        Settings(read_ahead=5),
+        Method(read_ahead=5),
     ),
     "four blocks without movement, five known": (
         "-20,0 | G41 0,0 | 40,0 | - | - | - | - | 40,30",
         "0: 0,5 | 1: 40,5 | 6: 35,30 | movement_missing 1",
-        Settings(read_ahead=5),
+        Method(read_ahead=5),
     ),
     "a stop between": (
         "-20,0 | G41 0,0 | 40,0 | M0 | 40,30",
         "0: 0,5 | 1: 40,5 | 3: 35,30 | movement_missing 1",
-        Settings(read_ahead=8),
+        Method(read_ahead=8),
     ),
     "a stop in the block itself": (
         "-20,0 | G41 0,0 | 40,0 M0 | 40,30",
         "0: 0,5 | 1: 40,5 | 2: 35,30 | movement_missing 1",
-        Settings(read_ahead=8),
+        Method(read_ahead=8),
     ),
     "a stop in the block after": (
         "-20,0 | G41 0,0 | 40,0 | 40,30 M0",
@@ -350,7 +350,7 @@ EXAMPLES = {
     "narrow slot, check off": (
         "-20,0 | G41 0,0 | 20,0 | 20,-4 | 26,-4 | 26,0 | 46,0",
         "0: 0,5 | 1: 25,5 | 2: 25,1 | 3: 21,1 | 4: 21,5 | 5: 46,5",
-        Settings(interference="ignore"),
+        Method(interference="ignore"),
     ),
     "center on the end": (
         "-20,0 | 0,0 | ccw 20,0 about 20,0 | 20,30",
@@ -402,7 +402,7 @@ def test_nothing():
     tool = tool_center_path(path_of())
     assert all(len(getattr(tool, field.name)) == 0 for field in fields(tool))
     for start_up in "ABC":
-        tool = tool_center_path(path_of(read_section("0,0 | - | G41 | G40")), Settings(start_up))
+        tool = tool_center_path(path_of(read_section("0,0 | - | G41 | G40")), Method(start_up))
         assert len(tool.row) == 0
         assert len(tool.interferes) == 3
 
@@ -660,7 +660,7 @@ def assert_same(one: ToolPath, two: ToolPath) -> None:
 @given(rings(), st.sampled_from("AB"))
 def test_tool_keeps_its_distance(program, start_up):
     path = path_of(program)
-    tool = tool_center_path(path, Settings(start_up=start_up))
+    tool = tool_center_path(path, Method(start_up=start_up))
     contour = [row for row in range(len(path.side)) if 0 < row < len(path.side) - 1]
     doubtful = np.zeros(len(path.side) + 2, dtype=bool)
     for rows in flagged(tool).values():

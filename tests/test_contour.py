@@ -13,9 +13,9 @@ import shapely
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from polarcheck.compensation import Path, Phase, Settings, tool_center_path
-from polarcheck.contour import TOLERANCE, Moves, Overcut, overcuts, sweeps
-from polarcheck.modal import Motion, Side
+from polarcheck.geometry.compensation import Method, Path, Phase, tool_center_path
+from polarcheck.geometry.contour import TOLERANCE, Curves, Overcut, overcuts, sweeps
+from polarcheck.machines.modal import Motion, Side
 
 NAN = complex(math.nan, math.nan)
 LEFT, RIGHT = Side.LEFT, Side.RIGHT
@@ -36,10 +36,10 @@ IDLE = NAN  # a block without movement in the plane
 class Loop(NamedTuple):
     """A contour from start-up to cancel with the tool center's moves; `alarm` if the control would object to it."""
 
-    contour: Moves
+    contour: Curves
     left: np.ndarray
-    path: Moves
-    ramps: Moves
+    path: Curves
+    ramps: Curves
     radius: float
     alarm: bool
 
@@ -67,12 +67,12 @@ def loop(
         here = end
     types = (np.int64, np.int8, np.bool_, *[np.complex128] * 3, np.int8, np.bool_, np.float64, np.complex128, np.bool_)
     path = Path(*(np.array(column, dtype=kind) for column, kind in zip(zip(*rows, strict=True), types, strict=True)))
-    tool = tool_center_path(path, Settings(start_up=start_up))
+    tool = tool_center_path(path, Method(start_up=start_up))
     programmed = np.flatnonzero(path.moves & (path.side != Side.OFF) & (np.arange(len(rows)) > 0))
 
-    def some(of: Path | object, kept: np.ndarray, kind: np.ndarray, row: np.ndarray) -> Moves:
+    def some(of: Path | object, kept: np.ndarray, kind: np.ndarray, row: np.ndarray) -> Curves:
         columns = (getattr(of, name)[kept] for name in ("start", "end", "center"))
-        return Moves(*columns, kind[kept], np.full(len(kept), number), row[kept])
+        return Curves(*columns, kind[kept], np.full(len(kept), number), row[kept])
 
     ramping = (tool.phase == Phase.START_UP) | (tool.phase == Phase.CANCEL)
     return Loop(
@@ -253,12 +253,12 @@ def test_the_side_and_the_direction_do_not_matter() -> None:
 # ---- loops ----
 
 
-def together(*loops: Loop) -> tuple[Moves, np.ndarray, Moves, np.ndarray]:
+def together(*loops: Loop) -> tuple[Curves, np.ndarray, Curves, np.ndarray]:
     """Several loops in one call, rows counted through."""
 
-    def joined(parts: list[Moves]) -> Moves:
+    def joined(parts: list[Curves]) -> Curves:
         shifted = [replace(part, row=part.row + 100 * k) for k, part in enumerate(parts)]
-        return Moves(*(np.concatenate([getattr(part, name) for part in shifted]) for name in Moves.__slots__))
+        return Curves(*(np.concatenate([getattr(part, name) for part in shifted]) for name in Curves.__slots__))
 
     return (
         joined([each.contour for each in loops]),
@@ -269,7 +269,7 @@ def together(*loops: Loop) -> tuple[Moves, np.ndarray, Moves, np.ndarray]:
 
 
 def numbered(of: Loop, number: int) -> Loop:
-    def moves(part: Moves) -> Moves:
+    def moves(part: Curves) -> Curves:
         return replace(part, loop=np.full(len(part.row), number))
 
     return of._replace(contour=moves(of.contour), path=moves(of.path), ramps=moves(of.ramps))
@@ -320,12 +320,12 @@ def test_a_side_that_another_turn_takes_away_in_part() -> None:
     assert found.place[0].real > 21.9
 
 
-def by_hand(*lines: tuple[complex, complex]) -> Moves:
+def by_hand(*lines: tuple[complex, complex]) -> Curves:
     """Lines of one loop, rows from 1."""
     start, end = np.array(lines, dtype=complex).T
     count = len(lines)
     kind, loops = np.full(count, Motion.LINE, dtype=np.int8), np.zeros(count, dtype=np.int64)
-    return Moves(start, end, np.full(count, NAN), kind, loops, np.arange(1, count + 1))
+    return Curves(start, end, np.full(count, NAN), kind, loops, np.arange(1, count + 1))
 
 
 def test_a_loop_is_judged_by_its_own_radius() -> None:
@@ -340,7 +340,7 @@ def test_a_loop_is_judged_by_its_own_radius() -> None:
 
 def test_without_moves() -> None:
     none = loop(45, *SQUARE, 45)
-    empty = Moves(*(getattr(none.path, name)[:0] for name in Moves.__slots__))
+    empty = Curves(*(getattr(none.path, name)[:0] for name in Curves.__slots__))
     nothing = np.zeros(0)
     assert len(overcuts(none.contour, none.left, empty, nothing).row) == 0
     assert len(overcuts(empty, none.left[:0], none.path, np.full(len(none.path.row), 5.0)).row) == 0
@@ -367,17 +367,17 @@ def test_a_gap_in_the_path_cuts_nothing() -> None:
     """Rows that are left out leave a gap, whose bridge would run right across the part."""
     square = LEGAL["square"]
     kept = np.isin(square.path.row, [1, 3])
-    path = Moves(*(getattr(square.path, name)[kept] for name in ("start", "end", "center", "kind", "loop", "row")))
+    path = Curves(*(getattr(square.path, name)[kept] for name in ("start", "end", "center", "kind", "loop", "row")))
     shortened = replace(path, end=np.where(path.row == 1, path.start + 1j, path.end))
     assert list(overcuts(square.contour, square.left, shortened, np.full(2, 5.0)).row) == []
 
 
 def test_an_arc_that_misses_its_end_is_followed_to_it() -> None:
     """The tool's path misses its circle alike; 3410 allows some hundredths."""
-    contour = Moves(
+    contour = Curves(
         *columns([(20, 0 + 20.02j, 0)]), np.array([Motion.CCW], np.int8), np.zeros(1, int), np.zeros(1, int)
     )
-    path = Moves(*columns([(25, 0 + 25.02j, 0)]), np.array([Motion.CCW], np.int8), np.zeros(1, int), np.zeros(1, int))
+    path = Curves(*columns([(25, 0 + 25.02j, 0)]), np.array([Motion.CCW], np.int8), np.zeros(1, int), np.zeros(1, int))
     left = np.array([False])
     assert len(overcuts(contour, left, path, np.full(1, 5.0)).row) == 0
     assert overcuts(contour, left, path, np.full(1, 5.01)).depth == pytest.approx([0.01], abs=0.001)
@@ -440,7 +440,7 @@ def test_a_ramp_over_passes_still_to_come_is_none() -> None:
 # ---- random contours against plain distances ----
 
 
-def line_of(moves: Moves, which: int) -> shapely.LineString:
+def line_of(moves: Curves, which: int) -> shapely.LineString:
     start, end, center = moves.start[which], moves.end[which], moves.center[which]
     if np.isnan(center):
         return shapely.LineString([(start.real, start.imag), (end.real, end.imag)])

@@ -9,14 +9,16 @@ from typing import Any
 import numpy as np
 import pytest
 
-from polarcheck import check, job, machine, native, source
-from polarcheck.finding import FileReport
-from polarcheck.modal import Motion
-from polarcheck.rule import load_all
-from polarcheck.trace import Trace
+from polarcheck.checking import check
+from polarcheck.checking.finding import FileReport
+from polarcheck.checking.rule import load_all
+from polarcheck.machines import job, profiles
+from polarcheck.machines.modal import Motion
+from polarcheck.reading import source, translation
+from polarcheck.table.trace import Trace
 
 SAMPLES = Path(__file__).parent.parent / "sample_programs"
-FOLDERS = [name for name in machine.names() if name != "fanuc"]
+FOLDERS = [name for name in profiles.names() if name != "fanuc"]
 
 M700V = """
 G17 G90 G94 G0 X40. C0 Z0
@@ -90,14 +92,14 @@ def trace_of(program: str, name: str, changes: dict[str, Any] | None = None, *to
     work = job.Job()
     for tool in tools:
         work = job.with_tool(work, tool)
-    return check.read_traces(program.encode(), machine.load(name, changes).machine, work)[0][1]
+    return check.read_traces(program.encode(), profiles.load(name, changes).machine, work)[0][1]
 
 
 def report_of(program: str, name: str, changes: dict[str, Any] | None = None, *tools: str) -> FileReport:
     work = job.Job()
     for tool in tools:
         work = job.with_tool(work, tool)
-    return check.check_file(program.encode(), machine.load(name, changes).machine, work, list(load_all().values()))
+    return check.check_file(program.encode(), profiles.load(name, changes).machine, work, list(load_all().values()))
 
 
 def said(report: FileReport) -> list[tuple[int, str]]:
@@ -124,7 +126,7 @@ def test_samples_give_what_they_expect(path: Path) -> None:
     work = job.load(path.parent / "polarcheck.toml")
     assert work.machine == path.parent.name
     plain = re.sub(r"[ \t]*;?[ \t]*\(expect: [^)\n]*\)", "", text)
-    report = check.check_file(plain.encode(), machine.load(path.parent.name).machine, work, list(load_all().values()))
+    report = check.check_file(plain.encode(), profiles.load(path.parent.name).machine, work, list(load_all().values()))
     assert said(report) == sorted(expected)
 
 
@@ -147,7 +149,7 @@ def test_each_control_has_a_good_and_a_bad_sample(name: str) -> None:
     ],
 )
 def test_the_example_of_the_manual_closes_in_one_reading_of_x(program: str, name: str, right: str) -> None:
-    assert machine.load(name).machine.polar.x == right
+    assert profiles.load(name).machine.polar.x == right
     for reading in ("diameter", "radius"):
         trace = trace_of(program, name, {"polar": {"x": reading}, "control": {"x": reading}})
         assert trace.is_arc.any()
@@ -354,10 +356,10 @@ def test_override_and_true_feed() -> None:
 def test_native_words_keep_every_position() -> None:
     words = {"TRANSMIT": "G12.1", "CR=": "R", "TRAFOOF": "G13.1", "AB": ""}
     text = "N10 transmit\nG3X5CR=2.5 XTRANSMIT TRANSMITX\nTRAFOOF(1) AB CAB AB1\n"
-    found = native.translated(source.read(text.encode()), words)
+    found = translation.translated(source.read(text.encode()), words)
     assert found.code.tobytes() == b"N10    G12.1\nG3X5  R2.5 XTRANSMIT TRANSMITX\n  G13.1(1)    CAB AB1\n"
     assert found.excerpt(4, 12) == "transmit"
-    assert native.translated(found, {}) is found
+    assert translation.translated(found, {}) is found
 
 
 def test_messages_name_the_native_word() -> None:
@@ -424,7 +426,7 @@ def test_alarm_of_the_control(program: str, name: str, rule: str, alarm: str) ->
 
 @pytest.mark.parametrize("name", ["haas-lathe", "siemens-transmit"])
 def test_rapid_traverse_is_silent_where_the_control_takes_it(name: str) -> None:
-    on, off = machine.load(name).machine.polar.on[0], machine.load(name).machine.polar.off[0]
+    on, off = profiles.load(name).machine.polar.on[0], profiles.load(name).machine.polar.off[0]
     program = f"G17 G98 G0 X60. C0\n{on}\nG0 X40. Y0\nG1 Y5. F100\n{off}\n"
     assert "rapid-in-polar" not in {finding.rule for finding in report_of(program, name).findings}
 

@@ -7,10 +7,11 @@ from pathlib import Path
 import msgspec
 import pytest
 
-from polarcheck import check, machine
-from polarcheck.finding import FileReport
-from polarcheck.job import Job, with_tool
-from polarcheck.rule import load_all
+from polarcheck.checking import check
+from polarcheck.checking.finding import FileReport
+from polarcheck.checking.rule import load_all
+from polarcheck.machines import profiles
+from polarcheck.machines.job import Job, with_tool
 
 CORPUS = Path(__file__).parent.parent.parent / "shared" / "corpus"
 FILES = sorted(path for path in CORPUS.rglob("*") if path.is_file() and path.name != "MANIFEST.tsv")
@@ -27,7 +28,7 @@ def report_of(name: str, lathe: str = "fanuc", tools: tuple[str, ...] = ()) -> F
     for tool in tools:
         job = with_tool(job, tool)
     path = CORPUS / name
-    return check.check_file(path.read_bytes(), machine.load(lathe).machine, job, RULES, path.name)
+    return check.check_file(path.read_bytes(), profiles.load(lathe).machine, job, RULES, path.name)
 
 
 #: File, machine, offsets, and the errors and warnings that a good machinist would agree with.

@@ -6,20 +6,21 @@ from typing import Any
 
 import pytest
 
-from polarcheck import check, job, machine
-from polarcheck.rule import load_all
-from polarcheck.trace import Trace
+from polarcheck.checking import check
+from polarcheck.checking.rule import load_all
+from polarcheck.machines import job, profiles
+from polarcheck.table.trace import Trace
 
 RULES = [rule for rule in load_all().values() if rule.group == "setup"]
 SECTION = "G12.1\nG1 X40. F200\nC10.\nX60.\nG13.1\n"
 
 
-def traced(program: str, profile: str = machine.DEFAULT, work: dict[str, Any] | None = None) -> Trace:
+def traced(program: str, profile: str = profiles.DEFAULT, work: dict[str, Any] | None = None) -> Trace:
     given = job.from_table(work or {}, "test")
-    return check.read_traces(program.encode(), machine.load(profile).machine, given)[0][1]
+    return check.read_traces(program.encode(), profiles.load(profile).machine, given)[0][1]
 
 
-def said(program: str, profile: str = machine.DEFAULT, work: dict[str, Any] | None = None) -> list[str]:
+def said(program: str, profile: str = profiles.DEFAULT, work: dict[str, Any] | None = None) -> list[str]:
     found = check.check_trace(traced(program, profile, work), RULES, {})
     return [finding.rule for finding in found.findings]
 

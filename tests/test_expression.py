@@ -10,9 +10,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from macro_values import expression, same, value, variables
 
-from polarcheck.arithmetic import UNKNOWN, Arithmetic, round_to
-from polarcheck.expression import ambiguous, decide, evaluate
-from polarcheck.macro import Variables
+from polarcheck.execution.arithmetic import UNKNOWN, Arithmetic, round_to
+from polarcheck.execution.expression import ambiguous, decide, evaluate
+from polarcheck.execution.macro import Variables
 
 WIDE = Arithmetic(largest=1e308)
 

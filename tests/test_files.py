@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from polarcheck import files
 from polarcheck.errors import PolarcheckError, SourceError
+from polarcheck.reading import files
 
 HOOKS = Path(__file__).parent.parent / ".pre-commit-hooks.yaml"
 BLOCKS = "G98 G0 X60. C0\nG12.1\nG1 X40. F200\nG13.1\n"
@@ -187,7 +187,7 @@ def test_the_hook_leaves_other_files(name: str) -> None:
 
 
 def test_the_hook_runs_a_command_that_exists() -> None:
-    from polarcheck.cli import main
+    from polarcheck.commands import main
 
     program, command, *options = hook("entry").split()
     assert program == "polarcheck"

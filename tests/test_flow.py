@@ -10,13 +10,14 @@ import msgspec
 import numpy as np
 import pytest
 
-from polarcheck import check, machine
-from polarcheck.finding import FileReport
-from polarcheck.job import Job, Running, with_tool
-from polarcheck.rule import load_all
-from polarcheck.trace import Trace
+from polarcheck.checking import check
+from polarcheck.checking.finding import FileReport
+from polarcheck.checking.rule import load_all
+from polarcheck.machines import profiles
+from polarcheck.machines.job import Job, Running, with_tool
+from polarcheck.table.trace import Trace
 
-MACHINE = machine.load("fanuc").machine
+MACHINE = profiles.load("fanuc").machine
 JOB = with_tool(Job(), "1:radius=4")
 RULES = list(load_all().values())
 
@@ -176,7 +177,7 @@ def test_a_called_program_is_found_in_the_folders_only(tmp_path: Path) -> None:
 def test_a_loop_counts_a_finding_and_shows_its_worst_run() -> None:
     loop = "WHILE[#1 LT 5]DO1\n#1=#1+1\nX[20.-4*#1] F2000\nC[#1]\nC0\nEND1\n"
     program = HEAD + f"#1=0\nG12.1\nG1 X60. F1500\n{loop}X60.\nG13.1\nM30\n"
-    slow = machine.load("fanuc", {"limits": {"c_feed": 3600}}).machine
+    slow = profiles.load("fanuc", {"limits": {"c_feed": 3600}}).machine
     report = check.check_file(program.encode(), slow, JOB, RULES)
     found = [f for f in report.findings if f.rule == "c-feed-above-limit"]
     assert all(f.count > 1 for f in found)

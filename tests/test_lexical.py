@@ -9,17 +9,19 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from polarcheck import check, machine
-from polarcheck.finding import Finding
-from polarcheck.job import Job
-from polarcheck.rule import load_all
+from polarcheck.checking import check
+from polarcheck.checking.finding import Finding
+from polarcheck.checking.rule import load_all
+from polarcheck.machines import profiles
+from polarcheck.machines.job import Job
+from polarcheck.machines.machine import Machine
 
 RULES = [rule for rule in load_all().values() if rule.group in ("text", "setup")]
 
 
 @cache
-def profile(**control: int) -> machine.Machine:
-    return machine.load(machine.DEFAULT, {"control": control} if control else None).machine
+def profile(**control: int) -> Machine:
+    return profiles.load(profiles.DEFAULT, {"control": control} if control else None).machine
 
 
 def findings(program: str | bytes, rule: str = "", **control: int) -> list[Finding]:

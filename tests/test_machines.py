@@ -10,18 +10,22 @@ import msgspec
 import pytest
 from click.testing import CliRunner
 
-from polarcheck import check, controls_table, machine, profile_file
-from polarcheck.cli import main
+from polarcheck.checking import check
+from polarcheck.checking.finding import ERROR
+from polarcheck.checking.rule import load_all
+from polarcheck.commands import main
 from polarcheck.errors import MachineError, UsageError
-from polarcheck.finding import ERROR
-from polarcheck.job import Job
-from polarcheck.rule import load_all
+from polarcheck.machines import profiles
+from polarcheck.machines.job import Job
+from polarcheck.machines.machine import Machine
+from polarcheck.machines.parameters import Origin
+from polarcheck.reports.pages import controls, new_machine
 
 PACKAGE = Path(__file__).parent.parent / "polarcheck"
-GROUPS = [field for field in msgspec.structs.fields(machine.Machine) if isinstance(field.type, type)]
+GROUPS = [field for field in msgspec.structs.fields(Machine) if isinstance(field.type, type)]
 GROUPS = [field for field in GROUPS if issubclass(field.type, msgspec.Struct)]
 #: What shows profiles without using them.
-SHOWN = ("machine.py", "manual.py", "schema.py", "profile_file.py", "controls_table.py")
+SHOWN = ("machine.py", "manual.py", "schema.py", "new_machine.py", "controls.py")
 #: Severities of rules that hang on a value of the profile.
 HANGS_ON = {
     "polar.allowed_codes": "code-not-allowed-in-polar",
@@ -35,9 +39,9 @@ def _in_an_empty_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None
     monkeypatch.chdir(tmp_path)
 
 
-def load(text: str) -> machine.Profile:
+def load(text: str) -> profiles.Profile:
     Path("own.toml").write_text(text, "utf-8")
-    return machine.load("own.toml")
+    return profiles.load("own.toml")
 
 
 def complaint(text: str) -> str:
@@ -51,17 +55,17 @@ def complaint(text: str) -> str:
 # ---- the built-in profiles ----
 
 
-@pytest.mark.parametrize("name", machine.names())
+@pytest.mark.parametrize("name", profiles.names())
 def test_every_value_has_a_source(name: str) -> None:
-    profile = machine.load(name)
+    profile = profiles.load(name)
     without = [key for key, origin in profile.origins.items() if not origin.source and key not in ("title", "notes")]
     assert not without
 
 
-@pytest.mark.parametrize("name", machine.names())
+@pytest.mark.parametrize("name", profiles.names())
 def test_every_value_that_is_known_is_in_the_profile(name: str) -> None:
     """What has no origin is a default of the program, which only says that nothing is known."""
-    profile = machine.load(name)
+    profile = profiles.load(name)
     table = msgspec.to_builtins(profile.machine)
     for field in GROUPS:
         for key, value in table[field.name].items():
@@ -72,14 +76,14 @@ def test_every_value_that_is_known_is_in_the_profile(name: str) -> None:
 @pytest.mark.parametrize("field", GROUPS, ids=lambda field: field.name)
 def test_every_key_is_used(field: msgspec.structs.FieldInfo) -> None:
     code = "".join(path.read_text("utf-8") for path in PACKAGE.rglob("*.py") if path.name not in SHOWN)
-    code += Path(PACKAGE / "machine.py").read_text("utf-8").partition("class Profile")[2]
+    code += Path(PACKAGE / "machines" / "profiles.py").read_text("utf-8").partition("class Profile")[2]
     unused = [key.name for key in msgspec.structs.fields(field.type) if not re.search(rf"\.{key.name}\b", code)]
     assert not unused
 
 
-@pytest.mark.parametrize("name", machine.names())
+@pytest.mark.parametrize("name", profiles.names())
 def test_what_is_in_doubt_makes_no_error(name: str) -> None:
-    profile = machine.load(name)
+    profile = profiles.load(name)
     rules = load_all()
     severities = profile.machine.severities
     for key, origin in profile.origins.items():
@@ -92,30 +96,30 @@ def test_what_is_in_doubt_makes_no_error(name: str) -> None:
             assert severities.get(HANGS_ON[key], of_rule) != "error", key
 
 
-@pytest.mark.parametrize("name", machine.names())
+@pytest.mark.parametrize("name", profiles.names())
 def test_alarms_of_another_control_are_not_inherited(name: str) -> None:
-    profile = machine.load(name)
+    profile = profiles.load(name)
     for key, origin in profile.origins.items():
         if key.startswith("alarms."):
             families = {"fanuc": ("fanuc", "fanuc-16i", "fanuc-30i", "turning-center", "doosan")}
-            assert name in families.get(origin.profile, (origin.profile, *machine.names()))
+            assert name in families.get(origin.profile, (origin.profile, *profiles.names()))
             assert origin.profile in profile.chain
 
 
-@pytest.mark.parametrize("name", machine.names())
+@pytest.mark.parametrize("name", profiles.names())
 def test_parameters_set_what_there_is(name: str) -> None:
     """Every setting of every parameter gives a machine that can be loaded."""
-    for parameter, meaning in machine.load(name).machine.meanings.items():
+    for parameter, meaning in profiles.load(name).machine.meanings.items():
         for setting in (*meaning.values, *([12] if meaning.key else [])):
             number = int(setting) if str(setting).isdecimal() else setting
-            changed = machine.load(name, {"parameters": {parameter: number}})
+            changed = profiles.load(name, {"parameters": {parameter: number}})
             for key in meaning.values.get(str(setting), {meaning.key: None} if meaning.key else {}):
                 assert changed.origins[key].source.startswith(f"parameter {parameter} = ")
 
 
 def test_the_table_of_controls_is_up_to_date() -> None:
-    """`python -m polarcheck.controls_table > docs/controls.md` writes it anew."""
-    assert (PACKAGE.parent / "docs" / "controls.md").read_text("utf-8") == controls_table.text()
+    """`python -m polarcheck.reports.pages.controls > docs/controls.md` writes it anew."""
+    assert (PACKAGE.parent / "docs" / "controls.md").read_text("utf-8") == controls.text()
 
 
 # ---- files of the user's own ----
@@ -126,9 +130,9 @@ def test_the_nearest_profile_counts() -> None:
     profile = load("inherits = 'shop.toml'\n[limits]\nc_feed = { value = 7200, source = 'plate' }\n")
     assert profile.chain == ("own.toml", "shop.toml", "fanuc-30i", "fanuc")
     assert (profile.machine.limits.c_feed, profile.machine.limits.keep_out) == (7200, 0.5)
-    assert profile.origins["limits.c_feed"] == machine.Origin("own.toml", "plate")
+    assert profile.origins["limits.c_feed"] == Origin("own.toml", "plate")
     assert profile.origins["limits.keep_out"].profile == "shop.toml"
-    assert machine.load("own.toml", {"limits": {"c_feed": 100}}).machine.limits.c_feed == 100
+    assert profiles.load("own.toml", {"limits": {"c_feed": 100}}).machine.limits.c_feed == 100
 
 
 def test_tables_of_another_control_can_be_left_behind() -> None:
@@ -199,7 +203,7 @@ def test_what_is_wrong_is_said_in_one_line(text: str, said: str) -> None:
     ],
 )  # fmt: skip
 def test_a_parameter_sets_what_it_stands_for(name: str, parameters: dict[str, Any], values: dict[str, Any]) -> None:
-    profile = machine.load(name, {"parameters": parameters})
+    profile = profiles.load(name, {"parameters": parameters})
     for key, value in values.items():
         group, _, last = key.partition(".")
         assert getattr(getattr(profile.machine, group), last) == value
@@ -208,16 +212,16 @@ def test_a_parameter_sets_what_it_stands_for(name: str, parameters: dict[str, An
 def test_a_value_beside_a_parameter_counts() -> None:
     own = "inherits = 'fanuc'\n[parameters]\n1422 = 3600\n[limits]\nc_feed = 100\n"
     assert load(own).machine.limits.c_feed == 100
-    assert machine.load("own.toml", {"parameters": {"1422": 50}}).machine.limits.c_feed == 50
+    assert profiles.load("own.toml", {"parameters": {"1422": 50}}).machine.limits.c_feed == 50
 
 
 # ---- a file for a lathe of one's own ----
 
 
-@pytest.mark.parametrize("name", machine.names())
+@pytest.mark.parametrize("name", profiles.names())
 def test_a_new_profile_can_be_read_empty_and_filled_in(name: str) -> None:
-    text = profile_file.new("NL2000", name)
-    of_parent = machine.load(name).machine
+    text = new_machine.new("NL2000", name)
+    of_parent = profiles.load(name).machine
     assert repr(msgspec.structs.replace(load(text).machine, title=of_parent.title)) == repr(of_parent)
     filled = load(re.sub(r"^#(?=[\w\"])", "", text, flags=re.MULTILINE))
     assert filled.machine.limits.c_feed == 3600
@@ -226,12 +230,12 @@ def test_a_new_profile_can_be_read_empty_and_filled_in(name: str) -> None:
 
 
 def test_a_new_profile_replaces_no_file() -> None:
-    assert profile_file.write("NL2000", "fanuc-30i") == Path("NL2000.toml")
-    assert machine.load("NL2000.toml").chain == ("NL2000.toml", "fanuc-30i", "fanuc")
+    assert new_machine.write("NL2000", "fanuc-30i") == Path("NL2000.toml")
+    assert profiles.load("NL2000.toml").chain == ("NL2000.toml", "fanuc-30i", "fanuc")
     with pytest.raises(UsageError, match="is there already"):
-        profile_file.write("NL2000.toml", "fanuc")
+        new_machine.write("NL2000.toml", "fanuc")
     with pytest.raises(MachineError, match="unknown machine"):
-        profile_file.write("NL2001", "gone")
+        new_machine.write("NL2001", "gone")
     assert not Path("NL2001.toml").exists()
 
 
@@ -245,5 +249,5 @@ def test_a_profile_of_ones_own_checks() -> None:
 def test_machines_new_writes_the_file() -> None:
     found = CliRunner().invoke(main, ["machines", "new", "NL2000", "--from", "fanuc-30i"], prog_name="polarcheck")
     assert (found.exit_code, found.stdout) == (0, "NL2000.toml written; check with --machine NL2000.toml\n")
-    assert machine.load("NL2000.toml").chain[1] == "fanuc-30i"
+    assert profiles.load("NL2000.toml").chain[1] == "fanuc-30i"
     assert CliRunner().invoke(main, ["machines", "fanuc", "NL2000"], prog_name="polarcheck").exit_code == 2

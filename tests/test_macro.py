@@ -9,10 +9,10 @@ from macro_values import same, value, variables
 from test_expression import FAULTS_OF_CALCULATING
 from test_statement import FAULTS_OF_READING
 
-from polarcheck.arithmetic import UNKNOWN
-from polarcheck.expression import RULES, Fault
-from polarcheck.macro import VariableRanges, Variables, assign, assign_arguments, called_program, word_value
-from polarcheck.statement import read_statement
+from polarcheck.execution.arithmetic import UNKNOWN
+from polarcheck.execution.expression import RULES, Fault
+from polarcheck.execution.macro import VariableRanges, Variables, assign, assign_arguments, called_program, word_value
+from polarcheck.execution.statement import read_statement
 
 NEWER = VariableRanges(retained=((500, 999), (98000, 98499)))
 

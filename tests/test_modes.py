@@ -6,8 +6,9 @@ import textwrap
 
 import pytest
 
-from polarcheck import check, job, machine
-from polarcheck.rule import examples, load_all
+from polarcheck.checking import check
+from polarcheck.checking.rule import examples, load_all
+from polarcheck.machines import job, profiles
 
 RULES = [rule for rule in load_all().values() if rule.group in ("polar", "compensation")]
 
@@ -214,6 +215,6 @@ def test_one_mistake_is_one_finding(page: str) -> None:
     work = job.Job()
     for tool in example.tools:
         work = job.with_tool(work, tool)
-    lathe = machine.load(example.machine or machine.DEFAULT, changes).machine
+    lathe = profiles.load(example.machine or profiles.DEFAULT, changes).machine
     report = check.check_file(example.program.encode(), lathe, work, RULES)
     assert [(finding.line, finding.rule) for finding in report.findings] == list(example.expected)

@@ -6,9 +6,10 @@ from typing import Any
 
 import pytest
 
-from polarcheck import check, job, machine
-from polarcheck.finding import FileReport
-from polarcheck.rule import load_all
+from polarcheck.checking import check
+from polarcheck.checking.finding import FileReport
+from polarcheck.checking.rule import load_all
+from polarcheck.machines import job, profiles
 
 RULES = [rule for rule in load_all().values() if rule.group in ("motion", "feed")]
 ENTRY = "O1 T0808\nG98 G0 X60. C0\nG12.1\n"
@@ -18,7 +19,7 @@ def report(program: str, *tools: str, name: str = "fanuc", **changes: dict[str, 
     work = job.Job()
     for tool in tools:
         work = job.with_tool(work, tool)
-    return check.check_file(program.encode(), machine.load(name, changes).machine, work, RULES)
+    return check.check_file(program.encode(), profiles.load(name, changes).machine, work, RULES)
 
 
 def said(found: FileReport) -> list[tuple[int, str]]:

@@ -11,8 +11,8 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from polarcheck import plane, polar, rates
-from polarcheck.modal import Motion
+from polarcheck.geometry import plane, polar, rates
+from polarcheck.machines.modal import Motion
 
 NAN = complex(math.nan, math.nan)
 LINE, CW, CCW = Motion.LINE, Motion.CW, Motion.CCW

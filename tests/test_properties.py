@@ -13,14 +13,16 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from msgspec.structs import replace
 
-from polarcheck import check, machine
-from polarcheck.finding import FileReport
-from polarcheck.job import Job, with_tool
-from polarcheck.rule import load_all
-from polarcheck.trace import Trace
+from polarcheck.checking import check
+from polarcheck.checking.finding import FileReport
+from polarcheck.checking.rule import load_all
+from polarcheck.machines import profiles
+from polarcheck.machines.job import Job, with_tool
+from polarcheck.machines.machine import Machine
+from polarcheck.table.trace import Trace
 
 RULES = list(load_all().values())
-FANUC = machine.load("fanuc", {"limits": {"c_feed": 7200.0}}).machine
+FANUC = profiles.load("fanuc", {"limits": {"c_feed": 7200.0}}).machine
 EXAMPLES = 40
 
 
@@ -90,11 +92,11 @@ def program(moves: list[Move], *, unit: float = 1.0, incremental: bool = False, 
     return "\n".join([*lines, "G13.1", f"G0 X{words(90 / unit)}", "M30", ""])
 
 
-def trace_of(text: str, lathe: machine.Machine = FANUC, job: Job | None = None) -> Trace:
+def trace_of(text: str, lathe: Machine = FANUC, job: Job | None = None) -> Trace:
     return check.read_traces(text.encode(), lathe, job or Job())[0][1]
 
 
-def report_of(text: str, lathe: machine.Machine = FANUC, job: Job | None = None) -> FileReport:
+def report_of(text: str, lathe: Machine = FANUC, job: Job | None = None) -> FileReport:
     return check.check_file(text.encode(), lathe, job or Job(), RULES)
 
 
@@ -149,7 +151,7 @@ def test_inch_twin_has_the_same_path(moves: list[Move]) -> None:
 @given(contours())
 @settings(max_examples=EXAMPLES, deadline=None)
 def test_radius_twin_has_the_same_path(moves: list[Move]) -> None:
-    by_radius = machine.load("fanuc", {"limits": {"c_feed": 7200.0}, "polar": {"x": "radius"}}).machine
+    by_radius = profiles.load("fanuc", {"limits": {"c_feed": 7200.0}, "polar": {"x": "radius"}}).machine
     same_path(trace_of(program(moves)), trace_of(program(moves, x_factor=1.0), by_radius))
 
 
@@ -241,7 +243,8 @@ def test_radius_zero_gives_the_programmed_path(corner: float) -> None:
 def test_raising_a_limit_adds_no_finding(moves: list[Move], limit: float, more: float) -> None:
     text = program(moves)
     low, high = (
-        report_of(text, machine.load("fanuc", {"limits": {"c_feed": value}}).machine) for value in (limit, limit * more)
+        report_of(text, profiles.load("fanuc", {"limits": {"c_feed": value}}).machine)
+        for value in (limit, limit * more)
     )
     assert {(f.line, f.rule) for f in high.findings} <= {(f.line, f.rule) for f in low.findings}
 

@@ -13,12 +13,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from polarcheck import schema
-from polarcheck.excerpt import cells, excerpt, visible
-from polarcheck.finding import Edit, FileReport, Finding, Fix, NotEvaluated, Report, Summary, Tool
+from polarcheck.checking.finding import Edit, FileReport, Finding, Fix, NotEvaluated, Producer, Report, Summary
+from polarcheck.checking.rule import load_all
+from polarcheck.reading.excerpt import cells, excerpt, visible
 from polarcheck.reports import Background, formats, render
+from polarcheck.reports.pages import schema
 from polarcheck.reports.text import first_sentence
-from polarcheck.rule import load_all
 
 PAGE_WHY = "The control stops with an alarm at a block with G0, and just so at a move without a code of its own"
 
@@ -61,7 +61,7 @@ def report(*files: FileReport) -> Report:
         notes=severities.count("note"),
         silenced=0,
     )
-    return Report(schema=1, tool=Tool("polarcheck", "0.1.0"), machine="fanuc", files=list(files), summary=summary)
+    return Report(schema=1, tool=Producer("polarcheck", "0.1.0"), machine="fanuc", files=list(files), summary=summary)
 
 
 def text(*files: FileReport, lines: dict[int, str] | None = None, **changes: Any) -> str:

@@ -9,9 +9,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from polarcheck import check, job, machine
-from polarcheck.finding import FileReport
-from polarcheck.rule import TABLES, Example, Rule, examples, load_all
+from polarcheck.checking import check
+from polarcheck.checking.finding import FileReport
+from polarcheck.checking.rule import TABLES, Example, Rule, examples, load_all
+from polarcheck.machines import job, profiles
 
 RULES = load_all()
 EXAMPLES = [
@@ -37,7 +38,7 @@ def settings_of(example: Example) -> tuple[dict[str, Any], dict[str, Any]]:
 
 def report_of(example: Example, only: Rule | None = None, program: str | None = None) -> FileReport:
     for_machine, for_job = settings_of(example)
-    profile = machine.load(example.machine or machine.DEFAULT, for_machine)
+    profile = profiles.load(example.machine or profiles.DEFAULT, for_machine)
     work = job.from_table(for_job, "example")
     for tool in example.tools:
         work = job.with_tool(work, tool)
@@ -94,6 +95,6 @@ def test_a_constant_mask_fails(rule: Rule, value: bool) -> None:
 
 
 def test_every_alarm_and_severity_of_a_machine_names_a_rule() -> None:
-    for name in machine.names():
-        profile = machine.load(name).machine
+    for name in profiles.names():
+        profile = profiles.load(name).machine
         assert set(profile.alarms) | set(profile.severities) <= set(RULES), name

@@ -9,10 +9,13 @@ import msgspec
 import pytest
 from syrupy.assertion import SnapshotAssertion
 
-from polarcheck import check, job, machine, tables
-from polarcheck.finding import FileReport
-from polarcheck.rule import load_all
-from polarcheck.trace import Trace
+from polarcheck.checking import check
+from polarcheck.checking.finding import FileReport
+from polarcheck.checking.rule import load_all
+from polarcheck.machines import job, profiles
+from polarcheck.machines.machine import Machine
+from polarcheck.reports.pages import executed
+from polarcheck.table.trace import Trace
 
 FOLDER = Path(__file__).parent.parent / "sample_programs"
 SAMPLES = sorted(path for path in FOLDER.rglob("*") if path.suffix in (".nc", ".mpf"))
@@ -20,12 +23,12 @@ EXPECT = re.compile(r"\(expect: ([a-z, -]+)\)")
 NAMES = [path.relative_to(FOLDER).as_posix() for path in SAMPLES]
 
 
-def settings(path: Path) -> tuple[machine.Machine, job.Job]:
+def settings(path: Path) -> tuple[Machine, job.Job]:
     found = job.find(path)
     assert found is not None
     work = job.load(found)
     changes = {"limits": work.limits} if work.limits else None
-    return machine.load(work.machine or machine.DEFAULT, changes).machine, work
+    return profiles.load(work.machine or profiles.DEFAULT, changes).machine, work
 
 
 def report_of(path: Path) -> FileReport:
@@ -57,7 +60,7 @@ def test_report_is_the_golden_one(path: Path, snapshot: SnapshotAssertion) -> No
 
 @pytest.mark.parametrize("path", SAMPLES, ids=NAMES)
 def test_tool_center_path_is_the_golden_one(path: Path, snapshot: SnapshotAssertion) -> None:
-    lines = list(tables.as_jsonl(tables.moves(trace_of(path), "tool")))
+    lines = list(executed.as_jsonl(executed.moves(trace_of(path), "tool")))
     assert "".join(lines) == snapshot
 
 

@@ -10,8 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from polarcheck.errors import SourceError, UsageError
-from polarcheck.source import DASH, OTHER, read
-from polarcheck.words import read_words
+from polarcheck.reading.source import DASH, OTHER, read
+from polarcheck.reading.words import read_words
 
 PROGRAM = "O0001 (D\u00fcse \u2013 \u00d860)\nG0 X60.\nM30\n"
 ENCODED = [

@@ -10,9 +10,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from macro_values import variables
 
-from polarcheck.expression import Fault, decide
-from polarcheck.macro import assign, assign_arguments, called_program, word_value
-from polarcheck.statement import Kind, Statement, read_statement
+from polarcheck.execution.expression import Fault, decide
+from polarcheck.execution.macro import assign, assign_arguments, called_program, word_value
+from polarcheck.execution.statement import Kind, Statement, read_statement
 
 
 def parts(block: str, statement: Statement) -> dict[str, Any]:

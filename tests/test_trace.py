@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from polarcheck.cli import main
+from polarcheck.commands import main
 
 SAMPLES = Path(__file__).parent.parent / "sample_programs"
 KEYS = ["line", "section", "kind", "start", "end", "center", "feed", "x_axis", "c_axis", "nearest", "c_feed", "time"]

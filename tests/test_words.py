@@ -10,9 +10,9 @@ import words_oracle as oracle
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from polarcheck import words as reader
-from polarcheck.source import read
-from polarcheck.words import Fault, Spans, Text, read_words
+from polarcheck.reading import words as reader
+from polarcheck.reading.source import read
+from polarcheck.reading.words import NumberFault, Spans, Text, read_words
 
 
 def text_of(program: str | bytes, line_comments: str = "") -> Text:
@@ -34,7 +34,7 @@ def addresses(text: Text) -> str:
 
 
 def faults(text: Text) -> list[str]:
-    return [Fault(int(fault)).name for fault in text.words.fault]
+    return [NumberFault(int(fault)).name for fault in text.words.fault]
 
 
 # ---- words, exactly ----

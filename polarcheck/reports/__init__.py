@@ -9,8 +9,8 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
-    from polarcheck.finding import Report
-    from polarcheck.rule import Rule
+    from polarcheck.checking.finding import Report
+    from polarcheck.checking.rule import Rule
 
 SEVERITIES = ("error", "warning", "note")
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from polarcheck.excerpt import visible
+from polarcheck.reading.excerpt import visible
 
 if TYPE_CHECKING:
-    from polarcheck.finding import Report
+    from polarcheck.checking.finding import Report
     from polarcheck.reports import Background
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 if TYPE_CHECKING:
-    from polarcheck.finding import Report
+    from polarcheck.checking.finding import Report
     from polarcheck.reports import Background
 
 #: What would act on a terminal or an editor, and JSON allows to stand as it is: escape sequences, changes of direction.

@@ -8,12 +8,12 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
-from polarcheck.excerpt import excerpt, visible
+from polarcheck.reading.excerpt import excerpt, visible
 from polarcheck.reports import SEVERITIES, Background, counted
 
 if TYPE_CHECKING:
-    from polarcheck.finding import FileReport, Finding, Fix, NotEvaluated, Report
-    from polarcheck.rule import Rule
+    from polarcheck.checking.finding import FileReport, Finding, Fix, NotEvaluated, Report
+    from polarcheck.checking.rule import Rule
 
 #: Line numbers and labels end at this column; the text beside them begins three further.
 _GUTTER = 6

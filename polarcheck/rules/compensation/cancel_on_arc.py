@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.rule import ERROR, Mask, Trace, rule
+from polarcheck.checking.rule import ERROR, Mask, Trace, rule
 
 
 @rule(ERROR, "G40 takes effect on an arc; cancel in a G1 block after the arc", at=("G40", "G2", "G3"))

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.rule import ERROR, Hits, Trace, rule
+from polarcheck.checking.rule import ERROR, Hits, Trace, rule
 
 
 @rule(ERROR, "ramp-off {fault}", at=("G40",), needs=("radius", "length"), where="ramps.off_of_length")

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.rule import ERROR, Mask, Trace, rule
+from polarcheck.checking.rule import ERROR, Mask, Trace, rule
 
 
 @rule(ERROR, "{D} in the polar mode: on a lathe R comes with the tool offset, as in T0808", at=("D",))

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.rule import ERROR, Hits, Trace, rule
+from polarcheck.checking.rule import ERROR, Hits, Trace, rule
 
 
 @rule(ERROR, "tool offset changed in the polar mode by {changed_by}; write it {outside}", at=("T", "G10"))

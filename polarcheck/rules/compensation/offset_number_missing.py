@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.rule import ERROR, Hits, Trace, rule
+from polarcheck.checking.rule import ERROR, Hits, Trace, rule
 
 
 @rule(ERROR, "{side} begins and no tool offset is in force, so that R is 0", at=("G41", "G42"), once="section")

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.rule import WARNING, Hits, Trace, rule
+from polarcheck.checking.rule import WARNING, Hits, Trace, rule
 
 
 @rule(WARNING, "{side} while {before} is active; write G40 with a move between them", at=("G41", "G42"))

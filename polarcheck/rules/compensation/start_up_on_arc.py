@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.rule import ERROR, Hits, Trace, rule
+from polarcheck.checking.rule import ERROR, Hits, Trace, rule
 
 
 @rule(ERROR, "{side} begins on an arc; begin it in a G1 block before the arc", at=("G41", "G42", "G2", "G3"))

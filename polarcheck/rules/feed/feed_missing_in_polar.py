@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.rule import ERROR, Mask, Trace, rule
+from polarcheck.checking.rule import ERROR, Mask, Trace, rule
 
 
 @rule(ERROR, "cutting move without F: none is in force", at=("G1", "G2", "G3", "F"))

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.rule import NOTE, Hits, Trace, rule
+from polarcheck.checking.rule import NOTE, Hits, Trace, rule
 
 
 @rule(NOTE, "F is {feed:feed}; recommended in the polar mode: {recommended}", at=("F",))

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.rule import NOTE, Hits, Trace, rule
+from polarcheck.checking.rule import NOTE, Hits, Trace, rule
 
 
 @rule(NOTE, "{what}", over="faults")

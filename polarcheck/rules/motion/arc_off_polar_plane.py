@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.rule import ERROR, Mask, Trace, rule
+from polarcheck.checking.rule import ERROR, Mask, Trace, rule
 
 
 @rule(ERROR, "arc along Z; in the polar mode arcs lie in the plane of X and C", at=("G2", "G3", "Z", "W"))

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.rule import WARNING, Hits, Machine, Trace, rule
+from polarcheck.checking.rule import WARNING, Hits, Machine, Trace, rule
 
 #: What the last digit of the coordinates may turn an arc by [deg].
 ROUNDING = 0.1

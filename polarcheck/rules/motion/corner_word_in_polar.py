@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.rule import WARNING, Mask, Trace, rule
+from polarcheck.checking.rule import WARNING, Mask, Trace, rule
 
 
 @rule(WARNING, "chamfer, corner or angle word in the polar mode", at=(",C", ",R", ",A"))

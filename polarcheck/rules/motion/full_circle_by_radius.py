@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.rule import WARNING, Mask, Trace, rule
+from polarcheck.checking.rule import WARNING, Mask, Trace, rule
 
 
 @rule(WARNING, "arc by radius that ends where it starts: nothing moves; a full circle needs I or J", at=("X", "C", "R"))

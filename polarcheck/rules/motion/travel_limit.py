@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.rule import ERROR, Hits, Trace, rule
+from polarcheck.checking.rule import ERROR, Hits, Trace, rule
 
 
 @rule(ERROR, "{travel}", at=("X", "U", "C", "H", "Z", "W"), needs=("reach.most_x",), where="reach.is_limited_in_x")

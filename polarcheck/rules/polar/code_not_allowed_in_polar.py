@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.rule import ERROR, WARNING, Hits, Trace, rule
+from polarcheck.checking.rule import ERROR, WARNING, Hits, Trace, rule
 
 
 @rule(ERROR, "{codes} cannot be used in the polar mode; write it {outside}")

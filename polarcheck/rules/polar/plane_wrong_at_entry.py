@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.rule import ERROR, Hits, Trace, rule
+from polarcheck.checking.rule import ERROR, Hits, Trace, rule
 
 
 @rule(ERROR, "{plane} is in force at {switch}; {wanted} must be, write it before", at=("on",))

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.rule import WARNING, Hits, Trace, rule
+from polarcheck.checking.rule import WARNING, Hits, Trace, rule
 
 
 @rule(WARNING, "{switch} again: the polar mode is on since line {since}", at=("on",))

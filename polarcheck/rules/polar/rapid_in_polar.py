@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.rule import ERROR, Mask, Trace, rule
+from polarcheck.checking.rule import ERROR, Mask, Trace, rule
 
 
 @rule(ERROR, "G0 cannot be used in the polar mode; write G1 with a high F", at=("G0",))

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.rule import WARNING, Hits, Trace, rule
+from polarcheck.checking.rule import WARNING, Hits, Trace, rule
 
 
 @rule(WARNING, "C has not gone to its reference point since it was engaged; write G28 H0 before {switch}", at=("on",))

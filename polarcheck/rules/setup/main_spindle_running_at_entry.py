@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.rule import ERROR, NOTE, Hits, Machine, Trace, rule
+from polarcheck.checking.rule import ERROR, NOTE, Hits, Machine, Trace, rule
 
 
 @rule(ERROR, "M3 or M4 is in force at {switch}{what}", at=("on",))

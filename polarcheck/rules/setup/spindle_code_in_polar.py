@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.rule import NOTE, WARNING, Hits, Trace, rule
+from polarcheck.checking.rule import NOTE, WARNING, Hits, Trace, rule
 
 
 @rule(WARNING, "{codes} in the polar mode{what}")

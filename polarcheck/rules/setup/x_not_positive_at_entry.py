@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.rule import WARNING, Hits, Trace, rule
+from polarcheck.checking.rule import WARNING, Hits, Trace, rule
 
 
 @rule(WARNING, "X stands at {x:diameter} at {switch}; enter the polar mode above 0", at=("on",))

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.rule import ERROR, Mask, Text, rule
+from polarcheck.checking.rule import ERROR, Mask, Text, rule
 
 
 @rule(ERROR, "this comment is not closed on its line", over="comments")

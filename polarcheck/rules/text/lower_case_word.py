@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.rule import NOTE, Mask, Trace, rule
+from polarcheck.checking.rule import NOTE, Mask, Trace, rule
 
 
 @rule(NOTE, "words in lower case from here on; older controls do not read them", over="words")

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.rule import NOTE, Mask, Trace, rule
+from polarcheck.checking.rule import NOTE, Mask, Trace, rule
 
 
 @rule(NOTE, "stands for blocks left out; what follows is judged as if nothing had happened there", over="dots")

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.rule import NOTE, Mask, Trace, rule
+from polarcheck.checking.rule import NOTE, Mask, Trace, rule
 
 
 @rule(NOTE, "not stored by the control: it stands outside the program", over="outside")

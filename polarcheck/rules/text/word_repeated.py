@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.rule import WARNING, Mask, Trace, rule
+from polarcheck.checking.rule import WARNING, Mask, Trace, rule
 
 
 @rule(WARNING, "a word of this address stands before it in the block; the control takes one of them", over="words")

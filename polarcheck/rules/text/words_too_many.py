@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.rule import WARNING, Hits, Machine, Trace, rule
+from polarcheck.checking.rule import WARNING, Hits, Machine, Trace, rule
 
 
 @rule(WARNING, "{count} words in a block; this control takes {limit}", over="words")

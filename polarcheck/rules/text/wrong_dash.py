@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.rule import ERROR, Mask, Words, rule
+from polarcheck.checking.rule import ERROR, Mask, Words, rule
 
 
 @rule(ERROR, "{text} is written with a dash of print; write a minus sign", over="words")

@@ -1,0 +1,19 @@
+"""The array types of the tables, each defined once: what a column, a mask or a list of plane points is."""
+
+from __future__ import annotations
+
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+#: Whether: one bool per row, word, move or section.
+Mask: TypeAlias = NDArray[np.bool_]
+#: Values: NaN where one is not known.
+Floats: TypeAlias = NDArray[np.float64]
+#: Plane points, x + 1j*c [mm, X as radius]; NaN where one is not known.
+Points: TypeAlias = NDArray[np.complex128]
+#: Whole numbers: rows, words, blocks, lines, counts.
+Rows: TypeAlias = NDArray[np.int64]
+#: Small whole numbers: a state or a kind per row, such as Motion or Side.
+States: TypeAlias = NDArray[np.int8]

@@ -1,0 +1,116 @@
+"""Many files to one report."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
+
+import msgspec
+
+from polarcheck import __version__
+from polarcheck.checking import check
+from polarcheck.checking.finding import FileReport, Producer, Report, Summary
+from polarcheck.commands.settings import Settings
+from polarcheck.errors import PolarcheckError, SourceError
+from polarcheck.reading import files, source
+from polarcheck.reading.source import Source
+
+SCHEMA = 1
+
+Tell = Callable[[str], None]
+
+
+class Task(msgspec.Struct, frozen=True):
+    """A file to check and what applies to it."""
+
+    path: str
+    settings: Settings
+
+
+class Checked(msgspec.Struct, frozen=True):
+    """The reports of the files that could be read, and by path and number the lines that their findings stand in."""
+
+    files: list[FileReport]
+    lines: dict[str, dict[int, str]]
+
+
+def plan(
+    paths: Iterable[str], settings_in: Callable[[Path], Settings], extensions: Sequence[str], tell: Tell, warn: Tell
+) -> list[Task]:
+    """
+    The programs of files, folders and standard input (`-`), each once, in the order asked for.
+
+    tell is told of folders that cannot be read, warn of those without programs. Raises a PolarcheckError for settings
+    that cannot be used, before any file is checked.
+    """
+    tasks: dict[str, Task] = {}
+    for path in paths:
+        found = [path]
+        if path != files.STANDARD_INPUT and os.path.isdir(path):  # noqa: PTH112  Path.is_dir raises for some names
+            own = settings_in(Path(path)).job.extensions
+            wanted = files.extensions(extensions or own) or files.EXTENSIONS
+            found = list(files.walk(path, wanted, tell))
+            if not found:
+                warn(f"{files.shown(path)}: no NC programs in this folder; --extensions names other endings")
+        for program in found:
+            # Path("-").parent is the working folder, where standard input belongs.
+            tasks.setdefault(program, Task(program, settings_in(Path(program).parent)))
+    return list(tasks.values())
+
+
+def check_files(tasks: Iterable[Task], tell: Tell, encoding: str | None = None, fail_on: str = "warning") -> Checked:
+    """Check one file after the other; tell is told, in one line, of those that cannot be read."""
+    reports: list[FileReport] = []
+    lines: dict[str, dict[int, str]] = {}
+    for task in tasks:
+        try:
+            data = files.read(task.path)
+            found = _check(task, data, encoding)
+        except SourceError as error:
+            tell(str(error))
+            continue
+        verdict = check.verdict(found.findings, found.not_evaluated, fail_on)
+        reports.append(msgspec.structs.replace(found, verdict=verdict))
+        if found.findings:
+            lines[found.path] = _lines(source.read(data, found.path, encoding), found)
+    return Checked(reports, lines)
+
+
+def _check(task: Task, data: bytes, encoding: str | None) -> FileReport:
+    path, settings = files.shown(task.path), task.settings
+    try:
+        return check.check_file(
+            data, settings.machine, settings.job, settings.rules, path, encoding, settings.severities
+        )
+    except PolarcheckError:
+        raise
+    except Exception as error:
+        error.add_note(f"while checking {path}")
+        raise
+
+
+def _lines(text: Source, found: FileReport) -> dict[int, str]:
+    numbers = {line for finding in found.findings for line in (finding.line, finding.section_line) if line is not None}
+    return {line: text.line_text(line) for line in sorted(numbers) if line <= len(text.line_starts)}
+
+
+def report(reports: list[FileReport], machine: str) -> Report:
+    """The report over all files."""
+    severities = [finding.severity for file in reports for finding in file.findings]
+    summary = Summary(
+        files=len(reports),
+        errors=severities.count("error"),
+        warnings=severities.count("warning"),
+        notes=severities.count("note"),
+        silenced=0,
+    )
+    return Report(
+        schema=SCHEMA, tool=Producer("polarcheck", __version__), machine=machine, files=reports, summary=summary
+    )
+
+
+def status(report: Report, strict: bool) -> int:
+    """The exit code: 1 if a file fails or, where that is asked for, is not verified."""
+    failing = {"fail", "unverified"} if strict else {"fail"}
+    return int(any(file.verdict in failing for file in report.files))

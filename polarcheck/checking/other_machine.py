@@ -1,0 +1,154 @@
+"""Whether a program that this machine reads badly is one for another: by its codes, its axis, and X in its arcs."""
+
+from __future__ import annotations
+
+import functools
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import msgspec
+import numpy as np
+
+from polarcheck.arrays import Mask
+from polarcheck.execution.run import straight
+from polarcheck.machines import profiles
+from polarcheck.machines.machine import Machine
+from polarcheck.machines.profiles import Profile
+from polarcheck.reading import source
+from polarcheck.reading.translation import translated
+from polarcheck.reading.words import NumberFault, read_words
+
+if TYPE_CHECKING:
+    from polarcheck.table.trace import Trace
+
+
+#: More titles than this in one message help nobody.
+_NAMED = 3
+
+
+class Fit(msgspec.Struct, frozen=True):
+    """Machines that read a program well, and why: at the row that first makes one doubt."""
+
+    row: int
+    profiles: tuple[Profile, ...]
+    reasons: tuple[str, ...]
+
+    def text(self) -> str:
+        """`Haas lathe (--machine haas-lathe): Y is the second axis there`."""
+        named = [f"{profile.machine.title} (--machine {profile.name})" for profile in self.profiles[:_NAMED]]
+        return f"{' or '.join(named)}: {', '.join(self.reasons)}"
+
+
+class OtherMachine:
+    """Columns of one trace, one value per row; the methods give words for a message about one row."""
+
+    def __init__(self, trace: Trace) -> None:
+        self.trace = trace
+
+    @cached_property
+    def _fit(self) -> Fit | None:
+        return _find(self.trace)
+
+    @cached_property
+    def fits(self) -> Mask:
+        """The row at which it shows that the program is for another machine."""
+        rows = np.zeros(len(self.trace), bool)
+        if self._fit:
+            rows[self._fit.row] = True
+        return rows
+
+    def text(self, row: int) -> str:
+        """Which machines, and why."""
+        return self._fit.text() if self._fit else ""
+
+
+def _find(trace: Trace) -> Fit | None:
+    """
+    The machines that read the program well where this one does not.
+
+    Cheap for a program that is read well: only an axis address or a code of other controls, or arcs that close with X
+    read the other way, make it look at other machines.
+    """
+    row = _doubt(trace)
+    if row < 0:
+        return None
+    fitting: dict[tuple[str, ...], list[Profile]] = {}
+    told = [_reads(trace.machine)]
+    for profile in _profiles():
+        if _reads(profile.machine) in told:
+            continue
+        reasons = _reasons(trace, profile.machine)
+        if reasons:
+            told.append(_reads(profile.machine))
+            fitting.setdefault(reasons, []).append(profile)
+    if not fitting:
+        return None
+    reasons = max(fitting, key=len)
+    return Fit(row, tuple(fitting[reasons]), reasons)
+
+
+@functools.cache
+def _profiles() -> tuple[Profile, ...]:
+    """All machines; those from which others inherit come first, to speak for them."""
+    return tuple(sorted((profiles.load(name) for name in profiles.names()), key=lambda profile: len(profile.chain)))
+
+
+def _reads(machine: Machine) -> tuple[object, ...]:
+    """What of a machine makes it read a program otherwise than another."""
+    control, mode = machine.control, machine.polar
+    return mode.on, mode.virtual_axis, mode.x, machine.arcs.radius_word, control.native_words, control.motion_codes
+
+
+def _doubt(trace: Trace) -> int:
+    """The row at which the program does not look like one for this machine; -1 for none."""
+    if len(trace.sections):
+        hit = trace.modes.other_axis | trace.arcs.x_is_misread
+        rows = np.flatnonzero(hit)
+        return int(trace.sections.enter[trace.section[rows[0]]]) if len(rows) else -1
+    codes = [word for word in trace.machine.polar.other_on if word[1:2].isdigit()]
+    rows = np.flatnonzero(trace.codes(*codes)) if codes else np.zeros(0, np.int64)
+    if len(rows):
+        return int(rows[0])
+    return _row_of_word(trace, [word for word in trace.machine.polar.other_on if word not in codes])
+
+
+def _row_of_word(trace: Trace, words: list[str]) -> int:
+    """The first row with one of these native words of other controls, which read as letters without digits here."""
+    bare = trace.run.words.fault == NumberFault.NO_DIGITS
+    if not words or not bare.any():
+        return -1
+    text = trace.text.source.code.tobytes().upper()
+    places = [place for word in words if (place := text.find(word.encode())) >= 0]
+    if not places:
+        return -1
+    block = int(np.searchsorted(trace.text.blocks.start, min(places), side="right")) - 1
+    rows = np.flatnonzero(trace.run.block == block)
+    return int(rows[0]) if len(rows) else -1
+
+
+def _reasons(trace: Trace, machine: Machine) -> tuple[str, ...]:
+    """Why the machine reads the program well; empty where it does not."""
+    own, mode = trace.machine.polar, machine.polar
+    other = _read_by(trace, machine)
+    if not len(other.sections) or not other.sections.left.all() or other.modes.other_axis.any():
+        return ()
+    if other.arcs.is_no_circle.any() or other.arcs.x_is_misread.any() or other.modes.switch_not_alone.any():
+        return ()
+    reasons = []
+    if not len(trace.sections):
+        reasons.append(f"{other.modes.switch(int(other.sections.enter[0]))} begins the polar mode there")
+    if mode.virtual_axis != own.virtual_axis and np.any(other.has(mode.virtual_axis) & other.in_polar):
+        reasons.append(f"{mode.virtual_axis} is the second axis of the polar plane there")
+    if mode.x != own.x and np.any(trace.arcs.x_is_misread):
+        reasons.append(f"all arcs close there, where X is a {mode.x} in the polar mode")
+    return tuple(reasons)
+
+
+def _read_by(trace: Trace, machine: Machine) -> Trace:
+    """The program as another machine reads it."""
+    ours, theirs = trace.machine.control, machine.control
+    if (ours.native_words, ours.line_comments) == (theirs.native_words, theirs.line_comments):
+        return type(trace)(trace.run, machine, trace.job)
+    found = source.read(trace.text.source.data, trace.text.source.path)
+    text = read_words(translated(found, theirs.native_words), theirs.line_comments)
+    return type(trace)(straight(text), machine, trace.job)

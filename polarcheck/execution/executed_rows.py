@@ -1,0 +1,176 @@
+"""The executed rows while they are being gathered: ranges of plain blocks, and blocks whose words were computed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import msgspec
+import numpy as np
+
+from polarcheck.arrays import Mask, Rows
+from polarcheck.execution.run import FlowFault, Run
+from polarcheck.execution.statement import Statement, Word
+from polarcheck.machines.codes import code_numbers, code_set
+from polarcheck.reading.words import Blocks, Text, Words
+
+_AXES = b"XYZUVWCH"
+#: What is kept of a run that would never end: enough to judge what it does.
+_KEPT_ROWS = 10_000
+
+
+class _Range(msgspec.Struct, frozen=True):
+    """Words of a range of plain blocks: their indices, the row of each within the range, and the block of each row."""
+
+    words: Rows
+    row: Rows
+    block: Rows
+
+
+class ExecutedRows:
+    """What has been executed so far. skip: block skip is on, so that what follows a / is not read."""
+
+    def __init__(self, text: Text, ends: tuple[str, ...], skip: bool) -> None:
+        self.text = text
+        words = text.words
+        self.kept = _kept(words) if skip else np.ones(len(words), bool)
+        ending = words.address == ord("M")
+        ending[ending] = code_set(ends)[code_numbers(words.value[ending])]
+        self.ending = set(words.block[ending & self.kept].tolist())
+        self.moving = np.unique(words.block[np.isin(words.address, list(_AXES)) & self.kept])
+        self.ranges: dict[tuple[int, int], _Range] = {}
+        self.words: list[Rows] = []
+        self.row: list[Rows] = []
+        self.block: list[Rows] = []
+        self.depth: list[tuple[int, int]] = []
+        self.starts: list[int] = []
+        self.unknown: list[int] = []
+        self.computed: list[tuple[int, Word, float]] = []
+        self.count = 0
+
+    def __len__(self) -> int:
+        return self.count
+
+    def start_program(self) -> None:
+        """The next row begins a program."""
+        self.starts.append(self.count)
+
+    def mark_unknown(self) -> None:
+        """The effect of the last row is not known."""
+        self.unknown.append(self.count - 1)
+
+    def ends(self, block: int) -> bool:
+        """Whether a plain block ends the program."""
+        return block in self.ending
+
+    def filled(self, first: int, end: int) -> list[int]:
+        """The blocks of a range that have words or macro statements, in order."""
+        words = self.text.words.block
+        low, high = np.searchsorted(words, (first, end))
+        macro = np.flatnonzero(self.text.blocks.is_macro[first:end]) + first
+        return [int(block) for block in np.union1d(words[low:high], macro)]
+
+    def first_moving(self, first: int, end: int) -> int | None:
+        """The first block of a range with words of an axis."""
+        at = int(np.searchsorted(self.moving, first))
+        return int(self.moving[at]) if at < len(self.moving) and self.moving[at] < end else None
+
+    def _add(self, words: Rows, row: Rows, block: Rows, depth: int) -> None:
+        self.words.append(words)
+        self.row.append(row + self.count)
+        self.block.append(block)
+        self.depth.append((depth, len(block)))
+        self.count += len(block)
+
+    def add_plain(self, first: int, end: int, depth: int) -> None:
+        """Blocks as they stand."""
+        key = (first, end)
+        if key not in self.ranges:
+            low, high = np.searchsorted(self.text.words.block, key)
+            index = np.arange(low, high)[self.kept[low:high]]
+            block, row = np.unique(self.text.words.block[index], return_inverse=True)
+            self.ranges[key] = _Range(index, row, block)
+        found = self.ranges[key]
+        self._add(found.words, found.row, found.block, depth)
+
+    def add_computed(self, block: int, words: Sequence[tuple[Word, float]], depth: int) -> bool:
+        """A block whose words were computed; gives whether it ends the program."""
+        first = len(self.text.words) + len(self.computed)
+        self.computed += [(block, word, value) for word, value in words]
+        index = np.arange(first, first + len(words))
+        self._add(index, np.zeros(len(words), np.int64), np.array([block], np.int64), depth)
+        return any(word.address == "M" and value in (2, 30) for word, value in words)
+
+    def add_call(self, block: int, statement: Statement, depth: int) -> None:
+        """A block with a call: its words, but those of a macro call are arguments and belong to the macro."""
+        is_macro_call = statement.call[:1] == "G"
+        if self.text.blocks.is_macro[block]:
+            kept = [w for w in statement.words if w.address in "NGM" and w.written is not None]
+            self.add_computed(block, [(word, float(word.written or 0)) for word in kept], depth)
+            return
+        low, high = np.searchsorted(self.text.words.block, (block, block + 1))
+        index = np.arange(low, high)[self.kept[low:high]]
+        if is_macro_call:
+            index = index[np.isin(self.text.words.address[index], list(b"NG"))]
+        self._add(index, np.zeros(len(index), np.int64), np.array([block], np.int64), depth)
+
+    def shorten(self) -> None:
+        """Keep the beginning of a run that would never end."""
+        while len(self.block) > 1 and self.count - len(self.block[-1]) > _KEPT_ROWS:
+            self.count -= len(self.block[-1])
+            for pieces in (self.words, self.row, self.block, self.depth):
+                pieces.pop()
+
+    def run(self, faults: tuple[FlowFault, ...], remarks: tuple[tuple[str, int], ...], visited: Mask) -> Run:
+        """All rows as a table."""
+        none = np.zeros(0, np.int64)
+        index = np.concatenate((none, *self.words))
+        table = _joined(self.text.words, self.text.blocks, self.computed)
+        starts, unknown = np.zeros(self.count, bool), np.zeros(self.count, bool)
+        starts[[at for at in self.starts if at < self.count]] = True
+        unknown[[at for at in self.unknown if at < self.count]] = True
+        return Run(
+            self.text,
+            Words(*(getattr(table, name)[index] for name in Words.__struct_fields__)),
+            np.concatenate((none, *self.row)),
+            np.concatenate((none, *self.block)),
+            starts,
+            unknown,
+            np.repeat([depth for depth, _ in self.depth], [rows for _, rows in self.depth]).astype(np.int64),
+            faults,
+            remarks,
+            visited,
+        )
+
+
+def _kept(words: Words) -> Mask:
+    """Words that block skip leaves: those before the first / of their block."""
+    slashes = np.flatnonzero(words.address == ord("/"))
+    kept = np.ones(len(words), bool)
+    if len(slashes):
+        first = np.full(int(words.block[-1]) + 1, np.iinfo(np.int64).max)
+        np.minimum.at(first, words.block[slashes], slashes)
+        kept = np.arange(len(words)) < first[words.block]
+    return kept
+
+
+def _joined(words: Words, blocks: Blocks, computed: Sequence[tuple[int, Word, float]]) -> Words:
+    """The words of the file, and behind them those that were computed."""
+    if not computed:
+        return words
+    count = len(computed)
+    begin = blocks.start[[block for block, _, _ in computed]]
+    more: tuple[Any, ...] = (
+        np.array([ord(word.address[-1]) + 32 * (word.address[0] == ",") for _, word, _ in computed], np.uint8),
+        np.array([value for _, _, value in computed], np.float64),
+        np.zeros(count, np.int64),
+        np.zeros(count, np.int64),
+        np.array([word.has_point for _, word, _ in computed], bool),
+        np.zeros(count, np.uint8),
+        np.array([block for block, _, _ in computed], np.int64),
+        begin + np.array([word.start for _, word, _ in computed], np.int64),
+        begin + np.array([word.end for _, word, _ in computed], np.int64),
+    )
+    return Words(
+        *(np.concatenate((getattr(words, name), new)) for name, new in zip(Words.__struct_fields__, more, strict=True))
+    )

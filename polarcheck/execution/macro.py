@@ -1,0 +1,261 @@
+"""
+What runs when a macro runs: the variables, an assignment, the value of a word, the arguments and the program of a call.
+
+Sources: FANUC B-62754EN/01, chapter 16 (variables, vacancy, rounding at an address); B-63684EN/01, p. 304 (arguments).
+Which system variables cannot be written or count on by themselves is from knowledge of the same manuals.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Final, TypeAlias
+
+from polarcheck.execution.arithmetic import UNKNOWN, Arithmetic, Value, round_to
+from polarcheck.execution.expression import DEFAULT, Fault, evaluate
+from polarcheck.execution.statement import Statement, Word
+
+Ranges: TypeAlias = tuple[tuple[int, int], ...]
+
+LAST_LOCAL: Final = 33
+
+
+@dataclass(frozen=True, slots=True)
+class VariableRanges:
+    """
+    The numbers of the variables of a control, first and last. A newer control has (98000, 98499) in retained as well.
+
+    common: vacant at power-on. retained: kept from earlier runs, hence unknown until assigned. system: unknown unless
+    given. read_only: assigning is an alarm. running: clocks, which are unknown even after an assignment.
+    """
+
+    common: Ranges = ((100, 199),)
+    retained: Ranges = ((500, 999),)
+    system: Ranges = ((1000, 19_999),)
+    read_only: Ranges = ((0, 0), (1000, 1035), (4001, 4130), (5001, 5140))
+    running: Ranges = ((3001, 3002), (3011, 3012))
+
+
+DEFAULT_RANGES: Final = VariableRanges()
+
+
+class Variables:
+    """
+    What the variables hold while a program runs: a float, None for vacant, NaN for unknown.
+
+    #0 is always vacant; #1-#33 belong to the macro that runs, all others to every program.
+    given: values known from the job, by number.
+    """
+
+    def __init__(self, ranges: VariableRanges = DEFAULT_RANGES, given: Mapping[int, Value] | None = None) -> None:
+        self._ranges = ranges
+        self._shared: dict[int, Value] = dict(given or {})
+        self._levels: list[dict[int, Value]] = [{}]
+        self._unassigned: Value = None
+
+    @property
+    def depth(self) -> int:
+        """How many macro calls deep; 0 in the main program."""
+        return len(self._levels) - 1
+
+    def exists(self, number: float) -> bool:
+        """Whether the control has a variable of this number; one that is not whole is rounded."""
+        if not -0.5 < number < 1e9:
+            return False
+        ranges = (*self._ranges.common, *self._ranges.retained, *self._ranges.system)
+        return number < LAST_LOCAL + 0.5 or _within(_whole(number), ranges)
+
+    def read(self, number: float) -> Value:
+        """The value of a variable that exists."""
+        whole = _whole(number)
+        if whole <= LAST_LOCAL:
+            return self._levels[-1].get(whole, self._unassigned) if whole else None
+        if _within(whole, self._ranges.running):
+            return UNKNOWN
+        return self._shared.get(whole, self._unassigned if _within(whole, self._ranges.common) else UNKNOWN)
+
+    def write(self, number: float, value: Value) -> str:
+        """Assign; None makes vacant. Gives the kind of fault, "" for none. A number that is unknown may be any."""
+        if number != number:
+            self.forget()
+            return ""
+        if not self.exists(number):
+            return "variable-number"
+        whole = _whole(number)
+        if _within(whole, self._ranges.read_only):
+            return "read-only"
+        (self._levels[-1] if whole <= LAST_LOCAL else self._shared)[whole] = value
+        return ""
+
+    def enter(self, arguments: Mapping[int, Value]) -> None:
+        """A macro call: new local variables, vacant but for the arguments."""
+        self._levels.append(dict.fromkeys(range(1, LAST_LOCAL + 1)) | dict(arguments))
+
+    def leave(self) -> None:
+        """The return from a macro: the caller's local variables are back. In the main program nothing happens."""
+        if self.depth:
+            self._levels.pop()
+
+    def forget(self) -> None:
+        """Any variable in reach may have been assigned: all are unknown until assigned again."""
+        self._levels[-1] = {}
+        self._shared = {}
+        self._unassigned = UNKNOWN
+
+
+def _whole(number: float) -> int:
+    return int(round_to(number, 1))
+
+
+def _within(number: int, ranges: Ranges) -> bool:
+    return any(first <= number <= last for first, last in ranges)
+
+
+def assign(statement: Statement, variables: Variables, arithmetic: Arithmetic = DEFAULT) -> Fault | None:
+    """
+    Carry out an ASSIGN; give the first fault.
+
+    #2=#1 copies vacancy. A value that cannot be read is unknown. A variable by name has no number and is let go.
+    """
+    value: Value = UNKNOWN
+    fault: Fault | None = None
+    if statement.value is not None:
+        value, fault = evaluate(statement.value, variables, arithmetic)
+    if statement.target is None:
+        return fault
+    number, fault_of_target = evaluate(statement.target, variables, arithmetic)
+    kind = "" if fault_of_target else variables.write(number or 0.0, value)
+    if kind:
+        fault_of_target = Fault(kind, statement.target.start, statement.target.end)
+    return fault_of_target or fault
+
+
+def word_value(
+    word: Word, variables: Variables, increment: float, arithmetic: Arithmetic = DEFAULT
+) -> tuple[Value, Fault | None]:
+    """
+    The value of a word, None where its variable is vacant and the control drops the address; and the first fault.
+
+    increment: the least increment of the address, to which a calculated value is rounded, and to which ROUND rounds; 1
+    for M, S and T, 0.1 for G. A written number comes as it is written: what 10 without a point means is not said here.
+    """
+    steps = word.value.steps
+    if not steps:
+        return None, None
+    if [step.name for step in steps[-2:]] == ["#", "NEGATE"]:
+        value, fault = evaluate(replace(word.value, steps=steps[:-1]), variables, arithmetic, increment)
+        value = None if value is None else 0.0 - value
+    else:
+        value, fault = evaluate(word.value, variables, arithmetic, increment)
+    if value is None or value != value or word.written is not None:
+        return value, fault
+    return round_to(value, increment), fault
+
+
+#: Argument specification I: the local variable of each address. G L N O P are none.
+ARGUMENTS: Final = dict(zip("ABCIJKDEFHMQRSTUVWXYZ", [*range(1, 10), 11, 13, *range(17, 27)], strict=True))
+_SETS: Final = 10
+
+
+@dataclass(frozen=True, slots=True)
+class Arguments:
+    """What a call hands over: the local variables by number; sets: how many sets of I J K; the first fault."""
+
+    values: dict[int, Value]
+    sets: int
+    fault: Fault | None
+
+
+def assign_arguments(
+    statement: Statement,
+    variables: Variables,
+    *,
+    increments: Mapping[str, float] | None = None,
+    second: bool = True,
+    arithmetic: Arithmetic = DEFAULT,
+) -> Arguments:
+    """
+    The local variables that G65 or G66 gives the macro.
+
+    I J K in this order fill #4 #5 #6. One of them again, or out of order, begins the next set of three: specification
+    II, up to #33. Of two arguments for the same variable the later one counts; a vacant one is as not written.
+    increments: what a number without a point is multiplied by, for each address; 1 where not given.
+    second: False where the control has specification I only (6008#7 IJK).
+    """
+    values: dict[int, Value] = {}
+    faults: list[Fault | None] = []
+    sets, last, seen = 0, "", set()
+    for word in _after_call(statement):
+        address = word.address
+        if (address in ("P", "L") and address not in seen) or address == "<":
+            seen.add(address)
+            continue
+        if address == "G" and statement.call == "G66.1":
+            continue
+        if address not in ARGUMENTS:
+            faults.append(Fault("argument-address", word.start, word.end))
+            continue
+        number = ARGUMENTS[address]
+        if address in "IJK" and second:
+            sets += address <= last or not last
+            last = address
+            if sets > _SETS:
+                faults.append(Fault("argument-sets", word.start, word.end))
+                break
+            number += 3 * (sets - 1)
+        value, fault = evaluate(word.value, variables, arithmetic)
+        faults.append(fault)
+        if value is not None:
+            values[number] = value if word.has_point else value * (increments or {}).get(address, 1.0)
+    return Arguments(values, sets, next(filter(None, faults), None))
+
+
+def _after_call(statement: Statement) -> tuple[Word, ...]:
+    """The words after the code that makes the call."""
+    at = next((i for i, word in enumerate(statement.words) if word.code == statement.call), -1)
+    return statement.words[at + 1 :]
+
+
+@dataclass(frozen=True, slots=True)
+class ProgramCall:
+    """Which program a call names: by number or by name (both None: unknown), how often (None: unknown), the fault."""
+
+    program: int | None
+    name: str | None
+    repeats: int | None
+    fault: Fault | None
+
+
+def called_program(
+    statement: Statement, variables: Variables, *, repeats_in_p: bool = True, arithmetic: Arithmetic = DEFAULT
+) -> ProgramCall:
+    """
+    The program that M98, M198, G65 or G66 calls.
+
+    repeats_in_p: P of M98 and M198 with five to eight digits has the repeats before the last four: P68003 is six times
+    O8003. Else, and in G65 and G66, P is the number alone. Where P has no repeats, L has them.
+    """
+    words = {
+        word.address: word
+        for word in reversed(statement.words if statement.call[:1] == "M" else _after_call(statement))
+    }
+    repeats: int | None = 1
+    fault: Fault | None = None
+    if "L" in words:
+        value, fault = evaluate(words["L"].value, variables, arithmetic)
+        repeats = None if value != value else 1 if value is None else max(_whole(value), 0)
+    if "<" in words:
+        return ProgramCall(None, words["<"].written, repeats, fault)
+    if "P" not in words:
+        return ProgramCall(None, None, repeats, Fault("program-number", statement.start, statement.end))
+    value, fault_of_number = evaluate(words["P"].value, variables, arithmetic)
+    fault = fault_of_number or fault
+    if value is not None and value != value:
+        return ProgramCall(None, None, repeats, fault)
+    number = _whole(value or 0.0) if abs(value or 0.0) < 1e15 else 0
+    if repeats_in_p and statement.call[:1] == "M" and 9999 < number <= 99_999_999:
+        times, number = divmod(number, 10_000)
+        repeats = times
+    if not 0 < number <= 99_999_999:
+        return ProgramCall(None, None, repeats, Fault("program-number", words["P"].start, words["P"].end))
+    return ProgramCall(number, None, repeats, fault)

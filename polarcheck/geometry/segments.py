@@ -1,0 +1,84 @@
+"""Curves of contours and of tool center paths as straight segments; lengths in mm, plane points complex, x + 1j*c."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from polarcheck.arrays import Mask, Points, Rows, States
+from polarcheck.geometry.plane import arc_sweep
+from polarcheck.machines.modal import Motion
+
+#: A length [mm] below this is none.
+ZERO = 1e-9
+
+
+@dataclass(frozen=True, slots=True)
+class Curves:
+    """
+    Curves of a contour or of a tool center path, n of them in the order in which they run.
+
+    start, end, center: complex128[n] [mm], center NaN for lines. kind: int8[n], Motion.
+    loop: int[n], number of the run of blocks from a start-up to its cancel at one depth. row: int[n], programmed row.
+    """
+
+    start: Points
+    end: Points
+    center: Points
+    kind: States
+    loop: NDArray[np.integer]
+    row: NDArray[np.integer]
+
+
+@dataclass(frozen=True, slots=True)
+class Segments:
+    """Straight parts of moves, those of one loop together: start, end [mm], the move they are of, its loop."""
+
+    start: Points
+    end: Points
+    move: Rows
+    loop: Rows
+
+    def __getitem__(self, rows: Rows | Mask) -> Segments:
+        return Segments(self.start[rows], self.end[rows], self.move[rows], self.loop[rows])
+
+    def shifted(self, by: NDArray[np.floating]) -> Segments:
+        return Segments(self.start + by, self.end + by, self.move, self.loop)
+
+
+def segments(moves: Curves, tolerance: float) -> Segments:
+    """All moves that are known and have a length; arcs with a sagitta of a quarter of the tolerance."""
+    start, end, center = moves.start, moves.end, moves.center
+    arcs = (moves.kind == Motion.CW) | (moves.kind == Motion.CCW)
+    known = ~(np.isnan(start) | np.isnan(end) | (arcs & np.isnan(center)))
+    count = known.astype(np.int64)
+    round_ = np.flatnonzero(arcs & known)
+    spoke, last = start[round_] - center[round_], end[round_] - center[round_]
+    sweep = arc_sweep(start[round_], end[round_], center[round_], moves.kind[round_])
+    flat = np.clip(tolerance / 4 / np.maximum(np.maximum(np.abs(spoke), np.abs(last)), ZERO), 0, 0.25)
+    count[round_] = np.maximum(np.ceil(np.abs(sweep) / (2 * np.arccos(1 - flat))), 1)
+
+    move = np.repeat(np.arange(len(start)), count)
+    begin, until = start[move], end[move]
+    on_arc = np.flatnonzero(arcs[move])
+    which = np.searchsorted(round_, move[on_arc])
+    share = (on_arc - (np.cumsum(count) - count)[move[on_arc]]) / count[move[on_arc]]
+    # An end that is not quite on the circle is reached in a spiral, at the same angles as by the tool center.
+    growth = np.where(spoke == 0, 0, np.abs(last) / np.maximum(np.abs(spoke), ZERO) - 1)
+    turned = spoke[which] * (1 + growth[which] * share) * np.exp(1j * sweep[which] * share)
+    begin[on_arc] = np.where(share == 0, begin[on_arc], center[move[on_arc]] + turned)
+    inner = np.flatnonzero(move[1:] == move[:-1])
+    until[inner] = begin[inner + 1]
+    result = Segments(begin, until, move, moves.loop[move].astype(np.int64))[np.abs(until - begin) > ZERO]
+    in_order = np.all(result.loop[1:] >= result.loop[:-1])
+    return result if in_order else result[np.argsort(result.loop, kind="stable")]
+
+
+def members(loop: Rows, wanted: Rows) -> tuple[Rows, Rows]:
+    """Rows of each wanted loop, one after the other, and which of the wanted each row is for."""
+    low, high = np.searchsorted(loop, wanted), np.searchsorted(loop, wanted, side="right")
+    group = np.repeat(np.arange(len(wanted)), high - low)
+    before = np.cumsum(high - low) - (high - low)
+    return np.arange(len(group)) - before[group] + low[group], group

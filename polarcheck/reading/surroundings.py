@@ -1,0 +1,260 @@
+"""
+What of a text is program: tape marks, comments, remarks and names are found, and blanked.
+
+Works on one code per character (source.Source.code) with every line end as LF.
+"""
+
+from __future__ import annotations
+
+import itertools
+import re
+from typing import Any
+
+import msgspec
+import numpy as np
+
+from polarcheck.arrays import Mask
+from polarcheck.reading.source import CR, LF, Bytes, Positions
+
+BLANKS = bytes(character for character in (*range(33), 0x7F, 0xA0) if character != LF)
+_SPACE, _OPEN, _CLOSE, _PERCENT, _SEMICOLON, _LESS, _GREATER = b" ()%;<>"
+#: What is not in the ISO set of controls: NUL and other control characters, above 125.
+_IS_FOREIGN = bytes((code < 32 and code not in (9, LF, CR)) or code >= 126 for code in range(256))
+_IS_BLANK = np.isin(np.arange(256), [*BLANKS, LF])
+#: The longest name of a program (30i family).
+_NAME_LENGTH = 32
+#: A file with more tape marks holds no programs that a control could store, and is read as one.
+_MARK_LIMIT = 10_000
+
+_BLANK = rb"[\0-\x09\x0b-\x20\x7f]*+"
+_PROGRAM_HEAD = re.compile(rb"\n" + _BLANK + rb"(?:[O:]" + _BLANK + rb"\d|O?<)", re.IGNORECASE)
+_BLOCK_HEAD = re.compile(
+    rb"\n" + _BLANK + rb"(?:N[\d ]++)?+(?:/\d?)?+" + _BLANK + rb"[GMTXZ][ \t]*+[-+.]?\d", re.IGNORECASE
+)
+_READS_AS_BLOCKS = re.compile(
+    rb"(?:[\s;/]*+[A-Z]\s*+[-+]?(?:\d++\.?+\d*+|\.\d++|[#\[][-+*/#\[\]\w.]*+))*+[\s;]*+", re.IGNORECASE
+)
+
+
+class Ranges(msgspec.Struct, frozen=True):
+    """Places in a text, from start to end (exclusive), in order."""
+
+    start: Positions
+    end: Positions
+
+    def __len__(self) -> int:
+        return len(self.start)
+
+    def only(self, chosen: Mask) -> Ranges:
+        """Some of them."""
+        return Ranges(self.start[chosen], self.end[chosen])
+
+
+class Surroundings(msgspec.Struct, frozen=True):
+    """
+    What stands around the words of a file.
+
+    tape_marks: positions of % at the head or the end of a line. outside: what a control does not store. comments, with
+    unclosed and nested per comment. names: of programs, <...>. strays: positions of % inside a block.
+    """
+
+    tape_marks: Positions
+    outside: Ranges
+    comments: Ranges
+    unclosed: Mask
+    nested: Mask
+    names: Ranges
+    strays: Positions
+
+
+def narrow(size: int) -> type[np.signedinteger[Any]]:
+    """The smaller of the integers that can hold every position of a file: half the memory is half the time."""
+    return np.int32 if size < 2**31 - 8 else np.int64
+
+
+def read_surroundings(code: Bytes, line_comments: str = "") -> Surroundings:
+    """Find all that is not words and blank it in `code`; line_comments: characters that begin a comment."""
+    lines = np.append(np.flatnonzero(code == LF), len(code))
+    remarks = _line_comments(code, lines, line_comments)
+    comments, unclosed, nested = _comments(code)
+    marks, strays = _percents(code, lines)
+    outside = _outside(code, marks)
+    names = _names(code)
+    remarks += [_semicolon_remarks(code, lines)]
+    kept = ~_within(comments, outside)
+    found = [comments.only(kept), *(remark.only(~_within(remark, outside)) for remark in remarks if len(remark))]
+    count = sum(map(len, found[1:]))
+    return Surroundings(
+        tape_marks=marks,
+        outside=outside,
+        comments=_joined(found),
+        unclosed=np.append(unclosed[kept], np.zeros(count, bool)),
+        nested=np.append(nested[kept], np.zeros(count, bool)),
+        names=names,
+        strays=strays,
+    )
+
+
+def _joined(parts: list[Ranges]) -> Ranges:
+    return Ranges(np.concatenate([part.start for part in parts]), np.concatenate([part.end for part in parts]))
+
+
+def _characters(ranges: Ranges, size: int) -> tuple[Positions, Positions]:
+    """Every position in the ranges, and to which of them it belongs."""
+    length = (ranges.end - ranges.start).astype(narrow(size))
+    before = np.cumsum(length, dtype=length.dtype) - length
+    owner = np.repeat(np.arange(len(length), dtype=length.dtype), length)
+    at = np.arange(len(owner), dtype=length.dtype)
+    at += (ranges.start - before).astype(length.dtype)[owner]
+    return at, owner
+
+
+def _blank(code: Bytes, ranges: Ranges) -> None:
+    """Blank the ranges, none of which holds a line end."""
+    code[_characters(ranges, len(code))[0]] = _SPACE
+
+
+def _has_text(code: Bytes, start: Positions, end: Positions) -> Mask:
+    """Whether anything but blanks stands between the positions."""
+    at, owner = _characters(Ranges(start, end), len(code))
+    found = np.zeros(len(start), bool)
+    found[owner[~_IS_BLANK[code[at]]]] = True
+    return found
+
+
+def _within(inner: Ranges, outer: Ranges) -> Mask:
+    """Which of the inner ranges begin inside one of the outer ones."""
+    if not len(outer):
+        return np.zeros(len(inner), bool)
+    owner = np.searchsorted(outer.start, inner.start, side="right") - 1
+    return np.asarray((owner >= 0) & (inner.start < outer.end[owner]))
+
+
+def _first_of_line(at: Positions, lines: Positions) -> Ranges:
+    """From the first of the positions on each line to the end of that line."""
+    line = np.searchsorted(lines, at)
+    first = np.ones(len(at), bool)
+    first[1:] = line[1:] != line[:-1]
+    return Ranges(at[first], lines[line[first]])
+
+
+def _line_comments(code: Bytes, lines: Positions, characters: str) -> list[Ranges]:
+    """Comments of other dialects, from a character to the end of its line; not inside parentheses."""
+    if not characters:
+        return []
+    at = np.flatnonzero(np.isin(code, list(characters.encode("latin-1"))))
+    brackets = np.flatnonzero((code == _OPEN) | (code == _CLOSE) | (code == LF))
+    inside = np.append(LF, code[brackets])[np.searchsorted(brackets, at)] == _OPEN
+    remarks = _first_of_line(at[~inside], lines)
+    _blank(code, remarks)
+    return [remarks]
+
+
+def _comments(code: Bytes) -> tuple[Ranges, Mask, Mask]:
+    """Comments open at ( outside a comment and close at the first ) or, faulty, at the line end."""
+    is_open = code == _OPEN
+    if not is_open.any():
+        none = np.zeros(0, np.int64)
+        return Ranges(none, none), np.zeros(0, bool), np.zeros(0, bool)
+    at = np.flatnonzero(is_open | (code == _CLOSE) | (code == LF))
+    opens = np.append(is_open[at], False)
+    at = np.append(at, len(code))
+    inside = np.append(False, opens[:-1])
+    first = opens & ~inside
+    last = inside & ~opens
+    end = at[last]
+    closed = end < len(code)
+    closed[closed] = code[end[closed]] == _CLOSE
+    comments = Ranges(at[first], end + closed)
+    _blank(code, comments)
+    return comments, ~closed, opens[np.flatnonzero(first) + 1]
+
+
+def _percents(code: Bytes, lines: Positions) -> tuple[Positions, Positions]:
+    """
+    Tape marks, and % signs inside a block. What follows either on its line is not read.
+
+    Source: B-63524EN/01 p. 649 (text from % to the first LF is skipped); alarm 5010 for a % inside a block.
+    """
+    tails = _first_of_line(np.flatnonzero(code == _PERCENT), lines)
+    at = tails.start
+    if not len(at):
+        return at, at
+    line_start = np.append(0, lines + 1)[np.searchsorted(lines, at)]
+    is_mark = ~_has_text(code, line_start, at) | ~_has_text(code, at + 1, tails.end)
+    _blank(code, tails)
+    return at[is_mark], at[~is_mark]
+
+
+def _outside(code: Bytes, marks: Positions) -> Ranges:
+    """
+    What a control does not store, blanked: what stands before the first % or O number and after the last %.
+
+    Source: B-63524EN/01 p. 649; M700V programming manual p. 7.
+    """
+    starts: list[int] = []
+    ends: list[int] = []
+    # One line end before the text, so that every line head follows one: positions in `data` are one higher.
+    data = b"\n" + code.tobytes()
+    edges = [0, *marks.tolist(), len(code)] if len(marks) <= _MARK_LIMIT else [0, len(code)]
+    regions = list(itertools.pairwise(edges))
+    heads = [_PROGRAM_HEAD.search(data, begin, end + 1) for begin, end in regions]
+    limits = [head.start() + 1 if head else end + 1 for head, (_, end) in zip(heads, regions, strict=True)]
+    has_blocks = [
+        _BLOCK_HEAD.search(data, begin, limit) is not None for (begin, _), limit in zip(regions, limits, strict=True)
+    ]
+    is_program = [head is not None or blocks for head, blocks in zip(heads, has_blocks, strict=True)]
+    is_program[-1] &= heads[-1] is not None or not any(is_program[:-1])
+    if not any(is_program):
+        is_program[min(1, len(regions) - 1)] = True
+    for index, (begin, end) in enumerate(regions):
+        stop = limits[index] - 1 if is_program[index] and heads[index] and not has_blocks[index] else end
+        if is_program[index] and stop == end:
+            continue
+        if data[begin + 1 : stop + 1].translate(None, BLANKS + b"\n"):
+            starts.append(begin)
+            ends.append(stop)
+            part = code[begin:stop]
+            part[part != LF] = _SPACE
+    return Ranges(np.array(starts, np.int64), np.array(ends, np.int64))
+
+
+def _names(code: Bytes) -> Ranges:
+    """Program names <...> of the 30i family, as in O<HEX> or M98 <HEX>."""
+    at = np.flatnonzero(code == _LESS)
+    if len(at):
+        at = np.flatnonzero((code == _LESS) | (code == _GREATER) | (code == LF))
+    start, end = at[:-1], at[1:]
+    length = end - start - 1
+    named = (code[start] == _LESS) & (code[end] == _GREATER) & (length > 0) & (length <= _NAME_LENGTH)
+    names = Ranges(start[named], end[named] + 1)
+    _blank(code, names)
+    return names
+
+
+def _semicolon_remarks(code: Bytes, lines: Positions) -> Ranges:
+    """
+    What follows `;` on its line is the next block if it reads as one, else a remark.
+
+    Manuals print `;` for the end of block, other dialects and notes copied from manuals use it to begin a remark.
+    """
+    tails = _first_of_line(np.flatnonzero(code == _SEMICOLON), lines)
+    if not len(tails):
+        return tails
+    tails = tails.only(_has_text(code, tails.start + 1, tails.end))
+    data = code.tobytes()
+    places = zip(tails.start.tolist(), tails.end.tolist(), strict=True)
+    is_remark = [_READS_AS_BLOCKS.fullmatch(data, start + 1, end) is None for start, end in places]
+    remarks = tails.only(np.array(is_remark, bool))
+    _blank(code, remarks)
+    return remarks
+
+
+def foreign(text: bytes) -> Ranges:
+    """Runs of characters that are not in the ISO set of controls."""
+    found = text.translate(_IS_FOREIGN)
+    none = np.zeros(0, np.int64)
+    if found.find(1) < 0:
+        return Ranges(none, none)
+    edges = np.flatnonzero(np.diff(np.frombuffer(b"\0" + found + b"\0", np.int8)))
+    return Ranges(edges[::2], edges[1::2])

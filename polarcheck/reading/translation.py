@@ -1,0 +1,48 @@
+"""Words of a control's own language, read as the codes that they stand for; every position stays."""
+
+from __future__ import annotations
+
+import functools
+import re
+from collections.abc import Callable, Mapping
+
+import numpy as np
+from msgspec.structs import replace
+
+from polarcheck.reading.source import Source
+
+
+def translated(source: Source, native_words: Mapping[str, str]) -> Source:
+    """The source with its own words (TRANSMIT) read as others (G12.1); what is shown stays as it is written."""
+    if not native_words:
+        return source
+    pattern, put = _translation(tuple(native_words.items()))
+    code = pattern.sub(put, source.code.tobytes())
+    return replace(source, code=np.frombuffer(code, np.uint8))
+
+
+@functools.cache
+def _translation(words: tuple[tuple[str, str], ...]) -> tuple[re.Pattern[bytes], Callable[[re.Match[bytes]], bytes]]:
+    """Longer words are looked for first; a word ends where its last letter is not followed by another one."""
+    meant = {word.upper().encode("latin-1"): text.encode("latin-1") for word, text in words}
+    found = [_pattern(word) for word in sorted(meant, key=len, reverse=True)]
+
+    def put(match: re.Match[bytes]) -> bytes:
+        word = match[0]
+        return meant[word.upper()].rjust(len(word))[-len(word) :]
+
+    return re.compile(b"|".join(found), re.IGNORECASE), put
+
+
+def _pattern(word: bytes) -> bytes:
+    begins = rb"(?<![A-Z_])" if word[:1].isalpha() else b""
+    ends = rb"(?![A-Z0-9_])" if word[-1:].isalpha() else b""
+    return begins + re.escape(word) + ends
+
+
+def shown(native_words: Mapping[str, str], code: str) -> str:
+    """The native word for a code such as G13.1, or the code itself."""
+    for word, text in native_words.items():
+        if re.fullmatch(re.escape(code) + r"0*", text.strip()) and (text.strip() == code or "." in code):
+            return word
+    return code

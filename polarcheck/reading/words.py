@@ -1,0 +1,413 @@
+"""The text of a file as one table of words, whatever the bytes. Bad text is marked, never raised."""
+
+from __future__ import annotations
+
+import enum
+import re
+from typing import Any
+
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+from polarcheck.arrays import Floats, Mask
+from polarcheck.reading.numbers import NumberFault, Numbers, read_numbers
+from polarcheck.reading.source import CTRL_Z, DASH, LF, Bytes, Positions, Source
+from polarcheck.reading.surroundings import BLANKS, Ranges, foreign, narrow, read_surroundings
+
+__all__ = ["Blocks", "NumberFault", "Spans", "Text", "Words", "read_words"]
+
+_FAULT_TEXT = {
+    NumberFault.NO_DIGITS: "no digits after the address",
+    NumberFault.TWO_POINTS: "two decimal points",
+    NumberFault.TWO_SIGNS: "two signs",
+    NumberFault.SIGN_AFTER_DIGITS: "a sign behind the digits",
+    NumberFault.NO_ADDRESS: "a number without an address",
+    NumberFault.WRONG_DASH: "a dash that is not a minus sign",
+}
+
+
+class Character(enum.IntEnum):
+    """What a character is to the reader; above COMMA what is no part of a word."""
+
+    BLANK = 0
+    LETTER = 1
+    BREAK = 2
+    DIGIT = 3
+    POINT = 4
+    SIGN = 5
+    COMMA = 6
+    MACRO = 7
+    STRAY = 8
+
+
+def _kinds() -> Bytes:
+    table = np.full(256, Character.STRAY, np.uint8)
+    table[list(BLANKS)] = Character.BLANK
+    for kind, characters in (
+        (Character.LETTER, b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz/"),
+        (Character.DIGIT, b"0123456789"),
+        (Character.POINT, b"."),
+        (Character.SIGN, bytes([*b"+-", DASH])),
+        (Character.BREAK, b"\n;"),
+        (Character.MACRO, b"#[]=*"),
+    ):
+        table[list(characters)] = kind
+    return table
+
+
+_KINDS = _kinds().tobytes()
+_COMMA, _COLON, _SLASH, _SEMICOLON = b",:/;"
+_UPPER = np.arange(256, dtype=np.uint8)
+_UPPER[97:123] -= 32
+_UPPER[_COLON] = ord("O")
+#: Macro statements that need neither bracket nor variable, by whether a number follows; at the head of a block.
+_STATEMENTS = {b"GOTO": False, b"GO": True, b"DO": True, b"END": True, b"EN": True, b"WHILE": False} | dict.fromkeys(
+    (b"POPEN", b"PCLOS"), False
+)
+_BEGINS_STATEMENT = np.isin(np.arange(256), [letters[0] for letters in _STATEMENTS])
+
+
+class Words(msgspec.Struct, frozen=True):
+    """
+    The words of a file in order, one element each.
+
+    address: uint8, the upper case letter; lower case where a comma stands before it (,R); 0 for a number without one.
+    value, decimals, digits, has_point, fault: see numbers.Numbers. block: index into Blocks. start, end: character
+    positions.
+    """
+
+    address: NDArray[np.uint8]
+    value: Floats
+    decimals: NDArray[np.int32]
+    digits: NDArray[np.int32]
+    has_point: Mask
+    fault: NDArray[np.uint8]
+    block: Positions
+    start: Positions
+    end: Positions
+
+    def __len__(self) -> int:
+        return len(self.address)
+
+    @property
+    def is_unreadable(self) -> Mask:
+        """The control cannot read the number; of a run of words without digits, as in prose, only the first."""
+        bad = (self.fault != NumberFault.NONE) & (self.fault != NumberFault.WRONG_DASH)
+        empty = self.fault == NumberFault.NO_DIGITS
+        follows = np.zeros(len(self), bool)
+        follows[1:] = empty[:-1] & empty[1:] & (self.block[1:] == self.block[:-1])
+        return np.asarray(bad & ~follows)
+
+    @property
+    def has_wrong_dash(self) -> Mask:
+        """A dash of print stands where a minus sign is meant."""
+        return np.asarray(self.fault == NumberFault.WRONG_DASH)
+
+    def number_fault(self, index: int) -> str:
+        """What is wrong with the number, in words."""
+        return _FAULT_TEXT[NumberFault(int(self.fault[index]))]
+
+
+class Blocks(msgspec.Struct, frozen=True):
+    """
+    The blocks of a file in order, empty ones included; a block ends at a line end or `;`.
+
+    start, end: character positions. line: from 1. is_macro: has macro statements or expressions, so that its words are
+    not in the table.
+    """
+
+    start: Positions
+    end: Positions
+    line: Positions
+    is_macro: Mask
+
+    def __len__(self) -> int:
+        return len(self.start)
+
+
+class Spans(msgspec.Struct, frozen=True):
+    """Places in the text, from start to end (exclusive), each at a block."""
+
+    start: Positions
+    end: Positions
+    block: Positions
+
+    def __len__(self) -> int:
+        return len(self.start)
+
+
+class Text(msgspec.Struct, frozen=True):
+    """
+    All that the reader knows of one file.
+
+    unclosed, nested: per comment. names: of programs, <...>. strays: characters that are no part of any word. foreign:
+    runs of characters outside the ISO set, in comments too. dots: lines of points, for blocks left out. outside: text
+    before and after the programs. tape_marks: positions of % at a line's head or end.
+    """
+
+    source: Source
+    words: Words
+    blocks: Blocks
+    comments: Spans
+    unclosed: Mask
+    nested: Mask
+    names: Spans
+    strays: Spans
+    foreign: Spans
+    dots: Spans
+    outside: Spans
+    tape_marks: Positions
+
+
+def read_words(source: Source, line_comments: str = "") -> Text:
+    """The table of words of a file; line_comments: characters that this control reads as start of a comment."""
+    data = source.code.tobytes()
+    end_of_data = data.find(CTRL_Z)  # ends a file of old DOS transfers
+    if end_of_data < 0:
+        end_of_data = len(data)
+    stored = data[:end_of_data]
+    lines_end_at_cr = data.find(b"\n") < 0
+    code = np.frombuffer(bytearray(stored.replace(b"\r", b"\n") if lines_end_at_cr else stored), np.uint8)
+    around = read_surroundings(code, line_comments)
+    table = _read_pieces(code.tobytes())
+    _mark_alignment(table.words, code)
+    breaks = table.breaks[:-1]
+    starts = np.append(breaks[:0], 0)
+    starts = np.append(starts, breaks + 1).astype(breaks.dtype)
+    line = np.cumsum(np.append(True, code[breaks] == LF), dtype=breaks.dtype)
+    is_macro = np.zeros(len(starts), bool)
+    is_macro[_block_of(table.macro, starts)] = True
+    is_macro[table.words.block[_begins_statement(table.words)]] = True
+    words = _only(table.words, ~is_macro[table.words.block])
+    blocks = Blocks(starts, np.append(breaks, len(code)), np.minimum(line, len(source.line_starts)), is_macro)
+
+    def spans(ranges: Ranges) -> Spans:
+        return Spans(ranges.start, ranges.end, _block_of(ranges.start, starts))
+
+    strays = np.sort(np.append(table.strays[~is_macro[_block_of(table.strays, starts)]], around.strays))
+    outside = around.outside
+    if data[end_of_data + 1 :].translate(None, BLANKS + b"\n"):
+        outside = Ranges(np.append(outside.start, end_of_data), np.append(outside.end, len(data)))
+    return Text(
+        source=source,
+        words=_with_names(words, around.names.start),
+        blocks=blocks,
+        comments=spans(around.comments),
+        unclosed=around.unclosed,
+        nested=around.nested,
+        names=spans(around.names),
+        strays=spans(Ranges(strays, strays + 1)),
+        foreign=spans(foreign(stored)),
+        dots=spans(table.dots),
+        outside=spans(outside),
+        tape_marks=around.tape_marks,
+    )
+
+
+def _block_of(at: Positions, starts: Positions) -> Positions:
+    """The block in which each position lies."""
+    return np.searchsorted(starts, at, side="right") - 1
+
+
+#: A text is read in pieces of about so many characters: faster, since they fit into the cache, and in less memory.
+_PIECE = 1 << 18
+#: Where a line may be cut that is longer: before a word, and not before one that may be a corner word (,C ,R ,A).
+_CUT = re.compile(rb"[\nBD-QS-Zbd-qs-z]")
+
+
+class _Table(msgspec.Struct, frozen=True):
+    """What is read of a text or of a piece of it; breaks: the ends of its blocks; macro: signs of macro statements."""
+
+    words: Words
+    breaks: Positions
+    dots: Ranges
+    strays: Positions
+    macro: Positions
+
+
+def _read_pieces(text: bytes) -> _Table:
+    """The words and blocks of a text without comments; the end of the text is the last break."""
+    size = narrow(len(text))
+    tables: list[_Table] = []
+    begin = blocks = 0
+    while begin <= len(text):
+        end = text.find(b"\n", begin + _PIECE, begin + 2 * _PIECE)
+        if end < 0:
+            cut = _CUT.search(text, begin + _PIECE)
+            end = cut.start() if cut else len(text)
+        table = _read_piece(text[begin:end], size(begin), size(blocks))
+        in_line = end < len(text) and text[end] != LF
+        tables.append(msgspec.structs.replace(table, breaks=table.breaks[:-1]) if in_line else table)
+        blocks += len(tables[-1].breaks)
+        begin = end if in_line else end + 1
+    return _Table(*(_joined([getattr(table, name) for table in tables]) for name in _Table.__struct_fields__))
+
+
+def _joined(parts: list[Any]) -> Any:
+    if isinstance(parts[0], np.ndarray):
+        return np.concatenate(parts)
+    return type(parts[0])(*map(np.concatenate, zip(*map(_columns, parts), strict=True)))
+
+
+def _columns(table: Words | Ranges) -> tuple[NDArray[Any], ...]:
+    return tuple(getattr(table, name) for name in table.__struct_fields__)
+
+
+def _read_piece(text: bytes, offset: np.signedinteger[Any], blocks: np.signedinteger[Any]) -> _Table:
+    """One piece; blanks mean nothing to a control and are left out first. A break more at its head saves many ifs."""
+    text = b"\n" + text + b"\n"
+    at = np.flatnonzero(np.frombuffer(text.translate(_KINDS), np.uint8) != Character.BLANK).astype(type(offset))
+    at += offset - type(offset)(1)
+    text = text.translate(None, BLANKS)
+    marks = _Marks(np.frombuffer(text, np.uint8), np.frombuffer(text.translate(_KINDS), np.uint8), at, at, at[:0])
+    strays = macro = at[:0]
+    if marks.kind.max() > Character.COMMA:
+        marks, strays, macro = _without_others(marks)
+    breaks = np.flatnonzero(marks.kind == Character.BREAK)
+    words, dots = _words(marks, breaks)
+    words.block.__iadd__(blocks)
+    return _Table(words, marks.at[breaks[1:]], dots, strays, macro)
+
+
+class _Marks(msgspec.Struct, frozen=True):
+    """
+    The characters of words and the ends of blocks, without anything between.
+
+    code, kind: of each. at: position in the text. start: the same, at the comma before the letter of a corner word.
+    corners: the marks that are such letters.
+    """
+
+    code: Bytes
+    kind: Bytes
+    at: Positions
+    start: Positions
+    corners: Positions
+
+
+def _without_others(marks: _Marks) -> tuple[_Marks, Positions, Positions]:
+    """The marks without those that are no part of a word: strays, and signs of macro statements."""
+    code, kind, start = marks.code, marks.kind.copy(), marks.start.copy()
+    others = np.flatnonzero(kind > Character.COMMA)
+    before, follower = kind[others - 1], code[others + 1]
+    kind[others[(code[others] == _COLON) & (before == Character.BREAK)]] = Character.LETTER  # stands for O
+    commas = others[(code[others] == _COMMA) & np.isin(follower, list(b"CRAcra"))]
+    kind[commas] = Character.COMMA
+    start[commas + 1] = marks.at[commas]
+    kept = kind < Character.COMMA
+    corners = np.cumsum(kept)[commas + 1] - 1
+    return (
+        _Marks(code[kept], kind[kept], marks.at[kept], start[kept], corners),
+        marks.at[kind == Character.STRAY],
+        marks.at[kind == Character.MACRO],
+    )
+
+
+def _words(marks: _Marks, breaks: Positions) -> tuple[Words, Ranges]:
+    """The table of words, and the lines of points. A word is a letter and the number behind it."""
+    kind = marks.kind
+    in_number = (kind >= Character.DIGIT) & (kind <= Character.SIGN)
+    edges = np.flatnonzero(in_number[1:] != in_number[:-1]) + 1
+    begins, ends = edges[::2], edges[1::2]
+    letters = np.flatnonzero(kind == Character.LETTER)
+    after_letter = kind[begins - 1] == Character.LETTER
+    behind = letters + 1
+    end = behind.copy()
+    end[in_number[behind]] = ends[after_letter]
+    numbers = read_numbers(marks.code, behind, end)
+
+    address = _UPPER[marks.code[letters]]
+    bare = np.flatnonzero(numbers.digits == 0)
+    numbers.fault[bare[(address[bare] == _SLASH) & (end[bare] == behind[bare])]] = NumberFault.NONE
+    address[np.searchsorted(letters, marks.corners)] += 32
+    counts = np.diff(np.searchsorted(letters, breaks))
+    block = np.repeat(np.arange(len(counts), dtype=marks.at.dtype), counts)
+    words = _table(address, numbers, block, marks.start[letters], marks.at[end - 1] + 1)
+    if after_letter.all():
+        return words, Ranges(edges[:0], edges[:0])
+    return _with_loose(words, marks, breaks, begins[~after_letter], ends[~after_letter])
+
+
+def _table(address: Bytes, numbers: Numbers, block: Positions, start: Positions, end: Positions) -> Words:
+    return Words(
+        address,
+        numbers.value,
+        numbers.decimals,
+        numbers.digits,
+        numbers.has_point,
+        numbers.fault,
+        block,
+        start,
+        end,
+    )
+
+
+def _with_loose(
+    words: Words, marks: _Marks, breaks: Positions, begins: Positions, ends: Positions
+) -> tuple[Words, Ranges]:
+    """
+    Numbers at the head of a block join the table as faulty words of address 0.
+
+    Lines of three points or more are none: they stand in manuals for blocks left out.
+    """
+    points = np.append(0, np.cumsum(marks.kind == Character.POINT))
+    length = ends - begins
+    is_dots = (length > 2) & (points[ends] - points[begins] == length) & (marks.kind[ends] == Character.BREAK)
+    start, end = marks.at[begins], marks.at[ends - 1] + 1
+    dots = Ranges(start[is_dots], end[is_dots])
+    loose = ~is_dots
+    count = int(np.count_nonzero(loose))
+    nothing = np.zeros(count, np.int32)
+    numbers = Numbers(
+        np.full(count, np.nan),
+        nothing,
+        nothing,
+        np.zeros(count, bool),
+        np.full(count, NumberFault.NO_ADDRESS, np.uint8),
+    )
+    block = (np.searchsorted(breaks, begins[loose]) - 1).astype(marks.at.dtype)
+    extra = _table(np.zeros(count, np.uint8), numbers, block, start[loose], end[loose])
+    at = np.searchsorted(words.start, extra.start)
+    columns = zip(_columns(words), _columns(extra), strict=True)
+    return Words(*(np.insert(column, at, more) for column, more in columns)), dots
+
+
+def _only(words: Words, chosen: Mask) -> Words:
+    if chosen.all():
+        return words
+    return Words(*(column[chosen] for column in _columns(words)))
+
+
+def _begins_statement(words: Words) -> Mask:
+    """Letters that begin a macro statement such as GOTO 10."""
+    found = np.zeros(len(words), bool)
+    bare = np.flatnonzero((words.fault == NumberFault.NO_DIGITS) & _BEGINS_STATEMENT[words.address])
+    if len(bare):
+        is_head = np.append(True, words.block[1:] != words.block[:-1])
+        is_head[1:] |= np.isin(words.address[:-1], list(b"N/"))
+        bare = bare[is_head[bare]]
+    for letters, has_number in _STATEMENTS.items():
+        last = bare + len(letters) - 1
+        first, last = bare[last < len(words)], last[last < len(words)]
+        spelled = (words.block[first] == words.block[last]) & ((words.digits[last] > 0) | (not has_number))
+        for place, letter in enumerate(letters):
+            at = first + place
+            spelled &= (words.address[at] == letter) & ((words.fault[at] == NumberFault.NO_DIGITS) | (at == last))
+        found[first[spelled]] = True
+    return found
+
+
+def _mark_alignment(words: Words, code: Bytes) -> None:
+    """`:` with other words behind it is no program number but an alignment block, a sequence number (ISO 6983)."""
+    heads = np.flatnonzero(words.address == ord("O"))
+    heads = heads[code[words.start[heads]] == _COLON]
+    heads = heads[heads + 1 < len(words)]
+    words.address[heads[words.block[heads + 1] == words.block[heads]]] = ord("N")
+
+
+def _with_names(words: Words, names: Positions) -> Words:
+    """An O before a program name <...> has no number and is none the worse."""
+    if len(names):
+        bare = np.flatnonzero((words.fault == NumberFault.NO_DIGITS) & (words.address == ord("O")))
+        words.fault[bare[np.isin(words.end[bare], names)]] = NumberFault.NONE
+    return words

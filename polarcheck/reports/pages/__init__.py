@@ -1,0 +1,1 @@
+"""What polarcheck shows beside findings: manual pages, machine profiles, the executed table, schemas."""

@@ -1,0 +1,102 @@
+"""
+docs/controls.md: each control and each of its properties, with its source.
+
+`python -m polarcheck.reports.pages.controls > docs/controls.md` writes it anew.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Any
+
+import msgspec
+
+from polarcheck.machines import profiles
+from polarcheck.machines.parameters import Origin
+from polarcheck.machines.profiles import Profile
+
+_COLUMNS = (
+    "polar.on",
+    "polar.off",
+    "polar.virtual_axis",
+    "polar.x",
+    "arcs.radius_word",
+    "polar.plane_before",
+    "feed.inheritance",
+    "polar.infeed_word",
+    "control.g_code_system",
+    "control.number_without_point",
+)
+
+
+def text() -> str:
+    """The whole page."""
+    loaded = [profiles.load(name) for name in profiles.names()]
+    lines = [
+        "# The controls",
+        "",
+        "Made from the profiles under `polarcheck/machines`; `polarcheck machines NAME` shows one of them whole.",
+        "What a profile does not say itself it inherits. `?` marks what is in doubt; a rule that hangs on it gives",
+        "warnings or notes, no errors.",
+        "",
+        "## At a glance",
+        "",
+        *_overview(loaded),
+    ]
+    for profile in loaded:
+        lines += ["", f"## {profile.name}", "", *_page(profile)]
+    return "\n".join(lines) + "\n"
+
+
+def _overview(loaded: list[Profile]) -> Iterator[str]:
+    yield _row("control", *_COLUMNS)
+    yield _row(*["---"] * (len(_COLUMNS) + 1))
+    for profile in loaded:
+        yield _row(f"[{profile.name}](#{profile.name})", *(_said(profile, key) for key in _COLUMNS))
+
+
+def _said(profile: Profile, key: str) -> str:
+    group, _, last = key.partition(".")
+    origin = profile.origins.get(key)
+    mark = " ?" if origin and origin.doubtful else ""
+    return f"{_shown(getattr(getattr(profile.machine, group), last))}{mark}"
+
+
+def _page(profile: Profile) -> Iterator[str]:
+    yield f"{profile.machine.title}. " + (f"Inherits {' < '.join(profile.chain[1:])}." if profile.chain[1:] else "")
+    for note in profile.machine.notes:
+        yield from ("", f"- {note}")
+    own = {key: origin for key, origin in profile.origins.items() if origin.profile == profile.name and "." in key}
+    if own:
+        yield from ("", _row("property", "value", "source"), _row("---", "---", "---"))
+    table = msgspec.to_builtins(profile.machine)
+    for key, origin in own.items():
+        group, _, last = key.partition(".")
+        yield _row(f"`{key}`", _shown(table[group][last], group), _source(origin))
+
+
+def _source(origin: Origin) -> str:
+    return f"{'? ' if origin.doubtful else ''}{origin.source}"
+
+
+def _shown(value: Any, group: str = "") -> str:
+    if group == "meanings":
+        return str(value["title"])
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, float):
+        return "not known" if math.isnan(value) else f"{value:g}"
+    if isinstance(value, dict):
+        return ", ".join(f"{key} = {element or 'nothing'}" for key, element in value.items()) or "none"
+    if isinstance(value, list | tuple):
+        return ", ".join(map(str, value)) or "none"
+    return str(value) or "none"
+
+
+def _row(*cells: str) -> str:
+    return f"| {' | '.join(cell.replace('|', '&#124;') for cell in cells)} |"
+
+
+if __name__ == "__main__":
+    print(text(), end="")

@@ -1,0 +1,158 @@
+"""What polarcheck says about itself: manual pages, the catalogue of rules, machine profiles."""
+
+from __future__ import annotations
+
+import importlib
+import math
+import re
+import textwrap
+from collections.abc import Iterable, Iterator, Mapping
+from typing import TYPE_CHECKING, Any
+
+import msgspec
+
+from polarcheck.machines import profiles
+from polarcheck.machines.machine import Machine
+from polarcheck.machines.profiles import Profile
+from polarcheck.reading.excerpt import visible
+
+if TYPE_CHECKING:
+    from polarcheck.checking.rule import Rule
+    from polarcheck.machines.parameters import Origin
+
+_COLUMNS = 100
+#: Where the comments of a profile begin.
+_COMMENT = 36
+
+
+def pages(rules: Iterable[Rule], machine: Machine) -> str:
+    """The manual pages of rules, each under a line with its name, group, severity, and alarm on this machine."""
+    return "\n\n".join(_page(rule, machine) for rule in rules) + "\n"
+
+
+def _page(rule: Rule, machine: Machine) -> str:
+    alarm = machine.alarms.get(rule.name)
+    facts = [rule.group, machine.severities.get(rule.name, rule.severity.name.lower())]
+    facts += [f"alarm {alarm} on {machine.title}"] if alarm else []
+    head = f"{rule.name} ({', '.join(facts)})"
+    return f"{head}\n{'=' * len(head)}\n\n{rule.page.strip()}"
+
+
+def catalogue(rules: Mapping[str, Rule]) -> str:
+    """All rules by group: severity, name, title."""
+    width = max((len(name) for name in rules), default=0)
+    lines = []
+    group = ""
+    for rule in rules.values():
+        if rule.group != group:
+            group = rule.group
+            about = importlib.import_module(f"polarcheck.rules.{group}").__doc__ or ""
+            lines += ["", f"{group}: {about.strip()}"]
+        lines.append(f"  {rule.severity.name.lower():<7}  {rule.name:<{width}}  {rule.title}")
+    return "\n".join(lines[1:]) + "\n"
+
+
+def catalogue_json(rules: Mapping[str, Rule]) -> str:
+    """All rules as a JSON array."""
+    entries = [
+        {
+            "name": rule.name,
+            "group": rule.group,
+            "severity": rule.severity.name.lower(),
+            "title": rule.title,
+            "source": rule.source,
+        }
+        for rule in rules.values()
+    ]
+    return msgspec.json.format(msgspec.json.encode(entries), indent=2).decode() + "\n"
+
+
+# ---- machines ----
+
+
+def machine_list() -> str:
+    """The built-in machines: name, title, from which profiles each takes what it does not say itself."""
+    loaded = [profiles.load(name) for name in profiles.names()]
+    rows = []
+    for profile in loaded:
+        default = ", the default" if profile.name == profiles.DEFAULT else ""
+        rows.append(
+            (profile.name, profile.machine.title + default, "".join(f"< {name} " for name in profile.chain[1:]))
+        )
+    first, second = (max(len(row[column]) for row in rows) for column in (0, 1))
+    return "".join(f"{name:<{first}}  {title:<{second}}  {chain}".rstrip() + "\n" for name, title, chain in rows)
+
+
+def profile_text(profile: Profile) -> str:
+    """The merged profile as TOML, each value with the profile that it comes from and its source."""
+    lines = [
+        f"# {visible(' < '.join(profile.chain))}",
+        "# Each value with the profile that it comes from and its source. ? marks what may be different on",
+        "# your lathe: see its manuals. nan is not known, and what needs it is not evaluated.",
+        "# Change a value with --set TABLE.KEY=VALUE, or in a profile of your own that inherits this one.",
+        "",
+    ]
+    table = {name: getattr(profile.machine, name) for name in profile.machine.__struct_fields__}
+    meanings, notes = table.pop("meanings", {}), table.pop("notes", [])
+    for note in notes:
+        lines += textwrap.wrap(visible(note), _COLUMNS, initial_indent="# - ", subsequent_indent="#   ")
+    lines += [""] if notes else []
+    groups = {
+        name: msgspec.to_builtins(table.pop(name)) for name in list(table) if not isinstance(table[name], str | list)
+    }
+    for key, value in table.items():
+        lines += _entry(key, value, profile.origins.get(key))
+    for group, values in groups.items():
+        lines += ["", f"[{group}]"] if values else []
+        for key, value in values.items():
+            lines += _entry(key, value, profile.origins.get(f"{group}.{key}"))
+    if meanings:
+        lines += ["", "# Parameters of the control that the table [parameters] of a profile of your own may give:"]
+        lines += [visible(f"#   {number:<8}{meaning.title}") for number, meaning in meanings.items()]
+    return "\n".join(lines) + "\n"
+
+
+def _entry(key: str, value: Any, origin: Origin | None) -> Iterator[str]:
+    """`key = value  # profile: source`, on further lines where they are long."""
+    *first, last = _assignment(key, value)
+    yield from map(visible, first)
+    comment = [f"# {visible(line)}" for line in textwrap.wrap(_said(value, origin), _COLUMNS - _COMMENT - 2)]
+    if len(last) >= _COMMENT - 1 and (len(comment) > 1 or len(last) + len(comment[0]) > _COLUMNS - 2):
+        yield visible(last)
+        last = ""
+    for line in comment:
+        yield f"{visible(last):<{_COMMENT - 2}}  {line}"
+        last = ""
+
+
+def _said(value: Any, origin: Origin | None) -> str:
+    if origin is None:
+        return "not known" if isinstance(value, float) and math.isnan(value) else "where no profile says otherwise"
+    text = f"{origin.profile}: {origin.source}" if origin.source else origin.profile
+    return f"? {text}" if origin.doubtful else text
+
+
+def _assignment(key: str, value: Any) -> list[str]:
+    """The lines of `key = value`; a list is broken between its elements."""
+    if isinstance(value, dict):
+        return [f"{_toml_key(key)} = {{ value = {_toml(value)} }}"]
+    if not isinstance(value, list):
+        return [f"{_toml_key(key)} = {_toml(value)}"]
+    lines = [f"{_toml_key(key)} = ["]
+    for index, element in enumerate(value):
+        text = _toml(element) + ("," if index + 1 < len(value) else "")
+        if len(lines[-1]) + len(text) + 2 > _COLUMNS:
+            lines.append("   ")
+        lines[-1] += text if lines[-1].endswith("[") else f" {text}"
+    lines[-1] += "]"
+    return lines
+
+
+def _toml_key(key: Any) -> str:
+    return str(key) if re.fullmatch(r"[\w-]+", str(key), re.ASCII) else _toml(str(key))
+
+
+def _toml(value: Any) -> str:
+    if isinstance(value, dict) and value:
+        return f"{{ {', '.join(f'{_toml_key(key)} = {_toml(element)}' for key, element in value.items())} }}"
+    return str(value) if isinstance(value, float) and not math.isfinite(value) else msgspec.json.encode(value).decode()

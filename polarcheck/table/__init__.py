@@ -1,0 +1,1 @@
+"""The executed program as columns, and the tables that rules compare."""

@@ -1,0 +1,199 @@
+"""Arcs on the polar plane as they are written: by I and J or by R, and whether that makes a circle."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from polarcheck.arrays import Floats, Mask, Points, Rows
+from polarcheck.geometry import plane
+from polarcheck.geometry.corner import ROUNDING
+from polarcheck.machines.modal import MM_PER_INCH, Motion, Units
+
+if TYPE_CHECKING:
+    from polarcheck.table.trace import Trace
+
+
+#: One arc alone speaks for the other reading of X where it misses its circle by this many tolerances.
+_CLEARLY = 10
+
+
+class Arcs:
+    """Columns of one trace, one value per row; the methods give words for a message about one row."""
+
+    def __init__(self, trace: Trace) -> None:
+        self.trace = trace
+
+    # ---- what is written ----
+
+    @cached_property
+    def in_force(self) -> Mask:
+        """G2 or G3 is in force in the polar mode, so that axis words would be those of an arc."""
+        trace = self.trace
+        return np.asarray(trace.in_polar & trace.uses_axes & np.isin(trace.state("motion"), (Motion.CW, Motion.CCW)))
+
+    @cached_property
+    def by_radius(self) -> Mask:
+        """Arcs with R."""
+        return np.asarray(self.trace.is_arc & self.trace.has(self.trace.machine.arcs.radius_word))
+
+    @cached_property
+    def by_center(self) -> Mask:
+        """Arcs with I or J and without R, which would count before them (B-62754EN/01 p. 67)."""
+        return np.asarray(self.trace.is_arc & self.trace.has(*self.trace.own.center_words) & ~self.by_radius)
+
+    @cached_property
+    def has_word_of_other_plane(self) -> Mask:
+        """Arcs with a K; K0 moves nothing."""
+        other = self.trace.own.other_center_word
+        return np.asarray(self.trace.is_arc & self.trace.has(other) & (self.trace.word(other) != 0))
+
+    @cached_property
+    def without_center(self) -> Mask:
+        """Arcs with neither R nor I, J or K that move."""
+        written = self.by_radius | self.trace.has(*self.trace.own.center_words) | self.has_word_of_other_plane
+        return np.asarray(self.trace.is_arc & ~written & ~self._ends_at_start)
+
+    @cached_property
+    def _ends_at_start(self) -> Mask:
+        return np.asarray(np.abs(self.trace.end - self.trace.start) <= ROUNDING)
+
+    @cached_property
+    def off_plane(self) -> Mask:
+        """Arcs along Z with nothing of the polar plane."""
+        trace = self.trace
+        own = trace.has(*trace.own.center_words) & ~trace.has(trace.own.other_center_word)
+        return np.asarray(self.in_force & trace.moves_z & ~trace.moves_plane & ~own)
+
+    @cached_property
+    def helical(self) -> Mask:
+        """Arcs on the polar plane that move Z, too."""
+        return np.asarray(self.in_force & self.trace.moves_z & ~self.off_plane)
+
+    @cached_property
+    def circle_by_radius(self) -> Mask:
+        """Arcs with R that end where they start, be it that no end is written."""
+        trace = self.trace
+        has_radius = self.in_force & trace.has(trace.machine.arcs.radius_word) & ~trace.moves_z
+        return np.asarray(has_radius & (~trace.moves_plane | self._ends_at_start))
+
+    # ---- whether it is a circle ----
+
+    @cached_property
+    def _to_center(self) -> Points:
+        """I + jJ [mm]; what is not written is 0."""
+        i, j = (self.trace.length_of(word) for word in self.trace.own.center_words)
+        return np.asarray(np.nan_to_num(i) + 1j * np.nan_to_num(j))
+
+    @cached_property
+    def start_radius(self) -> Floats:
+        """Distance of the start of an arc to its center by I and J [mm]; NaN for other rows."""
+        return np.where(self.by_center, np.abs(self._to_center), np.nan)
+
+    @cached_property
+    def end_radius(self) -> Floats:
+        """Distance of the end of an arc to its center by I and J [mm]; NaN for other rows and where it is not known."""
+        step = self.trace.end - self.trace.start
+        return np.where(self.by_center, np.abs(step - self._to_center), np.nan)
+
+    @cached_property
+    def center_on_path(self) -> Mask:
+        """Arcs whose center by I and J is their start or their end."""
+        return np.asarray(np.fmin(self.start_radius, self.end_radius) <= ROUNDING)
+
+    @cached_property
+    def chord(self) -> Floats:
+        """Distance from start to end of an arc by R [mm]; NaN for other rows and where it is not known."""
+        return np.where(self.by_radius, np.abs(self.trace.end - self.trace.start), np.nan)
+
+    @cached_property
+    def radius(self) -> Floats:
+        """R of an arc as written, with its sign [mm]; NaN for other rows."""
+        return np.where(self.by_radius, self.trace.length_of(self.trace.machine.arcs.radius_word), np.nan)
+
+    def least_radius(self, row: int) -> str:
+        """The smallest R that reaches from start to end, rounded up to what the program can write."""
+        inch = self.trace.units[row] == Units.INCH
+        least, places = float(self.chord[row]) / (2 * MM_PER_INCH if inch else 2), 4 if inch else 3
+        text = f"{np.ceil(least * 10**places - 1e-6) / 10**places:.{places}f}".rstrip("0").rstrip(".")
+        return f"{text} {'inch' if inch else 'mm'}"
+
+    @cached_property
+    def ends_off_circle(self) -> Mask:
+        """Arcs by I and J whose end is not as far from the center as their start."""
+        return np.asarray(np.abs(self.start_radius - self.end_radius) > self.trace.machine.arcs.tolerance)
+
+    @cached_property
+    def does_not_reach(self) -> Mask:
+        """Arcs by R whose ends are farther apart than the diameter."""
+        return np.asarray(self.chord > 2 * np.abs(self.radius) + self.trace.machine.arcs.tolerance)
+
+    @cached_property
+    def is_no_circle(self) -> Mask:
+        """Arcs about which a finding says that there is no such circle; what follows from their shape means nothing."""
+        no_center = self.without_center | self.has_word_of_other_plane | self.center_on_path
+        return no_center | self.ends_off_circle | self.does_not_reach
+
+    @cached_property
+    def sweep(self) -> Floats:
+        """Angle of each arc about its own center [deg], 360 for a full circle; NaN for other rows and unknown arcs."""
+        trace, rows = self.trace, np.flatnonzero(self.trace.is_arc)
+        column = np.full(len(trace), np.nan)
+        angle = plane.arc_sweep(trace.start[rows], trace.end[rows], trace.center[rows], trace.motion[rows])
+        column[rows] = np.abs(np.degrees(angle))
+        return column
+
+    # ---- diameter or radius ----
+
+    @cached_property
+    def x_is_misread(self) -> Mask:
+        """
+        The rows of sections in which no arc fits as this profile reads X, and all fit with X as the other of diameter
+        and radius.
+
+        Arcs by I and J speak, if X changes along them: I is a radius in either reading. One of them must move C, too,
+        since a quarter of a circle without its C fits by chance. Arcs by R fit often, so that they speak only where
+        there are several, and none of them does.
+        """
+        trace, arc = self.trace, np.flatnonzero(self.trace.is_arc)
+        if not len(arc):
+            return np.zeros(len(trace), bool)
+        tolerance = trace.machine.arcs.tolerance
+        to_center, step, other = self._to_center[arc], (trace.end - trace.start)[arc], self._step_otherwise[arc]
+        moves_x, moves_c = np.abs(step.real) > tolerance, np.abs(step.imag) > tolerance
+        center, radius = (self.start_radius > ROUNDING)[arc], self.by_radius[arc]
+        miss = np.abs(np.abs(to_center) - np.abs(step - to_center))
+        miss_otherwise = np.abs(np.abs(to_center) - np.abs(other - to_center))
+        limit = 2 * np.abs(self.radius[arc]) + tolerance
+
+        def count(of: Mask) -> Rows:
+            return np.bincount(trace.section[arc[of]], minlength=len(trace.sections))
+
+        fails, clearly = center & (miss > tolerance), center & (miss > _CLEARLY * tolerance)
+        by_center = ((count(fails) > 1) | (count(clearly) > 0)) & (count(fails & moves_c) > 0)
+        by_radius = (count(np.abs(step) > limit) > 1) & (count(radius & moves_x & (np.abs(step) <= limit)) == 0)
+        closes = center & moves_x & (miss <= tolerance)
+        objects = (center & ~(miss_otherwise <= tolerance)) | (np.abs(other) > limit)
+        misread = (by_center | by_radius) & (count(closes | objects) == 0)
+        return np.asarray((trace.section >= 0) & misread[trace.section])
+
+    def x_reading(self, row: int) -> str:
+        """What X is in a row."""
+        return "diameter" if self.trace.x_factor[row] < 1 else "radius"
+
+    def x_other_reading(self, row: int) -> str:
+        """What X is not."""
+        return "radius" if self.trace.x_factor[row] < 1 else "diameter"
+
+    @cached_property
+    def _step_otherwise(self) -> Points:
+        """From start to end [mm], were X in the mode the other of diameter and radius; X before G12.1 stays."""
+        trace = self.trace
+        factor = np.where(trace.x_factor < 1, 2.0, 0.5)
+        has_x = trace.has("X") & ~trace.incremental
+        had_x = np.zeros(len(trace), bool)
+        had_x[1:] = trace.feeds.given_in_section(has_x)[:-1]
+        x = trace.end.real * factor - trace.start.real * np.where(has_x & ~had_x, 1.0, factor)
+        return np.asarray(x + 1j * (trace.end - trace.start).imag)

@@ -1,0 +1,353 @@
+"""The columns that a row has by itself or from the rows above it: words, codes, modal states, units, feed, tool."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from polarcheck.arrays import Floats, Mask, Rows, States
+from polarcheck.execution.run import Run
+from polarcheck.machines.codes import code_numbers, code_set, group_tables, renumbered
+from polarcheck.machines.job import Job
+from polarcheck.machines.machine import Machine
+from polarcheck.machines.modal import MM_PER_INCH, TAKES_AXIS_WORDS, Distance, FeedMode, Motion, Side, Units
+from polarcheck.table.filling import before, fill_down
+
+if TYPE_CHECKING:
+    from polarcheck.table.radius_comments import Found
+
+Column = TypeVar("Column")
+
+#: Without a point, a length of this many units can only be meant in least increments: no lathe moves a meter.
+_INCREMENTS_FROM = 1000.0
+_BEFORE = {"motion": Motion.NONE, "side": Side.OFF, "feed_mode": FeedMode.PER_MINUTE, "distance": Distance.ABSOLUTE}
+
+
+class Columns:
+    """Words and states of the rows of one file on one machine for one job."""
+
+    def __init__(self, run: Run, machine: Machine, job: Job) -> None:
+        self.run = run
+        self.text = run.text
+        self.machine = machine
+        self.job = job
+        self._columns: dict[str, Any] = {}
+
+    def __len__(self) -> int:
+        return len(self.run)
+
+    # ---- words ----
+
+    @cached_property
+    def _by_address(self) -> tuple[Rows, Rows]:
+        """Word indices grouped by address in order of the rows, and where each address begins."""
+        address = self.run.words.address
+        return np.argsort(address, kind="stable"), np.cumsum(np.bincount(address, minlength=256))
+
+    def word_indices(self, address: str) -> Rows:
+        """The words of an address, in order; `,R` is an address of its own."""
+        order, ends = self._by_address
+        number = ord(address[1].lower()) if address[0] == "," else ord(address)
+        return order[ends[number - 1] : ends[number]]
+
+    def word(self, address: str) -> Floats:
+        """The written value per row, the last where it is repeated; NaN where it is not written."""
+        return self._column(f"word {address}", lambda: self._scatter(address, self.run.words.value))
+
+    def has(self, *addresses: str) -> Mask:
+        """Whether a row has a word of any of the addresses."""
+        found = np.zeros(len(self), bool)
+        for address in addresses:
+            found[self.run.row[self.word_indices(address)]] = True
+        return found
+
+    def _scatter(self, address: str, values: Floats) -> Floats:
+        column = np.full(len(self), np.nan)
+        at = self.word_indices(address)
+        column[self.run.row[at]] = values[at]
+        return column
+
+    def _column(self, name: str, make: Callable[[], Column]) -> Column:
+        if name not in self._columns:
+            self._columns[name] = make()
+        column: Column = self._columns[name]
+        return column
+
+    # ---- codes ----
+
+    @cached_property
+    def g_words(self) -> Rows:
+        """Indices of the G words."""
+        return self.word_indices("G")
+
+    @cached_property
+    def g_codes(self) -> NDArray[np.int32]:
+        """Their codes as whole numbers (modal.code)."""
+        written = code_numbers(self.run.words.value[self.g_words])
+        return renumbered(written, self.machine.control.motion_codes)
+
+    @cached_property
+    def m_words(self) -> Rows:
+        """Indices of the M words."""
+        return self.word_indices("M")
+
+    @cached_property
+    def m_codes(self) -> NDArray[np.int32]:
+        """Their codes as whole numbers."""
+        return code_numbers(self.run.words.value[self.m_words])
+
+    def codes(self, *words: str) -> Mask:
+        """Whether a row has any of these G or M codes."""
+        found = np.zeros(len(self), bool)
+        for letter, indices, numbers in (("G", self.g_words, self.g_codes), ("M", self.m_words, self.m_codes)):
+            asked = [word for word in words if word[0] == letter]
+            if asked:
+                found[self.run.row[indices[code_set(asked)[numbers]]]] = True
+        return found
+
+    def state(self, group: str) -> States:
+        """The state of a modal group in each row, after its own codes (modal.MODAL_GROUPS)."""
+        return self._column(f"state {group}", lambda: self._filled(group)[0])
+
+    def sets(self, group: str) -> Mask:
+        """Whether a row has a code of the group."""
+        return self._column(f"sets {group}", lambda: self._filled(group)[1])
+
+    def _filled(self, group: str) -> tuple[States, Mask]:
+        names, group_of, state_of = group_tables(self.machine.control.g_code_system)
+        written = np.zeros(len(self), bool)
+        values = np.full(len(self), _BEFORE.get(group, 0), np.int8)
+        if group in names:
+            chosen = group_of[self.g_codes] == names.index(group) + 1
+            rows = self.run.row[self.g_words[chosen]]
+            values[rows] = state_of[self.g_codes[chosen]]
+            written[rows] = True
+        state = fill_down(values, written | self.starts, _BEFORE.get(group, 0))
+        self._columns[f"sets {group}"] = written
+        self._columns[f"state {group}"] = state
+        return state.astype(np.int8), written
+
+    # ---- place in the file ----
+
+    @property
+    def starts(self) -> Mask:
+        """Rows at which a program begins."""
+        return self.run.starts
+
+    @cached_property
+    def line(self) -> Rows:
+        """Line in the file, from 1."""
+        return self.text.blocks.line[self.run.block]
+
+    @cached_property
+    def row_of_block(self) -> Rows:
+        """Per block of the file the first row that runs it, -1 where none does."""
+        rows = np.full(len(self.text.blocks), -1, np.int64)
+        rows[self.run.block[::-1]] = np.arange(len(self) - 1, -1, -1)
+        return rows
+
+    @cached_property
+    def program(self) -> Rows:
+        """Number of the program in the file, from 0."""
+        return np.cumsum(self.starts) - 1
+
+    @cached_property
+    def ends_program(self) -> Mask:
+        """M02, M30."""
+        return self.codes(*self.machine.m_codes.program_end)
+
+    # ---- units, feed, tool ----
+
+    @cached_property
+    def units(self) -> States:
+        """Units.INCH or Units.MM; where the program does not say, those of the job or the machine."""
+        assumed = self.job.program_units or self.machine.control.units
+        state = self.state("units")
+        return np.where(state == 0, Units.INCH if assumed == "inch" else Units.MM, state).astype(np.int8)
+
+    @cached_property
+    def scale(self) -> Floats:
+        """mm per unit of length."""
+        return np.where(self.units == Units.INCH, MM_PER_INCH, 1.0)
+
+    @cached_property
+    def unpointed(self) -> Mask:
+        """Per word: a coordinate other than 0 without a point, on a control that reads it in least increments."""
+        words = self.run.words
+        if self.machine.control.number_without_point == "whole-unit":
+            return np.zeros(len(words), bool)
+        return np.asarray(self.is_coordinate & ~words.has_point & (np.nan_to_num(words.value) != 0))
+
+    @cached_property
+    def is_coordinate(self) -> Mask:
+        """Per word: the end, the center or the radius of a move."""
+        words = self.run.words
+        is_length = np.isin(words.address, list(b"XYZCUVWHIJKR"))
+        is_offset_number = (words.address == ord("H")) & self.codes("G43", "G44")[self.run.row]
+        moves = self.uses_axes & ~self.in_cycle
+        return np.asarray(is_length & ~is_offset_number & moves[self.run.row])
+
+    @cached_property
+    def in_increments(self) -> bool:
+        """Whether numbers without a point are meant in least increments: the program has one of 1000 or more."""
+        return bool(np.any(np.abs(self.run.words.value[self.unpointed]) >= _INCREMENTS_FROM))
+
+    @cached_property
+    def _values(self) -> Floats:
+        """Per word: its value, with least increments applied where they are meant."""
+        value = self.run.words.value
+        if not self.in_increments:
+            return value
+        control = self.machine.control
+        inch = self.units[self.run.row] == Units.INCH
+        least = np.where(inch, control.least_increment_inch, control.least_increment)
+        return np.where(self.unpointed, value * least, value)
+
+    def length_of(self, address: str) -> Floats:
+        """A word as a length [mm], as written: a diameter stays one."""
+        return self._column(f"length {address}", lambda: self._scatter(address, self._values) * self.scale)
+
+    @cached_property
+    def feed_mode(self) -> States:
+        """FeedMode of each row."""
+        return self.state("feed_mode")
+
+    @cached_property
+    def feed_number(self) -> Floats:
+        """F in force as a number [mm per min or per revolution]; NaN before the first."""
+        written = self.has("F") & self._takes_feed
+        value = np.where(written, self.word("F") * self.scale, np.nan)
+        return fill_down(value, written | self.starts, np.nan)
+
+    @cached_property
+    def _takes_feed(self) -> Mask:
+        return ~self.codes("G4", "G10", "G65", "G66", "G66.1", "G76", "G92")
+
+    @cached_property
+    def feed(self) -> Floats:
+        """F in force [mm/min]; NaN where none is or where it depends on a spindle."""
+        return np.where(self.feed_mode == FeedMode.PER_MINUTE, self.feed_number, np.nan)
+
+    @cached_property
+    def _tool_number(self) -> Rows:
+        written = self.has("T")
+        value = np.where(written, np.nan_to_num(self.word("T")), 0).astype(np.int64)
+        return fill_down(value, written | self.starts, 0)
+
+    @cached_property
+    def tool(self) -> Rows:
+        """Tool number in force, 0 before the first."""
+        return np.asarray(self._tool_number // 10**self.machine.control.offset_digits)
+
+    @cached_property
+    def offset_number(self) -> Rows:
+        """Offset number in force, 0 for none."""
+        return np.asarray(self._tool_number % 10**self.machine.control.offset_digits)
+
+    @cached_property
+    def changes_tool(self) -> Mask:
+        """A T word that names another tool than the one in force."""
+        return np.asarray(self.has("T") & (self.tool != before(self.tool, self.starts, 0)) & (self.tool > 0))
+
+    def _offset_column(self, values: dict[int, float]) -> Floats:
+        table = np.full(10**self.machine.control.offset_digits, np.nan)
+        for number, value in values.items():
+            if number < len(table):
+                table[number] = value
+        return table[self.offset_number]
+
+    @cached_property
+    def job_scale(self) -> Floats | float:
+        """mm per unit of the lengths of the job."""
+        return {"mm": 1.0, "inch": MM_PER_INCH}[self.job.units] if self.job.units else self.scale
+
+    @cached_property
+    def radius(self) -> Floats:
+        """R of the tool offset in force [mm]; NaN where neither the job nor, if asked for, a comment knows it."""
+        return np.where(np.isnan(self._radius_of_job), self._radius_of_comments, self._radius_of_job)
+
+    @cached_property
+    def _radius_of_job(self) -> Floats:
+        return self._offset_column({n: tool.radius for n, tool in self.job.tools.items()}) * self.job_scale
+
+    @cached_property
+    def _comments(self) -> dict[int, Found]:
+        if not self.job.radius_from_comments:
+            return {}
+        from polarcheck.table import radius_comments
+
+        return radius_comments.radii(self)
+
+    @cached_property
+    def _radius_of_comments(self) -> Floats:
+        return self._offset_column({number: found.radius for number, found in self._comments.items()})
+
+    @cached_property
+    def radius_is_from_comment(self) -> Mask:
+        """A T word whose offset has its R from a comment."""
+        known = np.isnan(self._radius_of_job) & ~np.isnan(self._radius_of_comments)
+        return self.has("T") & known
+
+    def radius_comment(self, row: int) -> str:
+        """The comment that R was taken from."""
+        return self._comments[int(self.offset_number[row])].comment
+
+    @cached_property
+    def cutter_diameter(self) -> Floats:
+        """Diameter of the cutter in force [mm], twice R where the job gives no other; NaN unknown."""
+        given = self._offset_column({n: tool.diameter for n, tool in self.job.tools.items()}) * self.job_scale
+        return np.where(np.isnan(given) & (self.radius > 0), 2 * self.radius, given)
+
+    @cached_property
+    def nose(self) -> Floats:
+        """T of the tool offset in force (nose type); NaN unknown."""
+        return self._offset_column({n: t.nose for n, t in self.job.tools.items() if t.nose is not None})
+
+    # ---- M codes ----
+
+    def switched(self, on: list[str], off: list[str]) -> Mask:
+        """What M codes have switched on, in each row after its own."""
+        return self._column(f"switched {on} {off}", lambda: self._switched(on, off))
+
+    def _switched(self, on: list[str], off: list[str]) -> Mask:
+        switches_on, switches_off = self.codes(*on), self.codes(*off)
+        return fill_down(switches_on, switches_on | switches_off | self.starts, False).astype(bool)
+
+    @cached_property
+    def spindle(self) -> Mask:
+        """The main spindle (on many lathes the live tool too) runs: M3, M4."""
+        return self.switched(self.machine.m_codes.spindle_on, self.machine.m_codes.spindle_off)
+
+    @cached_property
+    def live_tool(self) -> Mask:
+        """The live tool runs; always False where the profile names no code."""
+        return self.switched(self.machine.m_codes.live_tool_on, self.machine.m_codes.live_tool_off)
+
+    @cached_property
+    def c_axis(self) -> Mask:
+        """The spindle is engaged as C axis; always False where the profile names no code."""
+        return self.switched(self.machine.m_codes.c_axis_on, self.machine.m_codes.c_axis_off)
+
+    # ---- what the axis words are for ----
+
+    @cached_property
+    def uses_axes(self) -> Mask:
+        """The axis words of the row are coordinates of a move."""
+        system = self.machine.control.g_code_system
+        return ~self.codes(*TAKES_AXIS_WORDS[system]) & ~self.run.unknown
+
+    @cached_property
+    def in_cycle(self) -> Mask:
+        """A turning or drilling cycle is in force."""
+        return np.asarray((self.state("motion") == Motion.CYCLE) | (self.drilling != 0))
+
+    @cached_property
+    def drilling(self) -> Rows:
+        """The drilling cycle in force (83 for G83), 0 for none; G80 and the codes of group 01 end it (B-62754EN/01)."""
+        written = self.sets("drilling")
+        state = np.where(written, self.state("drilling"), 0).astype(np.int64)
+        return fill_down(state, written | self.sets("motion") | self.starts, 0).astype(np.int64)

@@ -1,0 +1,49 @@
+"""What is in force from row to row, and positions from absolute and incremental words: sums and fills, no loops."""
+
+from __future__ import annotations
+
+from typing import Any, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from polarcheck.arrays import Floats, Mask
+
+Scalar = TypeVar("Scalar", bound=np.generic)
+
+
+def fill_down(values: NDArray[Scalar], written: Mask, before: object) -> NDArray[Scalar]:
+    """What is in force in each row: the last written value at or above it, `before` where none is."""
+    last = np.maximum.accumulate(np.where(written, np.arange(1, len(values) + 1), 0))
+    filled: NDArray[Scalar] = np.concatenate((np.array([before], values.dtype), values))[last]
+    return filled
+
+
+def positions(absolute: Floats, increment: Floats, resets: Mask, values: Floats) -> Floats:
+    """
+    Where an axis stands after each row; NaN while it is unknown.
+
+    absolute: the programmed coordinate, NaN where none. increment: 0 where none. resets: rows that set the coordinate
+    to `values` (NaN: it becomes unknown), unless the row programs it.
+    """
+    programmed = ~np.isnan(absolute)
+    broken = np.isnan(increment)
+    base = programmed | resets | broken
+    value = np.where(programmed, absolute, np.where(resets & ~broken, values, np.nan))
+    moved = np.where(programmed | broken, 0.0, increment)
+    value[~programmed] += moved[~programmed]
+    travelled = np.cumsum(moved)
+    last = np.maximum.accumulate(np.where(base, np.arange(1, len(base) + 1), 0)) - 1
+    known = last >= 0
+    after = value[last] + (travelled - travelled[last])
+    return np.where(known, after, np.nan)
+
+
+def before(after: NDArray[Scalar], starts: Mask, at_start: Any) -> NDArray[Scalar]:
+    """The value of the row above; at_start where a program begins."""
+    shifted = np.empty_like(after)
+    shifted[1:] = after[:-1]
+    if len(shifted):
+        shifted[0] = at_start
+    shifted[starts] = at_start
+    return shifted

@@ -1,0 +1,341 @@
+"""What the words and characters of a file say of themselves, without being executed."""
+
+from __future__ import annotations
+
+import re
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from polarcheck.arrays import Mask, Rows
+from polarcheck.execution.programs import block_text, find_programs
+from polarcheck.machines.codes import NO_CODE, code_numbers, code_set, group_tables, spelled
+from polarcheck.reading.surroundings import BLANKS
+from polarcheck.reading.words import NumberFault
+
+if TYPE_CHECKING:
+    from polarcheck.table.trace import Trace
+
+
+#: A bit for each address that should stand once in a block: A to Z, and a to z behind a comma, are 58 neighbours.
+_ADDRESS_BITS = np.zeros(256, np.uint64)
+_ADDRESS_BITS[65:123] = np.uint64(1) << np.arange(58, dtype=np.uint64)
+_ADDRESS_BITS[list(b"GMN")] = 0
+#: In macro calls, argument specification II.
+_ARGUMENT_SETS = b"IJK"
+_MACRO_CALLS = ("G65", "G66", "G66.1")
+#: Groups whose codes have other meanings on lathes with two turrets, or take arguments.
+_UNSURE_GROUPS = ("scaling", "rotation", "mirror")
+#: Codes of group 01 in system A that other systems and mills write beside G0 and G1, in another meaning.
+_OF_OTHER_SYSTEMS = ("G90", "G92", "G94")
+#: Controls have no codes of their own from here on; programs that call macros by a G code have (parameter 6050).
+_OWN_CODES_END = 200
+_RETURN = "M99"
+_COMMENT = re.compile(rb"\([^)\n]*+\)?")
+_LETTER_OR_DIGIT = re.compile(rb"[0-9A-Za-z\x80-\xff]")
+_END_IN_MACRO = re.compile(r"M\s*0*99(?!\d)|GOTO|GO\s*\d", re.IGNORECASE)
+
+
+class Lexical:
+    """Columns over the words, characters and comments of a text; the methods give words for a message about one."""
+
+    def __init__(self, trace: Trace) -> None:
+        self.text = trace.text
+        self.words = trace.text.words
+        self.machine = trace.machine
+
+    @property
+    def is_empty(self) -> Mask:
+        """One element: the file has no words and no macro statements."""
+        return np.array([not len(self.words) and not bool(self.text.blocks.is_macro.any())])
+
+    # ---- words of a block ----
+
+    def _in_broken_block(self, index: Rows) -> Mask:
+        """Whether something in the block of a word cannot be read, so that what else is there means little."""
+        broken = np.concatenate((self.words.block[self.words.is_unreadable], self.text.strays.block))
+        return np.isin(self.words.block[index], broken)
+
+    def _beyond(self, counted: Mask, limit: int) -> Mask:
+        """Of the counted words the first in each block that is one too many."""
+        index = np.flatnonzero(counted)
+        block = self.words.block[index]
+        is_next = np.append(np.ones(min(limit, len(index)), bool), block[limit:] != block[: max(len(block) - limit, 0)])
+        beyond = ~is_next
+        beyond[1:] &= is_next[:-1]
+        found = np.zeros(len(self.words), bool)
+        index = index[beyond]
+        found[index[~self._in_broken_block(index)]] = True
+        return found
+
+    @cached_property
+    def has_too_many_words(self) -> Mask:
+        """The first word of a block beyond the limit, block skip not counted."""
+        return self._beyond(self.words.address != ord("/"), self.machine.control.word_limit)
+
+    @cached_property
+    def has_too_many_m_codes(self) -> Mask:
+        """The first M word of a block beyond the limit."""
+        return self._beyond(self.words.address == ord("M"), self.machine.control.m_code_limit)
+
+    def _addresses(self, index: int) -> NDArray[np.uint8]:
+        low, high = np.searchsorted(self.words.block, self.words.block[index] + np.array([0, 1]))
+        return self.words.address[low:high]
+
+    def words_in_block(self, index: int) -> int:
+        """How many words the block of a word has."""
+        return int(np.count_nonzero(self._addresses(index) != ord("/")))
+
+    def m_codes_in_block(self, index: int) -> int:
+        """How many M words."""
+        return int(np.count_nonzero(self._addresses(index) == ord("M")))
+
+    def _suspects(self, index: Rows, bits: NDArray[np.uint64]) -> Rows:
+        """Of the words with bits those of blocks in which a bit stands twice, or something that cannot be read."""
+        if not len(index):
+            return index
+        block = self.words.block[index]
+        head = np.flatnonzero(np.append(True, block[1:] != block[:-1]))
+        # Bits that are all different add up to what they are joined by `or`.
+        differs = np.add.reduceat(bits, head) != np.bitwise_or.reduceat(bits, head)
+        if not differs.any():
+            return index[:0]
+        chosen = index[np.repeat(differs, np.diff(np.append(head, len(index)))) & (bits > 0)]
+        return chosen[~self._in_broken_block(chosen)]
+
+    def _again(self, index: Rows, kind: NDArray[Any]) -> tuple[Rows, Rows]:
+        """Of the words those before which one of the same kind stands in the block, and that one."""
+        order = np.lexsort((index, kind, self.words.block[index]))
+        index, kind = index[order], kind[order]
+        block = self.words.block[index]
+        same = (block[1:] == block[:-1]) & (kind[1:] == kind[:-1])
+        return index[1:][same], index[:-1][same]
+
+    @cached_property
+    def repeats(self) -> Mask:
+        """The first word of a block whose address stood in it before."""
+        words = self.words
+        suspects = self._suspects(np.arange(len(words)), _ADDRESS_BITS[words.address])
+        calls = words.block[self._g_words[code_set(_MACRO_CALLS)[self._g_codes]]]
+        is_argument = np.isin(words.address[suspects], list(_ARGUMENT_SETS)) & np.isin(words.block[suspects], calls)
+        suspects = suspects[~is_argument]
+        again = np.sort(self._again(suspects, words.address[suspects])[0])
+        found = np.zeros(len(words), bool)
+        found[again[np.append(True, words.block[again][1:] != words.block[again][:-1])[: len(again)]]] = True
+        return found
+
+    # ---- G codes ----
+
+    @cached_property
+    def _g_words(self) -> Rows:
+        return np.flatnonzero(self.words.address == ord("G"))
+
+    @cached_property
+    def _g_codes(self) -> NDArray[np.int32]:
+        return code_numbers(self.words.value[self._g_words])
+
+    @cached_property
+    def _overruled(self) -> Rows:
+        """Per word: the word of another code of the same modal group that stands before it in the block, else -1."""
+        system = self.machine.control.g_code_system
+        names, group_of, _ = group_tables(system)
+        group = group_of.copy()
+        group[np.isin(group, [names.index(name) + 1 for name in _UNSURE_GROUPS])] = 0
+        if system == "A":
+            group[code_set(_OF_OTHER_SYSTEMS)] = 0
+        group[NO_CODE] = 0
+        kind = group[self._g_codes]
+        bits = np.where(kind > 0, np.uint64(1) << kind.astype(np.uint64), np.uint64(0))
+        suspects = self._suspects(self._g_words, bits)
+        later, other = self._again(suspects, kind[np.searchsorted(self._g_words, suspects)])
+        differs = self.words.value[other] != self.words.value[later]
+        found = np.full(len(self.words), -1)
+        found[later[differs]] = other[differs]
+        return found
+
+    @cached_property
+    def overrules(self) -> Mask:
+        """A G code after another one of its modal group."""
+        return np.asarray(self._overruled >= 0)
+
+    def overruled(self, index: int) -> str:
+        """The code before it, as in G0."""
+        return self._code(int(self._overruled[index]))
+
+    def code(self, index: int) -> str:
+        """The code itself."""
+        return self._code(index)
+
+    def _code(self, index: int) -> str:
+        number = int(code_numbers(self.words.value[index : index + 1])[0])
+        return spelled("G", number) if number >= 0 else self._written(index)
+
+    def _written(self, index: int) -> str:
+        return self.text.source.excerpt(int(self.words.start[index]), int(self.words.end[index]))
+
+    @cached_property
+    def _unknown(self) -> tuple[Mask, Rows]:
+        """Per word: the first of an unknown G code in the file; how often the code stands there."""
+        machine = self.machine
+        known = code_set([*machine.control.known_codes, *machine.control.motion_codes])
+        known |= code_set([*machine.polar.on, *machine.polar.off, *machine.polar.allowed_codes])
+        wrong = ~known[self._g_codes] & (self.words.fault[self._g_words] == NumberFault.NONE)
+        words = self._g_words[wrong]
+        if not len(words):
+            return np.zeros(len(self.words), bool), np.zeros(len(self.words), np.int64)
+        _, first, count = np.unique(self.words.value[words], return_index=True, return_counts=True)
+        mask, counts = np.zeros(len(self.words), bool), np.zeros(len(self.words), np.int64)
+        mask[words[first]], counts[words[first]] = True, count
+        return mask, counts
+
+    @property
+    def is_unknown_code(self) -> Mask:
+        """The first of an unknown G code in the file."""
+        return self._unknown[0]
+
+    @cached_property
+    def may_call_macro(self) -> Mask:
+        """A G code that can only be a macro of the builder or the shop."""
+        value = self.words.value
+        return np.asarray((self.words.address == ord("G")) & (value >= _OWN_CODES_END) & (value == np.floor(value)))
+
+    def times(self, index: int) -> str:
+        """How often the code stands in the file, where it is more than once."""
+        count = int(self._unknown[1][index])
+        return f" ({count} times in this file)" if count > 1 else ""
+
+    # ---- digits, case ----
+
+    @cached_property
+    def has_too_many_digits(self) -> Mask:
+        """More digits than a word can have; leading zeros and digits beyond the least increment do not count."""
+        control, words = self.machine.control, self.words
+        long = np.flatnonzero(words.digits > control.digit_limit)
+        counted = np.minimum(words.decimals[long], round(-np.log10(control.least_increment)))
+        digits = words.digits[long] - words.decimals[long] + counted
+        # A number of more than 22 digits has a value that is only about right.
+        is_large = np.abs(words.value[long]) >= 10.0 ** (control.digit_limit - counted)
+        long = long[(digits > control.digit_limit) & is_large]
+        found = np.zeros(len(words), bool)
+        found[long[~self._in_broken_block(long)]] = True
+        return found
+
+    @cached_property
+    def is_first_lower_case(self) -> Mask:
+        """The first word of the file with a lower case letter."""
+        found = np.zeros(len(self.words), bool)
+        code = self.text.source.code
+        letter = code[self.words.start]
+        index = np.flatnonzero((letter >= ord("a")) & (letter <= ord("z")))
+        found[index[~self._in_broken_block(index)][:1]] = True
+        return found
+
+    # ---- the end of a program ----
+
+    @cached_property
+    def lacks_end(self) -> Mask:
+        """The last word of a program that has a head, or stands between %, and no M02, M30 or M99 anywhere."""
+        m_words = np.flatnonzero(self.words.address == ord("M"))
+        ends = code_set([*self.machine.m_codes.program_end, _RETURN])
+        ending = self.words.block[m_words[ends[code_numbers(self.words.value[m_words])]]]
+        programs = find_programs(self.text).programs
+        first = np.array([program.first for program in programs], np.int64)
+        end = np.array([program.end for program in programs], np.int64)
+        has_end = np.searchsorted(ending, first) < np.searchsorted(ending, end)
+        in_tape = len(self.text.tape_marks) > 0
+        lacking = ~has_end & (np.array([program.has_head for program in programs], bool) | in_tape)
+        # A head alone is no program.
+        words_before = np.searchsorted(self.words.block, np.array([first, end]))
+        lacking &= words_before[1] - words_before[0] > 1
+        found = np.zeros(len(self.words), bool)
+        for index in np.flatnonzero(lacking).tolist():
+            found[words_before[1, index] - 1] = not self._ends_in_macro(int(first[index]), int(end[index]))
+        return found
+
+    def _ends_in_macro(self, first: int, end: int) -> bool:
+        """A block with macro ends the program or leads back."""
+        macro = np.flatnonzero(self.text.blocks.is_macro[first:end]) + first
+        return any(_END_IN_MACRO.search(block_text(self.text, int(block))) for block in macro)
+
+    # ---- characters ----
+
+    @cached_property
+    def is_first_stray(self) -> Mask:
+        """
+        The first stray character of its block.
+
+        Not where a word of the block cannot be read for itself, nor a ) that a nested comment has left over.
+        """
+        strays = self.text.strays
+        first = np.ones(len(strays), bool)
+        first[1:] = strays.block[1:] != strays.block[:-1]
+        unreadable = self.words.block[self.words.is_unreadable]
+        is_left_over = self.text.source.code[strays.start] == ord(")")
+        is_left_over &= np.isin(strays.block, self.text.comments.block[self.text.nested])
+        return np.asarray(first & ~np.isin(strays.block, unreadable) & ~is_left_over)
+
+    def stray(self, index: int) -> str:
+        """What the control does with a stray character."""
+        at = int(self.text.strays.start[index])
+        character = self.text.source.excerpt(at, at + 1)
+        if character == "%":
+            return "% inside a block: for the control the program ends here"
+        return f"{character} is no character of a word"
+
+    @cached_property
+    def is_first_dots(self) -> Mask:
+        """The first of lines of points that follow each other."""
+        first = np.ones(len(self.text.dots), bool)
+        first[1:] = np.diff(self.text.dots.block) > 1
+        return first
+
+    @cached_property
+    def is_text_outside(self) -> Mask:
+        """Letters or digits outside a program, other than in comments."""
+        outside = self.text.outside
+        data = self.text.source.code.tobytes()
+        places = zip(outside.start.tolist(), outside.end.tolist(), strict=True)
+        texts = (_COMMENT.sub(b"", data[start:end]) for start, end in places)
+        return np.array([_LETTER_OR_DIGIT.search(text) is not None for text in texts], bool)
+
+    @cached_property
+    def _foreign(self) -> tuple[Mask, Rows]:
+        """
+        Per run of foreign characters: the first on its line; how many there are on the line.
+
+        Those that are reported as stray characters, wrong dashes or text outside a program are left out, and all before
+        the first % are taken together: the leader of a tape.
+        """
+        text, spans = self.text, self.text.foreign
+        code = text.source.code[spans.start]
+        is_blank = np.isin(code, list(BLANKS))
+        kept = (is_blank | _inside(spans.start, text.comments) | _inside(spans.start, text.names)) & ~_inside(
+            spans.start, text.outside
+        )
+        leader = text.tape_marks[0] if len(text.tape_marks) else 0
+        line = np.where(spans.start < leader, 0, text.blocks.line[spans.block])
+        index = np.flatnonzero(kept)
+        length = (spans.end - spans.start)[index]
+        first = np.flatnonzero(np.append(True, line[index][1:] != line[index][:-1])) if len(index) else index
+        mask, count = np.zeros(len(spans), bool), np.zeros(len(spans), np.int64)
+        mask[index[first]] = True
+        count[index[first]] = np.add.reduceat(length, first) if len(first) else 0
+        return mask, count
+
+    @property
+    def is_first_foreign(self) -> Mask:
+        """The first run of foreign characters on its line."""
+        return self._foreign[0]
+
+    def foreign_characters(self, index: int) -> str:
+        """How many there are on the line."""
+        count = int(self._foreign[1][index])
+        return "1 character that is" if count == 1 else f"{count} characters that are"
+
+
+def _inside(at: Rows, spans: object) -> Mask:
+    """Whether the positions lie in one of the spans, which may stand in any order."""
+    start, end = np.sort(spans.start), np.sort(spans.end)  # type: ignore[attr-defined]
+    return np.asarray(np.searchsorted(start, at, side="right") > np.searchsorted(end, at, side="right"))

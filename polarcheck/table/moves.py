@@ -1,0 +1,210 @@
+"""The moves of the programmed path and of the tool center path inside sections, with what they ask of the lathe."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import msgspec
+import numpy as np
+
+from polarcheck.arrays import Floats, Mask, Points, Rows, States
+from polarcheck.geometry import compensation, polar, rates
+from polarcheck.machines.modal import Motion
+
+if TYPE_CHECKING:
+    from polarcheck.table.trace import Trace
+
+
+class Moves(msgspec.Struct, frozen=True, dict=True):
+    """
+    One element per move, in order.
+
+    row: the row of the trace that it belongs to. section: its polar section. kind: int8, Motion. start, end, center:
+    plane points [mm]. feed: along the path [mm/min]. known: False where the radius or a position is unknown. phase:
+    compensation.Phase. corner: a line that the control adds. entry: C angle at which each section begins [deg].
+    """
+
+    row: Rows
+    section: Rows
+    kind: States
+    start: Points
+    end: Points
+    center: Points
+    feed: Floats
+    known: Mask
+    phase: States
+    corner: Mask
+    entry: Floats
+
+    def __len__(self) -> int:
+        return len(self.row)
+
+    @property
+    def shape(self) -> tuple[Points, Points, Points, States]:
+        """start, end, center, kind: what the functions of `polar` take."""
+        return self.start, self.end, self.center, self.kind
+
+    @cached_property
+    def length(self) -> Floats:
+        """Way on the plane [mm]."""
+        return polar.length(*self.shape)
+
+    @cached_property
+    def nearest(self) -> Floats:
+        """L, smallest distance of the tool center to the center of C [mm]; NaN where it is not known."""
+        return np.where(self.known, polar.nearest(*self.shape), np.nan)
+
+    @cached_property
+    def farthest(self) -> Floats:
+        """Largest distance of the tool center to the center of C [mm]; NaN where it is not known."""
+        return np.where(self.known, polar.farthest(*self.shape), np.nan)
+
+    @cached_property
+    def c_feed(self) -> Floats:
+        """Highest rate of C on the way [deg/min]; NaN where feed, radius or position is not known."""
+        return np.where(self.known, rates.c_feed(*self.shape, self.feed), np.nan)
+
+    @cached_property
+    def c_acceleration(self) -> Floats:
+        """Highest acceleration of C on the way [deg/s2]."""
+        return np.where(self.known, rates.c_acceleration(*self.shape, self.feed), np.nan)
+
+    @cached_property
+    def time(self) -> Floats:
+        """How long the move takes [s]."""
+        return polar.time(self.length, self.feed)
+
+    @cached_property
+    def c_angles(self) -> tuple[Floats, Floats]:
+        """C before and after the move [deg], continuous along the section."""
+        return polar.c_angles(*self.shape, self.section, self.entry)
+
+    def feed_allowed(self, limit: float | Floats) -> Floats:
+        """Highest F that keeps C at or below the limit [mm/min]."""
+        return np.where(self.known, rates.feed_allowed(*self.shape, limit), np.nan)
+
+    def chosen(self, rows: Mask) -> Moves:
+        """Some of the moves."""
+        columns: dict[str, Any] = {name: getattr(self, name) for name in self.__struct_fields__}
+        return Moves(**{name: column if name == "entry" else column[rows] for name, column in columns.items()})
+
+
+def joined(parts: Sequence[Moves]) -> Moves:
+    """Moves of the same trace one after another."""
+    names = [name for name in Moves.__struct_fields__ if name != "entry"]
+    columns: dict[str, Any] = {name: np.concatenate([getattr(part, name) for part in parts]) for name in names}
+    return Moves(entry=parts[0].entry, **columns)
+
+
+def per_row(values: Floats, moves: Moves, count: int, none: float, largest: bool = True) -> Floats:
+    """
+    One value per row of the trace: the largest (smallest) of its moves, NaN if one of them is unknown, `none` without.
+
+    The moves of a row need not be neighbours.
+    """
+    column = np.full(count, -np.inf if largest else np.inf)
+    with np.errstate(invalid="ignore"):  # NaN is meant
+        (np.maximum if largest else np.minimum).at(column, moves.row, values)
+    return np.where(np.isinf(column) & ~_has(moves, count), none, column)
+
+
+def _has(moves: Moves, count: int) -> Mask:
+    return any_in_row(np.ones(len(moves), bool), moves, count)
+
+
+def any_in_row(hit: Mask, moves: Moves, count: int) -> Mask:
+    """The rows of the trace with a move that is hit."""
+    rows = np.zeros(count, bool)
+    rows[moves.row[hit]] = True
+    return rows
+
+
+def programmed_moves(trace: Trace) -> Moves:
+    """The programmed path: one move per row that moves on the polar plane."""
+    row = np.flatnonzero(trace.cuts | (trace.in_polar & trace.moves_plane & (trace.motion == Motion.RAPID)))
+    kind, start, end, center = _kind(trace, row), trace.start[row], trace.end[row], trace.center[row]
+    return Moves(
+        row=row,
+        section=trace.section[row],
+        kind=kind,
+        start=start,
+        end=end,
+        center=center,
+        feed=trace.feed[row],
+        known=~np.isnan(polar.length(start, end, center, kind)),
+        phase=np.zeros(len(row), np.int8),
+        corner=np.zeros(len(row), bool),
+        entry=trace.section_entry,
+    )
+
+
+def _kind(trace: Trace, row: Rows) -> States:
+    """Motion of each move; an arc whose center is not known is followed along its chord."""
+    kind = trace.motion[row]
+    return np.where(trace.is_arc[row] & np.isnan(trace.center[row]), Motion.LINE, kind).astype(np.int8)
+
+
+def compensated(trace: Trace) -> tuple[Moves, compensation.ToolPath, Rows]:
+    """The tool center path, what compensation found on the way, and the rows of the trace that it was given."""
+    row = np.flatnonzero(trace.in_polar)
+    tool = tool_center_path(trace, compensation_path(trace, row))
+    return of_tool(trace, tool, row), tool, row
+
+
+def compensation_path(trace: Trace, row: Rows) -> compensation.Path:
+    """Some rows as cutter compensation takes them."""
+    return compensation.Path(
+        section=trace.section[row],
+        motion=_kind(trace, row),
+        moves=trace.moves_plane[row],
+        start=trace.start[row],
+        end=trace.end[row],
+        center=trace.center[row],
+        side=trace.side[row],
+        side_written=trace.codes("G41", "G42")[row],
+        radius=trace.radius[row],
+        cancel_vector=_cancel_vector(trace, row),
+        stops_reading=trace.codes(*trace.machine.m_codes.stops_reading)[row],
+    )
+
+
+def tool_center_path(trace: Trace, path: compensation.Path) -> compensation.ToolPath:
+    """The path of the tool center as this machine compensates."""
+    settings = trace.machine.compensation
+    return compensation.tool_center_path(
+        path,
+        compensation.Method(
+            start_up=settings.start_up,
+            start_up_moving=settings.start_up_moving,
+            read_ahead=settings.read_ahead,
+            interference=settings.interference,
+            tangent_tolerance=settings.tangent_tolerance,
+        ),
+    )
+
+
+def of_tool(trace: Trace, tool: compensation.ToolPath, row: Rows) -> Moves:
+    """The moves of a tool center path; row: the rows of the trace that it was given."""
+    at = row[tool.row]
+    return Moves(
+        row=at,
+        section=trace.section[at],
+        kind=tool.kind,
+        start=tool.start,
+        end=tool.end,
+        center=tool.center,
+        feed=trace.feed[at],
+        known=tool.known,
+        phase=tool.phase,
+        corner=tool.corner,
+        entry=trace.section_entry,
+    )
+
+
+def _cancel_vector(trace: Trace, row: Rows) -> Points:
+    """I and J beside G40 say where the tool leaves (B-63324EN/03 p. 402)."""
+    i, j = (trace.length_of(word)[row] for word in trace.own.center_words)
+    written = trace.codes("G40")[row] & (~np.isnan(i) | ~np.isnan(j))
+    return np.where(written, np.nan_to_num(i) + 1j * np.nan_to_num(j), complex("nan+nanj"))

@@ -1,0 +1,163 @@
+"""Which blocks of a trace cut into the contour: loops are given to `contour`, what it finds is taken back to rows."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from polarcheck.arrays import Floats, Mask, Points, Rows
+from polarcheck.checking import describe
+from polarcheck.geometry.compensation import Phase
+from polarcheck.machines.modal import Side
+
+if TYPE_CHECKING:
+    from polarcheck.table.trace import Trace
+
+
+#: What compensation has flagged itself; it and its neighbours gouge as a consequence, which is no second mistake.
+_FLAGS = ("inside_arc_too_small", "interferes", "no_intersection", "movement_missing", "arc_center_on_path")
+
+
+def loop_of_row(trace: Trace) -> Rows:
+    """
+    Number of the loop of each row in offset mode, -1 elsewhere.
+
+    A loop reaches from a start-up to its cancel, and a Z move in it begins another one: the same contour at another
+    depth is another loop.
+    """
+    begins = trace.starts_up | (trace.moves_z & ~trace.moves_plane)
+    on = trace.in_polar & (trace.side != Side.OFF)
+    return np.where(on, np.cumsum(begins), -1)
+
+
+class Overcutting:
+    """Columns of one trace, one value per row: depth [mm] of the worst cut, 0 for none; and phrases for messages."""
+
+    def __init__(self, trace: Trace) -> None:
+        self.trace = trace
+
+    @cached_property
+    def _compensates(self) -> bool:
+        trace = self.trace
+        return bool(np.any(trace.in_polar & (trace.side != Side.OFF) & (np.abs(trace.radius) > 0)))
+
+    @cached_property
+    def _walls(self) -> tuple[Any, Mask]:
+        """The contour that is programmed in offset mode, and on which side of each block the tool is."""
+        trace = self.trace
+        programmed, loop = trace.programmed_moves, loop_of_row(trace)
+        rows = programmed.row
+        walls = _moves(programmed, loop, (loop[rows] >= 0) & ~trace.starts_up[rows] & programmed.known)
+        return walls, (trace.side[walls.row] == Side.LEFT) ^ (trace.radius[walls.row] < 0)
+
+    @cached_property
+    def _cuts(self) -> tuple[Rows, Rows, Floats, Points]:
+        """Row that cuts, row that is cut into, depth and place of each overcut."""
+        if not self._compensates:
+            return _NOTHING
+        from polarcheck.geometry import contour
+
+        trace, tool = self.trace, self.trace.tool_moves
+        path = _moves(tool, loop_of_row(trace), (tool.phase == Phase.OFFSET) & tool.known)
+        radius, tolerance = np.abs(trace.radius[path.row]), trace.machine.compensation.overcut_tolerance
+        found = contour.overcuts(*self._walls, path, radius, tolerance)
+        return path.row[found.move], found.row, found.depth, found.place
+
+    @cached_property
+    def _sweeps(self) -> tuple[Rows, Rows, Floats, Points]:
+        """The same for ramps on and off that lie at the depth of their contour."""
+        if not self._compensates:
+            return _NOTHING
+        from polarcheck.geometry import contour
+
+        trace, tool = self.trace, self.trace.tool_moves
+        is_ramp = ((tool.phase == Phase.START_UP) | (tool.phase == Phase.CANCEL)) & tool.known
+        ramps = _moves(tool, _loop_of_ramps(trace), is_ramp & _at_depth(trace, tool.row))
+        radius, tolerance = np.abs(trace.radius[ramps.row]), trace.machine.compensation.overcut_tolerance
+        found = contour.sweeps(*self._walls, ramps, radius, tolerance)
+        return ramps.row[found.move], found.row, found.depth, found.place
+
+    @cached_property
+    def depth(self) -> Floats:
+        """Of the cut into the contour by the tool center path of the row; rows flagged by compensation are left out."""
+        row, _, depth, _ = self._cuts
+        return np.where(flagged(self.trace), 0.0, _deepest(row, depth, len(self.trace)))
+
+    @cached_property
+    def sweep_depth(self) -> Floats:
+        """Of the cut into the contour by a ramp, in loops that are not overcut anyway."""
+        row, _, depth, _ = self._sweeps
+        swept = np.where(flagged(self.trace), 0.0, _deepest(row, depth, len(self.trace)))
+        loop = _loop_of_ramps(self.trace)
+        return np.where(np.isin(loop, loop[self.depth > 0]), 0.0, swept)
+
+    def place(self, row: int) -> str:
+        """Where the row cuts deepest, and into which line."""
+        return self._phrase(self._cuts, row)
+
+    def sweep_place(self, row: int) -> str:
+        """Where a ramp cuts deepest, and into which line."""
+        return self._phrase(self._sweeps, row)
+
+    def _phrase(self, cuts: tuple[Rows, Rows, Floats, Points], row: int) -> str:
+        by, into, depth, place = cuts
+        own = np.flatnonzero(by == row)
+        worst = own[np.argmax(depth[own])]
+        at = describe.point(self.trace, row, place[worst])
+        return f"the contour of line {int(self.trace.line[into[worst]])} at {at}"
+
+
+_NOTHING: tuple[Rows, Rows, Floats, Points] = (
+    np.zeros(0, np.int64),
+    np.zeros(0, np.int64),
+    np.zeros(0),
+    np.zeros(0, np.complex128),
+)
+
+
+def _deepest(row: Rows, depth: Floats, count: int) -> Floats:
+    column = np.zeros(count)
+    np.maximum.at(column, row, depth)
+    return column
+
+
+def _moves(moves: Any, loop: Rows, chosen: Mask) -> Any:
+    from polarcheck.geometry import contour
+
+    row = moves.row[chosen]
+    return contour.Curves(
+        moves.start[chosen], moves.end[chosen], moves.center[chosen], moves.kind[chosen], loop[row], row
+    )
+
+
+def _loop_of_ramps(trace: Trace) -> Rows:
+    """A ramp off belongs to the loop above it."""
+    loop = loop_of_row(trace)
+    last = np.maximum.accumulate(np.where(loop >= 0, np.arange(len(loop)), 0))
+    return np.where(trace.cancels, loop[last], loop)
+
+
+def _at_depth(trace: Trace, row: Rows) -> Mask:
+    """Whether a ramp is at the depth of the contour: the block of the contour beside it is no Z move."""
+    moves_z = trace.moves_z & ~trace.moves_plane
+    moving = np.flatnonzero(trace.in_polar & (trace.moves_plane | moves_z))
+    at = np.searchsorted(moving, row)
+    above = moving[np.maximum(at - 1, 0)]
+    below = moving[np.minimum(at + 1, len(moving) - 1)] if len(moving) else row
+    return np.asarray(np.where(trace.cancels[row], ~moves_z[above], ~moves_z[below]))
+
+
+def flagged(trace: Trace) -> Mask:
+    """Rows that compensation has flagged, and those before and after them that move."""
+    rows = np.zeros(len(trace), bool)
+    for name in _FLAGS:
+        rows |= trace.found_by_compensation(name)
+    moving = np.flatnonzero(trace.in_polar & trace.moves_plane)
+    on = rows[moving]
+    near = on.copy()
+    near[1:] |= on[:-1]
+    near[:-1] |= on[1:]
+    rows[moving] |= near
+    return rows

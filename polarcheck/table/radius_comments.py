@@ -1,0 +1,81 @@
+"""The cutter radius as the comments of a program tell it: `3/4 DIA. CUTTER`, `D=12.`, `R0.25`."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+import msgspec
+import numpy as np
+
+from polarcheck.machines.modal import MM_PER_INCH
+
+if TYPE_CHECKING:
+    from polarcheck.table.columns import Columns
+
+
+_NUMBER = r"(\d+\s*/\s*\d+|\d*\.?\d+)"
+_UNIT = r"\s*(\"|''|IN\b\.?|INCH\b|MM\b)?"
+#: Diameters before radii: posts write both, as in `D=12. CR=0.`, where CR is the radius of the corner.
+_PATTERNS = (
+    (2.0, re.compile(rf"(?:\bDIA\w*\.?|\bD|Ø|\bFREZA|\bFR(?:Ä|AE)SER)\s*[=:]?\s*{_NUMBER}{_UNIT}")),
+    (2.0, re.compile(rf"{_NUMBER}{_UNIT}[\s-]*(?:DIA\w*|END\s*MILL|ENDMILL|EM\b|CUTTER|MILL\b|FREZA|FR(?:Ä|AE)SER)")),
+    (1.0, re.compile(rf"(?:(?<![A-Z])R|\bRAD\w*)\s*[=:]?\s*{_NUMBER}{_UNIT}")),
+)
+_OF_TOOL = re.compile(r"^\W*T\s*0*(\d+)\b")
+_LARGEST = 100.0
+
+
+class Found(msgspec.Struct, frozen=True):
+    """A radius [mm] that a comment gives to an offset, and the comment."""
+
+    radius: float
+    comment: str
+
+
+def radius_in(comment: str, inch: bool) -> float | None:
+    """The radius [mm] that a comment names; inch: the unit of the program, unless the comment says its own."""
+    text = comment.upper()
+    for divisor, pattern in _PATTERNS:
+        found = pattern.search(text)
+        if not found:
+            continue
+        above, _, below = found[1].partition("/")
+        if below and not float(below):
+            continue
+        value = float(above) / (float(below) if below else 1.0)
+        unit = found[2] or ("IN" if inch else "MM")
+        radius = value / divisor * (1.0 if unit == "MM" else MM_PER_INCH)
+        if 0 < radius < _LARGEST:
+            return radius
+    return None
+
+
+def radii(columns: Columns) -> dict[int, Found]:
+    """
+    What the comments say of each offset number: in the block of its T word, in a comment alone on the line before or
+    after it, or in a list of tools at the head (`(T8 D=12. CR=0. - FLAT END MILL)`).
+    """
+    text = columns.text
+    if not len(text.comments):
+        return {}
+    of_block: dict[int, list[str]] = {}
+    of_tool: dict[int, str] = {}
+    for start, end, block in zip(text.comments.start, text.comments.end, text.comments.block, strict=True):
+        comment = text.source.excerpt(int(start), int(end)).strip("();% ")
+        of_block.setdefault(int(block), []).append(comment)
+        listed = _OF_TOOL.match(comment.upper())
+        if listed:
+            of_tool.setdefault(int(listed[1]), comment)
+    filled = set(text.words.block.tolist()) if len(of_block) else set()
+    found: dict[int, Found] = {}
+    for row in np.flatnonzero(columns.has("T")).tolist():
+        offset, block = int(columns.offset_number[row]), int(columns.run.block[row])
+        near = list(of_block.get(block, []))
+        near += [c for other in (block - 1, block + 1) if other not in filled for c in of_block.get(other, [])]
+        near += [of_tool[int(columns.tool[row])]] if int(columns.tool[row]) in of_tool else []
+        for comment in near:
+            radius = radius_in(comment, bool(columns.scale[row] != 1.0))
+            if offset and radius is not None and offset not in found:
+                found[offset] = Found(radius, comment)
+    return found

@@ -1,0 +1,110 @@
+"""Where the polar mode begins and ends, as it is programmed and as it was meant."""
+
+from __future__ import annotations
+
+import msgspec
+import numpy as np
+
+from polarcheck.arrays import Mask, Rows
+
+
+class Marks(msgspec.Struct, frozen=True):
+    """
+    Per row, what tells where the mode can and cannot be on.
+
+    on, off: the switching codes. starts: a program begins. outside: codes that can only stand outside (reference
+    return). tool_ends: tool change, stop, program end. rapid: G0 is written. cuts: a cutting move with a word of the
+    virtual axis. moves: any cutting move in the plane. returns: M99.
+    """
+
+    on: Mask
+    off: Mask
+    starts: Mask
+    outside: Mask
+    tool_ends: Mask
+    rapid: Mask
+    cuts: Mask
+    moves: Mask
+    returns: Mask
+
+
+class Sections(msgspec.Struct, frozen=True):
+    """
+    The polar sections in order, one element each.
+
+    enter: the row of the G12.1. leave: the row of the G13.1 or, where that is missing, the first row that was meant to
+    stand after it. left: whether the G13.1 is there. returned: left open by M99, for the caller to leave.
+    again: rows with a G12.1 inside a section.
+    """
+
+    enter: Rows
+    leave: Rows
+    left: Mask
+    returned: Mask
+    again: Rows
+
+    def __len__(self) -> int:
+        return len(self.enter)
+
+
+def find_sections(marks: Marks) -> Sections:
+    """
+    A section reaches from a G12.1 to its G13.1.
+
+    Where that was forgotten, the section ends as it was meant: before the first G0, reference return or tool change
+    after the last cut, so that one missing word is one fault. Whether it was forgotten is seen by what follows the last
+    move of the virtual axis: a tool change or stop, the end of the program, or rapid traverse before another G12.1.
+    """
+    count = len(marks.on)
+    enter = np.flatnonzero(marks.on)
+    if not len(enter):
+        return Sections(enter, enter, np.zeros(0, bool), np.zeros(0, bool), enter)
+    closers = np.flatnonzero(marks.on | marks.off | marks.starts)
+    end = _first_after(closers, enter, count)
+    closed_by = np.append(np.where(marks.off, 1, np.where(marks.on, 2, 3)), 3)[end]
+    by_off, by_on, by_end = closed_by == 1, closed_by == 2, closed_by == 3
+
+    last_cut = np.maximum(enter, _last_before(np.flatnonzero(marks.cuts), end))
+    tool_end = _first_after(np.flatnonzero(marks.tool_ends), last_cut, count)
+    outside = _first_after(np.flatnonzero(marks.tool_ends | marks.outside), last_cut, count)
+    rapid = _first_after(np.flatnonzero(marks.tool_ends | marks.outside | marks.rapid), last_cut, count)
+    forgotten = (by_off & (tool_end < end)) | (by_on & (rapid < end)) | by_end
+    limit = np.minimum(np.where(by_on, rapid, outside), end)
+    last_move = np.maximum(enter, _last_before(np.flatnonzero(marks.moves), limit))
+    meant = np.minimum(
+        _first_after(np.flatnonzero(marks.tool_ends | marks.outside | marks.rapid), last_move, count), limit
+    )
+
+    repeated = np.zeros(len(enter), bool)
+    repeated[1:] = (by_on & ~forgotten)[:-1]
+    final = np.append(np.flatnonzero(~repeated)[1:] - 1, len(enter) - 1)
+    returned = _last_before(np.flatnonzero(marks.returns), end) >= last_cut
+    returned = (by_end & returned)[final]
+    return Sections(
+        enter[~repeated],
+        np.where(forgotten, meant, end)[final],
+        ~forgotten[final] | returned,
+        returned,
+        enter[repeated],
+    )
+
+
+def section_column(sections: Sections, count: int) -> Rows:
+    """Number of the section of each row, from its G12.1 to the row before `leave`; -1 outside."""
+    column = np.full(count + 1, -1, np.int64)
+    step = np.zeros(count + 1, np.int64)
+    np.add.at(step, sections.enter, 1)
+    np.add.at(step, sections.leave, -1)
+    inside = np.cumsum(step)[:count] > 0
+    number = np.searchsorted(sections.enter, np.arange(count), side="right") - 1 if len(sections) else column[:count]
+    return np.where(inside, number, -1)
+
+
+def _first_after(rows: Rows, at: Rows, none: int) -> Rows:
+    """For each of `at` the first of the sorted rows after it."""
+    return np.append(rows, none)[np.searchsorted(rows, at, side="right")]
+
+
+def _last_before(rows: Rows, at: Rows) -> Rows:
+    """For each of `at` the last of the sorted rows before it, -1 where none is."""
+    return np.concatenate(([-1], rows))[np.searchsorted(rows, at, side="left")]
