@@ -107,12 +107,16 @@ def test_every_package_has_its_floor() -> None:
     assert {name.partition(".")[0] for name in modules(PACKAGE)} - {""} == set(FLOOR)
 
 
-@pytest.mark.xfail(reason="the trace still makes its own tables", strict=True)
+#: The loader finds the rules by the name of their package; that is no import of any of them.
+DISCOVERY = "checking.rule imports rules"
+
+
+@pytest.mark.xfail(reason="settings and fault texts still point upwards", strict=True)
 def test_imports_go_downwards_only() -> None:
-    assert not upward(imports_of_package())
+    assert upward(imports_of_package()) == [DISCOVERY]
 
 
-@pytest.mark.xfail(reason="the trace still makes its own tables", strict=True)
+@pytest.mark.xfail(reason="execute and static_faults still hold each other", strict=True)
 def test_imports_have_no_circles() -> None:
     assert not circles(imports_of_package())
 
@@ -199,7 +203,7 @@ def test_what_reads_no_program_loads_no_numpy(arguments: list[str]) -> None:
         "try:\n    polarcheck.commands.run()\nexcept SystemExit as end:\n    assert not end.code, end.code\n"
         "assert not {'numpy', 'shapely'} & set(sys.modules)\n"
     )
-    subprocess.run([sys.executable, "-c", code], check=True, capture_output=True)
+    subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, cwd=PACKAGE.parent)
 
 
 def test_no_control_is_named_in_code() -> None:

@@ -18,7 +18,7 @@ import msgspec
 import pytest
 from click.testing import CliRunner, Result
 
-from polarcheck import __version__
+import polarcheck
 from polarcheck.checking import batch
 from polarcheck.checking.rule import load_all
 from polarcheck.commands import main
@@ -26,6 +26,8 @@ from polarcheck.machines import profiles
 from polarcheck.machines.profiles import names
 from polarcheck.reports.pages import schema
 
+#: What processes import is what these tests import, wherever they run.
+IMPORTED_FROM = os.fspath(Path(polarcheck.__file__).parent.parent)
 RAPID = "G98 G0 X60. C0\nG12.1\nG1 X40. F200\nG0 C5.\nG1 C-5.\nG13.1\n"
 GOOD = RAPID.replace("G0 C5.", "C5.")
 COMPENSATED = "T0101\nG98 G0 X60. C0\nG12.1\nG1 G41 X40. F200\nC-10.\nG40 X60.\nG13.1\n"
@@ -62,8 +64,7 @@ def findings(*arguments: Any, **options: Any) -> list[tuple[str, str]]:
 
 
 def process(*arguments: str, **options: Any) -> subprocess.Popen[str]:
-    here = os.fspath(Path(batch.__file__).parent.parent)
-    environment = {**os.environ, "PYTHONPATH": here, "PYTHONUTF8": "1"}
+    environment = {**os.environ, "PYTHONPATH": IMPORTED_FROM, "PYTHONUTF8": "1"}
     command = [sys.executable, "-m", "polarcheck", *arguments]
     pipes = {"stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE, **options}
     return subprocess.Popen(command, env=environment, text=True, encoding="utf-8", **pipes)
@@ -136,7 +137,8 @@ def test_bytes_that_are_not_of_the_encoding_asked_for_are_told() -> None:
 
 def test_a_bug_is_no_finding(monkeypatch: pytest.MonkeyPatch) -> None:
     make(a__nc=GOOD)
-    monkeypatch.setattr("polarcheck.checking.check.check_file", lambda *given, **options: 1 / 0)
+    broken = msgspec.structs.replace(load_all()["rapid-in-polar"], function=lambda *tables: 1 / 0)
+    monkeypatch.setitem(load_all(), "rapid-in-polar", broken)
     result = check("a.nc")
     assert result.exit_code == 3
     assert result.stdout == ""
@@ -167,12 +169,10 @@ def test_an_interrupted_process_says_so_in_a_word() -> None:
     heed = partial(signal.signal, signal.SIGINT, signal.SIG_DFL)
     running = process("check", "-", stdin=subprocess.PIPE, preexec_fn=heed)
     assert running.stdin is not None
-    running.stdin.write(GOOD)  # and no end of file: it waits for more
+    # More than a pipe holds: once it is written, the process is reading, and without an end it waits for more.
+    running.stdin.write(GOOD + "\n" * 2**20)
     running.stdin.flush()
-    try:
-        running.wait(4)
-    except subprocess.TimeoutExpired:
-        running.send_signal(signal.SIGINT)
+    running.send_signal(signal.SIGINT)
     _, told = running.communicate(timeout=30)
     assert running.returncode == 130
     assert "Traceback" not in told
@@ -532,7 +532,7 @@ def test_a_profile_shows_where_each_value_comes_from() -> None:
 
 
 def test_the_version_is_shown() -> None:
-    assert call("--version").stdout == f"polarcheck {__version__}\n"
+    assert call("--version").stdout == f"polarcheck {polarcheck.__version__}\n"
 
 
 # ---- schemas ----
@@ -595,10 +595,10 @@ def test_a_report_fits_its_schema() -> None:
 )
 def test_commands_import_what_they_need_and_no_more(arguments: list[str], unwanted: set[str]) -> None:
     make(a__nc=GOOD)
-    here = os.fspath(Path(batch.__file__).parent.parent)
     code = (
-        f"import sys; sys.path.insert(0, {here!r}); sys.argv = {['polarcheck', *arguments]}\n"
+        f"import sys; sys.path.insert(0, {IMPORTED_FROM!r}); sys.argv = {['polarcheck', *arguments]}\n"
         "from polarcheck.commands import run\n"
+        f"assert sys.modules['polarcheck'].__file__ == {polarcheck.__file__!r}\n"
         "try: run()\n"
         f"except SystemExit as end: print(end.code, *sorted({unwanted!r} & set(sys.modules)), file=sys.stderr)"
     )
@@ -610,7 +610,7 @@ def test_standard_output_of_any_encoding_takes_any_program() -> None:
     make(a__nc=RAPID.replace("C5.", "C5. (\u89d2\u5ea6)"))
     running = subprocess.run(
         [sys.executable, "-m", "polarcheck", "check", "a.nc", *RAPID_ONLY],
-        env={**os.environ, "PYTHONPATH": os.fspath(Path(batch.__file__).parent.parent), "PYTHONIOENCODING": "cp1252"},
+        env={**os.environ, "PYTHONPATH": IMPORTED_FROM, "PYTHONIOENCODING": "cp1252"},
         capture_output=True,
         check=False,
     )

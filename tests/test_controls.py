@@ -2,23 +2,13 @@
 
 from __future__ import annotations
 
-import re
-from pathlib import Path
-from typing import Any
-
 import numpy as np
 import pytest
+from programs import machine_of, moves_of, report_of, said, tables_of, trace_of
 
-from polarcheck.checking import check
 from polarcheck.checking.finding import FileReport
-from polarcheck.checking.rule import load_all
-from polarcheck.machines import job, profiles
 from polarcheck.machines.modal import Motion
 from polarcheck.reading import source, translation
-from polarcheck.table.trace import Trace
-
-SAMPLES = Path(__file__).parent.parent / "sample_programs"
-FOLDERS = [name for name in profiles.names() if name != "fanuc"]
 
 M700V = """
 G17 G90 G94 G0 X40. C0 Z0
@@ -88,55 +78,6 @@ G113
 """
 
 
-def trace_of(program: str, name: str, changes: dict[str, Any] | None = None, *tools: str) -> Trace:
-    work = job.Job()
-    for tool in tools:
-        work = job.with_tool(work, tool)
-    return check.read_traces(program.encode(), profiles.load(name, changes).machine, work)[0][1]
-
-
-def report_of(program: str, name: str, changes: dict[str, Any] | None = None, *tools: str) -> FileReport:
-    work = job.Job()
-    for tool in tools:
-        work = job.with_tool(work, tool)
-    return check.check_file(program.encode(), profiles.load(name, changes).machine, work, list(load_all().values()))
-
-
-def said(report: FileReport) -> list[tuple[int, str]]:
-    return sorted((finding.line, finding.rule) for finding in report.findings)
-
-
-# ---- the samples of each control ----
-
-
-def samples() -> list[Any]:
-    found = [path for name in FOLDERS for path in sorted((SAMPLES / name).glob("*")) if path.suffix in (".nc", ".mpf")]
-    return [pytest.param(path, id=f"{path.parent.name}/{path.name}") for path in found]
-
-
-@pytest.mark.parametrize("path", samples())
-def test_samples_give_what_they_expect(path: Path) -> None:
-    text = path.read_text("utf-8")
-    expected = [
-        (number, name.strip())
-        for number, line in enumerate(text.split("\n"), 1)
-        for found in re.findall(r"\(expect: ([a-z0-9, -]+)\)", line)
-        for name in found.split(",")
-    ]
-    work = job.load(path.parent / "polarcheck.toml")
-    assert work.machine == path.parent.name
-    plain = re.sub(r"[ \t]*;?[ \t]*\(expect: [^)\n]*\)", "", text)
-    report = check.check_file(plain.encode(), profiles.load(path.parent.name).machine, work, list(load_all().values()))
-    assert said(report) == sorted(expected)
-
-
-@pytest.mark.parametrize("name", FOLDERS)
-def test_each_control_has_a_good_and_a_bad_sample(name: str) -> None:
-    texts = [path.read_text("utf-8") for path in (SAMPLES / name).glob("*.[nm][cp]*")]
-    assert any("(expect: " in text for text in texts)
-    assert any("(expect: " not in text for text in texts)
-
-
 # ---- diameter or radius ----
 
 
@@ -149,29 +90,31 @@ def test_each_control_has_a_good_and_a_bad_sample(name: str) -> None:
     ],
 )
 def test_the_example_of_the_manual_closes_in_one_reading_of_x(program: str, name: str, right: str) -> None:
-    assert profiles.load(name).machine.polar.x == right
+    assert machine_of(name).polar.x == right
     for reading in ("diameter", "radius"):
-        trace = trace_of(program, name, {"polar": {"x": reading}, "control": {"x": reading}})
-        assert trace.is_arc.any()
-        assert trace.arcs.is_no_circle.any() == (reading != right), reading
+        tables = tables_of(program, name, changes={"polar": {"x": reading}, "control": {"x": reading}})
+        assert tables["trace"].is_arc.any()
+        assert tables["arcs"].is_no_circle.any() == (reading != right), reading
 
 
 def test_the_haas_example_is_a_quarter_of_a_circle_with_x_as_a_radius() -> None:
-    trace = trace_of(HAAS, "haas-lathe")
+    tables = tables_of(HAAS, "haas-lathe")
+    trace = tables["trace"]
     assert trace.center[trace.is_arc] == pytest.approx(25.4 * (0.25 + 0.5j))
-    assert np.nanmax(trace.arcs.sweep) == pytest.approx(90)
-    assert np.nanmax(trace_of(HAAS, "haas-lathe", {"polar": {"x": "diameter"}}).arcs.sweep) < 80
+    assert np.nanmax(tables["arcs"].sweep) == pytest.approx(90)
+    assert np.nanmax(tables_of(HAAS, "haas-lathe", changes={"polar": {"x": "diameter"}})["arcs"].sweep) < 80
     rules = {finding.rule for finding in report_of(HAAS, "haas-lathe").findings}
     assert not rules & {"rapid-in-polar", "wrong-axis-address-in-polar", "plane-selected-in-polar"}
 
 
 def test_the_lsis_example_is_a_quarter_of_a_circle_with_x_as_a_radius() -> None:
     """Its only arc is written with R, which a shorter chord fits, too: the quarter is what tells."""
-    trace = trace_of(LSIS, "lsis")
-    assert np.nanmax(trace.arcs.sweep) == pytest.approx(90)
+    tables = tables_of(LSIS, "lsis")
+    assert np.nanmax(tables["arcs"].sweep) == pytest.approx(90)
+    trace = tables["trace"]
     assert trace.center[trace.is_arc] == pytest.approx(-8 + 8j)
-    as_diameter = trace_of(LSIS, "lsis", {"polar": {"x": "diameter"}})
-    assert np.nanmax(as_diameter.arcs.sweep) < 80
+    as_diameter = tables_of(LSIS, "lsis", changes={"polar": {"x": "diameter"}})
+    assert np.nanmax(as_diameter["arcs"].sweep) < 80
     assert not report_of(LSIS, "lsis").findings
 
 
@@ -203,8 +146,8 @@ def feeds(mode: str, in_mode: str, system: str) -> tuple[float, float, FileRepor
     value = {"per minute": 100, "per revolution": 0.2}[mode]
     program = f"{before}\nG1 X50. Z5. F{value}\nG0 X40. C0\nG12.1\nG1 X30. {in_mode}\nX20.\nG13.1\nG1 X30.\n"
     changes = {"control": {"g_code_system": system}}
-    trace = trace_of(program, "mitsubishi-m700", changes)
-    return float(trace.feed[4]), float(trace.feed_number[7]), report_of(program, "mitsubishi-m700", changes)
+    trace = trace_of(program, "mitsubishi-m700", changes=changes)
+    return float(trace.feed[4]), float(trace.feed_number[7]), report_of(program, "mitsubishi-m700", changes=changes)
 
 
 @pytest.mark.parametrize("system", ["A", "B"])
@@ -246,7 +189,7 @@ def test_f_is_one_modal_word_on_other_controls() -> None:
 
 def test_infeed_cycle_pass_by_pass() -> None:
     """X348 is 24 mm outside of the contour at X300: passes at 16 and 8 mm, then the contour."""
-    moves = trace_of(GSK_CYCLE, "gsk-988", None, "2:radius=0").tool_moves
+    moves = moves_of(GSK_CYCLE, "gsk-988", "2:radius=0")
     assert len(moves) == 30
     assert moves.start[0] == 174
     for number, offset in enumerate((16, 8, 0)):
@@ -266,9 +209,9 @@ def test_infeed_cycle_pass_by_pass() -> None:
 
 
 def test_infeed_cycle_with_a_cutter() -> None:
-    moves = trace_of(GSK_CYCLE, "gsk-988", None, "2:radius=10").tool_moves
+    moves = moves_of(GSK_CYCLE, "gsk-988", "2:radius=10")
     assert sorted({round(float(value), 6) for value in moves.end.real[::10]}) == [160, 168, 176]
-    unknown = trace_of(GSK_CYCLE, "gsk-988").tool_moves
+    unknown = moves_of(GSK_CYCLE, "gsk-988")
     assert len(unknown) == 30
     assert not unknown.known.any()
 
@@ -278,17 +221,17 @@ def test_infeed_cycle_with_a_cutter() -> None:
     [("", 1), ("E0", 1), ("E8.", 3), ("E-8.", 3), ("E12.", 2), ("E24.", 1), ("E30.", 1), ("E5.", 5)],
 )
 def test_how_many_passes(infeed: str, passes: int) -> None:
-    trace = trace_of(GSK_CYCLE.replace("E8.", infeed), "gsk-988", None, "2:radius=0")
-    assert len(trace.tool_moves) == 10 * passes
+    moves = moves_of(GSK_CYCLE.replace("E8.", infeed), "gsk-988", "2:radius=0")
+    assert len(moves) == 10 * passes
 
 
 def test_infeed_cycle_along_the_path_of_the_tool_center() -> None:
     """Without G41 and G42 the passes lie on the side from which the tool comes."""
     square = "G98 G0 X{} C0\nG12.1 E4.\nG1 X40. F100\nC20.\nX-40.\nC-20.\nX40.\nC0\nX{}\nG13.1\n"
-    outside = trace_of(square.format("60.", "60."), "gsk-988").tool_moves
+    outside = moves_of(square.format("60.", "60."), "gsk-988")
     assert outside.end[0] == 28
     assert np.abs(outside.end).max() == pytest.approx(abs(28 + 28j))
-    inside = trace_of(square.format("20.", "20."), "gsk-988").tool_moves
+    inside = moves_of(square.format("20.", "20."), "gsk-988")
     assert inside.end[0] == 12
     assert np.abs(inside.end).min() == pytest.approx(10)
 
@@ -297,30 +240,30 @@ def test_every_pass_is_checked() -> None:
     """A pass that the contour alone would hide: inside a pocket the first passes are nearest to the center."""
     pocket = "G98 G0 X4. C0\nG12.1 E4.\nG1 X40. F100\nC20.\nX-40.\nC-20.\nX40.\nC0\nG13.1\n"
     limit = {"limits": {"c_feed": 700}}
-    assert (5, "c-feed-above-limit") in said(report_of(pocket, "gsk-988", limit))
-    assert (5, "c-feed-above-limit") not in said(report_of(pocket.replace(" E4.", ""), "gsk-988", limit))
+    assert (5, "c-feed-above-limit") in said(report_of(pocket, "gsk-988", changes=limit))
+    assert (5, "c-feed-above-limit") not in said(report_of(pocket.replace(" E4.", ""), "gsk-988", changes=limit))
 
 
 def test_what_is_not_simulated_is_said() -> None:
     program = GSK_CYCLE.replace("G12.1 E8.", "G12.1 X10. P2 Q3 E.001")
-    reasons = [entry.reason for entry in report_of(program, "gsk-988", None, "2:radius=0").not_evaluated]
+    reasons = [entry.reason for entry in report_of(program, "gsk-988", "2:radius=0").not_evaluated]
     assert "P names another linear axis than 1, which is not simulated" in reasons
     assert "the center of the C axis shifted by X is not simulated" in reasons
     assert "of an infeed cycle only the passes next to the contour are simulated" in reasons
     assert not any(reason.startswith("Q names") for reason in reasons)
-    moves = trace_of(program, "gsk-988", None, "2:radius=0").tool_moves
+    moves = moves_of(program, "gsk-988", "2:radius=0")
     assert len(moves) == 10 * 201
 
 
 def test_an_open_contour_is_one_pass() -> None:
     program = GSK_CYCLE.replace("G1 C0\nG40 X300.", "G1 C-10.\nG40 X340.")
-    trace = trace_of(program, "gsk-988", None, "2:radius=10")
-    assert len(trace.tool_moves) < 15
-    assert (4, "contour-open-with-infeed") in said(report_of(program, "gsk-988", None, "2:radius=10"))
+    moves = moves_of(program, "gsk-988", "2:radius=10")
+    assert len(moves) < 15
+    assert (4, "contour-open-with-infeed") in said(report_of(program, "gsk-988", "2:radius=10"))
 
 
 def test_infeed_is_a_word_of_one_control() -> None:
-    assert not trace_of(GSK_CYCLE, "fanuc").infeed.depth.any()
+    assert not tables_of(GSK_CYCLE, "fanuc")["infeed"].depth.any()
     assert (4, "polar-switch-not-alone") in said(report_of(GSK_CYCLE, "fanuc"))
 
 
@@ -330,24 +273,26 @@ FAST = "G98 G0 X60. C0\nG12.1\nG1 X4. C5. F100\nC-5. F500\nG13.1\n"
 
 
 def test_excess_speed_is_an_alarm_or_an_override() -> None:
-    off = report_of(FAST, "fanuc-30i", {"parameters": {"1422": 3600}}).findings[0]
+    off = report_of(FAST, "fanuc-30i", changes={"parameters": {"1422": 3600}}).findings[0]
     assert (off.rule, off.severity, off.alarm) == ("c-feed-above-limit", "error", "OT0512")
     parameters = {"1422": 3600, "5450#1": 1, "5463": 80}
-    on = report_of(FAST, "fanuc-30i", {"parameters": parameters}).findings[0]
+    on = report_of(FAST, "fanuc-30i", changes={"parameters": parameters}).findings[0]
     assert (on.rule, on.severity, on.alarm) == ("c-feed-above-limit", "warning", None)
     # C turns at 500 / 2 mm, that is 14324 deg/min; 80 % of 3600 is 2880, a share of 20.1 %.
     assert "20 %, 100 mm/min" in on.message
 
 
 def test_override_and_true_feed() -> None:
-    trace = trace_of(FAST, "fanuc", {"limits": {"c_feed": 3600, "automatic_override": True}})
+    tool_center = tables_of(FAST, "fanuc", changes={"limits": {"c_feed": 3600, "automatic_override": True}})[
+        "tool_center"
+    ]
     rate = float(np.degrees(500 / 2))
-    assert trace.own.override[3] == pytest.approx(100 * 3240 / rate)
-    assert trace.own.true_feed[3] == pytest.approx(500 * 3240 / rate)
-    assert trace.own.override[2] == 100
-    assert (trace_of(FAST, "fanuc", {"limits": {"c_feed": 3600}}).own.override == 100).all()
-    slightly = trace_of(FAST, "fanuc", {"limits": {"c_feed": rate / 0.95, "automatic_override": True}})
-    assert slightly.own.override[3] == pytest.approx(100 * 90 / 95)
+    assert tool_center.override[3] == pytest.approx(100 * 3240 / rate)
+    assert tool_center.true_feed[3] == pytest.approx(500 * 3240 / rate)
+    assert tool_center.override[2] == 100
+    assert (tables_of(FAST, "fanuc", changes={"limits": {"c_feed": 3600}})["tool_center"].override == 100).all()
+    slightly = tables_of(FAST, "fanuc", changes={"limits": {"c_feed": rate / 0.95, "automatic_override": True}})
+    assert slightly["tool_center"].override[3] == pytest.approx(100 * 90 / 95)
 
 
 # ---- words of other controls ----
@@ -378,7 +323,9 @@ def test_codes_of_other_numbers_move() -> None:
 
 
 def test_virtual_axis_as_a_diameter() -> None:
-    trace = trace_of("G98 G0 X60. C0\nG12.1\nG1 X40. C20. F100\nG13.1\n", "fanuc", {"parameters": {"5450#0": 1}})
+    trace = trace_of(
+        "G98 G0 X60. C0\nG12.1\nG1 X40. C20. F100\nG13.1\n", "fanuc", changes={"parameters": {"5450#0": 1}}
+    )
     assert trace.end[2] == 20 + 10j
 
 
@@ -387,10 +334,10 @@ def test_center_words_follow_the_linear_axis() -> None:
     program = "G94 G90 G0 X40. C0\nG12.1\nG1 X20. C10. F100\nG3 X10. C20. {}-10. {}0\nG13.1\n"
     for axis, (along, across) in {"X": "IJ", "Y": "JK", "Z": "KI"}.items():
         changes = {"parameters": {"1533": axis}}
-        trace = trace_of(program.format(along, across), "mitsubishi-m700", changes)
+        trace = trace_of(program.format(along, across), "mitsubishi-m700", changes=changes)
         assert trace.center[3] == pytest.approx(10 + 10j)
         other = ({"I", "J", "K"} - {along, across}).pop()
-        wrong = report_of(program.format(other, across), "mitsubishi-m700", changes)
+        wrong = report_of(program.format(other, across), "mitsubishi-m700", changes=changes)
         assert "arc-word-of-other-plane" in {finding.rule for finding in wrong.findings}
 
 
@@ -426,7 +373,7 @@ def test_alarm_of_the_control(program: str, name: str, rule: str, alarm: str) ->
 
 @pytest.mark.parametrize("name", ["haas-lathe", "siemens-transmit"])
 def test_rapid_traverse_is_silent_where_the_control_takes_it(name: str) -> None:
-    on, off = profiles.load(name).machine.polar.on[0], profiles.load(name).machine.polar.off[0]
+    on, off = machine_of(name).polar.on[0], machine_of(name).polar.off[0]
     program = f"G17 G98 G0 X60. C0\n{on}\nG0 X40. Y0\nG1 Y5. F100\n{off}\n"
     assert "rapid-in-polar" not in {finding.rule for finding in report_of(program, name).findings}
 
@@ -472,55 +419,5 @@ def test_a_program_that_no_machine_reads_well_gets_no_advice() -> None:
 
 def test_messages_name_the_virtual_axis_of_the_control() -> None:
     program = "T0101\nG98 G17 G0 X60. C0\nG112\nG1 Y5. F200\nG41 Y7.\nX20.\nG40 Y30.\nG113\n"
-    found = report_of(program, "haas-lathe", {"control": {"units": "mm"}}, "1:radius=5", "1:nose=0").findings
+    found = report_of(program, "haas-lathe", "1:radius=5", "1:nose=0", changes={"control": {"units": "mm"}}).findings
     assert "2 mm in Y" in next(f.message for f in found if f.rule == "start-up-shorter-than-radius")
-
-
-# ---- the real programs beside the checkout ----
-
-CORPUS = Path(__file__).parent.parent.parent / "shared" / "corpus" / "polar"
-SYSTEM_B = {"control": {"g_code_system": "B"}, "parameters": {"1422": 3600}}
-JUDGED: list[tuple[str, str, dict[str, Any], list[tuple[int, str, str]]]] = [
-    ("polar-seed-gsk-o0001-single.nc", "gsk-988", {}, []),
-    ("polar-seed-gsk-o0002-cycle-e8.nc", "gsk-988", {}, [(29, "warning", "cancel-shorter-than-radius")]),
-    ("polar-web-lsis-xgt-g112.nc", "lsis", {}, []),
-    (
-        "polar-web-imd-lynx220-fix-g01.nc",
-        "doosan",
-        {},
-        [(line, "warning", "z-with-plane-axis") for line in (3, 4, 5, 6)],
-    ),
-    (
-        "polar-web-imd-mazak-qts-cdegrees.nc",
-        "mazak-eia",
-        {},
-        [
-            (2, "error", "polar-never-left"),
-            (5, "error", "wrong-axis-address-in-polar"),
-            (5, "warning", "degrees-in-polar"),
-        ],
-    ),
-    (
-        "polar-web-fanuc15i-autovelocity.nc",
-        "fanuc",
-        SYSTEM_B,
-        [(3, "error", "c-feed-above-limit"), (4, "error", "c-feed-above-limit")],
-    ),
-    (
-        "polar-web-fanuc15i-autovelocity.nc",
-        "fanuc",
-        {**SYSTEM_B, "parameters": {"1422": 3600, "5450#1": 1}},
-        [(3, "warning", "c-feed-above-limit"), (4, "warning", "c-feed-above-limit")],
-    ),
-]
-
-
-@pytest.mark.corpus
-@pytest.mark.skipif(not CORPUS.is_dir(), reason="the real programs are not beside this checkout")
-@pytest.mark.parametrize(("name", "lathe", "changes", "expected"), JUDGED)
-def test_judged_under_its_own_machine(
-    name: str, lathe: str, changes: dict[str, Any], expected: list[tuple[int, str, str]]
-) -> None:
-    report = report_of((CORPUS / name).read_text("utf-8"), lathe, changes, "2:radius=10", "2:nose=0")
-    found = [(finding.line, finding.severity, finding.rule) for finding in report.findings]
-    assert sorted(entry for entry in found if entry[1] != "note") == sorted(expected)

@@ -5,24 +5,16 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
+from programs import report_of, tables_of, trace_of
 
-from polarcheck.checking import check
-from polarcheck.checking.rule import load_all
-from polarcheck.machines import job, profiles
-from polarcheck.table.trace import Trace
+from polarcheck.checking.phrases import setup
 
-RULES = [rule for rule in load_all().values() if rule.group == "setup"]
 SECTION = "G12.1\nG1 X40. F200\nC10.\nX60.\nG13.1\n"
 
 
-def traced(program: str, profile: str = profiles.DEFAULT, work: dict[str, Any] | None = None) -> Trace:
-    given = job.from_table(work or {}, "test")
-    return check.read_traces(program.encode(), profiles.load(profile).machine, given)[0][1]
-
-
-def said(program: str, profile: str = profiles.DEFAULT, work: dict[str, Any] | None = None) -> list[str]:
-    found = check.check_trace(traced(program, profile, work), RULES, {})
-    return [finding.rule for finding in found.findings]
+def asked(program: str, machine: str = "fanuc", **job: Any) -> list[str]:
+    """The setup rules that a program breaks, in the order of the program."""
+    return [finding.rule for finding in report_of(program, machine, job=job, only=("setup",)).findings]
 
 
 @pytest.mark.parametrize(
@@ -39,17 +31,17 @@ def said(program: str, profile: str = profiles.DEFAULT, work: dict[str, Any] | N
     ],
 )
 def test_whole_program(program: str, whole: list[bool]) -> None:
-    assert traced(program).whole_program.tolist() == whole
+    assert trace_of(program).whole_program.tolist() == whole
 
 
 def test_of_an_excerpt_nothing_is_asked() -> None:
-    assert said(SECTION) == []
-    assert said(SECTION, "turning-center") == []
-    assert said("O1\n" + SECTION + "M99") == []
+    assert asked(SECTION) == []
+    assert asked(SECTION, "turning-center") == []
+    assert asked("O1\n" + SECTION + "M99") == []
 
 
 def test_of_a_whole_program_all_is_asked() -> None:
-    assert said("O1\n" + SECTION + "M30") == [
+    assert asked("O1\n" + SECTION + "M30") == [
         "c-angle-unknown-at-entry",
         "no-tool-offset-at-entry",
         "x-unknown-at-entry",
@@ -57,8 +49,8 @@ def test_of_a_whole_program_all_is_asked() -> None:
 
 
 def test_after_an_unknown_block_nothing_is_asked() -> None:
-    assert said("O1\nM98 P1234\n" + SECTION + "M30") == []
-    assert said("O1\nM98 P1234\n" + SECTION + "M30", "turning-center") == []
+    assert asked("O1\nM98 P1234\n" + SECTION + "M30") == []
+    assert asked("O1\nM98 P1234\n" + SECTION + "M30", "turning-center") == []
 
 
 @pytest.mark.parametrize(
@@ -77,18 +69,18 @@ def test_after_an_unknown_block_nothing_is_asked() -> None:
     ],
 )
 def test_x_unknown(before: str, unknown: bool) -> None:
-    found = said(f"O1\nT0101\nG0 C0\n{before}\n{SECTION}M30")
+    found = asked(f"O1\nT0101\nG0 C0\n{before}\n{SECTION}M30")
     assert found == (["x-unknown-at-entry"] if unknown else [])
 
 
 def test_c_is_positioned_again_after_it_was_engaged_again() -> None:
     """A spindle that ran in between stands anywhere."""
     first = "O1\nT0101\nM35\nG28 H0\nM33\nG0 X60. C0\n"
-    assert said(first + SECTION + "M30", "turning-center") == []
+    assert asked(first + SECTION + "M30", "turning-center") == []
     again = first + SECTION + "M34\nM3\nM5\nM35\nM33\nG0 X60.\n" + SECTION + "M30"
-    assert said(again, "turning-center") == ["c-axis-not-referenced"]
+    assert asked(again, "turning-center") == ["c-axis-not-referenced"]
     referenced = first + SECTION + "M34\nM35\nG28 H0\nM33\nG0 X60.\n" + SECTION + "M30"
-    assert said(referenced, "turning-center") == []
+    assert asked(referenced, "turning-center") == []
 
 
 OFFSETS = {"work_offsets": {"G54": {"x": 0.0}, "G55": {"x": 0.5}, "G54.1 P3": {"x": 1.0}}}
@@ -111,15 +103,15 @@ OFFSETS = {"work_offsets": {"G54": {"x": 0.0}, "G55": {"x": 0.5}, "G54.1 P3": {"
     ],
 )
 def test_origin(before: str, name: str) -> None:
-    trace = traced(f"{before}\nG0 X60. C0\n{SECTION}", work=OFFSETS)
-    assert trace.entry.origin_off_center.any() == bool(name)
-    assert trace.entry.origin_name(int(trace.sections.enter[0])) == name
+    tables = tables_of(f"{before}\nG0 X60. C0\n{SECTION}", job=OFFSETS)
+    assert tables["entry"].origin_off_center.any() == bool(name)
+    assert setup.name(tables["entry"], int(tables["sections"].enter[0])) == name
 
 
 @pytest.mark.parametrize(("before", "expected"), [("", True), ("G54.1 P1", False), ("G55", False)])
 def test_without_a_work_offset_g54_is_in_force(before: str, expected: bool) -> None:
-    trace = traced(f"{before}\nG0 X60. C0\n{SECTION}", work={"work_offsets": {"G54": {"x": 1.0}}})
-    assert trace.entry.origin_off_center.any() == expected
+    tables = tables_of(f"{before}\nG0 X60. C0\n{SECTION}", job={"work_offsets": {"G54": {"x": 1.0}}})
+    assert tables["entry"].origin_off_center.any() == expected
 
 
 INSIDE = ["approach-inside-stock"]
@@ -137,11 +129,11 @@ INSIDE = ["approach-inside-stock"]
 )
 def test_stock_is_in_the_units_of_the_job(units: str, x: str, expected: list[str]) -> None:
     work = {"units": units, "stock": {"diameter": 30, "clearance": 4}, "tools": {1: {"diameter": 10}}}
-    assert said(f"T0101\nG0 X{x} C0\nG12.1\nG1 X10. F200\nX{x}\nG13.1", work=work) == expected
+    assert asked(f"T0101\nG0 X{x} C0\nG12.1\nG1 X10. F200\nX{x}\nG13.1", **work) == expected
 
 
 def test_an_unknown_cutter_is_said() -> None:
-    trace = traced(f"T0101\nG0 X60. C0\n{SECTION}", work={"stock": {"diameter": 30}})
-    report = check.check_trace(trace, RULES, {})
+    job = {"stock": {"diameter": 30}}
+    report = report_of(f"T0101\nG0 X60. C0\n{SECTION}", job=job, only=("setup",))
     assert [entry.rule for entry in report.not_evaluated] == ["approach-inside-stock"]
     assert "cutter diameter" in report.not_evaluated[0].reason

@@ -2,38 +2,16 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 import time
 from pathlib import Path
 
-import msgspec
 import numpy as np
 import pytest
+from programs import report_of, tables_of, trace_of
 
-from polarcheck.checking import check
-from polarcheck.checking.finding import FileReport
-from polarcheck.checking.rule import load_all
-from polarcheck.machines import profiles
-from polarcheck.machines.job import Job, Running, with_tool
-from polarcheck.table.trace import Trace
-
-MACHINE = profiles.load("fanuc").machine
-JOB = with_tool(Job(), "1:radius=4")
-RULES = list(load_all().values())
-
-
-def job_of(run: Running | None) -> Job:
-    return msgspec.structs.replace(JOB, run=run or Running())
-
-
-def trace_of(program: str, run: Running | None = None) -> Trace:
-    return check.read_traces(program.encode(), MACHINE, job_of(run))[0][1]
-
-
-def report_of(program: str, run: Running | None = None) -> FileReport:
-    return check.check_file(program.encode(), MACHINE, job_of(run), RULES)
-
-
+CUTTER = "1:radius=4"
 HEAD = """O0001
 T0101
 G98 G0 X90. C0
@@ -92,8 +70,8 @@ def polygon_plain(sides: int) -> str:
 
 @pytest.mark.parametrize("sides", range(3, 13))
 def test_polygon_runs_as_its_written_out_twin(sides: int) -> None:
-    macro, plain = trace_of(polygon_macro(sides)), trace_of(polygon_plain(sides))
-    ours, theirs = macro.tool_moves, plain.tool_moves
+    macro, plain = (tables_of(program(sides), "fanuc", CUTTER) for program in (polygon_macro, polygon_plain))
+    ours, theirs = macro["moves"], plain["moves"]
     moving = [moves.length > 1e-6 for moves in (ours, theirs)]
     ours, theirs = ours.chosen(moving[0]), theirs.chosen(moving[1])
     assert len(ours) == len(theirs)
@@ -101,10 +79,9 @@ def test_polygon_runs_as_its_written_out_twin(sides: int) -> None:
     np.testing.assert_allclose(ours.end, theirs.end, atol=2e-3)
     np.testing.assert_allclose(ours.feed, theirs.feed)
 
-    def said(program: str) -> list[tuple[str, str]]:
-        return [(finding.rule, finding.message) for finding in report_of(program).findings]
-
-    assert said(polygon_macro(sides)) == said(polygon_plain(sides))
+    reports = [report_of(program(sides), "fanuc", CUTTER) for program in (polygon_macro, polygon_plain)]
+    said = [[(finding.rule, finding.message) for finding in report.findings] for report in reports]
+    assert said[0] == said[1]
 
 
 def test_words_and_positions_are_those_of_the_unrolled_program() -> None:
@@ -140,22 +117,43 @@ def test_a_program_that_calls_itself_and_brackets_without_end_are_one_finding() 
         assert [finding.rule for finding in report_of(program).findings] == ["nesting-too-deep"]
 
 
-def test_bounds_are_kept() -> None:
-    began = time.monotonic()
-    report = report_of(ENDLESS["while"], Running(max_blocks=10**9, max_statements=10**9, max_seconds=0.2))
+#: So high that none is reached before the one under test.
+UNBOUNDED = {"max_blocks": 10**9, "max_statements": 10**9, "max_seconds": 1e9}
+
+
+@pytest.mark.parametrize(
+    ("bound", "text", "blocks"),
+    [
+        ({"max_blocks": 1000}, "1000 executed blocks", 1000),
+        ({"max_statements": 1000}, "1000 macro statements and calls", 1000 / 3),
+    ],
+)
+def test_bounds_are_kept(bound: dict[str, int], text: str, blocks: float) -> None:
+    """A turn of the loop is one block and three statements."""
+    report = report_of(ENDLESS["while"], job={"run": {**UNBOUNDED, **bound}})
     assert [finding.rule for finding in report.findings] == ["endless-loop"]
-    assert "0.2 seconds" in report.findings[0].message
-    assert time.monotonic() - began < 60  # it ends at all; how fast is a matter of benchmarks
+    assert f"after {text};" in report.findings[0].message
+    assert blocks <= report.blocks <= blocks + 1
+
+
+def test_time_is_a_bound(monkeypatch: pytest.MonkeyPatch) -> None:
+    """On a clock that goes on by a second whenever somebody looks at it, so that the work is counted, not the time."""
+    clock, looks = time.monotonic, itertools.count()
+    monkeypatch.setattr(time, "monotonic", lambda: clock() + next(looks))
+    report = report_of(ENDLESS["while"], job={"run": {**UNBOUNDED, "max_seconds": 5}})
+    assert [finding.rule for finding in report.findings] == ["endless-loop"]
+    assert "after 5 seconds;" in report.findings[0].message
+    assert report.blocks < 1000
 
 
 def test_block_skip_is_judged_both_ways() -> None:
     program = HEAD + "G12.1\nG1 X60. F1500\n/G0 X50.\nG1 C5.\nG13.1\nM30\n"
     messages = {f.rule: f.message for f in report_of(program).findings}
     assert messages["rapid-in-polar"].endswith("(with block skip off)")
-    assert not report_of(program, Running(block_skip="on")).findings
-    assert [f.rule for f in report_of(program, Running(block_skip="off")).findings] == ["rapid-in-polar"]
+    assert not report_of(program, job={"run": {"block_skip": "on"}}).findings
+    assert [f.rule for f in report_of(program, job={"run": {"block_skip": "off"}}).findings] == ["rapid-in-polar"]
     later = HEAD + "G12.1\nG1 X60. F1500 /G40\nC5.\nG13.1\nM30\n"
-    on = trace_of(later, Running(block_skip="on"))
+    on = trace_of(later, job={"run": {"block_skip": "on"}})
     assert not on.codes("G40").any()
 
 
@@ -164,12 +162,12 @@ def test_a_called_program_is_found_in_the_folders_only(tmp_path: Path) -> None:
     (tmp_path / "outside").mkdir()
     (tmp_path / "outside" / "O1234").write_text("%\nO1234\nG0 X70.\nM99\n%\n")
     (tmp_path / "folder").mkdir()
-    options = Running(subprograms=[str(tmp_path / "folder")])
-    assert next(f.rule for f in report_of(main, options).findings) == "subprogram-missing"
+    job = {"run": {"subprograms": [str(tmp_path / "folder")]}}
+    assert next(f.rule for f in report_of(main, job=job).findings) == "subprogram-missing"
     (tmp_path / "folder" / "1234.NC").write_bytes(b"%\r\nO1234\r\nG0 X70.\r\nM99\r\n%\r\n")
-    assert not report_of(main, options).findings
+    assert not report_of(main, job=job).findings
     (tmp_path / "folder" / "1234.NC").write_bytes(b"G0 X70.\nG12.1\nG1 X60. F100\nG0 C5.\nG13.1\nG0 X70. C0\nM99\n")
-    (found,) = [f for f in report_of(main, options).findings if f.rule == "rapid-in-polar"]
+    (found,) = [f for f in report_of(main, job=job).findings if f.rule == "rapid-in-polar"]
     assert (found.line, found.block) == (5, "M98 P1234")
     assert found.message.startswith("in 1234.NC, line 5, G0 C5.")
 
@@ -177,11 +175,10 @@ def test_a_called_program_is_found_in_the_folders_only(tmp_path: Path) -> None:
 def test_a_loop_counts_a_finding_and_shows_its_worst_run() -> None:
     loop = "WHILE[#1 LT 5]DO1\n#1=#1+1\nX[20.-4*#1] F2000\nC[#1]\nC0\nEND1\n"
     program = HEAD + f"#1=0\nG12.1\nG1 X60. F1500\n{loop}X60.\nG13.1\nM30\n"
-    slow = profiles.load("fanuc", {"limits": {"c_feed": 3600}}).machine
-    report = check.check_file(program.encode(), slow, JOB, RULES)
+    report = report_of(program, changes={"limits": {"c_feed": 3600}})
     found = [f for f in report.findings if f.rule == "c-feed-above-limit"]
-    assert all(f.count > 1 for f in found)
-    assert len({f.line for f in found}) == len(found)
+    # The fifth run goes to X0: through the center, which another rule says.
+    assert [(f.line, f.count, f.values["nearest"]) for f in found] == [(11, 4, 2), (12, 4, 2)]
 
 
 def test_modal_call_runs_after_each_move() -> None:

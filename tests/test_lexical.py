@@ -3,31 +3,17 @@
 from __future__ import annotations
 
 from collections import Counter
-from functools import cache
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from programs import report_of
 
-from polarcheck.checking import check
 from polarcheck.checking.finding import Finding
-from polarcheck.checking.rule import load_all
-from polarcheck.machines import profiles
-from polarcheck.machines.job import Job
-from polarcheck.machines.machine import Machine
-
-RULES = [rule for rule in load_all().values() if rule.group in ("text", "setup")]
 
 
-@cache
-def profile(**control: int) -> Machine:
-    return profiles.load(profiles.DEFAULT, {"control": control} if control else None).machine
-
-
-def findings(program: str | bytes, rule: str = "", **control: int) -> list[Finding]:
-    data = program if isinstance(program, bytes) else program.encode()
-    chosen = [item for item in RULES if not rule or item.name == rule]
-    return check.check_file(data, profile(**control), Job(), chosen).findings
+def findings(program: str | bytes, *only: str, **control: int) -> list[Finding]:
+    return report_of(program, changes={"control": control}, only=only or ("setup", "text")).findings
 
 
 def places(program: str | bytes, rule: str, **control: int) -> list[tuple[int, int]]:

@@ -9,14 +9,13 @@ from typing import Any
 import msgspec
 import pytest
 from click.testing import CliRunner
+from programs import report_of
 
-from polarcheck.checking import check
 from polarcheck.checking.finding import ERROR
 from polarcheck.checking.rule import load_all
 from polarcheck.commands import main
 from polarcheck.errors import MachineError, UsageError
 from polarcheck.machines import profiles
-from polarcheck.machines.job import Job
 from polarcheck.machines.machine import Machine
 from polarcheck.machines.parameters import Origin
 from polarcheck.reports.pages import controls, new_machine
@@ -241,9 +240,9 @@ def test_a_new_profile_replaces_no_file() -> None:
 
 def test_a_profile_of_ones_own_checks() -> None:
     profile = load("inherits = 'fanuc-16i'\n[parameters]\n1422 = 3600\n")
-    program = b"G98 G0 X60. C0\nG12.1\nG1 X4. C5. F100\nC-5. F500\nG13.1\n"
-    report = check.check_file(program, profile.machine, Job(), list(load_all().values()))
-    assert [(finding.rule, finding.severity) for finding in report.findings] == [("c-feed-above-limit", "error")]
+    program = "G98 G0 X60. C0\nG12.1\nG1 X4. C5. F100\nC-5. F500\nG13.1\n"
+    findings = report_of(program, profile.machine).findings
+    assert [(finding.rule, finding.severity) for finding in findings] == [("c-feed-above-limit", "error")]
 
 
 def test_machines_new_writes_the_file() -> None:

@@ -5,12 +5,9 @@ from __future__ import annotations
 import textwrap
 
 import pytest
+from programs import report_of_example, said
 
-from polarcheck.checking import check
-from polarcheck.checking.rule import examples, load_all
-from polarcheck.machines import job, profiles
-
-RULES = [rule for rule in load_all().values() if rule.group in ("polar", "compensation")]
+from polarcheck.checking.rule import examples
 
 PROGRAMS = {
     "a forgotten G13.1 says nothing of what follows": """
@@ -211,10 +208,4 @@ PROGRAMS = {
 @pytest.mark.parametrize("page", PROGRAMS.values(), ids=PROGRAMS)
 def test_one_mistake_is_one_finding(page: str) -> None:
     (example,) = examples(textwrap.dedent(page).strip("\n"))
-    changes = {"control": {"g_code_system": "B"}} if example.settings else {}
-    work = job.Job()
-    for tool in example.tools:
-        work = job.with_tool(work, tool)
-    lathe = profiles.load(example.machine or profiles.DEFAULT, changes).machine
-    report = check.check_file(example.program.encode(), lathe, work, RULES)
-    assert [(finding.line, finding.rule) for finding in report.findings] == list(example.expected)
+    assert said(report_of_example(example, only=("compensation", "polar"))) == sorted(example.expected)

@@ -5,25 +5,15 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
+from programs import report_of, said
 
-from polarcheck.checking import check
 from polarcheck.checking.finding import FileReport
-from polarcheck.checking.rule import load_all
-from polarcheck.machines import job, profiles
 
-RULES = [rule for rule in load_all().values() if rule.group in ("motion", "feed")]
 ENTRY = "O1 T0808\nG98 G0 X60. C0\nG12.1\n"
 
 
 def report(program: str, *tools: str, name: str = "fanuc", **changes: dict[str, Any]) -> FileReport:
-    work = job.Job()
-    for tool in tools:
-        work = job.with_tool(work, tool)
-    return check.check_file(program.encode(), profiles.load(name, changes).machine, work, RULES)
-
-
-def said(found: FileReport) -> list[tuple[int, str]]:
-    return [(finding.line, finding.rule) for finding in found.findings]
+    return report_of(program, name, *tools, changes=changes, only=("feed", "motion"))
 
 
 def reasons(found: FileReport) -> list[tuple[str, int]]:

@@ -12,17 +12,12 @@ import numpy as np
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from msgspec.structs import replace
+from programs import machine_of, moves_of, report_of, tables_of, trace_of
 
-from polarcheck.checking import check
-from polarcheck.checking.finding import FileReport
-from polarcheck.checking.rule import load_all
-from polarcheck.machines import profiles
-from polarcheck.machines.job import Job, with_tool
-from polarcheck.machines.machine import Machine
-from polarcheck.table.trace import Trace
+from polarcheck.table.moves import Moves, programmed_moves
 
-RULES = list(load_all().values())
-FANUC = profiles.load("fanuc", {"limits": {"c_feed": 7200.0}}).machine
+LIMITS = {"limits": {"c_feed": 7200.0}}
+FANUC = machine_of("fanuc", LIMITS)
 EXAMPLES = 40
 
 
@@ -92,25 +87,11 @@ def program(moves: list[Move], *, unit: float = 1.0, incremental: bool = False, 
     return "\n".join([*lines, "G13.1", f"G0 X{words(90 / unit)}", "M30", ""])
 
 
-def trace_of(text: str, lathe: Machine = FANUC, job: Job | None = None) -> Trace:
-    return check.read_traces(text.encode(), lathe, job or Job())[0][1]
-
-
-def report_of(text: str, lathe: Machine = FANUC, job: Job | None = None) -> FileReport:
-    return check.check_file(text.encode(), lathe, job or Job(), RULES)
-
-
-def said(report: FileReport) -> list[tuple[str, str]]:
-    return [(finding.rule, finding.severity) for finding in report.findings]
-
-
-def same_path(ours: Trace, theirs: Trace, tolerance: float = 1e-6, relative: float = 1e-6) -> None:
+def same_path(ours: Moves, theirs: Moves, tolerance: float = 1e-6, relative: float = 1e-6) -> None:
     for name in ("start", "end", "center", "feed", "c_feed", "nearest"):
-        np.testing.assert_allclose(
-            getattr(ours.tool_moves, name), getattr(theirs.tool_moves, name), relative, tolerance, err_msg=name
-        )
-    np.testing.assert_array_equal(ours.tool_moves.kind, theirs.tool_moves.kind)
-    for angle, other in zip(ours.tool_moves.c_angles, theirs.tool_moves.c_angles, strict=True):
+        np.testing.assert_allclose(getattr(ours, name), getattr(theirs, name), relative, tolerance, err_msg=name)
+    np.testing.assert_array_equal(ours.kind, theirs.kind)
+    for angle, other in zip(ours.c_angles, theirs.c_angles, strict=True):
         np.testing.assert_allclose(angle, other, atol=1e-4)
 
 
@@ -130,29 +111,29 @@ def test_spelling_changes_nothing(moves: list[Move], data: st.DataObject) -> Non
             line += data.draw(st.sampled_from([" (COMMENT G0)", ";", "  "]))
         spelled.append(line)
     other = data.draw(st.sampled_from(["\n", "\r\n", "\n\r\r"])).join(spelled)
-    same_path(trace_of(text), trace_of(other), 0)
-    ours, theirs = report_of(text), report_of(other)
+    same_path(moves_of(text, FANUC), moves_of(other, FANUC), 0)
+    ours, theirs = report_of(text, FANUC), report_of(other, FANUC)
     assert [(f.line, f.rule, f.values) for f in ours.findings] == [(f.line, f.rule, f.values) for f in theirs.findings]
 
 
 @given(contours())
 @settings(max_examples=EXAMPLES, deadline=None)
 def test_incremental_twin_has_the_same_path(moves: list[Move]) -> None:
-    same_path(trace_of(program(moves)), trace_of(program(moves, incremental=True)))
+    same_path(moves_of(program(moves), FANUC), moves_of(program(moves, incremental=True), FANUC))
 
 
 @given(contours())
 @settings(max_examples=EXAMPLES, deadline=None)
 def test_inch_twin_has_the_same_path(moves: list[Move]) -> None:
     # 1e-9 inch of rounding is 1e-5 of the nearest distance that these contours can have, 0.001 mm.
-    same_path(trace_of(program(moves)), trace_of(program(moves, unit=25.4)), 1e-4, 3e-5)
+    same_path(moves_of(program(moves), FANUC), moves_of(program(moves, unit=25.4), FANUC), 1e-4, 3e-5)
 
 
 @given(contours())
 @settings(max_examples=EXAMPLES, deadline=None)
 def test_radius_twin_has_the_same_path(moves: list[Move]) -> None:
-    by_radius = profiles.load("fanuc", {"limits": {"c_feed": 7200.0}, "polar": {"x": "radius"}}).machine
-    same_path(trace_of(program(moves)), trace_of(program(moves, x_factor=1.0), by_radius))
+    by_radius = machine_of("fanuc", {**LIMITS, "polar": {"x": "radius"}})
+    same_path(moves_of(program(moves), FANUC), moves_of(program(moves, x_factor=1.0), by_radius))
 
 
 @given(contours(), st.floats(-math.pi, math.pi))
@@ -160,10 +141,10 @@ def test_radius_twin_has_the_same_path(moves: list[Move]) -> None:
 def test_turning_the_entry_shifts_only_c(moves: list[Move], angle: float) -> None:
     """The C angle at G12.1 turns the whole plane."""
     degrees = round(math.degrees(angle), 3)
-    plain = trace_of(program(moves))
-    turned = trace_of(program(moves).replace("C0.", f"C{degrees:.3f}", 1))
-    np.testing.assert_array_equal(plain.tool_moves.end, turned.tool_moves.end)
-    for ours, theirs in zip(plain.tool_moves.c_angles, turned.tool_moves.c_angles, strict=True):
+    plain = moves_of(program(moves), FANUC)
+    turned = moves_of(program(moves).replace("C0.", f"C{degrees:.3f}", 1), FANUC)
+    np.testing.assert_array_equal(plain.end, turned.end)
+    for ours, theirs in zip(plain.c_angles, turned.c_angles, strict=True):
         np.testing.assert_allclose(theirs - ours, degrees, atol=1e-9)
 
 
@@ -172,7 +153,7 @@ def test_turning_the_entry_shifts_only_c(moves: list[Move], angle: float) -> Non
 def test_turning_the_contour_keeps_speed_and_distance(moves: list[Move], angle: float) -> None:
     turn = cmath.exp(1j * angle)
 
-    table = trace_of(program(moves)).programmed_moves
+    table = programmed_moves(trace_of(program(moves), FANUC))
     other = replace(table, start=table.start * turn, end=table.end * turn, center=table.center * turn)
     off_center = table.nearest > 1e-3
     np.testing.assert_allclose(other.nearest[off_center], table.nearest[off_center], rtol=1e-6, atol=1e-9)
@@ -209,8 +190,7 @@ def rounded_square(corner: float, on: str) -> str:
 @given(coordinate(0.5, 25), coordinate(0, 12))
 @settings(max_examples=EXAMPLES, deadline=None)
 def test_a_rounded_square_is_followed_at_its_distance(corner: float, radius: float) -> None:
-    trace = trace_of(rounded_square(corner, "G42"), job=with_tool(Job(), f"1:radius={radius}"))
-    table = trace.tool_moves
+    table = moves_of(rounded_square(corner, "G42"), FANUC, f"1:radius={radius}")
     assert table.known.all()
     np.testing.assert_allclose(np.max(np.abs(table.end.real[1:-1])), 30 + radius, atol=1e-9)
     arcs = table.kind == 3
@@ -220,11 +200,11 @@ def test_a_rounded_square_is_followed_at_its_distance(corner: float, radius: flo
 @given(coordinate(0.5, 25), coordinate(0.1, 12))
 @settings(max_examples=EXAMPLES, deadline=None)
 def test_mirroring_swaps_the_sides(corner: float, radius: float) -> None:
-    job = with_tool(Job(), f"1:radius={radius}")
+    tool = f"1:radius={radius}"
     text = rounded_square(corner, "G42")
     mirrored = re.sub(r"C(-?)(\d)", lambda m: f"C{'' if m[1] else '-'}{m[2]}", text).replace("C-0", "C0")
     mirrored = mirrored.replace("G42", "G41").replace("G3 ", "G2 ")
-    ours, theirs = trace_of(text, job=job).tool_moves, trace_of(mirrored, job=job).tool_moves
+    ours, theirs = (moves_of(one, FANUC, tool) for one in (text, mirrored))
     np.testing.assert_allclose(theirs.end, np.conj(ours.end), atol=1e-9)
     np.testing.assert_allclose(theirs.c_feed, ours.c_feed, rtol=1e-9)
 
@@ -232,8 +212,8 @@ def test_mirroring_swaps_the_sides(corner: float, radius: float) -> None:
 @given(coordinate(0.5, 25))
 @settings(max_examples=EXAMPLES, deadline=None)
 def test_radius_zero_gives_the_programmed_path(corner: float) -> None:
-    trace = trace_of(rounded_square(corner, "G42"), job=with_tool(Job(), "1:radius=0"))
-    ours, programmed = trace.tool_moves, trace.programmed_moves
+    tables = tables_of(rounded_square(corner, "G42"), FANUC, "1:radius=0")
+    ours, programmed = tables["moves"], programmed_moves(tables["trace"])
     moved = programmed.length > 1e-9
     np.testing.assert_allclose(ours.end, programmed.end[moved], atol=1e-9)
 
@@ -243,8 +223,7 @@ def test_radius_zero_gives_the_programmed_path(corner: float) -> None:
 def test_raising_a_limit_adds_no_finding(moves: list[Move], limit: float, more: float) -> None:
     text = program(moves)
     low, high = (
-        report_of(text, profiles.load("fanuc", {"limits": {"c_feed": value}}).machine)
-        for value in (limit, limit * more)
+        report_of(text, replace(FANUC, limits=replace(FANUC.limits, c_feed=value))) for value in (limit, limit * more)
     )
     assert {(f.line, f.rule) for f in high.findings} <= {(f.line, f.rule) for f in low.findings}
 
@@ -264,20 +243,20 @@ def test_splitting_a_move_changes_no_finding(moves: list[Move]) -> None:
         split.append(move)
         here = move.end
     # At the center a piece may lie just beside it where the whole lay on it.
-    assume(trace_of(program(moves)).nearest.min() > 0.02)
-    ours, theirs = report_of(program(moves)), report_of(program(split))
-    assert set(said(ours)) == set(said(theirs))
+    assume(tables_of(program(moves), FANUC)["tool_center"].nearest.min() > 0.02)
+    ours, theirs = report_of(program(moves), FANUC), report_of(program(split), FANUC)
+    assert {(f.rule, f.severity) for f in ours.findings} == {(f.rule, f.severity) for f in theirs.findings}
 
 
 @given(st.binary(max_size=400))
 @settings(max_examples=200, deadline=None)
 def test_any_bytes_give_a_report(data: bytes) -> None:
-    report = check.check_file(data, FANUC, Job(), RULES)
+    report = report_of(data, FANUC)
     assert msgspec.json.decode(msgspec.json.encode(report))["path"] == "-"
 
 
 @given(st.text(alphabet="GMXYZCUWHIJKRFTSNO%();/#[]=.-+0123456789 \n<>ABWHILEDOT", max_size=300))
 @settings(max_examples=200, deadline=None)
 def test_any_text_like_a_program_gives_a_report(text: str) -> None:
-    report = check.check_file(text.encode(), FANUC, Job(), RULES)
+    report = report_of(text, FANUC)
     assert msgspec.json.decode(msgspec.json.encode(report))["blocks"] >= 0

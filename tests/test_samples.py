@@ -2,70 +2,75 @@
 
 from __future__ import annotations
 
-import re
+from functools import cache
 from pathlib import Path
+from typing import Any
 
 import msgspec
 import pytest
+from programs import ROOT, expected, report_of, said, tables_of, without_expectations
 from syrupy.assertion import SnapshotAssertion
 
-from polarcheck.checking import check
 from polarcheck.checking.finding import FileReport
-from polarcheck.checking.rule import load_all
 from polarcheck.machines import job, profiles
-from polarcheck.machines.machine import Machine
 from polarcheck.reports.pages import executed
-from polarcheck.table.trace import Trace
 
-FOLDER = Path(__file__).parent.parent / "sample_programs"
+FOLDER = ROOT / "sample_programs"
 SAMPLES = sorted(path for path in FOLDER.rglob("*") if path.suffix in (".nc", ".mpf"))
-EXPECT = re.compile(r"\(expect: ([a-z, -]+)\)")
 NAMES = [path.relative_to(FOLDER).as_posix() for path in SAMPLES]
+CONTROLS = [name for name in profiles.names() if name != profiles.DEFAULT]
 
 
-def settings(path: Path) -> tuple[Machine, job.Job]:
+def settings(path: Path) -> dict[str, Any]:
+    """The machine and the job that the nearest polarcheck.toml gives a sample."""
     found = job.find(path)
     assert found is not None
     work = job.load(found)
-    changes = {"limits": work.limits} if work.limits else None
-    return profiles.load(work.machine or profiles.DEFAULT, changes).machine, work
+    assert work.machine is not None
+    return {"machine": work.machine, "changes": {"limits": work.limits} if work.limits else None, "job": work}
 
 
-def report_of(path: Path) -> FileReport:
-    lathe, work = settings(path)
-    return check.check_file(path.read_bytes(), lathe, work, list(load_all().values()), path.name)
-
-
-def trace_of(path: Path) -> Trace:
-    lathe, work = settings(path)
-    return check.read_traces(path.read_bytes(), lathe, work, path.name)[0][1]
+@cache
+def report_of_sample(path: Path) -> FileReport:
+    return report_of(path.read_bytes(), **settings(path), path=path.name)
 
 
 @pytest.mark.parametrize("path", SAMPLES, ids=NAMES)
 def test_sample_gives_what_it_expects(path: Path) -> None:
-    expected = [
-        (number, name.strip())
-        for number, line in enumerate(path.read_text("utf-8").split("\n"), 1)
-        for found in EXPECT.finditer(line)
-        for name in found[1].split(",")
-    ]
-    report = report_of(path)
-    assert sorted((finding.line, finding.rule) for finding in report.findings) == sorted(expected)
+    report = report_of_sample(path)
+    assert said(report) == expected(path.read_text("utf-8"))
+    places = [(finding.line, finding.column) for finding in report.findings]
+    assert places == sorted(places), "in the order of the file"
 
 
 @pytest.mark.parametrize("path", SAMPLES, ids=NAMES)
 def test_report_is_the_golden_one(path: Path, snapshot: SnapshotAssertion) -> None:
-    assert msgspec.json.format(msgspec.json.encode(report_of(path))).decode() == snapshot
+    assert msgspec.json.format(msgspec.json.encode(report_of_sample(path))).decode() == snapshot
 
 
 @pytest.mark.parametrize("path", SAMPLES, ids=NAMES)
 def test_tool_center_path_is_the_golden_one(path: Path, snapshot: SnapshotAssertion) -> None:
-    lines = list(executed.as_jsonl(executed.moves(trace_of(path), "tool")))
-    assert "".join(lines) == snapshot
+    tables = tables_of(path.read_bytes(), **settings(path), path=path.name)
+    assert "".join(executed.as_jsonl(executed.moves(tables["trace"], tables["tool_center"], "tool"))) == snapshot
+
+
+FAULTY = [path for path in SAMPLES if expected(path.read_text("utf-8"))]
+
+
+@pytest.mark.parametrize("path", FAULTY, ids=lambda path: path.relative_to(FOLDER).as_posix())
+def test_comments_that_expect_something_are_no_part_of_it(path: Path) -> None:
+    text = path.read_text("utf-8")
+    assert said(report_of(without_expectations(text), **settings(path))) == expected(text)
 
 
 def test_there_are_enough_samples_good_and_bad() -> None:
-    faulty = [path for path in SAMPLES if EXPECT.search(path.read_text("utf-8"))]
     assert len(SAMPLES) >= 12
-    assert len(faulty) >= 8
-    assert len(SAMPLES) - len(faulty) >= 4
+    assert len(FAULTY) >= 8
+    assert len(SAMPLES) - len(FAULTY) >= 4
+
+
+@pytest.mark.parametrize("name", CONTROLS)
+def test_each_control_has_a_good_and_a_bad_sample(name: str) -> None:
+    own = [path for path in SAMPLES if path.parent == FOLDER / name]
+    assert {path in FAULTY for path in own} == {True, False}
+    assert {settings(path)["machine"] for path in own} == {name}

@@ -10,6 +10,7 @@ import words_oracle as oracle
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
+from polarcheck.checking.phrases.text import number_fault
 from polarcheck.reading import words as reader
 from polarcheck.reading.source import read
 from polarcheck.reading.words import NumberFault, Spans, Text, read_words
@@ -180,7 +181,7 @@ def test_block_skip_is_a_word() -> None:
 def test_faults(block: str, expected: list[str]) -> None:
     text = text_of(block)
     assert faults(text) == expected
-    assert text.words.number_fault(0) or expected[0] == "NONE"
+    assert number_fault(text.words, 0) or expected[0] == "NONE"
 
 
 def test_a_wrong_dash_is_read_as_a_minus() -> None:

@@ -13,8 +13,9 @@ from polarcheck.checking import check
 from polarcheck.checking.finding import FileReport, Producer, Report, Summary
 from polarcheck.commands.settings import Settings
 from polarcheck.errors import PolarcheckError, SourceError
-from polarcheck.reading import files, source
+from polarcheck.reading import files
 from polarcheck.reading.source import Source
+from polarcheck.reading.words import Text
 
 SCHEMA = 1
 
@@ -66,23 +67,23 @@ def check_files(tasks: Iterable[Task], tell: Tell, encoding: str | None = None, 
     for task in tasks:
         try:
             data = files.read(task.path)
-            found = _check(task, data, encoding)
+            found, text = _check(task, data, encoding)
         except SourceError as error:
             tell(str(error))
             continue
         verdict = check.verdict(found.findings, found.not_evaluated, fail_on)
         reports.append(msgspec.structs.replace(found, verdict=verdict))
         if found.findings:
-            lines[found.path] = _lines(source.read(data, found.path, encoding), found)
+            lines[found.path] = _lines(text, found)
     return Checked(reports, lines)
 
 
-def _check(task: Task, data: bytes, encoding: str | None) -> FileReport:
+def _check(task: Task, data: bytes, encoding: str | None) -> tuple[FileReport, Source]:
     path, settings = files.shown(task.path), task.settings
     try:
-        return check.check_file(
-            data, settings.machine, settings.job, settings.rules, path, encoding, settings.severities
-        )
+        found = check.read(data, settings.machine, settings.job, path, encoding)
+        text: Text = found[0][1]["text"]
+        return check.check_runs(found, settings.rules, settings.severities), text.source
     except PolarcheckError:
         raise
     except Exception as error:

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 
 import msgspec
 
 from polarcheck.checking.engine import Engine, program_heads
 from polarcheck.checking.finding import ERROR, FileReport, Finding, NotEvaluated, Severity
 from polarcheck.checking.not_evaluated import unevaluated, unexecuted
+from polarcheck.checking.other_machine import OtherMachine
 from polarcheck.checking.rule import Rule
+from polarcheck.checking.tables import Tables
 from polarcheck.execution.runs import runs
 from polarcheck.machines.job import Job
 from polarcheck.machines.machine import Machine
@@ -19,16 +21,12 @@ from polarcheck.table.trace import Trace
 SEVERITIES = {"note": Severity.NOTE, "warning": Severity.WARNING, "error": Severity.ERROR}
 
 
-def read_traces(
-    data: bytes,
-    machine: Machine,
-    job: Job,
-    path: str = "-",
-    encoding: str | None = None,
-) -> list[tuple[str, Trace]]:
-    """The executed tables of a file, each with the state of block skip ("" where that makes no difference)."""
+def read(
+    data: bytes, machine: Machine, job: Job, path: str = "-", encoding: str | None = None
+) -> list[tuple[str, Tables]]:
+    """The tables of each run of a file, with the state of block skip ("" where that makes no difference)."""
     found = runs(source.read(data, path, encoding), machine, job.run)
-    return [(state, Trace(run, machine, job)) for state, run in found]
+    return [(state, Tables(run, machine, job)) for state, run in found]
 
 
 def check_file(
@@ -41,25 +39,37 @@ def check_file(
     severities: Mapping[str, str] | None = None,
 ) -> FileReport:
     """All findings of the rules in one file, in the order of its lines; severities override those of the rules."""
-    reports = [
-        (state, check_trace(trace, rules, severities))
-        for state, trace in read_traces(data, machine, job, path, encoding)
-    ]
-    if len(reports) == 1:
-        return reports[0][1]
-    return _merged(reports)
+    return check_runs(read(data, machine, job, path, encoding), rules, severities)
 
 
-def check_trace(trace: Trace, rules: Sequence[Rule], severities: Mapping[str, str] | None = None) -> FileReport:
-    """All findings of the rules in an executed table."""
-    engine = Engine(trace, {**trace.machine.severities, **(severities or {})})
+def check_runs(
+    found: Sequence[tuple[str, Tables]], rules: Sequence[Rule], severities: Mapping[str, str] | None = None
+) -> FileReport:
+    """All findings of the rules in the runs of one file; what hangs on its text alone is looked for once."""
+    (state, tables), *more = found
+    first = check_run(tables, rules, severities)
+    if not more:
+        return first
+    of_text = {rule.name for rule in rules if rule.of_text}
+    of_run = [rule for rule in rules if not rule.of_text]
+    ((other, tables),) = more
+    return _merged((state, first), (other, check_run(tables, of_run, severities)), of_text)
+
+
+def check_run(tables: Tables, rules: Sequence[Rule], severities: Mapping[str, str] | None = None) -> FileReport:
+    """All findings of the rules in the tables of one run."""
+    trace: Trace = tables["trace"]
+    engine = Engine(tables, {**trace.machine.severities, **(severities or {})})
     findings: list[Finding] = []
-    not_evaluated: list[NotEvaluated] = list(unexecuted(trace))
-    for rule in rules:
-        if engine.severities.get(rule.name) == "off":
-            continue
+    not_evaluated: list[NotEvaluated] = list(unexecuted(tables))
+    asked = [rule for rule in rules if engine.severities.get(rule.name) != "off"]
+    for rule in (rule for rule in asked if "other_machine" not in rule.parameters):
         findings += engine.findings(rule)
-        not_evaluated += unevaluated(trace, rule)
+        not_evaluated += unevaluated(tables, rule)
+    # Whether the program is one for another machine is asked last, of what this machine has made of it.
+    for rule in (rule for rule in asked if "other_machine" in rule.parameters):
+        tables.give("other_machine", OtherMachine(tables))
+        findings += engine.findings(rule)
     findings = _sorted(_in_the_file(findings, trace))
     not_evaluated += engine.unlisted
     own = [name for block, name in program_heads(trace) if not _part(trace, int(trace.text.blocks.line[block]))]
@@ -131,21 +141,27 @@ def _call_of(trace: Trace, line: int) -> tuple[int, str] | None:
     return found, trace.text.source.line_text(found).strip()
 
 
-def _merged(reports: Sequence[tuple[str, FileReport]]) -> FileReport:
-    """One report of the runs with block skip off and on; what only one of them shows says which."""
-    (first, off), (second, on) = reports
-    places = [{(found.rule, found.line, found.column) for found in report.findings} for report in (off, on)]
-    findings = list(off.findings)
-    findings += [found for found in on.findings if (found.rule, found.line, found.column) not in places[0]]
-    findings = [
-        found
-        if all((found.rule, found.line, found.column) in place for place in places)
-        else msgspec.structs.replace(
-            found,
-            message=f"{found.message} (with block skip "
-            f"{first if (found.rule, found.line, found.column) in places[0] else second})",
-        )
-        for found in findings
+def _merged(first: tuple[str, FileReport], second: tuple[str, FileReport], of_text: Collection[str]) -> FileReport:
+    """
+    One report of the runs with block skip off and on; what only one of them shows says which.
+
+    of_text: the rules that only the first run was asked for, since they hang on the text alone.
+    """
+    (skip_off, off), (skip_on, on) = first, second
+    shown_off, shown_on = (
+        {(found.rule, found.line, found.column) for found in report.findings} for report in (off, on)
+    )
+
+    def told(found: Finding, others: set[tuple[str, int, int]], state: str) -> Finding:
+        if found.rule in of_text or (found.rule, found.line, found.column) in others:
+            return found
+        return msgspec.structs.replace(found, message=f"{found.message} (with block skip {state})")
+
+    findings = [told(found, shown_on, skip_off) for found in off.findings]
+    findings += [
+        told(found, shown_off, skip_on)
+        for found in on.findings
+        if (found.rule, found.line, found.column) not in shown_off
     ]
     not_evaluated = list(dict.fromkeys((*off.not_evaluated, *on.not_evaluated)))
     findings = _sorted(findings)

@@ -1,92 +1,97 @@
-"""Message texts: a template of a rule and one row of the table, in the program's own units."""
+"""
+The message of a finding: the template of its rule, filled with what stands at one place.
+
+The form of a name in braces says what it is:
+- `{trace.feed}`: a column of a table, at the row of the place; of `machine` and `job` the value itself;
+- `{X}`: the last word of that address in the row, as it is written;
+- any other: a value that the rule hands over (Hits.values), else a phrase, a function of that name in
+  phrases/<group of the rule>.py or phrases/common.py.
+A phrase takes by their names the tables that it needs, and `place`, `row`, `index` (see Place) or `at`, the executed
+words at fault.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import importlib
+import string
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
 
-from polarcheck.machines.modal import MM_PER_INCH, Units
+from polarcheck.checking.phrases.common import written
+from polarcheck.checking.places import Place
+from polarcheck.checking.quantity import Quantity, in_row
+from polarcheck.checking.rule import Hits, Rule
+from polarcheck.checking.tables import Tables, parameters
+from polarcheck.errors import RuleError
+
+_PHRASES = "polarcheck.checking.phrases"
+#: Tables of single values, which are told as they are and are no data of a finding.
+_SETTINGS = ("machine", "job")
 
 
-class Quantity:
+def fill(rule: Rule, hits: Hits, tables: Tables, place: Place, at: list[int]) -> tuple[str, dict[str, Any]]:
     """
-    A value of one row that knows how to show itself.
+    The message at one place, and the values in it as data (mm, deg, min), by the last part of their names.
 
-    Formats beyond Python's: `length` and `feed` turn mm and mm/min to the program's units, `diameter` doubles a radius
-    where the program writes diameters, `point` shows a plane point as X and C words.
+    at: the executed words at fault. Raises RuleError for a name that stands for nothing.
     """
-
-    def __init__(self, value: Any, inch: bool, diameter: bool) -> None:
-        self.value = value
-        self.inch = inch
-        self.diameter = diameter
-
-    def __format__(self, form: str) -> str:
-        value = self.value
-        if form == "length":
-            return f"{_short(self.length(value), self.inch)} {self.unit}"
-        if form == "diameter":
-            return f"{_short(self.length(value) * (2 if self.diameter else 1), self.inch)} {self.unit}"
-        if form == "feed":
-            return f"{_rounded_down(self.length(value))} {self.unit}/min"
-        if form == "point":
-            x = self.length(value.real) * (2 if self.diameter else 1)
-            return f"X{_short(x, self.inch)} C{_short(self.length(value.imag), self.inch)}"
-        return format(value, form)
-
-    def length(self, value: float) -> float:
-        """mm to the program's unit."""
-        return value / MM_PER_INCH if self.inch else value
-
-    @property
-    def unit(self) -> str:
-        """mm or inch."""
-        return "inch" if self.inch else "mm"
-
-    @property
-    def data(self) -> Any:
-        """The value as JSON can hold it, inside units (mm, deg, min)."""
-        value = self.value
-        if isinstance(value, complex):
-            return [_finite(value.real), _finite(value.imag)]
-        if isinstance(value, float):
-            return _finite(value)
-        return value
+    template = _Template(rule, hits, tables, place, at)
+    return template.vformat(rule.message, (), {}), template.used
 
 
-def _finite(value: float) -> float | None:
-    return round(value, 9) if np.isfinite(value) else None
+class _Template(string.Formatter):
+    def __init__(self, rule: Rule, hits: Hits, tables: Tables, place: Place, at: list[int]) -> None:
+        self.rule, self.hits, self.tables = rule, hits, tables
+        self.place = place
+        self.given: dict[str, Any] = {"place": place, "row": place.row, "index": place.index, "at": at}
+        self.used: dict[str, Any] = {}
+
+    def get_field(self, field_name: str, args: Any, kwargs: Any) -> tuple[Any, str]:
+        table, dot, _ = field_name.partition(".")
+        value = self._column(field_name) if dot else self._named(field_name)
+        if table not in _SETTINGS:
+            value = self._shown(value)
+            self.used[field_name.rpartition(".")[2]] = value.data if isinstance(value, Quantity) else value
+        return value, field_name
+
+    def _column(self, path: str) -> Any:
+        found = self.tables.column(path)
+        return found[self.place.row] if isinstance(found, np.ndarray) else found
+
+    def _named(self, name: str) -> Any:
+        if len(name) == 1 and name.isupper():
+            return written(self.tables["trace"], self.place.row, name)
+        if name not in self.hits.values:
+            return called(phrase(name, self.rule.group), self.tables, self.given)
+        value = self.hits.values[name]
+        if callable(value):
+            value = value(self.place.index)
+        return value[self.place.index] if isinstance(value, np.ndarray | list) else value
+
+    def _shown(self, value: Any) -> Any:
+        value = value.item() if isinstance(value, np.generic) else value
+        return value if isinstance(value, str) else in_row(value, self.tables["trace"], self.place.row)
 
 
-def _short(value: float, inch: bool) -> str:
-    """At most the digits that a program writes."""
-    text = f"{value:.{4 if inch else 3}f}".rstrip("0").rstrip(".")
-    return "0" if text in ("-0", "") else text
+def called(function: Callable[..., Any], tables: Mapping[str, Any], given: Mapping[str, Any]) -> Any:
+    """A function with what its parameters name, given values first, then tables."""
+    return function(*(given[name] if name in given else tables[name] for name in parameters(function)))
 
 
-def _rounded_down(value: float) -> str:
-    """Three significant digits, never above the value: a highest F must be allowed itself."""
-    if not np.isfinite(value) or value <= 0:
-        return f"{value:g}"
-    places = 2 - int(np.floor(np.log10(value)))
-    scaled = np.floor(value * 10.0**places + 1e-9) / 10.0**places
-    return f"{scaled:.{max(places, 0)}f}".rstrip("0").rstrip(".") if places > 0 else f"{scaled:.0f}"
+def phrase(name: str, group: str) -> Callable[..., Any]:
+    """
+    The phrase of this name for the rules of a group.
 
-
-def fill(template: str, look_up: Callable[[str], Any]) -> tuple[str, dict[str, Any]]:
-    """The message, and the values in it as data."""
-    from polarcheck.checking.template import Template
-
-    formatter = Template(look_up)
-    return formatter.vformat(template, (), {}), formatter.used
-
-
-def quantity(value: Any, units: int, diameter: bool) -> Any:
-    """One element of a column, ready to be shown."""
-    if isinstance(value, np.generic):
-        value = value.item()
-    if isinstance(value, str):
-        return value
-    return Quantity(value, units == Units.INCH, diameter)
+    Raises RuleError where there is none.
+    """
+    for module in (group, "common"):
+        try:
+            found = getattr(importlib.import_module(f"{_PHRASES}.{module}"), name, None)
+        except ModuleNotFoundError:
+            continue
+        if found is not None:
+            function: Callable[..., Any] = found
+            return function
+    raise RuleError(f"{name} in a message of the group {group}: no value is handed over and there is no such phrase")

@@ -3,44 +3,46 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from operator import attrgetter
 from typing import Any
 
 import numpy as np
 
-from polarcheck.arrays import Rows
+from polarcheck.arrays import Floats, Mask, Rows
 from polarcheck.checking.finding import NotEvaluated
 from polarcheck.checking.rule import Rule
+from polarcheck.checking.tables import Tables
 from polarcheck.table.trace import Trace
 
 #: Columns that hang on the offset in force, and those that hang on the whole move.
-_OF_OFFSETS = ("radius", "cutter_diameter", "nose")
-_OF_MOVES = ("c_feed", "c_acceleration")
+_OF_OFFSETS = ("trace.radius", "trace.cutter_diameter", "trace.nose")
+_OF_MOVES = ("tool_center.c_feed", "tool_center.c_acceleration")
 #: Causes, beside the offset numbers, for which a move is not known.
 _POSITION, _NO_FEED, _FEED_OF_SPINDLE = -3, -2, -1
 
 
-def unexecuted(trace: Trace) -> Iterator[NotEvaluated]:
+def unexecuted(tables: Tables) -> Iterator[NotEvaluated]:
     """Blocks that were not executed."""
+    trace: Trace = tables["trace"]
     reasons: dict[str, list[int]] = {}
     for reason, block in trace.run.remarks:
         reasons.setdefault(reason, []).append(int(trace.text.blocks.line[block]))
     for reason, lines in reasons.items():
         yield NotEvaluated(rule="all", reason=reason, blocks=len(lines))
-    for reason, rows in trace.infeed.remarks():
+    for reason, rows in tables["infeed"].remarks():
         if len(rows):
             yield NotEvaluated(rule="all", reason=reason, blocks=len(rows))
 
 
-def unevaluated(trace: Trace, rule: Rule) -> Iterator[NotEvaluated]:
+def unevaluated(tables: Tables, rule: Rule) -> Iterator[NotEvaluated]:
     """The rows where a rule would have looked but could not, one entry for each reason."""
+    trace: Trace = tables["trace"]
     for name in rule.needs:
-        where: Any = attrgetter(rule.where)(trace)
+        where: Mask = tables.column(rule.where)
         if not where.any():
             continue
-        rows = np.flatnonzero(np.isnan(attrgetter(name)(trace)) & where)
+        rows = np.flatnonzero(np.isnan(tables.column(name)) & where)
         if name in _OF_MOVES:
-            rows = rows[~(trace.feeds.missing | trace.feeds.lost)[rows]]  # a finding says so
+            rows = rows[~(tables["feeds"].missing | tables["feeds"].lost)[rows]]  # a finding says so
         reasons: dict[str, int] = {}
         first, counts = _groups(_cause(trace, name, rows))
         for row, count in sorted(zip(rows[first].tolist(), counts.tolist(), strict=True)):
@@ -48,7 +50,7 @@ def unevaluated(trace: Trace, rule: Rule) -> Iterator[NotEvaluated]:
             reasons[reason] = reasons.get(reason, 0) + count
         for reason, count in reasons.items():
             yield NotEvaluated(rule=rule.name, reason=reason, blocks=count)
-    yield from _SAID_OF.get(rule.name, _nothing)(trace, rule)
+    yield from _SAID_OF.get(rule.name, _nothing)(tables, rule)
 
 
 def _groups(values: Rows) -> tuple[Rows, Rows]:
@@ -64,7 +66,7 @@ def _cause(trace: Trace, name: str, rows: Any) -> Any:
         return trace.offset_number[rows]
     if name in _OF_MOVES:
         stands_nowhere, has_feed = np.isnan(trace.start + trace.end)[rows], ~np.isnan(trace.feed[rows])
-        of_feed = np.where(trace.feeds.per_minute[rows], _NO_FEED, _FEED_OF_SPINDLE)
+        of_feed = np.where(trace.per_minute[rows], _NO_FEED, _FEED_OF_SPINDLE)
         of_tool = np.where(np.isnan(trace.radius[rows]), trace.offset_number[rows], _POSITION)
         return np.where(stands_nowhere, _POSITION, np.where(has_feed, of_tool, of_feed))
     return np.zeros(len(rows), np.int64)
@@ -72,23 +74,25 @@ def _cause(trace: Trace, name: str, rows: Any) -> Any:
 
 def _of_move(trace: Trace, row: int) -> str:
     """Why the tool center path or the speed along it is not known."""
-    cause = int(_cause(trace, "c_feed", np.array([row]))[0])
+    cause = int(_cause(trace, "tool_center.c_feed", np.array([row]))[0])
     if cause >= 0:
-        return _REASONS["radius"](trace, row)
+        return _REASONS["trace.radius"](trace, row)
     return _position(trace, row) if cause == _POSITION else _feed(trace, row)
 
 
-def _nothing(trace: Trace, rule: Rule) -> Iterator[NotEvaluated]:
+def _nothing(tables: Tables, rule: Rule) -> Iterator[NotEvaluated]:
     return iter(())
 
 
-def _c_axis_without_limit(trace: Trace, rule: Rule) -> Iterator[NotEvaluated]:
+def _c_axis_without_limit(tables: Tables, rule: Rule) -> Iterator[NotEvaluated]:
     """The highest rate of C, for the setter to compare, where the profile has nothing to compare it with."""
-    rows = np.flatnonzero(trace.reach.cuts_off_center & np.isfinite(trace.c_feed))
-    if not np.isnan(trace.machine.limits.c_feed) or not np.any(trace.c_feed[rows] > 0):
+    trace: Trace = tables["trace"]
+    c_feed: Floats = tables["tool_center"].c_feed
+    rows = np.flatnonzero(tables["reach"].cuts_off_center & np.isfinite(c_feed))
+    if not np.isnan(trace.machine.limits.c_feed) or not np.any(c_feed[rows] > 0):
         return
-    at = int(rows[np.argmax(trace.c_feed[rows])])
-    line, rate = int(trace.line[at]), float(trace.c_feed[at])
+    at = int(rows[np.argmax(c_feed[rows])])
+    line, rate = int(trace.line[at]), float(c_feed[at])
     reason = f"{trace.machine.title} gives no limit of the C axis; highest rate found {rate:.0f} deg/min, line {line}"
     yield NotEvaluated(rule=rule.name, reason=reason, blocks=len(rows))
 
@@ -109,28 +113,28 @@ def _position(trace: Trace, row: int) -> str:
 
 
 def _feed(trace: Trace, row: int) -> str:
-    if trace.feeds.per_minute[row]:
+    if trace.per_minute[row]:
         return "the feed is not known: no F is in force"
     return "the feed is not known: F is per revolution of a spindle"
 
 
 def _plain(name: str) -> Callable[[Trace, int], str]:
-    return lambda trace, row: f"{name.replace('_', ' ')} is not known"
+    return lambda trace, row: f"{name.rpartition('.')[2].replace('_', ' ')} is not known"
 
 
 _REASONS: dict[str, Callable[[Trace, int], str]] = {
-    "radius": _no_offset("radius", "radius"),
-    "cutter_diameter": _no_offset("cutter diameter", "diameter"),
-    "nose": _no_offset("nose type", "nose"),
-    "length": _position,
-    "start": _position,
-    "end": _position,
+    "trace.radius": _no_offset("radius", "radius"),
+    "trace.cutter_diameter": _no_offset("cutter diameter", "diameter"),
+    "trace.nose": _no_offset("nose type", "nose"),
+    "trace.length": _position,
+    "trace.start": _position,
+    "trace.end": _position,
     "arcs.end_radius": _position,
     "arcs.chord": _position,
     "reach.most_x": _of_move,
-    "c_feed": _of_move,
-    "c_acceleration": _of_move,
-    "feed": _feed,
+    "tool_center.c_feed": _of_move,
+    "tool_center.c_acceleration": _of_move,
+    "trace.feed": _feed,
 }
 
-_SAID_OF: dict[str, Callable[[Trace, Rule], Iterator[NotEvaluated]]] = {"c-feed-above-limit": _c_axis_without_limit}
+_SAID_OF: dict[str, Callable[[Tables, Rule], Iterator[NotEvaluated]]] = {"c-feed-above-limit": _c_axis_without_limit}

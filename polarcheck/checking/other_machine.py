@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import functools
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import msgspec
 import numpy as np
 
 from polarcheck.arrays import Mask
+from polarcheck.checking.phrases.common import switch
+from polarcheck.checking.tables import Tables
 from polarcheck.execution.run import straight
 from polarcheck.machines import profiles
 from polarcheck.machines.machine import Machine
@@ -17,10 +18,7 @@ from polarcheck.machines.profiles import Profile
 from polarcheck.reading import source
 from polarcheck.reading.translation import translated
 from polarcheck.reading.words import NumberFault, read_words
-
-if TYPE_CHECKING:
-    from polarcheck.table.trace import Trace
-
+from polarcheck.table.trace import Trace
 
 #: More titles than this in one message help nobody.
 _NAMED = 3
@@ -42,12 +40,13 @@ class Fit(msgspec.Struct, frozen=True):
 class OtherMachine:
     """Columns of one trace, one value per row; the methods give words for a message about one row."""
 
-    def __init__(self, trace: Trace) -> None:
-        self.trace = trace
+    def __init__(self, tables: Tables) -> None:
+        self.tables = tables
+        self.trace: Trace = tables["trace"]
 
     @cached_property
     def _fit(self) -> Fit | None:
-        return _find(self.trace)
+        return _find(self.tables)
 
     @cached_property
     def fits(self) -> Mask:
@@ -62,14 +61,15 @@ class OtherMachine:
         return self._fit.text() if self._fit else ""
 
 
-def _find(trace: Trace) -> Fit | None:
+def _find(tables: Tables) -> Fit | None:
     """
     The machines that read the program well where this one does not.
 
     Cheap for a program that is read well: only an axis address or a code of other controls, or arcs that close with X
     read the other way, make it look at other machines.
     """
-    row = _doubt(trace)
+    trace: Trace = tables["trace"]
+    row = _doubt(tables)
     if row < 0:
         return None
     fitting: dict[tuple[str, ...], list[Profile]] = {}
@@ -77,7 +77,7 @@ def _find(trace: Trace) -> Fit | None:
     for profile in _profiles():
         if _reads(profile.machine) in told:
             continue
-        reasons = _reasons(trace, profile.machine)
+        reasons = _reasons(tables, profile.machine)
         if reasons:
             told.append(_reads(profile.machine))
             fitting.setdefault(reasons, []).append(profile)
@@ -99,10 +99,11 @@ def _reads(machine: Machine) -> tuple[object, ...]:
     return mode.on, mode.virtual_axis, mode.x, machine.arcs.radius_word, control.native_words, control.motion_codes
 
 
-def _doubt(trace: Trace) -> int:
+def _doubt(tables: Tables) -> int:
     """The row at which the program does not look like one for this machine; -1 for none."""
+    trace: Trace = tables["trace"]
     if len(trace.sections):
-        hit = trace.modes.other_axis | trace.arcs.x_is_misread
+        hit = tables["modes"].other_axis | tables["arcs"].x_is_misread
         rows = np.flatnonzero(hit)
         return int(trace.sections.enter[trace.section[rows[0]]]) if len(rows) else -1
     codes = [word for word in trace.machine.polar.other_on if word[1:2].isdigit()]
@@ -126,29 +127,32 @@ def _row_of_word(trace: Trace, words: list[str]) -> int:
     return int(rows[0]) if len(rows) else -1
 
 
-def _reasons(trace: Trace, machine: Machine) -> tuple[str, ...]:
+def _reasons(tables: Tables, machine: Machine) -> tuple[str, ...]:
     """Why the machine reads the program well; empty where it does not."""
-    own, mode = trace.machine.polar, machine.polar
-    other = _read_by(trace, machine)
-    if not len(other.sections) or not other.sections.left.all() or other.modes.other_axis.any():
+    there = _read_by(tables, machine)
+    trace: Trace = tables["trace"]
+    other: Trace = there["trace"]
+    own, mode, modes, arcs = trace.machine.polar, machine.polar, there["modes"], there["arcs"]
+    if not len(other.sections) or not other.sections.left.all() or modes.other_axis.any():
         return ()
-    if other.arcs.is_no_circle.any() or other.arcs.x_is_misread.any() or other.modes.switch_not_alone.any():
+    if arcs.is_no_circle.any() or arcs.x_is_misread.any() or modes.switch_not_alone.any():
         return ()
     reasons = []
     if not len(trace.sections):
-        reasons.append(f"{other.modes.switch(int(other.sections.enter[0]))} begins the polar mode there")
+        reasons.append(f"{switch(other, int(other.sections.enter[0]))} begins the polar mode there")
     if mode.virtual_axis != own.virtual_axis and np.any(other.has(mode.virtual_axis) & other.in_polar):
         reasons.append(f"{mode.virtual_axis} is the second axis of the polar plane there")
-    if mode.x != own.x and np.any(trace.arcs.x_is_misread):
+    if mode.x != own.x and np.any(tables["arcs"].x_is_misread):
         reasons.append(f"all arcs close there, where X is a {mode.x} in the polar mode")
     return tuple(reasons)
 
 
-def _read_by(trace: Trace, machine: Machine) -> Trace:
+def _read_by(tables: Tables, machine: Machine) -> Tables:
     """The program as another machine reads it."""
+    trace: Trace = tables["trace"]
     ours, theirs = trace.machine.control, machine.control
     if (ours.native_words, ours.line_comments) == (theirs.native_words, theirs.line_comments):
-        return type(trace)(trace.run, machine, trace.job)
+        return Tables(trace.run, machine, trace.job)
     found = source.read(trace.text.source.data, trace.text.source.path)
     text = read_words(translated(found, theirs.native_words), theirs.line_comments)
-    return type(trace)(straight(text), machine, trace.job)
+    return Tables(straight(text), machine, trace.job)

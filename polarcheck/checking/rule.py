@@ -1,59 +1,57 @@
-"""What a rule is, and how rules are found. Nothing is registered: a file under rules/ is a rule."""
+"""What a rule is, what it returns, and how rules are found. Nothing is registered: a file under rules/ is a rule."""
 
 from __future__ import annotations
 
 import functools
 import importlib
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import msgspec
 
-from polarcheck.checking.finding import ERROR, NOTE, WARNING, Severity
+from polarcheck.checking.finding import ERROR as ERROR
+from polarcheck.checking.finding import NOTE as NOTE
+from polarcheck.checking.finding import WARNING as WARNING
+from polarcheck.checking.finding import Severity as Severity
+from polarcheck.checking.tables import OF_TEXT
 from polarcheck.errors import RuleError, UsageError
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from polarcheck.arrays import Floats as Floats
     from polarcheck.arrays import Mask as Mask
+    from polarcheck.arrays import States
+    from polarcheck.checking.macro_faults import Faults as Faults
+    from polarcheck.checking.other_machine import OtherMachine as OtherMachine
     from polarcheck.machines.job import Job as Job
     from polarcheck.machines.machine import Machine as Machine
-    from polarcheck.machines.modal import Motion as Motion
     from polarcheck.reading.words import Text as Text
     from polarcheck.reading.words import Words as Words
+    from polarcheck.table.arcs import Arcs as Arcs
+    from polarcheck.table.entry import Entry as Entry
+    from polarcheck.table.feeds import Feeds as Feeds
+    from polarcheck.table.increments import Increments as Increments
+    from polarcheck.table.infeed import Infeed as Infeed
+    from polarcheck.table.lexical import Lexical as Lexical
+    from polarcheck.table.modes import Modes as Modes
+    from polarcheck.table.overcutting import Overcutting as Overcutting
+    from polarcheck.table.ramps import Ramps as Ramps
+    from polarcheck.table.reach import Reach as Reach
+    from polarcheck.table.sections import Sections as Sections
+    from polarcheck.table.tool_center import ToolCenter as ToolCenter
     from polarcheck.table.trace import Trace as Trace
-
-    #: A mask, or one Severity per row (0 for nothing), alone or with columns for the message.
-    Hits = NDArray[Any] | tuple[NDArray[Any], dict[str, Any]]
 else:
-    Job = Machine = Trace = Text = Words = Mask = Hits = Any
-
-__all__ = [
-    "ERROR",
-    "NOTE",
-    "WARNING",
-    "Example",
-    "Hits",
-    "Job",
-    "Machine",
-    "Mask",
-    "Rule",
-    "Severity",
-    "Text",
-    "Trace",
-    "Words",
-    "examples",
-    "find",
-    "load_all",
-    "rule",
-]
+    # Rules name the types of the tables for their readers; at run time they need none of them.
+    Arcs = Entry = Faults = Feeds = Floats = Increments = Infeed = Job = Lexical = Machine = Mask = Modes = (
+        OtherMachine
+    ) = Any
+    Overcutting = Ramps = Reach = Sections = States = Text = ToolCenter = Trace = Words = Any
 
 FOLDER = Path(__file__).parent.parent / "rules"
 
-#: What the elements of a mask can stand for.
-TABLES = (
+#: What the elements of a mask can stand for (places.PLACES finds where each stands).
+OVER = (
     "rows",
     "words",
     "sections",
@@ -68,14 +66,48 @@ TABLES = (
 )
 
 
+class Hits(msgspec.Struct, frozen=True):
+    """
+    What a rule has found, where a mask alone does not say it all.
+
+    mask: bool per element of what the rule is `over`. severity: one for all of them, or one per element, where it is
+    not the rule's own. at: bool per executed word, the words at fault, where the rule's own `at` cannot name them.
+    values: for the message, by name: a column with a value per element, or one value for all.
+    """
+
+    mask: Mask
+    severity: Severity | States | None = None
+    at: Mask | None = None
+    values: Mapping[str, Any] = {}
+
+
+def graded(
+    *,
+    error: Mask | None = None,
+    warning: Mask | None = None,
+    note: Mask | None = None,
+    at: Mask | None = None,
+    values: Mapping[str, Any] | None = None,
+) -> Hits:
+    """Hits of several severities: of an element that stands in more than one mask the highest counts."""
+    import numpy as np
+
+    given = [(level, mask) for level, mask in ((NOTE, note), (WARNING, warning), (ERROR, error)) if mask is not None]
+    severity = np.zeros(len(given[0][1]), np.int8)
+    for level, mask in given:
+        severity[mask] = level
+    return Hits(severity > 0, severity, at, values or {})
+
+
 class Rule(msgspec.Struct, frozen=True):
     """
     One rule: its function and what is said about it.
 
-    over: the table that the mask belongs to. at: addresses or codes of the words at fault; the whole block if empty or
-    if the block has none of them; where they differ by row, the function returns a column `at` instead. needs: columns
-    without which the rule cannot say anything where `where` holds.
-    once: report only the first in each section or program. unless: rules that, firing in the same row, say it better.
+    parameters: the tables that the function compares, by name. over: what the elements of the mask stand for. at:
+    addresses or codes of the words at fault, "on" and "off" for those of the mode; the whole block if empty or if the
+    block has none of them.
+    needs: columns, as in `trace.radius`, without which the rule cannot say anything where the column `where` holds.
+    once: report only the first in each section or program. unless: rules that, firing in the same block, say it better.
     worst: of a block that ran often, the run with the highest value of this column is reported.
     """
 
@@ -92,6 +124,16 @@ class Rule(msgspec.Struct, frozen=True):
     unless: tuple[str, ...]
     worst: str
     parameters: tuple[str, ...]
+
+    @property
+    def of_text(self) -> bool:
+        """Whether it hangs on the text alone, and not on how the program runs."""
+        return OF_TEXT.issuperset(self.parameters)
+
+    def hits(self, tables: Mapping[str, Any]) -> Hits:
+        """What the rule finds in some tables."""
+        found = self.function(*(tables[name] for name in self.parameters))
+        return found if isinstance(found, Hits) else Hits(found)
 
     @property
     def page(self) -> str:
@@ -119,18 +161,18 @@ def rule(
     over: str = "rows",
     at: tuple[str, ...] = (),
     needs: tuple[str, ...] = (),
-    where: str = "in_polar",
+    where: str = "trace.in_polar",
     once: str = "",
     unless: tuple[str, ...] = (),
     worst: str = "",
 ) -> Callable[[Callable[..., Any]], Rule]:
-    """Make a rule of a function; see Rule. The function names what it compares: trace, machine, job, text, words."""
+    """Make a rule of a function; see Rule. Its parameters name the tables that it compares."""
 
     def make(function: Callable[..., Any]) -> Rule:
         group = function.__module__.split(".")[-2]
         name = function.__name__.replace("_", "-")
-        if over not in TABLES:
-            raise RuleError(f"rule {name}: over={over!r}: expected one of {', '.join(TABLES)}")
+        if over not in OVER:
+            raise RuleError(f"rule {name}: over={over!r}: expected one of {', '.join(OVER)}")
         parameters = function.__code__.co_varnames[: function.__code__.co_argcount]
         return Rule(name, group, severity, message, function, over, at, needs, where, once, unless, worst, parameters)
 

@@ -330,14 +330,15 @@ def trace(path: str, which: str | None, form: str, no_config: bool, encoding: st
 
     Lengths are mm, X as a radius, angles deg, feeds mm/min. --path tool is the path of the tool center.
     """
-    from polarcheck.checking.check import read_traces
+    from polarcheck.checking import check
     from polarcheck.commands import settings
     from polarcheck.reading import files
     from polarcheck.reports.pages import executed
 
     found = settings.in_folders(settings.Options(use_config=not no_config, **asked))(Path(path).parent)
-    table = read_traces(files.read(path), found.machine, found.job, files.shown(path), encoding)[0][1]
-    items = executed.moves(table, which) if which else executed.rows(table)
+    tables = check.read(files.read(path), found.machine, found.job, files.shown(path), encoding)[0][1]
+    of_path = (tables["trace"], tables["tool_center"])
+    items = executed.moves(*of_path, which) if which else executed.rows(*of_path)
     for line in (executed.as_csv if form == "csv" else executed.as_jsonl)(items):
         _print(line.encode())
 

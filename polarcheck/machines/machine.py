@@ -77,6 +77,11 @@ class Polar(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     plane_before: list[str]
     main_spindle_must_stop: bool
 
+    @property
+    def other_center_word(self) -> str:
+        """The address of arc centers that is of no axis of the polar plane."""
+        return next(word for word in ("K", "I", "J") if word not in self.center_words)
+
 
 class CircularInterpolation(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Circular interpolation."""

@@ -17,15 +17,6 @@ from polarcheck.reading.surroundings import BLANKS, Ranges, foreign, narrow, rea
 
 __all__ = ["Blocks", "NumberFault", "Spans", "Text", "Words", "read_words"]
 
-_FAULT_TEXT = {
-    NumberFault.NO_DIGITS: "no digits after the address",
-    NumberFault.TWO_POINTS: "two decimal points",
-    NumberFault.TWO_SIGNS: "two signs",
-    NumberFault.SIGN_AFTER_DIGITS: "a sign behind the digits",
-    NumberFault.NO_ADDRESS: "a number without an address",
-    NumberFault.WRONG_DASH: "a dash that is not a minus sign",
-}
-
 
 class Character(enum.IntEnum):
     """What a character is to the reader; above COMMA what is no part of a word."""
@@ -103,10 +94,6 @@ class Words(msgspec.Struct, frozen=True):
     def has_wrong_dash(self) -> Mask:
         """A dash of print stands where a minus sign is meant."""
         return np.asarray(self.fault == NumberFault.WRONG_DASH)
-
-    def number_fault(self, index: int) -> str:
-        """What is wrong with the number, in words."""
-        return _FAULT_TEXT[NumberFault(int(self.fault[index]))]
 
 
 class Blocks(msgspec.Struct, frozen=True):

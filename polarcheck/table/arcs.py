@@ -3,25 +3,21 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Points, Rows
 from polarcheck.geometry import plane
 from polarcheck.geometry.corner import ROUNDING
-from polarcheck.machines.modal import MM_PER_INCH, Motion, Units
-
-if TYPE_CHECKING:
-    from polarcheck.table.trace import Trace
-
+from polarcheck.machines.modal import Motion
+from polarcheck.table.trace import Trace
 
 #: One arc alone speaks for the other reading of X where it misses its circle by this many tolerances.
 _CLEARLY = 10
 
 
 class Arcs:
-    """Columns of one trace, one value per row; the methods give words for a message about one row."""
+    """Columns of one trace, one value per row."""
 
     def __init__(self, trace: Trace) -> None:
         self.trace = trace
@@ -42,18 +38,23 @@ class Arcs:
     @cached_property
     def by_center(self) -> Mask:
         """Arcs with I or J and without R, which would count before them (B-62754EN/01 p. 67)."""
-        return np.asarray(self.trace.is_arc & self.trace.has(*self.trace.own.center_words) & ~self.by_radius)
+        return np.asarray(self.trace.is_arc & self.trace.has(*self.trace.machine.polar.center_words) & ~self.by_radius)
 
     @cached_property
     def has_word_of_other_plane(self) -> Mask:
         """Arcs with a K; K0 moves nothing."""
-        other = self.trace.own.other_center_word
+        other = self.trace.machine.polar.other_center_word
         return np.asarray(self.trace.is_arc & self.trace.has(other) & (self.trace.word(other) != 0))
+
+    @cached_property
+    def words_of_other_plane(self) -> Mask:
+        """Per executed word: of the address of arc centers that is of no axis of the polar plane."""
+        return self.trace.words_at(self.trace.word_indices(self.trace.machine.polar.other_center_word))
 
     @cached_property
     def without_center(self) -> Mask:
         """Arcs with neither R nor I, J or K that move."""
-        written = self.by_radius | self.trace.has(*self.trace.own.center_words) | self.has_word_of_other_plane
+        written = self.by_radius | self.trace.has(*self.trace.machine.polar.center_words) | self.has_word_of_other_plane
         return np.asarray(self.trace.is_arc & ~written & ~self._ends_at_start)
 
     @cached_property
@@ -64,7 +65,7 @@ class Arcs:
     def off_plane(self) -> Mask:
         """Arcs along Z with nothing of the polar plane."""
         trace = self.trace
-        own = trace.has(*trace.own.center_words) & ~trace.has(trace.own.other_center_word)
+        own = trace.has(*trace.machine.polar.center_words) & ~trace.has(self.trace.machine.polar.other_center_word)
         return np.asarray(self.in_force & trace.moves_z & ~trace.moves_plane & ~own)
 
     @cached_property
@@ -84,7 +85,7 @@ class Arcs:
     @cached_property
     def _to_center(self) -> Points:
         """I + jJ [mm]; what is not written is 0."""
-        i, j = (self.trace.length_of(word) for word in self.trace.own.center_words)
+        i, j = (self.trace.length_of(word) for word in self.trace.machine.polar.center_words)
         return np.asarray(np.nan_to_num(i) + 1j * np.nan_to_num(j))
 
     @cached_property
@@ -112,13 +113,6 @@ class Arcs:
     def radius(self) -> Floats:
         """R of an arc as written, with its sign [mm]; NaN for other rows."""
         return np.where(self.by_radius, self.trace.length_of(self.trace.machine.arcs.radius_word), np.nan)
-
-    def least_radius(self, row: int) -> str:
-        """The smallest R that reaches from start to end, rounded up to what the program can write."""
-        inch = self.trace.units[row] == Units.INCH
-        least, places = float(self.chord[row]) / (2 * MM_PER_INCH if inch else 2), 4 if inch else 3
-        text = f"{np.ceil(least * 10**places - 1e-6) / 10**places:.{places}f}".rstrip("0").rstrip(".")
-        return f"{text} {'inch' if inch else 'mm'}"
 
     @cached_property
     def ends_off_circle(self) -> Mask:
@@ -179,14 +173,6 @@ class Arcs:
         misread = (by_center | by_radius) & (count(closes | objects) == 0)
         return np.asarray((trace.section >= 0) & misread[trace.section])
 
-    def x_reading(self, row: int) -> str:
-        """What X is in a row."""
-        return "diameter" if self.trace.x_factor[row] < 1 else "radius"
-
-    def x_other_reading(self, row: int) -> str:
-        """What X is not."""
-        return "radius" if self.trace.x_factor[row] < 1 else "diameter"
-
     @cached_property
     def _step_otherwise(self) -> Points:
         """From start to end [mm], were X in the mode the other of diameter and radius; X before G12.1 stays."""
@@ -194,6 +180,6 @@ class Arcs:
         factor = np.where(trace.x_factor < 1, 2.0, 0.5)
         has_x = trace.has("X") & ~trace.incremental
         had_x = np.zeros(len(trace), bool)
-        had_x[1:] = trace.feeds.given_in_section(has_x)[:-1]
+        had_x[1:] = trace.given_in_section(has_x)[:-1]
         x = trace.end.real * factor - trace.start.real * np.where(has_x & ~had_x, 1.0, factor)
         return np.asarray(x + 1j * (trace.end - trace.start).imag)

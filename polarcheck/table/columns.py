@@ -48,11 +48,18 @@ class Columns:
         address = self.run.words.address
         return np.argsort(address, kind="stable"), np.cumsum(np.bincount(address, minlength=256))
 
-    def word_indices(self, address: str) -> Rows:
-        """The words of an address, in order; `,R` is an address of its own."""
+    def word_indices(self, *addresses: str) -> Rows:
+        """The words of an address, in order, then those of the next; `,R` is an address of its own."""
         order, ends = self._by_address
-        number = ord(address[1].lower()) if address[0] == "," else ord(address)
-        return order[ends[number - 1] : ends[number]]
+        numbers = [ord(address[1].lower()) if address[0] == "," else ord(address) for address in addresses]
+        found = [order[ends[number - 1] : ends[number]] for number in numbers]
+        return found[0] if len(found) == 1 else np.concatenate((order[:0], *found))
+
+    def words_at(self, indices: Rows) -> Mask:
+        """Per executed word: whether it is one of these."""
+        found = np.zeros(len(self.run.words), bool)
+        found[indices] = True
+        return found
 
     def word(self, address: str) -> Floats:
         """The written value per row, the last where it is repeated; NaN where it is not written."""
@@ -217,8 +224,8 @@ class Columns:
         return self.state("feed_mode")
 
     @cached_property
-    def feed_number(self) -> Floats:
-        """F in force as a number [mm per min or per revolution]; NaN before the first."""
+    def written_feed(self) -> Floats:
+        """The last F as a number [mm per min or per revolution]; NaN before the first."""
         written = self.has("F") & self._takes_feed
         value = np.where(written, self.word("F") * self.scale, np.nan)
         return fill_down(value, written | self.starts, np.nan)
@@ -226,11 +233,6 @@ class Columns:
     @cached_property
     def _takes_feed(self) -> Mask:
         return ~self.codes("G4", "G10", "G65", "G66", "G66.1", "G76", "G92")
-
-    @cached_property
-    def feed(self) -> Floats:
-        """F in force [mm/min]; NaN where none is or where it depends on a spindle."""
-        return np.where(self.feed_mode == FeedMode.PER_MINUTE, self.feed_number, np.nan)
 
     @cached_property
     def _tool_number(self) -> Rows:
@@ -275,26 +277,25 @@ class Columns:
         return self._offset_column({n: tool.radius for n, tool in self.job.tools.items()}) * self.job_scale
 
     @cached_property
-    def _comments(self) -> dict[int, Found]:
+    def radius_comments(self) -> dict[int, Found]:
+        """What the comments say of R by offset number, if that is asked for."""
         if not self.job.radius_from_comments:
             return {}
-        from polarcheck.table import radius_comments
+        from polarcheck.table.radius_comments import Called, radii
 
-        return radius_comments.radii(self)
+        rows = np.flatnonzero(self.has("T"))
+        called = Called(self.run.block[rows], self.offset_number[rows], self.tool[rows], self.scale[rows] != 1.0)
+        return radii(self.text, called)
 
     @cached_property
     def _radius_of_comments(self) -> Floats:
-        return self._offset_column({number: found.radius for number, found in self._comments.items()})
+        return self._offset_column({number: found.radius for number, found in self.radius_comments.items()})
 
     @cached_property
     def radius_is_from_comment(self) -> Mask:
         """A T word whose offset has its R from a comment."""
         known = np.isnan(self._radius_of_job) & ~np.isnan(self._radius_of_comments)
         return self.has("T") & known
-
-    def radius_comment(self, row: int) -> str:
-        """The comment that R was taken from."""
-        return self._comments[int(self.offset_number[row])].comment
 
     @cached_property
     def cutter_diameter(self) -> Floats:

@@ -3,49 +3,27 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from polarcheck.arrays import Floats, Mask
-from polarcheck.execution.programs import find_programs
 from polarcheck.geometry.corner import ROUNDING
-from polarcheck.machines.codes import code_set, spelled
+from polarcheck.machines.codes import code_set
 from polarcheck.machines.modal import COORDINATE_SETTING, Side
 from polarcheck.table.filling import before, fill_down
-
-if TYPE_CHECKING:
-    from polarcheck.table.trace import Trace
-
+from polarcheck.table.trace import Trace
 
 _FIRST_WORK_OFFSET = 54
 
 
 class Entry:
-    """Columns of one trace, one value per row; the methods give words for a message about one row."""
+    """Columns of one trace, one value per row."""
 
     def __init__(self, trace: Trace) -> None:
         self.trace = trace
 
     # ---- what is known of the program ----
-
-    @cached_property
-    def whole_program(self) -> Mask:
-        """
-        The row belongs to a main program that is there from its head on: with O number, <name> or %, not left by M99.
-
-        Of an excerpt, and of a subprogram, it is not known what was in force before its first block.
-        """
-        trace = self.trace
-        programs = find_programs(trace.text).programs
-        first = np.array([program.first for program in programs], np.int64)
-        has_head = np.array([program.has_head for program in programs], bool)
-        start = trace.run.block[np.flatnonzero(trace.starts)]
-        whole = has_head[np.maximum(np.searchsorted(first, start, side="right") - 1, 0)]
-        whole |= len(trace.text.tape_marks) > 0
-        whole[trace.program[trace.codes("M99") & (trace.run.depth == 0)]] = False
-        return whole[trace.program]
 
     def _in_program(self, mask: Mask) -> Mask:
         """Whether any row of the program is in the mask."""
@@ -66,7 +44,7 @@ class Entry:
         excerpts with any of them. Not after a row of unknown effect.
         """
         trace = self.trace
-        expected = self.whole_program | self._in_program(trace.codes(*codes))
+        expected = self.trace.whole_program | self._in_program(trace.codes(*codes))
         return np.asarray(expected & ~self._happened(np.zeros(len(trace), bool)))
 
     # ---- the C axis ----
@@ -79,11 +57,6 @@ class Entry:
             return np.zeros(len(trace), bool)
         lacking = self._is_lacking(*codes.c_axis_on, *codes.c_axis_off)
         return np.asarray(trace.enters & ~trace.c_axis & lacking)
-
-    @property
-    def c_axis_codes(self) -> str:
-        """What engages the C axis."""
-        return " or ".join(self.trace.machine.m_codes.c_axis_on)
 
     @cached_property
     def _engages(self) -> Mask:
@@ -102,7 +75,7 @@ class Entry:
         """C has not been positioned before G12.1 in a whole program, or not since it was engaged."""
         trace = self.trace
         positioned = trace.has("C", "H") & (trace.section < 0)
-        return np.asarray(trace.enters & self.whole_program & ~self._happened(positioned, self._engages))
+        return np.asarray(trace.enters & self.trace.whole_program & ~self._happened(positioned, self._engages))
 
     # ---- X ----
 
@@ -112,7 +85,7 @@ class Entry:
         trace = self.trace
         sets_x = trace.uses_axes | trace.codes(COORDINATE_SETTING[trace.machine.control.g_code_system])
         lost = trace.changes_tool | (trace.codes("G28", "G30") & trace.has("X", "U"))
-        return np.asarray(trace.enters & self.whole_program & ~self._happened(trace.has("X", "U") & sets_x, lost))
+        return np.asarray(trace.enters & self.trace.whole_program & ~self._happened(trace.has("X", "U") & sets_x, lost))
 
     @cached_property
     def x_not_positive(self) -> Mask:
@@ -135,11 +108,6 @@ class Entry:
         lacking = self._is_lacking(*codes.live_tool_on, *codes.live_tool_off)
         return trace.first_in_section(trace.cuts & ~trace.live_tool & lacking)
 
-    @property
-    def live_tool_codes(self) -> str:
-        """What starts the live tool."""
-        return " or ".join(self.trace.machine.m_codes.live_tool_on)
-
     @cached_property
     def _of_spindle(self) -> Mask:
         """Over code numbers: of the main spindle or its C axis, and not of the live tool."""
@@ -148,28 +116,22 @@ class Entry:
         return code_set([*codes.spindle_on, *codes.spindle_off, *codes.c_axis_on, *codes.c_axis_off]) & ~of_live_tool
 
     @cached_property
+    def spindle_words(self) -> Mask:
+        """Per executed word: a code of the main spindle or of its C axis."""
+        return self.trace.words_at(self.trace.m_words[self._of_spindle[self.trace.m_codes]])
+
+    @cached_property
     def spindle_code(self) -> Mask:
         """A code of the main spindle or of its C axis in the mode."""
-        trace = self.trace
-        found = np.zeros(len(trace), bool)
-        found[trace.run.row[trace.m_words[self._of_spindle[trace.m_codes]]]] = True
-        return found & trace.in_polar
+        found = np.zeros(len(self.trace), bool)
+        found[self.trace.run.row[self.spindle_words]] = True
+        return found & self.trace.in_polar
 
     @cached_property
     def c_axis_code(self) -> Mask:
         """A code that engages or releases the C axis, and does nothing to the live tool."""
         codes = self.trace.machine.m_codes
         return self.trace.codes(*codes.c_axis_on, *codes.c_axis_off) & self.spindle_code
-
-    def spindle_names(self, row: int) -> tuple[str, ...]:
-        """Which codes these are, as in M5."""
-        trace = self.trace
-        codes = trace.m_codes[trace.run.row[trace.m_words] == row]
-        return tuple(dict.fromkeys(spelled("M", int(code)) for code in codes if self._of_spindle[code]))
-
-    def spindle_codes(self, row: int) -> str:
-        """The same in one text."""
-        return ", ".join(self.spindle_names(row))
 
     # ---- tool offset, origin ----
 
@@ -204,8 +166,18 @@ class Entry:
             shift[named], name[named] = origin.x, offset.upper()
         return shift * trace.job_scale, name
 
+    @property
+    def work_offset_shift(self) -> Floats:
+        """Where X0 of the work offset in force lies [mm]; 0 where the job does not say."""
+        return self._work_offset[0]
+
+    @property
+    def work_offset_name(self) -> NDArray[np.object_]:
+        """The name of the work offset in force, as the job has it; empty where it has none."""
+        return self._work_offset[1]
+
     @cached_property
-    def _local_shift(self) -> Floats:
+    def local_shift(self) -> Floats:
         """X of the G52 in force [mm]."""
         trace = self.trace
         written = trace.codes("G52") & trace.has("X")
@@ -215,7 +187,7 @@ class Entry:
     @cached_property
     def origin_shift(self) -> Floats:
         """How far X0 is known to lie off the spindle axis, as the job or G52 writes it [mm]."""
-        return self._work_offset[0] + self._local_shift
+        return self._work_offset[0] + self.local_shift
 
     @cached_property
     def origin_off_center(self) -> Mask:
@@ -223,11 +195,6 @@ class Entry:
         if not self.trace.job.work_offsets and not self.trace.codes("G52").any():
             return np.zeros(len(self.trace), bool)
         return np.asarray(self.trace.enters & (np.abs(self.origin_shift) > ROUNDING))
-
-    def origin_name(self, row: int) -> str:
-        """What shifts it."""
-        shifts = [str(self._work_offset[1][row])] if self._work_offset[0][row] else []
-        return " and ".join([*shifts, "G52"] if self._local_shift[row] else shifts)
 
     # ---- stock and tool ----
 

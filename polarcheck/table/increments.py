@@ -3,19 +3,12 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from polarcheck.arrays import Mask, Rows
 from polarcheck.machines.modal import FeedMode, Units
-
-if TYPE_CHECKING:
-    from polarcheck.table.trace import Trace
-
-
-#: F without a point in an inch program [inch/min], parameter 1403#0 MIF = 0; in mm it is whole mm/min.
-_FEED_INCREMENT_INCH = 0.01
+from polarcheck.table.trace import Trace
 
 
 class Increments:
@@ -80,20 +73,3 @@ class Increments:
         at = np.minimum(np.searchsorted(own, start), len(own) - 1)
         found = own[at] == start
         return at[found], found
-
-    def taken_as(self, index: int) -> str:
-        """What the control takes a word of the file as, and how many more there are."""
-        trace = self.trace
-        table, control = trace.text.words, trace.machine.control
-        row = int(np.flatnonzero(trace.run.block == table.block[index])[0])
-        address, value = chr(int(table.address[index])), float(table.value[index])
-        inch = bool(trace.units[row] == Units.INCH)
-        if address == "F":
-            return f"{value * _FEED_INCREMENT_INCH:g} inch/min"
-        is_angle = address in "CH" and not trace.in_polar[row]
-        least = control.least_increment_inch if inch and not is_angle else control.least_increment
-        unit = "deg" if is_angle else "inch" if inch else "mm"
-        shown = f"{value * least:.4f}".rstrip("0").rstrip(".")
-        more = int(self.without_point[index]) - 1
-        others = f"; {more} more coordinates of this section have none" if more > 0 else ""
-        return f"{shown} {unit}{others}"

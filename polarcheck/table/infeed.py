@@ -12,7 +12,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 from msgspec.structs import replace
@@ -21,10 +20,7 @@ from polarcheck.arrays import Floats, Mask, Rows
 from polarcheck.geometry import polar
 from polarcheck.machines.modal import Motion, Side
 from polarcheck.table.moves import Moves, compensation_path, joined, of_tool, tool_center_path
-
-if TYPE_CHECKING:
-    from polarcheck.table.trace import Trace
-
+from polarcheck.table.trace import Trace
 
 #: Points of one contour nearer than this are one [mm]: the rounding of coordinates to 0.001 mm.
 CLOSED = 0.002
@@ -33,7 +29,7 @@ MOST_PASSES = 200
 MOST_MOVES = 200_000
 
 
-class InfeedCycle:
+class Infeed:
     """Columns of one trace, one value per row, and the passes of its cycles."""
 
     def __init__(self, trace: Trace) -> None:

@@ -4,20 +4,17 @@ from __future__ import annotations
 
 import re
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from polarcheck.arrays import Mask, Rows
 from polarcheck.execution.programs import block_text, find_programs
-from polarcheck.machines.codes import NO_CODE, code_numbers, code_set, group_tables, spelled
+from polarcheck.machines.codes import NO_CODE, code_numbers, code_set, group_tables
+from polarcheck.machines.machine import Machine
 from polarcheck.reading.surroundings import BLANKS
-from polarcheck.reading.words import NumberFault
-
-if TYPE_CHECKING:
-    from polarcheck.table.trace import Trace
-
+from polarcheck.reading.words import NumberFault, Text
 
 #: A bit for each address that should stand once in a block: A to Z, and a to z behind a comma, are 58 neighbours.
 _ADDRESS_BITS = np.zeros(256, np.uint64)
@@ -39,12 +36,12 @@ _END_IN_MACRO = re.compile(r"M\s*0*99(?!\d)|GOTO|GO\s*\d", re.IGNORECASE)
 
 
 class Lexical:
-    """Columns over the words, characters and comments of a text; the methods give words for a message about one."""
+    """Columns over the words, characters and comments of a text."""
 
-    def __init__(self, trace: Trace) -> None:
-        self.text = trace.text
-        self.words = trace.text.words
-        self.machine = trace.machine
+    def __init__(self, text: Text, machine: Machine) -> None:
+        self.text = text
+        self.words = text.words
+        self.machine = machine
 
     @property
     def is_empty(self) -> Mask:
@@ -80,17 +77,19 @@ class Lexical:
         """The first M word of a block beyond the limit."""
         return self._beyond(self.words.address == ord("M"), self.machine.control.m_code_limit)
 
-    def _addresses(self, index: int) -> NDArray[np.uint8]:
-        low, high = np.searchsorted(self.words.block, self.words.block[index] + np.array([0, 1]))
-        return self.words.address[low:high]
+    @cached_property
+    def words_in_block(self) -> Rows:
+        """Per word: how many words its block has, block skip not counted."""
+        return self._in_block(self.words.address != ord("/"))
 
-    def words_in_block(self, index: int) -> int:
-        """How many words the block of a word has."""
-        return int(np.count_nonzero(self._addresses(index) != ord("/")))
+    @cached_property
+    def m_codes_in_block(self) -> Rows:
+        """Per word: how many M words its block has."""
+        return self._in_block(self.words.address == ord("M"))
 
-    def m_codes_in_block(self, index: int) -> int:
-        """How many M words."""
-        return int(np.count_nonzero(self._addresses(index) == ord("M")))
+    def _in_block(self, counted: Mask) -> Rows:
+        block = self.words.block
+        return np.bincount(block[counted], minlength=int(block[-1]) + 1 if len(block) else 0)[block]
 
     def _suspects(self, index: Rows, bits: NDArray[np.uint64]) -> Rows:
         """Of the words with bits those of blocks in which a bit stands twice, or something that cannot be read."""
@@ -137,7 +136,7 @@ class Lexical:
         return code_numbers(self.words.value[self._g_words])
 
     @cached_property
-    def _overruled(self) -> Rows:
+    def overruled(self) -> Rows:
         """Per word: the word of another code of the same modal group that stands before it in the block, else -1."""
         system = self.machine.control.g_code_system
         names, group_of, _ = group_tables(system)
@@ -158,22 +157,7 @@ class Lexical:
     @cached_property
     def overrules(self) -> Mask:
         """A G code after another one of its modal group."""
-        return np.asarray(self._overruled >= 0)
-
-    def overruled(self, index: int) -> str:
-        """The code before it, as in G0."""
-        return self._code(int(self._overruled[index]))
-
-    def code(self, index: int) -> str:
-        """The code itself."""
-        return self._code(index)
-
-    def _code(self, index: int) -> str:
-        number = int(code_numbers(self.words.value[index : index + 1])[0])
-        return spelled("G", number) if number >= 0 else self._written(index)
-
-    def _written(self, index: int) -> str:
-        return self.text.source.excerpt(int(self.words.start[index]), int(self.words.end[index]))
+        return np.asarray(self.overruled >= 0)
 
     @cached_property
     def _unknown(self) -> tuple[Mask, Rows]:
@@ -191,6 +175,11 @@ class Lexical:
         return mask, counts
 
     @property
+    def unknown_code_count(self) -> Rows:
+        """At the first of an unknown G code in the file: how often the code stands there."""
+        return self._unknown[1]
+
+    @property
     def is_unknown_code(self) -> Mask:
         """The first of an unknown G code in the file."""
         return self._unknown[0]
@@ -200,11 +189,6 @@ class Lexical:
         """A G code that can only be a macro of the builder or the shop."""
         value = self.words.value
         return np.asarray((self.words.address == ord("G")) & (value >= _OWN_CODES_END) & (value == np.floor(value)))
-
-    def times(self, index: int) -> str:
-        """How often the code stands in the file, where it is more than once."""
-        count = int(self._unknown[1][index])
-        return f" ({count} times in this file)" if count > 1 else ""
 
     # ---- digits, case ----
 
@@ -276,14 +260,6 @@ class Lexical:
         is_left_over &= np.isin(strays.block, self.text.comments.block[self.text.nested])
         return np.asarray(first & ~np.isin(strays.block, unreadable) & ~is_left_over)
 
-    def stray(self, index: int) -> str:
-        """What the control does with a stray character."""
-        at = int(self.text.strays.start[index])
-        character = self.text.source.excerpt(at, at + 1)
-        if character == "%":
-            return "% inside a block: for the control the program ends here"
-        return f"{character} is no character of a word"
-
     @cached_property
     def is_first_dots(self) -> Mask:
         """The first of lines of points that follow each other."""
@@ -325,14 +301,14 @@ class Lexical:
         return mask, count
 
     @property
+    def foreign_count(self) -> Rows:
+        """At the first run of foreign characters of a line: how many there are on the line."""
+        return self._foreign[1]
+
+    @property
     def is_first_foreign(self) -> Mask:
         """The first run of foreign characters on its line."""
         return self._foreign[0]
-
-    def foreign_characters(self, index: int) -> str:
-        """How many there are on the line."""
-        count = int(self._foreign[1][index])
-        return "1 character that is" if count == 1 else f"{count} characters that are"
 
 
 def _inside(at: Rows, spans: object) -> Mask:

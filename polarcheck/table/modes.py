@@ -3,19 +3,14 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask
-from polarcheck.checking import describe
-from polarcheck.machines.codes import NO_CODE, code, code_set, spelled
+from polarcheck.machines.codes import NO_CODE, code, code_set
 from polarcheck.machines.modal import COORDINATE_SETTING, Motion
 from polarcheck.reading.words import NumberFault
-
-if TYPE_CHECKING:
-    from polarcheck.table.trace import Trace
-
+from polarcheck.table.trace import Trace
 
 _AXES = ("X", "Y", "Z", "C", "U", "V", "W", "H")
 _PLANES = ("G17", "G18", "G19")
@@ -27,21 +22,8 @@ _OUTSIDE = ("G27", "G28", "G30", "G53")
 _WORK_OFFSETS = (2, 20)
 _TOOL_OFFSETS = (10, 11, 12, 13)
 
-#: Group and state of what must have ended at G12.1: the code, and what ends it.
-_ENDS = {
-    ("scaling", 51): ("G51", "G50"),
-    ("rotation", 68): ("G68.1", "G69.1"),
-    ("mirror", 68): ("G68", "G69"),
-    ("mirror", 51): ("G51.1", "G50.1"),
-    ("speed", 96): ("G96", "G97"),
-}
-#: What words of systems B and C mean in system A, and of A in B and C.
-_IN_SYSTEM_A = {
-    "G90": "a turning cycle in G-code system A, where X and C are absolute and U and H incremental",
-    "G91": "no code of G-code system A, where U and H are incremental",
-    "G94": "a facing cycle in G-code system A, where G98 is feed per minute",
-    "G95": "no code of G-code system A, where G99 is feed per revolution",
-}
+#: Codes of systems B and C that system A does not have, or has for something else.
+_IN_SYSTEM_A = ("G90", "G91", "G94", "G95")
 
 _ANGLES = np.array([30, 45, 60, 90, 120, 135, 150, 180, 210, 225, 240, 270, 300, 315, 330, 360], np.float64)
 #: An angle read as a length lies this many times farther out than the rest of the section.
@@ -49,7 +31,7 @@ _FAR = 2.0
 
 
 class Modes:
-    """Columns of one trace, one value per row; the methods give words for a message about one row."""
+    """Columns of one trace, one value per row."""
 
     def __init__(self, trace: Trace) -> None:
         self.trace = trace
@@ -115,11 +97,6 @@ class Modes:
         """Another origin in the mode: G50 (G92) with axis words, G52, G53, G54 to G59, a work offset by G10."""
         return (self._with(self._setting) & self.trace.has(*_AXES)) | self._with(*_SHIFTS) | self.data_input[0]
 
-    def codes_shifting(self, row: int) -> str:
-        """The codes of a row that shifts the origin."""
-        names = (self._setting, "G10", "G52", "G53", *(f"G{number}" for number in range(54, 60)), "G54.1")
-        return ", ".join(name for name in names if self.trace.codes(name)[row])
-
     @cached_property
     def _not_allowed(self) -> Mask:
         """Per G word: not allowed in the mode, and no rule of its own for it."""
@@ -136,6 +113,11 @@ class Modes:
         return np.asarray(self._words_with(~told) & ~told_here)
 
     @cached_property
+    def words_not_allowed(self) -> Mask:
+        """Per executed word: a G code that cannot be used in the mode, and no rule of its own for it."""
+        return self.trace.words_at(self.trace.g_words[self._not_allowed])
+
+    @cached_property
     def not_allowed(self) -> Mask:
         """A G code that cannot be used in the mode, and no rule of its own for it."""
         return self._rows_of(self._not_allowed & (self.trace.g_codes != code(self._setting)))
@@ -144,16 +126,6 @@ class Modes:
     def limits_speed(self) -> Mask:
         """G50 (G92) with nothing but S in the mode."""
         return self._rows_of(self._not_allowed) & ~self.not_allowed
-
-    def codes_not_allowed(self, row: int) -> str:
-        """Which they are."""
-        return ", ".join(self.names_not_allowed(row))
-
-    def names_not_allowed(self, row: int) -> tuple[str, ...]:
-        """Which they are, one by one."""
-        trace = self.trace
-        chosen = self._not_allowed & (trace.run.row[trace.g_words] == row)
-        return tuple(dict.fromkeys(spelled("G", int(number)) for number in trace.g_codes[chosen]))
 
     # ---- words of another G-code system ----
 
@@ -166,41 +138,29 @@ class Modes:
         return trace.in_polar & trace.uses_axes & trace.has(*self._increments)
 
     @cached_property
+    def words_of_other_system(self) -> Mask:
+        """Per executed word: one that this G-code system has for something else; the first kind of each row."""
+        trace = self.trace
+        if trace.machine.control.g_code_system == "A":
+            kinds = [trace.words_at(trace.g_words[trace.g_codes == code(name)]) for name in _IN_SYSTEM_A]
+        else:
+            kinds = [trace.words_at(trace.word_indices(name)) for name in self._increments]
+        chosen, told = np.zeros(len(trace.run.words), bool), np.zeros(len(trace), bool)
+        for kind in kinds:
+            new = kind & ~told[trace.run.row]
+            chosen |= new
+            told[trace.run.row[new]] = True
+        return chosen
+
+    @cached_property
     def _increments(self) -> tuple[str, ...]:
         polar = self.trace.machine.polar
         return tuple(a for a in ("U", "W", polar.virtual_axis_increment) if a not in polar.other_virtual_axis)
 
-    def names_of_other_system(self, row: int) -> tuple[str, ...]:
-        """The first such word."""
-        if self.trace.machine.control.g_code_system == "A":
-            return tuple(name for name in _IN_SYSTEM_A if self.trace.codes(name)[row])[:1]
-        return tuple(name for name in self._increments if self.trace.has(name)[row])[:1]
-
-    def meaning_in_this_system(self, row: int) -> str:
-        """That word and what it means here."""
-        name = self.names_of_other_system(row)[0]
-        system = self.trace.machine.control.g_code_system
-        return f"{name} is " + _IN_SYSTEM_A.get(
-            name, f"no incremental word of G-code system {system}, where G91 makes X and C incremental"
-        )
-
     # ---- entry and exit ----
 
-    def switch(self, row: int) -> str:
-        """The code in this row that switches the mode on or off, as in G12.1 or G113."""
-        return describe.switch(self.trace, row)
-
-    def outside(self, row: int) -> str:
-        """Where it belongs, with the codes of this section: before G112 or after G113."""
-        enter = int(self.trace.sections.enter[self.trace.section[row]])
-        return f"before {describe.switch(self.trace, enter)} or after {describe.switch_off(self.trace, enter)}"
-
-    def missing_before(self, section: int) -> str:
-        """Where the G13.1 of a section is missing."""
-        return describe.missing_before(self.trace, section)
-
     @cached_property
-    def _beside_switch(self) -> Mask:
+    def words_beside_switch(self) -> Mask:
         """Per word: shares the block of a G12.1 or of the G13.1 that ends a section, and is not allowed there."""
         trace = self.trace
         polar, words = trace.machine.polar, trace.run.words
@@ -218,25 +178,8 @@ class Modes:
     def switch_not_alone(self) -> Mask:
         """G12.1 or G13.1 shares its block."""
         rows = np.zeros(len(self.trace), bool)
-        rows[self.trace.run.row[self._beside_switch]] = True
+        rows[self.trace.run.row[self.words_beside_switch]] = True
         return rows
-
-    def beside_switch(self, row: int) -> str:
-        """The words that share it."""
-        trace = self.trace
-        table, text = trace.run.words, trace.text.source
-        chosen = np.flatnonzero(self._beside_switch & (trace.run.row == row))
-        return " ".join("".join(text.excerpt(int(table.start[i]), int(table.end[i])).split()) for i in chosen)
-
-    def names_beside_switch(self, row: int) -> tuple[str, ...]:
-        """Their addresses, and their codes where they are G or M words."""
-        words = self.beside_switch(row).split()
-        return tuple(w if w[0] in "GM" else w[0] for w in words)
-
-    def entered_at(self, row: int) -> int:
-        """The line of the G12.1 of this row's section."""
-        trace = self.trace
-        return int(trace.line[trace.sections.enter[trace.section[row]]])
 
     @cached_property
     def plane_wrong_at_entry(self) -> Mask:
@@ -245,14 +188,6 @@ class Modes:
         wanted = [round(float(name[1:])) for name in trace.machine.polar.plane_before]
         plane = trace.state("plane")
         return np.asarray(trace.enters & bool(wanted) & (plane != 0) & ~np.isin(plane, wanted))
-
-    def plane(self, row: int) -> str:
-        """The plane in force, as in G18."""
-        return f"G{self.trace.state('plane')[row]}"
-
-    def plane_wanted(self, row: int) -> str:
-        """The planes that the profile wants."""
-        return " or ".join(self.trace.machine.polar.plane_before)
 
     @cached_property
     def state_wrong_at_entry(self) -> Mask:
@@ -268,38 +203,7 @@ class Modes:
         """G12.1 while G96 is in force."""
         return np.asarray(self.trace.enters & (self.trace.state("speed") == 96))
 
-    def _in_force(self, row: int) -> list[tuple[str, str]]:
-        trace = self.trace
-        cycle = int(trace.drilling[row])
-        found = [(f"G{cycle}", "G80")] if cycle else []
-        return found + [ends for (group, state), ends in _ENDS.items() if trace.state(group)[row] == state]
-
-    def codes_in_force(self, row: int) -> str:
-        """What should have ended before G12.1."""
-        return ", ".join(name for name, _ in self._in_force(row))
-
-    def codes_to_end_them(self, row: int) -> str:
-        """What ends it."""
-        return ", ".join(name for _, name in self._in_force(row))
-
     # ---- the virtual axis ----
-
-    def virtual_axis(self, row: int) -> tuple[str, ...]:
-        """Its address."""
-        return (self.trace.machine.polar.virtual_axis,)
-
-    def virtual_word(self, row: int) -> str:
-        """The word of the virtual axis as it is written."""
-        trace = self.trace
-        return self.written(trace.machine.polar.virtual_axis, row)
-
-    def written(self, address: str, row: int) -> str:
-        """A word of a row as it is written, the last of its address."""
-        trace = self.trace
-        at = trace.word_indices(address)
-        at = at[trace.run.row[at] == row]
-        table = trace.run.words
-        return "".join(trace.text.source.excerpt(int(table.start[at[-1]]), int(table.end[at[-1]])).split())
 
     @cached_property
     def other_axis(self) -> Mask:
@@ -307,18 +211,16 @@ class Modes:
         trace = self.trace
         return trace.in_polar & trace.uses_axes & trace.has(*trace.machine.polar.other_virtual_axis)
 
-    def names_of_other_axis(self, row: int) -> tuple[str, ...]:
-        """Its addresses in this row."""
-        return tuple(name for name in self.trace.machine.polar.other_virtual_axis if self.trace.has(name)[row])
+    @cached_property
+    def other_axis_words(self) -> Mask:
+        """Per executed word: of the address of the virtual axis of other controls."""
+        trace = self.trace
+        return trace.words_at(trace.word_indices(*trace.machine.polar.other_virtual_axis))
 
-    def other_axis_word(self, row: int) -> str:
-        """The word as it is written."""
-        return self.written(self.names_of_other_axis(row)[0], row)
-
-    def other_controls(self, row: int) -> str:
-        """Which controls take it."""
-        controls = self.trace.machine.polar.other_virtual_axis_of
-        return f"; {controls} would take it" if controls else ""
+    @cached_property
+    def virtual_words(self) -> Mask:
+        """Per executed word: of the virtual axis."""
+        return self.trace.words_at(self.trace.word_indices(self.trace.machine.polar.virtual_axis))
 
     @cached_property
     def _reach(self) -> Floats:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import msgspec
 import numpy as np
@@ -12,9 +12,7 @@ import numpy as np
 from polarcheck.arrays import Floats, Mask, Points, Rows, States
 from polarcheck.geometry import compensation, polar, rates
 from polarcheck.machines.modal import Motion
-
-if TYPE_CHECKING:
-    from polarcheck.table.trace import Trace
+from polarcheck.table.trace import Trace
 
 
 class Moves(msgspec.Struct, frozen=True, dict=True):
@@ -205,6 +203,6 @@ def of_tool(trace: Trace, tool: compensation.ToolPath, row: Rows) -> Moves:
 
 def _cancel_vector(trace: Trace, row: Rows) -> Points:
     """I and J beside G40 say where the tool leaves (B-63324EN/03 p. 402)."""
-    i, j = (trace.length_of(word)[row] for word in trace.own.center_words)
+    i, j = (trace.length_of(word)[row] for word in trace.machine.polar.center_words)
     written = trace.codes("G40")[row] & (~np.isnan(i) | ~np.isnan(j))
     return np.where(written, np.nan_to_num(i) + 1j * np.nan_to_num(j), complex("nan+nanj"))

@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Points, Rows
-from polarcheck.checking import describe
 from polarcheck.geometry.compensation import Phase
 from polarcheck.machines.modal import Side
-
-if TYPE_CHECKING:
-    from polarcheck.table.trace import Trace
-
+from polarcheck.table.moves import programmed_moves
+from polarcheck.table.tool_center import ToolCenter
+from polarcheck.table.trace import Trace
 
 #: What compensation has flagged itself; it and its neighbours gouge as a consequence, which is no second mistake.
 _FLAGS = ("inside_arc_too_small", "interferes", "no_intersection", "movement_missing", "arc_center_on_path")
@@ -32,11 +30,27 @@ def loop_of_row(trace: Trace) -> Rows:
     return np.where(on, np.cumsum(begins), -1)
 
 
-class Overcutting:
-    """Columns of one trace, one value per row: depth [mm] of the worst cut, 0 for none; and phrases for messages."""
+class Cuts(NamedTuple):
+    """Cuts into the contour, one element each: the row that cuts, the row cut into, depth [mm], place (plane point)."""
 
-    def __init__(self, trace: Trace) -> None:
+    row: Rows
+    into: Rows
+    depth: Floats
+    place: Points
+
+    def deepest(self, row: int) -> tuple[int, complex]:
+        """Of the cuts of a row the deepest: the row cut into, and where."""
+        own = np.flatnonzero(self.row == row)
+        worst = own[np.argmax(self.depth[own])]
+        return int(self.into[worst]), complex(self.place[worst])
+
+
+class Overcutting:
+    """Columns of one trace, one value per row: depth [mm] of the worst cut, 0 for none; and the cuts themselves."""
+
+    def __init__(self, trace: Trace, tool_center: ToolCenter) -> None:
         self.trace = trace
+        self.tool_center = tool_center
 
     @cached_property
     def _compensates(self) -> bool:
@@ -47,74 +61,54 @@ class Overcutting:
     def _walls(self) -> tuple[Any, Mask]:
         """The contour that is programmed in offset mode, and on which side of each block the tool is."""
         trace = self.trace
-        programmed, loop = trace.programmed_moves, loop_of_row(trace)
+        programmed, loop = programmed_moves(trace), loop_of_row(trace)
         rows = programmed.row
         walls = _moves(programmed, loop, (loop[rows] >= 0) & ~trace.starts_up[rows] & programmed.known)
         return walls, (trace.side[walls.row] == Side.LEFT) ^ (trace.radius[walls.row] < 0)
 
     @cached_property
-    def _cuts(self) -> tuple[Rows, Rows, Floats, Points]:
+    def cuts(self) -> Cuts:
         """Row that cuts, row that is cut into, depth and place of each overcut."""
         if not self._compensates:
             return _NOTHING
         from polarcheck.geometry import contour
 
-        trace, tool = self.trace, self.trace.tool_moves
+        trace, tool = self.trace, self.tool_center.moves
         path = _moves(tool, loop_of_row(trace), (tool.phase == Phase.OFFSET) & tool.known)
         radius, tolerance = np.abs(trace.radius[path.row]), trace.machine.compensation.overcut_tolerance
         found = contour.overcuts(*self._walls, path, radius, tolerance)
-        return path.row[found.move], found.row, found.depth, found.place
+        return Cuts(path.row[found.move], found.row, found.depth, found.place)
 
     @cached_property
-    def _sweeps(self) -> tuple[Rows, Rows, Floats, Points]:
+    def sweeps(self) -> Cuts:
         """The same for ramps on and off that lie at the depth of their contour."""
         if not self._compensates:
             return _NOTHING
         from polarcheck.geometry import contour
 
-        trace, tool = self.trace, self.trace.tool_moves
+        trace, tool = self.trace, self.tool_center.moves
         is_ramp = ((tool.phase == Phase.START_UP) | (tool.phase == Phase.CANCEL)) & tool.known
         ramps = _moves(tool, _loop_of_ramps(trace), is_ramp & _at_depth(trace, tool.row))
         radius, tolerance = np.abs(trace.radius[ramps.row]), trace.machine.compensation.overcut_tolerance
         found = contour.sweeps(*self._walls, ramps, radius, tolerance)
-        return ramps.row[found.move], found.row, found.depth, found.place
+        return Cuts(ramps.row[found.move], found.row, found.depth, found.place)
 
     @cached_property
     def depth(self) -> Floats:
         """Of the cut into the contour by the tool center path of the row; rows flagged by compensation are left out."""
-        row, _, depth, _ = self._cuts
-        return np.where(flagged(self.trace), 0.0, _deepest(row, depth, len(self.trace)))
+        cuts = self.cuts
+        return np.where(flagged(self.trace, self.tool_center), 0.0, _deepest(cuts.row, cuts.depth, len(self.trace)))
 
     @cached_property
     def sweep_depth(self) -> Floats:
         """Of the cut into the contour by a ramp, in loops that are not overcut anyway."""
-        row, _, depth, _ = self._sweeps
-        swept = np.where(flagged(self.trace), 0.0, _deepest(row, depth, len(self.trace)))
+        cuts = self.sweeps
+        swept = np.where(flagged(self.trace, self.tool_center), 0.0, _deepest(cuts.row, cuts.depth, len(self.trace)))
         loop = _loop_of_ramps(self.trace)
         return np.where(np.isin(loop, loop[self.depth > 0]), 0.0, swept)
 
-    def place(self, row: int) -> str:
-        """Where the row cuts deepest, and into which line."""
-        return self._phrase(self._cuts, row)
 
-    def sweep_place(self, row: int) -> str:
-        """Where a ramp cuts deepest, and into which line."""
-        return self._phrase(self._sweeps, row)
-
-    def _phrase(self, cuts: tuple[Rows, Rows, Floats, Points], row: int) -> str:
-        by, into, depth, place = cuts
-        own = np.flatnonzero(by == row)
-        worst = own[np.argmax(depth[own])]
-        at = describe.point(self.trace, row, place[worst])
-        return f"the contour of line {int(self.trace.line[into[worst]])} at {at}"
-
-
-_NOTHING: tuple[Rows, Rows, Floats, Points] = (
-    np.zeros(0, np.int64),
-    np.zeros(0, np.int64),
-    np.zeros(0),
-    np.zeros(0, np.complex128),
-)
+_NOTHING = Cuts(np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0), np.zeros(0, np.complex128))
 
 
 def _deepest(row: Rows, depth: Floats, count: int) -> Floats:
@@ -149,11 +143,11 @@ def _at_depth(trace: Trace, row: Rows) -> Mask:
     return np.asarray(np.where(trace.cancels[row], ~moves_z[above], ~moves_z[below]))
 
 
-def flagged(trace: Trace) -> Mask:
+def flagged(trace: Trace, tool_center: ToolCenter) -> Mask:
     """Rows that compensation has flagged, and those before and after them that move."""
     rows = np.zeros(len(trace), bool)
     for name in _FLAGS:
-        rows |= trace.found_by_compensation(name)
+        rows |= tool_center.found(name)
     moving = np.flatnonzero(trace.in_polar & trace.moves_plane)
     on = rows[moving]
     near = on.copy()

@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING
+from typing import NamedTuple
 
 import msgspec
-import numpy as np
 
+from polarcheck.arrays import Mask, Rows
 from polarcheck.machines.modal import MM_PER_INCH
-
-if TYPE_CHECKING:
-    from polarcheck.table.columns import Columns
-
+from polarcheck.reading.words import Text
 
 _NUMBER = r"(\d+\s*/\s*\d+|\d*\.?\d+)"
 _UNIT = r"\s*(\"|''|IN\b\.?|INCH\b|MM\b)?"
@@ -51,12 +48,20 @@ def radius_in(comment: str, inch: bool) -> float | None:
     return None
 
 
-def radii(columns: Columns) -> dict[int, Found]:
+class Called(NamedTuple):
+    """The rows with a T word, one element each: block, offset number, tool number; inch: the program's unit."""
+
+    block: Rows
+    offset_number: Rows
+    tool: Rows
+    inch: Mask
+
+
+def radii(text: Text, called: Called) -> dict[int, Found]:
     """
     What the comments say of each offset number: in the block of its T word, in a comment alone on the line before or
     after it, or in a list of tools at the head (`(T8 D=12. CR=0. - FLAT END MILL)`).
     """
-    text = columns.text
     if not len(text.comments):
         return {}
     of_block: dict[int, list[str]] = {}
@@ -69,13 +74,13 @@ def radii(columns: Columns) -> dict[int, Found]:
             of_tool.setdefault(int(listed[1]), comment)
     filled = set(text.words.block.tolist()) if len(of_block) else set()
     found: dict[int, Found] = {}
-    for row in np.flatnonzero(columns.has("T")).tolist():
-        offset, block = int(columns.offset_number[row]), int(columns.run.block[row])
+    rows = zip(*(column.tolist() for column in called), strict=True)
+    for block, offset, tool, inch in rows:
         near = list(of_block.get(block, []))
         near += [c for other in (block - 1, block + 1) if other not in filled for c in of_block.get(other, [])]
-        near += [of_tool[int(columns.tool[row])]] if int(columns.tool[row]) in of_tool else []
+        near += [of_tool[tool]] if tool in of_tool else []
         for comment in near:
-            radius = radius_in(comment, bool(columns.scale[row] != 1.0))
+            radius = radius_in(comment, inch)
             if offset and radius is not None and offset not in found:
                 found[offset] = Found(radius, comment)
     return found

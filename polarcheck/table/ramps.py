@@ -3,40 +3,27 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, States
-from polarcheck.checking import describe
+from polarcheck.arrays import Floats, Mask
 from polarcheck.geometry.corner import ROUNDING
 from polarcheck.machines.modal import Side
 from polarcheck.table.filling import before, fill_down
-
-if TYPE_CHECKING:
-    from polarcheck.table.trace import Trace
+from polarcheck.table.modes import Modes
+from polarcheck.table.tool_center import ToolCenter
+from polarcheck.table.trace import Trace
 
 
 class Ramps:
-    """Columns of one trace, one value per row; the methods give words for a message about one row."""
+    """Columns of one trace, one value per row."""
 
-    def __init__(self, trace: Trace) -> None:
+    def __init__(self, trace: Trace, tool_center: ToolCenter, modes: Modes) -> None:
+        self.modes = modes
         self.trace = trace
+        self.tool_center = tool_center
 
     # ---- state ----
-
-    @cached_property
-    def side_of_move_before(self) -> States:
-        """Compensation of the last row above that moved on the plane in this section."""
-        trace = self.trace
-        fixed = (trace.in_polar & trace.moves_plane) | trace.enters
-        side = fill_down(np.where(trace.enters, Side.OFF, trace.side).astype(np.int8), fixed, Side.OFF)
-        return before(side, trace.starts, Side.OFF).astype(np.int8)
-
-    @cached_property
-    def offset_mode(self) -> Mask:
-        """The move before was made with compensation."""
-        return np.asarray(self.trace.in_polar & (self.side_of_move_before != Side.OFF))
 
     @cached_property
     def switched_in_offset_mode(self) -> Mask:
@@ -46,7 +33,7 @@ class Ramps:
         A G41 after which nothing moved is no offset mode yet (start-up-shorter-than-radius).
         """
         trace = self.trace
-        used = trace.enters | (trace.leaves & (self.side_of_move_before != Side.OFF))
+        used = trace.enters | (trace.leaves & (self.trace.side_of_move_before != Side.OFF))
         return np.asarray(used & (trace.side_before != Side.OFF) & ~trace.codes("G40"))
 
     @cached_property
@@ -65,7 +52,7 @@ class Ramps:
     def _sides(self) -> Mask:
         trace = self.trace
         active = (trace.side != Side.OFF) & (trace.side_before != Side.OFF)
-        return np.asarray(self.offset_mode & active & trace.codes("G41", "G42"))
+        return np.asarray(self.trace.offset_mode & active & trace.codes("G41", "G42"))
 
     # ---- ramps ----
 
@@ -75,14 +62,16 @@ class Ramps:
         trace = self.trace
         begins = trace.in_polar & trace.codes("G41", "G42") & ~trace.moves_plane & (trace.side_before == Side.OFF)
         ends = trace.codes("G40") | ~trace.in_polar
-        return self._without_move(begins & ~self.offset_mode, ends, trace.starts_up)
+        return self._without_move(begins & ~self.trace.offset_mode, ends, trace.starts_up)
 
     @cached_property
     def ends_standing(self) -> Mask:
         """A G40 after which nothing moves on the plane before the mode is left or compensation begins again."""
         trace = self.trace
         ends = trace.codes("G40") & ~trace.moves_plane & (trace.side_before != Side.OFF)
-        return self._without_move(ends & self.offset_mode, trace.codes("G41", "G42") | ~trace.in_polar, trace.cancels)
+        return self._without_move(
+            ends & self.trace.offset_mode, trace.codes("G41", "G42") | ~trace.in_polar, trace.cancels
+        )
 
     def _without_move(self, rows: Mask, ends: Mask, ramp: Mask) -> Mask:
         """Of these rows those after which one of `ends` comes before a move of the ramp."""
@@ -123,18 +112,6 @@ class Ramps:
         """A ramp on or off in an arc."""
         return self.trace.is_arc & (self.trace.starts_up | self.trace.cancels)
 
-    def fault(self, row: int) -> str:
-        """What is wrong with a ramp that is too short."""
-        return describe.ramp_fault(self.trace, row)
-
-    def side(self, row: int) -> str:
-        """G41 or G42, whichever is in force."""
-        return f"G{self.trace.side[row]}"
-
-    def side_before(self, row: int) -> str:
-        """G41 or G42, whichever was in force before."""
-        return f"G{self.trace.side_before[row]}"
-
     # ---- where the tool does not fit ----
 
     @cached_property
@@ -146,7 +123,7 @@ class Ramps:
     @cached_property
     def arc_too_small(self) -> Mask:
         """An arc on whose inner side the tool does not fit; a ramp on an arc has its own rule."""
-        return self.trace.found_by_compensation("inside_arc_too_small") & ~self.on_arc
+        return self.tool_center.found("inside_arc_too_small") & ~self.on_arc
 
     @cached_property
     def arc_radius(self) -> Floats:
@@ -157,12 +134,12 @@ class Ramps:
     @cached_property
     def does_not_meet(self) -> Mask:
         """The paths of the tool center do not meet at the end of the row."""
-        return self._first_of_run(self.trace.found_by_compensation("no_intersection"))
+        return self._first_of_run(self.tool_center.found("no_intersection"))
 
     @cached_property
     def runs_backwards(self) -> Mask:
         """The tool center would run against the program."""
-        return self._first_of_run(self.trace.found_by_compensation("interferes")) & ~self.does_not_meet
+        return self._first_of_run(self.tool_center.found("interferes")) & ~self.does_not_meet
 
     def _first_of_run(self, rows: Mask) -> Mask:
         """
@@ -174,7 +151,7 @@ class Ramps:
         moving = np.flatnonzero(trace.in_polar & trace.moves_plane)
         if not rows.any():
             return rows
-        faulty = rows | trace.found_by_compensation("no_intersection") | trace.found_by_compensation("interferes")
+        faulty = rows | self.tool_center.found("no_intersection") | self.tool_center.found("interferes")
         cause = (self.arc_too_small | self.on_arc | self.side_changes | self.side_repeats)[moving]
         found, faulty, section = rows[moving], faulty[moving], trace.section[moving]
         joined = section[1:] == section[:-1]
@@ -188,11 +165,7 @@ class Ramps:
     @cached_property
     def next_not_read(self) -> Mask:
         """The control does not know the next move in time."""
-        return self.trace.found_by_compensation("movement_missing")
-
-    def why_not_read(self, row: int) -> str:
-        """What stands between this move and the next."""
-        return describe.why_not_read(self.trace, row)
+        return self.tool_center.found("movement_missing")
 
     # ---- sections ----
 
@@ -220,23 +193,10 @@ class Ramps:
         trace = self.trace
         return ~np.isnan(trace.nose) & ~np.isin(trace.nose, trace.machine.compensation.nose_types)
 
-    def nose_types(self, row: int) -> str:
-        """The nose types that a mill may have."""
-        return " or ".join(str(number) for number in self.trace.machine.compensation.nose_types)
-
-    def offset(self, row: int) -> str:
-        """Tool and offset in force, as in T0808."""
-        trace = self.trace
-        return f"T{int(trace.tool[row]):02d}{int(trace.offset_number[row]):02d}"
-
     @cached_property
     def offset_changes(self) -> Mask:
         """Rows in the mode with a T word that calls another tool or offset, or with a G10 that changes one."""
         trace = self.trace
         called = trace.tool * 10**trace.machine.control.offset_digits + trace.offset_number
         other = trace.has("T") & (called != before(called, trace.starts, 0))
-        return np.asarray((trace.in_polar & other) | trace.modes.data_input[1])
-
-    def offset_changed_by(self, row: int) -> str:
-        """T0808 or G10."""
-        return self.offset(row) if self.trace.has("T")[row] else "G10"
+        return np.asarray((trace.in_polar & other) | self.modes.data_input[1])

@@ -3,25 +3,25 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask
-from polarcheck.checking.message import Quantity
 from polarcheck.geometry.corner import ROUNDING
 from polarcheck.machines.modal import MM_PER_INCH, Side, Units
+from polarcheck.table.arcs import Arcs
 from polarcheck.table.moves import any_in_row, per_row
-
-if TYPE_CHECKING:
-    from polarcheck.table.trace import Trace
+from polarcheck.table.tool_center import ToolCenter
+from polarcheck.table.trace import Trace
 
 
 class Reach:
-    """Columns of one trace, one value per row; the methods give words for a message about one row."""
+    """Columns of one trace, one value per row."""
 
-    def __init__(self, trace: Trace) -> None:
+    def __init__(self, trace: Trace, tool_center: ToolCenter, arcs: Arcs) -> None:
         self.trace = trace
+        self.tool_center = tool_center
+        self.arcs = arcs
 
     # ---- the center of C ----
 
@@ -36,12 +36,12 @@ class Reach:
     def cuts_off_center(self) -> Mask:
         """Cutting moves that stay away from the center of C, be it by little; what is not known counts as away."""
         trace = self.trace
-        return np.asarray(trace.cuts & ~(trace.nearest < self.least_increment) & ~trace.arcs.is_no_circle)
+        return np.asarray(trace.cuts & ~(self.tool_center.nearest < self.least_increment) & ~self.arcs.is_no_circle)
 
     @cached_property
-    def _stops_at_center(self) -> Mask:
+    def stops_at_center(self) -> Mask:
         """Per move of the tool center: it ends at the center of C. Without compensation that is the programmed end."""
-        trace, moves = self.trace, self.trace.tool_moves
+        trace, moves = self.trace, self.tool_center.moves
         known = moves.known | (trace.side[moves.row] == Side.OFF)
         return np.asarray((np.abs(moves.end) < self.least_increment[moves.row]) & known)
 
@@ -52,36 +52,26 @@ class Reach:
 
         Of a move that only leaves it, the one before says so; except for the first of which anything is known.
         """
-        trace, moves, stops = self.trace, self.trace.tool_moves, self._stops_at_center
+        trace, moves, stops = self.trace, self.tool_center.moves, self.stops_at_center
         least = self.least_increment[moves.row]
         leaves = (np.abs(moves.start) < least) & ~stops
         follows = np.zeros(len(moves), bool)
         follows[1:] = (moves.known | stops)[:-1] & (moves.section[1:] == moves.section[:-1])
         hit = stops | ((moves.nearest < least) & ~(leaves & follows))
-        return any_in_row(hit, moves, len(trace)) & trace.cuts & ~trace.arcs.is_no_circle
-
-    def meeting(self, row: int) -> str:
-        """How the tool center meets the center of C in a row that does."""
-        moves, stops, least = self.trace.tool_moves, self._stops_at_center, self.least_increment[row]
-        at = np.flatnonzero((moves.row == row) & (stops | (moves.nearest < least)))[-1]
-        if stops[at]:
-            return "stops at the center of the C axis, where C has no angle"
-        if abs(moves.start[at]) < least:
-            return "starts at the center of the C axis, where C has no angle"
-        return "passes through the center of the C axis, where C would have to turn by 180 deg at once"
+        return any_in_row(hit, moves, len(trace)) & trace.cuts & ~self.arcs.is_no_circle
 
     # ---- travel ----
 
     @cached_property
     def least_x(self) -> Floats:
         """Smallest X of the machine axis on the way [mm, radius]; inf where X does not move, NaN unknown."""
-        moves = self.trace.tool_moves
+        moves = self.tool_center.moves
         return self._with_x_outside(per_row(moves.nearest, moves, len(self.trace), np.inf, largest=False), np.inf)
 
     @cached_property
     def most_x(self) -> Floats:
         """Largest X of the machine axis on the way [mm, radius]; -inf where X does not move, NaN unknown."""
-        moves = self.trace.tool_moves
+        moves = self.tool_center.moves
         return self._with_x_outside(per_row(moves.farthest, moves, len(self.trace), -np.inf), -np.inf)
 
     def _with_x_outside(self, inside: Floats, none: float) -> Floats:
@@ -112,20 +102,3 @@ class Reach:
         first = beyond & moving
         first[rows[1:]] &= ~(beyond & moving)[rows[:-1]]
         return first
-
-    def travel(self, row: int) -> str:
-        """Where a row goes beyond the travel, and where that ends."""
-        trace, limits = self.trace, self.trace.machine.limits
-        inch = bool(trace.units[row] == Units.INCH)
-        diameter = bool(trace.x_factor[row] < 1)
-        reaches = (
-            ("X", "diameter", float(self.most_x[row]), limits.x_maximum, 1),
-            ("X", "diameter", float(self.least_x[row]), limits.x_minimum, -1),
-            ("Z", "length", float(trace.z[row]), limits.z_maximum, 1),
-            ("Z", "length", float(trace.z[row]), limits.z_minimum, -1),
-        )
-        for axis, form, value, limit, sign in reaches:
-            if np.isfinite(value) and sign * value > sign * limit + ROUNDING:
-                reach, end = (Quantity(length, inch, diameter) for length in (value, limit))
-                return f"{axis} would go to {reach:{form}}, its travel ends at {end:{form}}"
-        return ""

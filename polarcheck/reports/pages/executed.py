@@ -11,7 +11,8 @@ import msgspec
 import numpy as np
 
 from polarcheck.machines.modal import FeedMode, Motion, Side
-from polarcheck.table.moves import Moves
+from polarcheck.table.moves import Moves, programmed_moves
+from polarcheck.table.tool_center import ToolCenter
 from polarcheck.table.trace import Trace
 
 #: Digits behind the point: a nanometer, and as much of a degree.
@@ -50,9 +51,9 @@ def _point(value: complex) -> list[float | None]:
     return [_number(value.real), _number(value.imag)]
 
 
-def moves(trace: Trace, path: str) -> Iterator[Move]:
+def moves(trace: Trace, tool_center: ToolCenter, path: str) -> Iterator[Move]:
     """The moves of the tool center path ("tool") or of the programmed path ("programmed"), in order."""
-    table: Moves = trace.tool_moves if path == "tool" else trace.programmed_moves
+    table: Moves = tool_center.moves if path == "tool" else programmed_moves(trace)
     c_from, c_to = table.c_angles
     for index in range(len(table)):
         center = table.center[index]
@@ -80,7 +81,7 @@ _FEED_MODES = {
 }
 
 
-def rows(trace: Trace) -> Iterator[dict[str, Any]]:
+def rows(trace: Trace, tool_center: ToolCenter) -> Iterator[dict[str, Any]]:
     """
     The executed table, one row per executed block.
 
@@ -107,8 +108,8 @@ def rows(trace: Trace) -> Iterator[dict[str, Any]]:
             "c": _number(trace.c_angle[row]),
             "plane_x": _number(trace.end[row].real),
             "plane_c": _number(trace.end[row].imag),
-            "nearest": _number(trace.nearest[row]) if moving else None,
-            "c_feed": _number(trace.c_feed[row]) if moving else None,
+            "nearest": _number(tool_center.nearest[row]) if moving else None,
+            "c_feed": _number(tool_center.c_feed[row]) if moving else None,
         }
 
 

@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Mask, Trace, rule
+from polarcheck.checking.rule import ERROR, Mask, Ramps, Trace, rule
 
 
 @rule(ERROR, "G40 takes effect on an arc; cancel in a G1 block after the arc", at=("G40", "G2", "G3"))
-def cancel_on_arc(trace: Trace) -> Mask:
+def cancel_on_arc(trace: Trace, ramps: Ramps) -> Mask:
     """
     Cutter compensation cancelled on an arc.
 
@@ -35,4 +35,4 @@ def cancel_on_arc(trace: Trace) -> Mask:
         G1 G40 C-25.
         G13.1
     """
-    return trace.cancels & trace.ramps.on_arc
+    return trace.cancels & ramps.on_arc

@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Hits, Trace, rule
+from polarcheck.checking.rule import ERROR, Mask, Ramps, Trace, rule
 
 
-@rule(ERROR, "ramp-off {fault}", at=("G40",), needs=("radius", "length"), where="ramps.off_of_length")
-def cancel_shorter_than_radius(trace: Trace) -> Hits:
+@rule(ERROR, "ramp-off {fault}", at=("G40",), needs=("trace.radius", "trace.length"), where="ramps.off_of_length")
+def cancel_shorter_than_radius(trace: Trace, ramps: Ramps) -> Mask:
     """
     Ramp-off shorter than the cutter radius.
 
@@ -50,5 +50,5 @@ def cancel_shorter_than_radius(trace: Trace) -> Hits:
         X65. F1500
         G13.1
     """
-    short = trace.cancels & trace.ramps.too_short & ~trace.ramps.on_arc
-    return short | (trace.cancels_standing & trace.ramps.has_radius), {"fault": trace.ramps.fault}
+    short = trace.cancels & ramps.too_short & ~ramps.on_arc
+    return short | (ramps.ends_standing & ramps.has_radius)

@@ -1,16 +1,16 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Hits, Trace, rule
+from polarcheck.checking.rule import ERROR, Mask, Ramps, rule
 
 
 @rule(
     ERROR,
-    "arc of {arc_radius:length} with the tool on its inner side; R {radius:length} must be smaller",
+    "arc of {ramps.arc_radius:length} with the tool on its inner side; R {trace.radius:length} must be smaller",
     at=("G2", "G3", "R", "I", "J"),
-    needs=("radius",),
+    needs=("trace.radius",),
     where="ramps.compensated",
 )
-def inside_arc_smaller_than_radius(trace: Trace) -> Hits:
+def inside_arc_smaller_than_radius(ramps: Ramps) -> Mask:
     """
     Arc into which the cutter does not fit.
 
@@ -59,4 +59,4 @@ def inside_arc_smaller_than_radius(trace: Trace) -> Hits:
         G40 C-20.
         G13.1
     """
-    return trace.ramps.arc_too_small, {"arc_radius": trace.ramps.arc_radius}
+    return ramps.arc_too_small

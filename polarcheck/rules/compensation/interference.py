@@ -1,15 +1,15 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Mask, Trace, rule
+from polarcheck.checking.rule import ERROR, Mask, Ramps, rule
 
 
 @rule(
     ERROR,
-    "tool center would run backwards here: the contour is too narrow or too short for R {radius:length}",
-    needs=("radius",),
+    "tool center would run backwards here: the contour is too narrow or too short for R {trace.radius:length}",
+    needs=("trace.radius",),
     where="ramps.compensated",
 )
-def interference(trace: Trace) -> Mask:
+def interference(ramps: Ramps) -> Mask:
     """
     Contour too narrow for the cutter.
 
@@ -50,4 +50,4 @@ def interference(trace: Trace) -> Mask:
         G40 X100.
         G13.1
     """
-    return trace.ramps.runs_backwards
+    return ramps.runs_backwards

@@ -1,15 +1,15 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Hits, Trace, rule
+from polarcheck.checking.rule import WARNING, Mask, Ramps, rule
 
 
 @rule(
     WARNING,
     "{why}; the tool center ends perpendicular to this block, not where the next one needs it",
-    needs=("radius",),
+    needs=("trace.radius",),
     where="ramps.compensated",
 )
-def movement_missing_in_offset_mode(trace: Trace) -> Hits:
+def movement_missing_in_offset_mode(ramps: Ramps) -> Mask:
     """
     Too many blocks without movement between two moves with compensation.
 
@@ -60,4 +60,4 @@ def movement_missing_in_offset_mode(trace: Trace) -> Hits:
         G40 X-100.
         G13.1
     """
-    return trace.ramps.next_not_read, {"why": trace.ramps.why_not_read}
+    return ramps.next_not_read

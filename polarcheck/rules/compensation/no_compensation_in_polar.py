@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import NOTE, Mask, Trace, rule
+from polarcheck.checking.rule import NOTE, Mask, Ramps, rule
 
 
 @rule(
@@ -9,7 +9,7 @@ from polarcheck.checking.rule import NOTE, Mask, Trace, rule
     over="sections",
     at=("on",),
 )
-def no_compensation_in_polar(trace: Trace) -> Mask:
+def no_compensation_in_polar(ramps: Ramps) -> Mask:
     """
     Contour cut without cutter compensation.
 
@@ -39,4 +39,4 @@ def no_compensation_in_polar(trace: Trace) -> Mask:
         G40 X2.4
         G13.1
     """
-    return trace.ramps.uncompensated
+    return ramps.uncompensated

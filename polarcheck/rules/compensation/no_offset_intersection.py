@@ -1,15 +1,15 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Mask, Trace, rule
+from polarcheck.checking.rule import ERROR, Mask, Ramps, rule
 
 
 @rule(
     ERROR,
-    "paths of the tool center in this block and the next do not meet with R {radius:length}",
-    needs=("radius",),
+    "paths of the tool center in this block and the next do not meet with R {trace.radius:length}",
+    needs=("trace.radius",),
     where="ramps.compensated",
 )
-def no_offset_intersection(trace: Trace) -> Mask:
+def no_offset_intersection(ramps: Ramps) -> Mask:
     """
     Inside corner without a meeting point for the tool center.
 
@@ -45,4 +45,4 @@ def no_offset_intersection(trace: Trace) -> Mask:
         G40 X110.
         G13.1
     """
-    return trace.ramps.does_not_meet
+    return ramps.does_not_meet

@@ -1,15 +1,15 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Hits, Trace, rule
+from polarcheck.checking.rule import ERROR, Mask, Ramps, Trace, rule
 
 
 @rule(
     ERROR,
-    "offset {offset_number} has nose type T{nose:.0f}; for a mill it must be {allowed}",
+    "offset {trace.offset_number} has nose type T{trace.nose:.0f}; for a mill it must be {allowed}",
     at=("G41", "G42"),
     once="section",
 )
-def nose_type_not_zero(trace: Trace) -> Hits:
+def nose_type_not_zero(trace: Trace, ramps: Ramps) -> Mask:
     """
     Nose type of a turning tool in the offset of a mill.
 
@@ -39,4 +39,4 @@ def nose_type_not_zero(trace: Trace) -> Hits:
         G40 X60.
         G13.1
     """
-    return trace.starts_up & trace.ramps.nose_wrong, {"allowed": trace.ramps.nose_types}
+    return trace.starts_up & ramps.nose_wrong

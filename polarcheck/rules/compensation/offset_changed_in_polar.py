@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Hits, Trace, rule
+from polarcheck.checking.rule import ERROR, Mask, Ramps, rule
 
 
 @rule(ERROR, "tool offset changed in the polar mode by {changed_by}; write it {outside}", at=("T", "G10"))
-def offset_changed_in_polar(trace: Trace) -> Hits:
+def offset_changed_in_polar(ramps: Ramps) -> Mask:
     """
     Tool offset changed in the polar mode.
 
@@ -39,4 +39,4 @@ def offset_changed_in_polar(trace: Trace) -> Hits:
         G13.1
         T0111
     """
-    return trace.ramps.offset_changes, {"changed_by": trace.ramps.offset_changed_by, "outside": trace.modes.outside}
+    return ramps.offset_changes

@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Hits, Trace, rule
+from polarcheck.checking.rule import ERROR, Mask, Ramps, Trace, rule
 
 
 @rule(ERROR, "{side} begins and no tool offset is in force, so that R is 0", at=("G41", "G42"), once="section")
-def offset_number_missing(trace: Trace) -> Hits:
+def offset_number_missing(trace: Trace, ramps: Ramps) -> Mask:
     """
     Cutter compensation without a tool offset.
 
@@ -35,5 +35,4 @@ def offset_number_missing(trace: Trace) -> Hits:
         G13.1
         T0800
     """
-    missing = trace.starts_up & (trace.offset_number == 0) & trace.ramps.tool_is_called
-    return missing, {"side": trace.ramps.side}
+    return trace.starts_up & (trace.offset_number == 0) & ramps.tool_is_called

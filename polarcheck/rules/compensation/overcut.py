@@ -1,13 +1,13 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Hits, Trace, rule
+from polarcheck.checking.rule import ERROR, Mask, Overcutting, rule
 
 
 @rule(
     ERROR,
-    "the cutter goes {depth:length} deep into {place}",
-    needs=("radius",),
-    where="ramps.offset_mode",
+    "the cutter goes {overcutting.depth:length} deep into {place}",
+    needs=("trace.radius",),
+    where="trace.offset_mode",
     worst="overcutting.depth",
     unless=(
         "inside-arc-smaller-than-radius",
@@ -19,7 +19,7 @@ from polarcheck.checking.rule import ERROR, Hits, Trace, rule
         "start-up-shorter-than-radius",
     ),
 )
-def overcut(trace: Trace) -> Hits:
+def overcut(overcutting: Overcutting) -> Mask:
     """
     Tool cuts into the contour.
 
@@ -65,4 +65,4 @@ def overcut(trace: Trace) -> Hits:
         G40 X100.
         G13.1
     """
-    return trace.overcutting.depth > 0, {"depth": trace.overcutting.depth, "place": trace.overcutting.place}
+    return overcutting.depth > 0

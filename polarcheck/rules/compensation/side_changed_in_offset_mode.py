@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Hits, Trace, rule
+from polarcheck.checking.rule import WARNING, Mask, Ramps, rule
 
 
 @rule(WARNING, "{side} while {before} is active; write G40 with a move between them", at=("G41", "G42"))
-def side_changed_in_offset_mode(trace: Trace) -> Hits:
+def side_changed_in_offset_mode(ramps: Ramps) -> Mask:
     """
     Side of compensation changed without G40.
 
@@ -39,4 +39,4 @@ def side_changed_in_offset_mode(trace: Trace) -> Hits:
         G40 X80.
         G13.1
     """
-    return trace.ramps.side_changes, {"side": trace.ramps.side, "before": trace.ramps.side_before}
+    return ramps.side_changes

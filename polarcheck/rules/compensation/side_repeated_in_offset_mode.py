@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Hits, Trace, rule
+from polarcheck.checking.rule import WARNING, Mask, Ramps, rule
 
 
 @rule(
@@ -9,7 +9,7 @@ from polarcheck.checking.rule import WARNING, Hits, Trace, rule
     at=("G41", "G42"),
     once="section",
 )
-def side_repeated_in_offset_mode(trace: Trace) -> Hits:
+def side_repeated_in_offset_mode(ramps: Ramps) -> Mask:
     """
     G41 or G42 written again while it is active.
 
@@ -46,4 +46,4 @@ def side_repeated_in_offset_mode(trace: Trace) -> Hits:
         G40 X80.
         G13.1
     """
-    return trace.ramps.side_repeats, {"side": trace.ramps.side}
+    return ramps.side_repeats

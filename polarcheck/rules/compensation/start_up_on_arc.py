@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Hits, Trace, rule
+from polarcheck.checking.rule import ERROR, Mask, Ramps, Trace, rule
 
 
 @rule(ERROR, "{side} begins on an arc; begin it in a G1 block before the arc", at=("G41", "G42", "G2", "G3"))
-def start_up_on_arc(trace: Trace) -> Hits:
+def start_up_on_arc(trace: Trace, ramps: Ramps) -> Mask:
     """
     Cutter compensation begun on an arc.
 
@@ -35,4 +35,4 @@ def start_up_on_arc(trace: Trace) -> Hits:
         G40 C20.
         G13.1
     """
-    return trace.starts_up & trace.ramps.on_arc, {"side": trace.ramps.side}
+    return trace.starts_up & ramps.on_arc

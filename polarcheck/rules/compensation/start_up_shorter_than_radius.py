@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Hits, Trace, rule
+from polarcheck.checking.rule import ERROR, Mask, Ramps, Trace, rule
 
 
-@rule(ERROR, "ramp-on {fault}", at=("G41", "G42"), needs=("radius", "length"), where="ramps.on_of_length")
-def start_up_shorter_than_radius(trace: Trace) -> Hits:
+@rule(ERROR, "ramp-on {fault}", at=("G41", "G42"), needs=("trace.radius", "trace.length"), where="ramps.on_of_length")
+def start_up_shorter_than_radius(trace: Trace, ramps: Ramps) -> Mask:
     """
     Ramp-on shorter than the cutter radius.
 
@@ -48,5 +48,5 @@ def start_up_shorter_than_radius(trace: Trace) -> Hits:
         G40 X65. F1500
         G13.1
     """
-    short = trace.starts_up & trace.ramps.too_short & ~trace.ramps.on_arc
-    return short | (trace.ramps.begins_standing & trace.ramps.has_radius), {"fault": trace.ramps.fault}
+    short = trace.starts_up & ramps.too_short & ~ramps.on_arc
+    return short | (ramps.begins_standing & ramps.has_radius)

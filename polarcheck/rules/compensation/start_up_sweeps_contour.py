@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Hits, Trace, rule
+from polarcheck.checking.rule import ERROR, Hits, Overcutting, rule
 
 
 @rule(
@@ -16,7 +16,7 @@ from polarcheck.checking.rule import ERROR, Hits, Trace, rule
         "movement-missing-in-offset-mode",
     ),
 )
-def start_up_sweeps_contour(trace: Trace) -> Hits:
+def start_up_sweeps_contour(overcutting: Overcutting) -> Hits:
     """
     Ramp on or off that cuts the contour.
 
@@ -48,7 +48,4 @@ def start_up_sweeps_contour(trace: Trace) -> Hits:
         G40 C-50.
         G13.1
     """
-    return trace.overcutting.sweep_depth > 0, {
-        "depth": trace.overcutting.sweep_depth,
-        "place": trace.overcutting.sweep_place,
-    }
+    return Hits(overcutting.sweep_depth > 0, values={"depth": overcutting.sweep_depth})

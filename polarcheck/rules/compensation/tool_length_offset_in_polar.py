@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Hits, Trace, rule
+from polarcheck.checking.rule import ERROR, Mask, Modes, rule
 
 
 @rule(
@@ -8,7 +8,7 @@ from polarcheck.checking.rule import ERROR, Hits, Trace, rule
     "tool length offset cannot be switched in the polar mode; write it {outside}",
     at=("G43", "G44", "G49"),
 )
-def tool_length_offset_in_polar(trace: Trace) -> Hits:
+def tool_length_offset_in_polar(modes: Modes) -> Mask:
     """
     Tool length offset switched in the polar mode.
 
@@ -39,4 +39,4 @@ def tool_length_offset_in_polar(trace: Trace) -> Hits:
         G13.1
         G49
     """
-    return trace.modes.sets_length_offset, {"outside": trace.modes.outside}
+    return modes.sets_length_offset

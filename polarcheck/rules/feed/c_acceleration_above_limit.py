@@ -1,19 +1,20 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Hits, Trace, rule
+from polarcheck.checking.rule import WARNING, Feeds, Mask, rule
 
 
 @rule(
     WARNING,
-    "C axis would need {c_acceleration:.0f} deg/s2, {machine.title} has {machine.limits.c_acceleration:.0f}; "
-    "nearest distance {nearest:length}, highest F here: {allowed:feed}",
+    "C axis would need {tool_center.c_acceleration:.0f} deg/s2, {machine.title} has "
+    "{machine.limits.c_acceleration:.0f}; nearest distance {tool_center.nearest:length}, "
+    "highest F here: {feeds.allowed_by_acceleration:feed}",
     at=("F",),
-    needs=("c_acceleration",),
+    needs=("tool_center.c_acceleration",),
     where="feeds.is_limited_in_acceleration",
     unless=("c-feed-above-limit",),
-    worst="c_acceleration",
+    worst="tool_center.c_acceleration",
 )
-def c_acceleration_above_limit(trace: Trace) -> Hits:
+def c_acceleration_above_limit(feeds: Feeds) -> Mask:
     """
     Feed too high for the acceleration of the C axis.
 
@@ -41,4 +42,4 @@ def c_acceleration_above_limit(trace: Trace) -> Hits:
         X60.
         G13.1
     """
-    return trace.feeds.above_acceleration, {"allowed": trace.feeds.allowed_by_acceleration}
+    return feeds.above_acceleration

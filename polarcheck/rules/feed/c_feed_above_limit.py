@@ -1,17 +1,18 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, WARNING, Hits, Machine, Trace, rule
+from polarcheck.checking.rule import ERROR, WARNING, Hits, Machine, Reach, ToolCenter, rule
 
 
 @rule(
     ERROR,
-    "C axis would turn at {c_feed:.0f} deg/min, {verdict}; nearest distance {nearest:length}; {advice}",
+    "C axis would turn at {tool_center.c_feed:.0f} deg/min, {verdict}; "
+    "nearest distance {tool_center.nearest:length}; {advice}",
     at=("F",),
-    needs=("c_feed",),
-    where="cuts",
-    worst="c_feed",
+    needs=("tool_center.c_feed",),
+    where="trace.cuts",
+    worst="tool_center.c_feed",
 )
-def c_feed_above_limit(trace: Trace, machine: Machine) -> Hits:
+def c_feed_above_limit(reach: Reach, tool_center: ToolCenter, machine: Machine) -> Hits:
     """
     Feed too high for the distance from the center.
 
@@ -56,6 +57,5 @@ def c_feed_above_limit(trace: Trace, machine: Machine) -> Hits:
         G13.1
     """
     limit = machine.limits.c_feed
-    above = trace.reach.cuts_off_center & (trace.c_feed > trace.c_feed_limit)
-    severity = WARNING if machine.limits.automatic_override or limit != limit else ERROR  # NaN: not known
-    return above * severity, {"verdict": trace.feeds.c_verdict, "advice": trace.feeds.c_advice}
+    above = reach.cuts_off_center & (tool_center.c_feed > tool_center.c_feed_limit)
+    return Hits(above, WARNING if machine.limits.automatic_override or limit != limit else ERROR)

@@ -1,14 +1,14 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Hits, Machine, Trace, rule
+from polarcheck.checking.rule import WARNING, Feeds, Hits, Machine, Trace, rule
 
 
 @rule(
     WARNING,
-    "F is {feed:feed}, {machine.title} moves with {limit:feed} at most in the polar mode",
+    "F is {trace.feed:feed}, {machine.title} moves with {limit:feed} at most in the polar mode",
     at=("F",),
 )
-def feed_above_polar_limit(trace: Trace, machine: Machine) -> Hits:
+def feed_above_polar_limit(trace: Trace, feeds: Feeds, machine: Machine) -> Hits:
     """
     F above the highest feed of the polar mode.
 
@@ -35,4 +35,4 @@ def feed_above_polar_limit(trace: Trace, machine: Machine) -> Hits:
         G13.1
     """
     limit = machine.limits.polar_feed
-    return trace.feeds.begins & (trace.feed > limit), {"limit": limit}
+    return Hits(feeds.begins & (trace.feed > limit), values={"limit": limit})

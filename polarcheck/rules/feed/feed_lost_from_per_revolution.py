@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Mask, Trace, rule
+from polarcheck.checking.rule import ERROR, Feeds, Mask, Trace, rule
 
 
 @rule(
@@ -9,7 +9,7 @@ from polarcheck.checking.rule import ERROR, Mask, Trace, rule
     at=("G1", "G2", "G3"),
     unless=("feed-missing-in-polar",),
 )
-def feed_lost_from_per_revolution(trace: Trace) -> Mask:
+def feed_lost_from_per_revolution(trace: Trace, feeds: Feeds) -> Mask:
     """
     Feed per revolution before G12.1, and no F in the mode.
 
@@ -47,4 +47,4 @@ def feed_lost_from_per_revolution(trace: Trace) -> Mask:
         C10.
         G13.1
     """
-    return trace.first_in_section(trace.feeds.lost)
+    return trace.first_in_section(feeds.lost)

@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Mask, Trace, rule
+from polarcheck.checking.rule import ERROR, Feeds, Mask, Trace, rule
 
 
 @rule(ERROR, "cutting move without F: none is in force", at=("G1", "G2", "G3", "F"))
-def feed_missing_in_polar(trace: Trace) -> Mask:
+def feed_missing_in_polar(trace: Trace, feeds: Feeds) -> Mask:
     """
     Cutting move without a feed.
 
@@ -37,4 +37,4 @@ def feed_missing_in_polar(trace: Trace) -> Mask:
         C10.
         G13.1
     """
-    return trace.first_in_section(trace.feeds.missing)
+    return trace.first_in_section(feeds.missing)

@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import NOTE, Hits, Trace, rule
+from polarcheck.checking.rule import NOTE, Feeds, Mask, rule
 
 
-@rule(NOTE, "F is {feed:feed}; recommended in the polar mode: {recommended}", at=("F",))
-def feed_outside_recommended_range(trace: Trace) -> Hits:
+@rule(NOTE, "F is {trace.feed:feed}; recommended in the polar mode: {recommended}", at=("F",))
+def feed_outside_recommended_range(feeds: Feeds) -> Mask:
     """
     Feed outside what the builder recommends for the polar mode.
 
@@ -44,4 +44,4 @@ def feed_outside_recommended_range(trace: Trace) -> Hits:
         G40 X3. F40.
         G13.1
     """
-    return trace.feeds.begins & trace.feeds.outside_recommended, {"recommended": trace.feeds.recommended}
+    return feeds.begins & feeds.outside_recommended

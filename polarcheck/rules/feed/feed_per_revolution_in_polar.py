@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Mask, Trace, rule
+from polarcheck.checking.rule import WARNING, Feeds, Mask, Trace, rule
 
 
 @rule(
@@ -9,7 +9,7 @@ from polarcheck.checking.rule import WARNING, Mask, Trace, rule
     at=("G99", "G95", "G1", "G2", "G3"),
     unless=("feed-missing-in-polar",),
 )
-def feed_per_revolution_in_polar(trace: Trace) -> Mask:
+def feed_per_revolution_in_polar(trace: Trace, feeds: Feeds) -> Mask:
     """
     Feed per revolution in the polar mode.
 
@@ -44,4 +44,4 @@ def feed_per_revolution_in_polar(trace: Trace) -> Mask:
         G13.1
         G99 G0 X60.
     """
-    return trace.first_in_section(trace.feeds.per_revolution)
+    return trace.first_in_section(feeds.per_revolution)

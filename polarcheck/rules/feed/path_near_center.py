@@ -1,16 +1,16 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Hits, Machine, Trace, rule
+from polarcheck.checking.rule import WARNING, Hits, Machine, Reach, ToolCenter, rule
 
 
 @rule(
     WARNING,
-    "tool center comes within {nearest:length} of the center of the C axis; keep {keep_out:length} away",
+    "tool center comes within {tool_center.nearest:length} of the center of the C axis; keep {keep_out:length} away",
     at=("X", "U", "C", "H"),
     unless=("c-feed-above-limit",),
-    worst="c_feed",
+    worst="tool_center.c_feed",
 )
-def path_near_center(trace: Trace, machine: Machine) -> Hits:
+def path_near_center(reach: Reach, tool_center: ToolCenter, machine: Machine) -> Hits:
     """
     Path very close to the center of the C axis.
 
@@ -46,4 +46,4 @@ def path_near_center(trace: Trace, machine: Machine) -> Hits:
         G13.1
     """
     keep_out = machine.limits.keep_out
-    return trace.reach.cuts_off_center & (trace.nearest < keep_out), {"keep_out": keep_out}
+    return Hits(reach.cuts_off_center & (tool_center.nearest < keep_out), values={"keep_out": keep_out})

@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Hits, Trace, rule
+from polarcheck.checking.rule import ERROR, Mask, Reach, rule
 
 
 @rule(ERROR, "tool center {meeting}", at=("X", "U", "C", "H"))
-def path_through_center(trace: Trace) -> Hits:
+def path_through_center(reach: Reach) -> Mask:
     """
     Path through the center of the C axis.
 
@@ -53,4 +53,4 @@ def path_through_center(trace: Trace) -> Hits:
         C10.
         G13.1
     """
-    return trace.reach.meets_center, {"meeting": trace.reach.meeting}
+    return reach.meets_center

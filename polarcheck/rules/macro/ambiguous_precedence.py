@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import NOTE, Hits, Trace, rule
+from polarcheck.checking.rule import NOTE, Faults, Mask, rule
 
 
 @rule(NOTE, "{what}", over="faults")
-def ambiguous_precedence(trace: Trace) -> Hits:
+def ambiguous_precedence(faults: Faults) -> Mask:
     """
     Order of calculation that is taught in two ways.
 
@@ -26,4 +26,4 @@ def ambiguous_precedence(trace: Trace) -> Hits:
         #1=3+[4 AND 6]
         M30
     """
-    return trace.faults_of("ambiguous-precedence"), {"what": trace.fault_text}
+    return faults.rule == "ambiguous-precedence"

@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Hits, Trace, rule
+from polarcheck.checking.rule import ERROR, Faults, Mask, rule
 
 
 @rule(ERROR, "{what}", over="faults")
-def arithmetic_error(trace: Trace) -> Hits:
+def arithmetic_error(faults: Faults) -> Mask:
     """
     Calculation that has no result.
 
@@ -30,4 +30,4 @@ def arithmetic_error(trace: Trace) -> Hits:
         #3=SQRT[4]
         M30
     """
-    return trace.faults_of("arithmetic-error"), {"what": trace.fault_text}
+    return faults.rule == "arithmetic-error"

@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Hits, Trace, rule
+from polarcheck.checking.rule import WARNING, Faults, Mask, rule
 
 
 @rule(WARNING, "{what}", over="faults")
-def duplicate_sequence_number(trace: Trace) -> Hits:
+def duplicate_sequence_number(faults: Faults) -> Mask:
     """
     Jump to a sequence number that stands there twice.
 
@@ -33,4 +33,4 @@ def duplicate_sequence_number(trace: Trace) -> Hits:
         N20 G0 X70.
         M30
     """
-    return trace.faults_of("duplicate-sequence-number"), {"what": trace.fault_text}
+    return faults.rule == "duplicate-sequence-number"

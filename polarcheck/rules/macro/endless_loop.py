@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Hits, Trace, rule
+from polarcheck.checking.rule import ERROR, Faults, Mask, rule
 
 
 @rule(ERROR, "{what}", over="faults")
-def endless_loop(trace: Trace) -> Hits:
+def endless_loop(faults: Faults) -> Mask:
     """
     Program that never ends.
 
@@ -40,4 +40,4 @@ def endless_loop(trace: Trace) -> Hits:
         END1
         M30
     """
-    return trace.faults_of("endless-loop"), {"what": trace.fault_text}
+    return faults.rule == "endless-loop"

@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Hits, Trace, rule
+from polarcheck.checking.rule import ERROR, Faults, Mask, rule
 
 
 @rule(ERROR, "{what}", over="faults")
-def jump_target_missing(trace: Trace) -> Hits:
+def jump_target_missing(faults: Faults) -> Mask:
     """
     Jump to a sequence number that is not there.
 
@@ -28,4 +28,4 @@ def jump_target_missing(trace: Trace) -> Hits:
         N10 G0 X50.
         M30
     """
-    return trace.faults_of("jump-target-missing"), {"what": trace.fault_text}
+    return faults.rule == "jump-target-missing"

@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Hits, Trace, rule
+from polarcheck.checking.rule import ERROR, Faults, Mask, rule
 
 
 @rule(ERROR, "{what}", over="faults")
-def loop_number_out_of_range(trace: Trace) -> Hits:
+def loop_number_out_of_range(faults: Faults) -> Mask:
     """
     Loop number other than 1, 2 and 3.
 
@@ -31,4 +31,4 @@ def loop_number_out_of_range(trace: Trace) -> Hits:
         END3
         M30
     """
-    return trace.faults_of("loop-number-out-of-range"), {"what": trace.fault_text}
+    return faults.rule == "loop-number-out-of-range"

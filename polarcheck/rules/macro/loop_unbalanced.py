@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Hits, Trace, rule
+from polarcheck.checking.rule import ERROR, Faults, Mask, rule
 
 
 @rule(ERROR, "{what}", over="faults")
-def loop_unbalanced(trace: Trace) -> Hits:
+def loop_unbalanced(faults: Faults) -> Mask:
     """
     Loop that does not close.
 
@@ -38,4 +38,4 @@ def loop_unbalanced(trace: Trace) -> Hits:
         END1
         M30
     """
-    return trace.faults_of("loop-unbalanced"), {"what": trace.fault_text}
+    return faults.rule == "loop-unbalanced"

@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Hits, Trace, rule
+from polarcheck.checking.rule import ERROR, Faults, Mask, rule
 
 
 @rule(ERROR, "{what}", over="faults")
-def macro_argument(trace: Trace) -> Hits:
+def macro_argument(faults: Faults) -> Mask:
     """
     Address that cannot hand over an argument.
 
@@ -32,4 +32,4 @@ def macro_argument(trace: Trace) -> Hits:
         G0 X#1 Z#2
         M99
     """
-    return trace.faults_of("macro-argument"), {"what": trace.fault_text}
+    return faults.rule == "macro-argument"

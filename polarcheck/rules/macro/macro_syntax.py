@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Hits, Trace, rule
+from polarcheck.checking.rule import ERROR, Faults, Mask, rule
 
 
 @rule(ERROR, "{what}", over="faults")
-def macro_syntax(trace: Trace) -> Hits:
+def macro_syntax(faults: Faults) -> Mask:
     """
     Macro statement that cannot be read.
 
@@ -35,4 +35,4 @@ def macro_syntax(trace: Trace) -> Hits:
         #1=10
         N10 M30
     """
-    return trace.faults_of("macro-syntax"), {"what": trace.fault_text}
+    return faults.rule == "macro-syntax"

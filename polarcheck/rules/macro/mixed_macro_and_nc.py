@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Hits, Trace, rule
+from polarcheck.checking.rule import ERROR, Faults, Mask, rule
 
 
 @rule(ERROR, "{what}", over="faults")
-def mixed_macro_and_nc(trace: Trace) -> Hits:
+def mixed_macro_and_nc(faults: Faults) -> Mask:
     """
     NC words and a macro statement in one block.
 
@@ -28,4 +28,4 @@ def mixed_macro_and_nc(trace: Trace) -> Hits:
         #1=6
         M30
     """
-    return trace.faults_of("mixed-macro-and-nc"), {"what": trace.fault_text}
+    return faults.rule == "mixed-macro-and-nc"

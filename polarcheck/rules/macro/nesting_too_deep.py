@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Hits, Trace, rule
+from polarcheck.checking.rule import ERROR, Faults, Mask, rule
 
 
 @rule(ERROR, "{what}", over="faults")
-def nesting_too_deep(trace: Trace) -> Hits:
+def nesting_too_deep(faults: Faults) -> Mask:
     """
     Calls, loops or brackets nested too deep.
 
@@ -38,4 +38,4 @@ def nesting_too_deep(trace: Trace) -> Hits:
         #1=[[[[[5]]]]]
         M99
     """
-    return trace.faults_of("nesting-too-deep"), {"what": trace.fault_text}
+    return faults.rule == "nesting-too-deep"

@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Hits, Trace, rule
+from polarcheck.checking.rule import ERROR, Faults, Mask, rule
 
 
 @rule(ERROR, "{what}", over="faults")
-def read_only_variable(trace: Trace) -> Hits:
+def read_only_variable(faults: Faults) -> Mask:
     """
     Assignment to a variable that only the control writes.
 
@@ -27,4 +27,4 @@ def read_only_variable(trace: Trace) -> Hits:
         #100=#5021
         M30
     """
-    return trace.faults_of("read-only-variable"), {"what": trace.fault_text}
+    return faults.rule == "read-only-variable"

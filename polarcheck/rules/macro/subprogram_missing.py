@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Hits, Trace, rule
+from polarcheck.checking.rule import WARNING, Faults, Mask, rule
 
 
 @rule(WARNING, "{what}", over="faults")
-def subprogram_missing(trace: Trace) -> Hits:
+def subprogram_missing(faults: Faults) -> Mask:
     """
     Called program that is not found.
 
@@ -37,4 +37,4 @@ def subprogram_missing(trace: Trace) -> Hits:
         G0 X50.
         M99
     """
-    return trace.faults_of("subprogram-missing"), {"what": trace.fault_text}
+    return faults.rule == "subprogram-missing"

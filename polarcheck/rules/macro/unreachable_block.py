@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import NOTE, Hits, Trace, rule
+from polarcheck.checking.rule import NOTE, Faults, Mask, rule
 
 
 @rule(NOTE, "{what}", over="faults")
-def unreachable_block(trace: Trace) -> Hits:
+def unreachable_block(faults: Faults) -> Mask:
     """
     Blocks that no run of the program comes to.
 
@@ -32,4 +32,4 @@ def unreachable_block(trace: Trace) -> Hits:
         N20 G0 X70.
         M30
     """
-    return trace.faults_of("unreachable-block"), {"what": trace.fault_text}
+    return faults.rule == "unreachable-block"

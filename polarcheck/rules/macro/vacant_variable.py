@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Hits, Trace, rule
+from polarcheck.checking.rule import WARNING, Faults, Mask, rule
 
 
 @rule(WARNING, "{what}", over="faults")
-def vacant_variable(trace: Trace) -> Hits:
+def vacant_variable(faults: Faults) -> Mask:
     """
     Address with a vacant variable.
 
@@ -27,4 +27,4 @@ def vacant_variable(trace: Trace) -> Hits:
         G0 X#101 Z5.
         M30
     """
-    return trace.faults_of("vacant-variable"), {"what": trace.fault_text}
+    return faults.rule == "vacant-variable"

@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Hits, Trace, rule
+from polarcheck.checking.rule import ERROR, Faults, Mask, rule
 
 
 @rule(ERROR, "{what}", over="faults")
-def variable_out_of_range(trace: Trace) -> Hits:
+def variable_out_of_range(faults: Faults) -> Mask:
     """
     Variable that does not exist.
 
@@ -27,4 +27,4 @@ def variable_out_of_range(trace: Trace) -> Hits:
         #100=2
         M30
     """
-    return trace.faults_of("variable-out-of-range"), {"what": trace.fault_text}
+    return faults.rule == "variable-out-of-range"

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Mask, Trace, rule
+from polarcheck.checking.rule import ERROR, Arcs, Mask, rule
 
 
 @rule(
@@ -9,7 +9,7 @@ from polarcheck.checking.rule import ERROR, Mask, Trace, rule
     at=("I", "J"),
     unless=("diameter-radius-mixed",),
 )
-def arc_center_on_path(trace: Trace) -> Mask:
+def arc_center_on_path(arcs: Arcs) -> Mask:
     """
     Arc whose center is its start or its end.
 
@@ -45,4 +45,4 @@ def arc_center_on_path(trace: Trace) -> Mask:
         G1 X60.
         G13.1
     """
-    return trace.arcs.center_on_path
+    return arcs.center_on_path

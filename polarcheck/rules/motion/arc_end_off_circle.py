@@ -1,18 +1,18 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Hits, Machine, Trace, rule
+from polarcheck.checking.rule import ERROR, Arcs, Hits, Machine, rule
 
 
 @rule(
     ERROR,
-    "the arc starts {start_radius:length} from its center and ends {end_radius:length} from it; "
+    "the arc starts {arcs.start_radius:length} from its center and ends {arcs.end_radius:length} from it; "
     "{tolerance:length} of difference is allowed",
     at=("X", "U", "C", "H", "I", "J"),
     needs=("arcs.end_radius",),
     where="arcs.by_center",
     unless=("arc-center-on-path", "diameter-radius-mixed"),
 )
-def arc_end_off_circle(trace: Trace, machine: Machine) -> Hits:
+def arc_end_off_circle(arcs: Arcs, machine: Machine) -> Hits:
     """
     Arc whose end is not on its circle.
 
@@ -50,6 +50,4 @@ def arc_end_off_circle(trace: Trace, machine: Machine) -> Hits:
         G1 X60.
         G13.1
     """
-    arcs = trace.arcs
-    radii = {"start_radius": arcs.start_radius, "end_radius": arcs.end_radius, "tolerance": machine.arcs.tolerance}
-    return arcs.ends_off_circle, radii
+    return Hits(arcs.ends_off_circle, values={"tolerance": machine.arcs.tolerance})

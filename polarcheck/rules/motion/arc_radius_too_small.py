@@ -1,17 +1,18 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Hits, Trace, rule
+from polarcheck.checking.rule import ERROR, Arcs, Mask, rule
 
 
 @rule(
     ERROR,
-    "a radius of {radius:length} does not reach: start and end are {chord:length} apart, least radius {least_radius}",
+    "a radius of {arcs.radius:length} does not reach: start and end are {arcs.chord:length} apart, "
+    "least radius {least_radius}",
     at=("X", "U", "C", "H", "R"),
     needs=("arcs.chord",),
     where="arcs.by_radius",
     unless=("diameter-radius-mixed",),
 )
-def arc_radius_too_small(trace: Trace) -> Hits:
+def arc_radius_too_small(arcs: Arcs) -> Mask:
     """
     Arc with an R that does not reach from start to end.
 
@@ -48,5 +49,4 @@ def arc_radius_too_small(trace: Trace) -> Hits:
         G1 X60.
         G13.1
     """
-    arcs = trace.arcs
-    return arcs.does_not_reach, {"radius": arcs.radius, "chord": arcs.chord, "least_radius": arcs.least_radius}
+    return arcs.does_not_reach

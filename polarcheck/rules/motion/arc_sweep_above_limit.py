@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Hits, Machine, Trace, rule
+from polarcheck.checking.rule import WARNING, Arcs, Machine, Mask, rule
 
 #: What the last digit of the coordinates may turn an arc by [deg].
 ROUNDING = 0.1
@@ -8,10 +8,10 @@ ROUNDING = 0.1
 
 @rule(
     WARNING,
-    "arc of {sweep:.0f} deg; {machine.title} takes {machine.arcs.sweep_limit:.0f} in one block",
+    "arc of {arcs.sweep:.0f} deg; {machine.title} takes {machine.arcs.sweep_limit:.0f} in one block",
     at=("X", "U", "C", "H", "I", "J", "R"),
 )
-def arc_sweep_above_limit(trace: Trace, machine: Machine) -> Hits:
+def arc_sweep_above_limit(arcs: Arcs, machine: Machine) -> Mask:
     """
     Arc through more degrees than this control takes in one block.
 
@@ -48,4 +48,4 @@ def arc_sweep_above_limit(trace: Trace, machine: Machine) -> Hits:
         G1 X60.
         G13.1
     """
-    return trace.arcs.sweep > machine.arcs.sweep_limit + ROUNDING, {"sweep": trace.arcs.sweep}
+    return arcs.sweep > machine.arcs.sweep_limit + ROUNDING

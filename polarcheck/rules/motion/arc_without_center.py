@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Mask, Trace, rule
+from polarcheck.checking.rule import ERROR, Arcs, Mask, rule
 
 
 @rule(ERROR, "arc without R, I or J", at=("G2", "G3", "X", "U", "C", "H"))
-def arc_without_center(trace: Trace) -> Mask:
+def arc_without_center(arcs: Arcs) -> Mask:
     """
     Arc with neither radius nor center.
 
@@ -40,4 +40,4 @@ def arc_without_center(trace: Trace) -> Mask:
         G1 X-20.
         G13.1
     """
-    return trace.arcs.without_center
+    return arcs.without_center

@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Hits, Trace, rule
+from polarcheck.checking.rule import ERROR, Arcs, Hits, rule
 
 
-@rule(ERROR, "{word} is not of the polar plane; the center is {center}", at=("K",))
-def arc_word_of_other_plane(trace: Trace) -> Hits:
+@rule(ERROR, "{word} is not of the polar plane; the center is {center}")
+def arc_word_of_other_plane(arcs: Arcs) -> Hits:
     """
     Center of an arc with K.
 
@@ -40,4 +40,4 @@ def arc_word_of_other_plane(trace: Trace) -> Hits:
         G1 X60.
         G13.1
     """
-    return trace.arcs.has_word_of_other_plane, {"word": trace.own.other_center, "center": trace.own.center_along}
+    return Hits(arcs.has_word_of_other_plane, at=arcs.words_of_other_plane)

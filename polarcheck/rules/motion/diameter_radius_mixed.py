@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Hits, Trace, rule
+from polarcheck.checking.rule import WARNING, Arcs, Mask, rule
 
 
 @rule(
@@ -9,7 +9,7 @@ from polarcheck.checking.rule import WARNING, Hits, Trace, rule
     at=("on",),
     once="section",
 )
-def diameter_radius_mixed(trace: Trace) -> Hits:
+def diameter_radius_mixed(arcs: Arcs) -> Mask:
     """
     X written as a radius where the control reads a diameter, or the other way.
 
@@ -62,4 +62,4 @@ def diameter_radius_mixed(trace: Trace) -> Hits:
         G1 C0
         G13.1
     """
-    return trace.arcs.x_is_misread, {"reading": trace.arcs.x_reading, "other": trace.arcs.x_other_reading}
+    return arcs.x_is_misread

@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Mask, Trace, rule
+from polarcheck.checking.rule import WARNING, Arcs, Mask, rule
 
 
 @rule(WARNING, "arc by radius that ends where it starts: nothing moves; a full circle needs I or J", at=("X", "C", "R"))
-def full_circle_by_radius(trace: Trace) -> Mask:
+def full_circle_by_radius(arcs: Arcs) -> Mask:
     """
     Full circle with R.
 
@@ -40,4 +40,4 @@ def full_circle_by_radius(trace: Trace) -> Mask:
         G1 X60.
         G13.1
     """
-    return trace.arcs.circle_by_radius
+    return arcs.circle_by_radius

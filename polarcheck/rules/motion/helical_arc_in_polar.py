@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Mask, Trace, rule
+from polarcheck.checking.rule import WARNING, Arcs, Mask, rule
 
 
 @rule(WARNING, "arc that moves Z, too: only with the helical option, else an alarm", at=("Z", "W"))
-def helical_arc_in_polar(trace: Trace) -> Mask:
+def helical_arc_in_polar(arcs: Arcs) -> Mask:
     """
     Arc in the polar mode that moves Z.
 
@@ -41,4 +41,4 @@ def helical_arc_in_polar(trace: Trace) -> Mask:
         G1 X60.
         G13.1
     """
-    return trace.arcs.helical
+    return arcs.helical

@@ -1,12 +1,12 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Mask, Trace, rule
+from polarcheck.checking.rule import WARNING, Arcs, Mask, rule
 
 
 @rule(
     WARNING, "negative radius of an arc: more than 180 deg, or an alarm", at=("R",), unless=("full-circle-by-radius",)
 )
-def negative_arc_radius(trace: Trace) -> Mask:
+def negative_arc_radius(arcs: Arcs) -> Mask:
     """
     Arc with a negative R.
 
@@ -42,4 +42,4 @@ def negative_arc_radius(trace: Trace) -> Mask:
         G1 X60.
         G13.1
     """
-    return trace.arcs.radius < 0
+    return arcs.radius < 0

@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Hits, Trace, rule
+from polarcheck.checking.rule import WARNING, Increments, Mask, rule
 
 
 @rule(WARNING, "{text} has no decimal point: the control takes it as {taken_as}", over="words")
-def number_without_point(trace: Trace) -> Hits:
+def number_without_point(increments: Increments) -> Mask:
     """
     Length without a decimal point.
 
@@ -58,4 +58,4 @@ def number_without_point(trace: Trace) -> Hits:
         C20
         G13.1
     """
-    return trace.increments.without_point > 0, {"taken_as": trace.increments.taken_as}
+    return increments.without_point > 0

@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Hits, Trace, rule
+from polarcheck.checking.rule import ERROR, Mask, Reach, rule
 
 
 @rule(ERROR, "{travel}", at=("X", "U", "C", "H", "Z", "W"), needs=("reach.most_x",), where="reach.is_limited_in_x")
-def travel_limit(trace: Trace) -> Hits:
+def travel_limit(reach: Reach) -> Mask:
     """
     Move beyond the travel of X or Z.
 
@@ -44,4 +44,4 @@ def travel_limit(trace: Trace) -> Hits:
         G13.1
         G0 X70.
     """
-    return trace.reach.leaves_travel, {"travel": trace.reach.travel}
+    return reach.leaves_travel

@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, WARNING, Hits, Trace, rule
+from polarcheck.checking.rule import ERROR, Hits, Modes, graded, rule
 
 
 @rule(ERROR, "{codes} cannot be used in the polar mode; write it {outside}")
-def code_not_allowed_in_polar(trace: Trace) -> Hits:
+def code_not_allowed_in_polar(modes: Modes) -> Hits:
     """
     Code that cannot be used in the polar mode.
 
@@ -60,9 +60,4 @@ def code_not_allowed_in_polar(trace: Trace) -> Hits:
         C180.
         G80
     """
-    severity = trace.modes.not_allowed * ERROR + trace.modes.limits_speed * WARNING
-    return severity, {
-        "codes": trace.modes.codes_not_allowed,
-        "outside": trace.modes.outside,
-        "at": trace.modes.names_not_allowed,
-    }
+    return graded(error=modes.not_allowed, warning=modes.limits_speed, at=modes.words_not_allowed)

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Hits, Trace, rule
+from polarcheck.checking.rule import ERROR, Hits, Infeed, rule
 
 
 @rule(
@@ -8,7 +8,7 @@ from polarcheck.checking.rule import ERROR, Hits, Trace, rule
     "{E} asks for passes around the contour, which ends {gap:length} from where it begins: it must be closed",
     at=("E",),
 )
-def contour_open_with_infeed(trace: Trace) -> Hits:
+def contour_open_with_infeed(infeed: Infeed) -> Hits:
     """
     Infeed cycle on a contour that is not closed.
 
@@ -56,4 +56,4 @@ def contour_open_with_infeed(trace: Trace) -> Hits:
         G40 X120.
         G13.1
     """
-    return trace.infeed.is_open, {"gap": trace.infeed.gap}
+    return Hits(infeed.is_open, values={"gap": infeed.gap})

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Hits, Trace, rule
+from polarcheck.checking.rule import WARNING, Hits, Modes, rule
 
 
 @rule(
@@ -9,7 +9,7 @@ from polarcheck.checking.rule import WARNING, Hits, Trace, rule
     "the rest of the section lies within {reach:length} of the center",
     once="section",
 )
-def degrees_in_polar(trace: Trace) -> Hits:
+def degrees_in_polar(modes: Modes) -> Hits:
     """
     Angle written where the polar mode takes a length.
 
@@ -56,9 +56,5 @@ def degrees_in_polar(trace: Trace) -> Hits:
         X150.
         G13.1
     """
-    return trace.modes.looks_like_angle, {
-        "word": trace.modes.virtual_word,
-        "virtual_length": trace.modes.virtual_length,
-        "reach": trace.modes.reach,
-        "at": trace.modes.virtual_axis,
-    }
+    values = {"virtual_length": modes.virtual_length, "reach": modes.reach}
+    return Hits(modes.looks_like_angle, at=modes.virtual_words, values=values)

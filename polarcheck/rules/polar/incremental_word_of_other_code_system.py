@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Hits, Trace, rule
+from polarcheck.checking.rule import ERROR, Hits, Modes, rule
 
 
 @rule(
@@ -8,7 +8,7 @@ from polarcheck.checking.rule import ERROR, Hits, Trace, rule
     "{meaning}; if the lathe runs another system, set control.g_code_system",
     once="program",
 )
-def incremental_word_of_other_code_system(trace: Trace) -> Hits:
+def incremental_word_of_other_code_system(modes: Modes) -> Hits:
     """
     Absolute, incremental or feed word of another G-code system.
 
@@ -59,7 +59,4 @@ def incremental_word_of_other_code_system(trace: Trace) -> Hits:
         G90
         G13.1
     """
-    return trace.modes.is_of_other_system, {
-        "meaning": trace.modes.meaning_in_this_system,
-        "at": trace.modes.names_of_other_system,
-    }
+    return Hits(modes.is_of_other_system, at=modes.words_of_other_system)

@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, WARNING, Hits, Trace, rule
+from polarcheck.checking.rule import ERROR, Hits, Modes, graded, rule
 
 
-@rule(ERROR, "{codes} still in force at {switch}; write {ends} before it", at=("on",))
-def modal_state_wrong_at_entry(trace: Trace) -> Hits:
+@rule(ERROR, "{in_force} still in force at {switch}; write {ends} before it", at=("on",))
+def modal_state_wrong_at_entry(modes: Modes) -> Hits:
     """
     Cycle, scaling, rotation, mirror image or constant surface speed in force on entry.
 
@@ -48,10 +48,4 @@ def modal_state_wrong_at_entry(trace: Trace) -> Hits:
         X60.
         G13.1
     """
-    wrong = trace.modes.state_wrong_at_entry
-    severity = wrong * ERROR + (trace.modes.constant_speed_at_entry & ~wrong) * WARNING
-    return severity, {
-        "codes": trace.modes.codes_in_force,
-        "ends": trace.modes.codes_to_end_them,
-        "switch": trace.modes.switch,
-    }
+    return graded(error=modes.state_wrong_at_entry, warning=modes.constant_speed_at_entry)

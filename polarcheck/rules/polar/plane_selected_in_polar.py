@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Hits, Trace, rule
+from polarcheck.checking.rule import ERROR, Mask, Modes, rule
 
 
 @rule(
@@ -8,7 +8,7 @@ from polarcheck.checking.rule import ERROR, Hits, Trace, rule
     "{plane} in the polar mode: its plane is always that of X and C; delete it or write it {outside}",
     at=("G17", "G18", "G19"),
 )
-def plane_selected_in_polar(trace: Trace) -> Hits:
+def plane_selected_in_polar(modes: Modes) -> Mask:
     """
     Plane selected in the polar mode.
 
@@ -47,4 +47,4 @@ def plane_selected_in_polar(trace: Trace) -> Hits:
         G13.1
         G17
     """
-    return trace.modes.selects_plane, {"plane": trace.modes.plane, "outside": trace.modes.outside}
+    return modes.selects_plane

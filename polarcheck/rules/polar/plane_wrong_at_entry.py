@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Hits, Trace, rule
+from polarcheck.checking.rule import ERROR, Mask, Modes, rule
 
 
 @rule(ERROR, "{plane} is in force at {switch}; {wanted} must be, write it before", at=("on",))
-def plane_wrong_at_entry(trace: Trace) -> Hits:
+def plane_wrong_at_entry(modes: Modes) -> Mask:
     """
     Polar mode entered in another plane than the lathe wants.
 
@@ -44,8 +44,4 @@ def plane_wrong_at_entry(trace: Trace) -> Hits:
         X60.
         G13.1
     """
-    return trace.modes.plane_wrong_at_entry, {
-        "plane": trace.modes.plane,
-        "switch": trace.modes.switch,
-        "wanted": trace.modes.plane_wanted,
-    }
+    return modes.plane_wrong_at_entry

@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Hits, Trace, rule
+from polarcheck.checking.rule import WARNING, Mask, Trace, rule
 
 
 @rule(WARNING, "{switch} again: the polar mode is on since line {since}", at=("on",))
-def polar_entered_twice(trace: Trace) -> Hits:
+def polar_entered_twice(trace: Trace) -> Mask:
     """
     Polar mode switched on while it is on.
 
@@ -39,4 +39,4 @@ def polar_entered_twice(trace: Trace) -> Hits:
         X60.
         G13.1
     """
-    return trace.enters_again, {"switch": trace.modes.switch, "since": trace.modes.entered_at}
+    return trace.enters_again

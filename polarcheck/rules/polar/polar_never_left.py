@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Hits, Trace, rule
+from polarcheck.checking.rule import ERROR, Mask, Sections, rule
 
 
 @rule(ERROR, "polar mode is never left: {missing_before}", over="sections", at=("on",))
-def polar_never_left(trace: Trace) -> Hits:
+def polar_never_left(sections: Sections) -> Mask:
     """
     Polar mode still on at the tool change or the end of the program.
 
@@ -53,4 +53,4 @@ def polar_never_left(trace: Trace) -> Hits:
         G28 U0
         M30
     """
-    return ~trace.sections.left, {"missing_before": trace.modes.missing_before}
+    return ~sections.left

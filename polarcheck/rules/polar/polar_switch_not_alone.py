@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Hits, Trace, rule
+from polarcheck.checking.rule import ERROR, Hits, Modes, rule
 
 
 @rule(ERROR, "{switch} shares its block with {others}; it must stand in a block of its own")
-def polar_switch_not_alone(trace: Trace) -> Hits:
+def polar_switch_not_alone(modes: Modes) -> Hits:
     """
     G12.1 or G13.1 not in a block of its own.
 
@@ -35,8 +35,4 @@ def polar_switch_not_alone(trace: Trace) -> Hits:
         G13.1
         G0 Z50.
     """
-    return trace.modes.switch_not_alone, {
-        "switch": trace.modes.switch,
-        "others": trace.modes.beside_switch,
-        "at": trace.modes.names_beside_switch,
-    }
+    return Hits(modes.switch_not_alone, at=modes.words_beside_switch)

@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Hits, Trace, rule
+from polarcheck.checking.rule import ERROR, Mask, Ramps, rule
 
 
 @rule(ERROR, "{switch} while {side} is active; G40 must be in force here", at=("on", "off"))
-def polar_switched_in_offset_mode(trace: Trace) -> Hits:
+def polar_switched_in_offset_mode(ramps: Ramps) -> Mask:
     """
     Polar mode switched on or off while G41 or G42 is active.
 
@@ -49,4 +49,4 @@ def polar_switched_in_offset_mode(trace: Trace) -> Hits:
         G40 X60.
         G13.1
     """
-    return trace.ramps.switched_in_offset_mode, {"switch": trace.modes.switch, "side": trace.ramps.side_before}
+    return ramps.switched_in_offset_mode

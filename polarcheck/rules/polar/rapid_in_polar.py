@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Mask, Trace, rule
+from polarcheck.checking.rule import ERROR, Mask, Modes, rule
 
 
 @rule(ERROR, "G0 cannot be used in the polar mode; write G1 with a high F", at=("G0",))
-def rapid_in_polar(trace: Trace) -> Mask:
+def rapid_in_polar(modes: Modes) -> Mask:
     """
     Rapid traverse in the polar mode.
 
@@ -40,4 +40,4 @@ def rapid_in_polar(trace: Trace) -> Mask:
         G13.1
         G0 X60.
     """
-    return trace.modes.rapid
+    return modes.rapid

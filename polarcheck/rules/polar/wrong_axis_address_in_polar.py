@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Hits, Trace, rule
+from polarcheck.checking.rule import ERROR, Hits, Modes, rule
 
 
 @rule(
@@ -8,7 +8,7 @@ from polarcheck.checking.rule import ERROR, Hits, Trace, rule
     "{word} is no coordinate of the polar plane: its second axis is {machine.polar.virtual_axis} here{other_controls}",
     once="section",
 )
-def wrong_axis_address_in_polar(trace: Trace) -> Hits:
+def wrong_axis_address_in_polar(modes: Modes) -> Hits:
     """
     Second axis of the polar plane under the address of another control.
 
@@ -39,8 +39,4 @@ def wrong_axis_address_in_polar(trace: Trace) -> Hits:
         G13.1
         G28 V0
     """
-    return trace.modes.other_axis, {
-        "word": trace.modes.other_axis_word,
-        "other_controls": trace.modes.other_controls,
-        "at": trace.modes.names_of_other_axis,
-    }
+    return Hits(modes.other_axis, at=modes.other_axis_words)

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Mask, Trace, rule
+from polarcheck.checking.rule import WARNING, Mask, Modes, rule
 
 
 @rule(
@@ -8,7 +8,7 @@ from polarcheck.checking.rule import WARNING, Mask, Trace, rule
     "Z moves together with X or C in the polar mode; write Z in a block of its own",
     at=("X", "U", "C", "H", "Z", "W"),
 )
-def z_with_plane_axis(trace: Trace) -> Mask:
+def z_with_plane_axis(modes: Modes) -> Mask:
     """
     Z in one block with X or C.
 
@@ -48,4 +48,4 @@ def z_with_plane_axis(trace: Trace) -> Mask:
         X60.
         G13.1
     """
-    return trace.modes.interpolates_z
+    return modes.interpolates_z

@@ -1,17 +1,17 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, WARNING, Hits, Trace, rule
+from polarcheck.checking.rule import ERROR, Entry, Hits, graded, rule
 
 
 @rule(
     ERROR,
-    "X stands at {x:diameter} at {switch}; stock {stock:length} and cutter {cutter_diameter:length} need "
+    "X stands at {trace.x:diameter} at {switch}; stock {stock:length} and cutter {trace.cutter_diameter:length} need "
     "{needed:diameter} or more",
     at=("on",),
-    needs=("cutter_diameter",),
+    needs=("trace.cutter_diameter",),
     where="entry.approaches_stock",
 )
-def approach_inside_stock(trace: Trace) -> Hits:
+def approach_inside_stock(entry: Entry) -> Hits:
     """
     Approach point inside the stock.
 
@@ -62,9 +62,5 @@ def approach_inside_stock(trace: Trace) -> Hits:
         G1 Z2. F1500
         G13.1
     """
-    severity = trace.entry.inside_stock * ERROR + trace.entry.inside_clearance * WARNING
-    return severity, {
-        "stock": trace.entry.stock_diameter,
-        "needed": trace.entry.x_needed,
-        "switch": trace.modes.switch,
-    }
+    values = {"stock": entry.stock_diameter, "needed": entry.x_needed}
+    return graded(error=entry.inside_stock, warning=entry.inside_clearance, values=values)

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Hits, Trace, rule
+from polarcheck.checking.rule import WARNING, Entry, Mask, rule
 
 
 @rule(
@@ -9,7 +9,7 @@ from polarcheck.checking.rule import WARNING, Hits, Trace, rule
     at=("on",),
     unless=("c-axis-not-engaged", "c-axis-not-referenced"),
 )
-def c_angle_unknown_at_entry(trace: Trace) -> Hits:
+def c_angle_unknown_at_entry(entry: Entry) -> Mask:
     """
     C never positioned before the polar mode.
 
@@ -55,4 +55,4 @@ def c_angle_unknown_at_entry(trace: Trace) -> Hits:
         G13.1
         M30
     """
-    return trace.entry.c_angle_unknown, {"switch": trace.modes.switch}
+    return entry.c_angle_unknown

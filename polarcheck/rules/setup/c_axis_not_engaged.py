@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Hits, Trace, rule
+from polarcheck.checking.rule import WARNING, Entry, Hits, Machine, rule
 
 
 @rule(WARNING, "the C axis is not engaged; {codes} is missing before {switch}", at=("on",))
-def c_axis_not_engaged(trace: Trace) -> Hits:
+def c_axis_not_engaged(entry: Entry, machine: Machine) -> Hits:
     """
     Polar mode without the spindle as C axis.
 
@@ -57,4 +57,4 @@ def c_axis_not_engaged(trace: Trace) -> Hits:
         G13.1
         M30
     """
-    return trace.entry.c_axis_missing, {"codes": trace.entry.c_axis_codes, "switch": trace.modes.switch}
+    return Hits(entry.c_axis_missing, values={"codes": " or ".join(machine.m_codes.c_axis_on)})

@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Hits, Trace, rule
+from polarcheck.checking.rule import WARNING, Entry, Mask, rule
 
 
 @rule(WARNING, "C has not gone to its reference point since it was engaged; write G28 H0 before {switch}", at=("on",))
-def c_axis_not_referenced(trace: Trace) -> Hits:
+def c_axis_not_referenced(entry: Entry) -> Mask:
     """
     C axis engaged but not referenced.
 
@@ -46,4 +46,4 @@ def c_axis_not_referenced(trace: Trace) -> Hits:
         X60.
         G13.1
     """
-    return trace.entry.c_axis_not_referenced, {"switch": trace.modes.switch}
+    return entry.c_axis_not_referenced

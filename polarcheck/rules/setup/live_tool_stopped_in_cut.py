@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Hits, Trace, rule
+from polarcheck.checking.rule import ERROR, Entry, Hits, Machine, rule
 
 
 @rule(ERROR, "the live tool is not running in this cutting move; {codes} is missing", at=("G1", "G2", "G3"))
-def live_tool_stopped_in_cut(trace: Trace) -> Hits:
+def live_tool_stopped_in_cut(entry: Entry, machine: Machine) -> Hits:
     """
     Cutting move in the polar mode with the live tool stopped.
 
@@ -51,4 +51,4 @@ def live_tool_stopped_in_cut(trace: Trace) -> Hits:
         G13.1
         M5
     """
-    return trace.entry.live_tool_stopped, {"codes": trace.entry.live_tool_codes}
+    return Hits(entry.live_tool_stopped, values={"codes": " or ".join(machine.m_codes.live_tool_on)})

@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Hits, Trace, rule
+from polarcheck.checking.rule import WARNING, Entry, Mask, rule
 
 
 @rule(WARNING, "no tool offset is in force at {switch}", at=("on",))
-def no_tool_offset_at_entry(trace: Trace) -> Hits:
+def no_tool_offset_at_entry(entry: Entry) -> Mask:
     """
     Polar mode without a tool offset.
 
@@ -46,4 +46,4 @@ def no_tool_offset_at_entry(trace: Trace) -> Hits:
         G13.1
         T0800
     """
-    return trace.entry.offset_missing, {"switch": trace.modes.switch}
+    return entry.offset_missing

@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Hits, Trace, rule
+from polarcheck.checking.rule import ERROR, Entry, Hits, rule
 
 
 @rule(ERROR, "{name} puts X0 {shift:length} off the spindle axis at {switch}", at=("on",))
-def origin_off_center(trace: Trace) -> Hits:
+def origin_off_center(entry: Entry) -> Hits:
     """
     Origin of the polar plane off the spindle axis.
 
@@ -49,8 +49,4 @@ def origin_off_center(trace: Trace) -> Hits:
         X60.
         G13.1
     """
-    return trace.entry.origin_off_center, {
-        "name": trace.entry.origin_name,
-        "shift": trace.entry.origin_shift,
-        "switch": trace.modes.switch,
-    }
+    return Hits(entry.origin_off_center, values={"shift": entry.origin_shift})

@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import NOTE, Hits, Trace, rule
+from polarcheck.checking.rule import NOTE, Hits, OtherMachine, rule
 
 
 @rule(NOTE, "reads well on another machine: {fit}", at=("on",))
-def other_machine_fits(trace: Trace) -> Hits:
+def other_machine_fits(other_machine: OtherMachine) -> Hits:
     """
     Program for another machine.
 
@@ -69,4 +69,4 @@ def other_machine_fits(trace: Trace) -> Hits:
         G13.1
         M30
     """
-    return trace.other_machine.fits, {"fit": trace.other_machine.text}
+    return Hits(other_machine.fits, values={"fit": other_machine.text})

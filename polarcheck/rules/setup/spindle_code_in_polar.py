@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import NOTE, WARNING, Hits, Trace, rule
+from polarcheck.checking.rule import WARNING, Entry, Hits, graded, rule
 
 
-@rule(WARNING, "{codes} in the polar mode{what}")
-def spindle_code_in_polar(trace: Trace) -> Hits:
+@rule(WARNING, "{codes} in the polar mode; the spindle is the C axis here")
+def spindle_code_in_polar(entry: Entry) -> Hits:
     """
     Main spindle started or stopped, or the C axis released, in the polar mode.
 
@@ -50,10 +50,9 @@ def spindle_code_in_polar(trace: Trace) -> Hits:
         G13.1
         M5
     """
-    of_main_spindle = trace.entry.c_axis_code | trace.entry.has_live_tool_codes
-    severity = (trace.entry.spindle_code & of_main_spindle) * WARNING
-    return severity + (trace.entry.spindle_code & ~of_main_spindle) * NOTE, {
-        "codes": trace.entry.spindle_codes,
-        "at": trace.entry.spindle_names,
-        "what": "; the spindle is the C axis here",
-    }
+    of_main_spindle = entry.c_axis_code | entry.has_live_tool_codes
+    return graded(
+        warning=entry.spindle_code & of_main_spindle,
+        note=entry.spindle_code & ~of_main_spindle,
+        at=entry.spindle_words,
+    )

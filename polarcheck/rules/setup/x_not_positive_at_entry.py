@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Hits, Trace, rule
+from polarcheck.checking.rule import WARNING, Entry, Mask, rule
 
 
-@rule(WARNING, "X stands at {x:diameter} at {switch}; enter the polar mode above 0", at=("on",))
-def x_not_positive_at_entry(trace: Trace) -> Hits:
+@rule(WARNING, "X stands at {trace.x:diameter} at {switch}; enter the polar mode above 0", at=("on",))
+def x_not_positive_at_entry(entry: Entry) -> Mask:
     """
     X at the center or beyond it where the polar mode begins.
 
@@ -31,4 +31,4 @@ def x_not_positive_at_entry(trace: Trace) -> Hits:
         X60.
         G13.1
     """
-    return trace.entry.x_not_positive, {"switch": trace.modes.switch}
+    return entry.x_not_positive

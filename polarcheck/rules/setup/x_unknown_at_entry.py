@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Hits, Trace, rule
+from polarcheck.checking.rule import WARNING, Entry, Mask, rule
 
 
 @rule(WARNING, "X has not been positioned before {switch}", at=("on",))
-def x_unknown_at_entry(trace: Trace) -> Hits:
+def x_unknown_at_entry(entry: Entry) -> Mask:
     """
     X not positioned before the polar mode.
 
@@ -63,4 +63,4 @@ def x_unknown_at_entry(trace: Trace) -> Hits:
         G13.1
         M99
     """
-    return trace.entry.x_unknown, {"switch": trace.modes.switch}
+    return entry.x_unknown

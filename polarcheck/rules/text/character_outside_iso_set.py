@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import NOTE, Hits, Trace, rule
+from polarcheck.checking.rule import NOTE, Lexical, Mask, rule
 
 
 @rule(NOTE, "{characters} not in the ISO set of controls", over="foreign")
-def character_outside_iso_set(trace: Trace) -> Hits:
+def character_outside_iso_set(lexical: Lexical) -> Mask:
     """
     Character that controls have no code for.
 
@@ -34,4 +34,4 @@ def character_outside_iso_set(trace: Trace) -> Hits:
         X60.
         G13.1
     """
-    return trace.lexical.is_first_foreign, {"characters": trace.lexical.foreign_characters}
+    return lexical.is_first_foreign

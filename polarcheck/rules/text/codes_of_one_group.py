@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Hits, Trace, rule
+from polarcheck.checking.rule import WARNING, Lexical, Mask, rule
 
 
 @rule(WARNING, "{code} and {other} of one modal group in a block; the control takes the last, {code}", over="words")
-def codes_of_one_group(trace: Trace) -> Hits:
+def codes_of_one_group(lexical: Lexical) -> Mask:
     """
     Two G codes of one modal group in a block.
 
@@ -38,4 +38,4 @@ def codes_of_one_group(trace: Trace) -> Hits:
         X60.
         G13.1
     """
-    return trace.lexical.overrules, {"code": trace.lexical.code, "other": trace.lexical.overruled}
+    return lexical.overrules

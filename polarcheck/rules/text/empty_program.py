@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Mask, Trace, rule
+from polarcheck.checking.rule import WARNING, Lexical, Mask, rule
 
 
 @rule(WARNING, "there is no block in this file", over="files")
-def empty_program(trace: Trace) -> Mask:
+def empty_program(lexical: Lexical) -> Mask:
     """
     File without any block.
 
@@ -26,4 +26,4 @@ def empty_program(trace: Trace) -> Mask:
         M30
         %
     """
-    return trace.lexical.is_empty
+    return lexical.is_empty

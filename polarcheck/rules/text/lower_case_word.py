@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import NOTE, Mask, Trace, rule
+from polarcheck.checking.rule import NOTE, Lexical, Mask, rule
 
 
 @rule(NOTE, "words in lower case from here on; older controls do not read them", over="words")
-def lower_case_word(trace: Trace) -> Mask:
+def lower_case_word(lexical: Lexical) -> Mask:
     """
     Words in lower case.
 
@@ -31,4 +31,4 @@ def lower_case_word(trace: Trace) -> Mask:
         X60.
         G13.1
     """
-    return trace.lexical.is_first_lower_case
+    return lexical.is_first_lower_case

@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import NOTE, Mask, Trace, rule
+from polarcheck.checking.rule import NOTE, Lexical, Mask, rule
 
 
 @rule(NOTE, "stands for blocks left out; what follows is judged as if nothing had happened there", over="dots")
-def omitted_text(trace: Trace) -> Mask:
+def omitted_text(lexical: Lexical) -> Mask:
     """
     Line of points in place of blocks.
 
@@ -34,4 +34,4 @@ def omitted_text(trace: Trace) -> Mask:
         X60.
         G13.1
     """
-    return trace.lexical.is_first_dots
+    return lexical.is_first_dots

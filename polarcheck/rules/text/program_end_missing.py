@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Mask, Trace, rule
+from polarcheck.checking.rule import WARNING, Lexical, Mask, rule
 
 
 @rule(WARNING, "the program ends here without M30, M02 or M99", over="words")
-def program_end_missing(trace: Trace) -> Mask:
+def program_end_missing(lexical: Lexical) -> Mask:
     """
     Program without an end.
 
@@ -45,4 +45,4 @@ def program_end_missing(trace: Trace) -> Mask:
         G0 X60.
         M9
     """
-    return trace.lexical.lacks_end
+    return lexical.lacks_end

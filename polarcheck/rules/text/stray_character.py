@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Hits, Trace, rule
+from polarcheck.checking.rule import ERROR, Lexical, Mask, rule
 
 
 @rule(ERROR, "{stray}", over="strays")
-def stray_character(trace: Trace) -> Hits:
+def stray_character(lexical: Lexical) -> Mask:
     """
     Character that is no part of a word.
 
@@ -43,4 +43,4 @@ def stray_character(trace: Trace) -> Hits:
         G13.1
         M30 %
     """
-    return trace.lexical.is_first_stray, {"stray": trace.lexical.stray}
+    return lexical.is_first_stray

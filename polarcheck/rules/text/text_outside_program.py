@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import NOTE, Mask, Trace, rule
+from polarcheck.checking.rule import NOTE, Lexical, Mask, rule
 
 
 @rule(NOTE, "not stored by the control: it stands outside the program", over="outside")
-def text_outside_program(trace: Trace) -> Mask:
+def text_outside_program(lexical: Lexical) -> Mask:
     """
     Text before the program or after its end.
 
@@ -41,4 +41,4 @@ def text_outside_program(trace: Trace) -> Mask:
         M30
         %
     """
-    return trace.lexical.is_text_outside
+    return lexical.is_text_outside

@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Hits, Machine, Trace, rule
+from polarcheck.checking.rule import ERROR, Hits, Lexical, Machine, rule
 
 
 @rule(ERROR, "{text} has more than {limit} digits", over="words")
-def too_many_digits(trace: Trace, machine: Machine) -> Hits:
+def too_many_digits(lexical: Lexical, machine: Machine) -> Hits:
     """
     Number with too many digits.
 
@@ -32,4 +32,4 @@ def too_many_digits(trace: Trace, machine: Machine) -> Hits:
         X60.
         G13.1
     """
-    return trace.lexical.has_too_many_digits, {"limit": machine.control.digit_limit}
+    return Hits(lexical.has_too_many_digits, values={"limit": machine.control.digit_limit})

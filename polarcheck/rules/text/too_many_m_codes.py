@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Hits, Machine, Trace, rule
+from polarcheck.checking.rule import WARNING, Hits, Lexical, Machine, rule
 
 
 @rule(WARNING, "{count} M codes in a block; this control takes {limit}", over="words")
-def too_many_m_codes(trace: Trace, machine: Machine) -> Hits:
+def too_many_m_codes(lexical: Lexical, machine: Machine) -> Hits:
     """
     More M codes in a block than the control takes.
 
@@ -25,4 +25,4 @@ def too_many_m_codes(trace: Trace, machine: Machine) -> Hits:
         M46
     """
     limit = machine.control.m_code_limit
-    return trace.lexical.has_too_many_m_codes, {"count": trace.lexical.m_codes_in_block, "limit": limit}
+    return Hits(lexical.has_too_many_m_codes, values={"count": lexical.m_codes_in_block, "limit": limit})

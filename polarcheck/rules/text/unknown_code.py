@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, NOTE, WARNING, Hits, Machine, Trace, rule
+from polarcheck.checking.rule import ERROR, NOTE, Hits, Lexical, Machine, graded, rule
 
 
 @rule(ERROR, "{code} is no code of this control{times}", over="words")
-def unknown_code(trace: Trace, machine: Machine) -> Hits:
+def unknown_code(lexical: Lexical, machine: Machine) -> Hits:
     """
     G code that the control does not have.
 
@@ -36,7 +36,7 @@ def unknown_code(trace: Trace, machine: Machine) -> Hits:
         X60.
         G13.10
     """
-    unknown, may_call_macro = trace.lexical.is_unknown_code, trace.lexical.may_call_macro
-    error, warning = (ERROR, WARNING) if machine.control.unknown_codes_are_errors else (NOTE, NOTE)
-    severity = (unknown & ~may_call_macro) * error + (unknown & may_call_macro) * warning
-    return severity, {"code": trace.lexical.code, "times": trace.lexical.times}
+    if not machine.control.unknown_codes_are_errors:
+        return Hits(lexical.is_unknown_code, NOTE)
+    may_call_macro = lexical.is_unknown_code & lexical.may_call_macro
+    return graded(error=lexical.is_unknown_code & ~lexical.may_call_macro, warning=may_call_macro)

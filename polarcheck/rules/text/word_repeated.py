@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Mask, Trace, rule
+from polarcheck.checking.rule import WARNING, Lexical, Mask, rule
 
 
 @rule(WARNING, "a word of this address stands before it in the block; the control takes one of them", over="words")
-def word_repeated(trace: Trace) -> Mask:
+def word_repeated(lexical: Lexical) -> Mask:
     """
     Same address twice in a block.
 
@@ -32,4 +32,4 @@ def word_repeated(trace: Trace) -> Mask:
         G4 U1.
         M99
     """
-    return trace.lexical.repeats
+    return lexical.repeats

@@ -1,0 +1,63 @@
+"""Phrases that rules of several groups use."""
+
+from __future__ import annotations
+
+from polarcheck.checking.places import Place, squeezed
+from polarcheck.machines.codes import code_numbers, spelled
+from polarcheck.reading.translation import shown
+from polarcheck.reading.words import Text
+from polarcheck.table.trace import Trace
+
+
+def text(text: Text, place: Place) -> str:
+    """What stands at the place."""
+    return text.source.excerpt(place.start, place.end)
+
+
+def written(trace: Trace, row: int, address: str) -> str:
+    """The last word of an address in a row as it is written, without blanks; the address where there is none."""
+    indices = trace.word_indices(address)
+    at = indices[trace.run.row[indices] == row]
+    return executed_word(trace, int(at[-1])) if len(at) else address
+
+
+def word(trace: Trace, at: list[int]) -> str:
+    """The first word at fault as it is written, without blanks."""
+    return executed_word(trace, at[0])
+
+
+def executed_word(trace: Trace, index: int) -> str:
+    """An executed word as it is written, without blanks; `:` is O."""
+    table = trace.run.words
+    return squeezed(trace.text.source.excerpt(int(table.start[index]), int(table.end[index])))
+
+
+def codes(trace: Trace, at: list[int]) -> str:
+    """The codes at fault, each once, as in `G17, M5`."""
+    table = trace.run.words
+    numbers = code_numbers(table.value[at])
+    named = [spelled(chr(int(table.address[index])), int(number)) for index, number in zip(at, numbers, strict=True)]
+    return ", ".join(dict.fromkeys(named))
+
+
+def switch(trace: Trace, row: int) -> str:
+    """The code in this row that switches the polar mode on or off, as in G12.1 or G113."""
+    return shown(trace.machine.control.native_words, _switch(trace, row))
+
+
+def switch_off(trace: Trace, row: int) -> str:
+    """The code that ends the mode which the code in this row begins: G113 for G112."""
+    polar = trace.machine.polar
+    code = dict(zip(polar.on, polar.off, strict=False)).get(_switch(trace, row), polar.off[0])
+    return shown(trace.machine.control.native_words, code)
+
+
+def _switch(trace: Trace, row: int) -> str:
+    polar = trace.machine.polar
+    return next((name for name in (*polar.on, *polar.off) if trace.codes(name)[row]), polar.on[0])
+
+
+def outside(trace: Trace, row: int) -> str:
+    """Where it belongs, with the codes of this section: before G112 or after G113."""
+    enter = int(trace.sections.enter[trace.section[row]])
+    return f"before {switch(trace, enter)} or after {switch_off(trace, enter)}"

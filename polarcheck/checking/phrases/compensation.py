@@ -1,0 +1,76 @@
+"""Phrases of the rules about cutter compensation."""
+
+from __future__ import annotations
+
+from polarcheck.checking.quantity import in_row
+from polarcheck.machines.machine import Machine
+from polarcheck.table.overcutting import Overcutting
+from polarcheck.table.trace import Trace
+
+
+def side(trace: Trace, row: int) -> str:
+    """G41 or G42, whichever is in force."""
+    return f"G{trace.side[row]}"
+
+
+def before(trace: Trace, row: int) -> str:
+    """G41 or G42, whichever was in force before."""
+    return f"G{trace.side_before[row]}"
+
+
+def changed_by(trace: Trace, row: int) -> str:
+    """T0808 or G10."""
+    if trace.has("T")[row]:
+        return f"T{int(trace.tool[row]):02d}{int(trace.offset_number[row]):02d}"
+    return "G10"
+
+
+def allowed(machine: Machine) -> str:
+    """The nose types that a mill may have."""
+    return " or ".join(str(number) for number in machine.compensation.nose_types)
+
+
+def _along(trace: Trace, row: int, length: float) -> str:
+    """A way on the plane as the program writes it: along X on the diameter, else as it is."""
+    shown = in_row(length, trace, row)
+    start, end = trace.start[row], trace.end[row]
+    if start.imag == end.imag and start != end and shown.diameter:
+        return f"{shown:diameter} in X on the diameter"
+    virtual = f" in {trace.machine.polar.virtual_axis}" if start.real == end.real and start != end else ""
+    return f"{shown:length}{virtual}"
+
+
+def fault(trace: Trace, row: int) -> str:
+    """What is wrong with a ramp that is shorter than R, or has no length at all."""
+    if not trace.moves_plane[row]:
+        code = "G40" if trace.codes("G40")[row] else side(trace, row)
+        return f"is missing: no move on the plane follows {code}"
+    radius = abs(float(trace.radius[row]))
+    shown = in_row(radius, trace, row)
+    if trace.length[row] > 0:
+        moved = _along(trace, row, float(trace.length[row]))
+        return f"moves {moved}; with R {shown:length} it needs {_along(trace, row, radius)}"
+    return "does not move the tool" + (f"; it has to move R, {shown:length}, on the plane" if radius == radius else "")
+
+
+def why(trace: Trace, row: int) -> str:
+    """What keeps the control from knowing the move after this one in time."""
+    following = row + 1
+    while following < len(trace) and trace.in_polar[following] and not trace.length[following] > 0:
+        following += 1
+    stops = trace.codes(*trace.machine.m_codes.stops_reading)
+    for at in range(row, following):
+        if stops[at]:
+            return f"line {trace.line[at]} stops reading ahead"
+    count = following - row - 1
+    least = trace.machine.compensation.read_ahead - 2
+    blocks = f"{count} blocks" if count > 1 else "a block"
+    return f"{blocks} without a move on the plane follow{'' if count > 1 else 's'}, this control reads past {least}"
+
+
+def place(trace: Trace, overcutting: Overcutting, row: int) -> str:
+    """Where the row, or the ramp in it, cuts deepest, and into which line."""
+    cuts = overcutting.cuts if overcutting.depth[row] > 0 else overcutting.sweeps
+    into, place = cuts.deepest(row)
+    shown = f"{in_row(place, trace, row):point}".replace("C", trace.machine.polar.virtual_axis)
+    return f"the contour of line {int(trace.line[into])} at {shown}"

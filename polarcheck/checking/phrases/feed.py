@@ -1,0 +1,53 @@
+"""Phrases of the rules about F and the C axis."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from polarcheck.checking.quantity import in_row
+from polarcheck.table.reach import Reach
+from polarcheck.table.tool_center import ToolCenter
+from polarcheck.table.trace import Trace
+
+
+def recommended(trace: Trace, row: int) -> str:
+    """The ranges of F that the builder recommends."""
+    feeds = trace.machine.feed
+    cutting = _range(trace, row, feeds.cutting_minimum, feeds.cutting_maximum)
+    positioning = _range(trace, row, feeds.positioning_minimum, feeds.positioning_maximum)
+    return f"{cutting} for cutting, {positioning} for positioning"
+
+
+def _range(trace: Trace, row: int, least: float, most: float) -> str:
+    shown = in_row(least, trace, row)
+    return f"{shown.length(least):.4g} to {shown.length(most):.4g} {shown.unit}/min"
+
+
+def verdict(trace: Trace, tool_center: ToolCenter, row: int) -> str:
+    """What the machine allows of C, as far as the profile knows."""
+    limits = trace.machine.limits
+    if np.isnan(limits.c_feed):
+        return f"{float(tool_center.c_feed[row]) / 360:.0f} turns a minute and more than a C axis cuts with"
+    allows = f"{trace.machine.title} allows {limits.c_feed:.0f}"
+    if not limits.automatic_override:
+        return allows
+    slowed = in_row(float(tool_center.true_feed[row]), trace, row)
+    return f"{allows} and slows the feed down to {tool_center.override[row]:.2g} %, {slowed:feed}"
+
+
+def advice(trace: Trace, tool_center: ToolCenter, row: int) -> str:
+    """The highest F, or what to give to learn it."""
+    if np.isnan(trace.machine.limits.c_feed):
+        return "limits.c_feed would give the highest F here"
+    return f"highest F here: {in_row(float(tool_center.feed_allowed[row]), trace, row):feed}"
+
+
+def meeting(reach: Reach, tool_center: ToolCenter, row: int) -> str:
+    """How the tool center meets the center of C in a row that does."""
+    moves, stops, least = tool_center.moves, reach.stops_at_center, reach.least_increment[row]
+    at = np.flatnonzero((moves.row == row) & (stops | (moves.nearest < least)))[-1]
+    if stops[at]:
+        return "stops at the center of the C axis, where C has no angle"
+    if abs(moves.start[at]) < least:
+        return "starts at the center of the C axis, where C has no angle"
+    return "passes through the center of the C axis, where C would have to turn by 180 deg at once"

@@ -1,0 +1,74 @@
+"""Phrases of the rules about arcs, words and travel."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from polarcheck.checking.quantity import in_row
+from polarcheck.geometry.corner import ROUNDING
+from polarcheck.machines.machine import Machine
+from polarcheck.machines.modal import MM_PER_INCH, Units
+from polarcheck.table.arcs import Arcs
+from polarcheck.table.increments import Increments
+from polarcheck.table.reach import Reach
+from polarcheck.table.trace import Trace
+
+#: F without a point in an inch program [inch/min], parameter 1403#0 MIF = 0; in mm it is whole mm/min.
+_FEED_INCREMENT_INCH = 0.01
+
+
+def least_radius(trace: Trace, arcs: Arcs, row: int) -> str:
+    """The smallest R that reaches from start to end, rounded up to what the program can write."""
+    inch = trace.units[row] == Units.INCH
+    least, places = float(arcs.chord[row]) / (2 * MM_PER_INCH if inch else 2), 4 if inch else 3
+    text = f"{np.ceil(least * 10**places - 1e-6) / 10**places:.{places}f}".rstrip("0").rstrip(".")
+    return f"{text} {'inch' if inch else 'mm'}"
+
+
+def center(machine: Machine) -> str:
+    """`I along X and J along C`."""
+    linear, virtual = machine.polar.center_words
+    return f"{linear} along X and {virtual} along {machine.polar.virtual_axis}"
+
+
+def reading(trace: Trace, row: int) -> str:
+    """What X is in a row."""
+    return "diameter" if trace.x_factor[row] < 1 else "radius"
+
+
+def other(trace: Trace, row: int) -> str:
+    """What X is not."""
+    return "radius" if trace.x_factor[row] < 1 else "diameter"
+
+
+def taken_as(trace: Trace, increments: Increments, index: int) -> str:
+    """What the control takes a word of the file as, and how many more there are."""
+    table, control = trace.text.words, trace.machine.control
+    row = int(np.flatnonzero(trace.run.block == table.block[index])[0])
+    address, value = chr(int(table.address[index])), float(table.value[index])
+    inch = bool(trace.units[row] == Units.INCH)
+    if address == "F":
+        return f"{value * _FEED_INCREMENT_INCH:g} inch/min"
+    is_angle = address in "CH" and not trace.in_polar[row]
+    least = control.least_increment_inch if inch and not is_angle else control.least_increment
+    unit = "deg" if is_angle else "inch" if inch else "mm"
+    shown = f"{value * least:.4f}".rstrip("0").rstrip(".")
+    more = int(increments.without_point[index]) - 1
+    others = f"; {more} more coordinates of this section have none" if more > 0 else ""
+    return f"{shown} {unit}{others}"
+
+
+def travel(trace: Trace, reach: Reach, row: int) -> str:
+    """Where a row goes beyond the travel, and where that ends."""
+    limits = trace.machine.limits
+    reaches = (
+        ("X", "diameter", float(reach.most_x[row]), limits.x_maximum, 1),
+        ("X", "diameter", float(reach.least_x[row]), limits.x_minimum, -1),
+        ("Z", "length", float(trace.z[row]), limits.z_maximum, 1),
+        ("Z", "length", float(trace.z[row]), limits.z_minimum, -1),
+    )
+    for axis, form, value, limit, sign in reaches:
+        if np.isfinite(value) and sign * value > sign * limit + ROUNDING:
+            goes, end = (in_row(length, trace, row) for length in (value, limit))
+            return f"{axis} would go to {goes:{form}}, its travel ends at {end:{form}}"
+    return ""

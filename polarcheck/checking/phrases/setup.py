@@ -1,0 +1,17 @@
+"""Phrases of the rules about the state of the lathe around the section."""
+
+from __future__ import annotations
+
+from polarcheck.table.entry import Entry
+from polarcheck.table.trace import Trace
+
+
+def name(entry: Entry, row: int) -> str:
+    """What shifts the origin: work offset, G52, or both."""
+    shifts = [str(entry.work_offset_name[row])] if entry.work_offset_shift[row] else []
+    return " and ".join([*shifts, "G52"] if entry.local_shift[row] else shifts)
+
+
+def comment(trace: Trace, row: int) -> str:
+    """The comment that R was taken from."""
+    return trace.radius_comments[int(trace.offset_number[row])].comment

@@ -1,0 +1,165 @@
+"""Where the elements of a mask stand in the file: block, row and span of each, and the words at fault in it."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+
+import msgspec
+import numpy as np
+
+from polarcheck.arrays import Mask, Rows
+from polarcheck.checking.tables import Tables
+from polarcheck.machines.codes import code_numbers, spelled
+from polarcheck.table.trace import Trace
+
+
+class Place(msgspec.Struct, frozen=True):
+    """
+    One element of a mask: its characters in the file, from start to end (exclusive), and its block.
+
+    row: of the trace; -1 where no row runs it. index: the element itself, as of a section or a word.
+    """
+
+    start: int
+    end: int
+    block: int
+    row: int
+    index: int
+
+
+def blocks(over: str, tables: Tables) -> Rows:
+    """The block of each element of what a rule is over."""
+    trace: Trace = tables["trace"]
+    if over == "rows":
+        return trace.run.block
+    if over == "sections":
+        return trace.run.block[trace.sections.enter]
+    if over == "programs":
+        return trace.run.block[_last_rows(trace)]
+    if over == "faults":
+        return np.array([fault.block for fault in trace.run.faults], np.int64)
+    if over == "files":
+        return np.zeros(1, np.int64)
+    found: Rows = getattr(trace.text, over).block
+    return found
+
+
+def of_row(tables: Tables, index: int) -> Place:
+    """The words of a row; of a row without words its block without the blanks around it."""
+    trace: Trace = tables["trace"]
+    block = int(trace.run.block[index])
+    start, end = int(trace.text.blocks.start[block]), int(trace.text.blocks.end[block])
+    table, run = trace.run.words, trace.run
+    low, high = np.searchsorted(run.row, (index, index + 1))
+    if low < high:
+        start, end = int(table.start[low:high].min()), int(table.end[low:high].max())
+    else:
+        text = trace.text.source.excerpt(start, end)
+        start += len(text) - len(text.lstrip())
+        end -= len(text) - len(text.rstrip())
+    return Place(start, max(end, start + 1), block, index, index)
+
+
+def of_word(tables: Tables, index: int) -> Place:
+    """A word of the file."""
+    trace: Trace = tables["trace"]
+    table = trace.text.words
+    block = int(table.block[index])
+    return Place(int(table.start[index]), int(table.end[index]), block, int(trace.row_of_block[block]), index)
+
+
+def of_section(tables: Tables, index: int) -> Place:
+    """The G12.1 of a section."""
+    place = of_row(tables, int(tables["trace"].sections.enter[index]))
+    return msgspec.structs.replace(place, index=index)
+
+
+def of_program(tables: Tables, index: int) -> Place:
+    """The last row of the program, where its end is missing."""
+    place = of_row(tables, int(_last_rows(tables["trace"])[index]))
+    return msgspec.structs.replace(place, index=index)
+
+
+def _last_rows(trace: Trace) -> Rows:
+    return np.append(np.flatnonzero(trace.starts)[1:], len(trace)) - 1
+
+
+def of_file(tables: Tables, index: int) -> Place:
+    """The head of the file."""
+    return Place(0, 0, 0, -1, index)
+
+
+def of_fault(tables: Tables, index: int) -> Place:
+    """What macro or flow found wrong."""
+    trace: Trace = tables["trace"]
+    fault = trace.run.faults[index]
+    row = min(fault.row, len(trace) - 1)
+    return Place(fault.start, fault.end, fault.block, row if fault.row >= 0 else -1, index)
+
+
+def _of_span(name: str) -> Callable[[Tables, int], Place]:
+    def place(tables: Tables, index: int) -> Place:
+        trace: Trace = tables["trace"]
+        spans = getattr(trace.text, name)
+        block = int(spans.block[index])
+        start = int(spans.start[index])
+        end = int(spans.end[index])
+        if name == "outside":
+            end = min(end, max(int(trace.text.blocks.end[block]), start + 1))
+        return Place(start, end, block, int(trace.row_of_block[block]), index)
+
+    return place
+
+
+PLACES: dict[str, Callable[[Tables, int], Place]] = {
+    "rows": of_row,
+    "words": of_word,
+    "sections": of_section,
+    "programs": of_program,
+    "faults": of_fault,
+    "files": of_file,
+    **{name: _of_span(name) for name in ("comments", "strays", "foreign", "dots", "outside")},
+}
+
+
+def words_at_fault(tables: Tables, row: int, names: tuple[str, ...], at: Mask | None) -> list[int]:
+    """
+    The executed words of a row that are at fault: those of the mask, or those of the names; empty where there are none.
+
+    names: addresses (X, `,R`), codes (G1, M5), "on" and "off" for the codes of the mode.
+    """
+    if row < 0:
+        return []
+    trace: Trace = tables["trace"]
+    low, high = np.searchsorted(trace.run.row, (row, row + 1))
+    if at is not None:
+        return [index for index in range(low, high) if at[index]]
+    return [index for index in range(low, high) if _is_named(trace, index, names)]
+
+
+def span(tables: Tables, place: Place, at: list[int]) -> tuple[int, int]:
+    """From the first to the last word at fault, or the whole place where none is named."""
+    table = tables["trace"].run.words
+    if not at:
+        return place.start, place.end
+    return int(table.start[at].min()), int(table.end[at].max())
+
+
+def squeezed(text: str) -> str:
+    """Without blanks; `:` is O."""
+    return re.sub(r"\s+", "", text).replace(":", "O")
+
+
+def _is_named(trace: Trace, index: int, names: tuple[str, ...]) -> bool:
+    address = chr(int(trace.run.words.address[index]))
+    if address in names or (address.islower() and f",{address.upper()}" in names):
+        return True
+    number = int(code_numbers(trace.run.words.value[index : index + 1])[0])
+    spelled_code = spelled(address, number) if address in "GM" and number >= 0 else ""
+    polar_mode = trace.machine.polar
+    return (
+        spelled_code in names
+        or ("on" in names and spelled_code in polar_mode.on)
+        or ("off" in names and spelled_code in polar_mode.off)
+    )

@@ -1,0 +1,98 @@
+"""The tables of one run, each made when it is first asked for and handed over by its name, as pytest hands fixtures."""
+
+from __future__ import annotations
+
+import functools
+import importlib
+from collections.abc import Callable, Iterator, Mapping
+from typing import TYPE_CHECKING, Any
+
+from polarcheck.errors import RuleError
+
+if TYPE_CHECKING:
+    from polarcheck.execution.run import Run
+    from polarcheck.machines.job import Job
+    from polarcheck.machines.machine import Machine
+
+#: What makes each table; the parameters name the tables that it is made from.
+MAKERS = {
+    "trace": "polarcheck.table.trace:Trace",
+    "infeed": "polarcheck.table.infeed:Infeed",
+    "tool_center": "polarcheck.table.tool_center:ToolCenter",
+    "modes": "polarcheck.table.modes:Modes",
+    "entry": "polarcheck.table.entry:Entry",
+    "ramps": "polarcheck.table.ramps:Ramps",
+    "overcutting": "polarcheck.table.overcutting:Overcutting",
+    "arcs": "polarcheck.table.arcs:Arcs",
+    "reach": "polarcheck.table.reach:Reach",
+    "feeds": "polarcheck.table.feeds:Feeds",
+    "increments": "polarcheck.table.increments:Increments",
+    "lexical": "polarcheck.table.lexical:Lexical",
+    "faults": "polarcheck.checking.macro_faults:Faults",
+}
+#: Tables that are a column of another one.
+PARTS = {"sections": "trace.sections", "moves": "tool_center.moves"}
+#: Tables that hang on the text and the machine alone: what is found in them is the same however the program runs.
+OF_TEXT = frozenset({"text", "words", "machine", "job", "lexical"})
+
+
+class Tables(Mapping[str, Any]):
+    """
+    The tables of one run on one machine for one job, by name.
+
+    run, text, words, machine and job are given; what is made outside, once others are known, is given by `give`.
+    """
+
+    def __init__(self, run: Run, machine: Machine, job: Job) -> None:
+        self._made: dict[str, Any] = {
+            "run": run,
+            "text": run.text,
+            "words": run.text.words,
+            "machine": machine,
+            "job": job,
+        }
+
+    def __getitem__(self, name: str) -> Any:
+        if name not in self._made:
+            self._made[name] = self.column(PARTS[name]) if name in PARTS else self._make(name)
+        return self._made[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(dict.fromkeys((*self._made, *MAKERS, *PARTS)))
+
+    def __len__(self) -> int:
+        return len(list(iter(self)))
+
+    def give(self, name: str, table: Any) -> None:
+        """Add a table that was made elsewhere."""
+        self._made[name] = table
+
+    def _make(self, name: str) -> Any:
+        if name not in MAKERS:
+            raise RuleError(f"there is no table {name!r}; tables are {', '.join(sorted(self))}")
+        maker = _maker(MAKERS[name])
+        return maker(*(self[parameter] for parameter in parameters(maker)))
+
+    def column(self, path: str) -> Any:
+        """A column by its path, as in `trace.radius` or `machine.limits.c_feed`."""
+        name, _, rest = path.partition(".")
+        found = self[name]
+        for attribute in rest.split(".") if rest else ():
+            found = getattr(found, attribute)
+        return found
+
+
+@functools.cache
+def _maker(path: str) -> Callable[..., Any]:
+    module, _, name = path.partition(":")
+    maker: Callable[..., Any] = getattr(importlib.import_module(module), name)
+    return maker
+
+
+def parameters(maker: Callable[..., Any]) -> tuple[str, ...]:
+    """The names of the parameters of a function, or of what makes an object of a class."""
+    # inspect.signature costs more than most rules.
+    function: Any = getattr(maker, "__init__") if isinstance(maker, type) else maker  # noqa: B009 - mypy distrusts the dot
+    code = function.__code__
+    names: tuple[str, ...] = code.co_varnames[: code.co_argcount]
+    return names[1:] if isinstance(maker, type) else names

@@ -1,0 +1,284 @@
+"""
+Where the axes stand: the polar sections, and the programmed position after each row.
+
+Columns are made when they are first asked for. Inside everything is mm, deg, min and X as radius.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from functools import cached_property
+
+import numpy as np
+
+from polarcheck.arrays import Floats, Mask, Points, Rows, States
+from polarcheck.geometry import polar
+from polarcheck.machines.modal import COORDINATE_SETTING, Distance, Motion
+from polarcheck.table.columns import Columns
+from polarcheck.table.filling import before, fill_down, positions
+from polarcheck.table.sections import Marks, Sections, find_sections, section_column
+
+_PLANE_AXES = ("X", "U")
+_FACTOR = {"diameter": 0.5, "radius": 1.0}
+_NOWHERE = complex("nan+nanj")
+_PASSES = 8
+
+
+class Positions(Columns):
+    """The columns of where the tool is programmed to be; see the properties."""
+
+    # ---- motion ----
+
+    @cached_property
+    def moves_plane(self) -> Mask:
+        """Programs the linear or the virtual axis, an arc by its center alone included."""
+        is_arc = np.isin(self.state("motion"), (Motion.CW, Motion.CCW))
+        axes = self.has(*_PLANE_AXES, *self._virtual)
+        return self.uses_axes & (axes | (is_arc & self.has("I", "J", "K") & ~self.has("Z", "W"))) & ~self.switches_on
+
+    @cached_property
+    def moves_z(self) -> Mask:
+        """Programs Z."""
+        return self.uses_axes & self.has("Z", "W")
+
+    @cached_property
+    def _virtual(self) -> tuple[str, str]:
+        polar_mode = self.machine.polar
+        return polar_mode.virtual_axis, polar_mode.virtual_axis_increment
+
+    @cached_property
+    def motion(self) -> States:
+        """What the row does with its axis words (Motion); NONE without axis words."""
+        moving = self.moves_plane | self.moves_z | (self.uses_axes & self.has("C", "H", "Y", "V"))
+        motion = np.where(self.in_cycle, Motion.CYCLE, self.state("motion"))
+        return np.where(moving, motion, Motion.NONE).astype(np.int8)
+
+    @cached_property
+    def moves(self) -> Mask:
+        """Moves any axis."""
+        return np.asarray(self.motion != Motion.NONE)
+
+    # ---- polar sections ----
+
+    @cached_property
+    def switches_on(self) -> Mask:
+        """G12.1."""
+        return self.codes(*self.machine.polar.on)
+
+    @cached_property
+    def switches_off(self) -> Mask:
+        """G13.1."""
+        return self.codes(*self.machine.polar.off)
+
+    @cached_property
+    def sections(self) -> Sections:
+        """The polar sections."""
+        cutting = np.isin(self.motion, (Motion.LINE, Motion.CW, Motion.CCW))
+        marks = Marks(
+            on=self.switches_on & ~self.switches_off,
+            off=self.switches_off,
+            starts=self.starts,
+            outside=self.codes("G27", "G28", "G30", "G53"),
+            tool_ends=self.changes_tool | self.ends_program | self.codes("M1", "M6"),
+            rapid=self.codes("G0"),
+            cuts=cutting & self.has(*self._virtual),
+            moves=cutting & self.moves_plane,
+            returns=self.codes("M99"),
+        )
+        return find_sections(marks)
+
+    @cached_property
+    def section(self) -> Rows:
+        """Number of the polar section, its G12.1 included; -1 outside."""
+        return section_column(self.sections, len(self))
+
+    @cached_property
+    def enters(self) -> Mask:
+        """The G12.1 that begins a section."""
+        return self._rows(self.sections.enter)
+
+    @cached_property
+    def leaves(self) -> Mask:
+        """The G13.1 that ends a section."""
+        return self._rows(self.sections.leave[self.sections.left & ~self.sections.returned])
+
+    @cached_property
+    def enters_again(self) -> Mask:
+        """A G12.1 inside a section."""
+        return self._rows(self.sections.again)
+
+    def _rows(self, rows: Rows) -> Mask:
+        mask = np.zeros(len(self), bool)
+        mask[rows[rows < len(self)]] = True
+        return mask
+
+    def first_in_section(self, mask: Mask) -> Mask:
+        """Of the rows of a mask the first in each section."""
+        rows = np.flatnonzero(mask & (self.section >= 0))
+        first = np.ones(len(rows), bool)
+        first[1:] = np.diff(self.section[rows]) > 0
+        return self._rows(rows[first])
+
+    @cached_property
+    def in_polar(self) -> Mask:
+        """Between a G12.1 and its G13.1, neither included."""
+        return (self.section >= 0) & ~self.enters
+
+    # ---- positions ----
+
+    @cached_property
+    def incremental(self) -> Mask:
+        """G91 in systems B and C."""
+        return np.asarray(self.state("distance") == Distance.INCREMENTAL)
+
+    def _programmed(self, address: str, increment: str, factor: Floats | float, where: Mask) -> tuple[Floats, Floats]:
+        """Absolute coordinates (NaN where none) and increments (0 where none) of an axis in the rows `where`."""
+        value, step = self.length_of(address) * factor, self.length_of(increment) * factor
+        where = where & self.uses_axes
+        written = self.has(address) & where
+        has_step = self.has(increment) & where
+        absolute = np.where(written & ~self.incremental, value, np.nan)
+        absolute[~where] = np.nan
+        steps = np.where(written & self.incremental, value, 0.0) + np.where(has_step, step, 0.0)
+        broken = written & np.isnan(value)
+        return absolute, np.where(broken, np.nan, steps)
+
+    def _forgets(self, axis: str, increment: str) -> Mask:
+        """Rows after which an axis is not where its words say: references, shifts, cycles, blocks not executed."""
+        named = self.has(axis, increment)
+        setting = COORDINATE_SETTING[self.machine.control.g_code_system]
+        lost = self.codes("G10", "G28", "G30", "G52", "G53", setting) & named
+        work_offset = self.state("work_offset")
+        lost |= self.sets("work_offset") & (work_offset != before(work_offset, self.starts, 0))
+        if axis in "XZ":
+            cycle = (self.motion == Motion.CYCLE) | self.codes("G70", "G71", "G72", "G73", "G74", "G75", "G76")
+            lost |= cycle | self.changes_tool
+        return (lost & (self.section < 0)) | self.run.unknown | self.starts
+
+    def _set_by(self, axis: str) -> Floats:
+        """What G50 (G92) or G28 make the coordinate of an axis; NaN where that is not known."""
+        setting = self.codes(COORDINATE_SETTING[self.machine.control.g_code_system])
+        return np.where(setting & self.has(axis), self.length_of(axis), np.nan)
+
+    @cached_property
+    def x_factor(self) -> Floats:
+        """Radius per written X: a half where X is a diameter."""
+        control = self.machine.control
+        factor = np.where(self.section >= 0, _FACTOR[self.machine.polar.x], _FACTOR[control.x])
+        if not (control.x_radius_words or control.x_diameter_words):
+            return factor
+        radius, diameter = self._with(control.x_radius_words), self._with(control.x_diameter_words)
+        switched = radius | diameter | self.starts
+        chosen = fill_down(np.where(radius, 1.0, np.where(diameter, 0.5, np.nan)), switched, np.nan)
+        return np.asarray(np.where(np.isnan(chosen), factor, chosen), np.float64)
+
+    def _with(self, words: Iterable[str]) -> Mask:
+        """Rows with one of the codes and, where it asks for another word too, with that: `G10.9 X0`."""
+        rows = np.zeros(len(self), bool)
+        for word in words:
+            code, _, other = word.partition(" ")
+            found = self.codes(code)
+            rows |= found & (self.word(other[0]) == float(other[1:])) if other else found
+        return rows
+
+    @cached_property
+    def _plane(self) -> tuple[Points, Points]:
+        """Plane points after and before each row; the virtual coordinate is NaN outside the mode."""
+        x_words = self._programmed("X", "U", self.x_factor, ~self.enters)
+        c_words = self._programmed(*self._virtual, _FACTOR[self.machine.polar.virtual_axis_is], self.in_polar)
+        leave = self.sections.leave[self.sections.leave < len(self)]
+        c = positions(*c_words, self.enters, np.zeros(len(self)))
+        c = np.where(self.section >= 0, c, np.nan)
+        resets = self._forgets("X", "U") | self._rows(leave)
+        values = self._set_by("X") * self.x_factor
+        for _ in range(_PASSES):
+            x = positions(*x_words, resets, values)
+            if not len(leave):
+                break
+            # The control leaves the mode with X where the machine stands: never negative (B-62764EN/01 p. 51).
+            found = np.hypot(x[leave - 1], c[leave - 1])
+            if np.array_equal(found, values[leave], equal_nan=True):
+                break
+            values[leave] = found
+        else:
+            values[leave] = np.nan  # sections that hang on each other by increments alone, one after another
+            x = positions(*x_words, resets, values)
+        end = np.empty(len(self), np.complex128)
+        end.real, end.imag = x, c
+        return end, before(end, self.starts, _NOWHERE)
+
+    @cached_property
+    def end(self) -> Points:
+        """Programmed plane point after the row [mm]; NaN outside the mode or while unknown."""
+        return np.where(self.section >= 0, self._plane[0], _NOWHERE)
+
+    @cached_property
+    def start(self) -> Points:
+        """Programmed plane point before the row [mm]."""
+        return np.where(self.in_polar, self._plane[1], _NOWHERE)
+
+    @cached_property
+    def x(self) -> Floats:
+        """X after the row as a radius [mm]; the programmed one, so that it may be negative in the mode."""
+        return self._plane[0].real
+
+    @cached_property
+    def z(self) -> Floats:
+        """Z after the row [mm]; NaN while unknown."""
+        words = self._programmed("Z", "W", 1.0, np.ones(len(self), bool))
+        return positions(*words, self._forgets("Z", "W"), self._set_by("Z"))
+
+    @cached_property
+    def center(self) -> Points:
+        """Center of an arc on the polar plane [mm]; NaN for lines and where it cannot be known."""
+        arcs = self.is_arc
+        center = np.full(len(self), _NOWHERE)
+        if not arcs.any():
+            return center
+        i, j = (self.length_of(word)[arcs] for word in self.machine.polar.center_words)
+        written = ~np.isnan(i) | ~np.isnan(j)
+        start, end, kind = self.start[arcs], self.end[arcs], self.motion[arcs]
+        by_center = np.where(written, start + np.nan_to_num(i) + 1j * np.nan_to_num(j), _NOWHERE)
+        radius = self.length_of(self.machine.arcs.radius_word)[arcs]
+        by_radius = polar.center_from_radius(start, end, radius, kind, np.inf)
+        center[arcs] = np.where(np.isnan(radius), by_center, by_radius)
+        return center
+
+    @cached_property
+    def is_arc(self) -> Mask:
+        """An arc on the polar plane."""
+        return self.in_polar & self.moves_plane & np.isin(self.motion, (Motion.CW, Motion.CCW))
+
+    @cached_property
+    def length(self) -> Floats:
+        """Way of the row on the polar plane [mm]; 0 where it does not move there, NaN where unknown."""
+        moving = self.in_polar & self.moves_plane
+        length = np.zeros(len(self))
+        length[moving] = polar.length(*self._move(moving))
+        return length
+
+    def _move(self, rows: Mask) -> tuple[Points, Points, Points, States]:
+        return self.start[rows], self.end[rows], self.center[rows], self.motion[rows]
+
+    @cached_property
+    def c_angle(self) -> Floats:
+        """C angle of the machine after the row [deg], continuous along a section; NaN while unknown."""
+        moving = self.uses_axes & (self.section < 0)
+        written, stepped = self.has("C") & moving, self.has("H") & moving
+        absolute = np.where(written & ~self.incremental, self._degrees("C"), np.nan)
+        turn = np.where(written & self.incremental, self._degrees("C"), 0.0)
+        turn += np.where(stepped, self._degrees("H"), 0.0)
+        on_plane = self.in_polar & self.moves_plane
+        turn[on_plane] = polar.c_sweep(*self._move(on_plane))
+        # G28 H0 takes C to its reference point, the zero of its angle (builder's guide: "zero return C-axis").
+        referenced = self.codes("G28", "G30") & self.has("C", "H")
+        values = np.where(referenced, 0.0, np.where(self.codes("G50", "G92"), self._degrees("C"), np.nan))
+        return positions(absolute, turn, self._forgets("C", "H"), values)
+
+    def _degrees(self, address: str) -> Floats:
+        return self._column(f"degrees {address}", lambda: self._scatter(address, self._values))
+
+    @cached_property
+    def section_entry(self) -> Floats:
+        """C angle of each section at its G12.1 [deg]; 0 where it is not known."""
+        return np.nan_to_num(self.c_angle[self.sections.enter])
