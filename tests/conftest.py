@@ -1,11 +1,40 @@
-"""`pytest --accept` takes the present reports and paths as the golden ones."""
+"""`pytest --accept` takes the present reports and paths as the golden ones; names of tests say what they are given."""
 
 from __future__ import annotations
 
+import math
+from collections.abc import Mapping, Set
+from enum import Enum
+from typing import Any
+
 import pytest
+
+#: Characters of one value in the name of a test.
+LONGEST = 50
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption(
         "--accept", action="store_true", dest="update_snapshots", help="take the present outcomes as golden ones"
     )
+
+
+def pytest_make_parametrize_id(val: Any) -> str:
+    """Programs in one line, tables and numbers as their values: `X1. Z2. X3.-9`, not `X1. Z2. X3.-expected0`."""
+    text = _spelled(val).replace("\n", " ").strip().encode("unicode_escape").decode("ascii") or "nothing"
+    return text if len(text) <= LONGEST else f"{text[: LONGEST - 3]}..."
+
+
+def _spelled(value: Any) -> str:
+    if isinstance(value, Enum):
+        return value.name
+    if isinstance(value, Mapping):
+        return " ".join(f"{_spelled(key)}={_spelled(one)}" for key, one in value.items())
+    if isinstance(value, list | tuple | Set):
+        parts = [_spelled(one) for one in value]
+        return " ".join(sorted(parts) if isinstance(value, Set) else parts)
+    if isinstance(value, bytes):
+        return value.decode("latin-1")
+    if isinstance(value, complex):
+        return "unknown" if math.isnan(abs(value)) else f"{value:g}"
+    return str(getattr(value, "__name__", value))

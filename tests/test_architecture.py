@@ -41,6 +41,17 @@ def modules(folder: Path) -> dict[str, Path]:
     return found
 
 
+def name_of(path: Path) -> str:
+    """A module in the name of a test."""
+    return path.relative_to(PACKAGE).with_suffix("").as_posix()
+
+
+@functools.cache
+def tree_of(text: str) -> ast.Module:
+    """The syntax of a module; several tests walk each."""
+    return ast.parse(text)
+
+
 @functools.cache
 def imports_of_package() -> Imports:
     return imports(PACKAGE)
@@ -55,7 +66,7 @@ def imports(folder: Path) -> Imports:
     found: Imports = {}
     for name, path in known.items():
         here = name if path.name == "__init__.py" else name.rpartition(".")[0]
-        found[name] = set(_targets(ast.parse(path.read_text("utf-8")), here, known)) - {name, ""}
+        found[name] = set(_targets(tree_of(path.read_text("utf-8")), here, known)) - {name, ""}
     return found
 
 
@@ -166,11 +177,11 @@ def test_a_planted_circle_inside_a_package_is_seen(house: Path, planted: str) ->
 ARRAY_TYPES = ("Mask", "Floats", "Points", "Rows", "States")
 
 
-@pytest.mark.parametrize("path", sorted(PACKAGE.rglob("*.py")), ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", sorted(PACKAGE.rglob("*.py")), ids=name_of)
 def test_array_types_are_defined_once(path: Path) -> None:
     assigned = [
         target.id
-        for node in ast.walk(ast.parse(path.read_text("utf-8")))
+        for node in ast.walk(tree_of(path.read_text("utf-8")))
         if isinstance(node, ast.Assign | ast.AnnAssign)
         for target in (node.targets if isinstance(node, ast.Assign) else [node.target])
         if isinstance(target, ast.Name) and target.id in ARRAY_TYPES
@@ -179,14 +190,14 @@ def test_array_types_are_defined_once(path: Path) -> None:
     assert not assigned or path.name == "arrays.py" or stand_in
 
 
-@pytest.mark.parametrize("path", sorted(PACKAGE.rglob("*.py")), ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", sorted(PACKAGE.rglob("*.py")), ids=name_of)
 def test_modules_can_be_read_in_one_sitting(path: Path) -> None:
     assert len(path.read_text("utf-8").splitlines()) <= LINE_LIMIT
 
 
-@pytest.mark.parametrize("path", sorted((PACKAGE / "rules").glob("*/*.py")), ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", sorted((PACKAGE / "rules").glob("*/*.py")), ids=name_of)
 def test_rules_neither_loop_nor_load_numpy(path: Path) -> None:
-    tree = ast.parse(path.read_text("utf-8"))
+    tree = tree_of(path.read_text("utf-8"))
     allowed = {"checking.rule", "machines.modal", "geometry.tolerances"}
     name = ".".join(path.relative_to(PACKAGE).with_suffix("").parts)
     assert imports_of_package()[name.removesuffix(".__init__")] <= allowed
@@ -210,7 +221,7 @@ def test_no_control_is_named_in_code() -> None:
     """A difference between controls is data; only comments and docstrings name a control, as their source."""
     controls = ("fanuc", "haas", "gsk", "mitsubishi", "okuma", "mazak", "siemens", "citizen", "doosan", "lsis")
     for path in PACKAGE.rglob("*.py"):
-        tree = ast.parse(path.read_text("utf-8"))
+        tree = tree_of(path.read_text("utf-8"))
         documents = {
             id(node.body[0].value)
             for node in ast.walk(tree)

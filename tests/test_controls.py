@@ -88,6 +88,7 @@ G113
         (GSK_SINGLE, "gsk-988", "diameter"),
         (GSK_CYCLE, "gsk-988", "diameter"),
     ],
+    ids=["M700V", "GSK, once round", "GSK, infeed cycle"],
 )
 def test_the_example_of_the_manual_closes_in_one_reading_of_x(program: str, name: str, right: str) -> None:
     assert machine_of(name).polar.x == right

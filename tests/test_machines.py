@@ -8,13 +8,13 @@ from typing import Any
 
 import msgspec
 import pytest
-from click.testing import CliRunner
+from click.testing import CliRunner, Result
 from programs import report_of
 
 from polarcheck.checking.finding import ERROR
 from polarcheck.checking.rule import load_all
 from polarcheck.commands import main
-from polarcheck.errors import MachineError, UsageError
+from polarcheck.errors import MachineError
 from polarcheck.machines import profiles
 from polarcheck.machines.machine import Machine
 from polarcheck.machines.parameters import Origin
@@ -41,6 +41,10 @@ def _in_an_empty_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None
 def load(text: str) -> profiles.Profile:
     Path("own.toml").write_text(text, "utf-8")
     return profiles.load("own.toml")
+
+
+def machines(*arguments: str) -> Result:
+    return CliRunner().invoke(main, ["machines", *arguments], prog_name="polarcheck")
 
 
 def complaint(text: str) -> str:
@@ -219,23 +223,13 @@ def test_a_value_beside_a_parameter_counts() -> None:
 
 @pytest.mark.parametrize("name", profiles.names())
 def test_a_new_profile_can_be_read_empty_and_filled_in(name: str) -> None:
-    text = new_machine.new("NL2000", name)
+    text = new_machine.text("NL2000", name)
     of_parent = profiles.load(name).machine
     assert repr(msgspec.structs.replace(load(text).machine, title=of_parent.title)) == repr(of_parent)
     filled = load(re.sub(r"^#(?=[\w\"])", "", text, flags=re.MULTILINE))
     assert filled.machine.limits.c_feed == 3600
     assert filled.machine.title == "NL2000"
     assert max(map(len, text.splitlines())) < 200
-
-
-def test_a_new_profile_replaces_no_file() -> None:
-    assert new_machine.write("NL2000", "fanuc-30i") == Path("NL2000.toml")
-    assert profiles.load("NL2000.toml").chain == ("NL2000.toml", "fanuc-30i", "fanuc")
-    with pytest.raises(UsageError, match="is there already"):
-        new_machine.write("NL2000.toml", "fanuc")
-    with pytest.raises(MachineError, match="unknown machine"):
-        new_machine.write("NL2001", "gone")
-    assert not Path("NL2001.toml").exists()
 
 
 def test_a_profile_of_ones_own_checks() -> None:
@@ -246,7 +240,23 @@ def test_a_profile_of_ones_own_checks() -> None:
 
 
 def test_machines_new_writes_the_file() -> None:
-    found = CliRunner().invoke(main, ["machines", "new", "NL2000", "--from", "fanuc-30i"], prog_name="polarcheck")
+    found = machines("new", "NL2000", "--from", "fanuc-30i")
     assert (found.exit_code, found.stdout) == (0, "NL2000.toml written; check with --machine NL2000.toml\n")
-    assert profiles.load("NL2000.toml").chain[1] == "fanuc-30i"
-    assert CliRunner().invoke(main, ["machines", "fanuc", "NL2000"], prog_name="polarcheck").exit_code == 2
+    assert profiles.load("NL2000.toml").chain == ("NL2000.toml", "fanuc-30i", "fanuc")
+    assert machines("fanuc", "NL2000").exit_code == 2
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        (["NL2000"], "NL2000.toml is there already"),
+        (["NL2000.toml"], "NL2000.toml is there already"),
+        (["NL2001", "--from", "gone"], "unknown machine 'gone'; `polarcheck machines` lists them"),
+    ],
+)
+def test_a_new_profile_replaces_no_file(arguments: list[str], told: str) -> None:
+    Path("NL2000.toml").write_text("own", "utf-8")
+    found = machines("new", *arguments)
+    assert (found.exit_code, found.stdout, found.stderr) == (2, "", f"polarcheck: {told}\n")
+    assert [path.name for path in Path().iterdir()] == ["NL2000.toml"]
+    assert Path("NL2000.toml").read_text("utf-8") == "own"

@@ -12,7 +12,8 @@ from programs import ROOT, expected, report_of, said, tables_of, without_expecta
 from syrupy.assertion import SnapshotAssertion
 
 from polarcheck.checking.finding import FileReport
-from polarcheck.machines import job, profiles
+from polarcheck.commands import job_files
+from polarcheck.machines import profiles
 from polarcheck.reports.pages import executed
 
 FOLDER = ROOT / "sample_programs"
@@ -23,9 +24,9 @@ CONTROLS = [name for name in profiles.names() if name != profiles.DEFAULT]
 
 def settings(path: Path) -> dict[str, Any]:
     """The machine and the job that the nearest polarcheck.toml gives a sample."""
-    found = job.find(path)
+    found = job_files.find(path)
     assert found is not None
-    work = job.load(found)
+    work = job_files.load(found)
     assert work.machine is not None
     return {"machine": work.machine, "changes": {"limits": work.limits} if work.limits else None, "job": work}
 

@@ -235,6 +235,13 @@ def test_size_is_bounded(block: str) -> None:
     assert short.fault.rule == "macro-syntax"
 
 
+def test_size_is_bounded_where_nobody_asks_for_it() -> None:
+    statement = read_statement("X1" * 20_100)
+    assert len(statement.words) == 20_000
+    assert statement.fault is not None
+    assert statement.fault.kind == "too-long"
+
+
 HOSTILE = [
     "1",
     "X",
@@ -280,8 +287,8 @@ def test_reading_takes_linear_time(part: str, head: str) -> None:
         return calls
 
     assert work(400) <= 2.1 * work(200) + 50
-    statement = read_statement(head + part * (30_000 // len(part)))
-    assert len(statement.words) <= 20_000
+    statement = read_statement(head + part * (30_000 // len(part)), size=5_000)
+    assert len(statement.words) + len(statement.skips) <= 5_001
 
 
 SIGNS = [*"#[]=+-*/,.<>:;%()019XYIJPNO \t\0", "é", "#_A"]

@@ -11,7 +11,7 @@ import msgspec
 from polarcheck import __version__
 from polarcheck.checking import check
 from polarcheck.checking.finding import FileReport, Producer, Report, Summary
-from polarcheck.commands.settings import Settings
+from polarcheck.checking.settings import Settings
 from polarcheck.errors import PolarcheckError, SourceError
 from polarcheck.reading import files
 from polarcheck.reading.source import Source

@@ -33,7 +33,6 @@ if TYPE_CHECKING:
     from polarcheck.table.feeds import Feeds as Feeds
     from polarcheck.table.increments import Increments as Increments
     from polarcheck.table.infeed import Infeed as Infeed
-    from polarcheck.table.lexical import Lexical as Lexical
     from polarcheck.table.modes import Modes as Modes
     from polarcheck.table.overcutting import Overcutting as Overcutting
     from polarcheck.table.ramps import Ramps as Ramps
@@ -41,12 +40,11 @@ if TYPE_CHECKING:
     from polarcheck.table.sections import Sections as Sections
     from polarcheck.table.tool_center import ToolCenter as ToolCenter
     from polarcheck.table.trace import Trace as Trace
+    from polarcheck.table.written import Written as Written
 else:
     # Rules name the types of the tables for their readers; at run time they need none of them.
-    Arcs = Entry = Faults = Feeds = Floats = Increments = Infeed = Job = Lexical = Machine = Mask = Modes = (
-        OtherMachine
-    ) = Any
-    Overcutting = Ramps = Reach = Sections = States = Text = ToolCenter = Trace = Words = Any
+    Arcs = Entry = Faults = Feeds = Floats = Increments = Infeed = Job = Machine = Mask = Modes = OtherMachine = Any
+    Overcutting = Ramps = Reach = Sections = States = Text = ToolCenter = Trace = Words = Written = Any
 
 FOLDER = Path(__file__).parent.parent / "rules"
 

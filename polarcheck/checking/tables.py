@@ -27,13 +27,13 @@ MAKERS = {
     "reach": "polarcheck.table.reach:Reach",
     "feeds": "polarcheck.table.feeds:Feeds",
     "increments": "polarcheck.table.increments:Increments",
-    "lexical": "polarcheck.table.lexical:Lexical",
+    "written": "polarcheck.table.written:Written",
     "faults": "polarcheck.checking.macro_faults:Faults",
 }
 #: Tables that are a column of another one.
 PARTS = {"sections": "trace.sections", "moves": "tool_center.moves"}
 #: Tables that hang on the text and the machine alone: what is found in them is the same however the program runs.
-OF_TEXT = frozenset({"text", "words", "machine", "job", "lexical"})
+OF_TEXT = frozenset({"text", "words", "machine", "job", "written"})
 
 
 class Tables(Mapping[str, Any]):

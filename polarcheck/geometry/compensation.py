@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 
 from polarcheck.arrays import Floats, Mask, Points, Rows, States
 from polarcheck.geometry.compensation_input import ZERO, Method, Path, Programmed, fits, moving_rows
-from polarcheck.geometry.corner import ROUNDING
 from polarcheck.geometry.offset_vectors import Vectors, end_vectors
+from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.machines.modal import Motion
 
 __all__ = ["Method", "Path", "Phase", "ToolPath", "tool_center_path"]

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from polarcheck.arrays import Floats, Mask, Points, Rows, States
-from polarcheck.geometry.corner import ROUNDING
+from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.machines.modal import Motion, Side
 
 #: A length below this [mm] is no movement.

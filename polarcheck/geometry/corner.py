@@ -11,12 +11,10 @@ import msgspec
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Points, Rows
+from polarcheck.geometry.tolerances import ROUNDING
 
 #: A turn below this [rad] is no corner; rounding in the arithmetic only, a program's last digit turns by 1e-4 and more.
 STRAIGHT = 1e-6
-
-#: What the arithmetic may shift a point by [mm]; a thousandth of the least increment.
-ROUNDING = 1e-6
 
 
 class Corners(msgspec.Struct, frozen=True):

@@ -1,18 +1,14 @@
-"""What belongs to the job: tool offsets, stock, options. From polarcheck.toml, pyproject.toml or an offset table."""
+"""What belongs to the job: tool offsets, stock, work offsets, how programs are run, what is asked of the check."""
 
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import msgspec
 
 from polarcheck.errors import JobError, UsageError
-
-FILE_NAME = "polarcheck.toml"
 
 
 class Tool(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -81,37 +77,6 @@ class Job(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True)
     limits: dict[str, float | bool] = {}
 
 
-def find(path: Path) -> Path | None:
-    """The job file of a program: the nearest polarcheck.toml or [tool.polarcheck] from its folder upward."""
-    folder = path.resolve() if path.is_dir() else path.resolve().parent
-    for candidate in (folder, *folder.parents):
-        if (candidate / FILE_NAME).is_file():
-            return candidate / FILE_NAME
-        project = candidate / "pyproject.toml"
-        if project.is_file() and "[tool.polarcheck" in project.read_text("utf-8", "replace"):
-            return project
-    return None
-
-
-def load(path: Path) -> Job:
-    """The job of a polarcheck.toml or pyproject.toml. Raises JobError with file and key."""
-    import tomllib
-
-    try:
-        table = tomllib.loads(path.read_text("utf-8"))
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise JobError(f"{path}: {error}") from None
-    if path.name == "pyproject.toml":
-        table = table.get("tool", {}).get("polarcheck", {})
-    job = from_table(table, str(path))
-    folders = [str(path.parent / folder) for folder in job.run.subprograms]
-    job = msgspec.structs.replace(job, run=msgspec.structs.replace(job.run, subprograms=folders))
-    if job.offsets is not None:
-        listed = read_offsets((path.parent / job.offsets), job.offsets)
-        job = msgspec.structs.replace(job, tools={**listed, **job.tools})
-    return job
-
-
 def from_table(table: Mapping[str, Any], title: str) -> Job:
     """A job from the values of a file. Raises JobError that names the title and the key."""
     try:
@@ -172,37 +137,4 @@ def _given(values: Mapping[str, Any]) -> dict[str, Any]:
         key: value
         for key, value in values.items()
         if value is not None and not (isinstance(value, float) and math.isnan(value))
-    }
-
-
-_OFFSET = re.compile(r"G10\s*P\s*(\d+)((?:\s*[A-Z]\s*[-+]?\d*\.?\d*)*)")
-_VALUE = re.compile(r"([RQ])\s*([-+]?\d*\.?\d+|[-+]?\d+\.)")
-#: P10001 is the geometry of offset 1, P1 its wear (B-63524EN/01 p. 285).
-_GEOMETRY = 10000
-
-
-def read_offsets(path: Path, title: str) -> dict[int, Tool]:
-    """
-    The offset table that a control punched out: `G10 P10008 X.. Z.. R.. Q..`; R of geometry and wear are added.
-
-    Raises JobError for a file that cannot be read or holds no offset.
-    """
-    try:
-        text = path.read_bytes().decode("latin-1").upper()
-    except OSError as error:
-        raise JobError(f"{title}: {error.strerror}") from None
-    radius: dict[int, float] = {}
-    nose: dict[int, int] = {}
-    for match in _OFFSET.finditer(text):
-        number = int(match[1]) % _GEOMETRY
-        for address, value in _VALUE.findall(match[2]):
-            if address == "R":
-                radius[number] = radius.get(number, 0.0) + float(value)
-            elif int(match[1]) >= _GEOMETRY or number not in nose:
-                nose[number] = int(float(value))
-    if not radius and not nose:
-        raise JobError(f"{title}: no offsets found; expected blocks such as G10 P10008 R0.375 Q0")
-    return {
-        number: Tool(radius=radius.get(number, math.nan), nose=nose.get(number))
-        for number in sorted(radius.keys() | nose.keys())
     }

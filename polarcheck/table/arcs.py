@@ -8,7 +8,7 @@ import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Points, Rows
 from polarcheck.geometry import plane
-from polarcheck.geometry.corner import ROUNDING
+from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.machines.modal import Motion
 from polarcheck.table.trace import Trace
 

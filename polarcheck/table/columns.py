@@ -293,9 +293,8 @@ class Columns:
 
     @cached_property
     def radius_is_from_comment(self) -> Mask:
-        """A T word whose offset has its R from a comment."""
-        known = np.isnan(self._radius_of_job) & ~np.isnan(self._radius_of_comments)
-        return self.has("T") & known
+        """R of the offset in force is from a comment."""
+        return np.isnan(self._radius_of_job) & ~np.isnan(self._radius_of_comments)
 
     @cached_property
     def cutter_diameter(self) -> Floats:

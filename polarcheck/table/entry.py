@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from polarcheck.arrays import Floats, Mask
-from polarcheck.geometry.corner import ROUNDING
+from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.machines.codes import code_set
-from polarcheck.machines.modal import COORDINATE_SETTING, Side
 from polarcheck.table.filling import before, fill_down
 from polarcheck.table.trace import Trace
 
@@ -31,82 +31,45 @@ class Entry:
         found[self.trace.program[mask]] = True
         return found[self.trace.program]
 
-    def _happened(self, mask: Mask, since: Mask | None = None) -> Mask:
+    def happened(self, mask: Mask, since: Mask | None = None) -> Mask:
         """Whether a row at or above is in the mask or of unknown effect, from the program head or the last `since`."""
         trace = self.trace
         happened = mask | trace.run.unknown
         written = happened | trace.starts if since is None else happened | trace.starts | since
         return fill_down(happened, written, False).astype(bool)
 
-    def _is_lacking(self, *codes: str) -> Mask:
+    @cached_property
+    def _is_known(self) -> Mask:
+        """No row of unknown effect stands at or above in the program."""
+        return ~self.happened(np.zeros(len(self.trace), bool))
+
+    def expects(self, codes: Sequence[str]) -> Mask:
         """
-        Rows of programs that should have had one of these codes before, had it been needed: of whole programs, and of
-        excerpts with any of them. Not after a row of unknown effect.
+        Rows of programs that would have one of these codes above, were it needed: of whole programs, and of excerpts
+        with any of them. Not below a row of unknown effect, and nowhere if the profile names no code.
         """
+        if not codes:
+            return np.zeros(len(self.trace), bool)
+        return (self.trace.whole_program | self._in_program(self.trace.codes(*codes))) & self._is_known
+
+    @cached_property
+    def expects_offset(self) -> Mask:
+        """A T word stands above, or would: in a whole program."""
         trace = self.trace
-        expected = self.trace.whole_program | self._in_program(trace.codes(*codes))
-        return np.asarray(expected & ~self._happened(np.zeros(len(trace), bool)))
+        called = fill_down(trace.has("T"), trace.has("T") | trace.starts, False).astype(bool)
+        return np.asarray(called | (trace.whole_program & self._is_known))
 
     # ---- the C axis ----
 
     @cached_property
-    def c_axis_missing(self) -> Mask:
-        """The profile names codes that engage the C axis, and none is in force at G12.1."""
-        trace, codes = self.trace, self.trace.machine.m_codes
-        if not codes.c_axis_on:
-            return np.zeros(len(trace), bool)
-        lacking = self._is_lacking(*codes.c_axis_on, *codes.c_axis_off)
-        return np.asarray(trace.enters & ~trace.c_axis & lacking)
-
-    @cached_property
-    def _engages(self) -> Mask:
+    def engages_c_axis(self) -> Mask:
+        """The C axis is engaged here and was not before."""
         trace = self.trace
         return np.asarray(trace.c_axis & ~before(trace.c_axis, trace.starts, False).astype(bool))
 
-    @cached_property
-    def c_axis_not_referenced(self) -> Mask:
-        """The C axis is engaged at G12.1 and has not gone to its reference point since."""
-        trace = self.trace
-        referenced = trace.codes("G28", "G30") & trace.has("C", "H")
-        return np.asarray(trace.enters & trace.c_axis & ~self._happened(referenced, self._engages))
-
-    @cached_property
-    def c_angle_unknown(self) -> Mask:
-        """C has not been positioned before G12.1 in a whole program, or not since it was engaged."""
-        trace = self.trace
-        positioned = trace.has("C", "H") & (trace.section < 0)
-        return np.asarray(trace.enters & self.trace.whole_program & ~self._happened(positioned, self._engages))
-
     # ---- X ----
 
-    @cached_property
-    def x_unknown(self) -> Mask:
-        """X has not been positioned before G12.1 in a whole program, or not since a reference return or tool change."""
-        trace = self.trace
-        sets_x = trace.uses_axes | trace.codes(COORDINATE_SETTING[trace.machine.control.g_code_system])
-        lost = trace.changes_tool | (trace.codes("G28", "G30") & trace.has("X", "U"))
-        return np.asarray(trace.enters & self.trace.whole_program & ~self._happened(trace.has("X", "U") & sets_x, lost))
-
-    @cached_property
-    def x_not_positive(self) -> Mask:
-        """X is 0 or below at G12.1."""
-        return np.asarray(self.trace.enters & (self.trace.x < ROUNDING))
-
     # ---- spindle and live tool ----
-
-    @property
-    def has_live_tool_codes(self) -> bool:
-        """The profile names codes of the live tool, so that M3 and M4 are those of the main spindle."""
-        return bool(self.trace.machine.m_codes.live_tool_on)
-
-    @cached_property
-    def live_tool_stopped(self) -> Mask:
-        """The first cutting move of a section while the live tool is not running."""
-        trace, codes = self.trace, self.trace.machine.m_codes
-        if not codes.live_tool_on:
-            return np.zeros(len(trace), bool)
-        lacking = self._is_lacking(*codes.live_tool_on, *codes.live_tool_off)
-        return trace.first_in_section(trace.cuts & ~trace.live_tool & lacking)
 
     @cached_property
     def _of_spindle(self) -> Mask:
@@ -122,31 +85,12 @@ class Entry:
 
     @cached_property
     def spindle_code(self) -> Mask:
-        """A code of the main spindle or of its C axis in the mode."""
+        """Rows with a code of the main spindle or of its C axis."""
         found = np.zeros(len(self.trace), bool)
         found[self.trace.run.row[self.spindle_words]] = True
-        return found & self.trace.in_polar
-
-    @cached_property
-    def c_axis_code(self) -> Mask:
-        """A code that engages or releases the C axis, and does nothing to the live tool."""
-        codes = self.trace.machine.m_codes
-        return self.trace.codes(*codes.c_axis_on, *codes.c_axis_off) & self.spindle_code
+        return found
 
     # ---- tool offset, origin ----
-
-    @cached_property
-    def offset_missing(self) -> Mask:
-        """
-        No tool offset is in force at G12.1, in a whole program or after a T word.
-
-        Where compensation begins without one in the section, that says it better.
-        """
-        trace = self.trace
-        called = fill_down(trace.has("T"), trace.has("T") | trace.starts, False).astype(bool)
-        missing = trace.enters & (trace.offset_number == 0) & (called | self._is_lacking())
-        compensated = trace.section[trace.in_polar & (trace.side != Side.OFF) & (trace.offset_number == 0)]
-        return np.asarray(missing & ~np.isin(trace.section, compensated))
 
     @cached_property
     def _work_offset(self) -> tuple[Floats, NDArray[np.object_]]:
@@ -187,14 +131,9 @@ class Entry:
     @cached_property
     def origin_shift(self) -> Floats:
         """How far X0 is known to lie off the spindle axis, as the job or G52 writes it [mm]."""
-        return self._work_offset[0] + self.local_shift
-
-    @cached_property
-    def origin_off_center(self) -> Mask:
-        """X0 lies off the spindle axis at G12.1."""
         if not self.trace.job.work_offsets and not self.trace.codes("G52").any():
-            return np.zeros(len(self.trace), bool)
-        return np.asarray(self.trace.enters & (np.abs(self.origin_shift) > ROUNDING))
+            return np.zeros(len(self.trace))
+        return self._work_offset[0] + self.local_shift
 
     # ---- stock and tool ----
 
@@ -225,21 +164,10 @@ class Entry:
         return (self.stock_diameter + self.trace.cutter_diameter + self.clearance) / 2
 
     @cached_property
-    def inside_stock(self) -> Mask:
-        """The approach stands where the cutter reaches into the stock."""
-        return np.asarray(self.approaches_stock & (self.trace.x < self.x_needed - self.clearance / 2 - ROUNDING))
-
-    @cached_property
-    def inside_clearance(self) -> Mask:
-        """The approach stands nearer to the stock than the clearance."""
-        return np.asarray(self.approaches_stock & (self.trace.x < self.x_needed - ROUNDING) & ~self.inside_stock)
-
-    @cached_property
-    def flat_from_the_side(self) -> Mask:
-        """The tool at G12.1 is a flat end mill that points at the outer diameter."""
-        trace = self.trace
-        wrong = [n for n, tool in trace.job.tools.items() if tool.mount == "radial" and tool.shape == "flat"]
-        return np.asarray(trace.enters & np.isin(trace.offset_number, wrong))
+    def is_flat_and_radial(self) -> Mask:
+        """The job says of the tool in force that it is a flat end mill that points at the outer diameter."""
+        wrong = [n for n, tool in self.trace.job.tools.items() if tool.mount == "radial" and tool.shape == "flat"]
+        return np.isin(self.trace.offset_number, wrong)
 
 
 def _number(text: str) -> float:

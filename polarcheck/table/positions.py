@@ -92,6 +92,12 @@ class Positions(Columns):
         """Number of the polar section, its G12.1 included; -1 outside."""
         return section_column(self.sections, len(self))
 
+    def anywhere_in_section(self, mask: Mask) -> Mask:
+        """Rows of sections in which any row is in the mask."""
+        hit = np.zeros(len(self.sections) + 1, bool)
+        hit[self.section[mask & (self.section >= 0)]] = True
+        return hit[self.section]
+
     @cached_property
     def enters(self) -> Mask:
         """The G12.1 that begins a section."""
@@ -146,8 +152,7 @@ class Positions(Columns):
     def _forgets(self, axis: str, increment: str) -> Mask:
         """Rows after which an axis is not where its words say: references, shifts, cycles, blocks not executed."""
         named = self.has(axis, increment)
-        setting = COORDINATE_SETTING[self.machine.control.g_code_system]
-        lost = self.codes("G10", "G28", "G30", "G52", "G53", setting) & named
+        lost = (self.codes("G10", "G28", "G30", "G52", "G53") | self.sets_coordinates) & named
         work_offset = self.state("work_offset")
         lost |= self.sets("work_offset") & (work_offset != before(work_offset, self.starts, 0))
         if axis in "XZ":
@@ -155,10 +160,14 @@ class Positions(Columns):
             lost |= cycle | self.changes_tool
         return (lost & (self.section < 0)) | self.run.unknown | self.starts
 
+    @cached_property
+    def sets_coordinates(self) -> Mask:
+        """G50 (G92): axis words say where the tool stands, or with S how fast the spindle may turn."""
+        return self.codes(COORDINATE_SETTING[self.machine.control.g_code_system])
+
     def _set_by(self, axis: str) -> Floats:
         """What G50 (G92) or G28 make the coordinate of an axis; NaN where that is not known."""
-        setting = self.codes(COORDINATE_SETTING[self.machine.control.g_code_system])
-        return np.where(setting & self.has(axis), self.length_of(axis), np.nan)
+        return np.where(self.sets_coordinates & self.has(axis), self.length_of(axis), np.nan)
 
     @cached_property
     def x_factor(self) -> Floats:

@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask
-from polarcheck.geometry.corner import ROUNDING
+from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.machines.modal import Side
 from polarcheck.table.filling import before, fill_down
 from polarcheck.table.modes import Modes

@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask
-from polarcheck.geometry.corner import ROUNDING
+from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.machines.modal import MM_PER_INCH, Side, Units
 from polarcheck.table.arcs import Arcs
 from polarcheck.table.moves import any_in_row, per_row

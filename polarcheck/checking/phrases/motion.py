@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from polarcheck.checking.quantity import in_row
-from polarcheck.geometry.corner import ROUNDING
+from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.machines.machine import Machine
 from polarcheck.machines.modal import MM_PER_INCH, Units
 from polarcheck.table.arcs import Arcs

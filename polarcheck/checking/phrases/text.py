@@ -5,7 +5,7 @@ from __future__ import annotations
 from polarcheck.machines.codes import code_numbers, spelled
 from polarcheck.reading.numbers import NumberFault
 from polarcheck.reading.words import Text, Words
-from polarcheck.table.lexical import Lexical
+from polarcheck.table.written import Written
 
 _NUMBER_FAULTS = {
     NumberFault.NO_DIGITS: "no digits after the address",
@@ -29,14 +29,14 @@ def code(text: Text, index: int) -> str:
     return spelled("G", number) if number >= 0 else text.source.excerpt(int(words.start[index]), int(words.end[index]))
 
 
-def other(text: Text, lexical: Lexical, index: int) -> str:
+def other(text: Text, written: Written, index: int) -> str:
     """The code of the same group that stands before this one."""
-    return code(text, int(lexical.overruled[index]))
+    return code(text, int(written.overruled[index]))
 
 
-def times(lexical: Lexical, index: int) -> str:
+def times(written: Written, index: int) -> str:
     """How often the code stands in the file, where it is more than once."""
-    count = int(lexical.unknown_code_count[index])
+    count = int(written.unknown_code_count[index])
     return f" ({count} times in this file)" if count > 1 else ""
 
 
@@ -49,7 +49,7 @@ def stray(text: Text, index: int) -> str:
     return f"{character} is no character of a word"
 
 
-def characters(lexical: Lexical, index: int) -> str:
+def characters(written: Written, index: int) -> str:
     """How many characters of the line are foreign."""
-    count = int(lexical.foreign_count[index])
+    count = int(written.foreign_count[index])
     return "1 character that is" if count == 1 else f"{count} characters that are"

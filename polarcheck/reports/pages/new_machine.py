@@ -5,15 +5,12 @@ from __future__ import annotations
 import math
 import textwrap
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import msgspec
 
-from polarcheck.errors import UsageError
 from polarcheck.machines.parameters import Meaning
 from polarcheck.machines.profiles import Profile, load
-from polarcheck.reading import files
 
 #: What no control's manual can know, with an answer as it may look.
 _ASKED: dict[str, dict[str, tuple[Any, str]]] = {
@@ -44,20 +41,7 @@ _ASKED: dict[str, dict[str, tuple[Any, str]]] = {
 _COLUMNS = 100
 
 
-def write(name: str, inherits: str) -> Path:
-    """
-    Write NAME.toml into the present folder.
-
-    Raises UsageError if it is there already, MachineError for an unknown machine to inherit from.
-    """
-    path = Path(name if name.endswith(".toml") else f"{name}.toml")
-    if path.exists():
-        raise UsageError(f"{path} is there already")
-    files.write(path, new(path.stem, inherits))
-    return path
-
-
-def new(name: str, inherits: str) -> str:
+def text(name: str, inherits: str) -> str:
     """
     A TOML file for a lathe of this name that inherits from a machine; every answer is left out, and can be filled in.
 

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Entry, Hits, graded, rule
+from polarcheck.checking.rule import ERROR, Entry, Hits, Trace, graded, rule
+from polarcheck.geometry.tolerances import ROUNDING
 
 
 @rule(
@@ -11,7 +12,7 @@ from polarcheck.checking.rule import ERROR, Entry, Hits, graded, rule
     needs=("trace.cutter_diameter",),
     where="entry.approaches_stock",
 )
-def approach_inside_stock(entry: Entry) -> Hits:
+def approach_inside_stock(trace: Trace, entry: Entry) -> Hits:
     """
     Approach point inside the stock.
 
@@ -62,5 +63,6 @@ def approach_inside_stock(entry: Entry) -> Hits:
         G1 Z2. F1500
         G13.1
     """
-    values = {"stock": entry.stock_diameter, "needed": entry.x_needed}
-    return graded(error=entry.inside_stock, warning=entry.inside_clearance, values=values)
+    inside = entry.approaches_stock & (trace.x < entry.x_needed - entry.clearance / 2 - ROUNDING)
+    near = entry.approaches_stock & (trace.x < entry.x_needed - ROUNDING)
+    return graded(error=inside, warning=near, values={"stock": entry.stock_diameter, "needed": entry.x_needed})

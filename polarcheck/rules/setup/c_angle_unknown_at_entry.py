@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Entry, Mask, rule
+from polarcheck.checking.rule import WARNING, Entry, Mask, Trace, rule
 
 
 @rule(
@@ -9,7 +9,7 @@ from polarcheck.checking.rule import WARNING, Entry, Mask, rule
     at=("on",),
     unless=("c-axis-not-engaged", "c-axis-not-referenced"),
 )
-def c_angle_unknown_at_entry(entry: Entry) -> Mask:
+def c_angle_unknown_at_entry(trace: Trace, entry: Entry) -> Mask:
     """
     C never positioned before the polar mode.
 
@@ -55,4 +55,5 @@ def c_angle_unknown_at_entry(entry: Entry) -> Mask:
         G13.1
         M30
     """
-    return entry.c_angle_unknown
+    positioned = trace.has("C", "H") & (trace.section < 0)
+    return trace.enters & trace.whole_program & ~entry.happened(positioned, since=entry.engages_c_axis)

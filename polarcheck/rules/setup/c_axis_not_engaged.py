@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Entry, Hits, Machine, rule
+from polarcheck.checking.rule import WARNING, Entry, Hits, Machine, Trace, rule
 
 
 @rule(WARNING, "the C axis is not engaged; {codes} is missing before {switch}", at=("on",))
-def c_axis_not_engaged(entry: Entry, machine: Machine) -> Hits:
+def c_axis_not_engaged(trace: Trace, entry: Entry, machine: Machine) -> Hits:
     """
     Polar mode without the spindle as C axis.
 
@@ -57,4 +57,6 @@ def c_axis_not_engaged(entry: Entry, machine: Machine) -> Hits:
         G13.1
         M30
     """
-    return Hits(entry.c_axis_missing, values={"codes": " or ".join(machine.m_codes.c_axis_on)})
+    codes = machine.m_codes
+    expected = entry.expects(codes.c_axis_on and [*codes.c_axis_on, *codes.c_axis_off])
+    return Hits(trace.enters & ~trace.c_axis & expected, values={"codes": " or ".join(codes.c_axis_on)})

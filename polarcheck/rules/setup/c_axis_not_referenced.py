@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Entry, Mask, rule
+from polarcheck.checking.rule import WARNING, Entry, Mask, Trace, rule
 
 
 @rule(WARNING, "C has not gone to its reference point since it was engaged; write G28 H0 before {switch}", at=("on",))
-def c_axis_not_referenced(entry: Entry) -> Mask:
+def c_axis_not_referenced(trace: Trace, entry: Entry) -> Mask:
     """
     C axis engaged but not referenced.
 
@@ -46,4 +46,5 @@ def c_axis_not_referenced(entry: Entry) -> Mask:
         X60.
         G13.1
     """
-    return entry.c_axis_not_referenced
+    referenced = trace.codes("G28", "G30") & trace.has("C", "H")
+    return trace.enters & trace.c_axis & ~entry.happened(referenced, since=entry.engages_c_axis)

@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Entry, Mask, rule
+from polarcheck.checking.rule import ERROR, Entry, Mask, Trace, rule
 
 
 @rule(ERROR, "offset {trace.offset_number} is a flat end mill that points at the outer diameter", at=("on",))
-def flat_end_mill_at_od(entry: Entry) -> Mask:
+def flat_end_mill_at_od(trace: Trace, entry: Entry) -> Mask:
     """
     Flat end mill that points at the outer diameter of the part.
 
@@ -45,4 +45,4 @@ def flat_end_mill_at_od(entry: Entry) -> Mask:
         X60.
         G13.1
     """
-    return entry.flat_from_the_side
+    return trace.enters & entry.is_flat_and_radial

@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Entry, Hits, Machine, rule
+from polarcheck.checking.rule import ERROR, Entry, Hits, Machine, Trace, rule
 
 
 @rule(ERROR, "the live tool is not running in this cutting move; {codes} is missing", at=("G1", "G2", "G3"))
-def live_tool_stopped_in_cut(entry: Entry, machine: Machine) -> Hits:
+def live_tool_stopped_in_cut(trace: Trace, entry: Entry, machine: Machine) -> Hits:
     """
     Cutting move in the polar mode with the live tool stopped.
 
@@ -51,4 +51,7 @@ def live_tool_stopped_in_cut(entry: Entry, machine: Machine) -> Hits:
         G13.1
         M5
     """
-    return Hits(entry.live_tool_stopped, values={"codes": " or ".join(machine.m_codes.live_tool_on)})
+    codes = machine.m_codes
+    expected = entry.expects(codes.live_tool_on and [*codes.live_tool_on, *codes.live_tool_off])
+    stopped = trace.first_in_section(trace.cuts & ~trace.live_tool & expected)
+    return Hits(stopped, values={"codes": " or ".join(codes.live_tool_on)})

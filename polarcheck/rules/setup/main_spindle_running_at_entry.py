@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, NOTE, Entry, Hits, Machine, Trace, rule
+from polarcheck.checking.rule import ERROR, NOTE, Hits, Machine, Trace, rule
 
 
 @rule(ERROR, "M3 or M4 is in force at {switch}{what}", at=("on",))
-def main_spindle_running_at_entry(trace: Trace, entry: Entry, machine: Machine) -> Hits:
+def main_spindle_running_at_entry(trace: Trace, machine: Machine) -> Hits:
     """
     Main spindle not stopped before the polar mode.
 
@@ -45,7 +45,7 @@ def main_spindle_running_at_entry(trace: Trace, entry: Entry, machine: Machine) 
         X60.
         G13.1
     """
-    of_main_spindle = machine.polar.main_spindle_must_stop or entry.has_live_tool_codes
+    of_main_spindle = machine.polar.main_spindle_must_stop or machine.m_codes.live_tool_on
     severity = ERROR if of_main_spindle else NOTE
     what = "; write M5 before the C axis is engaged" if of_main_spindle else ": if that is the main spindle, stop it"
     return Hits(trace.enters & trace.spindle, severity, values={"what": what})

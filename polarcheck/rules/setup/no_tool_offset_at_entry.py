@@ -1,10 +1,11 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Entry, Mask, rule
+from polarcheck.checking.rule import WARNING, Entry, Mask, Trace, rule
+from polarcheck.machines.modal import Side
 
 
 @rule(WARNING, "no tool offset is in force at {switch}", at=("on",))
-def no_tool_offset_at_entry(entry: Entry) -> Mask:
+def no_tool_offset_at_entry(trace: Trace, entry: Entry) -> Mask:
     """
     Polar mode without a tool offset.
 
@@ -46,4 +47,7 @@ def no_tool_offset_at_entry(entry: Entry) -> Mask:
         G13.1
         T0800
     """
-    return entry.offset_missing
+    # Where compensation begins without one in the section, offset-number-missing says it better.
+    compensated = trace.in_polar & (trace.side != Side.OFF) & (trace.offset_number == 0)
+    missing = trace.enters & (trace.offset_number == 0) & entry.expects_offset
+    return missing & ~trace.anywhere_in_section(compensated)

@@ -1,10 +1,11 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Entry, Hits, rule
+from polarcheck.checking.rule import ERROR, Entry, Hits, Trace, rule
+from polarcheck.geometry.tolerances import ROUNDING
 
 
 @rule(ERROR, "{name} puts X0 {shift:length} off the spindle axis at {switch}", at=("on",))
-def origin_off_center(entry: Entry) -> Hits:
+def origin_off_center(trace: Trace, entry: Entry) -> Hits:
     """
     Origin of the polar plane off the spindle axis.
 
@@ -49,4 +50,5 @@ def origin_off_center(entry: Entry) -> Hits:
         X60.
         G13.1
     """
-    return Hits(entry.origin_off_center, values={"shift": entry.origin_shift})
+    shift = entry.origin_shift
+    return Hits(trace.enters & (abs(shift) > ROUNDING), values={"shift": shift})

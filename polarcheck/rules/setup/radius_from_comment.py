@@ -44,4 +44,4 @@ def radius_from_comment(trace: Trace) -> Hits:
         X60.
         G13.1
     """
-    return Hits(trace.radius_is_from_comment, values={"taken": trace.radius})
+    return Hits(trace.has("T") & trace.radius_is_from_comment, values={"taken": trace.radius})

@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Entry, Hits, graded, rule
+from polarcheck.checking.rule import WARNING, Entry, Hits, Machine, Trace, graded, rule
 
 
 @rule(WARNING, "{codes} in the polar mode; the spindle is the C axis here")
-def spindle_code_in_polar(entry: Entry) -> Hits:
+def spindle_code_in_polar(trace: Trace, entry: Entry, machine: Machine) -> Hits:
     """
     Main spindle started or stopped, or the C axis released, in the polar mode.
 
@@ -50,9 +50,7 @@ def spindle_code_in_polar(entry: Entry) -> Hits:
         G13.1
         M5
     """
-    of_main_spindle = entry.c_axis_code | entry.has_live_tool_codes
-    return graded(
-        warning=entry.spindle_code & of_main_spindle,
-        note=entry.spindle_code & ~of_main_spindle,
-        at=entry.spindle_words,
-    )
+    codes = machine.m_codes
+    in_mode = trace.in_polar & entry.spindle_code
+    of_main_spindle = trace.codes(*codes.c_axis_on, *codes.c_axis_off) | bool(codes.live_tool_on)
+    return graded(warning=in_mode & of_main_spindle, note=in_mode & ~of_main_spindle, at=entry.spindle_words)

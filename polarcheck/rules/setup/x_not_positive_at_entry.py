@@ -1,10 +1,11 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Entry, Mask, rule
+from polarcheck.checking.rule import WARNING, Mask, Trace, rule
+from polarcheck.geometry.tolerances import ROUNDING
 
 
 @rule(WARNING, "X stands at {trace.x:diameter} at {switch}; enter the polar mode above 0", at=("on",))
-def x_not_positive_at_entry(entry: Entry) -> Mask:
+def x_not_positive_at_entry(trace: Trace) -> Mask:
     """
     X at the center or beyond it where the polar mode begins.
 
@@ -31,4 +32,4 @@ def x_not_positive_at_entry(entry: Entry) -> Mask:
         X60.
         G13.1
     """
-    return entry.x_not_positive
+    return trace.enters & (trace.x < ROUNDING)

@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Entry, Mask, rule
+from polarcheck.checking.rule import WARNING, Entry, Mask, Trace, rule
 
 
 @rule(WARNING, "X has not been positioned before {switch}", at=("on",))
-def x_unknown_at_entry(entry: Entry) -> Mask:
+def x_unknown_at_entry(trace: Trace, entry: Entry) -> Mask:
     """
     X not positioned before the polar mode.
 
@@ -63,4 +63,6 @@ def x_unknown_at_entry(entry: Entry) -> Mask:
         G13.1
         M99
     """
-    return entry.x_unknown
+    positioned = trace.has("X", "U") & (trace.uses_axes | trace.sets_coordinates)
+    lost = trace.changes_tool | (trace.codes("G28", "G30") & trace.has("X", "U"))
+    return trace.enters & trace.whole_program & ~entry.happened(positioned, since=lost)

@@ -30,4 +30,5 @@ def bad_number(words: Words) -> Mask:
         C-5.
         G13.1
     """
+    # Compares nothing: the reader says so of each word, and other rules keep off the blocks of such words.
     return words.is_unreadable

@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import NOTE, Lexical, Mask, rule
+from polarcheck.checking.rule import NOTE, Mask, Written, rule
 
 
 @rule(NOTE, "{characters} not in the ISO set of controls", over="foreign")
-def character_outside_iso_set(lexical: Lexical) -> Mask:
+def character_outside_iso_set(written: Written) -> Mask:
     """
     Character that controls have no code for.
 
@@ -34,4 +34,4 @@ def character_outside_iso_set(lexical: Lexical) -> Mask:
         X60.
         G13.1
     """
-    return lexical.is_first_foreign
+    return written.foreign_count > 0

@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Lexical, Mask, rule
+from polarcheck.checking.rule import WARNING, Mask, Written, rule
 
 
 @rule(WARNING, "{code} and {other} of one modal group in a block; the control takes the last, {code}", over="words")
-def codes_of_one_group(lexical: Lexical) -> Mask:
+def codes_of_one_group(written: Written) -> Mask:
     """
     Two G codes of one modal group in a block.
 
@@ -38,4 +38,4 @@ def codes_of_one_group(lexical: Lexical) -> Mask:
         X60.
         G13.1
     """
-    return lexical.overrules
+    return written.overruled >= 0

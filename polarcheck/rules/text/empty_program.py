@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Lexical, Mask, rule
+from polarcheck.checking.rule import WARNING, Mask, Written, rule
 
 
 @rule(WARNING, "there is no block in this file", over="files")
-def empty_program(lexical: Lexical) -> Mask:
+def empty_program(written: Written) -> Mask:
     """
     File without any block.
 
@@ -26,4 +26,4 @@ def empty_program(lexical: Lexical) -> Mask:
         M30
         %
     """
-    return lexical.is_empty
+    return written.filled_blocks == 0

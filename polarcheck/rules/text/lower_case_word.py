@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import NOTE, Lexical, Mask, rule
+from polarcheck.checking.rule import NOTE, Mask, Written, rule
 
 
 @rule(NOTE, "words in lower case from here on; older controls do not read them", over="words")
-def lower_case_word(lexical: Lexical) -> Mask:
+def lower_case_word(written: Written) -> Mask:
     """
     Words in lower case.
 
@@ -31,4 +31,5 @@ def lower_case_word(lexical: Lexical) -> Mask:
         X60.
         G13.1
     """
-    return lexical.is_first_lower_case
+    # Compares nothing: the table looks for the first word with a small letter.
+    return written.is_first_lower_case

@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import NOTE, Lexical, Mask, rule
+from polarcheck.checking.rule import NOTE, Mask, Written, rule
 
 
 @rule(NOTE, "stands for blocks left out; what follows is judged as if nothing had happened there", over="dots")
-def omitted_text(lexical: Lexical) -> Mask:
+def omitted_text(written: Written) -> Mask:
     """
     Line of points in place of blocks.
 
@@ -34,4 +34,5 @@ def omitted_text(lexical: Lexical) -> Mask:
         X60.
         G13.1
     """
-    return lexical.is_first_dots
+    # Compares nothing: the table takes lines of points that follow each other together.
+    return written.is_first_dots

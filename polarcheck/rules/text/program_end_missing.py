@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Lexical, Mask, rule
+from polarcheck.checking.rule import WARNING, Mask, Written, rule
 
 
 @rule(WARNING, "the program ends here without M30, M02 or M99", over="words")
-def program_end_missing(lexical: Lexical) -> Mask:
+def program_end_missing(written: Written) -> Mask:
     """
     Program without an end.
 
@@ -45,4 +45,5 @@ def program_end_missing(lexical: Lexical) -> Mask:
         G0 X60.
         M9
     """
-    return lexical.lacks_end
+    # Compares nothing: the table searches the words and macro statements of each program for its end.
+    return written.lacks_end

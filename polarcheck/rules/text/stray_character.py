@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Lexical, Mask, rule
+from polarcheck.checking.rule import ERROR, Mask, Written, rule
 
 
 @rule(ERROR, "{stray}", over="strays")
-def stray_character(lexical: Lexical) -> Mask:
+def stray_character(written: Written) -> Mask:
     """
     Character that is no part of a word.
 
@@ -43,4 +43,5 @@ def stray_character(lexical: Lexical) -> Mask:
         G13.1
         M30 %
     """
-    return lexical.is_first_stray
+    # Compares nothing: the table picks the first stray character of each block that can be read otherwise.
+    return written.is_first_stray

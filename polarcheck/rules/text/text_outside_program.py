@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import NOTE, Lexical, Mask, rule
+from polarcheck.checking.rule import NOTE, Mask, Written, rule
 
 
 @rule(NOTE, "not stored by the control: it stands outside the program", over="outside")
-def text_outside_program(lexical: Lexical) -> Mask:
+def text_outside_program(written: Written) -> Mask:
     """
     Text before the program or after its end.
 
@@ -41,4 +41,5 @@ def text_outside_program(lexical: Lexical) -> Mask:
         M30
         %
     """
-    return lexical.is_text_outside
+    # Compares nothing: the table looks for letters and digits outside of comments.
+    return written.is_text_outside

@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Hits, Lexical, Machine, rule
+from polarcheck.checking.rule import ERROR, Hits, Machine, Written, rule
 
 
 @rule(ERROR, "{text} has more than {limit} digits", over="words")
-def too_many_digits(lexical: Lexical, machine: Machine) -> Hits:
+def too_many_digits(written: Written, machine: Machine) -> Hits:
     """
     Number with too many digits.
 
@@ -32,4 +32,5 @@ def too_many_digits(lexical: Lexical, machine: Machine) -> Hits:
         X60.
         G13.1
     """
-    return Hits(lexical.has_too_many_digits, values={"limit": machine.control.digit_limit})
+    limit = machine.control.digit_limit
+    return Hits(written.long_number_digits > limit, values={"limit": limit})

@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Hits, Lexical, Machine, rule
+from polarcheck.checking.rule import WARNING, Hits, Machine, Words, Written, rule
 
 
 @rule(WARNING, "{count} M codes in a block; this control takes {limit}", over="words")
-def too_many_m_codes(lexical: Lexical, machine: Machine) -> Hits:
+def too_many_m_codes(words: Words, written: Written, machine: Machine) -> Hits:
     """
     More M codes in a block than the control takes.
 
@@ -25,4 +25,5 @@ def too_many_m_codes(lexical: Lexical, machine: Machine) -> Hits:
         M46
     """
     limit = machine.control.m_code_limit
-    return Hits(lexical.has_too_many_m_codes, values={"count": lexical.m_codes_in_block, "limit": limit})
+    beyond = written.first_beyond(words.address == ord("M"), limit)
+    return Hits(beyond, values={"count": written.m_codes_in_block, "limit": limit})

@@ -1,10 +1,13 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, NOTE, Hits, Lexical, Machine, graded, rule
+from polarcheck.checking.rule import ERROR, NOTE, Hits, Machine, Words, Written, graded, rule
+
+#: Controls have no codes of their own from here on; programs that call macros by a G code have (parameter 6050).
+OWN_CODES_END = 200
 
 
 @rule(ERROR, "{code} is no code of this control{times}", over="words")
-def unknown_code(lexical: Lexical, machine: Machine) -> Hits:
+def unknown_code(words: Words, written: Written, machine: Machine) -> Hits:
     """
     G code that the control does not have.
 
@@ -36,7 +39,8 @@ def unknown_code(lexical: Lexical, machine: Machine) -> Hits:
         X60.
         G13.10
     """
+    unknown = written.unknown_code_count > 0
     if not machine.control.unknown_codes_are_errors:
-        return Hits(lexical.is_unknown_code, NOTE)
-    may_call_macro = lexical.is_unknown_code & lexical.may_call_macro
-    return graded(error=lexical.is_unknown_code & ~lexical.may_call_macro, warning=may_call_macro)
+        return Hits(unknown, NOTE)
+    may_call_macro = (words.value >= OWN_CODES_END) & (words.value % 1 == 0)
+    return graded(error=unknown & ~may_call_macro, warning=unknown & may_call_macro)

@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Lexical, Mask, rule
+from polarcheck.checking.rule import WARNING, Mask, Written, rule
 
 
 @rule(WARNING, "a word of this address stands before it in the block; the control takes one of them", over="words")
-def word_repeated(lexical: Lexical) -> Mask:
+def word_repeated(written: Written) -> Mask:
     """
     Same address twice in a block.
 
@@ -32,4 +32,5 @@ def word_repeated(lexical: Lexical) -> Mask:
         G4 U1.
         M99
     """
-    return lexical.repeats
+    # Compares nothing: the table searches each block for an address that stands in it twice.
+    return written.repeats

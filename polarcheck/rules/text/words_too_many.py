@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Hits, Lexical, Machine, rule
+from polarcheck.checking.rule import WARNING, Hits, Machine, Words, Written, rule
 
 
 @rule(WARNING, "{count} words in a block; this control takes {limit}", over="words")
-def words_too_many(lexical: Lexical, machine: Machine) -> Hits:
+def words_too_many(words: Words, written: Written, machine: Machine) -> Hits:
     """
     More words in a block than the control takes.
 
@@ -22,4 +22,5 @@ def words_too_many(lexical: Lexical, machine: Machine) -> Hits:
         M8
     """
     limit = machine.control.word_limit
-    return Hits(lexical.has_too_many_words, values={"count": lexical.words_in_block, "limit": limit})
+    beyond = written.first_beyond(words.address != ord("/"), limit)
+    return Hits(beyond, values={"count": written.words_in_block, "limit": limit})

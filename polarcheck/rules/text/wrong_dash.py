@@ -32,4 +32,5 @@ def wrong_dash(words: Words) -> Mask:
         X60. C0
         G13.1
     """
+    # Compares nothing: the reader says so of each word.
     return words.has_wrong_dash

@@ -27,15 +27,13 @@ _MACRO_CALLS = ("G65", "G66", "G66.1")
 _UNSURE_GROUPS = ("scaling", "rotation", "mirror")
 #: Codes of group 01 in system A that other systems and mills write beside G0 and G1, in another meaning.
 _OF_OTHER_SYSTEMS = ("G90", "G92", "G94")
-#: Controls have no codes of their own from here on; programs that call macros by a G code have (parameter 6050).
-_OWN_CODES_END = 200
 _RETURN = "M99"
 _COMMENT = re.compile(rb"\([^)\n]*+\)?")
 _LETTER_OR_DIGIT = re.compile(rb"[0-9A-Za-z\x80-\xff]")
 _END_IN_MACRO = re.compile(r"M\s*0*99(?!\d)|GOTO|GO\s*\d", re.IGNORECASE)
 
 
-class Lexical:
+class Written:
     """Columns over the words, characters and comments of a text."""
 
     def __init__(self, text: Text, machine: Machine) -> None:
@@ -44,9 +42,11 @@ class Lexical:
         self.machine = machine
 
     @property
-    def is_empty(self) -> Mask:
-        """One element: the file has no words and no macro statements."""
-        return np.array([not len(self.words) and not bool(self.text.blocks.is_macro.any())])
+    def filled_blocks(self) -> Rows:
+        """One element, the file: how many blocks have words or macro statements."""
+        filled = self.text.blocks.is_macro.copy()
+        filled[self.words.block] = True
+        return np.array([np.count_nonzero(filled)])
 
     # ---- words of a block ----
 
@@ -55,7 +55,7 @@ class Lexical:
         broken = np.concatenate((self.words.block[self.words.is_unreadable], self.text.strays.block))
         return np.isin(self.words.block[index], broken)
 
-    def _beyond(self, counted: Mask, limit: int) -> Mask:
+    def first_beyond(self, counted: Mask, limit: int) -> Mask:
         """Of the counted words the first in each block that is one too many."""
         index = np.flatnonzero(counted)
         block = self.words.block[index]
@@ -66,16 +66,6 @@ class Lexical:
         index = index[beyond]
         found[index[~self._in_broken_block(index)]] = True
         return found
-
-    @cached_property
-    def has_too_many_words(self) -> Mask:
-        """The first word of a block beyond the limit, block skip not counted."""
-        return self._beyond(self.words.address != ord("/"), self.machine.control.word_limit)
-
-    @cached_property
-    def has_too_many_m_codes(self) -> Mask:
-        """The first M word of a block beyond the limit."""
-        return self._beyond(self.words.address == ord("M"), self.machine.control.m_code_limit)
 
     @cached_property
     def words_in_block(self) -> Rows:
@@ -155,55 +145,37 @@ class Lexical:
         return found
 
     @cached_property
-    def overrules(self) -> Mask:
-        """A G code after another one of its modal group."""
-        return np.asarray(self.overruled >= 0)
-
-    @cached_property
-    def _unknown(self) -> tuple[Mask, Rows]:
-        """Per word: the first of an unknown G code in the file; how often the code stands there."""
+    def unknown_code_count(self) -> Rows:
+        """Per word: at the first of an unknown G code in the file how often the code stands there, else 0."""
         machine = self.machine
         known = code_set([*machine.control.known_codes, *machine.control.motion_codes])
         known |= code_set([*machine.polar.on, *machine.polar.off, *machine.polar.allowed_codes])
         wrong = ~known[self._g_codes] & (self.words.fault[self._g_words] == NumberFault.NONE)
         words = self._g_words[wrong]
-        if not len(words):
-            return np.zeros(len(self.words), bool), np.zeros(len(self.words), np.int64)
-        _, first, count = np.unique(self.words.value[words], return_index=True, return_counts=True)
-        mask, counts = np.zeros(len(self.words), bool), np.zeros(len(self.words), np.int64)
-        mask[words[first]], counts[words[first]] = True, count
-        return mask, counts
-
-    @property
-    def unknown_code_count(self) -> Rows:
-        """At the first of an unknown G code in the file: how often the code stands there."""
-        return self._unknown[1]
-
-    @property
-    def is_unknown_code(self) -> Mask:
-        """The first of an unknown G code in the file."""
-        return self._unknown[0]
-
-    @cached_property
-    def may_call_macro(self) -> Mask:
-        """A G code that can only be a macro of the builder or the shop."""
-        value = self.words.value
-        return np.asarray((self.words.address == ord("G")) & (value >= _OWN_CODES_END) & (value == np.floor(value)))
+        counts = np.zeros(len(self.words), np.int64)
+        if len(words):
+            _, first, count = np.unique(self.words.value[words], return_index=True, return_counts=True)
+            counts[words[first]] = count
+        return counts
 
     # ---- digits, case ----
 
     @cached_property
-    def has_too_many_digits(self) -> Mask:
-        """More digits than a word can have; leading zeros and digits beyond the least increment do not count."""
+    def long_number_digits(self) -> Rows:
+        """
+        Per word: how many digits the control counts where there are more than it takes, else 0.
+
+        Leading zeros and digits beyond the least increment do not count, nor words in a block that cannot be read.
+        """
         control, words = self.machine.control, self.words
         long = np.flatnonzero(words.digits > control.digit_limit)
         counted = np.minimum(words.decimals[long], round(-np.log10(control.least_increment)))
         digits = words.digits[long] - words.decimals[long] + counted
         # A number of more than 22 digits has a value that is only about right.
         is_large = np.abs(words.value[long]) >= 10.0 ** (control.digit_limit - counted)
-        long = long[(digits > control.digit_limit) & is_large]
-        found = np.zeros(len(words), bool)
-        found[long[~self._in_broken_block(long)]] = True
+        kept = (digits > control.digit_limit) & is_large & ~self._in_broken_block(long)
+        found = np.zeros(len(words), np.int64)
+        found[long[kept]] = digits[kept]
         return found
 
     @cached_property
@@ -277,9 +249,9 @@ class Lexical:
         return np.array([_LETTER_OR_DIGIT.search(text) is not None for text in texts], bool)
 
     @cached_property
-    def _foreign(self) -> tuple[Mask, Rows]:
+    def foreign_count(self) -> Rows:
         """
-        Per run of foreign characters: the first on its line; how many there are on the line.
+        Per run of foreign characters: at the first on its line how many there are on the line, else 0.
 
         Those that are reported as stray characters, wrong dashes or text outside a program are left out, and all before
         the first % are taken together: the leader of a tape.
@@ -295,20 +267,9 @@ class Lexical:
         index = np.flatnonzero(kept)
         length = (spans.end - spans.start)[index]
         first = np.flatnonzero(np.append(True, line[index][1:] != line[index][:-1])) if len(index) else index
-        mask, count = np.zeros(len(spans), bool), np.zeros(len(spans), np.int64)
-        mask[index[first]] = True
+        count = np.zeros(len(spans), np.int64)
         count[index[first]] = np.add.reduceat(length, first) if len(first) else 0
-        return mask, count
-
-    @property
-    def foreign_count(self) -> Rows:
-        """At the first run of foreign characters of a line: how many there are on the line."""
-        return self._foreign[1]
-
-    @property
-    def is_first_foreign(self) -> Mask:
-        """The first run of foreign characters on its line."""
-        return self._foreign[0]
+        return count
 
 
 def _inside(at: Rows, spans: object) -> Mask:

@@ -104,14 +104,15 @@ OFFSETS = {"work_offsets": {"G54": {"x": 0.0}, "G55": {"x": 0.5}, "G54.1 P3": {"
 )
 def test_origin(before: str, name: str) -> None:
     tables = tables_of(f"{before}\nG0 X60. C0\n{SECTION}", job=OFFSETS)
-    assert tables["entry"].origin_off_center.any() == bool(name)
-    assert setup.name(tables["entry"], int(tables["sections"].enter[0])) == name
+    enter = int(tables["sections"].enter[0])
+    assert bool(tables["entry"].origin_shift[enter]) == bool(name)
+    assert setup.name(tables["entry"], enter) == name
 
 
 @pytest.mark.parametrize(("before", "expected"), [("", True), ("G54.1 P1", False), ("G55", False)])
 def test_without_a_work_offset_g54_is_in_force(before: str, expected: bool) -> None:
     tables = tables_of(f"{before}\nG0 X60. C0\n{SECTION}", job={"work_offsets": {"G54": {"x": 1.0}}})
-    assert tables["entry"].origin_off_center.any() == expected
+    assert bool(tables["entry"].origin_shift[tables["sections"].enter[0]]) == expected
 
 
 INSIDE = ["approach-inside-stock"]

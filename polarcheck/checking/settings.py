@@ -1,0 +1,26 @@
+"""What the check of a file needs to know besides the file."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import msgspec
+
+from polarcheck.checking.rule import Rule
+from polarcheck.machines.job import Job
+from polarcheck.machines.machine import Machine
+
+
+class Settings(msgspec.Struct, frozen=True):
+    """
+    What applies to a program.
+
+    name: of the machine, as it was asked for. rules: those to run. severities: error, warning, note or off by rule,
+    where they differ from the machine's.
+    """
+
+    name: str
+    machine: Machine
+    job: Job
+    rules: Sequence[Rule]
+    severities: Mapping[str, str]

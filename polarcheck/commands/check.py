@@ -1,0 +1,127 @@
+"""`polarcheck check`: programs to reports and the exit code."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import click
+
+from polarcheck.commands import options
+from polarcheck.commands.exit_codes import COULD_NOT_RUN
+from polarcheck.commands.options import many, option
+from polarcheck.commands.output import COLUMNS, columns, in_color, say, show, warn
+from polarcheck.errors import PolarcheckError
+from polarcheck.reports import formats
+
+#: Reports for people come in the encoding of their terminal; all others are UTF-8.
+_FOR_PEOPLE = ("text", "concise")
+_FORMATS = formats()
+
+
+def _outputs(ctx: click.Context, parameter: click.Parameter, values: tuple[str, ...]) -> list[tuple[str, Path]]:
+    outputs = []
+    for value in values:
+        form, _, path = value.partition(":")
+        if form not in _FORMATS or not path:
+            raise click.BadParameter(f"{value!r}: expected FORMAT:FILE, the format one of {', '.join(_FORMATS)}")
+        outputs.append((form, Path(path)))
+    return outputs
+
+
+@click.command
+@click.argument("paths", nargs=-1, required=True, metavar="PATH...")
+@options.machine
+@options.changes
+@options.tools
+@option(
+    "--offsets", type=click.Path(exists=True, dir_okay=False, path_type=Path), help="Offset table from the control."
+)
+@options.units
+@many("--select", metavar="RULE", help="Only these rules, groups or alarms (PS0146).")
+@many("--ignore", metavar="RULE", help="All but these.")
+@many("--severity", "severities", metavar="RULE=LEVEL", help="error, warning, note or off.")
+@option(
+    "--fail-on", type=click.Choice(["error", "warning", "note", "never"]), default="warning", show_default=True,
+    help="The least severity that fails.",
+)  # fmt: skip
+@option("--strict", is_flag=True, help="Fail where something could not be evaluated, too.")
+@option(
+    "--format", "form", type=click.Choice(_FORMATS), default="text", show_default=True, help="Of the report on stdout."
+)
+@option(
+    "-o",
+    "--output",
+    "outputs",
+    multiple=True,
+    callback=_outputs,
+    metavar="FORMAT:FILE",
+    help="A report in a file, too.",
+)
+@options.config
+@options.no_config
+@option("--block-skip", type=click.Choice(["off", "on", "both"]), help="Of blocks with /; both is the default.")
+@option("--subprograms", multiple=True, metavar="FOLDER", help="Where programs that are called lie.")
+@option("--max-blocks", type=click.IntRange(1), help="Executed blocks after which a program counts as endless.")
+@option("--max-statements", type=click.IntRange(1), help="The same for macro statements and calls.")
+@option("--max-seconds", type=click.FloatRange(0, min_open=True), help="The same for seconds.")
+@options.radius_from_comments
+@many("--extensions", metavar="EXT", help="Of the programs in a folder, instead of .nc, .tap, .eia and others.")
+@options.encoding("programs")
+@option("--color", type=click.Choice(["auto", "always", "never"]), default="auto", show_default=True)
+@option("-q", "--quiet", is_flag=True, help="Findings only.")
+@options.debug
+@click.pass_context
+def check(ctx: click.Context, /, paths: tuple[str, ...], **asked: Any) -> None:
+    """
+    Check NC programs: files, folders, or - for standard input.
+
+    Ends with 0 if all is well, 1 with findings, 2 if something could not be read or understood, 3 for a bug.
+    """
+    ctx.exit(_check(paths, **asked))
+
+
+def _check(
+    paths: tuple[str, ...],
+    *,
+    fail_on: str,
+    strict: bool,
+    form: str,
+    outputs: list[tuple[str, Path]],
+    no_config: bool,
+    extensions: tuple[str, ...],
+    encoding: str | None,
+    color: str,
+    quiet: bool,
+    **asked: Any,
+) -> int:
+    from polarcheck import reports
+    from polarcheck.checking import batch, rule
+    from polarcheck.commands import settings
+    from polarcheck.commands.progress import watched
+    from polarcheck.machines import profiles
+    from polarcheck.reading import files
+
+    failures: list[str] = []
+    applies = settings.Options(use_config=not no_config, **asked)
+    tasks = batch.plan(paths, settings.in_folders(applies), extensions, failures.append, warn)
+    checked = batch.check_files(watched(tasks, not quiet), failures.append, encoding, fail_on)
+    name = applies.machine or (tasks[0].settings.name if tasks else profiles.DEFAULT)
+    report = batch.report(checked.files, name)
+    for failure in failures:
+        say(failure)
+    status = COULD_NOT_RUN if failures else batch.status(report, strict)
+    plain = reports.Background(checked.lines, rule.load_all(), COLUMNS, color=False, quiet=quiet)
+    for kind, path in outputs:
+        try:
+            files.write(path, reports.render(kind, report, plain))
+        except PolarcheckError as error:
+            say(str(error))
+            status = COULD_NOT_RUN
+    is_colored = in_color(color)
+    shown = reports.Background(checked.lines, plain.rules, columns(), is_colored, quiet)
+    text = reports.render(form, report, shown)
+    show(text if form in _FOR_PEOPLE else text.encode(), is_colored or None)
+    if form == "concise" and not quiet and any(file.verdict == "unverified" for file in report.files):
+        warn("some rules could not be evaluated; --format text says which, and what to give")
+    return status

@@ -1,0 +1,22 @@
+"""`polarcheck explain`: the manual pages of rules."""
+
+from __future__ import annotations
+
+import click
+
+from polarcheck.commands import options
+from polarcheck.commands.output import show
+
+
+@click.command
+@click.argument("rule")
+@options.machine
+@options.debug
+def explain(rule: str, machine: str | None) -> None:
+    """Show the manual page of a RULE, or of the rules of a group or of an alarm: PS0146, 146."""
+    from polarcheck.checking.rule import load_all
+    from polarcheck.commands import selection, settings
+    from polarcheck.reports.pages import manual
+
+    _, profile = settings.here(machine)
+    show(manual.pages(selection.select([rule], load_all(), profile).values(), profile))

@@ -1,0 +1,49 @@
+"""`polarcheck machines`: the lathes that are known, the values of one, and a file for one more."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from polarcheck.commands import options
+from polarcheck.commands.options import option
+from polarcheck.commands.output import show
+from polarcheck.errors import UsageError
+
+
+@click.command
+@click.argument("name", required=False)
+@click.argument("lathe", required=False, metavar="[LATHE]")
+@option("--from", "inherits", metavar="NAME|FILE", help="What the new one inherits from.")
+@options.debug
+def machines(name: str | None, lathe: str | None, inherits: str | None) -> None:
+    """
+    List the machines; with the NAME or TOML file of one, show its values and where each comes from.
+
+    \b
+    polarcheck machines fanuc-30i
+    polarcheck machines new NL2000 --from fanuc-30i    write NL2000.toml for a lathe of your own
+    """
+    from polarcheck.machines import profiles
+    from polarcheck.reports.pages import manual
+
+    if name == "new" and lathe:
+        path = _write(lathe, inherits or profiles.DEFAULT)
+        show(f"{path} written; check with --machine {path}\n")
+        return
+    if lathe:
+        raise click.UsageError(f"{lathe}: a second name is for `machines new LATHE --from NAME`")
+    show(manual.profile_text(profiles.load(name)) if name else manual.machine_list())
+
+
+def _write(name: str, inherits: str) -> Path:
+    """Write NAME.toml into the working folder; nothing that is there already is overwritten."""
+    from polarcheck.reading import files
+    from polarcheck.reports.pages import new_machine
+
+    path = Path(name if name.endswith(".toml") else f"{name}.toml")
+    if path.exists():
+        raise UsageError(f"{path} is there already")
+    files.write(path, new_machine.text(path.stem, inherits))
+    return path

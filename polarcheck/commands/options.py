@@ -1,0 +1,72 @@
+"""Options that several commands have, and how an option is made: the environment can give each of them, too."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import click
+
+Decorator = Callable[[Any], Any]
+
+#: Stands in the meta of the context, which a group shares with its commands, where tracebacks are asked for.
+DEBUG = "polarcheck.debug"
+
+
+def option(*names: str, **attributes: Any) -> Decorator:
+    """An option of click that the environment can give, too: POLARCHECK_FAIL_ON for --fail-on."""
+    written = max((name for name in names if name.startswith("--")), key=len)
+    return click.option(*names, envvar="POLARCHECK_" + written[2:].upper().replace("-", "_"), **attributes)
+
+
+def many(*names: str, **attributes: Any) -> Decorator:
+    """An option that may be repeated, and may hold several names with commas between."""
+    return option(*names, multiple=True, callback=_listed, **attributes)
+
+
+def _listed(ctx: click.Context, parameter: click.Parameter, values: tuple[str, ...]) -> tuple[str, ...]:
+    return tuple(name for value in values for name in value.replace(",", " ").split())
+
+
+def encoding(what: str) -> Decorator:
+    """--encoding of what is read."""
+    return option("--encoding", callback=_known_encoding, metavar="NAME", help=f"Of the {what}: cp1252, shift_jis, ...")
+
+
+def _known_encoding(ctx: click.Context, parameter: click.Parameter, value: str | None) -> str | None:
+    import codecs
+
+    try:
+        if value is not None:
+            codecs.lookup(value)
+    except LookupError:
+        raise click.BadParameter(f"unknown encoding {value!r}; for example utf-8, cp1252, shift_jis") from None
+    return value
+
+
+def _set_debug(ctx: click.Context, parameter: click.Parameter, value: bool) -> None:
+    if value:
+        ctx.meta[DEBUG] = True
+
+
+debug = option(
+    "--debug", is_flag=True, expose_value=False, is_eager=True, callback=_set_debug, help="Show tracebacks of bugs."
+)
+machine = option(
+    "--machine", metavar="NAME|FILE", help="The lathe: one of `polarcheck machines`, or a TOML file of your own."
+)
+changes = option(
+    "--set", "changes", multiple=True, metavar="KEY=VALUE", help="A value of the machine: limits.c_feed=3600."
+)
+tools = option("--tool", "tools", multiple=True, metavar="N:KEY=VALUE", help="Tool offset N: 8:radius=0.375,nose=0.")
+units = option("--units", type=click.Choice(["mm", "inch"]), help="Of programs with neither G20 nor G21.")
+radius_from_comments = option(
+    "--radius-from-comments", is_flag=True, help="Take unknown radii from comments such as 3/4 DIA. CUTTER."
+)
+config = option(
+    "--config",
+    type=click.Path(exists=True, dir_okay=False, path_type=Path),
+    help="Instead of the nearest polarcheck.toml.",
+)
+no_config = option("--no-config", is_flag=True, help="Read no polarcheck.toml or pyproject.toml.")

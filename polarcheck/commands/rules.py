@@ -1,0 +1,20 @@
+"""`polarcheck rules`: the catalogue."""
+
+from __future__ import annotations
+
+import click
+
+from polarcheck.commands import options
+from polarcheck.commands.output import show
+
+
+# POLARCHECK_FORMAT is meant for the reports of `check`, which have other formats.
+@click.command
+@click.option("--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True)
+@options.debug
+def rules(form: str) -> None:
+    """List all rules: severity, name, title."""
+    from polarcheck.checking.rule import load_all
+    from polarcheck.reports.pages import manual
+
+    show(manual.catalogue(load_all()) if form == "text" else manual.catalogue_json(load_all()).encode())

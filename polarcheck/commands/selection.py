@@ -1,0 +1,107 @@
+"""Which rules run and with which severities: names, groups and alarms, of the command line and of the job."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any
+
+from polarcheck.checking import rule as all_rules
+from polarcheck.checking.rule import Rule
+from polarcheck.commands.job_files import JobFile
+from polarcheck.errors import UsageError
+from polarcheck.machines.machine import Machine
+
+LEVELS = ("error", "warning", "note", "off")
+_ALARM = re.compile(r"([A-Za-z]{0,3})\s?(\d+)")
+
+Rules = dict[str, Rule]
+
+
+def select(names: Iterable[str], known: Rules, machine: Machine) -> Rules:
+    """
+    The rules of names, groups and alarms (PS0146, 146) of a machine.
+
+    Raises UsageError for a name that is none of these.
+    """
+    found: set[str] = set()
+    for name in names:
+        alarm = _ALARM.fullmatch(name.strip())
+        rules = _of_alarm(alarm, known, machine) if alarm else all_rules.find(name, known)
+        if not rules:
+            raise UsageError(f"no rule is known to give alarm {name.strip()} on {machine.title}")
+        found.update(rule.name for rule in rules)
+    return {name: rule for name, rule in known.items() if name in found}
+
+
+def _of_alarm(alarm: re.Match[str], known: Rules, machine: Machine) -> list[Rule]:
+    """The rules for what this machine answers with an alarm; its letters and leading zeros may be left out."""
+    letters, number = alarm[1].upper(), int(alarm[2])
+    found = []
+    for name, text in machine.alarms.items():
+        own = _ALARM.fullmatch(text)
+        if own and name in known and int(own[2]) == number and letters in ("", own[1].upper()):
+            found.append(known[name])
+    return found
+
+
+def chosen(
+    selected: Sequence[str], ignored: Sequence[str], found: JobFile, known: Rules, machine: Machine
+) -> list[Rule]:
+    """
+    The rules to run; --select sets aside what the job selects and ignores.
+
+    selected, ignored: names as the command line gives them. Raises UsageError, which names the option or the key of
+    the file, for an unknown name, and where no rule is left.
+    """
+    rules, without = known, {}
+    if selected:
+        rules = _named("--select", select, selected, known, machine)
+    else:
+        if found.job.select:
+            rules = _named(f"{found.path}: select", select, found.job.select, known, machine)
+        without = _named(f"{found.path}: ignore", select, found.job.ignore, known, machine)
+    without = without | _named("--ignore", select, ignored, known, machine)
+    left = [rule for name, rule in rules.items() if name not in without]
+    if not left:
+        raise UsageError("no rule is left to check: all that are selected are ignored, too")
+    return left
+
+
+def severities(
+    levels: Iterable[str], selected: Iterable[str], found: JobFile, known: Rules, machine: Machine
+) -> dict[str, str]:
+    """
+    Severities by rule where they differ from the profile; a rule selected by its own name is never off.
+
+    levels: RULE=LEVEL as the command line gives them; selected: names of --select. Raises UsageError, which names the
+    option or the key of the file.
+    """
+    of_job = _named(f"{found.path}: severities", _levels, found.job.severities.items(), known, machine)
+    asked = _named("--severity", _levels, [_pair(option) for option in levels], known, machine)
+    changed = of_job | asked
+    for name in selected:
+        rule = known.get(name.strip().lower().replace("_", "-"))
+        if rule and rule.name not in asked and changed.get(rule.name, machine.severities.get(rule.name)) == "off":
+            changed[rule.name] = rule.severity.name.lower()
+    return changed
+
+
+def _levels(pairs: Iterable[tuple[str, str]], known: Rules, machine: Machine) -> dict[str, str]:
+    """Severity by rule, from severities of rules, groups or alarms; the last that names a rule counts."""
+    return {name: level for named, level in pairs for name in select([named], known, machine)}
+
+
+def _pair(option: str) -> tuple[str, str]:
+    name, equals, level = (part.strip() for part in option.partition("="))
+    if not equals or level.lower() not in LEVELS:
+        raise UsageError(f"--severity {option}: expected RULE={'|'.join(LEVELS)}")
+    return name, level.lower()
+
+
+def _named(title: str, function: Callable[..., dict[str, Any]], *arguments: Any) -> dict[str, Any]:
+    """What the function returns; its errors begin with the option or the key of the file."""
+    try:
+        return function(*arguments)
+    except UsageError as error:
+        raise UsageError(f"{title}: {error}") from None

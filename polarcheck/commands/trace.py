@@ -1,0 +1,45 @@
+"""`polarcheck trace`: the executed table, or the moves of a path, as CSV or JSON lines."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import click
+
+from polarcheck.commands import options
+from polarcheck.commands.options import option
+from polarcheck.commands.output import show
+
+
+@click.command
+@click.argument("path", metavar="FILE")
+@options.machine
+@options.changes
+@options.tools
+@options.units
+@option("--path", "which", type=click.Choice(["tool", "programmed"]), help="The moves of a path, not the blocks.")
+@option("--format", "form", type=click.Choice(["csv", "jsonl"]), default="csv", show_default=True)
+@option("--block-skip", type=click.Choice(["off", "on"]), default="off", show_default=True, help="Of blocks with /.")
+@options.radius_from_comments
+@options.config
+@options.no_config
+@options.encoding("program")
+@options.debug
+def trace(path: str, which: str | None, form: str, no_config: bool, encoding: str | None, **asked: Any) -> None:
+    """
+    Show what FILE does, block by block or, with --path, move by move inside polar sections.
+
+    Lengths are mm, X as a radius, angles deg, feeds mm/min. --path tool is the path of the tool center.
+    """
+    from polarcheck.checking import check
+    from polarcheck.commands import settings
+    from polarcheck.reading import files
+    from polarcheck.reports.pages import executed
+
+    found = settings.in_folders(settings.Options(use_config=not no_config, **asked))(Path(path).parent)
+    tables = check.read(files.read(path), found.machine, found.job, files.shown(path), encoding)[0][1]
+    of_path = (tables["trace"], tables["tool_center"])
+    items = executed.moves(*of_path, which) if which else executed.rows(*of_path)
+    for line in (executed.as_csv if form == "csv" else executed.as_jsonl)(items):
+        show(line.encode())

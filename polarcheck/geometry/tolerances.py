@@ -1,0 +1,6 @@
+"""What is taken as the same; without NumPy, since rules name it."""
+
+from __future__ import annotations
+
+#: What the arithmetic may shift a point by [mm]; a thousandth of the least increment.
+ROUNDING = 1e-6
