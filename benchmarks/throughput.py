@@ -9,7 +9,6 @@ Each figure is the median of the rounds; the regex runs in turn with the rest, s
 from __future__ import annotations
 
 import argparse
-import re
 import resource
 import statistics
 import tempfile
@@ -18,18 +17,18 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from bare import WORD
 from generate import program
 
 from polarcheck.checking import check
 from polarcheck.checking.rule import load_all
 from polarcheck.execution.run import straight
 from polarcheck.machines import profiles
-from polarcheck.machines.job import Job, with_tool
+from polarcheck.machines.job import Job, Tool
 from polarcheck.reading import source
 from polarcheck.reading.words import read_words
 from polarcheck.table.trace import Trace
 
-WORD = re.compile(rb"([A-Z])([-+]?[0-9.]+)")
 CUTTERS = range(4, 13)
 
 
@@ -38,9 +37,7 @@ def stages(data: bytes) -> dict[str, Callable[[], Any]]:
     lathe = profiles.load(profiles.DEFAULT).machine
     rules = list(load_all().values())
     without = Job()
-    with_cutter = without
-    for number in CUTTERS:
-        with_cutter = with_tool(with_cutter, f"{number}:radius=2")
+    with_cutter = Job(tools={number: Tool(radius=2) for number in CUTTERS})
 
     def read() -> Any:
         return read_words(source.read(data))

@@ -14,6 +14,7 @@ from compensation_oracle import Block, Rules, simulate
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from msgspec.structs import fields, replace
+from plane_moves import path_of_rows, points_along, turn_of
 
 from polarcheck.geometry.compensation import Method, Path, Phase, ToolPath, tool_center_path
 from polarcheck.machines.modal import Motion, Side
@@ -62,9 +63,7 @@ def path_of(*sections: Program) -> Path:
                 )
             )
             here = end
-    types = (np.int64, np.int8, np.bool_, *[np.complex128] * 3, np.int8, np.bool_, np.float64, np.complex128, np.bool_)
-    columns = zip(*rows, strict=True) if rows else [[]] * len(types)
-    return Path(*(np.array(column, dtype=kind) for column, kind in zip(columns, types, strict=True)))
+    return path_of_rows(rows)
 
 
 def control(rules: Rules) -> Method:
@@ -552,21 +551,9 @@ def distance_to_block(points: np.ndarray, path: Path, row: int) -> np.ndarray:
     if np.isnan(center):
         along = ((points - start) * np.conj(end - start)).real / abs(end - start) ** 2
         return np.where((along > 0) & (along < 1), abs(points - start - along * (end - start)), ends)
-    turning = 1 if path.motion[row] == Motion.CCW else -1
-    sweep = np.angle((end - center) / (start - center)) * turning % math.tau or math.tau
-    at = np.angle((points - center) / (start - center)) * turning % math.tau
-    return np.where(at <= sweep, abs(abs(points - center) - abs(start - center)), ends)
-
-
-def sampled(tool: ToolPath, move: int, count: int = 60) -> np.ndarray:
-    """Points along a move of the tool center."""
-    start, end, center = tool.start[move], tool.end[move], tool.center[move]
-    share = np.linspace(0, 1, count)
-    if tool.kind[move] == Motion.LINE:
-        return start + share * (end - start)
-    turning = 1 if tool.kind[move] == Motion.CCW else -1
-    sweep = np.angle((end - center) / (start - center)) * turning % math.tau or math.tau
-    return center + (start - center) * np.exp(1j * turning * sweep * share)
+    sweep = turn_of(start, end, center, path.motion[row])
+    at = np.angle((points - center) / (start - center)) * np.sign(sweep) % math.tau
+    return np.where(at <= abs(sweep), abs(abs(points - center) - abs(start - center)), ends)
 
 
 @settings(max_examples=60, deadline=None)
@@ -669,6 +656,6 @@ def test_tool_keeps_its_distance(program, start_up):
     for move in np.flatnonzero(tool.phase == Phase.OFFSET):
         if doubtful[tool.row[move]]:
             continue
-        points = sampled(tool, move)
+        points = points_along(tool.start[move], tool.end[move], tool.center[move], tool.kind[move], 60)
         for row in contour:
             assert distance_to_block(points, path, row).min() >= path.radius[0] - 1e-6

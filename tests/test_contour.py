@@ -12,6 +12,7 @@ import pytest
 import shapely
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from plane_moves import path_of_rows, points_along, turn_of
 
 from polarcheck.geometry.compensation import Method, Path, Phase, tool_center_path
 from polarcheck.geometry.contour import TOLERANCE, Curves, Overcut, overcuts, sweeps
@@ -65,8 +66,7 @@ def loop(
         on = side if row < len(blocks) - 1 else Side.OFF
         rows.append((0, kind, moves, here, end, center, on, row == 0, radius, NAN, False))
         here = end
-    types = (np.int64, np.int8, np.bool_, *[np.complex128] * 3, np.int8, np.bool_, np.float64, np.complex128, np.bool_)
-    path = Path(*(np.array(column, dtype=kind) for column, kind in zip(zip(*rows, strict=True), types, strict=True)))
+    path = path_of_rows(rows)
     tool = tool_center_path(path, Method(start_up=start_up))
     programmed = np.flatnonzero(path.moves & (path.side != Side.OFF) & (np.arange(len(rows)) > 0))
 
@@ -441,13 +441,9 @@ def test_a_ramp_over_passes_still_to_come_is_none() -> None:
 
 
 def line_of(moves: Curves, which: int) -> shapely.LineString:
-    start, end, center = moves.start[which], moves.end[which], moves.center[which]
-    if np.isnan(center):
-        return shapely.LineString([(start.real, start.imag), (end.real, end.imag)])
-    turn = np.angle((end - center) / (start - center)) % (2 * np.pi) - 2 * np.pi * (moves.kind[which] == Motion.CW)
-    points = center + (start - center) * np.exp(
-        1j * np.linspace(0, turn, 2 + int(abs(turn) * abs(start - center) * 40))
-    )
+    move = moves.start[which], moves.end[which], moves.center[which], moves.kind[which]
+    count = 2 + int(abs(turn_of(*move)) * abs(move[0] - move[2]) * 40) if turn_of(*move) else 2
+    points = points_along(*move, count)
     return shapely.LineString(np.stack([points.real, points.imag], axis=1))
 
 

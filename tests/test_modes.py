@@ -7,7 +7,7 @@ import textwrap
 import pytest
 from programs import report_of_example, said
 
-from polarcheck.checking.rule import examples
+from polarcheck.checking.examples import examples
 
 PROGRAMS = {
     "a forgotten G13.1 says nothing of what follows": """
@@ -141,6 +141,100 @@ PROGRAMS = {
             G1 X20.
             G40 C-20.
             G13.1
+        """,
+    "a start-up while G0 of the approach is in force": """
+        Bad, tool 1:radius=4:
+
+            O1
+            G21 G40 G97 G98 G18
+            T0101
+            G0 X60. C0 Z2.
+            G12.1
+            X60. C20.              (expect: rapid-in-polar)
+            G42 X40. C0 F200
+            G1 C10.
+            X-40.
+            C-10.
+            X40.
+            C0.
+            G40 X60.
+            G13.1
+        """,
+    "start-ups at G0 in one section after the other": """
+        Bad, tool 1:radius=4:
+
+            T0101
+            G98 G0 X60. C0 Z2.
+            G12.1
+            G42 X40. C0 F200       (expect: rapid-in-polar)
+            G1 C10.
+            X-40.
+            C-10.
+            X40.
+            C5.
+            G40 X60.
+            G13.1
+            G0 X80. C0
+            G12.1
+            G42 X60. C0            (expect: rapid-in-polar)
+            G1 C10.
+            X-60.
+            C-10.
+            X60.
+            C5.
+            G40 X80.
+            G13.1
+        """,
+    "G41 and G40 alone before moves in rapid traverse": """
+        Bad, tool 1:radius=4:
+
+            T0101
+            G98 G0 X60. C0 Z2.
+            G12.1
+            G41
+            X40. C0 F200           (expect: rapid-in-polar)
+            G1 C-10.
+            X-40.
+            C10.
+            X40.
+            C0.
+            G40
+            G0 X60.                (expect: rapid-in-polar)
+            G13.1
+        """,
+    "a start-up at G0 that is too short, too": """
+        Bad, tool 1:radius=4:
+
+            T0101
+            G98 G0 X60. C0 Z2.
+            G12.1
+            G1 X44. F500
+            G0 G42 X40.            (expect: rapid-in-polar, start-up-shorter-than-radius)
+            G1 C10.
+            X-40.
+            C-10.
+            X40.
+            C0.
+            G40 X60.
+            G13.1
+        """,
+    "a start-up in rapid traverse where the control takes it": """
+        Good, machine haas-lathe, tool 1:radius=0.25:
+
+            T101
+            G98 G17
+            G0 X3. Y0 C0
+            G112
+            G0 Y-.75
+            G41 X1. Y0
+            G1 Y-.5 F5.
+            X-1.
+            Y.5
+            X1.
+            Y0
+            G0 G40 X3.
+            G113
+            G18
         """,
     "a drilling cycle ends at G0": """
         Good:

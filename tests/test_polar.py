@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from plane_moves import points_along
 
 from polarcheck.geometry import plane, polar, rates
 from polarcheck.machines.modal import Motion
@@ -37,19 +38,7 @@ def columns(*moves: Move) -> tuple[Any, ...]:
 
 
 def sampled(move: Move, count: int = 10_001) -> np.ndarray:
-    """Points at even ways along the move, from its definition."""
-    share = np.linspace(0, 1, count)
-    if move.kind == LINE:
-        return move.start + share * (move.end - move.start)
-    spoke = move.start - move.center
-    turn = np.angle((move.end - move.center) / spoke) % (2 * np.pi)
-    if move.start == move.end:
-        turn = 2 * np.pi
-    elif move.kind == CW:
-        turn -= 2 * np.pi
-    if move.kind == CW and move.start == move.end:
-        turn = -turn
-    return move.center + spoke * np.exp(1j * turn * share)
+    return points_along(*move, count)
 
 
 def way(points: np.ndarray) -> float:

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from programs import machine_of, report_of_example, said
 
-from polarcheck.checking.rule import OVER, Example, Hits, Rule, examples, load_all
+from polarcheck.checking.examples import Example, examples
+from polarcheck.checking.rule import OVER, Hits, Rule, load_all
 from polarcheck.machines import profiles
 
 RULES = load_all()

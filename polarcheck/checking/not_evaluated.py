@@ -9,6 +9,7 @@ import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Rows
 from polarcheck.checking.finding import NotEvaluated
+from polarcheck.checking.phrases.polar import not_simulated
 from polarcheck.checking.rule import Rule
 from polarcheck.checking.tables import Tables
 from polarcheck.table.trace import Trace
@@ -28,9 +29,9 @@ def unexecuted(tables: Tables) -> Iterator[NotEvaluated]:
         reasons.setdefault(reason, []).append(int(trace.text.blocks.line[block]))
     for reason, lines in reasons.items():
         yield NotEvaluated(rule="all", reason=reason, blocks=len(lines))
-    for reason, rows in tables["infeed"].remarks():
-        if len(rows):
-            yield NotEvaluated(rule="all", reason=reason, blocks=len(rows))
+    for reason, count in not_simulated(trace, tables["infeed"]):
+        if count:
+            yield NotEvaluated(rule="all", reason=reason, blocks=count)
 
 
 def unevaluated(tables: Tables, rule: Rule) -> Iterator[NotEvaluated]:
@@ -88,7 +89,7 @@ def _c_axis_without_limit(tables: Tables, rule: Rule) -> Iterator[NotEvaluated]:
     """The highest rate of C, for the setter to compare, where the profile has nothing to compare it with."""
     trace: Trace = tables["trace"]
     c_feed: Floats = tables["tool_center"].c_feed
-    rows = np.flatnonzero(tables["reach"].cuts_off_center & np.isfinite(c_feed))
+    rows = np.flatnonzero(tables["center"].cuts_off_center & np.isfinite(c_feed))
     if not np.isnan(trace.machine.limits.c_feed) or not np.any(c_feed[rows] > 0):
         return
     at = int(rows[np.argmax(c_feed[rows])])
@@ -131,7 +132,7 @@ _REASONS: dict[str, Callable[[Trace, int], str]] = {
     "trace.end": _position,
     "arcs.end_radius": _position,
     "arcs.chord": _position,
-    "reach.most_x": _of_move,
+    "travel.most_x": _of_move,
     "tool_center.c_feed": _of_move,
     "tool_center.c_acceleration": _of_move,
     "trace.feed": _feed,

@@ -18,6 +18,7 @@ from polarcheck.machines.profiles import Profile
 from polarcheck.reading import source
 from polarcheck.reading.translation import translated
 from polarcheck.reading.words import NumberFault, read_words
+from polarcheck.table.mode_words import ModeWords
 from polarcheck.table.trace import Trace
 
 #: More titles than this in one message help nobody.
@@ -38,7 +39,7 @@ class Fit(msgspec.Struct, frozen=True):
 
 
 class OtherMachine:
-    """Columns of one trace, one value per row; the methods give words for a message about one row."""
+    """Which other machines read the program of some tables well: at which row it shows, and why."""
 
     def __init__(self, tables: Tables) -> None:
         self.tables = tables
@@ -56,7 +57,8 @@ class OtherMachine:
             rows[self._fit.row] = True
         return rows
 
-    def text(self, row: int) -> str:
+    @property
+    def text(self) -> str:
         """Which machines, and why."""
         return self._fit.text() if self._fit else ""
 
@@ -103,7 +105,7 @@ def _doubt(tables: Tables) -> int:
     """The row at which the program does not look like one for this machine; -1 for none."""
     trace: Trace = tables["trace"]
     if len(trace.sections):
-        hit = tables["modes"].other_axis | tables["arcs"].x_is_misread
+        hit = _names_other_axis(tables) | tables["arcs"].x_is_misread
         rows = np.flatnonzero(hit)
         return int(trace.sections.enter[trace.section[rows[0]]]) if len(rows) else -1
     codes = [word for word in trace.machine.polar.other_on if word[1:2].isdigit()]
@@ -132,10 +134,10 @@ def _reasons(tables: Tables, machine: Machine) -> tuple[str, ...]:
     there = _read_by(tables, machine)
     trace: Trace = tables["trace"]
     other: Trace = there["trace"]
-    own, mode, modes, arcs = trace.machine.polar, machine.polar, there["modes"], there["arcs"]
-    if not len(other.sections) or not other.sections.left.all() or modes.other_axis.any():
+    own, mode, arcs = trace.machine.polar, machine.polar, there["arcs"]
+    if not len(other.sections) or not other.sections.left.all() or _names_other_axis(there).any():
         return ()
-    if arcs.is_no_circle.any() or arcs.x_is_misread.any() or modes.switch_not_alone.any():
+    if arcs.is_no_circle.any() or arcs.x_is_misread.any() or _switch_is_not_alone(there):
         return ()
     reasons = []
     if not len(trace.sections):
@@ -145,6 +147,19 @@ def _reasons(tables: Tables, machine: Machine) -> tuple[str, ...]:
     if mode.x != own.x and np.any(tables["arcs"].x_is_misread):
         reasons.append(f"all arcs close there, where X is a {mode.x} in the polar mode")
     return tuple(reasons)
+
+
+def _names_other_axis(tables: Tables) -> Mask:
+    """Rows in the mode with the address of the virtual axis of other controls."""
+    trace: Trace = tables["trace"]
+    words: ModeWords = tables["mode_words"]
+    return trace.in_polar & words.rows(words.of_other_axis)
+
+
+def _switch_is_not_alone(tables: Tables) -> bool:
+    """Whether a G12.1 or G13.1 shares its block with what the machine does not take there."""
+    words: ModeWords = tables["mode_words"]
+    return bool(np.any(words.in_rows(words.switches) & ~words.may_stand_beside_switch))
 
 
 def _read_by(tables: Tables, machine: Machine) -> Tables:

@@ -28,23 +28,29 @@ if TYPE_CHECKING:
     from polarcheck.machines.machine import Machine as Machine
     from polarcheck.reading.words import Text as Text
     from polarcheck.reading.words import Words as Words
+    from polarcheck.table.angles import Angles as Angles
     from polarcheck.table.arcs import Arcs as Arcs
+    from polarcheck.table.center import Center as Center
     from polarcheck.table.entry import Entry as Entry
     from polarcheck.table.feeds import Feeds as Feeds
     from polarcheck.table.increments import Increments as Increments
     from polarcheck.table.infeed import Infeed as Infeed
-    from polarcheck.table.modes import Modes as Modes
-    from polarcheck.table.overcutting import Overcutting as Overcutting
+    from polarcheck.table.mode_words import ModeWords as ModeWords
+    from polarcheck.table.overcuts import Overcuts as Overcuts
     from polarcheck.table.ramps import Ramps as Ramps
-    from polarcheck.table.reach import Reach as Reach
     from polarcheck.table.sections import Sections as Sections
     from polarcheck.table.tool_center import ToolCenter as ToolCenter
     from polarcheck.table.trace import Trace as Trace
+    from polarcheck.table.travel import Travel as Travel
     from polarcheck.table.written import Written as Written
 else:
-    # Rules name the types of the tables for their readers; at run time they need none of them.
-    Arcs = Entry = Faults = Feeds = Floats = Increments = Infeed = Job = Machine = Mask = Modes = OtherMachine = Any
-    Overcutting = Ramps = Reach = Sections = States = Text = ToolCenter = Trace = Words = Written = Any
+
+    def __getattr__(name: str) -> Any:
+        """Rules name the types of their tables for readers; at run time they need none of them, and load none."""
+        if not name[:1].isupper():
+            raise AttributeError(name)
+        return Any
+
 
 FOLDER = Path(__file__).parent.parent / "rules"
 
@@ -194,57 +200,6 @@ def load_all() -> dict[str, Rule]:
             raise RuleError(f"rules/{path.parent.name}/{path.name}: no rule named {path.stem}")
         rules[found.name] = found
     return rules
-
-
-_HEADING = re.compile(r"^(Bad|Good)((?:, (?:machine|tool|set) [^\n,:]+(?:[:=][^\n,]*)?)*):$", re.MULTILINE)
-_EXPECT = re.compile(r"\(expect: ([a-z0-9, -]+)\)")
-
-
-class Example(msgspec.Struct, frozen=True):
-    """
-    A program of a manual page and what must be said of it.
-
-    `Bad, machine turning-center, tool 8:radius=9.5, set limits.c_feed=3600:` heads a program for that machine, tool and
-    value. expected: (line, rule) for each `(expect: rule)` in it, which is no part of the program.
-    """
-
-    good: bool
-    machine: str
-    tools: tuple[str, ...]
-    settings: tuple[str, ...]
-    program: str
-    expected: tuple[tuple[int, str], ...]
-
-
-def examples(page: str) -> list[Example]:
-    """The Bad and Good programs of a manual page, in order."""
-    found = []
-    for match in _HEADING.finditer(page):
-        body = []
-        for line in page[match.end() :].lstrip("\n").split("\n"):
-            if line and not line.startswith("    "):
-                break
-            body.append(line[4:])
-        text = "\n".join(body).rstrip("\n") + "\n"
-        expected = [
-            (number, name.strip())
-            for number, line in enumerate(text.split("\n"), 1)
-            for match_ in _EXPECT.finditer(line)
-            for name in match_[1].split(",")
-        ]
-        options = [option.partition(" ")[::2] for option in match[2].split(", ")[1:]]
-        program = re.sub(r"[ \t]*\(expect: [^)\n]*\)[ \t]*$", "", text, flags=re.MULTILINE)
-        found.append(
-            Example(
-                match[1] == "Good",
-                next((value for key, value in options if key == "machine"), ""),
-                tuple(value for key, value in options if key == "tool"),
-                tuple(value for key, value in options if key == "set"),
-                program,
-                tuple(expected),
-            )
-        )
-    return found
 
 
 def find(name: str, rules: dict[str, Rule]) -> list[Rule]:

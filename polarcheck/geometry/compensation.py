@@ -69,7 +69,7 @@ class ToolPath(msgspec.Struct, frozen=True):
 _LEAD, _CORNER, _BLOCK, _TRAIL = range(4)
 
 
-class _Pieces(msgspec.Struct, frozen=True):
+class _Ways(msgspec.Struct, frozen=True):
     """Some moves of the tool center, columns as in ToolPath; `order` sorts them among all others."""
 
     order: Rows
@@ -86,9 +86,9 @@ class _Blocks(msgspec.Struct, frozen=True):
     """
     The programmed moves with compensation; all arrays of length m.
 
-    entry, leave: where the tool center begins and ends the block proper. side, radius: as for Programmed, in a ramp off
-    those of the block before. in_mode: runs along the programmed path. known: entry and leave are. turning: 1 CCW, -1
-    CW, 0 for a line and for what has become one.
+    entry, leave: where the tool center begins and ends the block proper. side, radius: as for Programmed, in an offset
+    cancel those of the block before. in_mode: runs along the programmed path. known: entry and leave are. turning:
+    1 CCW, -1 CW, 0 for a line and for what has become one.
     """
 
     entry: Points
@@ -233,7 +233,7 @@ def _erase(programmed: Programmed, vectors: Vectors, blocks: _Blocks, rows: Mask
     return msgspec.structs.replace(vectors, used=used), helpless
 
 
-def _leads(programmed: Programmed, blocks: _Blocks, vectors: Vectors) -> _Pieces:
+def _leads(programmed: Programmed, blocks: _Blocks, vectors: Vectors) -> _Ways:
     """Lines to the start of a block: to an arc, or at once at a G41 without movement (type C)."""
     at_once = programmed.shifts_at >= 0
     ramps = at_once | (programmed.on & ~programmed.before_on & programmed.is_arc)
@@ -247,7 +247,7 @@ def _leads(programmed: Programmed, blocks: _Blocks, vectors: Vectors) -> _Pieces
     return _lines(leads * 4 + _LEAD, row, start, blocks.entry[leads], phase)
 
 
-def _trails(programmed: Programmed, blocks: _Blocks) -> _Pieces:
+def _trails(programmed: Programmed, blocks: _Blocks) -> _Ways:
     """Lines from the end of a block: from an arc, or at once at a G40 without movement (type C)."""
     at_once = programmed.clears_at >= 0
     from_arc = programmed.before_on & ~programmed.on & programmed.is_arc
@@ -257,7 +257,7 @@ def _trails(programmed: Programmed, blocks: _Blocks) -> _Pieces:
     return _lines(trails * 4 + _TRAIL, row, blocks.leave[trails], programmed.end[trails], phase)
 
 
-def _across_corners(programmed: Programmed, vectors: Vectors) -> _Pieces:
+def _across_corners(programmed: Programmed, vectors: Vectors) -> _Ways:
     """The lines between the vectors of one corner; they belong to the latter block (M700V p. 193)."""
     several = np.flatnonzero((vectors.used.sum(axis=0) > 1) & vectors.known)
     corner, place = np.nonzero(vectors.used.T[several])
@@ -268,7 +268,7 @@ def _across_corners(programmed: Programmed, vectors: Vectors) -> _Pieces:
     return _lines(after * 4 + _CORNER, programmed.row[after], vector[:-1][goes_on], vector[1:][goes_on], phase)
 
 
-def _along(programmed: Programmed, blocks: _Blocks) -> _Pieces:
+def _along(programmed: Programmed, blocks: _Blocks) -> _Ways:
     """The blocks themselves; those that R has used up are left out."""
     on, before_on = programmed.on, programmed.before_on
     returns = (before_on | programmed.left_over) & ~on & ~programmed.is_arc
@@ -284,7 +284,7 @@ def _along(programmed: Programmed, blocks: _Blocks) -> _Pieces:
     blocks.leave[closed] = blocks.entry[closed]
     kept = np.flatnonzero(~(length <= ZERO) | (programmed.full & ~(blocks.in_mode & blocks.known)))
     turning = blocks.turning[kept]
-    return _Pieces(
+    return _Ways(
         order=kept * 4 + _BLOCK,
         row=programmed.row[kept],
         start=blocks.entry[kept],
@@ -296,10 +296,10 @@ def _along(programmed: Programmed, blocks: _Blocks) -> _Pieces:
     )
 
 
-def _lines(order: Rows, row: Rows, start: Points, end: Points, phase: NDArray[np.integer]) -> _Pieces:
+def _lines(order: Rows, row: Rows, start: Points, end: Points, phase: NDArray[np.integer]) -> _Ways:
     """Lines added by the control; those of no length are left out."""
     kept = np.flatnonzero(np.abs(end - start) > ZERO)
-    return _Pieces(
+    return _Ways(
         order=order[kept],
         row=row[kept],
         start=start[kept],
@@ -311,8 +311,8 @@ def _lines(order: Rows, row: Rows, start: Points, end: Points, phase: NDArray[np
     )
 
 
-def _merged(*parts: _Pieces) -> _Pieces:
+def _merged(*parts: _Ways) -> _Ways:
     """All moves in the order in which they are run."""
     order = np.argsort(np.concatenate([part.order for part in parts]), kind="stable")
-    columns = (np.concatenate([getattr(part, name) for part in parts])[order] for name in _Pieces.__struct_fields__)
-    return _Pieces(*columns)
+    columns = (np.concatenate([getattr(part, name) for part in parts])[order] for name in _Ways.__struct_fields__)
+    return _Ways(*columns)

@@ -32,7 +32,7 @@ class Method(msgspec.Struct, frozen=True):
 
     @property
     def ramps_by_next(self) -> bool:
-        """Type A: the ramp on ends perpendicular to the next block, the ramp off begins perpendicular to the last."""
+        """Type A: the start-up ends perpendicular to the next block, the cancel begins perpendicular to the last."""
         return (self.start_up_moving if self.start_up == "C" else self.start_up) == "A"
 
     @property

@@ -104,7 +104,7 @@ def overcuts(contour: Curves, left: Mask, path: Curves, radius: Floats, toleranc
 
 def sweeps(contour: Curves, left: Mask, ramps: Curves, radius: Floats, tolerance: float = TOLERANCE) -> Overcut:
     """
-    Ramps on and off that cut the contour of their loop on their way; the worst place of each ramp.
+    Start-ups and offset cancels that cut the contour of their loop on their way; the worst place of each ramp.
 
     contour, left: as for overcuts. ramps: the tool center's moves of start-up and cancel, `row` theirs; `move` of the
     result counts them. radius: float64[ramps] [mm], |R|.

@@ -148,7 +148,7 @@ def _joints(programmed: Programmed, corners: Corners, turned: Points, method: Me
 
 
 def _is_slanted(programmed: Programmed) -> Mask:
-    """Ramps off with I and J: they begin where the path cuts a line in that direction, offset alike (M700V p. 193)."""
+    """Cancels with I and J: they begin where the path cuts a line in that direction, offset alike (M700V p. 193)."""
     given = ~np.isnan(programmed.cancel_vector) & ~programmed.on & ~programmed.is_arc
     return np.asarray(given[1:] & (programmed.before_on | programmed.is_arc)[:-1])
 

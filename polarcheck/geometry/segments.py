@@ -28,8 +28,8 @@ class Curves:
     end: Points
     center: Points
     kind: States
-    loop: NDArray[np.integer]
-    row: NDArray[np.integer]
+    loop: Rows
+    row: Rows
 
 
 @dataclass(frozen=True, slots=True)

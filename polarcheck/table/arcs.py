@@ -42,43 +42,21 @@ class Arcs:
 
     @cached_property
     def has_word_of_other_plane(self) -> Mask:
-        """Arcs with a K; K0 moves nothing."""
+        """Rows with a K; K0 moves nothing."""
         other = self.trace.machine.polar.other_center_word
-        return np.asarray(self.trace.is_arc & self.trace.has(other) & (self.trace.word(other) != 0))
+        return np.asarray(self.trace.has(other) & (self.trace.word(other) != 0))
 
     @cached_property
-    def words_of_other_plane(self) -> Mask:
-        """Per executed word: of the address of arc centers that is of no axis of the polar plane."""
-        return self.trace.words_at(self.trace.word_indices(self.trace.machine.polar.other_center_word))
+    def has_word_of_plane(self) -> Mask:
+        """Rows with a word of the polar plane: X, C, or I or J without a K beside them."""
+        polar = self.trace.machine.polar
+        own_center = self.trace.has(*polar.center_words) & ~self.trace.has(polar.other_center_word)
+        return np.asarray(self.trace.moves_plane | own_center)
 
     @cached_property
-    def without_center(self) -> Mask:
-        """Arcs with neither R nor I, J or K that move."""
-        written = self.by_radius | self.trace.has(*self.trace.machine.polar.center_words) | self.has_word_of_other_plane
-        return np.asarray(self.trace.is_arc & ~written & ~self._ends_at_start)
-
-    @cached_property
-    def _ends_at_start(self) -> Mask:
+    def ends_at_start(self) -> Mask:
+        """Rows that do not move on the plane; False where it is not known."""
         return np.asarray(np.abs(self.trace.end - self.trace.start) <= ROUNDING)
-
-    @cached_property
-    def off_plane(self) -> Mask:
-        """Arcs along Z with nothing of the polar plane."""
-        trace = self.trace
-        own = trace.has(*trace.machine.polar.center_words) & ~trace.has(self.trace.machine.polar.other_center_word)
-        return np.asarray(self.in_force & trace.moves_z & ~trace.moves_plane & ~own)
-
-    @cached_property
-    def helical(self) -> Mask:
-        """Arcs on the polar plane that move Z, too."""
-        return np.asarray(self.in_force & self.trace.moves_z & ~self.off_plane)
-
-    @cached_property
-    def circle_by_radius(self) -> Mask:
-        """Arcs with R that end where they start, be it that no end is written."""
-        trace = self.trace
-        has_radius = self.in_force & trace.has(trace.machine.arcs.radius_word) & ~trace.moves_z
-        return np.asarray(has_radius & (~trace.moves_plane | self._ends_at_start))
 
     # ---- whether it is a circle ----
 
@@ -100,11 +78,6 @@ class Arcs:
         return np.where(self.by_center, np.abs(step - self._to_center), np.nan)
 
     @cached_property
-    def center_on_path(self) -> Mask:
-        """Arcs whose center by I and J is their start or their end."""
-        return np.asarray(np.fmin(self.start_radius, self.end_radius) <= ROUNDING)
-
-    @cached_property
     def chord(self) -> Floats:
         """Distance from start to end of an arc by R [mm]; NaN for other rows and where it is not known."""
         return np.where(self.by_radius, np.abs(self.trace.end - self.trace.start), np.nan)
@@ -115,20 +88,17 @@ class Arcs:
         return np.where(self.by_radius, self.trace.length_of(self.trace.machine.arcs.radius_word), np.nan)
 
     @cached_property
-    def ends_off_circle(self) -> Mask:
-        """Arcs by I and J whose end is not as far from the center as their start."""
-        return np.asarray(np.abs(self.start_radius - self.end_radius) > self.trace.machine.arcs.tolerance)
-
-    @cached_property
-    def does_not_reach(self) -> Mask:
-        """Arcs by R whose ends are farther apart than the diameter."""
-        return np.asarray(self.chord > 2 * np.abs(self.radius) + self.trace.machine.arcs.tolerance)
-
-    @cached_property
     def is_no_circle(self) -> Mask:
         """Arcs about which a finding says that there is no such circle; what follows from their shape means nothing."""
-        no_center = self.without_center | self.has_word_of_other_plane | self.center_on_path
-        return no_center | self.ends_off_circle | self.does_not_reach
+        trace, tolerance = self.trace, self.trace.machine.arcs.tolerance
+        no_center = ~self.by_radius & ~self.by_center & ~self.ends_at_start
+        return np.asarray(
+            (trace.is_arc & (no_center | self.has_word_of_other_plane))
+            | (self.start_radius <= ROUNDING)
+            | (self.end_radius <= ROUNDING)
+            | (np.abs(self.start_radius - self.end_radius) > tolerance)
+            | (self.chord > 2 * np.abs(self.radius) + tolerance)
+        )
 
     @cached_property
     def sweep(self) -> Floats:

@@ -24,6 +24,7 @@ Column = TypeVar("Column")
 
 #: Without a point, a length of this many units can only be meant in least increments: no lathe moves a meter.
 _INCREMENTS_FROM = 1000.0
+_LONGEST_TOOL_NUMBER = 1e15
 _BEFORE = {"motion": Motion.NONE, "side": Side.OFF, "feed_mode": FeedMode.PER_MINUTE, "distance": Distance.ABSOLUTE}
 
 
@@ -236,8 +237,9 @@ class Columns:
 
     @cached_property
     def _tool_number(self) -> Rows:
-        written = self.has("T")
-        value = np.where(written, np.nan_to_num(self.word("T")), 0).astype(np.int64)
+        written, called = self.has("T"), self.word("T")
+        # A longer number calls nothing (too-many-digits), and none that a whole number could hold.
+        value = np.where(np.abs(called) < _LONGEST_TOOL_NUMBER, called, 0).astype(np.int64)
         return fill_down(value, written | self.starts, 0)
 
     @cached_property

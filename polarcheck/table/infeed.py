@@ -10,7 +10,6 @@ point, the farthest first; the control goes straight from the end of a pass to t
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from functools import cached_property
 
 import numpy as np
@@ -71,17 +70,19 @@ class Infeed:
         return (moving[: back[-1] + 1], True) if len(back) else (moving, False)
 
     @cached_property
-    def is_open(self) -> Mask:
-        """G12.1 with an E whose section does not come back to where its contour begins."""
-        rows = np.zeros(len(self.trace), bool)
+    def gap(self) -> Floats:
+        """
+        From the end of the contour behind each G12.1 with an E to its beginning [mm]; 0 where it is closed, NaN where
+        there is no contour or a point of it is not known.
+        """
+        gap = np.full(len(self.trace), np.nan)
         for row, (contour, closed) in self._contours.items():
-            rows[row] = len(contour) > 1 and not closed and not np.isnan(self.trace.end[contour]).any()
-        return rows
-
-    def gap(self, row: int) -> float:
-        """How far the end of the contour behind a G12.1 is from its beginning [mm]."""
-        contour, _ = self._contours[row]
-        return float(np.abs(self.trace.end[contour[-1]] - self.trace.end[contour[0]]))
+            way = self.trace.end[contour] - self.trace.end[contour[:1]]
+            if closed:
+                gap[row] = 0.0
+            elif len(way) and not np.isnan(way).any():
+                gap[row] = np.abs(way[-1])
+        return gap
 
     def offsets(self, row: int) -> Floats:
         """How far the passes before the last lie off the contour [mm], the farthest first."""
@@ -156,19 +157,12 @@ class Infeed:
         across = (way.conjugate() * (trace.start[contour[0]] - trace.end[contour[0]])).imag
         return Side.LEFT if across > 0 else Side.RIGHT
 
-    def remarks(self) -> Iterator[tuple[str, Rows]]:
-        """What of the words beside G12.1 is not simulated, and in which rows."""
-        trace, mode = self.trace, self.trace.machine.polar
-        for word, number, axis in (("P", mode.linear_axis, "linear"), ("Q", mode.rotary_axis, "rotary")):
-            if word in mode.switch_words:
-                value = trace.word(word)
-                other = trace.enters & ~np.isnan(value) & (value != number)
-                yield f"{word} names another {axis} axis than {number}, which is not simulated", np.flatnonzero(other)
-        for word in sorted({"X", mode.virtual_axis} & set(mode.switch_words)):
-            shifts = trace.enters & (np.nan_to_num(trace.word(word)) != 0)
-            yield f"the center of the C axis shifted by {word} is not simulated", np.flatnonzero(shifts)
-        many = [row for row in self._begins if len(self.offsets(row)) > len(self._simulated(row, MOST_MOVES))]
-        yield "of an infeed cycle only the passes next to the contour are simulated", np.array(many, np.int64)
+    @cached_property
+    def is_simulated_in_part(self) -> Mask:
+        """G12.1 with an E of which only the passes next to the contour are simulated."""
+        rows = np.zeros(len(self.trace), bool)
+        rows[[row for row in self._begins if len(self.offsets(row)) > len(self._simulated(row, MOST_MOVES))]] = True
+        return rows
 
 
 def _between(moves: Moves, first: int, end: int) -> Moves:

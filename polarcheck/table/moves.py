@@ -121,7 +121,7 @@ def any_in_row(hit: Mask, moves: Moves, count: int) -> Mask:
 
 def programmed_moves(trace: Trace) -> Moves:
     """The programmed path: one move per row that moves on the polar plane."""
-    row = np.flatnonzero(trace.cuts | (trace.in_polar & trace.moves_plane & (trace.motion == Motion.RAPID)))
+    row = np.flatnonzero(trace.on_plane)
     kind, start, end, center = _kind(trace, row), trace.start[row], trace.end[row], trace.center[row]
     return Moves(
         row=row,
@@ -142,13 +142,6 @@ def _kind(trace: Trace, row: Rows) -> States:
     """Motion of each move; an arc whose center is not known is followed along its chord."""
     kind = trace.motion[row]
     return np.where(trace.is_arc[row] & np.isnan(trace.center[row]), Motion.LINE, kind).astype(np.int8)
-
-
-def compensated(trace: Trace) -> tuple[Moves, compensation.ToolPath, Rows]:
-    """The tool center path, what compensation found on the way, and the rows of the trace that it was given."""
-    row = np.flatnonzero(trace.in_polar)
-    tool = tool_center_path(trace, compensation_path(trace, row))
-    return of_tool(trace, tool, row), tool, row
 
 
 def compensation_path(trace: Trace, row: Rows) -> compensation.Path:

@@ -1,4 +1,7 @@
-"""The path of the tool center as columns: how near it comes to the center of C, and what it asks of the C axis."""
+"""
+The path of the tool center as columns: what the control would object to on the way, how near it comes to the center
+of C, and what it asks of the C axis.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +12,7 @@ import numpy as np
 from polarcheck.arrays import Floats, Mask, Rows
 from polarcheck.geometry.compensation import ToolPath
 from polarcheck.table.infeed import Infeed
-from polarcheck.table.moves import Moves, compensated, per_row
+from polarcheck.table.moves import Moves, compensation_path, of_tool, per_row, tool_center_path
 from polarcheck.table.trace import Trace
 
 
@@ -21,21 +24,53 @@ class ToolCenter:
         self.infeed = infeed
 
     @cached_property
-    def _compensated(self) -> tuple[Moves, ToolPath, Rows]:
-        found, tool, row = compensated(self.trace)
-        return self.infeed.with_passes(found), tool, row
+    def _rows(self) -> Rows:
+        """The rows of the trace that are compensated: those in the mode."""
+        return np.flatnonzero(self.trace.in_polar)
 
-    @property
+    @cached_property
+    def _path(self) -> ToolPath:
+        return tool_center_path(self.trace, compensation_path(self.trace, self._rows))
+
+    @cached_property
     def moves(self) -> Moves:
         """The moves of the tool center inside sections."""
-        return self._compensated[0]
+        return self.infeed.with_passes(of_tool(self.trace, self._path, self._rows))
 
-    def found(self, name: str) -> Mask:
-        """What the control would object to while it compensates, per row (compensation.ToolPath)."""
-        _, tool, row = self._compensated
+    # ---- what the control would object to while it compensates ----
+
+    def _found(self, in_path: Mask) -> Mask:
+        """From the rows of the path to those of the trace."""
         rows = np.zeros(len(self.trace), bool)
-        rows[row[getattr(tool, name)]] = True
+        rows[self._rows[in_path]] = True
         return rows
+
+    @cached_property
+    def inside_arc_too_small(self) -> Mask:
+        """An arc on whose inner side the tool does not fit: its radius is not above R."""
+        return self._found(self._path.inside_arc_too_small)
+
+    @cached_property
+    def interferes(self) -> Mask:
+        """The tool center would run against the program."""
+        return self._found(self._path.interferes)
+
+    @cached_property
+    def no_intersection(self) -> Mask:
+        """The paths of the tool center do not meet at the inside corner at the end of the row."""
+        return self._found(self._path.no_intersection)
+
+    @cached_property
+    def movement_missing(self) -> Mask:
+        """The control does not know the next move in time, so that the row ends perpendicular, which is wrong there."""
+        return self._found(self._path.movement_missing)
+
+    @cached_property
+    def arc_center_on_path(self) -> Mask:
+        """An arc whose center is its start or its end."""
+        return self._found(self._path.arc_center_on_path)
+
+    # ---- where it runs and how fast ----
 
     def _of_moves(self, values: Floats, none: float, largest: bool = True) -> Floats:
         return per_row(values, self.moves, len(self.trace), none, largest)

@@ -10,7 +10,7 @@ from functools import cached_property
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, States
+from polarcheck.arrays import Floats, Mask, Rows, States
 from polarcheck.execution.programs import find_programs
 from polarcheck.machines.modal import FeedMode, Motion, Side
 from polarcheck.table.filling import before, fill_down
@@ -38,6 +38,29 @@ class Trace(Positions):
         whole[self.program[self.codes("M99") & (self.run.depth == 0)]] = False
         return whole[self.program]
 
+    # ---- tool offset ----
+
+    @cached_property
+    def tool_called(self) -> Rows:
+        """What T calls in each row, tool and offset as one number: 808 for T0808; 0 before the first."""
+        return self._tool_number
+
+    @cached_property
+    def tool_called_before(self) -> Rows:
+        """What T called above the row."""
+        return before(self.tool_called, self.starts, 0)
+
+    @cached_property
+    def has_called_tool(self) -> Mask:
+        """A T word stands in the row or above it in its program."""
+        written = self.has("T")
+        return fill_down(written, written | self.starts, False).astype(bool)
+
+    @cached_property
+    def nose_is_of_mill(self) -> Mask:
+        """The nose type of the offset in force leaves the programmed point in the cutter center; False if unknown."""
+        return np.isin(self.nose, self.machine.compensation.nose_types)
+
     # ---- compensation ----
 
     @cached_property
@@ -53,6 +76,21 @@ class Trace(Positions):
         return before(self.side, self.starts, Side.OFF).astype(np.int8)
 
     @cached_property
+    def compensates(self) -> Mask:
+        """G41 or G42 is in force in the polar mode."""
+        return np.asarray(self.in_polar & (self.side != Side.OFF))
+
+    @cached_property
+    def on_plane(self) -> Mask:
+        """
+        A move on the polar plane, be it in rapid traverse; a cycle is none.
+
+        At G0 most controls alarm. A start-up or offset cancel in it is one nevertheless: what was meant is G1, and
+        compensation itself asks for G0 or G1 (B-63324EN/03 p. 402).
+        """
+        return np.asarray(self.in_polar & self.moves_plane & ~self.in_cycle)
+
+    @cached_property
     def cuts(self) -> Mask:
         """A move on the polar plane at feed."""
         return self.in_polar & self.moves_plane & np.isin(self.motion, (Motion.LINE, Motion.CW, Motion.CCW))
@@ -60,12 +98,12 @@ class Trace(Positions):
     @cached_property
     def starts_up(self) -> Mask:
         """The move in which compensation is built up."""
-        return np.asarray(self.cuts & (self.side != Side.OFF) & (self.side_of_move_before == Side.OFF))
+        return np.asarray(self.on_plane & (self.side != Side.OFF) & (self.side_of_move_before == Side.OFF))
 
     @cached_property
     def cancels(self) -> Mask:
         """The move in which compensation is taken back."""
-        return np.asarray(self.cuts & (self.side == Side.OFF) & (self.side_of_move_before != Side.OFF))
+        return np.asarray(self.on_plane & (self.side == Side.OFF) & (self.side_of_move_before != Side.OFF))
 
     @cached_property
     def side_of_move_before(self) -> States:

@@ -42,11 +42,9 @@ class Written:
         self.machine = machine
 
     @property
-    def filled_blocks(self) -> Rows:
-        """One element, the file: how many blocks have words or macro statements."""
-        filled = self.text.blocks.is_macro.copy()
-        filled[self.words.block] = True
-        return np.array([np.count_nonzero(filled)])
+    def contents(self) -> Rows:
+        """One element, the file: how many words and blocks of macro it has."""
+        return np.array([len(self.words) + np.count_nonzero(self.text.blocks.is_macro)])
 
     # ---- words of a block ----
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from polarcheck.checking.quantity import in_row
 from polarcheck.machines.machine import Machine
-from polarcheck.table.overcutting import Overcutting
+from polarcheck.table.overcuts import Overcuts
 from polarcheck.table.trace import Trace
 
 
@@ -68,9 +68,9 @@ def why(trace: Trace, row: int) -> str:
     return f"{blocks} without a move on the plane follow{'' if count > 1 else 's'}, this control reads past {least}"
 
 
-def place(trace: Trace, overcutting: Overcutting, row: int) -> str:
+def place(trace: Trace, overcuts: Overcuts, row: int) -> str:
     """Where the row, or the ramp in it, cuts deepest, and into which line."""
-    cuts = overcutting.cuts if overcutting.depth[row] > 0 else overcutting.sweeps
+    cuts = overcuts.cuts if overcuts.depth[row] > 0 else overcuts.sweeps
     into, place = cuts.deepest(row)
     shown = f"{in_row(place, trace, row):point}".replace("C", trace.machine.polar.virtual_axis)
     return f"the contour of line {int(trace.line[into])} at {shown}"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from polarcheck.checking.quantity import in_row
-from polarcheck.table.reach import Reach
+from polarcheck.table.center import Center
 from polarcheck.table.tool_center import ToolCenter
 from polarcheck.table.trace import Trace
 
@@ -42,9 +42,9 @@ def advice(trace: Trace, tool_center: ToolCenter, row: int) -> str:
     return f"highest F here: {in_row(float(tool_center.feed_allowed[row]), trace, row):feed}"
 
 
-def meeting(reach: Reach, tool_center: ToolCenter, row: int) -> str:
+def meeting(center: Center, tool_center: ToolCenter, row: int) -> str:
     """How the tool center meets the center of C in a row that does."""
-    moves, stops, least = tool_center.moves, reach.stops_at_center, reach.least_increment[row]
+    moves, stops, least = tool_center.moves, center.stops_at_center, center.least_increment[row]
     at = np.flatnonzero((moves.row == row) & (stops | (moves.nearest < least)))[-1]
     if stops[at]:
         return "stops at the center of the C axis, where C has no angle"

@@ -10,8 +10,8 @@ from polarcheck.machines.machine import Machine
 from polarcheck.machines.modal import MM_PER_INCH, Units
 from polarcheck.table.arcs import Arcs
 from polarcheck.table.increments import Increments
-from polarcheck.table.reach import Reach
 from polarcheck.table.trace import Trace
+from polarcheck.table.travel import Travel
 
 #: F without a point in an inch program [inch/min], parameter 1403#0 MIF = 0; in mm it is whole mm/min.
 _FEED_INCREMENT_INCH = 0.01
@@ -58,17 +58,17 @@ def taken_as(trace: Trace, increments: Increments, index: int) -> str:
     return f"{shown} {unit}{others}"
 
 
-def travel(trace: Trace, reach: Reach, row: int) -> str:
+def travel(trace: Trace, travel: Travel, row: int) -> str:
     """Where a row goes beyond the travel, and where that ends."""
     limits = trace.machine.limits
-    reaches = (
-        ("X", "diameter", float(reach.most_x[row]), limits.x_maximum, 1),
-        ("X", "diameter", float(reach.least_x[row]), limits.x_minimum, -1),
-        ("Z", "length", float(trace.z[row]), limits.z_maximum, 1),
-        ("Z", "length", float(trace.z[row]), limits.z_minimum, -1),
+    ends = (
+        ("X", "diameter", float(travel.most_x[row]), limits.x_maximum, 1),
+        ("X", "diameter", float(travel.least_x[row]), limits.x_minimum, -1),
+        ("Z", "length", float(travel.z[row]), limits.z_maximum, 1),
+        ("Z", "length", float(travel.z[row]), limits.z_minimum, -1),
     )
-    for axis, form, value, limit, sign in reaches:
+    for axis, form, value, limit, sign in ends:
         if np.isfinite(value) and sign * value > sign * limit + ROUNDING:
-            goes, end = (in_row(length, trace, row) for length in (value, limit))
-            return f"{axis} would go to {goes:{form}}, its travel ends at {end:{form}}"
+            goes, ends_at = (in_row(length, trace, row) for length in (value, limit))
+            return f"{axis} would go to {goes:{form}}, its travel ends at {ends_at:{form}}"
     return ""

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from polarcheck.checking.phrases.common import executed_word, switch_off
 from polarcheck.machines.codes import spelled
 from polarcheck.machines.machine import Machine
+from polarcheck.table.infeed import Infeed
 from polarcheck.table.trace import Trace
 
 #: What words of systems B and C mean in system A, and of A in B and C.
@@ -90,3 +93,18 @@ def other_controls(machine: Machine) -> str:
     """Which controls take the address."""
     controls = machine.polar.other_virtual_axis_of
     return f"; {controls} would take it" if controls else ""
+
+
+def not_simulated(trace: Trace, infeed: Infeed) -> Iterator[tuple[str, int]]:
+    """What of the words beside G12.1 is not simulated, and in how many blocks."""
+    mode = trace.machine.polar
+    for word, number, axis in (("P", mode.linear_axis, "linear"), ("Q", mode.rotary_axis, "rotary")):
+        if word in mode.switch_words:
+            value = trace.word(word)
+            other = trace.enters & ((value < number) | (value > number))
+            yield f"{word} names another {axis} axis than {number}, which is not simulated", int(other.sum())
+    for word in sorted({"X", mode.virtual_axis} & set(mode.switch_words)):
+        shifts = trace.enters & (abs(trace.word(word)) > 0)
+        yield f"the center of the C axis shifted by {word} is not simulated", int(shifts.sum())
+    partly = int(infeed.is_simulated_in_part.sum())
+    yield "of an infeed cycle only the passes next to the contour are simulated", partly

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from polarcheck.checking.other_machine import OtherMachine
 from polarcheck.table.entry import Entry
 from polarcheck.table.trace import Trace
 
@@ -15,3 +16,8 @@ def name(entry: Entry, row: int) -> str:
 def comment(trace: Trace, row: int) -> str:
     """The comment that R was taken from."""
     return trace.radius_comments[int(trace.offset_number[row])].comment
+
+
+def fit(other_machine: OtherMachine) -> str:
+    """Which machines read the program well, and why."""
+    return other_machine.text

@@ -1,15 +1,15 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Mask, Ramps, Trace, rule
+from polarcheck.checking.rule import ERROR, Mask, Trace, rule
 
 
 @rule(ERROR, "G40 takes effect on an arc; cancel in a G1 block after the arc", at=("G40", "G2", "G3"))
-def cancel_on_arc(trace: Trace, ramps: Ramps) -> Mask:
+def cancel_on_arc(trace: Trace) -> Mask:
     """
     Cutter compensation cancelled on an arc.
 
     G40 takes effect with the next move, and that must be a straight one: the control stops with an alarm at G2 or G3.
-    Finish the arc with compensation, and ramp off in G1.
+    Finish the arc with compensation, and cancel in G1.
 
     Source: FANUC B-63324EN/03, p. 402; alarm 034; builder's guide to G12.1.
 
@@ -35,4 +35,4 @@ def cancel_on_arc(trace: Trace, ramps: Ramps) -> Mask:
         G1 G40 C-25.
         G13.1
     """
-    return trace.cancels & ramps.on_arc
+    return trace.cancels & trace.is_arc

@@ -3,10 +3,16 @@ from __future__ import annotations
 from polarcheck.checking.rule import ERROR, Mask, Ramps, Trace, rule
 
 
-@rule(ERROR, "ramp-off {fault}", at=("G40",), needs=("trace.radius", "trace.length"), where="ramps.off_of_length")
+@rule(
+    ERROR,
+    "offset cancel {fault}",
+    at=("G40",),
+    needs=("trace.radius", "trace.length"),
+    where="ramps.cancel_judged_by_radius",
+)
 def cancel_shorter_than_radius(trace: Trace, ramps: Ramps) -> Mask:
     """
-    Ramp-off shorter than the cutter radius.
+    Offset cancel shorter than the cutter radius.
 
     Cutter compensation is taken back in the G1 block with G40, or in the next one that moves. That block must move at
     least the R of the tool offset: along X twice R where X is a diameter, along C once R, at an angle R on the plane.
@@ -50,5 +56,6 @@ def cancel_shorter_than_radius(trace: Trace, ramps: Ramps) -> Mask:
         X65. F1500
         G13.1
     """
-    short = trace.cancels & ramps.too_short & ~ramps.on_arc
-    return short | (ramps.ends_standing & ramps.has_radius)
+    short = trace.cancels & ~trace.is_arc & ramps.shorter_than_radius
+    # With R 0 an offset cancel needs no length; an R that is not known is not 0.
+    return short | (ramps.cancel_missing & (trace.radius != 0))

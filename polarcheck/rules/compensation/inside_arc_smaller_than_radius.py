@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Mask, Ramps, rule
+from polarcheck.checking.rule import ERROR, Mask, ToolCenter, Trace, rule
 
 
 @rule(
@@ -10,7 +10,7 @@ from polarcheck.checking.rule import ERROR, Mask, Ramps, rule
     needs=("trace.radius",),
     where="ramps.compensated",
 )
-def inside_arc_smaller_than_radius(ramps: Ramps) -> Mask:
+def inside_arc_smaller_than_radius(trace: Trace, tool_center: ToolCenter) -> Mask:
     """
     Arc into which the cutter does not fit.
 
@@ -59,4 +59,5 @@ def inside_arc_smaller_than_radius(ramps: Ramps) -> Mask:
         G40 C-20.
         G13.1
     """
-    return ramps.arc_too_small
+    # A start-up or an offset cancel on an arc has a rule of its own.
+    return tool_center.inside_arc_too_small & ~trace.starts_up & ~trace.cancels

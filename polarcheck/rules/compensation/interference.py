@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Mask, Ramps, rule
+from polarcheck.checking.rule import ERROR, Mask, Ramps, ToolCenter, rule
 
 
 @rule(
@@ -9,7 +9,7 @@ from polarcheck.checking.rule import ERROR, Mask, Ramps, rule
     needs=("trace.radius",),
     where="ramps.compensated",
 )
-def interference(ramps: Ramps) -> Mask:
+def interference(tool_center: ToolCenter, ramps: Ramps) -> Mask:
     """
     Contour too narrow for the cutter.
 
@@ -50,4 +50,4 @@ def interference(ramps: Ramps) -> Mask:
         G40 X100.
         G13.1
     """
-    return ramps.runs_backwards
+    return tool_center.interferes & ~tool_center.no_intersection & ~ramps.is_consequence

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Mask, Ramps, rule
+from polarcheck.checking.rule import WARNING, Mask, ToolCenter, rule
 
 
 @rule(
@@ -9,14 +9,14 @@ from polarcheck.checking.rule import WARNING, Mask, Ramps, rule
     needs=("trace.radius",),
     where="ramps.compensated",
 )
-def movement_missing_in_offset_mode(ramps: Ramps) -> Mask:
+def movement_missing_in_offset_mode(tool_center: ToolCenter) -> Mask:
     """
     Too many blocks without movement between two moves with compensation.
 
     To find the way round a corner the control must know the next move on the plane. It reads a few blocks ahead, and Z
     moves, M and S codes, dwell and empty moves use them up; M0 and M1 stop the reading altogether. Then the tool center
-    goes to R beside the end of this block, cuts into an inside corner, and after a ramp on may stand on the wrong side.
-    Bring the blocks to another place, or join them: one Z move to depth is harmless, two are not.
+    goes to R beside the end of this block, cuts into an inside corner, and after a start-up may stand on the wrong
+    side. Bring the blocks to another place, or join them: one Z move to depth is harmless, two are not.
 
     Source: FANUC B-63664EN, p. 170; B-63944EN-2, p. 146.
 
@@ -60,4 +60,5 @@ def movement_missing_in_offset_mode(ramps: Ramps) -> Mask:
         G40 X-100.
         G13.1
     """
-    return ramps.next_not_read
+    # Compares nothing: which moves the control knows in time, and needs to know, shows only while it compensates.
+    return tool_center.movement_missing

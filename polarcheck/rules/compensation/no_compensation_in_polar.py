@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import NOTE, Mask, Ramps, rule
+from polarcheck.checking.rule import NOTE, Mask, Sections, Trace, rule
 
 
 @rule(
@@ -9,7 +9,7 @@ from polarcheck.checking.rule import NOTE, Mask, Ramps, rule
     over="sections",
     at=("on",),
 )
-def no_compensation_in_polar(ramps: Ramps) -> Mask:
+def no_compensation_in_polar(trace: Trace, sections: Sections) -> Mask:
     """
     Contour cut without cutter compensation.
 
@@ -39,4 +39,5 @@ def no_compensation_in_polar(ramps: Ramps) -> Mask:
         G40 X2.4
         G13.1
     """
-    return ramps.uncompensated
+    without = trace.anywhere_in_section(trace.cuts) & ~trace.anywhere_in_section(trace.compensates)
+    return without[sections.enter]

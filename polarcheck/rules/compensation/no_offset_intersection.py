@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Mask, Ramps, rule
+from polarcheck.checking.rule import ERROR, Mask, Ramps, ToolCenter, rule
 
 
 @rule(
@@ -9,7 +9,7 @@ from polarcheck.checking.rule import ERROR, Mask, Ramps, rule
     needs=("trace.radius",),
     where="ramps.compensated",
 )
-def no_offset_intersection(ramps: Ramps) -> Mask:
+def no_offset_intersection(tool_center: ToolCenter, ramps: Ramps) -> Mask:
     """
     Inside corner without a meeting point for the tool center.
 
@@ -45,4 +45,4 @@ def no_offset_intersection(ramps: Ramps) -> Mask:
         G40 X110.
         G13.1
     """
-    return ramps.does_not_meet
+    return tool_center.no_intersection & ~ramps.is_consequence

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Mask, Ramps, Trace, rule
+from polarcheck.checking.rule import ERROR, Mask, Trace, rule
 
 
 @rule(
@@ -9,7 +9,7 @@ from polarcheck.checking.rule import ERROR, Mask, Ramps, Trace, rule
     at=("G41", "G42"),
     once="section",
 )
-def nose_type_not_zero(trace: Trace, ramps: Ramps) -> Mask:
+def nose_type_not_zero(trace: Trace) -> Mask:
     """
     Nose type of a turning tool in the offset of a mill.
 
@@ -39,4 +39,5 @@ def nose_type_not_zero(trace: Trace, ramps: Ramps) -> Mask:
         G40 X60.
         G13.1
     """
-    return trace.starts_up & ramps.nose_wrong
+    known = trace.nose >= 0
+    return trace.starts_up & known & ~trace.nose_is_of_mill

@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Mask, Ramps, rule
+from polarcheck.checking.rule import ERROR, Mask, ModeWords, Trace, rule
 
 
 @rule(ERROR, "tool offset changed in the polar mode by {changed_by}; write it {outside}", at=("T", "G10"))
-def offset_changed_in_polar(ramps: Ramps) -> Mask:
+def offset_changed_in_polar(trace: Trace, mode_words: ModeWords) -> Mask:
     """
     Tool offset changed in the polar mode.
 
@@ -39,4 +39,6 @@ def offset_changed_in_polar(ramps: Ramps) -> Mask:
         G13.1
         T0111
     """
-    return ramps.offset_changes
+    calls_another = trace.in_polar & trace.has("T") & (trace.tool_called != trace.tool_called_before)
+    writes_one = mode_words.rows(mode_words.changes_tool_offset & mode_words.not_allowed)
+    return calls_another | writes_one

@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Mask, Ramps, Trace, rule
+from polarcheck.checking.rule import ERROR, Mask, Trace, rule
 
 
 @rule(ERROR, "{side} begins and no tool offset is in force, so that R is 0", at=("G41", "G42"), once="section")
-def offset_number_missing(trace: Trace, ramps: Ramps) -> Mask:
+def offset_number_missing(trace: Trace) -> Mask:
     """
     Cutter compensation without a tool offset.
 
@@ -35,4 +35,6 @@ def offset_number_missing(trace: Trace, ramps: Ramps) -> Mask:
         G13.1
         T0800
     """
-    return trace.starts_up & (trace.offset_number == 0) & ramps.tool_is_called
+    # Before an excerpt the tool may have been called.
+    called_here = trace.has_called_tool | trace.whole_program
+    return trace.starts_up & (trace.offset_number == 0) & called_here

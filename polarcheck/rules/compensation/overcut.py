@@ -1,14 +1,14 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Mask, Overcutting, rule
+from polarcheck.checking.rule import ERROR, Mask, Overcuts, rule
 
 
 @rule(
     ERROR,
-    "the cutter goes {overcutting.depth:length} deep into {place}",
+    "the cutter goes {overcuts.depth:length} deep into {place}",
     needs=("trace.radius",),
     where="trace.offset_mode",
-    worst="overcutting.depth",
+    worst="overcuts.depth",
     unless=(
         "inside-arc-smaller-than-radius",
         "interference",
@@ -19,15 +19,15 @@ from polarcheck.checking.rule import ERROR, Mask, Overcutting, rule
         "start-up-shorter-than-radius",
     ),
 )
-def overcut(overcutting: Overcutting) -> Mask:
+def overcut(overcuts: Overcuts) -> Mask:
     """
     Tool cuts into the contour.
 
     The path of the tool center comes nearer than the cutter radius to another block of the same contour, and takes away
     material that the part keeps: a groove narrower than the cutter, a step lower than its radius, a corner that turns
     back. The control does not always see it, since it compares one block with the next. Use a smaller cutter or another
-    order of the contour. Each contour is judged by itself, from the ramp on to the ramp off and depth by depth; passes
-    inside each other and spirals do not count as cuts into each other.
+    order of the contour. Each contour is judged by itself, from the start-up to the offset cancel and depth by depth;
+    passes inside each other and spirals do not count as cuts into each other.
 
     Source: FANUC B-63944EN-1, p. 216 (what interference check cannot find); B-63664EN, p. 184.
 
@@ -65,4 +65,4 @@ def overcut(overcutting: Overcutting) -> Mask:
         G40 X100.
         G13.1
     """
-    return overcutting.depth > 0
+    return overcuts.depth > 0

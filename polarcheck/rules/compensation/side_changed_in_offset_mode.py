@@ -1,15 +1,15 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Mask, Ramps, rule
+from polarcheck.checking.rule import WARNING, Mask, Ramps, Trace, rule
 
 
-@rule(WARNING, "{side} while {before} is active; write G40 with a move between them", at=("G41", "G42"))
-def side_changed_in_offset_mode(ramps: Ramps) -> Mask:
+@rule(WARNING, "{side} while {before} is in force; write G40 with a move between them", at=("G41", "G42"))
+def side_changed_in_offset_mode(trace: Trace, ramps: Ramps) -> Mask:
     """
     Side of compensation changed without G40.
 
     From G41 to G42 the tool crosses the contour, and where it does so depends on the corner and on the control. Cancel
-    with G40 in a move away from the part, and ramp on again on the other side.
+    with G40 in a move away from the part, and start up again on the other side.
 
     Source: FANUC B-63324EN/03, p. 405; B-63944EN-2, p. 158.
 
@@ -39,4 +39,4 @@ def side_changed_in_offset_mode(ramps: Ramps) -> Mask:
         G40 X80.
         G13.1
     """
-    return ramps.side_changes
+    return ramps.writes_side_again & (trace.side != trace.side_before)

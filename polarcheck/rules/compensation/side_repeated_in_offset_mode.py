@@ -1,17 +1,17 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Mask, Ramps, rule
+from polarcheck.checking.rule import WARNING, Mask, Ramps, Trace, rule
 
 
 @rule(
     WARNING,
-    "{side} again: it is active already, and the tool center does not turn into the corner before it",
+    "{side} again: it is in force already, and the tool center does not turn into the corner before it",
     at=("G41", "G42"),
     once="section",
 )
-def side_repeated_in_offset_mode(ramps: Ramps) -> Mask:
+def side_repeated_in_offset_mode(trace: Trace, ramps: Ramps) -> Mask:
     """
-    G41 or G42 written again while it is active.
+    G41 or G42 written again while it is in force.
 
     The control sets up the tool center perpendicular to the end of the block before, whether the corner is an inside or
     an outside one: an inside corner is cut into, and an arc next to it gets the wrong radius. Delete the second code.
@@ -46,4 +46,4 @@ def side_repeated_in_offset_mode(ramps: Ramps) -> Mask:
         G40 X80.
         G13.1
     """
-    return ramps.side_repeats
+    return ramps.writes_side_again & (trace.side == trace.side_before)

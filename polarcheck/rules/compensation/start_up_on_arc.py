@@ -1,15 +1,15 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Mask, Ramps, Trace, rule
+from polarcheck.checking.rule import ERROR, Mask, Trace, rule
 
 
 @rule(ERROR, "{side} begins on an arc; begin it in a G1 block before the arc", at=("G41", "G42", "G2", "G3"))
-def start_up_on_arc(trace: Trace, ramps: Ramps) -> Mask:
+def start_up_on_arc(trace: Trace) -> Mask:
     """
     Cutter compensation begun on an arc.
 
     G41 or G42 takes effect with the next move, and that must be a straight one: the control stops with an alarm at G2
-    or G3. Ramp on in G1, and make the arc after it.
+    or G3. Start up in G1, and make the arc after it.
 
     Source: FANUC B-63324EN/03, p. 402; alarm 034; builder's guide to G12.1.
 
@@ -35,4 +35,4 @@ def start_up_on_arc(trace: Trace, ramps: Ramps) -> Mask:
         G40 C20.
         G13.1
     """
-    return trace.starts_up & ramps.on_arc
+    return trace.starts_up & trace.is_arc

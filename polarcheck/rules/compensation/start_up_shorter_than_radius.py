@@ -3,10 +3,16 @@ from __future__ import annotations
 from polarcheck.checking.rule import ERROR, Mask, Ramps, Trace, rule
 
 
-@rule(ERROR, "ramp-on {fault}", at=("G41", "G42"), needs=("trace.radius", "trace.length"), where="ramps.on_of_length")
+@rule(
+    ERROR,
+    "start-up {fault}",
+    at=("G41", "G42"),
+    needs=("trace.radius", "trace.length"),
+    where="ramps.start_up_judged_by_radius",
+)
 def start_up_shorter_than_radius(trace: Trace, ramps: Ramps) -> Mask:
     """
-    Ramp-on shorter than the cutter radius.
+    Start-up shorter than the cutter radius.
 
     Cutter compensation is built up in the G1 block with G41 or G42, or in the next one that moves. That block must move
     at least the R of the tool offset: along X twice R where X is a diameter, along C once R, at an angle R on the
@@ -48,5 +54,6 @@ def start_up_shorter_than_radius(trace: Trace, ramps: Ramps) -> Mask:
         G40 X65. F1500
         G13.1
     """
-    short = trace.starts_up & ramps.too_short & ~ramps.on_arc
-    return short | (ramps.begins_standing & ramps.has_radius)
+    short = trace.starts_up & ~trace.is_arc & ramps.shorter_than_radius
+    # With R 0 a start-up needs no length; an R that is not known is not 0.
+    return short | (ramps.start_up_missing & (trace.radius != 0))

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Hits, Overcutting, rule
+from polarcheck.checking.rule import ERROR, Hits, Overcuts, rule
 
 
 @rule(
@@ -16,13 +16,13 @@ from polarcheck.checking.rule import ERROR, Hits, Overcutting, rule
         "movement-missing-in-offset-mode",
     ),
 )
-def start_up_sweeps_contour(overcutting: Overcutting) -> Hits:
+def start_up_sweeps_contour(overcuts: Overcuts) -> Hits:
     """
-    Ramp on or off that cuts the contour.
+    Start-up or offset cancel that cuts the contour.
 
     With start-up type A the ramp ends perpendicular to the first block of the contour. Where it comes from the other
-    side of a corner, the straight way there leads over the corner and takes it off; the ramp off likewise. Start from
-    the side that the contour runs to, or let the ramp end where the contour goes straight on.
+    side of a corner, the straight way there leads over the corner and takes it off; the offset cancel likewise. Start
+    from the side that the contour runs to, or let the ramp end where the contour goes straight on.
 
     Source: FANUC B-63944EN-2, start-up and cancel of cutter compensation; parameter 5003#0, #1.
 
@@ -48,4 +48,4 @@ def start_up_sweeps_contour(overcutting: Overcutting) -> Hits:
         G40 C-50.
         G13.1
     """
-    return Hits(overcutting.sweep_depth > 0, values={"depth": overcutting.sweep_depth})
+    return Hits(overcuts.sweep_depth > 0, values={"depth": overcuts.sweep_depth})

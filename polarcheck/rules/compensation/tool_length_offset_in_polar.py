@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Mask, Modes, rule
+from polarcheck.checking.rule import ERROR, Mask, ModeWords, rule
 
 
 @rule(
@@ -8,7 +8,7 @@ from polarcheck.checking.rule import ERROR, Mask, Modes, rule
     "tool length offset cannot be switched in the polar mode; write it {outside}",
     at=("G43", "G44", "G49"),
 )
-def tool_length_offset_in_polar(modes: Modes) -> Mask:
+def tool_length_offset_in_polar(mode_words: ModeWords) -> Mask:
     """
     Tool length offset switched in the polar mode.
 
@@ -39,4 +39,4 @@ def tool_length_offset_in_polar(modes: Modes) -> Mask:
         G13.1
         G49
     """
-    return modes.sets_length_offset
+    return mode_words.rows(mode_words.not_allowed & mode_words.sets_length_offset)

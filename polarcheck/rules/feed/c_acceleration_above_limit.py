@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Feeds, Mask, rule
+from polarcheck.checking.rule import WARNING, Center, Feeds, Mask, Trace, rule
 
 
 @rule(
@@ -14,7 +14,7 @@ from polarcheck.checking.rule import WARNING, Feeds, Mask, rule
     unless=("c-feed-above-limit",),
     worst="tool_center.c_acceleration",
 )
-def c_acceleration_above_limit(feeds: Feeds) -> Mask:
+def c_acceleration_above_limit(trace: Trace, center: Center, feeds: Feeds) -> Mask:
     """
     Feed too high for the acceleration of the C axis.
 
@@ -42,4 +42,4 @@ def c_acceleration_above_limit(feeds: Feeds) -> Mask:
         X60.
         G13.1
     """
-    return feeds.above_acceleration
+    return center.cuts_off_center & (trace.feed > feeds.allowed_by_acceleration)

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, WARNING, Hits, Machine, Reach, ToolCenter, rule
+from polarcheck.checking.rule import ERROR, WARNING, Center, Hits, Machine, ToolCenter, rule
 
 
 @rule(
@@ -12,7 +12,7 @@ from polarcheck.checking.rule import ERROR, WARNING, Hits, Machine, Reach, ToolC
     where="trace.cuts",
     worst="tool_center.c_feed",
 )
-def c_feed_above_limit(reach: Reach, tool_center: ToolCenter, machine: Machine) -> Hits:
+def c_feed_above_limit(center: Center, tool_center: ToolCenter, machine: Machine) -> Hits:
     """
     Feed too high for the distance from the center.
 
@@ -57,5 +57,5 @@ def c_feed_above_limit(reach: Reach, tool_center: ToolCenter, machine: Machine) 
         G13.1
     """
     limit = machine.limits.c_feed
-    above = reach.cuts_off_center & (tool_center.c_feed > tool_center.c_feed_limit)
+    above = center.cuts_off_center & (tool_center.c_feed > tool_center.c_feed_limit)
     return Hits(above, WARNING if machine.limits.automatic_override or limit != limit else ERROR)

@@ -47,4 +47,4 @@ def feed_lost_from_per_revolution(trace: Trace, feeds: Feeds) -> Mask:
         C10.
         G13.1
     """
-    return trace.first_in_section(feeds.lost)
+    return trace.first_in_section(trace.cuts & feeds.lost)

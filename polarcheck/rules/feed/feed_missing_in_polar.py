@@ -37,4 +37,4 @@ def feed_missing_in_polar(trace: Trace, feeds: Feeds) -> Mask:
         C10.
         G13.1
     """
-    return trace.first_in_section(feeds.missing)
+    return trace.first_in_section(trace.cuts & feeds.missing)

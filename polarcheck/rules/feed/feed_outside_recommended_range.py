@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import NOTE, Feeds, Mask, rule
+from polarcheck.checking.rule import NOTE, Feeds, Machine, Mask, Trace, rule
 
 
 @rule(NOTE, "F is {trace.feed:feed}; recommended in the polar mode: {recommended}", at=("F",))
-def feed_outside_recommended_range(feeds: Feeds) -> Mask:
+def feed_outside_recommended_range(trace: Trace, feeds: Feeds, machine: Machine) -> Mask:
     """
     Feed outside what the builder recommends for the polar mode.
 
@@ -44,4 +44,7 @@ def feed_outside_recommended_range(feeds: Feeds) -> Mask:
         G40 X3. F40.
         G13.1
     """
-    return feeds.begins & feeds.outside_recommended
+    feed, recommended = trace.feed, machine.feed
+    not_cutting = (feed < recommended.cutting_minimum) | (feed > recommended.cutting_maximum)
+    not_positioning = (feed < recommended.positioning_minimum) | (feed > recommended.positioning_maximum)
+    return feeds.begins & not_cutting & not_positioning

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Feeds, Mask, Trace, rule
+from polarcheck.checking.rule import WARNING, Mask, Trace, rule
+from polarcheck.machines.modal import FeedMode
 
 
 @rule(
@@ -9,7 +10,7 @@ from polarcheck.checking.rule import WARNING, Feeds, Mask, Trace, rule
     at=("G99", "G95", "G1", "G2", "G3"),
     unless=("feed-missing-in-polar",),
 )
-def feed_per_revolution_in_polar(trace: Trace, feeds: Feeds) -> Mask:
+def feed_per_revolution_in_polar(trace: Trace) -> Mask:
     """
     Feed per revolution in the polar mode.
 
@@ -44,4 +45,5 @@ def feed_per_revolution_in_polar(trace: Trace, feeds: Feeds) -> Mask:
         G13.1
         G99 G0 X60.
     """
-    return trace.first_in_section(feeds.per_revolution)
+    per_revolution = (trace.feed_mode == FeedMode.PER_REVOLUTION) & (not trace.takes_over_per_minute_only)
+    return trace.first_in_section(trace.cuts & per_revolution)

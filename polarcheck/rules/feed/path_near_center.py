@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Hits, Machine, Reach, ToolCenter, rule
+from polarcheck.checking.rule import WARNING, Center, Hits, Machine, ToolCenter, rule
 
 
 @rule(
@@ -10,7 +10,7 @@ from polarcheck.checking.rule import WARNING, Hits, Machine, Reach, ToolCenter, 
     unless=("c-feed-above-limit",),
     worst="tool_center.c_feed",
 )
-def path_near_center(reach: Reach, tool_center: ToolCenter, machine: Machine) -> Hits:
+def path_near_center(center: Center, tool_center: ToolCenter, machine: Machine) -> Hits:
     """
     Path very close to the center of the C axis.
 
@@ -46,4 +46,4 @@ def path_near_center(reach: Reach, tool_center: ToolCenter, machine: Machine) ->
         G13.1
     """
     keep_out = machine.limits.keep_out
-    return Hits(reach.cuts_off_center & (tool_center.nearest < keep_out), values={"keep_out": keep_out})
+    return Hits(center.cuts_off_center & (tool_center.nearest < keep_out), values={"keep_out": keep_out})

@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Mask, Reach, rule
+from polarcheck.checking.rule import ERROR, Arcs, Center, Mask, Trace, rule
 
 
 @rule(ERROR, "tool center {meeting}", at=("X", "U", "C", "H"))
-def path_through_center(reach: Reach) -> Mask:
+def path_through_center(trace: Trace, center: Center, arcs: Arcs) -> Mask:
     """
     Path through the center of the C axis.
 
@@ -53,4 +53,4 @@ def path_through_center(reach: Reach) -> Mask:
         C10.
         G13.1
     """
-    return reach.meets_center
+    return trace.cuts & center.meets_center & ~arcs.is_no_circle

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 from polarcheck.checking.rule import ERROR, Arcs, Mask, rule
+from polarcheck.geometry.tolerances import ROUNDING
 
 
 @rule(
@@ -45,4 +46,4 @@ def arc_center_on_path(arcs: Arcs) -> Mask:
         G1 X60.
         G13.1
     """
-    return arcs.center_on_path
+    return (arcs.start_radius <= ROUNDING) | (arcs.end_radius <= ROUNDING)

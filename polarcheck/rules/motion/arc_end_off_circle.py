@@ -50,4 +50,5 @@ def arc_end_off_circle(arcs: Arcs, machine: Machine) -> Hits:
         G1 X60.
         G13.1
     """
-    return Hits(arcs.ends_off_circle, values={"tolerance": machine.arcs.tolerance})
+    tolerance = machine.arcs.tolerance
+    return Hits(abs(arcs.start_radius - arcs.end_radius) > tolerance, values={"tolerance": tolerance})

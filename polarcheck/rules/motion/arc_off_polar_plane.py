@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Arcs, Mask, rule
+from polarcheck.checking.rule import ERROR, Arcs, Mask, Trace, rule
 
 
 @rule(ERROR, "arc along Z; in the polar mode arcs lie in the plane of X and C", at=("G2", "G3", "Z", "W"))
-def arc_off_polar_plane(arcs: Arcs) -> Mask:
+def arc_off_polar_plane(trace: Trace, arcs: Arcs) -> Mask:
     """
     Arc along Z in the polar mode.
 
@@ -40,4 +40,4 @@ def arc_off_polar_plane(arcs: Arcs) -> Mask:
         G1 Z5.
         G13.1
     """
-    return arcs.off_plane
+    return arcs.in_force & trace.moves_z & ~arcs.has_word_of_plane

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Arcs, Mask, rule
+from polarcheck.checking.rule import ERROR, Arcs, Machine, Mask, rule
 
 
 @rule(
@@ -12,7 +12,7 @@ from polarcheck.checking.rule import ERROR, Arcs, Mask, rule
     where="arcs.by_radius",
     unless=("diameter-radius-mixed",),
 )
-def arc_radius_too_small(arcs: Arcs) -> Mask:
+def arc_radius_too_small(arcs: Arcs, machine: Machine) -> Mask:
     """
     Arc with an R that does not reach from start to end.
 
@@ -49,4 +49,4 @@ def arc_radius_too_small(arcs: Arcs) -> Mask:
         G1 X60.
         G13.1
     """
-    return arcs.does_not_reach
+    return arcs.chord > 2 * abs(arcs.radius) + machine.arcs.tolerance

@@ -3,7 +3,7 @@ from __future__ import annotations
 from polarcheck.checking.rule import WARNING, Arcs, Machine, Mask, rule
 
 #: What the last digit of the coordinates may turn an arc by [deg].
-ROUNDING = 0.1
+LAST_DIGIT = 0.1
 
 
 @rule(
@@ -48,4 +48,4 @@ def arc_sweep_above_limit(arcs: Arcs, machine: Machine) -> Mask:
         G1 X60.
         G13.1
     """
-    return arcs.sweep > machine.arcs.sweep_limit + ROUNDING
+    return arcs.sweep > machine.arcs.sweep_limit + LAST_DIGIT

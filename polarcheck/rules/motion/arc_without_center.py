@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Arcs, Mask, rule
+from polarcheck.checking.rule import ERROR, Arcs, Mask, Trace, rule
 
 
 @rule(ERROR, "arc without R, I or J", at=("G2", "G3", "X", "U", "C", "H"))
-def arc_without_center(arcs: Arcs) -> Mask:
+def arc_without_center(trace: Trace, arcs: Arcs) -> Mask:
     """
     Arc with neither radius nor center.
 
@@ -40,4 +40,5 @@ def arc_without_center(arcs: Arcs) -> Mask:
         G1 X-20.
         G13.1
     """
-    return arcs.without_center
+    has_center = arcs.by_radius | arcs.by_center | arcs.has_word_of_other_plane
+    return trace.is_arc & ~has_center & ~arcs.ends_at_start

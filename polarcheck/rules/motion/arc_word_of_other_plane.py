@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Arcs, Hits, rule
+from polarcheck.checking.rule import ERROR, Arcs, Hits, Machine, Trace, rule
 
 
 @rule(ERROR, "{word} is not of the polar plane; the center is {center}")
-def arc_word_of_other_plane(arcs: Arcs) -> Hits:
+def arc_word_of_other_plane(trace: Trace, arcs: Arcs, machine: Machine) -> Hits:
     """
     Center of an arc with K.
 
@@ -40,4 +40,5 @@ def arc_word_of_other_plane(arcs: Arcs) -> Hits:
         G1 X60.
         G13.1
     """
-    return Hits(arcs.has_word_of_other_plane, at=arcs.words_of_other_plane)
+    words = trace.words_at(trace.word_indices(machine.polar.other_center_word))
+    return Hits(trace.is_arc & arcs.has_word_of_other_plane, at=words)

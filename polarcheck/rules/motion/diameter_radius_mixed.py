@@ -62,4 +62,5 @@ def diameter_radius_mixed(arcs: Arcs) -> Mask:
         G1 C0
         G13.1
     """
+    # Compares nothing: the table tries both readings of X on all arcs of a section and counts which fit.
     return arcs.x_is_misread

@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Arcs, Mask, rule
+from polarcheck.checking.rule import WARNING, Arcs, Machine, Mask, Trace, rule
 
 
 @rule(WARNING, "arc by radius that ends where it starts: nothing moves; a full circle needs I or J", at=("X", "C", "R"))
-def full_circle_by_radius(arcs: Arcs) -> Mask:
+def full_circle_by_radius(trace: Trace, arcs: Arcs, machine: Machine) -> Mask:
     """
     Full circle with R.
 
@@ -40,4 +40,5 @@ def full_circle_by_radius(arcs: Arcs) -> Mask:
         G1 X60.
         G13.1
     """
-    return arcs.circle_by_radius
+    has_radius = arcs.in_force & trace.has(machine.arcs.radius_word)
+    return has_radius & ~trace.moves_z & (~trace.moves_plane | arcs.ends_at_start)

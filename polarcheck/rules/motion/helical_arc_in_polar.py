@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Arcs, Mask, rule
+from polarcheck.checking.rule import WARNING, Arcs, Mask, Trace, rule
 
 
 @rule(WARNING, "arc that moves Z, too: only with the helical option, else an alarm", at=("Z", "W"))
-def helical_arc_in_polar(arcs: Arcs) -> Mask:
+def helical_arc_in_polar(trace: Trace, arcs: Arcs) -> Mask:
     """
     Arc in the polar mode that moves Z.
 
@@ -41,4 +41,4 @@ def helical_arc_in_polar(arcs: Arcs) -> Mask:
         G1 X60.
         G13.1
     """
-    return arcs.helical
+    return arcs.in_force & trace.moves_z & arcs.has_word_of_plane

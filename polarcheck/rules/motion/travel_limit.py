@@ -1,10 +1,11 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Mask, Reach, rule
+from polarcheck.checking.rule import ERROR, Machine, Mask, Trace, Travel, rule
+from polarcheck.geometry.tolerances import ROUNDING
 
 
-@rule(ERROR, "{travel}", at=("X", "U", "C", "H", "Z", "W"), needs=("reach.most_x",), where="reach.is_limited_in_x")
-def travel_limit(reach: Reach) -> Mask:
+@rule(ERROR, "{travel}", at=("X", "U", "C", "H", "Z", "W"), needs=("travel.most_x",), where="travel.is_limited_in_x")
+def travel_limit(trace: Trace, travel: Travel, machine: Machine) -> Mask:
     """
     Move beyond the travel of X or Z.
 
@@ -44,4 +45,7 @@ def travel_limit(reach: Reach) -> Mask:
         G13.1
         G0 X70.
     """
-    return reach.leaves_travel
+    limits = machine.limits
+    x_beyond = (travel.most_x > limits.x_maximum + ROUNDING) | (travel.least_x < limits.x_minimum - ROUNDING)
+    z_beyond = (travel.z > limits.z_maximum + ROUNDING) | (travel.z < limits.z_minimum - ROUNDING)
+    return travel.first_beyond(x_beyond, travel.moves_x) | travel.first_beyond(z_beyond, trace.moves_z)

@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Hits, Modes, graded, rule
+from polarcheck.checking.rule import ERROR, Hits, Machine, ModeWords, graded, rule
 
 
 @rule(ERROR, "{codes} cannot be used in the polar mode; write it {outside}")
-def code_not_allowed_in_polar(modes: Modes) -> Hits:
+def code_not_allowed_in_polar(mode_words: ModeWords, machine: Machine) -> Hits:
     """
     Code that cannot be used in the polar mode.
 
@@ -60,4 +60,14 @@ def code_not_allowed_in_polar(modes: Modes) -> Hits:
         C180.
         G80
     """
-    return graded(error=modes.not_allowed, warning=modes.limits_speed, at=modes.words_not_allowed)
+    has_its_own_rule = (
+        mode_words.codes("G0", *machine.polar.on, *machine.polar.off)
+        | mode_words.selects_plane
+        | mode_words.sets_length_offset
+        | mode_words.shifts_origin
+        | mode_words.changes_tool_offset
+        | mode_words.unknown
+    )
+    other = mode_words.not_allowed & ~has_its_own_rule
+    limits_speed = other & mode_words.sets_coordinates
+    return graded(error=mode_words.rows(other & ~limits_speed), warning=mode_words.rows(limits_speed), at=other)

@@ -1,14 +1,14 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Hits, Infeed, rule
+from polarcheck.checking.rule import ERROR, Infeed, Mask, rule
 
 
 @rule(
     ERROR,
-    "{E} asks for passes around the contour, which ends {gap:length} from where it begins: it must be closed",
+    "{E} asks for passes around the contour, which ends {infeed.gap:length} from where it begins: it must be closed",
     at=("E",),
 )
-def contour_open_with_infeed(infeed: Infeed) -> Hits:
+def contour_open_with_infeed(infeed: Infeed) -> Mask:
     """
     Infeed cycle on a contour that is not closed.
 
@@ -56,4 +56,4 @@ def contour_open_with_infeed(infeed: Infeed) -> Hits:
         G40 X120.
         G13.1
     """
-    return Hits(infeed.is_open, values={"gap": infeed.gap})
+    return infeed.gap > 0

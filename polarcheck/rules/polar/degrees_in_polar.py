@@ -1,15 +1,18 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Hits, Modes, rule
+from polarcheck.checking.rule import WARNING, Angles, Hits, Job, Machine, Trace, rule
+
+#: As many times farther out than the rest of the section a length can only be meant as an angle.
+_FAR = 2.0
 
 
 @rule(
     WARNING,
-    "{word} is a length of {virtual_length:length} in the polar mode and looks like an angle: "
-    "the rest of the section lies within {reach:length} of the center",
+    "{word} is a length of {angles.virtual_length:length} in the polar mode and looks like an angle: "
+    "the rest of the section lies within {angles.reach:length} of the center",
     once="section",
 )
-def degrees_in_polar(modes: Modes) -> Hits:
+def degrees_in_polar(trace: Trace, angles: Angles, machine: Machine, job: Job) -> Hits:
     """
     Angle written where the polar mode takes a length.
 
@@ -56,5 +59,8 @@ def degrees_in_polar(modes: Modes) -> Hits:
         X150.
         G13.1
     """
-    values = {"virtual_length": modes.virtual_length, "reach": modes.reach}
-    return Hits(modes.looks_like_angle, at=modes.virtual_words, values=values)
+    far_out = (angles.reach > 0) & (angles.virtual_length > _FAR * angles.reach)
+    in_stock = angles.virtual_length <= job.stock.diameter / 2 * trace.job_scale
+    is_length = in_stock | angles.has_both_signs | angles.in_misplaced_cycle
+    virtual_words = trace.words_at(trace.word_indices(machine.polar.virtual_axis))
+    return Hits(angles.is_usual & far_out & ~is_length, at=virtual_words)

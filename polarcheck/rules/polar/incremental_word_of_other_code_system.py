@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Hits, Modes, rule
+from polarcheck.checking.rule import ERROR, Hits, Machine, ModeWords, Trace, rule
 
 
 @rule(
@@ -8,7 +8,7 @@ from polarcheck.checking.rule import ERROR, Hits, Modes, rule
     "{meaning}; if the lathe runs another system, set control.g_code_system",
     once="program",
 )
-def incremental_word_of_other_code_system(modes: Modes) -> Hits:
+def incremental_word_of_other_code_system(trace: Trace, mode_words: ModeWords, machine: Machine) -> Hits:
     """
     Absolute, incremental or feed word of another G-code system.
 
@@ -59,4 +59,7 @@ def incremental_word_of_other_code_system(modes: Modes) -> Hits:
         G90
         G13.1
     """
-    return Hits(modes.is_of_other_system, at=modes.words_of_other_system)
+    in_system_a = machine.control.g_code_system == "A"
+    codes, addresses = ("G90", "G91", "G94", "G95"), ("U", "W", machine.polar.virtual_axis_increment)
+    wrong = mode_words.first_of(*(codes if in_system_a else addresses)) & ~mode_words.of_other_axis
+    return Hits(trace.in_polar & mode_words.rows(wrong) & (in_system_a | trace.uses_axes), at=wrong)

@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Hits, Modes, graded, rule
+from polarcheck.checking.rule import ERROR, Hits, Trace, graded, rule
 
 
 @rule(ERROR, "{in_force} still in force at {switch}; write {ends} before it", at=("on",))
-def modal_state_wrong_at_entry(modes: Modes) -> Hits:
+def modal_state_wrong_at_entry(trace: Trace) -> Hits:
     """
     Cycle, scaling, rotation, mirror image or constant surface speed in force on entry.
 
@@ -48,4 +48,8 @@ def modal_state_wrong_at_entry(modes: Modes) -> Hits:
         X60.
         G13.1
     """
-    return graded(error=modes.state_wrong_at_entry, warning=modes.constant_speed_at_entry)
+    transformed = (trace.state("scaling") != 0) | (trace.state("rotation") != 0) | (trace.state("mirror") != 0)
+    return graded(
+        error=trace.enters & (transformed | (trace.drilling != 0)),
+        warning=trace.enters & (trace.state("speed") == 96),
+    )

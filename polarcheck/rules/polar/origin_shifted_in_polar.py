@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Mask, Modes, rule
+from polarcheck.checking.rule import ERROR, Mask, ModeWords, rule
 
 
 @rule(
@@ -9,7 +9,7 @@ from polarcheck.checking.rule import ERROR, Mask, Modes, rule
     "so write {codes} {outside}",
     at=("G10", "G50", "G92", "G52", "G53", "G54", "G55", "G56", "G57", "G58", "G59", "G54.1"),
 )
-def origin_shifted_in_polar(modes: Modes) -> Mask:
+def origin_shifted_in_polar(mode_words: ModeWords) -> Mask:
     """
     Origin shifted in the polar mode.
 
@@ -55,4 +55,4 @@ def origin_shifted_in_polar(modes: Modes) -> Mask:
         G13.1
         G55
     """
-    return modes.shifts_origin
+    return mode_words.rows(mode_words.not_allowed & mode_words.shifts_origin)

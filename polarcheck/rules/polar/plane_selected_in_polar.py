@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Mask, Modes, rule
+from polarcheck.checking.rule import ERROR, Mask, ModeWords, rule
 
 
 @rule(
@@ -8,7 +8,7 @@ from polarcheck.checking.rule import ERROR, Mask, Modes, rule
     "{plane} in the polar mode: its plane is always that of X and C; delete it or write it {outside}",
     at=("G17", "G18", "G19"),
 )
-def plane_selected_in_polar(modes: Modes) -> Mask:
+def plane_selected_in_polar(mode_words: ModeWords) -> Mask:
     """
     Plane selected in the polar mode.
 
@@ -47,4 +47,4 @@ def plane_selected_in_polar(modes: Modes) -> Mask:
         G13.1
         G17
     """
-    return modes.selects_plane
+    return mode_words.rows(mode_words.not_allowed & mode_words.selects_plane)

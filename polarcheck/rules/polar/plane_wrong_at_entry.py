@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Mask, Modes, rule
+from polarcheck.checking.rule import ERROR, Machine, Mask, Trace, rule
 
 
 @rule(ERROR, "{plane} is in force at {switch}; {wanted} must be, write it before", at=("on",))
-def plane_wrong_at_entry(modes: Modes) -> Mask:
+def plane_wrong_at_entry(trace: Trace, machine: Machine) -> Mask:
     """
     Polar mode entered in another plane than the lathe wants.
 
@@ -44,4 +44,10 @@ def plane_wrong_at_entry(modes: Modes) -> Mask:
         X60.
         G13.1
     """
-    return modes.plane_wrong_at_entry
+    wanted, plane = machine.polar.plane_before, trace.state("plane")
+    is_other = (
+        ((plane == 17) & ("G17" not in wanted))
+        | ((plane == 18) & ("G18" not in wanted))
+        | ((plane == 19) & ("G19" not in wanted))
+    )
+    return trace.enters & is_other & bool(wanted)

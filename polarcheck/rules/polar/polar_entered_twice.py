@@ -39,4 +39,4 @@ def polar_entered_twice(trace: Trace) -> Mask:
         X60.
         G13.1
     """
-    return trace.enters_again
+    return trace.in_polar & trace.switches_on

@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Hits, Modes, rule
+from polarcheck.checking.rule import ERROR, Hits, ModeWords, rule
 
 
 @rule(ERROR, "{switch} shares its block with {others}; it must stand in a block of its own")
-def polar_switch_not_alone(modes: Modes) -> Hits:
+def polar_switch_not_alone(mode_words: ModeWords) -> Hits:
     """
     G12.1 or G13.1 not in a block of its own.
 
@@ -35,4 +35,5 @@ def polar_switch_not_alone(modes: Modes) -> Hits:
         G13.1
         G0 Z50.
     """
-    return Hits(modes.switch_not_alone, at=modes.words_beside_switch)
+    beside = mode_words.in_rows(mode_words.switches) & ~mode_words.may_stand_beside_switch
+    return Hits(mode_words.rows(beside), at=beside)

@@ -1,12 +1,13 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Mask, Ramps, rule
+from polarcheck.checking.rule import ERROR, Mask, Trace, rule
+from polarcheck.machines.modal import Side
 
 
-@rule(ERROR, "{switch} while {side} is active; G40 must be in force here", at=("on", "off"))
-def polar_switched_in_offset_mode(ramps: Ramps) -> Mask:
+@rule(ERROR, "{switch} while {side} is in force; G40 must be in force here", at=("on", "off"))
+def polar_switched_in_offset_mode(trace: Trace) -> Mask:
     """
-    Polar mode switched on or off while G41 or G42 is active.
+    Polar mode switched on or off while G41 or G42 is in force.
 
     The control stops with an alarm. Cutter compensation begins and ends inside the mode: G40 on entry, then G41 or G42
     with the move onto the part, then G40 with the move away from it, then G13.1.
@@ -49,4 +50,7 @@ def polar_switched_in_offset_mode(ramps: Ramps) -> Mask:
         G40 X60.
         G13.1
     """
-    return ramps.switched_in_offset_mode
+    # A G41 after which nothing has moved is no offset mode yet; that is start-up-shorter-than-radius.
+    leaves_offset_mode = trace.leaves & (trace.side_of_move_before != Side.OFF)
+    side_in_force = (trace.side_before != Side.OFF) & ~trace.codes("G40")
+    return (trace.enters | leaves_offset_mode) & side_in_force

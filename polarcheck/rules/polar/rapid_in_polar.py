@@ -1,10 +1,11 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Mask, Modes, rule
+from polarcheck.checking.rule import ERROR, Mask, Trace, rule
+from polarcheck.machines.modal import Motion
 
 
 @rule(ERROR, "G0 cannot be used in the polar mode; write G1 with a high F", at=("G0",))
-def rapid_in_polar(modes: Modes) -> Mask:
+def rapid_in_polar(trace: Trace) -> Mask:
     """
     Rapid traverse in the polar mode.
 
@@ -40,4 +41,7 @@ def rapid_in_polar(modes: Modes) -> Mask:
         G13.1
         G0 X60.
     """
-    return modes.rapid
+    # What G0 means beside a code that can only stand outside is no question of its own.
+    in_rapid = trace.in_polar & (trace.state("motion") == Motion.RAPID) & ~trace.codes("G27", "G28", "G30", "G53")
+    first_move = trace.first_in_section(in_rapid & (trace.motion == Motion.RAPID))
+    return in_rapid & (trace.codes("G0") | first_move)

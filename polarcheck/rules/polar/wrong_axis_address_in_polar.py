@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Hits, Modes, rule
+from polarcheck.checking.rule import ERROR, Hits, ModeWords, Trace, rule
 
 
 @rule(
@@ -8,7 +8,7 @@ from polarcheck.checking.rule import ERROR, Hits, Modes, rule
     "{word} is no coordinate of the polar plane: its second axis is {machine.polar.virtual_axis} here{other_controls}",
     once="section",
 )
-def wrong_axis_address_in_polar(modes: Modes) -> Hits:
+def wrong_axis_address_in_polar(trace: Trace, mode_words: ModeWords) -> Hits:
     """
     Second axis of the polar plane under the address of another control.
 
@@ -39,4 +39,4 @@ def wrong_axis_address_in_polar(modes: Modes) -> Hits:
         G13.1
         G28 V0
     """
-    return Hits(modes.other_axis, at=modes.other_axis_words)
+    return Hits(trace.in_polar & mode_words.rows(mode_words.of_other_axis), at=mode_words.of_other_axis)

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Mask, Modes, rule
+from polarcheck.checking.rule import WARNING, Mask, Trace, rule
+from polarcheck.machines.modal import Motion
 
 
 @rule(
@@ -8,7 +9,7 @@ from polarcheck.checking.rule import WARNING, Mask, Modes, rule
     "Z moves together with X or C in the polar mode; write Z in a block of its own",
     at=("X", "U", "C", "H", "Z", "W"),
 )
-def z_with_plane_axis(modes: Modes) -> Mask:
+def z_with_plane_axis(trace: Trace) -> Mask:
     """
     Z in one block with X or C.
 
@@ -48,4 +49,5 @@ def z_with_plane_axis(modes: Modes) -> Mask:
         X60.
         G13.1
     """
-    return modes.interpolates_z
+    moves_both = trace.in_polar & trace.moves_plane & trace.moves_z
+    return moves_both & (trace.motion == Motion.LINE) & (trace.length > 0)

@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import NOTE, Hits, OtherMachine, rule
+from polarcheck.checking.rule import NOTE, Mask, OtherMachine, rule
 
 
 @rule(NOTE, "reads well on another machine: {fit}", at=("on",))
-def other_machine_fits(other_machine: OtherMachine) -> Hits:
+def other_machine_fits(other_machine: OtherMachine) -> Mask:
     """
     Program for another machine.
 
@@ -70,4 +70,4 @@ def other_machine_fits(other_machine: OtherMachine) -> Hits:
         M30
     """
     # Compares nothing: machines are compared by reading the program as each of them would.
-    return Hits(other_machine.fits, values={"fit": other_machine.text})
+    return other_machine.fits

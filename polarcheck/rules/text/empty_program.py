@@ -26,4 +26,4 @@ def empty_program(written: Written) -> Mask:
         M30
         %
     """
-    return written.filled_blocks == 0
+    return written.contents == 0

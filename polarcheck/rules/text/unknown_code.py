@@ -42,5 +42,5 @@ def unknown_code(words: Words, written: Written, machine: Machine) -> Hits:
     unknown = written.unknown_code_count > 0
     if not machine.control.unknown_codes_are_errors:
         return Hits(unknown, NOTE)
-    may_call_macro = (words.value >= OWN_CODES_END) & (words.value % 1 == 0)
+    may_call_macro = (words.value >= OWN_CODES_END) & (words.decimals == 0)
     return graded(error=unknown & ~may_call_macro, warning=unknown & may_call_macro)

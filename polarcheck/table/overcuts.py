@@ -3,31 +3,28 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Points, Rows
 from polarcheck.geometry.compensation import Phase
+from polarcheck.geometry.segments import Curves
 from polarcheck.machines.modal import Side
-from polarcheck.table.moves import programmed_moves
+from polarcheck.table.moves import Moves, programmed_moves
 from polarcheck.table.tool_center import ToolCenter
 from polarcheck.table.trace import Trace
-
-#: What compensation has flagged itself; it and its neighbours gouge as a consequence, which is no second mistake.
-_FLAGS = ("inside_arc_too_small", "interferes", "no_intersection", "movement_missing", "arc_center_on_path")
 
 
 def loop_of_row(trace: Trace) -> Rows:
     """
     Number of the loop of each row in offset mode, -1 elsewhere.
 
-    A loop reaches from a start-up to its cancel, and a Z move in it begins another one: the same contour at another
-    depth is another loop.
+    A loop reaches from a start-up to its offset cancel, and a Z move in it begins another one: the same contour at
+    another depth is another loop.
     """
     begins = trace.starts_up | (trace.moves_z & ~trace.moves_plane)
-    on = trace.in_polar & (trace.side != Side.OFF)
-    return np.where(on, np.cumsum(begins), -1)
+    return np.where(trace.compensates, np.cumsum(begins), -1)
 
 
 class Cuts(NamedTuple):
@@ -45,8 +42,8 @@ class Cuts(NamedTuple):
         return int(self.into[worst]), complex(self.place[worst])
 
 
-class Overcutting:
-    """Columns of one trace, one value per row: depth [mm] of the worst cut, 0 for none; and the cuts themselves."""
+class Overcuts:
+    """Columns of one trace, one value per row: the depth of the worst cut, 0 for none; and the cuts themselves."""
 
     def __init__(self, trace: Trace, tool_center: ToolCenter) -> None:
         self.trace = trace
@@ -54,16 +51,16 @@ class Overcutting:
 
     @cached_property
     def _compensates(self) -> bool:
-        trace = self.trace
-        return bool(np.any(trace.in_polar & (trace.side != Side.OFF) & (np.abs(trace.radius) > 0)))
+        """Whether any section is compensated with a known R other than 0."""
+        return bool(np.any(self.trace.compensates & (np.abs(self.trace.radius) > 0)))
 
     @cached_property
-    def _walls(self) -> tuple[Any, Mask]:
+    def _walls(self) -> tuple[Curves, Mask]:
         """The contour that is programmed in offset mode, and on which side of each block the tool is."""
         trace = self.trace
         programmed, loop = programmed_moves(trace), loop_of_row(trace)
         rows = programmed.row
-        walls = _moves(programmed, loop, (loop[rows] >= 0) & ~trace.starts_up[rows] & programmed.known)
+        walls = _curves(programmed, loop, (loop[rows] >= 0) & ~trace.starts_up[rows] & programmed.known)
         return walls, (trace.side[walls.row] == Side.LEFT) ^ (trace.radius[walls.row] < 0)
 
     @cached_property
@@ -74,60 +71,53 @@ class Overcutting:
         from polarcheck.geometry import contour
 
         trace, tool = self.trace, self.tool_center.moves
-        path = _moves(tool, loop_of_row(trace), (tool.phase == Phase.OFFSET) & tool.known)
+        path = _curves(tool, loop_of_row(trace), (tool.phase == Phase.OFFSET) & tool.known)
         radius, tolerance = np.abs(trace.radius[path.row]), trace.machine.compensation.overcut_tolerance
         found = contour.overcuts(*self._walls, path, radius, tolerance)
         return Cuts(path.row[found.move], found.row, found.depth, found.place)
 
     @cached_property
     def sweeps(self) -> Cuts:
-        """The same for ramps on and off that lie at the depth of their contour."""
+        """The same for start-ups and offset cancels that lie at the depth of their contour."""
         if not self._compensates:
             return _NOTHING
         from polarcheck.geometry import contour
 
         trace, tool = self.trace, self.tool_center.moves
         is_ramp = ((tool.phase == Phase.START_UP) | (tool.phase == Phase.CANCEL)) & tool.known
-        ramps = _moves(tool, _loop_of_ramps(trace), is_ramp & _at_depth(trace, tool.row))
+        ramps = _curves(tool, _loop_of_ramps(trace), is_ramp & _at_depth(trace, tool.row))
         radius, tolerance = np.abs(trace.radius[ramps.row]), trace.machine.compensation.overcut_tolerance
         found = contour.sweeps(*self._walls, ramps, radius, tolerance)
         return Cuts(ramps.row[found.move], found.row, found.depth, found.place)
 
     @cached_property
     def depth(self) -> Floats:
-        """Of the cut into the contour by the tool center path of the row; rows flagged by compensation are left out."""
-        cuts = self.cuts
-        return np.where(flagged(self.trace, self.tool_center), 0.0, _deepest(cuts.row, cuts.depth, len(self.trace)))
+        """Of the cut into the contour by the tool center path of the row [mm]; none where the control objects."""
+        return self._depth_of(self.cuts)
 
     @cached_property
     def sweep_depth(self) -> Floats:
-        """Of the cut into the contour by a ramp, in loops that are not overcut anyway."""
-        cuts = self.sweeps
-        swept = np.where(flagged(self.trace, self.tool_center), 0.0, _deepest(cuts.row, cuts.depth, len(self.trace)))
+        """Of the cut into the contour by a ramp [mm], in loops that are not overcut anyway."""
         loop = _loop_of_ramps(self.trace)
-        return np.where(np.isin(loop, loop[self.depth > 0]), 0.0, swept)
+        return np.where(np.isin(loop, loop[self.depth > 0]), 0.0, self._depth_of(self.sweeps))
+
+    def _depth_of(self, cuts: Cuts) -> Floats:
+        """Per row the depth of its worst cut [mm]; 0 for none, and where the control objects anyway."""
+        column = np.zeros(len(self.trace))
+        np.maximum.at(column, cuts.row, cuts.depth)
+        return np.where(objected(self.trace, self.tool_center), 0.0, column)
 
 
 _NOTHING = Cuts(np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0), np.zeros(0, np.complex128))
 
 
-def _deepest(row: Rows, depth: Floats, count: int) -> Floats:
-    column = np.zeros(count)
-    np.maximum.at(column, row, depth)
-    return column
-
-
-def _moves(moves: Any, loop: Rows, chosen: Mask) -> Any:
-    from polarcheck.geometry import contour
-
+def _curves(moves: Moves, loop: Rows, chosen: Mask) -> Curves:
     row = moves.row[chosen]
-    return contour.Curves(
-        moves.start[chosen], moves.end[chosen], moves.center[chosen], moves.kind[chosen], loop[row], row
-    )
+    return Curves(moves.start[chosen], moves.end[chosen], moves.center[chosen], moves.kind[chosen], loop[row], row)
 
 
 def _loop_of_ramps(trace: Trace) -> Rows:
-    """A ramp off belongs to the loop above it."""
+    """As loop_of_row; an offset cancel belongs to the loop above it."""
     loop = loop_of_row(trace)
     last = np.maximum.accumulate(np.where(loop >= 0, np.arange(len(loop)), 0))
     return np.where(trace.cancels, loop[last], loop)
@@ -143,11 +133,14 @@ def _at_depth(trace: Trace, row: Rows) -> Mask:
     return np.asarray(np.where(trace.cancels[row], ~moves_z[above], ~moves_z[below]))
 
 
-def flagged(trace: Trace, tool_center: ToolCenter) -> Mask:
-    """Rows that compensation has flagged, and those before and after them that move."""
-    rows = np.zeros(len(trace), bool)
-    for name in _FLAGS:
-        rows |= tool_center.found(name)
+def objected(trace: Trace, tool_center: ToolCenter) -> Mask:
+    """
+    Rows to which the control would object while it compensates, and those before and after them that move.
+
+    They cut into the contour as a consequence, which is no second mistake.
+    """
+    rows = tool_center.inside_arc_too_small | tool_center.interferes | tool_center.no_intersection
+    rows |= tool_center.movement_missing | tool_center.arc_center_on_path
     moving = np.flatnonzero(trace.in_polar & trace.moves_plane)
     on = rows[moving]
     near = on.copy()

@@ -1,0 +1,68 @@
+"""Words of the virtual axis that look like angles, though the polar mode takes lengths."""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+
+from polarcheck.arrays import Floats, Mask
+from polarcheck.machines.codes import code_set
+from polarcheck.table.trace import Trace
+
+#: What is written where C turns by an angle [deg].
+_USUAL = np.array([30, 45, 60, 90, 120, 135, 150, 180, 210, 225, 240, 270, 300, 315, 330, 360], np.float64)
+
+
+class Angles:
+    """Columns of one trace, one value per row."""
+
+    def __init__(self, trace: Trace) -> None:
+        self.trace = trace
+
+    @cached_property
+    def _written(self) -> Floats:
+        """Value of the virtual axis as written in the mode, else NaN."""
+        trace = self.trace
+        return np.where(trace.in_polar & trace.uses_axes, trace.word(trace.machine.polar.virtual_axis), np.nan)
+
+    @cached_property
+    def is_usual(self) -> Mask:
+        """The virtual axis has the number of a usual angle in the mode, of either sign."""
+        size = np.abs(self._written)
+        # NumPy's isin would load its masked arrays for doubles.
+        return np.asarray(_USUAL[np.searchsorted(_USUAL, size) % len(_USUAL)] == size)
+
+    @cached_property
+    def has_both_signs(self) -> Mask:
+        """A usual angle that the section has with the other sign too, as lengths of a symmetrical contour are."""
+        rows = np.flatnonzero(self.is_usual)
+        value, section = self._written[rows], self.trace.section[rows]
+        which = np.searchsorted(_USUAL, np.abs(value))
+        seen = np.zeros((2, len(self.trace.sections), len(_USUAL)), bool)
+        seen[(value < 0).astype(int), section, which] = True
+        both = np.zeros(len(self.trace), bool)
+        both[rows] = (seen[0] & seen[1])[section, which]
+        return both
+
+    @cached_property
+    def virtual_length(self) -> Floats:
+        """The virtual axis as a length [mm], without its sign; NaN where it is not written."""
+        return np.abs(self.trace.length_of(self.trace.machine.polar.virtual_axis))
+
+    @cached_property
+    def reach(self) -> Floats:
+        """How far the section lies from the center without the usual angles [mm]; NaN outside sections."""
+        trace = self.trace
+        farthest = np.zeros(len(trace.sections))
+        for column in (np.abs(trace.x), np.where(self.is_usual, np.nan, self.virtual_length)):
+            known = (trace.section >= 0) & np.isfinite(column)
+            np.maximum.at(farthest, trace.section[known], column[known])
+        return np.append(farthest, np.nan)[trace.section]
+
+    @cached_property
+    def in_misplaced_cycle(self) -> Mask:
+        """In a drilling cycle that the mode does not allow: C is an angle once the cycle stands outside."""
+        allowed = code_set(self.trace.machine.polar.allowed_codes)
+        cycle = self.trace.drilling
+        return np.asarray((cycle != 0) & ~allowed[cycle * 10])

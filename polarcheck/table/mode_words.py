@@ -1,0 +1,144 @@
+"""Words in the polar mode and beside its switches: what they do, and which of them the profile does not allow."""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+
+from polarcheck.arrays import Mask
+from polarcheck.machines.codes import NO_CODE, code_set
+from polarcheck.machines.modal import COORDINATE_SETTING
+from polarcheck.reading.words import NumberFault
+from polarcheck.table.trace import Trace
+
+_AXES = ("X", "Y", "Z", "C", "U", "V", "W", "H")
+#: G10 L.: work offsets; tool offsets (B-63524EN/01, programmable data input).
+_WORK_OFFSETS = (2, 20)
+_TOOL_OFFSETS = (10, 11, 12, 13)
+
+
+class ModeWords:
+    """Columns over the executed words of a trace, one value per word; `rows` and `in_rows` lead to rows and back."""
+
+    def __init__(self, trace: Trace) -> None:
+        self.trace = trace
+
+    def rows(self, words: Mask) -> Mask:
+        """Per row: whether it has one of these words."""
+        found = np.zeros(len(self.trace), bool)
+        found[self.trace.run.row[words]] = True
+        return found
+
+    def in_rows(self, rows: Mask) -> Mask:
+        """Stands in one of these rows."""
+        return rows[self.trace.run.row]
+
+    def codes(self, *names: str) -> Mask:
+        """One of these G or M codes; `G54-G59` is a range."""
+        trace = self.trace
+        found = np.zeros(len(trace.run.words), bool)
+        for letter, indices, numbers in (("G", trace.g_words, trace.g_codes), ("M", trace.m_words, trace.m_codes)):
+            asked = [name for name in names if name[0] == letter]
+            if asked:
+                found[indices] = code_set(asked)[numbers]
+        return found
+
+    def first_of(self, *names: str) -> Mask:
+        """Of the code or address that is named first of those in its row; `G91` is a code, `U` an address."""
+        trace = self.trace
+        row = trace.run.row
+        found, told = np.zeros(len(row), bool), np.zeros(len(trace), bool)
+        for name in names:
+            is_named = trace.words_at(trace.word_indices(name)) if len(name) == 1 else self.codes(name)
+            at = np.flatnonzero(is_named)
+            at = at[~told[row[at]]]
+            found[at] = True
+            told[row[at]] = True
+        return found
+
+    # ---- G codes in the mode ----
+
+    @cached_property
+    def not_allowed(self) -> Mask:
+        """A G code in the mode that the profile does not allow there."""
+        trace = self.trace
+        allowed = code_set(trace.machine.polar.allowed_codes)
+        found = np.zeros(len(trace.run.words), bool)
+        found[trace.g_words] = ~allowed[trace.g_codes] & (trace.g_codes != NO_CODE)
+        return found & self.in_rows(trace.in_polar)
+
+    @cached_property
+    def unknown(self) -> Mask:
+        """A G code that the control does not know; none where the profile does not list all that it knows."""
+        trace = self.trace
+        if not trace.machine.control.unknown_codes_are_errors:
+            return np.zeros(len(trace.run.words), bool)
+        return trace.words_at(trace.g_words) & ~self.codes(*trace.machine.control.known_codes)
+
+    @cached_property
+    def selects_plane(self) -> Mask:
+        """G17, G18, G19."""
+        return self.codes("G17", "G18", "G19")
+
+    @cached_property
+    def sets_length_offset(self) -> Mask:
+        """G43, G44, G49."""
+        return self.codes("G43", "G44", "G49")
+
+    @cached_property
+    def sets_coordinates(self) -> Mask:
+        """G50 (G92): axis words say where the tool stands, or with S how fast the spindle may turn."""
+        return self.codes(COORDINATE_SETTING[self.trace.machine.control.g_code_system])
+
+    @cached_property
+    def shifts_origin(self) -> Mask:
+        """
+        Not allowed in the mode, and changes the coordinate system: G50 (G92) with axis words, G52 to G59, a work offset
+        by G10. G50 with S in the block of another of them is no mistake of its own, and counts with it.
+        """
+        trace = self.trace
+        kind = trace.word("L")
+        # Without L a lathe takes P0 as the work shift, other numbers as tool offsets.
+        is_work_offset = np.isin(kind, _WORK_OFFSETS) | (np.isnan(kind) & (trace.word("P") == 0))
+        sets = self.sets_coordinates
+        shifts = self.codes("G52", "G53", "G54-G59", "G54.1")
+        shifts |= sets & self.in_rows(trace.has(*_AXES))
+        shifts |= self.codes("G10") & self.in_rows(is_work_offset)
+        shifts &= self.not_allowed
+        return shifts | (sets & self.not_allowed & self.in_rows(self.rows(shifts)))
+
+    @cached_property
+    def changes_tool_offset(self) -> Mask:
+        """G10 that changes a tool offset."""
+        kind, number = self.trace.word("L"), self.trace.word("P")
+        is_tool_offset = np.isin(kind, _TOOL_OFFSETS) | (np.isnan(kind) & (number > 0))
+        return self.codes("G10") & self.in_rows(is_tool_offset)
+
+    # ---- the switches ----
+
+    @cached_property
+    def switches(self) -> Mask:
+        """Per row: a G12.1, or the G13.1 of a section; one outside the mode, as at the head of a program, is none."""
+        return self.trace.enters | self.trace.enters_again | self.trace.leaves
+
+    @cached_property
+    def may_stand_beside_switch(self) -> Mask:
+        """
+        Is the G12.1 or G13.1 itself, or may share its block: N, O, block skip, the words that the profile names, and
+        words without a good number, which have rules of their own.
+        """
+        words, polar = self.trace.run.words, self.trace.machine.polar
+        of_address = np.zeros(256, bool)
+        of_address[[ord(name) for name in ("N", "O", "/", *polar.switch_words) if len(name) == 1]] = True
+        of_code = self.codes(*polar.on, *polar.off, *(name for name in polar.switch_words if len(name) > 1))
+        return np.asarray(of_address[words.address] | of_code | (words.fault != NumberFault.NONE))
+
+    # ---- the virtual axis ----
+
+    @cached_property
+    def of_other_axis(self) -> Mask:
+        """A coordinate under the address that other controls give the virtual axis."""
+        trace = self.trace
+        named = trace.words_at(trace.word_indices(*trace.machine.polar.other_virtual_axis))
+        return named & self.in_rows(trace.uses_axes)

@@ -1,0 +1,320 @@
+"""The engine: tables handed over by name, and what rules return made into findings."""
+
+from __future__ import annotations
+
+import ast
+import inspect
+import string
+import textwrap
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from programs import report_of, said, tables_of
+
+from polarcheck.checking import message, tables
+from polarcheck.checking.engine import Engine
+from polarcheck.checking.finding import ERROR, NOTE, WARNING, Finding
+from polarcheck.checking.other_machine import OtherMachine
+from polarcheck.checking.rule import FOLDER, Hits, Rule, graded, load_all, rule
+from polarcheck.checking.tables import MAKERS, OF_TEXT, PARTS, Tables
+from polarcheck.errors import RuleError
+
+RULES = load_all()
+#: Two sections, one begun by G112 and never left; a program of inch words before one in mm.
+PROGRAM = """O1
+G20 G98 T0101
+G0 X2. C0
+G12.1
+G1 X1. F4
+C.5
+G13.1
+M30
+O2
+G21 G98 T0101
+G0 X60. C0
+G112
+G1 X40. F100
+C5. M8
+M30
+"""
+
+
+@pytest.fixture
+def made() -> Tables:
+    found = tables_of(PROGRAM)
+    found.give("other_machine", OtherMachine(found))
+    return found
+
+
+def made_rule(function: Any, **options: Any) -> Rule:
+    """A rule of a function, as a file under rules/polar would hold it."""
+    function.__module__ = "polarcheck.rules.polar.test"
+    options = {"severity": WARNING, "message": "here", **options}
+    return rule(options.pop("severity"), options.pop("message"), **options)(function)
+
+
+def findings(made: Tables, function: Any, **options: Any) -> list[Finding]:
+    return Engine(made, {}).findings(made_rule(function, **options))
+
+
+# ---- tables ----
+
+
+def test_each_table_is_made_once_from_those_that_it_names(made: Tables) -> None:
+    assert made["tool_center"] is made["tool_center"]
+    assert made["tool_center"].trace is made["trace"]
+    assert made["sections"] is made["trace"].sections
+    assert made["moves"] is made["tool_center"].moves
+    assert made.column("machine.arcs.tolerance") == made["machine"].arcs.tolerance
+    assert set(MAKERS) | set(PARTS) <= set(made)
+
+
+def test_a_table_that_nobody_makes_is_named_with_those_there_are(made: Tables) -> None:
+    with pytest.raises(RuleError, match=r"there is no table 'trase'; tables are .*trace"):
+        made["trase"]
+
+
+def test_tables_of_the_text_are_made_of_nothing_that_runs() -> None:
+    """What OF_TEXT names must hang on text, machine and job alone, and everything that does must be in it."""
+    needed = {name: tables.parameters(tables._maker(path)) for name, path in MAKERS.items()}
+    of_text = {"text", "words", "machine", "job"}
+    while more := {name for name, parameters in needed.items() if set(parameters) <= of_text} - of_text:
+        of_text |= more
+    assert of_text == OF_TEXT
+
+
+@pytest.mark.parametrize("one", RULES.values(), ids=list(RULES))
+def test_every_name_of_a_rule_stands_for_something(one: Rule, made: Tables) -> None:
+    for path in (*one.needs, *([one.where] if one.needs else []), *([one.worst] if one.worst else [])):
+        assert len(made.column(path)) == len(made["trace"]), path
+    assert set(one.unless) <= set(RULES)
+    hits = one.hits(made)
+    for _, name, _, _ in string.Formatter().parse(one.message):
+        if not name or (len(name) == 1 and name.isupper()):
+            continue
+        if "." in name:
+            made.column(name)
+        elif name not in hits.values:
+            phrase = message.phrase(name, one.group)
+            assert set(tables.parameters(phrase)) <= {*made, "place", "row", "index", "at"}, name
+
+
+# ---- what rules return ----
+
+
+@pytest.mark.parametrize("one", RULES.values(), ids=list(RULES))
+def test_a_rule_returns_a_mask_over_what_it_says(one: Rule, made: Tables) -> None:
+    hits = one.hits(made)
+    assert hits.mask.dtype == bool
+    assert hits.at is None or len(hits.at) == len(made["trace"].run.words)
+    for name, value in hits.values.items():
+        assert isinstance(value, str | int | float) or len(value) == len(hits.mask), name
+        assert not callable(value), name
+
+
+def compares(function: ast.FunctionDef) -> bool:
+    """Whether a rule compares columns: <, ==, &, |, ~ and their like in its body."""
+    operators = (ast.BitAnd, ast.BitOr, ast.BitXor)
+    return any(
+        isinstance(node, ast.Compare)
+        or (isinstance(node, ast.BinOp) and isinstance(node.op, operators))
+        or (isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.Invert))
+        for statement in function.body
+        for node in ast.walk(statement)
+    )
+
+
+@pytest.mark.parametrize("path", sorted(FOLDER.glob("*/[!_]*.py")), ids=lambda path: path.stem)
+def test_each_rule_compares_or_says_why_not(path: Path) -> None:
+    text = path.read_text("utf-8")
+    (function,) = (node for node in ast.parse(text).body if isinstance(node, ast.FunctionDef))
+    says_why = "    # Compares nothing: " in text
+    assert compares(function) != says_why
+
+
+def test_a_rule_that_only_returns_a_column_is_found_out() -> None:
+    def passes_on(trace: Any) -> Any:
+        return trace.in_polar
+
+    def compared(trace: Any) -> Any:
+        return trace.in_polar & trace.cuts
+
+    for function, expected in ((passes_on, False), (compared, True)):
+        (found,) = ast.parse(textwrap.dedent(inspect.getsource(function))).body
+        assert isinstance(found, ast.FunctionDef)
+        assert compares(found) == expected
+
+
+def test_the_highest_severity_counts_where_several_hold() -> None:
+    yes, no = np.array([True, True, False, False]), np.array([True, False, True, False])
+    hits = graded(error=no, note=yes)
+    assert hits.mask.tolist() == [True, True, True, False]
+    assert hits.severity is not None
+    assert hits.severity.tolist() == [ERROR, NOTE, ERROR, 0]  # type: ignore[union-attr]
+
+
+def test_severities_of_a_rule_of_all_or_of_each() -> None:
+    made = tables_of(PROGRAM)
+
+    def own(trace: Any) -> Any:
+        return trace.enters
+
+    def of_all(trace: Any) -> Any:
+        return Hits(trace.enters, NOTE)
+
+    def of_each(trace: Any) -> Any:
+        return graded(error=trace.codes("G12.1"), warning=trace.enters)
+
+    for function, expected in ((own, ["warning"] * 2), (of_all, ["note"] * 2), (of_each, ["error", "warning"])):
+        assert [found.severity for found in findings(made, function)] == expected
+
+
+def test_words_at_fault_by_mask_and_by_name() -> None:
+    made = tables_of(PROGRAM)
+
+    def by_mask(trace: Any) -> Any:
+        return Hits(trace.codes("M8"), at=trace.words_at(trace.word_indices("C")))
+
+    def by_name(trace: Any) -> Any:
+        return trace.codes("M8")
+
+    for function, options, columns in (
+        (by_mask, {}, (1, 4)),
+        (by_name, {"at": ("M8",)}, (5, 7)),
+        (by_name, {"at": ("C", "M8")}, (1, 7)),
+        (by_name, {"at": ("X",)}, (1, 7)),
+        (by_name, {}, (1, 7)),
+    ):
+        (found,) = findings(made, function, **options)
+        assert (found.line, found.column, found.end_column) == (14, *columns)
+
+
+# ---- messages ----
+
+
+@pytest.mark.parametrize(
+    ("text", "expected", "values"),
+    [
+        ("F {trace.feed:feed}", ["F 4 inch/min", "F 100 mm/min"], [{"feed": 101.6}, {"feed": 100.0}]),
+        ("{trace.x:diameter}", ["1 inch", "40 mm"], [{"x": 12.7}, {"x": 20.0}]),
+        ("{X} {F}", ["X1. F4", "X40. F100"], [{"X": "X1.", "F": "F4"}, {"X": "X40.", "F": "F100"}]),
+        ("{machine.title}", ["FANUC lathe control"] * 2, [{}, {}]),
+        ("{depth:length}", ["0.0394 inch", "1 mm"], [{"depth": 1.0}] * 2),
+        ("{since}", ["4", "12"], [{"since": 4}, {"since": 12}]),
+    ],
+)
+def test_names_in_a_message(text: str, expected: list[str], values: list[dict[str, Any]]) -> None:
+    def first_cut(trace: Any) -> Any:
+        return Hits(trace.first_in_section(trace.cuts), values={"depth": 1.0})
+
+    found = findings(tables_of(PROGRAM), first_cut, message=text)
+    assert [one.message for one in found] == expected
+    assert [one.values for one in found] == values
+
+
+def test_a_name_that_stands_for_nothing_is_a_fault_of_the_rule() -> None:
+    def entered(trace: Any) -> Any:
+        return trace.enters
+
+    with pytest.raises(RuleError, match="nowhere in a message of the group polar"):
+        findings(tables_of(PROGRAM), entered, message="{nowhere}")
+
+
+def test_a_phrase_of_a_section_knows_its_row_and_its_index() -> None:
+    """A rule over sections was handed the number of the section as a row: of a G112 it said G12.1."""
+
+    def never_left(sections: Any) -> Any:
+        return ~sections.left
+
+    (found,) = findings(tables_of(PROGRAM), never_left, message="{switch}: {missing_before}", over="sections")
+    assert found.message == "G112: G113 is missing before line 15, M30"
+    (missing,) = [one for one in report_of(PROGRAM).findings if one.rule == "polar-never-left"]
+    assert missing.message == "polar mode is never left: G113 is missing before line 15, M30"
+
+
+# ---- one finding per place ----
+
+
+def test_a_rule_gives_way_whatever_it_is_over(monkeypatch: pytest.MonkeyPatch) -> None:
+    """`unless` of a rule over words was an index into the rows, and raised an IndexError."""
+    made = tables_of("G21\n" * 3 + "G1 X1. Y1. Z1. U1. W1. H1.\nG1 X2.\n" + "G4 X1.\n" * 5)
+
+    def x_words(words: Any) -> Any:
+        return words.address == ord("X")
+
+    def has_y(trace: Any) -> Any:
+        return trace.has("Y")
+
+    def only_sections(sections: Any) -> Any:
+        return sections.left
+
+    better = made_rule(has_y)
+    of_sections = made_rule(only_sections, over="sections")
+    monkeypatch.setattr("polarcheck.checking.engine.load_all", lambda: {"has-y": better, "only-sections": of_sections})
+    found = findings(made, x_words, over="words", unless=("has-y", "only-sections"))
+    assert [one.line for one in found] == [5, 6, 7, 8, 9, 10]
+
+
+def test_a_block_that_ran_often_is_one_finding_at_its_worst_run() -> None:
+    made = tables_of("O1\n#1=0\nWHILE[#1LT3]DO1\nG1 X#1 F1\n#1=#1+1\nEND1\nM30\n")
+
+    def has_x(trace: Any) -> Any:
+        return trace.has("X")
+
+    (found,) = findings(made, has_x, message="{trace.x:.1f}", worst="trace.x")
+    assert (found.count, found.message) == (3, "1.0")
+    (first,) = findings(made, has_x, message="{trace.x:.1f}")
+    assert (first.count, first.message) == (3, "0.0")
+
+
+# ---- the text once, the runs each ----
+
+
+def test_what_hangs_on_the_text_alone_is_looked_for_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    program = "O1\nG21 G98 T0101\n/G0 X60. C0 X61.\nG12.1\nG1 X40. F100\nG0 X50.\nG13.1\nM30\n"
+    seen: list[str] = []
+    hits = Rule.hits
+
+    def counted(one: Rule, made: Any) -> Hits:
+        seen.append(one.name)
+        return hits(one, made)
+
+    monkeypatch.setattr(Rule, "hits", counted)
+    report = report_of(program)
+    assert {seen.count(name) for name, one in RULES.items() if one.of_text} == {1}
+    assert seen.count("rapid-in-polar") == 2
+    assert said(report)[:2] == [(3, "word-repeated"), (4, "c-angle-unknown-at-entry")]
+    told = {found.rule: "(with block skip on)" in found.message for found in report.findings}
+    assert told["c-angle-unknown-at-entry"]
+    assert not told["word-repeated"]
+    assert not told["rapid-in-polar"]
+
+
+def test_other_machines_are_asked_last(monkeypatch: pytest.MonkeyPatch) -> None:
+    order: list[str] = []
+    hits = Rule.hits
+
+    def noted(one: Rule, made: Any) -> Hits:
+        order.append(one.name)
+        return hits(one, made)
+
+    monkeypatch.setattr(Rule, "hits", noted)
+    report_of("G98 G0 X60. C0\nG12.1\nG1 X40. F100\nG13.1\n")
+    assert order[-1] == "other-machine-fits"
+    assert len(order) == len(set(order))
+
+
+def test_a_rule_names_what_it_is_over() -> None:
+    with pytest.raises(RuleError, match="expected one of rows, words"):
+        made_rule(lambda trace: trace.in_polar, over="moves")
+
+
+def test_phrases_take_what_they_name_and_nothing_else() -> None:
+    def phrase(trace: Any, row: int) -> str:
+        return f"{trace.name} {row}"
+
+    given = {"row": 3, "index": 5, "at": [], "place": None}
+    assert message.called(phrase, {"trace": SimpleNamespace(name="t")}, given) == "t 3"

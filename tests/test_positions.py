@@ -1,0 +1,89 @@
+"""Where the axes stand after each row, by programs whose positions are known by construction."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from programs import trace_of
+
+NAN = math.nan
+
+
+def after(program: str, axis: str, **more: object) -> list[float]:
+    """x [radius], z or c_angle after each block."""
+    trace = trace_of(program, **more)  # type: ignore[arg-type]
+    found: list[float] = getattr(trace, axis).tolist()
+    return found
+
+
+@pytest.mark.parametrize(
+    ("program", "axis", "expected"),
+    [
+        ("G0 X60.\nU-20.\nZ1.\nX10. U5.\n", "x", [30, 20, 20, 5]),
+        ("G20\nG0 X1.\nU.2\n", "x", [NAN, 12.7, 15.24]),
+        ("G0 Z5.\nW-7.\nG1 Z1.\n", "z", [5, -2, 1]),
+        ("G0 U10.\nX20.\nU10.\n", "x", [NAN, 10, 15]),
+        # A reference return, another work offset and a tool change leave an axis anywhere; G50 says where it stands.
+        ("G0 X60.\nG28 U0\nG0 U2.\nX10.\n", "x", [30, NAN, NAN, 5]),
+        ("G0 X60.\nG55\nU2.\n", "x", [30, NAN, NAN]),
+        ("T0101\nG0 X60. Z2.\nT0202\nU2.\n", "x", [NAN, 30, NAN, NAN]),
+        ("G0 X60.\nG50 X40.\nU2.\n", "x", [30, 20, 21]),
+        ("G0 X60.\nG4 X2.\nU2.\n", "x", [30, 30, 31]),
+        ("O1\nG0 X60.\nM30\nO2\nU2.\n", "x", [NAN, 30, 30, NAN, NAN]),
+        ("G0 C30.\nH15.\nG28 H0\nH5.\n", "c_angle", [30, 45, 0, 5]),
+    ],
+)
+def test_positions_outside_the_mode(program: str, axis: str, expected: list[float]) -> None:
+    assert after(program, axis) == pytest.approx(expected, nan_ok=True)
+
+
+def test_incremental_codes_of_system_b() -> None:
+    program = "G90 G0 X60. Z5.\nG91 X-20. Z1.\nG90 X10.\n"
+    changes = {"control": {"g_code_system": "B"}}
+    assert after(program, "x", changes=changes) == [30, 20, 5]
+    assert after(program, "z", changes=changes) == [5, 6, 6]
+
+
+def test_the_plane_begins_at_c0_and_turns_c_about_its_center() -> None:
+    trace = trace_of("G98 G0 X60. C90.\nG12.1\nG1 X40. F100\nC20.\nX-40.\nU80. H-40.\nG13.1\nG0 U10.\n")
+    assert trace.end[1:6].tolist() == [30, 20, 20 + 20j, -20 + 20j, 20 - 20j]
+    assert trace.start[2:6].tolist() == [30, 20, 20 + 20j, -20 + 20j]
+    assert np.isnan(trace.end[[0, 7]]).all()
+    # From 45 deg over 90 to 135, then through the center: half a turn, to -45 or 315.
+    assert trace.c_angle[:5] == pytest.approx([90, 90, 90, 135, 225])
+    assert trace.c_angle[5] % 360 == pytest.approx((90 - 45) % 360)
+    assert trace.length[2:6] == pytest.approx([10, 20, 40, math.hypot(40, 40)])
+    # The mode is left with X where the tool stands, on the positive side.
+    assert trace.x[[6, 7]] == pytest.approx([math.hypot(20, 20), math.hypot(20, 20) + 5])
+
+
+def test_centers_of_arcs_by_i_and_j_and_by_r() -> None:
+    program = "G98 G0 X60. C0\nG12.1\nG1 X40. F100\nG3 X0 C20. I-20. J0\nG2 X40. C0 R20.\nG1 X60.\nG13.1\n"
+    trace = trace_of(program)
+    assert trace.is_arc.tolist() == [False] * 3 + [True, True] + [False] * 2
+    assert trace.center[3] == 0
+    assert abs(trace.center[4]) == pytest.approx(0, abs=1e-9)
+    other_way = trace_of(program.replace("G2 X40.", "G3 X40."))
+    assert other_way.center[4] == pytest.approx(20 + 20j)
+    assert np.isnan(trace.center[[2, 5]]).all()
+    assert trace.length[3] == pytest.approx(10 * math.pi)
+
+
+@pytest.mark.parametrize(("reading", "x"), [("diameter", 20.0), ("radius", 40.0)])
+def test_x_in_the_mode_is_what_the_profile_says(reading: str, x: float) -> None:
+    trace = trace_of("G98 G0 X60. C0\nG12.1\nG1 X40. F100\nG13.1\n", changes={"polar": {"x": reading}})
+    assert (trace.x[0], trace.end[2]) == (30, x)
+    assert trace.x_factor.tolist() == [0.5, *[x / 40] * 2, 0.5]
+
+
+def test_side_and_ramps_of_a_section() -> None:
+    program = (
+        "G98 T0101\nG0 X60. C0\nG12.1\nG42 G1 X40. F100\nC10.\nX20.\nG40 X60.\nG13.1\nG41\nG12.1\nG1 X10.\nG13.1\n"
+    )
+    trace = trace_of(program)
+    assert np.flatnonzero(trace.starts_up).tolist() == [3, 10]
+    assert np.flatnonzero(trace.cancels).tolist() == [6]
+    assert np.flatnonzero(trace.offset_mode).tolist() == [4, 5, 6]
+    assert np.flatnonzero(trace.cuts).tolist() == [3, 4, 5, 6, 10]

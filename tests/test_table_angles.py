@@ -1,0 +1,101 @@
+"""Words of the virtual axis that look like angles: columns by construction."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from programs import tables_of
+
+from polarcheck.table.angles import Angles
+
+#: The angles that one writes, as a list of its own.
+USUAL = [30, 45, 60, 90, 120, 135, 150, 180, 210, 225, 240, 270, 300, 315, 330, 360]
+
+
+def table(program: str, machine: str = "fanuc", **changes: Any) -> Angles:
+    angles: Angles = tables_of(program, machine, changes=changes)["angles"]
+    return angles
+
+
+def lines(angles: Angles, column: str) -> list[int]:
+    return angles.trace.line[getattr(angles, column)].tolist()
+
+
+def test_usual_angles_are_these_and_no_others() -> None:
+    values = [*range(0, 400, 5), 30.5, 44.999, 1000]
+    program = "G12.1\n" + "".join(f"C{'-' if value % 2 else ''}{value:.3f}\n" for value in values)
+    angles = table(program + "G13.1\n")
+    found = angles.trace.word("C")[angles.is_usual]
+    assert np.abs(found).tolist() == USUAL
+
+
+@pytest.mark.parametrize(
+    ("program", "machine", "found"),
+    [
+        ("C90.\nG12.1\nX90. C90.\nH90.\nG13.1\nC90.\n", "fanuc", [3]),
+        # The number as it is written, not the length.
+        ("G20\nG12.1\nC90.\nG13.1\n", "fanuc", [3]),
+        # The axis is the machine's.
+        ("G112\nY90.\nC90.\nG113\n", "haas-lathe", [2]),
+        # Where C is no coordinate of a move it is neither length nor angle.
+        ("G12.1\nG28 C90.\nG1 C45.\nG13.1\n", "fanuc", [3]),
+    ],
+)
+def test_where_an_angle_is_looked_for(program: str, machine: str, found: list[int]) -> None:
+    assert lines(table(program, machine), "is_usual") == found
+
+
+def test_both_signs_in_one_section() -> None:
+    program = "G12.1\nC45.\nC-45.\nC90.\nC30.\nC30.\nG13.1\nG12.1\nC-90.\nC60.\nC-60.\nC15.\nC-15.\nG13.1\n"
+    assert lines(table(program), "has_both_signs") == [2, 3, 10, 11]
+    assert lines(table("G12.1\nC10.\nG13.1\n"), "has_both_signs") == []
+    assert lines(table("G1 X1.\n"), "has_both_signs") == []
+
+
+def test_virtual_length_is_in_mm_and_has_no_sign() -> None:
+    angles = table("G20\nG12.1\nC-2.\nX1.\nG13.1\n")
+    assert angles.virtual_length[2] == pytest.approx(50.8)
+    assert np.isnan(angles.virtual_length[[0, 1, 3, 4]]).all()
+
+
+def test_reach_leaves_out_what_may_be_an_angle() -> None:
+    """X is a diameter: 80 reaches 40 mm, and 48 back from C-48; C180 and C-90 are left out."""
+    program = "G0 X70. C0\nG12.1\nG1 X-80. F1\nC180.\nC-90.\nG13.1\nG0 X500.\nG12.1\nX20.\nC-48.\nG13.1\n"
+    angles = table(program)
+    first, second = angles.trace.section == 0, angles.trace.section == 1
+    assert np.unique(angles.reach[first]).tolist() == [40.0]
+    assert np.unique(angles.reach[second]).tolist() == [250.0], "X stands at 250 when the second section begins"
+    assert np.isnan(angles.reach[~first & ~second]).all()
+    by_c = table("G0 X20. C0\nG12.1\nG1 C-48. F1\nC-360.\nG13.1\n")
+    assert np.nanmax(by_c.reach) == 48.0
+
+
+def test_reach_by_a_plain_loop() -> None:
+    generator = np.random.default_rng(3)
+    program = []
+    for _ in range(6):
+        program += ["G0 X40. C0", "G12.1"]
+        for _ in range(int(generator.integers(1, 9))):
+            program.append(f"G1 X{generator.integers(-99, 99)}. C{generator.choice([*USUAL, 7, -13, 77])}. F100")
+        program.append("G13.1")
+    angles = table("\n".join(program) + "\n")
+    trace = angles.trace
+    farthest = [0.0] * len(trace.sections)
+    for row in range(len(trace)):
+        section = int(trace.section[row])
+        written = trace.word("C")[row]
+        lengths = [abs(trace.x[row])] + ([abs(written)] if abs(written) not in USUAL else [])
+        if section >= 0:
+            farthest[section] = max([farthest[section], *(length for length in lengths if length == length)])
+    assert len(farthest) == 6
+    inside = trace.section >= 0
+    assert angles.reach[inside] == pytest.approx(np.array(farthest)[trace.section[inside]])
+
+
+def test_a_misplaced_cycle_is_a_drilling_cycle_that_the_profile_does_not_allow() -> None:
+    program = "G83 X1. Z-1.\nC90.\nG80\nG12.1\nC90.\nG81 X1. Z-1.\nC90.\nG1 C90.\nG13.1\n"
+    assert lines(table(program), "in_misplaced_cycle") == [1, 2, 6, 7]
+    allowed = {"allowed_codes": ["G1", "G81"]}
+    assert lines(table(program, polar=allowed), "in_misplaced_cycle") == [1, 2]

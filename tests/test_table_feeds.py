@@ -1,0 +1,88 @@
+"""F in the polar mode: whether one is in force, where it changes, and what the acceleration of C leaves of it."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from programs import tables_of
+
+PER_MINUTE_ONLY = {"feed": {"inheritance": "per-minute-only"}}
+
+
+def lines(program: str, column: str, changes: dict[str, Any] | None = None) -> list[int]:
+    """The lines of cutting moves in which a column holds; each line of these programs is a row."""
+    tables = tables_of(program, changes=changes)
+    found = getattr(tables["feeds"], column) & tables["trace"].cuts
+    return (np.flatnonzero(found) + 1).tolist()
+
+
+@pytest.mark.parametrize(
+    ("program", "expected"),
+    [
+        ("O1\nG98 G0 X60. C0\nG12.1\nG1 X40.\nC10. F200\nC5.\nX60. F0\nX50.\nG13.1\n", [4, 7, 8]),
+        ("O1\nG98 G0 X60. C0\nG1 Z5. F100\nG12.1\nG1 X40.\nC10.\nG13.1\n", []),
+        ("O1\nG98 G0 X60. C0 F100\nM30\nO2\nG0 X60. C0\nG12.1\nG1 X40.\nG13.1\n", [7]),  # of another program
+        ("G98 G0 X60. C0\nG12.1\nG1 X40.\nG13.1\n", [3]),  # an excerpt that shows where it begins
+        ("G12.1\nG1 X40.\nC10.\nG13.1\n", []),  # what stands before it may have given one
+        ("G12.1\nG1 X40. F0\nC10.\nG13.1\n", [2, 3]),
+        ("O1\nM98 P7777\nG12.1\nG1 X40.\nG13.1\n", []),  # so may a program that is not there
+        ("O1\nG0 X60. C0\nG4 F100\nG12.1\nG1 X40.\nG13.1\n", []),
+    ],
+)
+def test_missing(program: str, expected: list[int]) -> None:
+    assert lines(program, "missing") == expected
+
+
+TURNED = "O1\nG99 G0 X60. C0\nG1 Z-5. F.2\nG12.1\n"
+
+
+@pytest.mark.parametrize(
+    ("program", "expected"),
+    [
+        (TURNED + "X40.\nC10.\nX30. F200\nC5.\nG13.1\n", [5, 6]),
+        (TURNED + "X40. F200\nC10.\nG13.1\nG12.1\nX40.\nG13.1\n", [9]),  # each section wants its own
+        (TURNED + "G98\nX40.\nC10. F200\nG13.1\n", [6]),
+        (TURNED.replace("G99", "G98") + "X40.\nC10.\nG13.1\n", []),
+    ],
+)
+def test_lost(program: str, expected: list[int]) -> None:
+    """Where F per revolution is not taken over; elsewhere it never is lost."""
+    assert lines(program, "lost", PER_MINUTE_ONLY) == expected
+    assert lines(program, "lost") == []
+
+
+def test_an_f_begins_where_it_is_not_that_of_the_cutting_move_before() -> None:
+    program = (
+        "G98 G0 X60. C0 F50\nG12.1\nG1 X40.\nC10. F200\nC5. F200\nF100\nM8\nC4.\nG0 C3.\nG1 C2.\nZ5. F80\nC1.\n"
+        "G13.1\nG12.1\nG1 C5. F80\nG13.1\n"
+    )
+    assert lines(program, "begins") == [3, 4, 8, 12, 15]
+
+
+NEAR = "G98 G0 X60. C0\nG12.1\nG1 X2. C10. F200\nC-10. F300\nX60. F{}\nM8\nG13.1\n"
+
+
+def test_the_f_that_the_acceleration_of_c_allows() -> None:
+    """On a line at the distance d it asks for 0.6495 F^2 / d^2: allowed is F * sqrt(limit / that)."""
+    limit = 500.0
+    allowed = tables_of(NEAR.format("200"), changes={"limits": {"c_acceleration": limit}})["feeds"]
+    column = allowed.allowed_by_acceleration
+    asked = math.degrees(3 * math.sqrt(3) / 8 * (300 / 60) ** 2)  # at d = 1
+    assert column[3] == pytest.approx(300 * math.sqrt(limit / asked))
+    assert column[[2, 4, 5]] == pytest.approx([200, 200, 200])
+    assert np.isnan(column[:2]).all()
+    assert (np.flatnonzero(allowed.is_limited_in_acceleration) + 1).tolist() == [3, 4, 5]
+
+
+def test_without_a_limit_of_the_acceleration_any_f_is_allowed() -> None:
+    feeds = tables_of(NEAR.format("200"))["feeds"]
+    assert np.isinf(feeds.allowed_by_acceleration).all()
+    assert not feeds.is_limited_in_acceleration.any()
+
+
+def test_without_any_acceleration_no_f_is_allowed_but_where_c_keeps_its_rate() -> None:
+    column = tables_of(NEAR.format("0"), changes={"limits": {"c_acceleration": 0}})["feeds"].allowed_by_acceleration
+    assert column[[2, 3, 4]].tolist() == [0, 0, 0]

@@ -1,0 +1,115 @@
+"""Where the polar mode begins and ends, as it is programmed and as it was meant."""
+
+from __future__ import annotations
+
+import msgspec
+import numpy as np
+import pytest
+from programs import trace_of
+
+from polarcheck.arrays import Mask
+from polarcheck.table.sections import Marks, Sections, find_sections, section_column
+
+HEAD = "O1\nG21 G98\nT0101\nG0 X60. C0\n"
+
+
+def sections(program: str) -> list[tuple[int, int, bool]]:
+    """Line of the G12.1, line of the first row behind the section (0: none), whether its G13.1 is there."""
+    trace = trace_of(HEAD + program)
+    lines = [*trace.line.tolist(), 0]
+    found = trace.sections
+    columns = (found.enter.tolist(), found.leave.tolist(), found.left.tolist())
+    return [(lines[enter] - 4, max(lines[leave] - 4, 0), left) for enter, leave, left in zip(*columns, strict=True)]
+
+
+@pytest.mark.parametrize(
+    ("program", "expected"),
+    [
+        ("G12.1\nG1 X40. F100\nC5.\nG13.1\nM30\n", [(1, 4, True)]),
+        ("G12.1\nG1 X40. F100\nG13.1\nG0 X60. C0\nG12.1\nG1 X40.\nG13.1\nM30\n", [(1, 3, True), (5, 7, True)]),
+        # What follows the last cut can only stand outside: there the G13.1 is missing.
+        ("G12.1\nG1 X40. F100\nC5.\nG0 X80.\nG28 U0\nM30\n", [(1, 4, False)]),
+        ("G12.1\nG1 X40. F100\nC5.\nT0202\nG0 X80.\nM30\n", [(1, 4, False)]),
+        ("G12.1\nG1 X40. F100\nC5.\nM30\n", [(1, 4, False)]),
+        # A G0 between cuts is a fault of its own and ends nothing.
+        ("G12.1\nG1 X40. F100\nG0 X50.\nG1 C5.\nG13.1\nM30\n", [(1, 5, True)]),
+        # A G12.1 again, before anything could only stand outside, is none that begins a section.
+        ("G12.1\nG1 X40. F100\nG12.1\nG1 C5.\nG13.1\nM30\n", [(1, 5, True)]),
+        ("G12.1\nG1 X40. F100\nC5.\nG0 X80. Z5.\nG12.1\nG1 X40.\nC5.\nG13.1\nM30\n", [(1, 4, False), (5, 8, True)]),
+        # The G13.1 of another tool does not belong to it.
+        ("G12.1\nG1 X40. F100\nC5.\nT0202\nG13.1\nM30\n", [(1, 4, False)]),
+    ],
+)
+def test_sections_end_where_they_were_meant_to(program: str, expected: list[tuple[int, int, bool]]) -> None:
+    assert sections(program) == expected
+
+
+def test_the_rows_of_a_section_are_those_from_its_entry_to_its_exit() -> None:
+    trace = trace_of(HEAD + "G12.1\nG1 X40. F100\nG13.1\nG0 X60.\nG112\nG1 X40.\nG113\nM30\n")
+    assert trace.section.tolist() == [-1] * 4 + [0, 0, -1, -1, 1, 1, -1, -1]
+    assert trace.in_polar.tolist() == [False] * 5 + [True, False, False, False, True, False, False]
+    assert trace.anywhere_in_section(trace.codes("G112")).tolist() == [False] * 8 + [True, True, False, False]
+    assert trace.first_in_section(trace.section >= 0).tolist() == trace.enters.tolist()
+
+
+def test_a_section_left_open_by_m99_is_for_the_caller_to_leave() -> None:
+    trace = trace_of("O1\nG12.1\nG1 X40. F100\nC5.\nM99\n")
+    assert trace.sections.left.tolist() == [True]
+    assert trace.sections.returned.tolist() == [True]
+    assert not trace.leaves.any(), "no row of it holds the G13.1"
+    ended = trace_of("O1\nG12.1\nG1 X40. F100\nC5.\nM30\n")
+    assert ended.sections.returned.tolist() == [False]
+
+
+def marks(generator: np.random.Generator, count: int) -> Marks:
+    """Any rows at all, as no program has them; but that a program begins with its O number."""
+
+    def some(share: float) -> Mask:
+        return generator.random(count) < share
+
+    on, off, cuts = some(0.2), some(0.15), some(0.4)
+    starts = some(0.05) & ~on & ~off
+    return Marks(
+        on=on & ~off,
+        off=off,
+        starts=starts,
+        outside=some(0.05),
+        tool_ends=some(0.05),
+        rapid=some(0.2),
+        cuts=cuts,
+        moves=cuts | some(0.2),
+        returns=some(0.03),
+    )
+
+
+@pytest.mark.parametrize("seed", range(50))
+def test_whatever_the_rows_sections_are_in_order_and_apart(seed: int) -> None:
+    generator = np.random.default_rng(seed)
+    given = marks(generator, int(generator.integers(1, 60)))
+    found = find_sections(given)
+    lengths = [len(column) for column in msgspec.structs.astuple(found)[:4]]
+    assert lengths == [len(found)] * 4
+    assert sorted([*found.enter, *found.again]) == np.flatnonzero(given.on).tolist(), "each G12.1 begins or repeats"
+    assert (found.leave > found.enter).all()
+    assert (found.leave[:-1] <= found.enter[1:]).all()
+    inside = section_column(found, len(given.on)) >= 0
+    begins = np.isin(np.arange(len(given.on)), found.enter)
+    assert not (inside & given.off).any()
+    assert not (inside & given.starts & ~begins).any(), "a section ends where its program does"
+    # What polar-entered-twice compares: in the mode and not its beginning, switched on.
+    assert np.flatnonzero(inside & ~begins & given.on).tolist() == found.again.tolist()
+    by_off = found.left & ~found.returned
+    assert given.off[found.leave[by_off]].all()
+
+
+@pytest.mark.parametrize(
+    ("enter", "leave", "count"), [([], [], 3), ([0], [2], 3), ([1, 4], [4, 9], 9), ([0, 3, 5], [2, 4, 6], 8)]
+)
+def test_section_column_by_a_plain_loop(enter: list[int], leave: list[int], count: int) -> None:
+    flags, rows = np.ones(len(enter), bool), np.array([], np.int64)
+    found = Sections(np.array(enter, np.int64), np.array(leave, np.int64), flags, flags, rows)
+    expected = [-1] * count
+    for number, (first, end) in enumerate(zip(enter, leave, strict=True)):
+        for row in range(first, end):
+            expected[row] = number
+    assert section_column(found, count).tolist() == expected
