@@ -29,8 +29,9 @@ from polarcheck.table.moves import Moves
 from polarcheck.table.trace import Trace
 
 ROOT = Path(__file__).parent.parent
-CORPUS = ROOT.parent / "shared" / "corpus"
-"""The real programs, which lie beside the checkout and not in it."""
+SHARED = ROOT.parent / "shared"
+"""Facts and real programs, which lie beside the checkout and not in it."""
+CORPUS = SHARED / "corpus"
 
 Changes = Mapping[str, Any]
 

@@ -6,7 +6,6 @@ import cmath
 import json
 import math
 from itertools import pairwise
-from pathlib import Path as FilePath
 
 import numpy as np
 import pytest
@@ -15,11 +14,12 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from msgspec.structs import fields, replace
 from plane_moves import path_of_rows, points_along, turn_of
+from programs import SHARED
 
 from polarcheck.geometry.compensation import Method, Path, Phase, ToolPath, tool_center_path
 from polarcheck.machines.modal import Motion, Side
 
-CASES = FilePath(__file__).parents[1] / ".." / "shared" / "facts" / "compensation_cases.json"
+CASES = SHARED / "facts" / "compensation_cases.json"
 NAN = complex(math.nan, math.nan)
 MOTIONS = {"line": Motion.LINE, "cw": Motion.CW, "ccw": Motion.CCW, "none": Motion.NONE}
 SIDES = {"G40": Side.OFF, "G41": Side.LEFT, "G42": Side.RIGHT}

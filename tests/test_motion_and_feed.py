@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
-from programs import report_of, said
+from programs import moves_of, report_of, said
 
 from polarcheck.checking.finding import FileReport
 
@@ -58,13 +58,49 @@ def test_helical_arcs_are_errors_where_the_builder_forbids_them() -> None:
             "G98 G0 X60. C0\nG12.1\nG1 C1 F200\nX40\nX50.5 C3\n",
             ["C1 has no decimal point: the control takes it as 0.001 mm; 2 more coordinates of this section have none"],
         ),
-        ("G98 G0 X60000 C0\nG12.1\nG1 C1000 F200\n", []),
+        (
+            "G98 G0 X60000 C0\nG12.1\nG1 C1000 F200\n",
+            [
+                "X60000 has no decimal point: the control takes it as 60 mm; the whole program is read in least "
+                "increments, 2 of its coordinates have no point"
+            ],
+        ),
         ("G98 G1 X60 F200\nG0 X60. C0\nG12.1\nG1 X50.\n", []),
     ],
 )
 def test_number_without_point_says_what_it_is_taken_as(program: str, texts: list[str]) -> None:
     found = report(program).findings
     assert [finding.message for finding in found if finding.rule == "number-without-point"] == texts
+
+
+POINTED = "{units}G98 G0 X60. C0\n{before}G12.1\nG1 X40. F20.\nC10.\n{inside}C-10.\nX60.\nG13.1\n{behind}"
+WHOLE = POINTED.replace(". ", " ").replace(".\n", "\n").replace("F20\n", "F20.\n")
+
+
+def places(program: str) -> list[tuple[complex, ...]]:
+    """Where the moves of the tool center begin and end."""
+    moves = moves_of(program)
+    return list(zip(moves.start.tolist(), moves.end.tolist(), strict=True))
+
+
+@pytest.mark.parametrize("base", [POINTED, WHOLE], ids=["with points", "without"])
+@pytest.mark.parametrize("units", ["", "G20 "], ids=["mm", "inch"])
+@pytest.mark.parametrize("place", ["before", "inside", "behind"])
+@pytest.mark.parametrize(
+    "frame",
+    ["{}", "O1\n{}M30\n", "O1\nM98 P2\nM30\nO2\n{}M99\n", "O1\nG0 X60000\nZ50000\nZ-2000\nM30\nO2\n{}M30\n"],
+    ids=["excerpt", "program", "called", "second program"],
+)
+def test_one_large_number_without_a_point_is_a_slip(base: str, units: str, place: str, frame: str) -> None:
+    """It was taken for a sign that all numbers count least increments: all shrank to a thousandth, without a word."""
+    without = dict.fromkeys(("before", "inside", "behind"), "M8\n") | {"units": units}
+    clean, slip = frame.format(base.format(**without)), frame.format(base.format(**without | {place: "Z1000\n"}))
+    assert places(slip) == places(clean)
+    told = {(found.line, found.severity, found.message) for found in report(slip).findings}
+    told -= {(found.line, found.severity, found.message) for found in report(clean).findings}
+    takes = f"the control takes it as {'0.1 inch' if units else '1 mm'}"
+    line = slip.split("\n").index("Z1000") + 1
+    assert told == {(line, "warning", f"Z1000 has no decimal point: {takes}")}
 
 
 def test_a_word_in_a_loop_is_reported_once() -> None:

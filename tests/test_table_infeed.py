@@ -1,4 +1,8 @@
-"""The infeed cycle of `G12.1 E`: its depth, the gap of its contour and the offsets of its passes, by construction."""
+"""
+The infeed cycle of `G12.1 E`: its depth, the gap of its contour and the offsets of its passes, by construction.
+
+The moves of the passes are compared with the manual's own program in test_controls.
+"""
 
 from __future__ import annotations
 
@@ -52,6 +56,17 @@ def test_gap_is_the_way_back_to_where_the_contour_begins(last: str, gap: float |
     infeed = table(SQUARE.format("E4.", last))
     assert infeed.gap[ENTRY] == pytest.approx(abs(30 + 0.003j - 20) if gap is None else gap)
     assert np.isnan(np.delete(infeed.gap, ENTRY)).all()
+
+
+@pytest.mark.parametrize("codes", [("G1 ", ""), ("", "G1 "), ("G0 ", "G1 ")])
+def test_a_start_up_in_rapid_traverse_leads_to_the_contour(codes: tuple[str, str]) -> None:
+    """G0 of the approach in force, or written, gives rapid-in-polar, and beside it no contour that is open."""
+    program = "T0202 G98 G0 X60. C0\nG12.1 E4.\n{}G42 X40. C0 F100\n{}C20.\nX-40.\nC-20.\nX40.\nC0\nG40 X60.\nG13.1\n"
+    tables = tables_of(program.format(*codes), "gsk-988", "2:radius=1")
+    assert tables["infeed"].gap[ENTRY] == 0
+    # From 10 mm off the contour it is cut 8, 4 and 0 mm off.
+    assert tables["infeed"].offsets(ENTRY).tolist() == [8, 4]
+    assert len(tables["moves"]) == len(tables_of(program.format("G1 ", ""), "gsk-988", "2:radius=1")["moves"])
 
 
 def test_gap_of_a_compensated_contour_ends_with_its_compensation() -> None:

@@ -36,6 +36,10 @@ def sections(program: str) -> list[tuple[int, int, bool]]:
         # A G12.1 again, before anything could only stand outside, is none that begins a section.
         ("G12.1\nG1 X40. F100\nG12.1\nG1 C5.\nG13.1\nM30\n", [(1, 5, True)]),
         ("G12.1\nG1 X40. F100\nC5.\nG0 X80. Z5.\nG12.1\nG1 X40.\nC5.\nG13.1\nM30\n", [(1, 4, False), (5, 8, True)]),
+        ("G12.1\nG1 X40. F100\nC5.\nG28 U0\nG12.1\nG1 X40.\nC5.\nG13.1\nM30\n", [(1, 4, False), (5, 8, True)]),
+        ("G12.1\nG1 X40. F100\nC5.\nT0202\nG12.1\nG1 X40.\nC5.\nG13.1\nM30\n", [(1, 4, False), (5, 8, True)]),
+        # A move in X alone after G28 does not bring the mode back.
+        ("G12.1\nG1 X40. F100\nC5.\nG28 U0\nG1 X30.\nT0202\nM30\n", [(1, 4, False)]),
         # The G13.1 of another tool does not belong to it.
         ("G12.1\nG1 X40. F100\nC5.\nT0202\nG13.1\nM30\n", [(1, 4, False)]),
     ],

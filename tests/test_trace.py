@@ -29,7 +29,9 @@ def moves(*arguments: str) -> list[dict[str, object]]:
 
 @pytest.mark.parametrize("path", ["tool", "programmed"])
 def test_moves_have_the_fields_of_the_contract(path: str) -> None:
-    for move in moves("--path", path, str(SAMPLES / "turning-center" / "two_flats_b.nc")):
+    table = moves("--path", path, str(SAMPLES / "turning-center" / "two_flats_b.nc"))
+    assert table
+    for move in table:
         assert list(move) == KEYS
         assert move["kind"] in ("line", "cw", "ccw")
         assert (move["center"] is None) == (move["kind"] == "line")
@@ -48,7 +50,9 @@ def test_the_two_flats_of_the_guide() -> None:
 
 
 def test_machine_axes_follow_the_plane() -> None:
-    for move in moves("--path", "tool", str(SAMPLES / "shrinking_passes.nc")):
+    table = moves("--path", "tool", str(SAMPLES / "shrinking_passes.nc"))
+    assert table
+    for move in table:
         for point, x, c in zip(
             (move["start"], move["end"]),
             move["x_axis"],

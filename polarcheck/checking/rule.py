@@ -33,7 +33,6 @@ if TYPE_CHECKING:
     from polarcheck.table.center import Center as Center
     from polarcheck.table.entry import Entry as Entry
     from polarcheck.table.feeds import Feeds as Feeds
-    from polarcheck.table.increments import Increments as Increments
     from polarcheck.table.infeed import Infeed as Infeed
     from polarcheck.table.mode_words import ModeWords as ModeWords
     from polarcheck.table.overcuts import Overcuts as Overcuts
@@ -42,6 +41,7 @@ if TYPE_CHECKING:
     from polarcheck.table.tool_center import ToolCenter as ToolCenter
     from polarcheck.table.trace import Trace as Trace
     from polarcheck.table.travel import Travel as Travel
+    from polarcheck.table.unpointed import Unpointed as Unpointed
     from polarcheck.table.written import Written as Written
 else:
 

@@ -28,7 +28,7 @@ MAKERS = {
     "travel": "polarcheck.table.travel:Travel",
     "center": "polarcheck.table.center:Center",
     "feeds": "polarcheck.table.feeds:Feeds",
-    "increments": "polarcheck.table.increments:Increments",
+    "unpointed": "polarcheck.table.unpointed:Unpointed",
     "written": "polarcheck.table.written:Written",
     "faults": "polarcheck.checking.macro_faults:Faults",
 }

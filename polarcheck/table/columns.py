@@ -22,8 +22,6 @@ if TYPE_CHECKING:
 
 Column = TypeVar("Column")
 
-#: Without a point, a length of this many units can only be meant in least increments: no lathe moves a meter.
-_INCREMENTS_FROM = 1000.0
 _LONGEST_TOOL_NUMBER = 1e15
 _BEFORE = {"motion": Motion.NONE, "side": Side.OFF, "feed_mode": FeedMode.PER_MINUTE, "distance": Distance.ABSOLUTE}
 
@@ -181,43 +179,6 @@ class Columns:
     def scale(self) -> Floats:
         """mm per unit of length."""
         return np.where(self.units == Units.INCH, MM_PER_INCH, 1.0)
-
-    @cached_property
-    def unpointed(self) -> Mask:
-        """Per word: a coordinate other than 0 without a point, on a control that reads it in least increments."""
-        words = self.run.words
-        if self.machine.control.number_without_point == "whole-unit":
-            return np.zeros(len(words), bool)
-        return np.asarray(self.is_coordinate & ~words.has_point & (np.nan_to_num(words.value) != 0))
-
-    @cached_property
-    def is_coordinate(self) -> Mask:
-        """Per word: the end, the center or the radius of a move."""
-        words = self.run.words
-        is_length = np.isin(words.address, list(b"XYZCUVWHIJKR"))
-        is_offset_number = (words.address == ord("H")) & self.codes("G43", "G44")[self.run.row]
-        moves = self.uses_axes & ~self.in_cycle
-        return np.asarray(is_length & ~is_offset_number & moves[self.run.row])
-
-    @cached_property
-    def in_increments(self) -> bool:
-        """Whether numbers without a point are meant in least increments: the program has one of 1000 or more."""
-        return bool(np.any(np.abs(self.run.words.value[self.unpointed]) >= _INCREMENTS_FROM))
-
-    @cached_property
-    def _values(self) -> Floats:
-        """Per word: its value, with least increments applied where they are meant."""
-        value = self.run.words.value
-        if not self.in_increments:
-            return value
-        control = self.machine.control
-        inch = self.units[self.run.row] == Units.INCH
-        least = np.where(inch, control.least_increment_inch, control.least_increment)
-        return np.where(self.unpointed, value * least, value)
-
-    def length_of(self, address: str) -> Floats:
-        """A word as a length [mm], as written: a diameter stays one."""
-        return self._column(f"length {address}", lambda: self._scatter(address, self._values) * self.scale)
 
     @cached_property
     def feed_mode(self) -> States:

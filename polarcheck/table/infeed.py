@@ -59,7 +59,9 @@ class Infeed:
         """
         trace = self.trace
         first_row, leave = trace.sections.enter[section] + 1, min(trace.sections.leave[section], len(trace))
-        moving = first_row + np.flatnonzero(trace.cuts[first_row:leave])
+        # A start-up in rapid traverse leads to the contour as one at feed does, which is what was meant.
+        leads_or_cuts = trace.cuts | (trace.on_plane & trace.compensates)
+        moving = first_row + np.flatnonzero(leads_or_cuts[first_row:leave])
         if not len(moving):
             return moving, False
         compensated = trace.side[moving] != Side.OFF

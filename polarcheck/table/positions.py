@@ -14,8 +14,8 @@ import numpy as np
 from polarcheck.arrays import Floats, Mask, Points, Rows, States
 from polarcheck.geometry import polar
 from polarcheck.machines.modal import COORDINATE_SETTING, Distance, Motion
-from polarcheck.table.columns import Columns
 from polarcheck.table.filling import before, fill_down, positions
+from polarcheck.table.lengths import Lengths
 from polarcheck.table.sections import Marks, Sections, find_sections, section_column
 
 _PLANE_AXES = ("X", "U")
@@ -24,7 +24,7 @@ _NOWHERE = complex("nan+nanj")
 _PASSES = 8
 
 
-class Positions(Columns):
+class Positions(Lengths):
     """The columns of where the tool is programmed to be; see the properties."""
 
     # ---- motion ----
@@ -274,18 +274,15 @@ class Positions(Columns):
         """C angle of the machine after the row [deg], continuous along a section; NaN while unknown."""
         moving = self.uses_axes & (self.section < 0)
         written, stepped = self.has("C") & moving, self.has("H") & moving
-        absolute = np.where(written & ~self.incremental, self._degrees("C"), np.nan)
-        turn = np.where(written & self.incremental, self._degrees("C"), 0.0)
-        turn += np.where(stepped, self._degrees("H"), 0.0)
+        absolute = np.where(written & ~self.incremental, self.angle_of("C"), np.nan)
+        turn = np.where(written & self.incremental, self.angle_of("C"), 0.0)
+        turn += np.where(stepped, self.angle_of("H"), 0.0)
         on_plane = self.in_polar & self.moves_plane
         turn[on_plane] = polar.c_sweep(*self._move(on_plane))
         # G28 H0 takes C to its reference point, the zero of its angle (builder's guide: "zero return C-axis").
         referenced = self.codes("G28", "G30") & self.has("C", "H")
-        values = np.where(referenced, 0.0, np.where(self.codes("G50", "G92"), self._degrees("C"), np.nan))
+        values = np.where(referenced, 0.0, np.where(self.codes("G50", "G92"), self.angle_of("C"), np.nan))
         return positions(absolute, turn, self._forgets("C", "H"), values)
-
-    def _degrees(self, address: str) -> Floats:
-        return self._column(f"degrees {address}", lambda: self._scatter(address, self._values))
 
     @cached_property
     def section_entry(self) -> Floats:

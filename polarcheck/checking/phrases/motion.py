@@ -9,9 +9,9 @@ from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.machines.machine import Machine
 from polarcheck.machines.modal import MM_PER_INCH, Units
 from polarcheck.table.arcs import Arcs
-from polarcheck.table.increments import Increments
 from polarcheck.table.trace import Trace
 from polarcheck.table.travel import Travel
+from polarcheck.table.unpointed import Unpointed
 
 #: F without a point in an inch program [inch/min], parameter 1403#0 MIF = 0; in mm it is whole mm/min.
 _FEED_INCREMENT_INCH = 0.01
@@ -41,7 +41,7 @@ def other(trace: Trace, row: int) -> str:
     return "radius" if trace.x_factor[row] < 1 else "diameter"
 
 
-def taken_as(trace: Trace, increments: Increments, index: int) -> str:
+def taken_as(trace: Trace, unpointed: Unpointed, index: int) -> str:
     """What the control takes a word of the file as, and how many more there are."""
     table, control = trace.text.words, trace.machine.control
     row = int(np.flatnonzero(trace.run.block == table.block[index])[0])
@@ -53,9 +53,16 @@ def taken_as(trace: Trace, increments: Increments, index: int) -> str:
     least = control.least_increment_inch if inch and not is_angle else control.least_increment
     unit = "deg" if is_angle else "inch" if inch else "mm"
     shown = f"{value * least:.4f}".rstrip("0").rstrip(".")
-    more = int(increments.without_point[index]) - 1
-    others = f"; {more} more coordinates of this section have none" if more > 0 else ""
-    return f"{shown} {unit}{others}"
+    return f"{shown} {unit}{_others(unpointed, index)}"
+
+
+def _others(unpointed: Unpointed, index: int) -> str:
+    """For which other coordinates a word without a point stands."""
+    in_increments = int(unpointed.in_increments[index])
+    if in_increments:
+        return f"; the whole program is read in least increments, {in_increments} of its coordinates have no point"
+    more = int(unpointed.slips[index]) - 1
+    return f"; {more} more coordinates of this section have none" if more > 0 else ""
 
 
 def travel(trace: Trace, travel: Travel, row: int) -> str:

@@ -1,17 +1,27 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Increments, Mask, rule
+from polarcheck.checking.rule import WARNING, Hits, Unpointed, graded, rule
 
 
-@rule(WARNING, "{text} has no decimal point: the control takes it as {taken_as}", over="words")
-def number_without_point(increments: Increments) -> Mask:
+@rule(
+    WARNING,
+    "{text} has no decimal point: the control takes it as {taken_as}",
+    over="words",
+    unless=("too-many-digits",),
+)
+def number_without_point(unpointed: Unpointed) -> Hits:
     """
     Length without a decimal point.
 
     A number without a point counts least increments: C20 is 0.020 mm, in inch 0.0020 inch. With parameter 3401#0
     DPI = 1 it is 20 mm instead, so that one program cuts two shapes on two lathes. Write the point. Before G12.1 the
-    blocks that position X and C are looked at. A program that is written in least increments throughout is not
-    reported, and a section with more such numbers than others is once.
+    blocks that position X and C are looked at, elsewhere numbers of 1000 or more. A section with more such numbers than
+    others is reported once, and a number of 1000 or more in it.
+
+    What is meant is taken from the program. Most are written with points: there C20 is judged as 20 mm, and only a
+    number of 1000 or more as the control takes it, since no lathe moves a meter. A program that writes most of its
+    coordinates without a point, throughout or in the mode, and most of those as 1000 or more, is written in least
+    increments: all of them are judged so, and a note says it once in the program.
 
     Source: FANUC B-62754EN/01, decimal point programming; parameters 3401#0 and 1403#0.
 
@@ -41,6 +51,26 @@ def number_without_point(increments: Increments) -> Mask:
         C.5
         G13.1
 
+    Bad:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. F200
+        C20.
+        Z1000             (expect: number-without-point)
+        X-40.
+        G13.1
+
+    Bad:
+
+        G98 G0 X60000 C0  (expect: number-without-point)
+        G12.1
+        G1 X40000 F200
+        C20000
+        C-500
+        X-40000
+        G13.1
+
     Good:
 
         G98 G0 X60. C0
@@ -58,4 +88,4 @@ def number_without_point(increments: Increments) -> Mask:
         C20
         G13.1
     """
-    return increments.without_point > 0
+    return graded(warning=unpointed.slips > 0, note=unpointed.in_increments > 0)

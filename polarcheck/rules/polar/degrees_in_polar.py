@@ -2,7 +2,7 @@ from __future__ import annotations
 
 from polarcheck.checking.rule import WARNING, Angles, Hits, Job, Machine, Trace, rule
 
-#: As many times farther out than the rest of the section a length can only be meant as an angle.
+#: A length that many times as far out as the rest of the section is taken for an angle.
 _FAR = 2.0
 
 

@@ -60,6 +60,9 @@ def incremental_word_of_other_code_system(trace: Trace, mode_words: ModeWords, m
         G13.1
     """
     in_system_a = machine.control.g_code_system == "A"
-    codes, addresses = ("G90", "G91", "G94", "G95"), ("U", "W", machine.polar.virtual_axis_increment)
-    wrong = mode_words.first_of(*(codes if in_system_a else addresses)) & ~mode_words.of_other_axis
-    return Hits(trace.in_polar & mode_words.rows(wrong) & (in_system_a | trace.uses_axes), at=wrong)
+    codes, increments = ("G90", "G91", "G94", "G95"), ("U", "W", machine.polar.virtual_axis_increment)
+    # The address of another control has a rule of its own: wrong-axis-address-in-polar.
+    wrong = mode_words.first_of(*(codes if in_system_a else increments)) & ~mode_words.of_other_axis
+    # U is no increment beside a code that takes it for something else, such as G4.
+    is_meant = in_system_a | trace.uses_axes
+    return Hits(trace.in_polar & mode_words.rows(wrong) & is_meant, at=wrong)

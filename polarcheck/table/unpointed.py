@@ -1,0 +1,86 @@
+"""Numbers without a decimal point: which to report, and for how many others each stands."""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+
+from polarcheck.arrays import Mask, Rows
+from polarcheck.machines.modal import FeedMode, Units
+from polarcheck.table.trace import Trace
+
+
+class Unpointed:
+    """Columns over the words of the file: for how many numbers without a point each is reported, 0 where it is not."""
+
+    def __init__(self, trace: Trace) -> None:
+        self.trace = trace
+
+    @cached_property
+    def in_increments(self) -> Rows:
+        """The first coordinate without a point of each program that is written in least increments, for all of it."""
+        trace = self.trace
+        reported = np.zeros(len(trace.text.words), np.int64)
+        if trace.in_increments.any():
+            words = trace.is_unpointed & trace.in_increments[trace.run.row]
+            self._add(reported, words, trace.program, np.ones(int(trace.program[-1]) + 1, bool))
+        return reported
+
+    @cached_property
+    def slips(self) -> Rows:
+        """
+        The numbers without a point of other programs, each by itself.
+
+        It is the coordinates of polar sections and of the blocks that position X and C for them, elsewhere only those
+        that are large, and in inch the F of the mode. Where more than half of the coordinates of a section are without,
+        that is one habit, reported at the first of them, and at the first large one, which is read otherwise.
+        """
+        trace, words = self.trace, self.trace.run.words
+        reported = np.zeros(len(trace.text.words), np.int64)
+        count, section = len(trace.sections), self._sections
+        if not count or trace.machine.control.number_without_point == "whole-unit":
+            return reported
+        slips = ~trace.in_increments[trace.run.row]
+        inch_feed = (words.address == ord("F")) & ~words.has_point & (words.value > 0) & slips
+        inch_feed &= ((trace.units == Units.INCH) & (trace.feed_mode == FeedMode.PER_MINUTE))[trace.run.row]
+        self._add(reported, inch_feed, section, np.zeros(count, bool))
+        if trace.is_unpointed.any():
+            large, is_habit = trace.is_large_unpointed, trace.writes_no_points(section, count)
+            has_section = np.isin(trace.program, trace.program[trace.sections.enter])
+            section_or_rest = np.where(has_section & (section < 0), count, section)
+            self._add(reported, slips & trace.is_unpointed & ~large, section, is_habit)
+            self._add(reported, slips & large, section_or_rest, np.append(is_habit, False))
+        return reported
+
+    @cached_property
+    def _sections(self) -> Rows:
+        """The section of each row of the mode and of the rows that position X and C for it; -1 of all others."""
+        trace = self.trace
+        column = np.where(trace.in_polar, trace.section, -1)
+        enter = trace.sections.enter
+        for addresses in (("X", "U"), ("C", "H")):
+            rows = np.append(-1, np.flatnonzero(trace.uses_axes & trace.has(*addresses) & ~trace.in_polar))
+            last = rows[np.searchsorted(rows, enter) - 1]
+            own = (last >= 0) & (trace.program[last] == trace.program[enter])
+            column[last[own]] = np.flatnonzero(own)
+        return column
+
+    def _add(self, reported: Rows, words: Mask, group: Rows, as_one: Mask) -> None:
+        """Report executed words, those of a group of rows that counts as one at its first word, for all of them."""
+        index, own = self.trace.written_once(words, group)
+        count = np.where(as_one, np.bincount(own, minlength=len(as_one)), 1)
+        at, found = self._in_file(index)
+        own = own[found]
+        is_first = np.zeros(len(own), bool)
+        is_first[np.unique(own, return_index=True)[1]] = True
+        shown = is_first | ~as_one[own]
+        np.maximum.at(reported, at[shown], count[own[shown]])
+
+    def _in_file(self, index: Rows) -> tuple[Rows, Mask]:
+        """Where executed words stand among the words of the file, and which do: those of macro statements do not."""
+        own = self.trace.text.words.start
+        start = self.trace.run.words.start[index]
+        at = np.searchsorted(own, start)
+        found = np.append(own, -1)[at] == start
+        return at[found], found

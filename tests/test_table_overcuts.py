@@ -1,0 +1,135 @@
+"""Cuts into the contour, taken back to rows: grooves and corners whose depth follows from R and one width."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from programs import tables_of
+
+from polarcheck.checking.tables import Tables
+from polarcheck.table.overcuts import Cuts, loop_of_row, objected
+
+#: A groove of 6 mm between C3 and C-3 through the middle of a square of 40, gone round on the outside.
+GROOVE = (
+    "T0101\nG98 G0 X100. C0\nG12.1\nG1 C3. F500\nG41 X60. F200\nX30.\nC20.\nX-20.\nC-20.\nX30.\nC-3.\nX60.\n"
+    "G40 X100.\nG13.1\n"
+)
+
+
+def depths(tables: Tables, column: str = "depth") -> dict[int, float]:
+    """By line, where there is any."""
+    values = getattr(tables["overcuts"], column)
+    return {int(tables["trace"].line[row]): float(values[row]) for row in np.flatnonzero(values)}
+
+
+@pytest.mark.parametrize(("radius", "depth"), [(4, 2), (5, 4), (3.002, 0.004), (3, 0)])
+def test_a_groove_narrower_than_the_cutter(radius: float, depth: float) -> None:
+    """The tool center runs R from one wall, that is 6 - R from the other one: 2 R - 6 too near."""
+    tables = tables_of(GROOVE, "fanuc", f"1:radius={radius}", changes={"compensation": {"overcut_tolerance": 0.003}})
+    expected = {line: pytest.approx(depth, abs=0.003) for line in (6, 12)} if depth else {}
+    assert {line: found for line, found in depths(tables).items() if line in (6, 12)} == expected
+    assert set(depths(tables)) == ({6, 12} if depth else set())
+
+
+def test_who_is_cut_into_and_where() -> None:
+    tables = tables_of(GROOVE, "fanuc", "1:radius=4")
+    line, overcuts = tables["trace"].line, tables["overcuts"]
+    # The wall opposite begins or ends in a corner, which is of two blocks.
+    for row, wall, blocks in ((5, -3, (11, 12)), (11, 3, (6, 7))):
+        into, place = overcuts.cuts.deepest(row)
+        assert line[into] in blocks
+        assert place.imag == wall
+        assert 15 <= place.real <= 30
+    assert max(overcuts.cuts.depth[overcuts.cuts.row == 5]) == overcuts.depth[5]
+
+
+def test_the_deepest_of_the_cuts_of_a_row() -> None:
+    depth = np.array([0.5, 0.7, 0.6, 0.9])
+    cuts = Cuts(np.array([3, 3, 3, 5]), np.array([1, 2, 8, 4]), depth, np.array([1j, 2j, 3j, 4j]))
+    assert cuts.deepest(3) == (2, 2j)
+    assert cuts.deepest(5) == (4, 4j)
+
+
+def test_up_to_the_tolerance_nothing_is_cut() -> None:
+    for tolerance, found in ((1.9, True), (2.1, False)):
+        changes = {"compensation": {"overcut_tolerance": tolerance}}
+        assert bool(depths(tables_of(GROOVE, "fanuc", "1:radius=4", changes=changes))) == found
+
+
+@pytest.mark.parametrize("program", [GROOVE.replace("G41 ", ""), GROOVE.replace("T0101", "T0202"), "O1\nM30\n", ""])
+def test_without_compensation_or_radius_nothing_is_cut(program: str) -> None:
+    overcuts = tables_of(program, "fanuc", "1:radius=4")["overcuts"]
+    assert not overcuts.depth.any()
+    assert not overcuts.sweep_depth.any()
+    assert len(overcuts.cuts.row) == len(overcuts.sweeps.row) == 0
+
+
+def test_where_the_control_objects_nothing_else_is_said() -> None:
+    """A groove with its end in the mode: the tool center would run against the program, which the control sees."""
+    program = (
+        "T0101\nG98 G0 X100. C0\nG12.1\nG1 C20. F500\nG41 X60. F200\nC3.\nX40.\nC-3.\nX60.\nC-20.\nG40 X100.\nG13.1\n"
+    )
+    tables = tables_of(program, "fanuc", "1:radius=4")
+    trace, tool_center = tables["trace"], tables["tool_center"]
+    assert trace.line[tool_center.interferes].tolist() == [8]
+    assert trace.line[objected(trace, tool_center)].tolist() == [7, 8, 9]
+    assert len(tables["overcuts"].cuts.row)
+    assert depths(tables) == {}
+
+
+# ---- loops ----
+
+
+def test_loops_reach_from_start_up_to_cancel_and_from_depth_to_depth() -> None:
+    program = (
+        "G98 G0 X60. C0\nG12.1\nG1 G42 X40. F100\nC10.\nZ-1.\nX20.\nM8\nG40 X60.\nG42 X40.\nC5.\nG40 X60.\nG13.1\n"
+        "G12.1\nG42 X40.\nC10.\nG40 X60.\nG13.1\n"
+    )
+    trace = tables_of(program)["trace"]
+    loops = loop_of_row(trace).tolist()
+    own = [None, None, "a", "a", "b", "b", "b", None, "c", "c", None, None, None, "d", "d", None, None]
+    assert [loop == -1 for loop in loops] == [name is None for name in own]
+    assert len({(name, loop) for name, loop in zip(own, loops, strict=True) if name}) == len({*own}) - 1
+
+
+def test_walls_at_another_depth_are_not_cut() -> None:
+    """The groove, with its second wall below the first."""
+    program = GROOVE.replace("C-20.\n", "C-20.\nZ-1.\n")
+    assert depths(tables_of(program, "fanuc", "1:radius=4")) == {}
+
+
+# ---- start-up and offset cancel ----
+
+#: From the center of the square to its corner (30, 0), beside which type A ends: straight over it, all of R deep.
+OVER_CORNER = "T0101\nG98 G0 X20. Z2. C0\nG12.1\n{}G1 G41 X60. C0 F200\n{}C-30.\nX20.\nG40 C-50.\nG13.1\n"
+
+
+def test_a_start_up_over_a_corner() -> None:
+    tables = tables_of(OVER_CORNER.format("", ""), "fanuc", "1:radius=5")
+    assert depths(tables, "sweep_depth") == {4: pytest.approx(5, abs=0.006)}
+    into, place = tables["overcuts"].sweeps.deepest(3)
+    assert (tables["trace"].line[into], place) == (5, pytest.approx(30))
+    assert depths(tables) == {}
+
+
+def test_a_start_up_above_the_part_sweeps_nothing() -> None:
+    assert depths(tables_of(OVER_CORNER.format("G1 Z1. F100\n", "Z-1.\n"), "fanuc", "1:radius=5"), "sweep_depth") == {}
+
+
+def test_an_offset_cancel_over_a_corner_belongs_to_its_loop() -> None:
+    program = "T0101\nG98 G0 X20. C-50.\nG12.1\nG1 C-50. F100\nG42 C-30. F200\nX60.\nC0\n{}X20.\nG13.1\n"
+    tables = tables_of(program.format("G40 "), "fanuc", "1:radius=5")
+    assert depths(tables, "sweep_depth") == {8: pytest.approx(5, abs=0.006)}
+    for retract in ("Z5.\nG40 ", "G40 Z5.\n"):
+        assert depths(tables_of(program.format(retract), "fanuc", "1:radius=5"), "sweep_depth") == {}
+
+
+def test_a_loop_that_is_overcut_anyway_has_no_swept_corner() -> None:
+    """The groove, with a start-up past the end of its other wall."""
+    program = GROOVE.replace("G1 C3. F500\nG41 X60. F200", "G1 C-30. F500\nG41 X60. C3. F200")
+    tables = tables_of(program, "fanuc", "1:radius=4")
+    assert set(depths(tables)) == {6, 12}
+    assert 4 in tables["overcuts"].sweeps.row
+    assert depths(tables, "sweep_depth") == {}
+    wide = program.replace("C3.", "C5.").replace("C-3.\n", "C-5.\n")
+    assert set(depths(tables_of(wide, "fanuc", "1:radius=4"), "sweep_depth")) == {5}
