@@ -1,19 +1,50 @@
-"""What the tests of expressions, statements and macros share."""
+"""What the tests of expressions, statements and macros share: the functions of the package, on one control."""
 
 from __future__ import annotations
 
 from typing import Any
 
+import msgspec
+from programs import machine_of
+
+from polarcheck.execution import macro, statement
+from polarcheck.execution.arithmetic import Value
 from polarcheck.execution.expression import Characters, Expression, evaluate, read_expression
-from polarcheck.execution.macro import Variables
+from polarcheck.execution.macro import Arguments, ProgramCall
+from polarcheck.execution.statement import Statement
+
+MACRO = machine_of().macro
+
+
+class Variables(macro.Variables):
+    """Variables of the control; changes are those of keys of its table [macro]."""
+
+    def __init__(self, given: dict[int, Value] | None = None, **changes: Any) -> None:
+        super().__init__(msgspec.structs.replace(MACRO, **changes), given)
 
 
 def variables(**values: float | None) -> Variables:
     """Variables with v1=5. for #1 = 5."""
     some = Variables()
     for name, value in values.items():
-        assert some.write(int(name[1:]), value) == ""
+        assert some.write(int(name[1:]), value) is None
     return some
+
+
+def read_statement(block: str, **bounds: int) -> Statement:
+    limits = {"loops": MACRO.loop_numbers, "levels": MACRO.bracket_levels, **bounds}
+    return statement.read_statement(block, calls=MACRO.flow_codes, **limits)
+
+
+def assign_arguments(statement: Statement, given: Variables, **options: Any) -> Arguments:
+    """increments, or keys of [macro] to change."""
+    increments = options.pop("increments", None)
+    return macro.assign_arguments(statement, given, msgspec.structs.replace(MACRO, **options), increments=increments)
+
+
+def called_program(statement: Statement, given: Variables, **changes: Any) -> ProgramCall:
+    """changes: keys of [macro]."""
+    return macro.called_program(statement, given, msgspec.structs.replace(MACRO, **changes))
 
 
 def expression(text: str, **bounds: int) -> Expression:

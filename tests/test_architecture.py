@@ -122,12 +122,10 @@ def test_every_package_has_its_floor() -> None:
 DISCOVERY = "checking.rule imports rules"
 
 
-@pytest.mark.xfail(reason="settings and fault texts still point upwards", strict=True)
 def test_imports_go_downwards_only() -> None:
     assert upward(imports_of_package()) == [DISCOVERY]
 
 
-@pytest.mark.xfail(reason="execute and static_faults still hold each other", strict=True)
 def test_imports_have_no_circles() -> None:
     assert not circles(imports_of_package())
 

@@ -8,11 +8,10 @@ from typing import Any
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from macro_values import expression, same, value, variables
+from macro_values import Variables, expression, same, value, variables
 
 from polarcheck.execution.arithmetic import UNKNOWN, Arithmetic, round_to
 from polarcheck.execution.expression import ambiguous, decide, evaluate
-from polarcheck.execution.macro import Variables
 
 WIDE = Arithmetic(largest=1e308)
 

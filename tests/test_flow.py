@@ -169,7 +169,7 @@ def test_a_called_program_is_found_in_the_folders_only(tmp_path: Path) -> None:
     (tmp_path / "folder" / "1234.NC").write_bytes(b"G0 X70.\nG12.1\nG1 X60. F100\nG0 C5.\nG13.1\nG0 X70. C0\nM99\n")
     (found,) = [f for f in report_of(main, job=job).findings if f.rule == "rapid-in-polar"]
     assert (found.line, found.block) == (5, "M98 P1234")
-    assert found.message.startswith("in 1234.NC, line 5, G0 C5.")
+    assert found.message.startswith("in 1234.NC, line 4, G0 C5.")
 
 
 def test_a_loop_counts_a_finding_and_shows_its_worst_run() -> None:

@@ -8,11 +8,11 @@ from typing import Any
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from macro_values import variables
+from macro_values import assign_arguments, called_program, read_statement, variables
 
 from polarcheck.execution.expression import Fault, decide
-from polarcheck.execution.macro import assign, assign_arguments, called_program, word_value
-from polarcheck.execution.statement import Kind, Statement, read_statement
+from polarcheck.execution.macro import assign, word_value
+from polarcheck.execution.statement import Kind, Statement
 
 
 def parts(block: str, statement: Statement) -> dict[str, Any]:
@@ -184,13 +184,13 @@ FAULTS_OF_READING = [
     ("WHILE [#1 LT 5] #1=2", "while-format", "#1=2"),
     ("#1=[[[[[[2]]]]]]", "bracket-levels", "["),
     ("#1=SIN[#[[[[[2]]]]]]", "bracket-levels", "["),
-    ("#1=2 G1", "mixed", "G1"),
-    ("G1 X5. #1=2", "mixed", "#1=2"),
-    ("G1 X5. IF[#1 EQ 2]GOTO 5", "mixed", "IF[#1 EQ 2]GOTO 5"),
-    ("GOTO 10 M30", "mixed", "M30"),
-    ("WHILE[#1 LT 5] DO1 X5.", "mixed", "X5."),
-    ("IF [#1 EQ 1] THEN G0 X5.", "mixed", "G0 X5."),
-    ("IF [#1 EQ 1] THEN M98 P1", "mixed", "M98 P1"),
+    ("#1=2 G1", "nc-and-macro", "G1"),
+    ("G1 X5. #1=2", "nc-and-macro", "#1=2"),
+    ("G1 X5. IF[#1 EQ 2]GOTO 5", "nc-and-macro", "IF[#1 EQ 2]GOTO 5"),
+    ("GOTO 10 M30", "nc-and-macro", "M30"),
+    ("WHILE[#1 LT 5] DO1 X5.", "nc-and-macro", "X5."),
+    ("IF [#1 EQ 1] THEN G0 X5.", "nc-and-macro", "G0 X5."),
+    ("IF [#1 EQ 1] THEN M98 P1", "nc-and-macro", "M98 P1"),
     ("DO4", "loop-number", "DO4"),
     ("END 0", "loop-number", "END 0"),
     ("WHILE [#1 LT 5] DO 12", "loop-number", "DO 12"),
@@ -219,7 +219,7 @@ def test_levels_of_brackets_are_a_bound_of_the_control() -> None:
     assert read_statement("#1=[[[1]]]+[[[2]]]+[[[3]]]", levels=3).fault is None
 
 
-@pytest.mark.parametrize(("rest", "kind"), [("+", "format"), (" G1", "mixed")])
+@pytest.mark.parametrize(("rest", "kind"), [("+", "format"), (" G1", "nc-and-macro")])
 def test_a_worse_fault_goes_before_brackets_too_deep(rest: str, kind: str) -> None:
     fault = read_statement(f"#1=[[[[[[1]]]]]]{rest}").fault
     assert fault is not None
@@ -232,7 +232,7 @@ def test_size_is_bounded(block: str) -> None:
     short = read_statement(block, size=20)
     assert len(short.words) + len(short.skips) <= 21
     assert short.fault is not None
-    assert short.fault.rule == "macro-syntax"
+    assert short.fault.kind == "too-long"
 
 
 def test_size_is_bounded_where_nobody_asks_for_it() -> None:
@@ -328,4 +328,4 @@ def test_reading_and_running_never_fail(block: str) -> None:
     if statement.call:
         faults += [assign_arguments(statement, given_).fault, called_program(statement, given_).fault]
     for fault in faults:
-        assert fault is None or (fault.rule and 0 <= fault.start < fault.end <= len(block))
+        assert fault is None or (0 <= fault.start < fault.end <= len(block))

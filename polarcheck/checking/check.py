@@ -25,7 +25,7 @@ def read(
     data: bytes, machine: Machine, job: Job, path: str = "-", encoding: str | None = None
 ) -> list[tuple[str, Tables]]:
     """The tables of each run of a file, with the state of block skip ("" where that makes no difference)."""
-    found = runs(source.read(data, path, encoding), machine, job.run)
+    found = runs(source.read(data, path, encoding), machine, job)
     return [(state, Tables(run, machine, job)) for state, run in found]
 
 

@@ -1,22 +1,166 @@
-"""What macro and flow found wrong, as a table: one element per fault, with the rule that reports it."""
+"""
+What macro and flow found wrong, as a table: one element per fault, with the rule that reports it and the reason.
+
+One table maps each kind of fault to its rule; two more have the reasons, of faults and of what a run could not know.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import cached_property
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from polarcheck.execution.run import Run
+from polarcheck.execution.kinds import FaultKind, RemarkKind
+from polarcheck.execution.run import Remark, Run
+from polarcheck.machines.machine import Machine
+
+#: The rule that reports each kind of fault.
+RULES: Final[Mapping[FaultKind, str]] = {
+    "format": "macro-syntax",
+    "statement-format": "macro-syntax",
+    "missing-open-bracket": "macro-syntax",
+    "missing-close-bracket": "macro-syntax",
+    "missing-equal": "macro-syntax",
+    "missing-comma": "macro-syntax",
+    "if-format": "macro-syntax",
+    "while-format": "macro-syntax",
+    "word-format": "macro-syntax",
+    "stray-character": "macro-syntax",
+    "too-long": "macro-syntax",
+    "bracket-levels": "nesting-too-deep",
+    "call-levels": "nesting-too-deep",
+    "loop-levels": "nesting-too-deep",
+    "zero-divide": "arithmetic-error",
+    "overflow": "arithmetic-error",
+    "integer-overflow": "arithmetic-error",
+    "negative-square-root": "arithmetic-error",
+    "arc-function-beyond-one": "arithmetic-error",
+    "logarithm-not-positive": "arithmetic-error",
+    "argument-out-of-range": "arithmetic-error",
+    "argument-address": "macro-argument",
+    "argument-sets": "macro-argument",
+    "program-number": "subprogram-missing",
+    "program-not-found": "subprogram-missing",
+    "sequence-number-not-found": "jump-target-missing",
+    "sequence-number-vacant": "jump-target-missing",
+    "return-target-not-found": "jump-target-missing",
+    "loop-without-end": "loop-unbalanced",
+    "end-without-loop": "loop-unbalanced",
+    "loops-crossed": "loop-unbalanced",
+    "loop-inside-itself": "loop-unbalanced",
+    "nothing-changes": "endless-loop",
+    "too-many-blocks": "endless-loop",
+    "too-many-statements": "endless-loop",
+    "runs-too-long": "endless-loop",
+    "too-many-repeats": "endless-loop",
+    "nc-and-macro": "mixed-macro-and-nc",
+    "loop-number": "loop-number-out-of-range",
+    "variable-number": "variable-out-of-range",
+    "read-only": "read-only-variable",
+    "word-vacant": "vacant-variable",
+    "mixed-logic": "ambiguous-precedence",
+    "sequence-number-twice": "duplicate-sequence-number",
+    "never-run": "unreachable-block",
+}
+
+#: Where a rule reports several kinds: what is wrong, to follow the words at fault or to stand for itself.
+_REASONS: Final[Mapping[FaultKind, str]] = {
+    "format": "does not fit into the expression",
+    "statement-format": "cannot be read as a macro statement or the rest of one",
+    "missing-open-bracket": "lacks an opening bracket [",
+    "missing-close-bracket": "lacks a closing bracket ]",
+    "missing-equal": "lacks the = of an assignment",
+    "missing-comma": "lacks the comma between two values",
+    "if-format": "cannot follow the condition of an IF: write GOTO 10, or THEN and one assignment",
+    "while-format": "cannot follow the condition of a WHILE: write DO and a number",
+    "word-format": "is an address without a number that can be read",
+    "stray-character": "means nothing here",
+    "too-long": "is longer than a block can be",
+    "bracket-levels": "is a bracket more than {bracket_levels} levels deep",
+    "call-levels": "calls more than {levels} levels deep and is not followed",
+    "loop-levels": "is a loop more than {levels} levels deep",
+    "zero-divide": "divides by zero",
+    "overflow": "gives a result above {largest_number:g}",
+    "integer-overflow": "takes a whole number of more than 32 bits",
+    "negative-square-root": "takes the square root of {number:g}",
+    "arc-function-beyond-one": "takes ASIN or ACOS of {number:g}, which lies beyond 1",
+    "logarithm-not-positive": "takes LN of {number:g}",
+    "argument-out-of-range": "takes BIN, BCD or POW of {number:g}, which has no result",
+    "argument-address": "hands over no argument: a macro call takes A to F, H to K, M and Q to Z",
+    "argument-sets": "begins an eleventh set of I J K: a macro call takes ten",
+    "program-number": "names no program: P takes a number from 1 to 99999999",
+    "program-not-found": (
+        "calls {program}, which is not in this file and in no folder of the job; positions after it are not known"
+    ),
+    "sequence-number-not-found": "there is no N{number:.15g} in this program",
+    "sequence-number-vacant": "the number to go to is a vacant variable",
+    "return-target-not-found": "there is no N{number:.15g} in the calling program",
+    "loop-without-end": "DO{number} has no END{number} behind it",
+    "end-without-loop": "END{number} has no DO{number} before it",
+    "loops-crossed": "DO{number} begins inside the loop of DO{other} and ends outside it",
+    "loop-inside-itself": "DO{number} stands inside the loop of another DO{number}",
+    "nothing-changes": "comes back here with no variable changed since the last time: it never ends until it is reset",
+    "too-many-blocks": "is still reached after {limit} executed blocks; the rest is not executed (--max-blocks)",
+    "too-many-statements": (
+        "is still reached after {limit} macro statements and calls; the rest is not executed (--max-statements)"
+    ),
+    "runs-too-long": "is still reached after {limit:g} seconds; the rest is not executed (--max-seconds)",
+    "too-many-repeats": (
+        "calls {repeats} times, more than the {limit} blocks that a check executes; it is run once here"
+    ),
+}
+
+#: Why something was not executed or not known.
+_REMARKS: Final[Mapping[RemarkKind, str]] = {
+    "stops-itself": "the program stops itself with #{number}",
+    "condition-unknown": "the condition depends on a value that is not known, and is taken as not fulfilled",
+    "program-unknown": "which program is called depends on a value that is not known",
+    "return-jumps": "{code} P in the main program jumps; what follows it is taken as the end",
+}
 
 
 class Faults:
-    """Columns over the faults of a run."""
+    """Columns over the faults of a run; the methods give what stands in one of them."""
 
-    def __init__(self, run: Run) -> None:
+    def __init__(self, run: Run, machine: Machine) -> None:
         self.run = run
+        self._macro = machine.macro
+
+    @cached_property
+    def kind(self) -> NDArray[np.str_]:
+        """What is wrong: kinds.FaultKind."""
+        return np.array([fault.kind for fault in self.run.faults], np.str_)
 
     @cached_property
     def rule(self) -> NDArray[np.str_]:
-        """The rule that reports each fault."""
-        return np.array([fault.rule for fault in self.run.faults], np.str_)
+        """The rule that reports each fault; "" where it has reported another kind at the same place before."""
+        said = set()
+        rules = []
+        for fault in self.run.faults:
+            rule = RULES[fault.kind]
+            key = rule, fault.start
+            rules.append("" if key in said else rule)
+            said.add(key)
+        return np.array(rules, np.str_)
+
+    def values(self, index: int) -> dict[str, str | int | float]:
+        """What is known of a fault, by name, the limits of the control among it."""
+        macro = self._macro
+        limits = {
+            "bracket_levels": macro.bracket_levels,
+            "loop_numbers": macro.loop_numbers,
+            "largest_number": macro.largest_number,
+        }
+        return {**limits, **self.run.faults[index].values}
+
+    def reason(self, index: int) -> str:
+        """What is wrong, in words."""
+        return _REASONS[self.run.faults[index].kind].format_map(self.values(index))
+
+
+def reason_of(remark: Remark) -> str:
+    """Why something was not executed, in words."""
+    return _REMARKS[remark.kind].format_map(remark.values)

@@ -9,6 +9,7 @@ import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Rows
 from polarcheck.checking.finding import NotEvaluated
+from polarcheck.checking.macro_faults import reason_of
 from polarcheck.checking.phrases.polar import not_simulated
 from polarcheck.checking.rule import Rule
 from polarcheck.checking.tables import Tables
@@ -25,8 +26,8 @@ def unexecuted(tables: Tables) -> Iterator[NotEvaluated]:
     """Blocks that were not executed."""
     trace: Trace = tables["trace"]
     reasons: dict[str, list[int]] = {}
-    for reason, block in trace.run.remarks:
-        reasons.setdefault(reason, []).append(int(trace.text.blocks.line[block]))
+    for remark in trace.run.remarks:
+        reasons.setdefault(reason_of(remark), []).append(int(trace.text.blocks.line[remark.block]))
     for reason, lines in reasons.items():
         yield NotEvaluated(rule="all", reason=reason, blocks=len(lines))
     for reason, count in not_simulated(trace, tables["infeed"]):

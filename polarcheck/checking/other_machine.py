@@ -170,4 +170,4 @@ def _read_by(tables: Tables, machine: Machine) -> Tables:
         return Tables(trace.run, machine, trace.job)
     found = source.read(trace.text.source.data, trace.text.source.path)
     text = read_words(translated(found, theirs.native_words), theirs.line_comments)
-    return Tables(straight(text), machine, trace.job)
+    return Tables(straight(text, machine.m_codes.program_end), machine, trace.job)

@@ -2,7 +2,7 @@
 How the control calculates: the functions and operators of custom macro, each from numbers to a number.
 
 A value is a float, None where a variable is vacant (#0, or never assigned), NaN where it is unknown. Angles are in
-degrees here, as in the program. What a function cannot take gives its kind of fault, a str, instead of a number.
+degrees here, as in the program. What a function cannot take gives its kind of fault instead of a number.
 
 Sources: FANUC B-62754EN/01, chapter 16.3; the ranges of ASIN, ACOS and ATAN from parameter 6004#0 (NAT).
 """
@@ -13,6 +13,8 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final, TypeAlias
+
+from polarcheck.execution.kinds import FaultKind
 
 Value: TypeAlias = float | None
 UNKNOWN: Final = math.nan
@@ -59,12 +61,12 @@ def _cos(angle: float) -> float:
     return math.cos(math.radians(math.fmod(angle, 360.0))) if quarters is None else (1.0, 0.0, -1.0, 0.0)[quarters]
 
 
-def _tan(angle: float) -> float | str:
+def _tan(angle: float) -> float | FaultKind:
     return _sin(angle) / _cos(angle) if _cos(angle) else "zero-divide"
 
 
-def _arc(function: Callable[[float], float]) -> Callable[[float], float | str]:
-    def arc(a: float) -> float | str:
+def _arc(function: Callable[[float], float]) -> Callable[[float], float | FaultKind]:
+    def arc(a: float) -> float | FaultKind:
         return "arc-function-beyond-one" if abs(a) > 1 + _NOISE else math.degrees(function(max(-1.0, min(1.0, a))))
 
     return arc
@@ -74,33 +76,33 @@ def _arc_of_two(a: float, b: float) -> float:
     return math.degrees(math.atan2(a, b)) if a or b else UNKNOWN  # ATAN[0]/[0]: no source says
 
 
-def _whole_numbers(function: Callable[[int, int], float | str]) -> Callable[[float, float], float | str]:
+def _whole_numbers(function: Callable[[int, int], float | FaultKind]) -> Callable[[float, float], float | FaultKind]:
     """AND, OR, XOR and MOD take whole numbers of 32 bits; what is not whole is rounded first."""
 
-    def whole(a: float, b: float) -> float | str:
+    def whole(a: float, b: float) -> float | FaultKind:
         a, b = round_to(a, 1), round_to(b, 1)
         return "integer-overflow" if max(abs(a), abs(b)) >= 2**32 else function(int(a), int(b))
 
     return whole
 
 
-def _remainder(a: int, b: int) -> float | str:
+def _remainder(a: int, b: int) -> float | FaultKind:
     return math.fmod(a, b) + 0.0 if b else "zero-divide"
 
 
-def _binary(a: float) -> float | str:
+def _binary(a: float) -> float | FaultKind:
     """BIN: the hexadecimal digits, read as a decimal number."""
     digits = f"{int(round_to(a, 1)):x}"
     return float(digits) if digits.isdecimal() and len(digits) <= 8 else "argument-out-of-range"
 
 
-def _coded_decimal(a: float) -> float | str:
+def _coded_decimal(a: float) -> float | FaultKind:
     """BCD: the decimal digits, read as a hexadecimal number."""
     digits = f"{round_to(a, 1):.0f}"
     return float(int(digits, 16)) if digits.isdecimal() and len(digits) <= 8 else "argument-out-of-range"
 
 
-def _power(a: float, b: float) -> float | str:
+def _power(a: float, b: float) -> float | FaultKind:
     if a == 0 and b < 0:
         return "zero-divide"
     if a < 0 and not b.is_integer():
@@ -108,7 +110,7 @@ def _power(a: float, b: float) -> float | str:
     return math.pow(a, b)
 
 
-_OPERATIONS: Final[Mapping[str, Callable[..., float | str]]] = {
+_OPERATIONS: Final[Mapping[str, Callable[..., float | FaultKind]]] = {
     "NEGATE": lambda a: 0.0 - a,
     "+": lambda a, b: a + b,
     "-": lambda a, b: a - b,
@@ -146,7 +148,7 @@ _OPERATIONS: Final[Mapping[str, Callable[..., float | str]]] = {
 }
 
 
-def calculate(name: str, operands: Sequence[Value], arithmetic: Arithmetic, increment: float) -> float | str:
+def calculate(name: str, operands: Sequence[Value], arithmetic: Arithmetic, increment: float) -> float | FaultKind:
     """
     The result of one function or operator, or its kind of fault. Conditions are 1, 0, or NaN for unknown.
 

@@ -4,27 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Protocol
 
-from polarcheck.execution.arithmetic import Arithmetic
 from polarcheck.execution.executed_rows import ExecutedRows
 from polarcheck.execution.expression import Fault, evaluate
+from polarcheck.execution.fault_list import Place
+from polarcheck.execution.kinds import FaultKind, RemarkKind
+from polarcheck.execution.listing import Listing
 from polarcheck.execution.macro import Variables, assign_arguments, called_program
-from polarcheck.execution.programs import Program, Programs
+from polarcheck.execution.programs import Called, Program
 from polarcheck.execution.statement import Statement
-from polarcheck.machines.machine import Macro
+from polarcheck.machines.job import Running
 
-#: Looks up the text of a program that is not in the file, by number or name; None where it is not found.
-Resolver = Callable[[int | None, str | None], bool]
-
-
-@dataclass(frozen=True, slots=True)
-class Bounds:
-    """What a run may take: executed blocks, macro statements, seconds. Reaching one is a finding, never a hang."""
-
-    blocks: int = 200_000
-    statements: int = 60_000
-    seconds: float = 20.0
+#: Looks for the file of a program that is not in the listing; whether the listing has grown by it.
+Resolver = Callable[[Called], bool]
 
 
 @dataclass(slots=True)
@@ -46,67 +39,77 @@ class ModalCall:
     repeats: int
 
 
-class Stop(Exception):  # noqa: N818 - ends one run, and never leaves this module
+class Stop(Exception):  # noqa: N818 - ends one run, and never leaves execute.Execution
     """M30, an alarm of the program's own, or a bound."""
 
 
-class Again(Exception):  # noqa: N818 - the text has grown by a called program
-    """Start over with the longer text."""
+class Again(Exception):  # noqa: N818 - the listing has grown by a called program
+    """Start over with the longer listing."""
+
+
+class FaultTaker(Protocol):
+    """How a fault is reported; see FaultList.add."""
+
+    def __call__(self, kind: FaultKind, block: int, place: Place, **values: str | int | float) -> None: ...
+
+
+class RemarkTaker(Protocol):
+    """How a remark is made; see run.Remark."""
+
+    def __call__(self, kind: RemarkKind, block: int, **values: str | int | float) -> None: ...
 
 
 class Calls:
     """What an execution does at calls and returns; the attributes are those of execute.Execution."""
 
-    programs: Programs
-    macro: Macro
-    bounds: Bounds
+    listing: Listing
+    asked: Running
     resolve: Resolver
     rows: ExecutedRows
-    remarks: list[tuple[str, int]]
+    used: set[int]
+    passed: set[int]
+    resolved: dict[Called, Program | None]
     modal: ModalCall | None
     changes: int
-    arithmetic: Arithmetic
     variables: Variables
     stack: list[Level]
     bound: Callable[[int], None]
-    fault: Callable[[str, int, Any, str], None]
+    fault: FaultTaker
     found: Callable[[Fault | None, int], None]
-    unknown_condition: Callable[[int], None]
+    remark: RemarkTaker
     goes_back: Callable[[int], None]
 
     def enter(self, statement: Statement, block: int) -> int:
-        code = statement.call
-        if code == "G67":
+        """A block with a code that calls, returns, or ends a modal call; gives the block to go on with."""
+        macro, code = self.listing.macro, statement.call
+        modal_calls = (*macro.modal_macro_calls, *macro.modal_macro_calls_each_block)
+        has_arguments = code in (*macro.macro_calls, *modal_calls)
+        self.rows.add_call(block, statement, len(self.stack) - 1, has_arguments)
+        if code in macro.modal_macro_cancel:
             self.modal = None
-            self.rows.add_call(block, statement, len(self.stack) - 1)
             return block + 1
-        self.rows.add_call(block, statement, len(self.stack) - 1)
-        if code == "M99":
+        if code in macro.program_returns:
             return self.leave(statement, block)
-        called = called_program(
-            statement, self.variables, repeats_in_p=self.macro.repeats_in_p, arithmetic=self.arithmetic
-        )
+        called = called_program(statement, self.variables, macro, self.listing.arithmetic)
         if called.fault is not None:
             self.found(called.fault, block)
             return block + 1
         arguments: dict[int, float | None] | None = None
-        if code[0] == "G":
-            given = assign_arguments(
-                statement, self.variables, second=self.macro.second_arguments, arithmetic=self.arithmetic
-            )
+        if has_arguments:
+            given = assign_arguments(statement, self.variables, macro, self.listing.arithmetic)
             self.found(given.fault, block)
             arguments = given.values
-        program = self.find(called.program, called.name)
+        program = self.find(called.program)
         if program is None:
-            self.missing(statement, block, called.program, called.name)
+            self.missing(statement, block, called.program)
             return block + 1
         if called.repeats is None:
-            self.unknown_condition(block)
+            self.remark("condition-unknown", block)
         repeats = 1 if called.repeats is None else called.repeats
-        if repeats > self.bounds.blocks:
-            self.fault("endless-loop", block, statement, f"would run {repeats} times")
+        if repeats > self.asked.max_blocks:
+            self.fault("too-many-repeats", block, statement, repeats=repeats, limit=self.asked.max_blocks)
             repeats = 1
-        if code in ("G66", "G66.1"):
+        if code in modal_calls:
             self.modal = ModalCall(program, arguments or {}, repeats)
             return block + 1
         return self.call(program, block + 1, repeats, arguments, statement, block)
@@ -114,24 +117,40 @@ class Calls:
     def modal_call(self) -> ModalCall | None:
         """What runs after each block that moves; the moves of that macro itself do not call it again."""
         modal = self.modal
-        inside = modal is None or any(frame.program is modal.program for frame in self.stack)
+        inside = modal is None or any(level.program is modal.program for level in self.stack)
         return None if inside else modal
 
-    def find(self, number: int | None, name: str | None) -> Program | None:
-        if number is None and name is None:
+    def find(self, called: Called) -> Program | None:
+        """The program of a call, its file read where need be; it is the same all through a run."""
+        if called == Called(None, None):
             return None
-        found = self.programs.of_number(number) if number is not None else self.programs.of_name(name or "")
-        if found is None and self.resolve(number, name):
-            raise Again
-        return found
+        if called not in self.resolved:
+            self.resolved[called] = self._look_up(called)
+        program = self.resolved[called]
+        if program is not None:
+            self.used.add(program.file)
+        return program
 
-    def missing(self, statement: Statement, block: int, number: int | None, name: str | None) -> None:
-        if number is None and name is None:
-            self.remarks.append(("which program is called depends on a value that is not known", block))
+    def _look_up(self, called: Called) -> Program | None:
+        """In the file itself and those used so far, then in the folders; a file that no call used does not count."""
+        candidates = self.listing.programs.named(called)
+        for program in candidates:
+            if program.file in self.used:
+                return program
+        if called in self.listing.found:
+            file = self.listing.found[called]
+            return next((program for program in candidates if program.file == file), None)
+        if self.resolve(called):
+            raise Again
+        self.passed.update(program.file for program in candidates)
+        return None
+
+    def missing(self, statement: Statement, block: int, called: Called) -> None:
+        """A program that is not known or not there: what it would do is not known either."""
+        if called == Called(None, None):
+            self.remark("program-unknown", block)
         else:
-            wanted = f"O{number:04d}" if number is not None else f"<{name}>"
-            text = f"{wanted} is not in this file and in no folder of the job; positions after it are not known"
-            self.fault("subprogram-missing", block, statement, text)
+            self.fault("program-not-found", block, statement, program=str(called))
         self.rows.mark_unknown()
 
     def call(
@@ -143,12 +162,14 @@ class Calls:
         statement: Statement | None = None,
         block: int = -1,
     ) -> int:
-        macros = sum(frame.is_macro for frame in self.stack)
-        limit = self.macro.macro_levels if arguments is not None else self.macro.subprogram_levels
+        """Go to the head of a program; past the levels of the control on with the block behind the call."""
+        macro = self.listing.macro
+        macros = sum(level.is_macro for level in self.stack)
+        limit = macro.macro_levels if arguments is not None else macro.subprogram_levels
         depth = macros if arguments is not None else len(self.stack) - 1 - macros
-        if depth >= limit or len(self.stack) > self.macro.macro_levels + self.macro.subprogram_levels:
+        if depth >= limit or len(self.stack) > macro.macro_levels + macro.subprogram_levels:
             if statement is not None:
-                self.fault("nesting-too-deep", block, statement, f"more than {limit} levels of calls")
+                self.fault("call-levels", block, statement, levels=limit)
             return back
         if repeats <= 0:
             return back
@@ -160,33 +181,35 @@ class Calls:
 
     def leave(self, statement: Statement | None, block: int = -1) -> int:
         """M99, or the end of a program: back to the caller, to its N number with M99 P, or once more with L."""
-        frame = self.stack[-1]
-        self.bound(max(block, frame.program.first))
-        if frame.repeats > 1:
-            frame.repeats -= 1
-            return frame.program.first
+        level = self.stack[-1]
+        self.bound(max(block, level.program.first))
+        if level.repeats > 1:
+            level.repeats -= 1
+            return level.program.first
         target = self.return_target(statement)
         self.stack.pop()
-        if frame.is_macro:
+        if level.is_macro:
             self.variables.leave()
         if not self.stack:
             if target is not None:
-                self.remarks.append(("M99 P in the main program jumps; what follows it is taken as the end", block))
+                self.remark("return-jumps", block, code=statement.call if statement else "")
             raise Stop
         if target is None:
-            return frame.back
-        found = self.programs.jump(self.stack[-1].program, target, self.stack[-1].program.first - 1)
+            return level.back
+        caller = self.stack[-1].program
+        found = self.listing.programs.jump(caller, target, caller.first - 1)
         if found is None:
             assert statement is not None
-            self.fault("jump-target-missing", block, statement, f"the calling program has no N{target}")
-            return frame.back
-        if found < frame.back:
+            self.fault("return-target-not-found", block, statement, number=target)
+            return level.back
+        if found < level.back:
             self.goes_back(block)
         return found
 
     def return_target(self, statement: Statement | None) -> int | None:
+        """The N number in P of an M99; None where it has none, or none that is known."""
         word = next((word for word in statement.words if word.address == "P"), None) if statement else None
         if word is None:
             return None
-        value, _ = evaluate(word.value, self.variables, self.arithmetic)
+        value, _ = evaluate(word.value, self.variables, self.listing.arithmetic)
         return None if value is None or value != value else round(value)

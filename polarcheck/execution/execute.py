@@ -4,60 +4,87 @@ from __future__ import annotations
 
 import bisect
 import time
-from dataclasses import dataclass, field
 
 import numpy as np
 
-from polarcheck.arrays import Mask
-from polarcheck.checking.fault_texts import fault_text
-from polarcheck.execution.arithmetic import Arithmetic
-from polarcheck.execution.calls import Again, Bounds, Calls, Level, ModalCall, Resolver, Stop
-from polarcheck.execution.executed_rows import ExecutedRows
-from polarcheck.execution.expression import Expression, Fault, decide, evaluate
-from polarcheck.execution.loops import Loops, find_loops
+from polarcheck.execution.calls import Again, Calls, Level, ModalCall, Resolver, Stop
+from polarcheck.execution.executed_rows import AXES, ExecutedRows
+from polarcheck.execution.expression import Fault, decide, evaluate
+from polarcheck.execution.fault_list import FaultList, Place
+from polarcheck.execution.kinds import FaultKind, RemarkKind
+from polarcheck.execution.library import Shelf
+from polarcheck.execution.listing import Listing
 from polarcheck.execution.macro import Variables, assign, word_value
-from polarcheck.execution.programs import Program, Programs, block_text, turns
-from polarcheck.execution.run import FlowFault, Run
-from polarcheck.execution.statement import Kind, Statement, read_statement
-from polarcheck.machines.machine import Macro
-from polarcheck.reading.words import Text
+from polarcheck.execution.programs import Called, Program
+from polarcheck.execution.run import Remark
+from polarcheck.execution.statement import Kind, Statement, Word
+from polarcheck.machines.codes import code_numbers, code_set
+from polarcheck.machines.job import Running
 
 
-@dataclass
 class Execution(Calls):
-    text: Text
-    programs: Programs
-    macro: Macro
-    ends: tuple[str, ...]
-    skip: bool
-    bounds: Bounds
-    resolve: Resolver
-    rows: ExecutedRows
-    faults: list[FlowFault] = field(default_factory=list)
-    remarks: list[tuple[str, int]] = field(default_factory=list)
-    visited: Mask = field(default_factory=lambda: np.zeros(0, bool))
-    statements: dict[int, Statement] = field(default_factory=dict)
-    loops: dict[int, Loops] = field(default_factory=dict)
-    modal: ModalCall | None = None
-    stopped: bool = False
-    count: int = 0
-    changes: int = 0
-    last_change: dict[tuple[int, int], int] = field(default_factory=dict)
-    began: float = field(default_factory=time.monotonic)
-    said: set[tuple[str, int, int]] = field(default_factory=set)
+    """
+    One execution of all programs of a file, with one state of block skip.
 
-    def __post_init__(self) -> None:
-        self.stops: list[int] = np.flatnonzero(turns(self.text, self.ends)).tolist()
-        self.visited = np.zeros(len(self.text.blocks), bool)
-        self.arithmetic = Arithmetic(self.macro.signed_angles, self.macro.largest_number)
-        self.variables = Variables()
+    used: the files of which a program was called. rows, faults, remarks: what came out of it. visited: per block,
+    whether it was run. stopped: it was broken off at a bound.
+    """
+
+    def __init__(
+        self, listing: Listing, asked: Running, resolve: Resolver, used: set[int], *, skip: bool, inch: bool
+    ) -> None:
+        self.listing, self.asked, self.resolve, self.skip = listing, asked, resolve, skip
+        self.used = used
+        self.passed: set[int] = set()
+        self.resolved: dict[Called, Program | None] = {}
+        self.rows = ExecutedRows(listing.text, listing.machine, skip=skip, inch_at_first=inch)
+        self.faults = FaultList(listing.text)
+        self._remarks: dict[tuple[RemarkKind, int], Remark] = {}
+        self.visited = np.zeros(len(listing.text.blocks), bool)
+        self.stopped = False
+        self.modal: ModalCall | None = None
+        self.variables = Variables(listing.macro)
         self.stack: list[Level] = []
+        self.changes = 0
+        self._count = 0
+        self._last_change: dict[tuple[int, int], int] = {}
+        self._began = time.monotonic()
 
-    # ---- one program and all that it calls ----
+    # ---- the programs of the file ----
 
-    def run(self, program: Program, arguments_unknown: bool) -> None:
-        self.variables = Variables(given=self.macro.given)
-        if arguments_unknown:
+    def run(self) -> None:
+        """
+        Run the programs of the file itself that no call names; if all are named, the first.
+
+        Programs that are called run in their callers; those that end with M99 with arguments unknown. Where nothing has
+        called it, a program that is named by <NAME>, with computed words, or by a file that is not used comes last.
+        """
+        listing, every = self.listing, range(len(self.listing.files))
+        own = [program for program in listing.programs.programs if not program.file]
+        named = listing.named_by(every, by_number_only=False)
+        ran = False
+        for program in sorted(own, key=lambda program: not named.isdisjoint(program.keys)):
+            if not self._was_run(program) and not self._is_called(program, named):
+                self._run_program(program)
+                ran = True
+        if not ran:
+            self._run_program(own[0])
+        if self.passed & self.used:
+            raise Again
+
+    def _is_called(self, program: Program, named: set[int | str]) -> bool:
+        """Whether a plain call by number, in a file that is used, names the program; named: what any call names."""
+        if named.isdisjoint(program.keys):
+            return False
+        return not self.listing.named_by(self.used, by_number_only=True).isdisjoint(program.keys)
+
+    def _was_run(self, program: Program) -> bool:
+        return bool(self.visited[program.first : program.end].any())
+
+    def _run_program(self, program: Program) -> None:
+        listing = self.listing
+        self.variables = Variables(listing.macro, {**listing.macro.given, **self.asked.variables})
+        if self._returns(program):
             self.variables.forget()
         self.modal = None
         self.stack = [Level(program)]
@@ -69,11 +96,19 @@ class Execution(Calls):
         except Stop:
             self.stack = []
 
+    def _returns(self, program: Program) -> bool:
+        """Whether a program ends with M99: it is a subprogram, and its caller's values are not known."""
+        words = self.listing.text.words
+        inside = (words.block >= program.first) & (words.block < program.end) & (words.address == ord("M"))
+        codes = code_numbers(words.value[inside])
+        returns, ends = code_set(self.listing.macro.program_returns), code_set(self.listing.ends)
+        return program.has_head and bool(np.any(returns[codes])) and not bool(np.any(ends[codes]))
+
     def step(self, block: int) -> int:
         """Run up to the next block at which the flow can turn, and that block; give the block to go on with."""
-        frame = self.stack[-1]
-        at = bisect.bisect_left(self.stops, block)
-        stop = min(self.stops[at] if at < len(self.stops) else frame.program.end, frame.program.end)
+        program, stops = self.stack[-1].program, self.listing.stops
+        at = bisect.bisect_left(stops, block)
+        stop = min(stops[at] if at < len(stops) else program.end, program.end)
         if stop > block:
             modal = self.modal_call()
             if modal is not None:
@@ -82,7 +117,7 @@ class Execution(Calls):
                     self.plain(block, moving + 1)
                     return self.call(modal.program, moving + 1, modal.repeats, modal.arguments)
             self.plain(block, stop)
-        if stop >= frame.program.end:
+        if stop >= program.end:
             return self.leave(None)
         self.visited[stop] = True
         self.bound(stop)
@@ -92,64 +127,47 @@ class Execution(Calls):
         self.visited[first:end] = True
         self.rows.add_plain(first, end, len(self.stack) - 1)
 
-    def bound(self, block: int) -> None:
-        self.count += 1
-        reached = ""
-        if len(self.rows) > self.bounds.blocks:
-            reached = f"{self.bounds.blocks} executed blocks"
-        elif self.count > self.bounds.statements:
-            reached = f"{self.bounds.statements} macro statements and calls"
-        elif self.count % 256 == 0 and time.monotonic() - self.began > self.bounds.seconds:
-            reached = f"{self.bounds.seconds:g} seconds"
-        if reached:
-            self.endless(block, f"still running after {reached}; the rest is not executed")
+    # ---- bounds, faults, remarks ----
 
-    def endless(self, block: int, text: str) -> None:
-        self.fault("endless-loop", block, self.statement(block), text)
+    def bound(self, block: int) -> None:
+        """Break off at a bound: a check never hangs."""
+        self._count += 1
+        asked = self.asked
+        if len(self.rows) > asked.max_blocks:
+            self.endless("too-many-blocks", block, limit=asked.max_blocks)
+        elif self._count > asked.max_statements:
+            self.endless("too-many-statements", block, limit=asked.max_statements)
+        elif self._count % 256 == 0 and time.monotonic() - self._began > asked.max_seconds:
+            self.endless("runs-too-long", block, limit=asked.max_seconds)
+
+    def endless(self, kind: FaultKind, block: int, **values: str | int | float) -> None:
+        """Say that the run does not end by itself, and end it."""
+        self.fault(kind, block, self.listing.statement(block), **values)
         self.rows.shorten()
         self.stopped = True
         raise Stop
 
-    def fault(self, rule: str, block: int, place: Statement | Fault | Expression, text: str) -> None:
-        key = (rule, block, place.start)
-        if key in self.said:
-            return
-        self.said.add(key)
-        start = int(self.text.blocks.start[block])
-        end = max(place.end, place.start + 1)
-        self.faults.append(FlowFault(rule, block, start + place.start, start + end, text, len(self.rows)))
+    def fault(self, kind: FaultKind, block: int, place: Place, **values: str | int | float) -> None:
+        self.faults.add(kind, block, place, len(self.rows), **values)
 
     def found(self, fault: Fault | None, block: int) -> None:
         """Keep what a calculation found wrong."""
-        if fault is not None:
-            source = block_text(self.text, block)[fault.start : fault.end]
-            self.fault(fault.rule, block, fault, fault_text(fault.kind, source))
+        self.faults.add_found(fault, block, len(self.rows))
 
-    def statement(self, block: int) -> Statement:
-        if block not in self.statements:
-            macro = self.macro
-            self.statements[block] = read_statement(
-                block_text(self.text, block), loops=macro.loop_numbers, levels=macro.bracket_levels, size=5_000
-            )
-        return self.statements[block]
+    def remark(self, kind: RemarkKind, block: int, **values: str | int | float) -> None:
+        """Say once for each block why it was not run as the control would."""
+        self._remarks.setdefault((kind, block), Remark(kind, block, values))
 
-    def macro_statements(self, program: Program) -> list[tuple[int, Statement]]:
-        """The macro statements of a program with their blocks, in order."""
-        stops = self.stops[bisect.bisect_left(self.stops, program.first) : bisect.bisect_left(self.stops, program.end)]
-        return [(block, self.statement(block)) for block in stops if self.text.blocks.is_macro[block]]
-
-    def ends_flow(self, block: int) -> bool:
-        """Whether nothing comes to the next block by itself: GOTO, M30, M99."""
-        if not self.text.blocks.is_macro[block] and block not in self.stops:
-            return False
-        statement = self.statement(block)
-        return statement.kind is Kind.GOTO or statement.call == "M99" or self.rows.ends(block)
+    @property
+    def remarks(self) -> tuple[Remark, ...]:
+        """In the order in which they were made."""
+        return tuple(self._remarks.values())
 
     # ---- the block at which the flow can turn ----
 
     def turn(self, block: int) -> int:
-        statement = self.statement(block)
-        if statement.fault is not None and self.text.blocks.is_macro[block]:
+        statement = self.listing.statement(block)
+        if statement.fault is not None and self.listing.text.blocks.is_macro[block]:
             self.found(statement.fault, block)
         if self.skip and any(skip.start < statement.start for skip in statement.skips):
             return block + 1
@@ -178,48 +196,44 @@ class Execution(Calls):
         return block + 1
 
     def assign(self, statement: Statement, block: int) -> None:
+        macro, arithmetic = self.listing.macro, self.listing.arithmetic
         number = None
         if statement.target is not None:
-            number, _ = evaluate(statement.target, self.variables, self.arithmetic)
+            number, _ = evaluate(statement.target, self.variables, arithmetic)
         before = self.variables.read(number) if number is not None and self.variables.exists(number) else None
-        self.found(assign(statement, self.variables, self.arithmetic), block)
+        self.found(assign(statement, self.variables, arithmetic), block)
         after = self.variables.read(number) if number is not None and self.variables.exists(number) else None
         self.changes += before != after or number is None or number != number
-        if number in (3000, 3006):
-            self.remarks.append((f"the program stops itself with #{int(number)}", block))
-            if number == 3000:
+        if number in macro.alarm_variables or number in macro.stop_variables:
+            self.remark("stops-itself", block, number=int(number or 0))
+            if number in macro.alarm_variables:
                 raise Stop
 
     def holds(self, statement: Statement, block: int) -> bool:
         """Whether the condition holds; an unknown one counts as not, and is said."""
         if statement.condition is None:
             return False
-        result, fault = decide(statement.condition, self.variables, self.arithmetic)
+        result, fault = decide(statement.condition, self.variables, self.listing.arithmetic)
         self.found(fault, block)
         if result is None:
-            self.unknown_condition(block)
+            self.remark("condition-unknown", block)
             return False
         return result
-
-    def unknown_condition(self, block: int) -> None:
-        remark = ("the condition depends on a value that is not known, and is taken as not fulfilled", block)
-        if remark not in self.remarks:
-            self.remarks.append(remark)
 
     def go_to(self, statement: Statement, block: int) -> int:
         if statement.jump is None:
             return block + 1
-        number, fault = evaluate(statement.jump, self.variables, self.arithmetic)
+        number, fault = evaluate(statement.jump, self.variables, self.listing.arithmetic)
         self.found(fault, block)
         if number is None or number != number:
             if fault is None and number is None:
-                self.fault("jump-target-missing", block, statement.jump, "GOTO with a vacant variable")
+                self.fault("sequence-number-vacant", block, statement.jump)
             else:
-                self.unknown_condition(block)
+                self.remark("condition-unknown", block)
             return block + 1
-        target = self.programs.jump(self.stack[-1].program, round(number), block)
+        target = self.listing.programs.jump(self.stack[-1].program, round(number), block)
         if target is None:
-            self.fault("jump-target-missing", block, statement.jump, f"there is no N{round(number)} in this program")
+            self.fault("sequence-number-not-found", block, statement.jump, number=round(number))
             return block + 1
         if target <= block:
             self.goes_back(block)
@@ -228,20 +242,17 @@ class Execution(Calls):
     def goes_back(self, block: int) -> None:
         """Back again without any variable changed since the last time here: it will never end."""
         key = (block, len(self.stack))
-        if self.last_change.get(key) == self.changes:
-            self.endless(block, "nothing changes from round to round: it never ends")
-        self.last_change[key] = self.changes
+        if self._last_change.get(key) == self.changes:
+            self.endless("nothing-changes", block)
+        self._last_change[key] = self.changes
 
     def loop(self, statement: Statement, block: int) -> int:
-        program = self.stack[-1].program
-        if program.first not in self.loops:
-            self.loops[program.first] = find_loops(self.macro_statements(program))
-        loops = self.loops[program.first]
+        loops = self.listing.loops(self.stack[-1].program)
         if statement.kind is Kind.END:
             head = loops.head.get(block)
             if head is None:
                 return block + 1
-            if self.statement(head).kind is Kind.DO or not self.once(head):
+            if self.listing.statement(head).kind is Kind.DO or not self.once(head):
                 self.goes_back(block)
                 return head
             return block + 1
@@ -250,90 +261,66 @@ class Execution(Calls):
             return block + 1
         if statement.condition is None:
             return end + 1
-        result, fault = decide(statement.condition, self.variables, self.arithmetic)
+        result, fault = decide(statement.condition, self.variables, self.listing.arithmetic)
         self.found(fault, block)
         if result is None:
-            self.unknown_condition(block)
+            self.remark("condition-unknown", block)
             return block + 1  # run once; the END goes on
         return block + 1 if result else end + 1
 
     def once(self, head: int) -> bool:
         """Whether a loop runs only once since its condition is not known."""
-        condition = self.statement(head).condition
-        return condition is None or decide(condition, self.variables, self.arithmetic)[0] is None
+        condition = self.listing.statement(head).condition
+        return condition is None or decide(condition, self.variables, self.listing.arithmetic)[0] is None
 
     def nc(self, statement: Statement, block: int) -> int:
         """A block of NC words, some of which are computed."""
-        if not self.text.blocks.is_macro[block]:
+        if not self.listing.text.blocks.is_macro[block]:
             self.rows.add_plain(block, block + 1, len(self.stack) - 1)
             if self.rows.ends(block):
                 raise Stop
             return block + 1
-        words = []
-        cut = (
-            next((skip.start for skip in statement.skips if skip.start > statement.start), None) if self.skip else None
-        )
-        for word in statement.words:
-            if cut is not None and word.start > cut:
-                break
-            increment = {"G": 0.1, "M": 1.0, "S": 1.0, "T": 1.0}.get(word.address, self.macro.increment)
-            value, fault = word_value(word, self.variables, increment, self.arithmetic)
-            self.found(fault, block)
-            if value is None:
-                text = f"{block_text(self.text, block)[word.start : word.end].strip()} is vacant: the control drops it"
-                self.fault("vacant-variable", block, Fault("word-format", word.start, word.end), text)
-                continue
-            words.append((word, value))
+        words = self.computed_words(statement, block)
         if self.rows.add_computed(block, words, len(self.stack) - 1):
             raise Stop
         modal = self.modal_call()
-        if modal is not None and any(word.address in "XYZUVWCH" for word, _ in words):
+        if modal is not None and any(word.address in AXES for word, _ in words):
             return self.call(modal.program, block + 1, modal.repeats, modal.arguments)
         return block + 1
 
+    def computed_words(self, statement: Statement, block: int) -> list[tuple[Word, float]]:
+        """The words of a block with their values, without those that block skip or a vacant variable drops."""
+        control, macro = self.listing.machine.control, self.listing.macro
+        least = control.least_increment_inch if self.rows.inch else control.least_increment
+        cut = None
+        if self.skip:
+            cut = next((skip.start for skip in statement.skips if skip.start > statement.start), None)
+        words = []
+        for word in statement.words:
+            if cut is not None and word.start > cut:
+                break
+            increment = macro.computed_increments.get(word.address, least)
+            value, fault = word_value(word, self.variables, increment, self.listing.arithmetic)
+            self.found(fault, block)
+            if value is None:
+                self.fault("word-vacant", block, word)
+                continue
+            words.append((word, value))
+        return words
 
-def execute(
-    text: Text,
-    programs: Programs,
-    macro: Macro,
-    ends: tuple[str, ...],
-    *,
-    skip: bool = False,
-    bounds: Bounds = Bounds(),  # noqa: B008 - frozen
-    resolve: Resolver = lambda number, name: False,
-) -> Run | None:
+
+def execute(shelf: Shelf, asked: Running, *, skip: bool, inch: bool) -> Execution:
     """
-    The rows of all programs of a file as the control would run them; None if `resolve` has found another program.
+    Execute all programs of a file as the control would; once more where a computed number names a file not yet read.
 
-    Programs that are called run in their callers; the others run by themselves, those that end with M99 with arguments
-    unknown. skip: block skip is on.
+    asked: the bounds, and the values of variables. skip: block skip is on. inch: lengths are in inch where the program
+    does not say.
     """
-    execution = Execution(text, programs, macro, ends, skip, bounds, resolve, ExecutedRows(text, ends, skip))
-    called = _called(text)
-    own = [program for program in programs.programs if program.number not in called]
-    try:
-        for program in own or programs.programs[:1]:
-            if not execution.visited[program.first : program.end].any():
-                execution.run(program, _returns(text, program))
-    except Again:
-        return None
-    from polarcheck.execution.static_faults import static_faults
-
-    static_faults(execution)
-    return execution.rows.run(tuple(execution.faults), tuple(execution.remarks), execution.visited)
-
-
-def _called(text: Text) -> set[int]:
-    """Program numbers that stand as P in a block with a call."""
-    words = text.words
-    at_turn = turns(text, ())[words.block]
-    values = words.value[(words.address == ord("P")) & at_turn]
-    numbers = values[~np.isnan(values)].astype(np.int64)
-    return set(numbers.tolist()) | set((numbers % 10_000)[numbers > 9_999].tolist())
-
-
-def _returns(text: Text, program: Program) -> bool:
-    """Whether a program ends with M99: it is a subprogram, and its caller's values are not known."""
-    words = text.words
-    inside = (words.block >= program.first) & (words.block < program.end) & (words.address == ord("M"))
-    return program.has_head and bool(np.any(words.value[inside] == 99)) and not bool(np.any(words.value[inside] == 30))
+    used = {0}
+    while True:
+        execution = Execution(shelf.listing, asked, shelf.add, used, skip=skip, inch=inch)
+        try:
+            execution.run()
+        except Again:
+            continue
+        return execution

@@ -9,12 +9,14 @@ import msgspec
 import numpy as np
 
 from polarcheck.arrays import Mask, Rows
-from polarcheck.execution.run import FlowFault, Run
+from polarcheck.execution.run import FlowFault, Remark, Run, is_code
 from polarcheck.execution.statement import Statement, Word
-from polarcheck.machines.codes import code_numbers, code_set
+from polarcheck.machines.machine import Machine
+from polarcheck.machines.modal import MODAL_GROUPS, Units
 from polarcheck.reading.words import Blocks, Text, Words
 
-_AXES = b"XYZUVWCH"
+#: Words that move an axis.
+AXES = "XYZUVWCH"
 #: What is kept of a run that would never end: enough to judge what it does.
 _KEPT_ROWS = 10_000
 
@@ -28,16 +30,24 @@ class _Range(msgspec.Struct, frozen=True):
 
 
 class ExecutedRows:
-    """What has been executed so far. skip: block skip is on, so that what follows a / is not read."""
+    """
+    What has been executed so far.
 
-    def __init__(self, text: Text, ends: tuple[str, ...], skip: bool) -> None:
+    skip: block skip is on, so that what follows a / is not read. inch: whether
+    lengths are in inch at present; inch_at_first where a program has not said.
+    """
+
+    def __init__(self, text: Text, machine: Machine, *, skip: bool, inch_at_first: bool) -> None:
         self.text = text
-        words = text.words
+        self.inch = self._inch_at_first = inch_at_first
+        words, ends = text.words, machine.m_codes.program_end
+        units = MODAL_GROUPS[machine.control.g_code_system]["units"]
+        self._is_inch = {float(code[1:]): state == Units.INCH for code, state in units.items()}
+        self._is_end = {float(code[1:]) for code in ends}
         self.kept = _kept(words) if skip else np.ones(len(words), bool)
-        ending = words.address == ord("M")
-        ending[ending] = code_set(ends)[code_numbers(words.value[ending])]
-        self.ending = set(words.block[ending & self.kept].tolist())
-        self.moving = np.unique(words.block[np.isin(words.address, list(_AXES)) & self.kept])
+        self.ending = set(words.block[is_code(words, ends) & self.kept].tolist())
+        self._units = np.flatnonzero(is_code(words, units) & self.kept)
+        self.moving = np.unique(words.block[np.isin(words.address, list(AXES.encode())) & self.kept])
         self.ranges: dict[tuple[int, int], _Range] = {}
         self.words: list[Rows] = []
         self.row: list[Rows] = []
@@ -54,6 +64,7 @@ class ExecutedRows:
     def start_program(self) -> None:
         """The next row begins a program."""
         self.starts.append(self.count)
+        self.inch = self._inch_at_first
 
     def mark_unknown(self) -> None:
         """The effect of the last row is not known."""
@@ -92,6 +103,14 @@ class ExecutedRows:
             self.ranges[key] = _Range(index, row, block)
         found = self.ranges[key]
         self._add(found.words, found.row, found.block, depth)
+        self._set_units(found.words)
+
+    def _set_units(self, words: Rows) -> None:
+        """The last code of units among words of the text is in force from here on."""
+        if len(self._units):
+            low, high = np.searchsorted(self._units, (words[0], words[-1] + 1)) if len(words) else (0, 0)
+            if low < high:
+                self.inch = self._is_inch[round(float(self.text.words.value[self._units[high - 1]]), 1)]
 
     def add_computed(self, block: int, words: Sequence[tuple[Word, float]], depth: int) -> bool:
         """A block whose words were computed; gives whether it ends the program."""
@@ -99,20 +118,22 @@ class ExecutedRows:
         self.computed += [(block, word, value) for word, value in words]
         index = np.arange(first, first + len(words))
         self._add(index, np.zeros(len(words), np.int64), np.array([block], np.int64), depth)
-        return any(word.address == "M" and value in (2, 30) for word, value in words)
+        for word, value in words:
+            self.inch = self._is_inch.get(value, self.inch) if word.address == "G" else self.inch
+        return any(word.address == "M" and value in self._is_end for word, value in words)
 
-    def add_call(self, block: int, statement: Statement, depth: int) -> None:
-        """A block with a call: its words, but those of a macro call are arguments and belong to the macro."""
-        is_macro_call = statement.call[:1] == "G"
+    def add_call(self, block: int, statement: Statement, depth: int, has_arguments: bool) -> None:
+        """A block with a call: its words, but those that are arguments belong to the macro."""
         if self.text.blocks.is_macro[block]:
             kept = [w for w in statement.words if w.address in "NGM" and w.written is not None]
             self.add_computed(block, [(word, float(word.written or 0)) for word in kept], depth)
             return
         low, high = np.searchsorted(self.text.words.block, (block, block + 1))
         index = np.arange(low, high)[self.kept[low:high]]
-        if is_macro_call:
+        if has_arguments:
             index = index[np.isin(self.text.words.address[index], list(b"NG"))]
         self._add(index, np.zeros(len(index), np.int64), np.array([block], np.int64), depth)
+        self._set_units(index)
 
     def shorten(self) -> None:
         """Keep the beginning of a run that would never end."""
@@ -121,7 +142,7 @@ class ExecutedRows:
             for pieces in (self.words, self.row, self.block, self.depth):
                 pieces.pop()
 
-    def run(self, faults: tuple[FlowFault, ...], remarks: tuple[tuple[str, int], ...], visited: Mask) -> Run:
+    def run(self, faults: tuple[FlowFault, ...], remarks: tuple[Remark, ...]) -> Run:
         """All rows as a table."""
         none = np.zeros(0, np.int64)
         index = np.concatenate((none, *self.words))
@@ -139,7 +160,6 @@ class ExecutedRows:
             np.repeat([depth for depth, _ in self.depth], [rows for _, rows in self.depth]).astype(np.int64),
             faults,
             remarks,
-            visited,
         )
 
 

@@ -11,56 +11,26 @@ the manuals' order as remembered; another one is taught as well, hence `ambiguou
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final, NamedTuple, Protocol
 
 from polarcheck.execution.arithmetic import UNKNOWN, Arithmetic, Value, calculate
+from polarcheck.execution.kinds import FaultKind
 
 DEFAULT: Final = Arithmetic()
 
-#: Every kind of fault, and the rule that reports it. The numbers are FANUC's alarms, old and new where they differ.
-RULES: Final[Mapping[str, str]] = {
-    "format": "macro-syntax",  # 114
-    "statement-format": "macro-syntax",  # 125
-    "missing-open-bracket": "macro-syntax",  # 114, 1131
-    "missing-close-bracket": "macro-syntax",  # 114, 1132
-    "missing-equal": "macro-syntax",  # 114, 1133
-    "missing-comma": "macro-syntax",  # 114, 1134
-    "if-format": "macro-syntax",  # 114, 1137
-    "while-format": "macro-syntax",  # 114, 1138
-    "too-long": "macro-syntax",  # no alarm: the bound of this reader
-    "bracket-levels": "nesting-too-deep",  # 118
-    "mixed": "mixed-macro-and-nc",  # 127
-    "loop-number": "loop-number-out-of-range",  # 126
-    "word-format": "bad-number",  # a word that has nothing to do with macro; the reader of words sees it too
-    "stray-character": "stray-character",  # likewise
-    "zero-divide": "arithmetic-error",  # 112
-    "overflow": "arithmetic-error",  # 111
-    "integer-overflow": "arithmetic-error",  # 110
-    "negative-square-root": "arithmetic-error",  # 119
-    "arc-function-beyond-one": "arithmetic-error",  # 111, 119
-    "logarithm-not-positive": "arithmetic-error",  # 111, 119
-    "argument-out-of-range": "arithmetic-error",  # 119, of BIN, BCD and POW
-    "variable-number": "variable-out-of-range",  # 115
-    "read-only": "read-only-variable",  # 116
-    "argument-address": "macro-argument",  # 129 for G
-    "argument-sets": "macro-argument",  # 1095
-    "program-number": "subprogram-missing",  # 076: no P, or no program number
-}
-
 
 class Fault(NamedTuple):
-    """What is wrong (a kind of RULES), and the characters at fault within the block, end exclusive."""
+    """
+    What is wrong, and the characters at fault within the block, end exclusive.
 
-    kind: str
+    number: what a function was asked of, or the number of a variable; None where that says nothing.
+    """
+
+    kind: FaultKind
     start: int
     end: int
-
-    @property
-    def rule(self) -> str:
-        """The rule that reports this kind of fault."""
-        return RULES[self.kind]
+    number: float | None = None
 
 
 _CAPITALS: Final = {ord(letter): ord(letter) - 32 for letter in "abcdefghijklmnopqrstuvwxyz"}
@@ -83,7 +53,7 @@ class Characters:
         end = min(max(end, start + 1), len(self.places))
         return self.places[start], self.places[end - 1] + 1
 
-    def fault(self, kind: str, start: int, end: int = 0) -> Fault:
+    def fault(self, kind: FaultKind, start: int, end: int = 0) -> Fault:
         """A fault of the characters from start to end, or of the one at start."""
         return Fault(kind, *self.span(start, end))
 
@@ -177,7 +147,7 @@ class _Reader:
         self.too_deep: Fault | None = None
         self.mixed: tuple[int, int] | None = None
 
-    def stop(self, kind: str, start: int, end: int = 0) -> _Stop:
+    def stop(self, kind: FaultKind, start: int, end: int = 0) -> _Stop:
         return _Stop(self.characters.fault(kind, start, end))
 
     def put(self, name: str, number: float, start: int, end: int) -> None:
@@ -323,7 +293,7 @@ def read_expression(characters: Characters, at: int, *, whole: bool, levels: int
 
 
 class Readable(Protocol):
-    """Where the values of variables come from; `polarcheck.macro.Variables` is one."""
+    """Where the values of variables come from; `polarcheck.execution.macro.Variables` is one."""
 
     def exists(self, number: float) -> bool: ...
 
@@ -345,7 +315,7 @@ def evaluate(
         count = _OPERANDS.get(name, 1)
         operands = stack[len(stack) - count :]
         del stack[len(stack) - count :]
-        result: Value | str
+        result: Value | FaultKind
         if name == "number":
             result = "overflow" if abs(number) > arithmetic.largest else number
         elif name == "#":
@@ -357,7 +327,7 @@ def evaluate(
         else:
             result = calculate(name, operands, arithmetic, increment)
         if isinstance(result, str):
-            fault = fault or Fault(result, start, end)
+            fault = fault or Fault(result, start, end, (operands[0] or 0.0) if operands else None)
             result = UNKNOWN
         stack.append(result)
     return stack[-1], fault

@@ -2,56 +2,44 @@
 What runs when a macro runs: the variables, an assignment, the value of a word, the arguments and the program of a call.
 
 Sources: FANUC B-62754EN/01, chapter 16 (variables, vacancy, rounding at an address); B-63684EN/01, p. 304 (arguments).
-Which system variables cannot be written or count on by themselves is from knowledge of the same manuals.
+Which variables there are, and which codes call, is the profile's to say: its table [macro].
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
-from typing import Final, TypeAlias
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Final
 
 from polarcheck.execution.arithmetic import UNKNOWN, Arithmetic, Value, round_to
 from polarcheck.execution.expression import DEFAULT, Fault, evaluate
+from polarcheck.execution.kinds import FaultKind
+from polarcheck.execution.programs import Called
 from polarcheck.execution.statement import Statement, Word
-
-Ranges: TypeAlias = tuple[tuple[int, int], ...]
-
-LAST_LOCAL: Final = 33
+from polarcheck.machines.machine import Macro
 
 
-@dataclass(frozen=True, slots=True)
-class VariableRanges:
-    """
-    The numbers of the variables of a control, first and last. A newer control has (98000, 98499) in retained as well.
+@dataclass(slots=True)
+class _Level:
+    """The local variables of one macro, and what those hold that were not assigned."""
 
-    common: vacant at power-on. retained: kept from earlier runs, hence unknown until assigned. system: unknown unless
-    given. read_only: assigning is an alarm. running: clocks, which are unknown even after an assignment.
-    """
-
-    common: Ranges = ((100, 199),)
-    retained: Ranges = ((500, 999),)
-    system: Ranges = ((1000, 19_999),)
-    read_only: Ranges = ((0, 0), (1000, 1035), (4001, 4130), (5001, 5140))
-    running: Ranges = ((3001, 3002), (3011, 3012))
-
-
-DEFAULT_RANGES: Final = VariableRanges()
+    values: dict[int, Value] = field(default_factory=dict)
+    unassigned: Value = None
 
 
 class Variables:
     """
     What the variables hold while a program runs: a float, None for vacant, NaN for unknown.
 
-    #0 is always vacant; #1-#33 belong to the macro that runs, all others to every program.
-    given: values known from the job, by number.
+    #0 is always vacant; local variables belong to the macro that runs, all others to every program.
+    macro: the ranges of the control. given: values known from the job, by number.
     """
 
-    def __init__(self, ranges: VariableRanges = DEFAULT_RANGES, given: Mapping[int, Value] | None = None) -> None:
-        self._ranges = ranges
+    def __init__(self, macro: Macro, given: Mapping[int, Value] | None = None) -> None:
+        self._macro = macro
         self._shared: dict[int, Value] = dict(given or {})
-        self._levels: list[dict[int, Value]] = [{}]
         self._unassigned: Value = None
+        self._levels: list[_Level] = [_Level()]
 
     @property
     def depth(self) -> int:
@@ -62,34 +50,37 @@ class Variables:
         """Whether the control has a variable of this number; one that is not whole is rounded."""
         if not -0.5 < number < 1e9:
             return False
-        ranges = (*self._ranges.common, *self._ranges.retained, *self._ranges.system)
-        return number < LAST_LOCAL + 0.5 or _within(_whole(number), ranges)
+        macro, whole = self._macro, _whole(number)
+        shared = (*macro.common_variables, *macro.retained_variables, *macro.system_variables)
+        return whole == 0 or _within(whole, macro.local_variables) or _within(whole, shared)
 
     def read(self, number: float) -> Value:
         """The value of a variable that exists."""
-        whole = _whole(number)
-        if whole <= LAST_LOCAL:
-            return self._levels[-1].get(whole, self._unassigned) if whole else None
-        if _within(whole, self._ranges.running):
+        whole, macro = _whole(number), self._macro
+        if whole == 0:
+            return None
+        if _within(whole, macro.local_variables):
+            return self._levels[-1].values.get(whole, self._levels[-1].unassigned)
+        if _within(whole, macro.clock_variables):
             return UNKNOWN
-        return self._shared.get(whole, self._unassigned if _within(whole, self._ranges.common) else UNKNOWN)
+        return self._shared.get(whole, self._unassigned if _within(whole, macro.common_variables) else UNKNOWN)
 
-    def write(self, number: float, value: Value) -> str:
-        """Assign; None makes vacant. Gives the kind of fault, "" for none. A number that is unknown may be any."""
+    def write(self, number: float, value: Value) -> FaultKind | None:
+        """Assign; None makes vacant. Gives the kind of fault, if any. A number that is unknown may be any."""
         if number != number:
             self.forget()
-            return ""
+            return None
         if not self.exists(number):
             return "variable-number"
-        whole = _whole(number)
-        if _within(whole, self._ranges.read_only):
+        whole, macro = _whole(number), self._macro
+        if whole == 0 or _within(whole, macro.read_only_variables):
             return "read-only"
-        (self._levels[-1] if whole <= LAST_LOCAL else self._shared)[whole] = value
-        return ""
+        (self._levels[-1].values if _within(whole, macro.local_variables) else self._shared)[whole] = value
+        return None
 
     def enter(self, arguments: Mapping[int, Value]) -> None:
         """A macro call: new local variables, vacant but for the arguments."""
-        self._levels.append(dict.fromkeys(range(1, LAST_LOCAL + 1)) | dict(arguments))
+        self._levels.append(_Level(dict(arguments)))
 
     def leave(self) -> None:
         """The return from a macro: the caller's local variables are back. In the main program nothing happens."""
@@ -98,7 +89,7 @@ class Variables:
 
     def forget(self) -> None:
         """Any variable in reach may have been assigned: all are unknown until assigned again."""
-        self._levels[-1] = {}
+        self._levels[-1] = _Level(unassigned=UNKNOWN)
         self._shared = {}
         self._unassigned = UNKNOWN
 
@@ -107,7 +98,7 @@ def _whole(number: float) -> int:
     return int(round_to(number, 1))
 
 
-def _within(number: int, ranges: Ranges) -> bool:
+def _within(number: int, ranges: Sequence[tuple[int, int]]) -> bool:
     return any(first <= number <= last for first, last in ranges)
 
 
@@ -124,9 +115,9 @@ def assign(statement: Statement, variables: Variables, arithmetic: Arithmetic = 
     if statement.target is None:
         return fault
     number, fault_of_target = evaluate(statement.target, variables, arithmetic)
-    kind = "" if fault_of_target else variables.write(number or 0.0, value)
-    if kind:
-        fault_of_target = Fault(kind, statement.target.start, statement.target.end)
+    kind = None if fault_of_target else variables.write(number or 0.0, value)
+    if kind is not None:
+        fault_of_target = Fault(kind, statement.target.start, statement.target.end, number or 0.0)
     return fault_of_target or fault
 
 
@@ -136,8 +127,8 @@ def word_value(
     """
     The value of a word, None where its variable is vacant and the control drops the address; and the first fault.
 
-    increment: the least increment of the address, to which a calculated value is rounded, and to which ROUND rounds; 1
-    for M, S and T, 0.1 for G. A written number comes as it is written: what 10 without a point means is not said here.
+    increment: the least increment of the address, to which a calculated value is rounded, and to which ROUND rounds. A
+    written number comes as it is written: what 10 without a point means is not said here.
     """
     steps = word.value.steps
     if not steps:
@@ -169,18 +160,17 @@ class Arguments:
 def assign_arguments(
     statement: Statement,
     variables: Variables,
-    *,
-    increments: Mapping[str, float] | None = None,
-    second: bool = True,
+    macro: Macro,
     arithmetic: Arithmetic = DEFAULT,
+    increments: Mapping[str, float] | None = None,
 ) -> Arguments:
     """
     The local variables that G65 or G66 gives the macro.
 
     I J K in this order fill #4 #5 #6. One of them again, or out of order, begins the next set of three: specification
-    II, up to #33. Of two arguments for the same variable the later one counts; a vacant one is as not written.
+    II, up to #33; controls without it have specification I only. Of two arguments for the same variable the later one
+    counts; a vacant one is as not written.
     increments: what a number without a point is multiplied by, for each address; 1 where not given.
-    second: False where the control has specification I only (6008#7 IJK).
     """
     values: dict[int, Value] = {}
     faults: list[Fault | None] = []
@@ -190,13 +180,13 @@ def assign_arguments(
         if (address in ("P", "L") and address not in seen) or address == "<":
             seen.add(address)
             continue
-        if address == "G" and statement.call == "G66.1":
+        if address == "G" and statement.call in macro.modal_macro_calls_each_block:
             continue
         if address not in ARGUMENTS:
             faults.append(Fault("argument-address", word.start, word.end))
             continue
         number = ARGUMENTS[address]
-        if address in "IJK" and second:
+        if address in "IJK" and macro.second_arguments:
             sets += address <= last or not last
             last = address
             if sets > _SETS:
@@ -218,44 +208,45 @@ def _after_call(statement: Statement) -> tuple[Word, ...]:
 
 @dataclass(frozen=True, slots=True)
 class ProgramCall:
-    """Which program a call names: by number or by name (both None: unknown), how often (None: unknown), the fault."""
+    """Which program a call names, how often (None: unknown), the fault."""
 
-    program: int | None
-    name: str | None
+    program: Called
     repeats: int | None
     fault: Fault | None
 
 
+_UNKNOWN_PROGRAM: Final = Called(None, None)
+
+
 def called_program(
-    statement: Statement, variables: Variables, *, repeats_in_p: bool = True, arithmetic: Arithmetic = DEFAULT
+    statement: Statement, variables: Variables, macro: Macro, arithmetic: Arithmetic = DEFAULT
 ) -> ProgramCall:
     """
     The program that M98, M198, G65 or G66 calls.
 
-    repeats_in_p: P of M98 and M198 with five to eight digits has the repeats before the last four: P68003 is six times
-    O8003. Else, and in G65 and G66, P is the number alone. Where P has no repeats, L has them.
+    Where the control has `repeats_in_p`, P of a subprogram call with five to eight digits has the repeats before the
+    last four: P68003 is six times O8003. Else, and in macro calls, P is the number alone. Where P has no repeats, L has
+    them.
     """
-    words = {
-        word.address: word
-        for word in reversed(statement.words if statement.call[:1] == "M" else _after_call(statement))
-    }
+    is_subprogram = statement.call in macro.subprogram_calls
+    words = {word.address: word for word in reversed(statement.words if is_subprogram else _after_call(statement))}
     repeats: int | None = 1
     fault: Fault | None = None
     if "L" in words:
         value, fault = evaluate(words["L"].value, variables, arithmetic)
         repeats = None if value != value else 1 if value is None else max(_whole(value), 0)
     if "<" in words:
-        return ProgramCall(None, words["<"].written, repeats, fault)
+        return ProgramCall(Called(None, words["<"].written), repeats, fault)
     if "P" not in words:
-        return ProgramCall(None, None, repeats, Fault("program-number", statement.start, statement.end))
+        return ProgramCall(_UNKNOWN_PROGRAM, repeats, Fault("program-number", statement.start, statement.end))
     value, fault_of_number = evaluate(words["P"].value, variables, arithmetic)
     fault = fault_of_number or fault
     if value is not None and value != value:
-        return ProgramCall(None, None, repeats, fault)
+        return ProgramCall(_UNKNOWN_PROGRAM, repeats, fault)
     number = _whole(value or 0.0) if abs(value or 0.0) < 1e15 else 0
-    if repeats_in_p and statement.call[:1] == "M" and 9999 < number <= 99_999_999:
+    if macro.repeats_in_p and is_subprogram and 9999 < number <= 99_999_999:
         times, number = divmod(number, 10_000)
         repeats = times
     if not 0 < number <= 99_999_999:
-        return ProgramCall(None, None, repeats, Fault("program-number", words["P"].start, words["P"].end))
-    return ProgramCall(number, None, repeats, fault)
+        return ProgramCall(_UNKNOWN_PROGRAM, repeats, Fault("program-number", words["P"].start, words["P"].end))
+    return ProgramCall(Called(number, None), repeats, fault)

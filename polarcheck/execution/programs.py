@@ -1,25 +1,57 @@
-"""The programs of a file: where each begins and ends, its N numbers, and the blocks at which the flow can turn."""
+"""
+The programs of a file and of those that it calls: where each begins and ends, its N numbers, and the blocks at which
+the flow can turn.
+"""
 
 from __future__ import annotations
 
 import bisect
+import itertools
 import re
+from collections.abc import Iterable, Sequence
+from functools import cached_property
+from typing import NamedTuple
 
 import msgspec
 import numpy as np
 
-from polarcheck.machines.codes import code_numbers, code_set
-from polarcheck.reading.words import Text
+from polarcheck.arrays import Mask
+from polarcheck.execution.run import is_code
+from polarcheck.machines.machine import Machine
+from polarcheck.reading.source import Source
+from polarcheck.reading.translation import translated
+from polarcheck.reading.words import Text, read_words
 
-#: Codes that call, return, or end.
-CALLS = ("G65", "G66", "G66.1", "G67", "M98", "M99", "M198")
+#: No control has a program or sequence number of so many digits; beyond it, values are only about right.
+_NUMBER_LIMIT = 1e15
 _SEQUENCE_NUMBER = re.compile(r"[\s/]*(?:/\s*\d\s*)?(?:[O:]\s*\d+\s*)?N\s*(\d+)", re.IGNORECASE)
+
+
+class Called(NamedTuple):
+    """How a call names its program: by number or by name; both None where that is computed and not known."""
+
+    number: int | None
+    name: str | None
+
+    def __str__(self) -> str:
+        return f"O{self.number:04d}" if self.number is not None else f"<{self.name}>"
+
+    @property
+    def keys(self) -> tuple[int | str, ...]:
+        """The names and numbers that it can mean, in capitals: <O0012> names O12, too."""
+        if self.number is not None:
+            return (self.number,)
+        wanted = (self.name or "").upper()
+        numbered = re.fullmatch(r"O0*(\d{1,15})", wanted)
+        return (wanted, int(numbered[1])) if numbered else (wanted,)
 
 
 class Program(msgspec.Struct, frozen=True):
     """
     One program: its number and name (None where it has none), the blocks from first to before end, and whether it has
-    a head at all; what stands before the first head is a program, too.
+    a head at all; what stands before the first head of a file is a program, too.
+
+    file: 0 for the file itself, from 1 the called files behind it.
     """
 
     number: int | None
@@ -27,25 +59,30 @@ class Program(msgspec.Struct, frozen=True):
     first: int
     end: int
     has_head: bool
+    file: int = 0
+
+    @property
+    def keys(self) -> tuple[int | str, ...]:
+        """Its number and its name in capitals, as in Called.keys."""
+        number = () if self.number is None else (self.number,)
+        return number if self.name is None else (*number, self.name.upper())
 
 
-class Programs(msgspec.Struct):
-    """All programs of a file and its N numbers."""
+class Programs:
+    """All programs of a text, in order, and their N numbers."""
 
-    text: Text
-    programs: list[Program]
-    sequence: dict[int, list[tuple[int, int]]] = msgspec.field(default_factory=dict)
+    def __init__(self, text: Text, programs: Sequence[Program]) -> None:
+        self.text = text
+        self.programs = list(programs)
+        self._firsts = [program.first for program in programs]
+        self._by_key: dict[int | str, list[Program]] = {}
+        for program in programs:
+            for key in program.keys:
+                self._by_key.setdefault(key, []).append(program)
 
-    def of_number(self, number: int) -> Program | None:
-        """The first program of this O number."""
-        return next((program for program in self.programs if program.number == number), None)
-
-    def of_name(self, name: str) -> Program | None:
-        """The first program of this <name>; O0012 is a name of O12, too."""
-        wanted = name.upper()
-        found = next((program for program in self.programs if program.name and program.name.upper() == wanted), None)
-        numbered = re.fullmatch(r"O0*(\d+)", wanted)
-        return found or (self.of_number(int(numbered[1])) if numbered else None)
+    def named(self, called: Called) -> list[Program]:
+        """The programs that a call can mean: those of that name, before those of that number, in order."""
+        return [program for key in called.keys for program in self._by_key.get(key, [])]
 
     def jump(self, program: Program, number: int, block: int) -> int | None:
         """
@@ -59,73 +96,74 @@ class Programs(msgspec.Struct):
 
     def targets(self, program: Program) -> dict[int, list[int]]:
         """The blocks of each N number of a program, in order."""
-        if not self.sequence:
-            self.sequence.update({-1: []})
-            self._read_sequence_numbers()
-        found: dict[int, list[int]] = {}
-        for number, block in self.sequence.get(program.first, []):
-            found.setdefault(number, []).append(block)
-        return found
+        return self._targets.get(program.first, {})
 
-    def _read_sequence_numbers(self) -> None:
+    @cached_property
+    def _targets(self) -> dict[int, dict[int, list[int]]]:
+        """The same for each program, by its first block."""
         text = self.text
         numbered = text.words.address == ord("N")
         places = [
             (int(block), int(value))
             for block, value in zip(text.words.block[numbered], text.words.value[numbered], strict=True)
-            if value == value
+            if value < _NUMBER_LIMIT
         ]
         for block in np.flatnonzero(text.blocks.is_macro).tolist():
             found = _SEQUENCE_NUMBER.match(block_text(text, block))
             if found and len(found[1]) < 10:
                 places.append((block, int(found[1])))
+        targets: dict[int, dict[int, list[int]]] = {}
         for block, number in sorted(places):
-            program = self.program_of(block)
-            self.sequence.setdefault(program.first, []).append((number, block))
+            first = self._firsts[max(bisect.bisect_right(self._firsts, block) - 1, 0)]
+            targets.setdefault(first, {}).setdefault(number, []).append(block)
+        return targets
 
-    def program_of(self, block: int) -> Program:
-        """The program that a block belongs to."""
-        at = bisect.bisect_right([program.first for program in self.programs], block) - 1
-        return self.programs[max(at, 0)]
+
+def read_text(source: Source, machine: Machine) -> Text:
+    """The words of a source as this control reads them."""
+    return read_words(translated(source, machine.control.native_words), machine.control.line_comments)
 
 
 def find_programs(text: Text) -> Programs:
-    """The programs of a file, in order; a file without any O number is one program."""
+    """The programs of a text, in order; a file without any O number is one program."""
     heads: dict[int, tuple[int | None, str | None]] = {}
     words = text.words
     numbered = np.flatnonzero((words.address == ord("O")) & ~np.isnan(words.value))
     for index in numbered.tolist():
-        heads.setdefault(int(words.block[index]), (int(words.value[index]), None))
+        value = float(words.value[index])
+        heads.setdefault(int(words.block[index]), (int(value) if value < _NUMBER_LIMIT else None, None))
     has_words = set(words.block[np.isin(words.block, text.names.block) & (words.address != ord("O"))].tolist())
     for start, end, block in zip(text.names.start, text.names.end, text.names.block, strict=True):
         if int(block) not in has_words and int(block) not in heads and not text.blocks.is_macro[block]:
             heads[int(block)] = (None, text.source.excerpt(int(start) + 1, int(end) - 1).strip())
-    firsts = sorted(heads)
-    count = len(text.blocks)
-    programs = []
     filled = np.concatenate((words.block, np.flatnonzero(text.blocks.is_macro)))
-    if not firsts or np.any(filled < firsts[0]):
-        programs.append(Program(None, None, 0, firsts[0] if firsts else count, False))
-    for index, first in enumerate(firsts):
-        end = firsts[index + 1] if index + 1 < len(firsts) else count
-        programs.append(Program(*heads[first], first, end, True))
+    programs: list[Program] = []
+    for file, (begin, limit) in enumerate(itertools.pairwise([*first_blocks(text), len(text.blocks)])):
+        firsts = sorted(first for first in heads if begin <= first < limit)
+        until = firsts[0] if firsts else limit
+        if not firsts or np.any((filled >= begin) & (filled < until)):
+            programs.append(Program(None, None, begin, until, False, file))
+        for first, end in itertools.pairwise([*firsts, limit]):
+            programs.append(Program(*heads[first], first, end, True, file))
     return Programs(text, programs)
 
 
-def turns(text: Text, ends: tuple[str, ...]) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
-    """Per block: macro statements, calls, returns and program ends, at which the flow has to stop and look."""
+def first_blocks(text: Text) -> list[int]:
+    """The first block of the file itself and of each called file behind it."""
+    lines = [part.first_line for part in text.source.parts]
+    return [0, *np.searchsorted(text.blocks.line, lines).tolist()]
+
+
+def turns(text: Text, codes: Iterable[str]) -> Mask:
+    """Per block: macro statements, or some codes (calls, returns, program ends), at which the flow stops and looks."""
     found = text.blocks.is_macro.copy()
-    words = text.words
-    for letter in "GM":
-        index = np.flatnonzero(words.address == ord(letter))
-        table = code_set([word for word in (*CALLS, *ends) if word[0] == letter])
-        found[words.block[index[table[code_numbers(words.value[index])]]]] = True
+    found[text.words.block[is_code(text.words, codes)]] = True
     return found
 
 
-def needs_flow(text: Text) -> bool:
+def needs_flow(text: Text, codes: Iterable[str]) -> bool:
     """Whether the blocks of a file are to be executed one after another, or can be taken as they stand."""
-    return bool(np.any(turns(text, ())) or np.any(text.words.address == ord("/")) or len(text.names))
+    return bool(np.any(turns(text, codes)) or np.any(text.words.address == ord("/")) or len(text.names))
 
 
 def block_text(text: Text, block: int) -> str:

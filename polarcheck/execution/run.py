@@ -1,23 +1,40 @@
-"""Which block runs next: the row order, and the words of each row."""
+"""What an execution gives: the executed blocks in order, the words of each, and what was found and not known."""
 
 from __future__ import annotations
+
+from collections.abc import Iterable
 
 import msgspec
 import numpy as np
 
 from polarcheck.arrays import Mask, Rows
+from polarcheck.execution.kinds import FaultKind, RemarkKind
+from polarcheck.machines.codes import code_numbers, code_set
 from polarcheck.reading.words import Text, Words
 
 
 class FlowFault(msgspec.Struct, frozen=True):
-    """Something wrong in a macro statement or in the flow: the rule that reports it, its place, and what is wrong."""
+    """
+    Something wrong in a macro statement or in the flow.
 
-    rule: str
+    block, start, end: its block and its characters in the text, end exclusive. values: for a message, by name, as the
+    N number that a jump does not find. row: that was about to be executed when it was found, -1 where none was.
+    """
+
+    kind: FaultKind
     block: int
     start: int
     end: int
-    text: str
+    values: dict[str, str | int | float] = {}
     row: int = -1
+
+
+class Remark(msgspec.Struct, frozen=True):
+    """Why a block was not executed, or not as the control would; values: for the reason, by name."""
+
+    kind: RemarkKind
+    block: int
+    values: dict[str, str | int | float] = {}
 
 
 class Run(msgspec.Struct, frozen=True):
@@ -26,8 +43,7 @@ class Run(msgspec.Struct, frozen=True):
 
     words: in order of execution. row: the row of each word, ascending. block: the index into text.blocks of each row.
     starts: rows at which a program begins, so that nothing before them counts. unknown: rows whose effect is not known.
-    depth: of calls. faults: what macro and flow found. remarks: what was not evaluated, and why, with the block.
-    visited: per block, whether it was run; None where all were.
+    depth: of calls. faults: what macro and flow found. remarks: what was not evaluated.
     """
 
     text: Text
@@ -38,15 +54,18 @@ class Run(msgspec.Struct, frozen=True):
     unknown: Mask
     depth: Rows
     faults: tuple[FlowFault, ...] = ()
-    remarks: tuple[tuple[str, int], ...] = ()
-    visited: Mask | None = None
+    remarks: tuple[Remark, ...] = ()
 
     def __len__(self) -> int:
         return len(self.block)
 
 
-def straight(text: Text) -> Run:
-    """The rows of programs that run from top to bottom: one per block that has words."""
+def straight(text: Text, ends: Iterable[str]) -> Run:
+    """
+    The rows of programs that run from top to bottom: one per block that has words.
+
+    ends: the M codes that end a program.
+    """
     has_row = text.blocks.is_macro.copy()
     has_row[text.words.block] = True
     block = np.flatnonzero(has_row)
@@ -55,7 +74,16 @@ def straight(text: Text) -> Run:
     if len(block):
         starts[0] = True
         starts[row[text.words.address == ord("O")]] = True
-        ends = (text.words.address == ord("M")) & ((text.words.value == 30) | (text.words.value == 2))
-        after = row[ends] + 1
+        after = row[is_code(text.words, ends)] + 1
         starts[after[after < len(block)]] = True
     return Run(text, text.words, row, block, starts, text.blocks.is_macro[block], np.zeros(len(block), np.int64))
+
+
+def is_code(words: Words, codes: Iterable[str]) -> Mask:
+    """Per word: whether it is one of some G or M codes."""
+    found = np.zeros(len(words), bool)
+    for letter in "GM":
+        index = np.flatnonzero(words.address == ord(letter))
+        table = code_set([code for code in codes if code[0] == letter])
+        found[index] = table[code_numbers(words.value[index])]
+    return found

@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 from typing import Final, NamedTuple, TypeAlias
 
 from polarcheck.execution.expression import NUMBER, Characters, Expression, Fault, Step, read_expression
+from polarcheck.execution.kinds import FaultKind
 
 Place: TypeAlias = tuple[int, int]
 
@@ -95,7 +96,6 @@ class Statement:
     fault: Fault | None = None
 
 
-CALLS: Final = frozenset({"G65", "G66", "G66.1", "G67", "M98", "M99", "M198"})
 _OUTPUTS: Final = ("BPRNT", "DPRNT", "POPEN", "PCLOS", "SETVN")
 _SHORT: Final = {"WH": "WHILE", "GO": "GOTO", "EN": "END", "TH": "THEN"} | {name[:2]: name for name in _OUTPUTS[:4]}
 _KEYWORD: Final = re.compile("|".join(["IF", "WHILE", "DO", "END", "GOTO", "THEN", *_OUTPUTS, *_SHORT]))
@@ -109,6 +109,9 @@ _NO_VALUE: Final = re.compile("[-+.0-9]*")
 _JOINS: Final = re.compile("AN|OR|XO")
 # After X#1: X#1+#2 lacks its brackets. X#1/2 does too, but in X#1/2Y5. the / skips the rest.
 _BEYOND: Final = re.compile(r"[-+*]|/[0-9]*+(?:$|[#\[])|AND|OR|XOR|MOD")
+
+#: Signs that mean something elsewhere, where a word should begin.
+_ALONE: Final[dict[str, FaultKind]] = {"[": "format", "]": "missing-open-bracket"}
 
 
 class _Reader:
@@ -126,10 +129,10 @@ class _Reader:
         if fault and (self.fault is None or (self.fault.kind == "bracket-levels" and fault.kind != "bracket-levels")):
             self.fault = fault
 
-    def wrong(self, kind: str, start: int, end: int = 0) -> None:
+    def wrong(self, kind: FaultKind, start: int, end: int = 0) -> None:
         self.blame(self.characters.fault(kind, start, end))
 
-    def wrong_rest(self, kind: str, start: int) -> None:
+    def wrong_rest(self, kind: FaultKind, start: int) -> None:
         self.wrong(kind, start, len(self.text))
         self.at = len(self.text)
 
@@ -147,7 +150,7 @@ class _Reader:
         self.at = found.end() if found else self.at
         return _SHORT.get(found[0], found[0]) if found else ""
 
-    def expression(self, *, whole: bool, condition: bool = False, kind: str = "format") -> Expression | None:
+    def expression(self, *, whole: bool, condition: bool = False, kind: FaultKind = "format") -> Expression | None:
         """Read what gives a number, or a condition; where that fails, the rest of the block is lost."""
         reading = read_expression(self.characters, self.at, whole=whole, levels=self.levels, size=self.size)
         self.blame(reading.fault)
@@ -205,7 +208,7 @@ class _Reader:
         """The block must end here: no NC words nor a second statement can follow."""
         rest = self.text[self.at : self.at + 1]
         if rest.isalpha() and not self.keyword():
-            self.wrong("mixed", self.at, len(self.text))
+            self.wrong("nc-and-macro", self.at, len(self.text))
         elif rest:
             self.wrong("missing-open-bracket" if rest == "]" else "statement-format", self.at, len(self.text))
 
@@ -223,7 +226,7 @@ class _Reader:
         self.nothing_more()
         return Statement(Kind.ASSIGN, *place, target=target, value=value)
 
-    def condition(self, kind: str) -> Expression | None:
+    def condition(self, kind: FaultKind) -> Expression | None:
         """The condition of IF or WHILE. `[..] AND [..]` lacks the bracket around both, but what is meant is clear."""
         start = self.at
         if not self.text.startswith("[", start):
@@ -276,7 +279,7 @@ class _Reader:
         start = self.at
         then = self.statement()
         if then.kind is Kind.NC or then.call.startswith("M"):
-            self.wrong("mixed", start, len(self.text))
+            self.wrong("nc-and-macro", start, len(self.text))
         return Statement(Kind.IF_THEN, *place, condition=condition, then=replace(then, fault=self.fault))
 
     def nc_words(self, place: Place) -> Statement:
@@ -286,7 +289,7 @@ class _Reader:
             if len(words) + len(self.skips) >= self.size:
                 self.wrong_rest("too-long", start)
             elif sign == "#" or self.keyword():
-                self.wrong_rest("mixed", start)
+                self.wrong_rest("nc-and-macro", start)
             elif skip := _SKIP.match(self.text, start):
                 self.at = skip.end()
                 self.skips.append(self.number(skip[1] or "1", start))
@@ -295,7 +298,7 @@ class _Reader:
             elif _ADDRESS.match(self.text, start):
                 words += self.word()
             else:
-                self.wrong({"[": "format", "]": "missing-open-bracket"}.get(sign, "stray-character"), start)
+                self.wrong(_ALONE.get(sign, "stray-character"), start)
                 self.at += 1
         call = next((word.code for word in words if word.code in self.calls), "")
         return Statement(Kind.CALL if call else Kind.NC, *place, words=tuple(words), call=call)
@@ -343,13 +346,11 @@ class _Reader:
         return value
 
 
-def read_statement(
-    block: str, *, calls: frozenset[str] = CALLS, loops: int = 3, levels: int = 5, size: int = 20_000
-) -> Statement:
+def read_statement(block: str, *, calls: frozenset[str], loops: int, levels: int, size: int = 20_000) -> Statement:
     """
     Read one block, given without comments; blanks and small letters are allowed anywhere.
 
-    calls: the codes that make a block a call. loops: the highest number of DO and END. levels: of brackets, in each
-    expression. size: bound of words, and of the steps of an expression.
+    calls: the codes that call a program or return from one, in the spelling of `Word.code`. loops: the highest number
+    of DO and END. levels: of brackets, in each expression. size: bound of words, and of the steps of an expression.
     """
     return _Reader(block, calls, loops, levels, size).block_statement()

@@ -1,11 +1,17 @@
 """The control and the lathe as data: every key of a profile, its type and what it means."""
 
 import math
-from typing import Literal
+import re
+from typing import Literal, TypeAlias
 
 import msgspec
 
 from polarcheck.machines.parameters import Meaning
+
+#: First and last number of each range.
+Ranges: TypeAlias = list[tuple[int, int]]
+
+_FLOW_CODE = re.compile(r"[GM](?:0|[1-9]\d*)(?:\.[1-9])?")
 
 
 def _is_code(text: str) -> bool:
@@ -147,9 +153,51 @@ class MCodes(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
 
 
 class Macro(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Custom macro and calls. given: values of variables that the job or machine knows, by number."""
+    """
+    Custom macro and calls.
 
-    increment: float
+    local_variables: ranges, first and last number, of local variables, of which each macro call has its own
+    common_variables: ranges of common variables that are vacant at power-on
+    retained_variables: ranges of common variables that outlive the power-off: not known until a program assigns them
+    system_variables: ranges of system variables: offsets, positions, modal states, signals; not known unless given
+    read_only_variables: ranges of system variables that a program cannot assign; nor can it #0, which is always vacant
+    clock_variables: ranges of system variables that count on by themselves: not known even after an assignment
+    alarm_variables: system variables by which a program ends itself with an alarm: #3000 = 1 (MESSAGE)
+    stop_variables: system variables by which a program stops with a message until cycle start: #3006 = 1 (MESSAGE)
+    subprogram_calls: codes that call a subprogram by its number in P or its <NAME>; M198 that of another device
+    macro_calls: codes that call a macro once; the other words of the block are its arguments
+    modal_macro_calls: codes after which each block that moves an axis calls the macro
+    modal_macro_calls_each_block: modal calls that take the words of each block as arguments, G codes too
+    modal_macro_cancel: codes that end a modal call
+    program_returns: codes that return from a called program
+    computed_increments: address -> what a computed value is rounded to there; elsewhere to the least input increment
+    bracket_levels: most levels of brackets in an expression, those of functions included
+    loop_numbers: highest number of DO and END
+    loop_levels: most loops inside each other
+    subprogram_levels: most levels of subprogram calls
+    macro_levels: most levels of macro calls
+    repeats_in_p: whether P of a subprogram call with more than four digits has the repeats before the last four
+    second_arguments: whether a macro call takes I J K up to ten times: argument specification II
+    signed_angles: whether ATAN gives -180 to 180 and ASIN -90 to 90, else 0 to 360 and 270 to 90
+    largest_number: a result above it overflows
+    given: variable -> its value, as the job or the machine knows it
+    """
+
+    local_variables: Ranges
+    common_variables: Ranges
+    retained_variables: Ranges
+    system_variables: Ranges
+    read_only_variables: Ranges
+    clock_variables: Ranges
+    alarm_variables: list[int]
+    stop_variables: list[int]
+    subprogram_calls: list[str]
+    macro_calls: list[str]
+    modal_macro_calls: list[str]
+    modal_macro_calls_each_block: list[str]
+    modal_macro_cancel: list[str]
+    program_returns: list[str]
+    computed_increments: dict[str, float]
     bracket_levels: int
     loop_numbers: int
     loop_levels: int
@@ -160,6 +208,29 @@ class Macro(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     signed_angles: bool
     largest_number: float
     given: dict[int, float] = {}
+
+    def __post_init__(self) -> None:
+        for code in self.flow_codes:
+            if not _FLOW_CODE.fullmatch(code):
+                raise ValueError(f"{code!r}: expected a G or M code as in G66.1 or M98, without leading zeros")
+        for address, increment in self.computed_increments.items():
+            if not re.fullmatch("[A-Z]", address) or not increment > 0:
+                raise ValueError(f"computed_increments: {address} = {increment}: expected a letter and a value above 0")
+
+    @property
+    def macro_call_codes(self) -> frozenset[str]:
+        """The codes that call a macro with arguments, once or modally."""
+        return frozenset((*self.macro_calls, *self.modal_macro_calls, *self.modal_macro_calls_each_block))
+
+    @property
+    def call_codes(self) -> frozenset[str]:
+        """The codes that call a program."""
+        return self.macro_call_codes | frozenset(self.subprogram_calls)
+
+    @property
+    def flow_codes(self) -> frozenset[str]:
+        """The codes that call a program, end a modal call, or return."""
+        return self.call_codes | frozenset((*self.modal_macro_cancel, *self.program_returns))
 
 
 class Machine(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import codecs
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import msgspec
 import numpy as np
@@ -26,12 +26,20 @@ LF, CR, CTRL_Z = 10, 13, 26
 _BOMS = ((codecs.BOM_UTF8, "utf-8"), (codecs.BOM_UTF16_LE, "utf-16-le"), (codecs.BOM_UTF16_BE, "utf-16-be"))
 
 
+class Part(NamedTuple):
+    """A called program behind the file: its first line there, its name, and how many lines it was given at its head."""
+
+    first_line: int
+    name: str
+    added_lines: int = 0
+
+
 class Source(msgspec.Struct, frozen=True, dict=True):
     """
     One file: its bytes, its encoding, and one code per character.
 
     code: uint8[n], Latin-1 where the character has one. line_starts: int64[lines], character positions.
-    parts: the first line and the name of each called program that was read behind the file.
+    parts: the called programs that were read behind the file. added_lines: at the head, that the file does not have.
     """
 
     path: str
@@ -40,7 +48,8 @@ class Source(msgspec.Struct, frozen=True, dict=True):
     bom: bytes
     code: Bytes
     line_starts: Positions
-    parts: tuple[tuple[int, str], ...] = ()
+    parts: tuple[Part, ...] = ()
+    added_lines: int = 0
 
     @cached_property
     def text(self) -> str:
@@ -63,8 +72,8 @@ class Source(msgspec.Struct, frozen=True, dict=True):
 
     def part_of(self, line: int) -> tuple[str, int] | None:
         """The called program that a line belongs to, and its line there; None for lines of the file itself."""
-        found = [(name, line - first + 1) for first, name in self.parts if line >= first]
-        return found[-1] if found else None
+        found = [part for part in self.parts if line >= part.first_line]
+        return (found[-1].name, max(line - found[-1].first_line + 1 - found[-1].added_lines, 1)) if found else None
 
     def line_text(self, line: int) -> str:
         """A line (from 1) without its line end."""
@@ -82,14 +91,6 @@ def read(data: bytes, path: str = "-", encoding: str | None = None) -> Source:
     bom, name = _recognised(data, path, encoding)
     code = _codes(data, bom, name)
     return Source(path, data, name, bom, code, _line_starts(code))
-
-
-def joined(source: Source, called: Source) -> Source:
-    """The file with a called program behind it."""
-    text = source.text.rstrip("\n") + "\n"
-    first = text.count("\n") + 1
-    whole = read((text + called.text).encode("utf-8", "surrogatepass"), source.path)
-    return msgspec.structs.replace(whole, parts=(*source.parts, (first, called.path)))
 
 
 def _recognised(data: bytes, path: str, encoding: str | None) -> tuple[bytes, str]:

@@ -194,7 +194,7 @@ class Columns:
 
     @cached_property
     def _takes_feed(self) -> Mask:
-        return ~self.codes("G4", "G10", "G65", "G66", "G66.1", "G76", "G92")
+        return ~self.codes("G4", "G10", "G76", "G92", *self.machine.macro.macro_call_codes)
 
     @cached_property
     def _tool_number(self) -> Rows:

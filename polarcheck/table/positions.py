@@ -83,7 +83,7 @@ class Positions(Lengths):
             rapid=self.codes("G0"),
             cuts=cutting & self.has(*self._virtual),
             moves=cutting & self.moves_plane,
-            returns=self.codes("M99"),
+            returns=self.codes(*self.machine.macro.program_returns),
         )
         return find_sections(marks)
 

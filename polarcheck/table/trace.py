@@ -35,7 +35,7 @@ class Trace(Positions):
         start = self.run.block[np.flatnonzero(self.starts)]
         whole = has_head[np.maximum(np.searchsorted(first, start, side="right") - 1, 0)]
         whole |= len(self.text.tape_marks) > 0
-        whole[self.program[self.codes("M99") & (self.run.depth == 0)]] = False
+        whole[self.program[self.codes(*self.machine.macro.program_returns) & (self.run.depth == 0)]] = False
         return whole[self.program]
 
     # ---- tool offset ----

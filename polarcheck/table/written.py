@@ -22,15 +22,13 @@ _ADDRESS_BITS[65:123] = np.uint64(1) << np.arange(58, dtype=np.uint64)
 _ADDRESS_BITS[list(b"GMN")] = 0
 #: In macro calls, argument specification II.
 _ARGUMENT_SETS = b"IJK"
-_MACRO_CALLS = ("G65", "G66", "G66.1")
 #: Groups whose codes have other meanings on lathes with two turrets, or take arguments.
 _UNSURE_GROUPS = ("scaling", "rotation", "mirror")
 #: Codes of group 01 in system A that other systems and mills write beside G0 and G1, in another meaning.
 _OF_OTHER_SYSTEMS = ("G90", "G92", "G94")
-_RETURN = "M99"
 _COMMENT = re.compile(rb"\([^)\n]*+\)?")
 _LETTER_OR_DIGIT = re.compile(rb"[0-9A-Za-z\x80-\xff]")
-_END_IN_MACRO = re.compile(r"M\s*0*99(?!\d)|GOTO|GO\s*\d", re.IGNORECASE)
+_JUMP = r"GOTO|GO\s*\d"
 
 
 class Written:
@@ -105,7 +103,7 @@ class Written:
         """The first word of a block whose address stood in it before."""
         words = self.words
         suspects = self._suspects(np.arange(len(words)), _ADDRESS_BITS[words.address])
-        calls = words.block[self._g_words[code_set(_MACRO_CALLS)[self._g_codes]]]
+        calls = words.block[self._g_words[code_set(self.machine.macro.macro_call_codes)[self._g_codes]]]
         is_argument = np.isin(words.address[suspects], list(_ARGUMENT_SETS)) & np.isin(words.block[suspects], calls)
         suspects = suspects[~is_argument]
         again = np.sort(self._again(suspects, words.address[suspects])[0])
@@ -190,9 +188,9 @@ class Written:
 
     @cached_property
     def lacks_end(self) -> Mask:
-        """The last word of a program that has a head, or stands between %, and no M02, M30 or M99 anywhere."""
+        """The last word of a program that has a head, or stands between %, and has no code that ends it or returns."""
         m_words = np.flatnonzero(self.words.address == ord("M"))
-        ends = code_set([*self.machine.m_codes.program_end, _RETURN])
+        ends = code_set([*self.machine.m_codes.program_end, *self.machine.macro.program_returns])
         ending = self.words.block[m_words[ends[code_numbers(self.words.value[m_words])]]]
         programs = find_programs(self.text).programs
         first = np.array([program.first for program in programs], np.int64)
@@ -211,7 +209,10 @@ class Written:
     def _ends_in_macro(self, first: int, end: int) -> bool:
         """A block with macro ends the program or leads back."""
         macro = np.flatnonzero(self.text.blocks.is_macro[first:end]) + first
-        return any(_END_IN_MACRO.search(block_text(self.text, int(block))) for block in macro)
+        codes = (*self.machine.m_codes.program_end, *self.machine.macro.program_returns)
+        spelled_out = "|".join(rf"{code[0]}\s*0*{re.escape(code[1:])}(?![.\d])" for code in codes)
+        ends = re.compile(rf"{_JUMP}|{spelled_out}", re.IGNORECASE)
+        return any(ends.search(block_text(self.text, int(block))) for block in macro)
 
     # ---- characters ----
 

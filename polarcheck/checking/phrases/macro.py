@@ -3,8 +3,72 @@
 from __future__ import annotations
 
 from polarcheck.checking.macro_faults import Faults
+from polarcheck.checking.places import Place
+from polarcheck.execution.programs import block_text
+from polarcheck.machines.machine import Machine
+from polarcheck.reading.words import Text
+
+#: Of what is written; more is cut off [characters].
+_SHOWN = 40
 
 
-def what(faults: Faults, index: int) -> str:
+def shown(text: Text, place: Place) -> str:
+    """What stands at the place, in one line and not too long."""
+    return _short(text.source.excerpt(place.start, place.end))
+
+
+def block(text: Text, place: Place) -> str:
+    """The whole block without its comments, likewise."""
+    return _short(block_text(text, place.block))
+
+
+def _short(written: str) -> str:
+    line = " ".join(written.split())
+    return line if len(line) <= _SHOWN else f"{line[:_SHOWN]} ..."
+
+
+def reason(faults: Faults, index: int) -> str:
     """What is wrong, in words."""
-    return faults.run.faults[index].text
+    return faults.reason(index)
+
+
+def number(faults: Faults, index: int) -> int:
+    """The N number or the variable of a fault."""
+    return round(float(faults.values(index)["number"]))
+
+
+def count(faults: Faults, index: int) -> int:
+    """How often the N number stands in the program."""
+    return int(faults.values(index)["count"])
+
+
+def expression(faults: Faults, index: int) -> str:
+    """The expression at fault."""
+    return str(faults.values(index)["expression"])
+
+
+def variable(faults: Faults, text: Text, place: Place, index: int) -> str:
+    """A variable as it is written, and its number where that is computed."""
+    written, named = shown(text, place), f"#{number(faults, index)}"
+    return written if "".join(written.split()) == named else f"{written} ({named})"
+
+
+def who_writes(faults: Faults, index: int) -> str:
+    """Why a variable cannot be assigned."""
+    return "only the control writes it, a program can read it" if number(faults, index) else "it is always vacant"
+
+
+def ranges(machine: Machine) -> str:
+    """The variables that there are."""
+    macro = machine.macro
+    kinds = {
+        "local": macro.local_variables,
+        "common": [*macro.common_variables, *macro.retained_variables],
+        "system": macro.system_variables,
+    }
+    parts = (
+        f"{name} {' and '.join(f'#{first}-#{last}' for first, last in numbers)}"
+        for name, numbers in kinds.items()
+        if numbers
+    )
+    return ", ".join(parts)

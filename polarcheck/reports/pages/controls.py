@@ -90,7 +90,8 @@ def _shown(value: Any, group: str = "") -> str:
     if isinstance(value, dict):
         return ", ".join(f"{key} = {element or 'nothing'}" for key, element in value.items()) or "none"
     if isinstance(value, list | tuple):
-        return ", ".join(map(str, value)) or "none"
+        spans = (f"{each[0]}-{each[1]}" if isinstance(each, list | tuple) else str(each) for each in value)
+        return ", ".join(spans) or "none"
     return str(value) or "none"
 
 

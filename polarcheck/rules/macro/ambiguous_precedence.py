@@ -3,7 +3,12 @@ from __future__ import annotations
 from polarcheck.checking.rule import NOTE, Faults, Mask, rule
 
 
-@rule(NOTE, "{what}", over="faults")
+@rule(
+    NOTE,
+    "{expression} mixes {shown} with other operators: this control takes AND with * and /, OR and XOR with +"
+    " and -, others take them last; write the brackets",
+    over="faults",
+)
 def ambiguous_precedence(faults: Faults) -> Mask:
     """
     Order of calculation that is taught in two ways.
@@ -16,14 +21,17 @@ def ambiguous_precedence(faults: Faults) -> Mask:
     Bad:
 
         O0001
-        #0=1                 (expect: read-only-variable)
-        #1=3+4 AND 6     (expect: ambiguous-precedence)
+        #1=#1012 AND 15      (two decades of inputs, the lower one)
+        #2=#1 AND 7+8        (expect: ambiguous-precedence)
+        #4001=#2             (expect: read-only-variable)
         M30
 
     Good:
 
         O0001
-        #1=3+[4 AND 6]
+        #1=#1012 AND 15
+        #2=#1 AND [7+8]
+        #3=[#1 AND 7]+8
         M30
     """
     return faults.rule == "ambiguous-precedence"

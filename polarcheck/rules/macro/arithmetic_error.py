@@ -3,31 +3,35 @@ from __future__ import annotations
 from polarcheck.checking.rule import ERROR, Faults, Mask, rule
 
 
-@rule(ERROR, "{what}", over="faults")
+@rule(ERROR, "{block} {reason}: the control stops here, and the result is not known", over="faults")
 def arithmetic_error(faults: Faults) -> Mask:
     """
     Calculation that has no result.
 
     Division by zero, the square root of a negative number, ASIN or ACOS beyond 1, LN of zero, a result too large: the
-    control stops with an alarm. The result is taken as unknown.
+    control stops with an alarm. The result is taken as unknown. Test the value before with IF, and stop with a message
+    of your own (`#3000=1(RADIUS TOO SMALL)`).
 
     Source: FANUC alarms 110, 111, 112 and 119.
 
     Bad:
 
         O0001
-        #0=1             (expect: read-only-variable)
-        #1=0
-        #2=5/#1          (expect: arithmetic-error)
-        #3=SQRT[-4]      (expect: arithmetic-error)
+        #1=8.            (half of the flats)
+        #2=6.            (radius of the corners)
+        #3=SQRT[#2*#2-#1*#1]   (expect: arithmetic-error)
+        #4=360/#5        (expect: arithmetic-error)
+        #50=1            (expect: variable-out-of-range)
         M30
 
     Good:
 
         O0001
-        #1=4
-        #2=5/#1
-        #3=SQRT[4]
+        #1=6.
+        #2=8.
+        #3=SQRT[#2*#2-#1*#1]
+        #5=4
+        #4=360/#5
         M30
     """
     return faults.rule == "arithmetic-error"

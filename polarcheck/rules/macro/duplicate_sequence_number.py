@@ -3,7 +3,12 @@ from __future__ import annotations
 from polarcheck.checking.rule import WARNING, Faults, Mask, rule
 
 
-@rule(WARNING, "{what}", over="faults")
+@rule(
+    WARNING,
+    "N{number} stands {count} times in this program: the control takes the next one behind the jump, else the"
+    " first; number the target of a jump once",
+    over="faults",
+)
 def duplicate_sequence_number(faults: Faults) -> Mask:
     """
     Jump to a sequence number that stands there twice.
@@ -16,12 +21,13 @@ def duplicate_sequence_number(faults: Faults) -> Mask:
     Bad:
 
         O0001
-        #0=1                 (expect: read-only-variable)
         #1=1
         IF[#1 EQ 1]GOTO 10   (expect: duplicate-sequence-number)
         N10 G0 X50.
         N10 G0 X60.
-        M30
+        IF[#1 EQ 2]GOTO 30
+        #1=1/0               (expect: arithmetic-error)
+        N30 M30
 
     Good:
 

@@ -3,7 +3,7 @@ from __future__ import annotations
 from polarcheck.checking.rule import ERROR, Faults, Mask, rule
 
 
-@rule(ERROR, "{what}", over="faults")
+@rule(ERROR, "{shown} {reason}", over="faults")
 def endless_loop(faults: Faults) -> Mask:
     """
     Program that never ends.
@@ -17,8 +17,8 @@ def endless_loop(faults: Faults) -> Mask:
     Bad:
 
         O0001
-        #0=1             (expect: read-only-variable)
-        N10 G0 X50.
+        N10 G0 X#7       (expect: vacant-variable)
+        Z5.
         GOTO 10          (expect: endless-loop)
         M30
 
@@ -28,6 +28,16 @@ def endless_loop(faults: Faults) -> Mask:
         #1=0
         WHILE[#1 LT 3]DO1
         G0 X50.
+        END1             (expect: endless-loop)
+        M30
+
+    Bad, set job.run.max_blocks=100:
+
+        O0001
+        #1=0
+        WHILE[#1 LT 300]DO1
+        #1=#1+1
+        G0 X#1
         END1             (expect: endless-loop)
         M30
 

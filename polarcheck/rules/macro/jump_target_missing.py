@@ -3,7 +3,7 @@ from __future__ import annotations
 from polarcheck.checking.rule import ERROR, Faults, Mask, rule
 
 
-@rule(ERROR, "{what}", over="faults")
+@rule(ERROR, "{block} finds no block: {reason}; the control stops here", over="faults")
 def jump_target_missing(faults: Faults) -> Mask:
     """
     Jump to a sequence number that is not there.
@@ -16,16 +16,27 @@ def jump_target_missing(faults: Faults) -> Mask:
     Bad:
 
         O0001
-        #0=1             (expect: read-only-variable)
-        GOTO 20          (expect: jump-target-missing)
-        N10 G0 X50.
+        #1=5.
+        IF[#1 GT 2]GOTO 20   (expect: jump-target-missing)
+        M98 P2
+        GOTO #9          (expect: jump-target-missing)
+        N10 G0 X[#1/#8]  (expect: arithmetic-error)
         M30
+        O2
+        N20 G0 X50.
+        M99 P30          (expect: jump-target-missing)
 
     Good:
 
         O0001
-        GOTO 10
-        N10 G0 X50.
-        M30
+        #1=5.
+        IF[#1 GT 2]GOTO 20
+        G0 X60.
+        N20 M98 P2
+        G0 X70.
+        N30 M30
+        O2
+        G0 X50.
+        M99 P30
     """
     return faults.rule == "jump-target-missing"

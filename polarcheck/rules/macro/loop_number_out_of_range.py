@@ -3,23 +3,28 @@ from __future__ import annotations
 from polarcheck.checking.rule import ERROR, Faults, Mask, rule
 
 
-@rule(ERROR, "{what}", over="faults")
+@rule(
+    ERROR,
+    "{shown}: DO and END take the numbers 1 to {machine.macro.loop_numbers}; the control stops here",
+    over="faults",
+)
 def loop_number_out_of_range(faults: Faults) -> Mask:
     """
-    Loop number other than 1, 2 and 3.
+    Loop number that DO and END do not take.
 
-    DO and END take the numbers 1, 2 and 3; the control stops with an alarm at any other.
+    DO and END take the numbers 1, 2 and 3; the control stops with an alarm at any other. The same number may be used
+    again for loops that follow each other.
 
     Source: FANUC alarm 126.
 
     Bad:
 
         O0001
-        #0=1             (expect: read-only-variable)
         #1=0
         WHILE[#1 LT 3]DO4   (expect: loop-number-out-of-range)
         #1=#1+1
         END4             (expect: loop-number-out-of-range)
+        END3             (expect: loop-unbalanced)
         M30
 
     Good:
@@ -27,6 +32,9 @@ def loop_number_out_of_range(faults: Faults) -> Mask:
         O0001
         #1=0
         WHILE[#1 LT 3]DO3
+        #1=#1+1
+        END3
+        WHILE[#1 LT 6]DO3
         #1=#1+1
         END3
         M30

@@ -3,7 +3,11 @@ from __future__ import annotations
 from polarcheck.checking.rule import ERROR, Faults, Mask, rule
 
 
-@rule(ERROR, "{what}", over="faults")
+@rule(
+    ERROR,
+    "{reason}; the control stops here: close each loop with an END of its own number, the inner loop first",
+    over="faults",
+)
 def loop_unbalanced(faults: Faults) -> Mask:
     """
     Loop that does not close.
@@ -16,17 +20,23 @@ def loop_unbalanced(faults: Faults) -> Mask:
     Bad:
 
         O0001
-        #0=1             (expect: read-only-variable)
         #1=0
         WHILE[#1 LT 3]DO1   (expect: loop-unbalanced)
         #1=#1+1
+        DO4              (expect: loop-number-out-of-range, loop-unbalanced)
         M30
 
     Bad:
 
         O0001
-        G0 X50.
-        END1             (expect: loop-unbalanced)
+        #1=0
+        WHILE[#1 LT 3]DO1
+        #1=#1+1
+        #2=0
+        WHILE[#2 LT 3]DO2   (expect: loop-unbalanced)
+        #2=#2+1
+        END1
+        END2             (expect: loop-unbalanced)
         M30
 
     Good:
@@ -35,6 +45,10 @@ def loop_unbalanced(faults: Faults) -> Mask:
         #1=0
         WHILE[#1 LT 3]DO1
         #1=#1+1
+        #2=0
+        WHILE[#2 LT 3]DO2
+        #2=#2+1
+        END2
         END1
         M30
     """

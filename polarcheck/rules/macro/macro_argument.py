@@ -3,24 +3,23 @@ from __future__ import annotations
 from polarcheck.checking.rule import ERROR, Faults, Mask, rule
 
 
-@rule(ERROR, "{what}", over="faults")
+@rule(ERROR, "{shown} {reason}; the control stops here", over="faults")
 def macro_argument(faults: Faults) -> Mask:
     """
     Address that cannot hand over an argument.
 
     G, L, N, O and P are not arguments of a macro call, and I J K can be repeated ten times at most. The control stops
-    with an alarm.
+    with an alarm. Write other G codes in a block of their own, before the call.
 
     Source: FANUC alarms 129 and 1095; B-63684EN/01 p. 304.
 
     Bad:
 
         O0001
-        #0=1             (expect: read-only-variable)
         G65 P9000 A1. G2   (expect: macro-argument)
         M30
         O9000
-        G0 X#1
+        G0 X#1 Z#2       (expect: vacant-variable)
         M99
 
     Good:

@@ -3,7 +3,7 @@ from __future__ import annotations
 from polarcheck.checking.rule import ERROR, Faults, Mask, rule
 
 
-@rule(ERROR, "{what}", over="faults")
+@rule(ERROR, "{shown} {reason}; the control stops here", over="faults")
 def macro_syntax(faults: Faults) -> Mask:
     """
     Macro statement that cannot be read.
@@ -16,8 +16,9 @@ def macro_syntax(faults: Faults) -> Mask:
     Bad:
 
         O0001
-        #0=1             (expect: read-only-variable)
-        #1=[2+3         (expect: macro-syntax)
+        #1=[2+3          (expect: macro-syntax)
+        #2=7*            (expect: macro-syntax)
+        G0 X50. #3=1     (expect: mixed-macro-and-nc)
         M30
 
     Bad:
@@ -25,6 +26,7 @@ def macro_syntax(faults: Faults) -> Mask:
         O0001
         #1 5             (expect: macro-syntax)
         IF[#1 EQ 5]M8    (expect: macro-syntax)
+        G1 X[#100*2] Z   (expect: macro-syntax)
         M30
 
     Good:

@@ -3,21 +3,28 @@ from __future__ import annotations
 from polarcheck.checking.rule import ERROR, Faults, Mask, rule
 
 
-@rule(ERROR, "{what}", over="faults")
+@rule(
+    ERROR,
+    "{shown} needs a block of its own: NC words and a macro statement do not stand in one block; the control"
+    " stops here",
+    over="faults",
+)
 def mixed_macro_and_nc(faults: Faults) -> Mask:
     """
     NC words and a macro statement in one block.
 
-    The control stops with an alarm: a macro statement stands in a block of its own.
+    The control stops with an alarm: a macro statement stands in a block of its own. An IF with THEN takes one macro
+    statement, no NC words: jump past the block instead.
 
     Source: FANUC alarm 127.
 
     Bad:
 
         O0001
-        #0=1             (expect: read-only-variable)
         #1=5
         G0 X50. #1=6     (expect: mixed-macro-and-nc)
+        IF[#1 EQ 5]THEN G0 X60.   (expect: mixed-macro-and-nc)
+        IF[#1 EQ 5]G0 X60.   (expect: macro-syntax)
         M30
 
     Good:
@@ -26,6 +33,8 @@ def mixed_macro_and_nc(faults: Faults) -> Mask:
         #1=5
         G0 X50.
         #1=6
-        M30
+        IF[#1 NE 5]GOTO 10
+        G0 X60.
+        N10 M30
     """
     return faults.rule == "mixed-macro-and-nc"

@@ -3,7 +3,7 @@ from __future__ import annotations
 from polarcheck.checking.rule import ERROR, Faults, Mask, rule
 
 
-@rule(ERROR, "{what}", over="faults")
+@rule(ERROR, "{shown} {reason}; the control stops here", over="faults")
 def nesting_too_deep(faults: Faults) -> Mask:
     """
     Calls, loops or brackets nested too deep.
@@ -16,8 +16,8 @@ def nesting_too_deep(faults: Faults) -> Mask:
     Bad:
 
         O0001
-        #0=1             (expect: read-only-variable)
         M98 P2
+        M98 P3           (expect: subprogram-missing)
         M30
         O0002
         M98 P2           (expect: nesting-too-deep)

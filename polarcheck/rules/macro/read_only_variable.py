@@ -3,28 +3,35 @@ from __future__ import annotations
 from polarcheck.checking.rule import ERROR, Faults, Mask, rule
 
 
-@rule(ERROR, "{what}", over="faults")
+@rule(ERROR, "{variable} cannot be assigned: {who_writes}; the control stops here", over="faults")
 def read_only_variable(faults: Faults) -> Mask:
     """
     Assignment to a variable that only the control writes.
 
     Inputs, modal states and present positions are system variables that can be read but not written; #0 is always
-    vacant. The control stops with an alarm.
+    vacant. The control stops with an alarm. Assign to a local or common variable instead.
 
     Source: FANUC alarm 116.
 
     Bad:
 
         O0001
-        #50=1            (expect: variable-out-of-range)
+        #100=#4001
+        #4001=1          (expect: read-only-variable)
+        #1000=1          (expect: read-only-variable)
+        #[5000+21]=#100  (expect: read-only-variable)
         #0=1             (expect: read-only-variable)
-        #5021=1          (expect: read-only-variable)
+        #50=1            (expect: variable-out-of-range)
+        #1100=1
         M30
 
     Good:
 
         O0001
         #100=#5021
+        #101=#1000
+        #1100=1
+        #3001=0
         M30
     """
     return faults.rule == "read-only-variable"

@@ -3,7 +3,7 @@ from __future__ import annotations
 from polarcheck.checking.rule import WARNING, Faults, Mask, rule
 
 
-@rule(WARNING, "{what}", over="faults")
+@rule(WARNING, "{shown} {reason}", over="faults")
 def subprogram_missing(faults: Faults) -> Mask:
     """
     Called program that is not found.
@@ -17,15 +17,20 @@ def subprogram_missing(faults: Faults) -> Mask:
     Bad:
 
         O0001
-        #0=1             (expect: read-only-variable)
+        #1=1234
         G0 X50.
-        M98 P1234        (expect: subprogram-missing)
+        M98 P#1          (expect: subprogram-missing)
+        M98 P2
         M30
+        O0002
+        GOTO 10          (expect: jump-target-missing)
+        M99
 
     Bad:
 
         O0001
         M98              (expect: subprogram-missing)
+        M98 P10000000000000000000   (expect: subprogram-missing, too-many-digits)
         M30
 
     Good:

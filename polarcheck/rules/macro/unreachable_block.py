@@ -3,7 +3,11 @@ from __future__ import annotations
 from polarcheck.checking.rule import NOTE, Faults, Mask, rule
 
 
-@rule(NOTE, "{what}", over="faults")
+@rule(
+    NOTE,
+    "no run of the program comes to {shown}: the block before it goes elsewhere, and no jump leads here",
+    over="faults",
+)
 def unreachable_block(faults: Faults) -> Mask:
     """
     Blocks that no run of the program comes to.
@@ -16,11 +20,10 @@ def unreachable_block(faults: Faults) -> Mask:
     Bad:
 
         O0001
-        #0=1                 (expect: read-only-variable)
         GOTO 20
         G0 X50.          (expect: unreachable-block)
         G0 X60.
-        N20 G0 X70.
+        N20 G0 X#1       (expect: vacant-variable)
         M30
 
     Good:

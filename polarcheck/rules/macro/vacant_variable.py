@@ -3,7 +3,12 @@ from __future__ import annotations
 from polarcheck.checking.rule import WARNING, Faults, Mask, rule
 
 
-@rule(WARNING, "{what}", over="faults")
+@rule(
+    WARNING,
+    "{shown} has a vacant variable: the control drops this address; assign the variable before, or hand it"
+    " over as an argument",
+    over="faults",
+)
 def vacant_variable(faults: Faults) -> Mask:
     """
     Address with a vacant variable.
@@ -16,9 +21,14 @@ def vacant_variable(faults: Faults) -> Mask:
     Bad:
 
         O0001
-        #0=1             (expect: read-only-variable)
-        G0 X#101 Z5.     (expect: vacant-variable)
+        #101=50.
+        G0 X#101 Z#102   (expect: vacant-variable)
+        G65 P9001 A1.
+        #[#103]=4.       (expect: read-only-variable)
         M30
+        O9001
+        G0 X#1 Z#2       (expect: vacant-variable)
+        M99
 
     Good:
 

@@ -3,7 +3,7 @@ from __future__ import annotations
 from polarcheck.checking.rule import ERROR, Faults, Mask, rule
 
 
-@rule(ERROR, "{what}", over="faults")
+@rule(ERROR, "{variable} does not exist; this control has {ranges}", over="faults")
 def variable_out_of_range(faults: Faults) -> Mask:
     """
     Variable that does not exist.
@@ -16,8 +16,11 @@ def variable_out_of_range(faults: Faults) -> Mask:
     Bad:
 
         O0001
-        #0=1             (expect: read-only-variable)
         #50=1            (expect: variable-out-of-range)
+        #1=#200+1        (expect: variable-out-of-range)
+        #2=180
+        #[#2+20]=1       (expect: variable-out-of-range)
+        #3=#2/0          (expect: arithmetic-error)
         M30
 
     Good:
@@ -25,6 +28,7 @@ def variable_out_of_range(faults: Faults) -> Mask:
         O0001
         #33=1
         #100=2
+        #[#100+98]=3
         M30
     """
     return faults.rule == "variable-out-of-range"

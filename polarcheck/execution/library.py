@@ -1,0 +1,111 @@
+"""The called programs that lie in the folders of the job: each is looked for and read once, whoever calls it."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from functools import cached_property
+from pathlib import Path
+
+import msgspec
+
+from polarcheck.execution.listing import Listing
+from polarcheck.execution.programs import Called, read_text
+from polarcheck.machines.machine import Machine
+from polarcheck.reading.source import Source, read
+from polarcheck.reading.words import Text
+
+#: A called program is a program, not an archive [bytes].
+_LARGEST = 50_000_000
+_MOST_LOOKED_FOR = 100
+_NAME = re.compile(r"[A-Za-z0-9+_.-]{1,64}")
+
+
+class Library:
+    """The folders of a job, and what has been looked for in them."""
+
+    def __init__(self, folders: Sequence[str], machine: Machine) -> None:
+        self._folders = [Path(folder).resolve() for folder in folders]
+        self._machine = machine
+        self._texts: dict[Called, Text | None] = {}
+
+    @cached_property
+    def _paths(self) -> list[tuple[Path, list[Path]]]:
+        """Each folder and what lies in it, by name."""
+        return [(folder, sorted(folder.iterdir())) for folder in self._folders if folder.is_dir()]
+
+    def text(self, called: Called) -> Text | None:
+        """The program of a call, read; None where no folder has it, or too many have been looked for."""
+        if called not in self._texts:
+            if len(self._texts) > _MOST_LOOKED_FOR:
+                return None
+            source = self.find(called)
+            self._texts[called] = read_text(source, self._machine) if source is not None else None
+        return self._texts[called]
+
+    def find(self, called: Called) -> Source | None:
+        """
+        A program in the folders of the job, never outside them: O1234, 1234.nc, O1234.NC, or its <name>.
+
+        A file without an O number of its own is given that of the call.
+        """
+        number, name = called
+        if number is not None:
+            wanted = re.compile(rf"O?0*{number}(?:\.[A-Za-z]{{1,4}})?", re.IGNORECASE)
+        elif name is not None and _NAME.fullmatch(name):
+            wanted = re.compile(rf"{re.escape(name)}(?:\.[A-Za-z]{{1,4}})?", re.IGNORECASE)
+        else:
+            return None
+        for folder, paths in self._paths:
+            for path in paths:
+                if wanted.fullmatch(path.name) and path.resolve().is_relative_to(folder) and _is_program(path):
+                    return _with_head(path, called)
+        return None
+
+
+def _is_program(path: Path) -> bool:
+    return path.is_file() and path.stat().st_size < _LARGEST
+
+
+def _with_head(path: Path, called: Called) -> Source | None:
+    try:
+        data = path.read_bytes()
+    except OSError:
+        return None
+    number, name = called
+    own = re.search(rb"^\s*%?\s*[O:]\s*(\d{1,15}(?!\d)|<[^>\n]*>)", data, re.MULTILINE | re.IGNORECASE)
+    right = own is not None and (own[1].isdigit() and number is not None and int(own[1]) == number)
+    if right or (own and name is not None and own[1].strip(b"<>").decode("latin-1").upper() == name.upper()):
+        return read(data, path.name)
+    head = f"O{number:04d}" if number is not None else f"O<{name}>"
+    return msgspec.structs.replace(read(head.encode() + b"\n" + data, path.name), added_lines=1)
+
+
+class Shelf:
+    """
+    The listing of a file with all called files that were found so far; it grows where a call names another one.
+
+    From the start it holds the files of all programs that are named literally, and that those name in turn.
+    """
+
+    def __init__(self, text: Text, machine: Machine, folders: Sequence[str]) -> None:
+        self._library = Library(folders, machine)
+        self.listing = Listing([text], machine)
+        self._add([called for called in self.listing.calls(0) if not self.listing.programs.named(called)])
+
+    def add(self, called: Called) -> bool:
+        """Look for the file of a call whose number was computed; whether the listing has grown by it."""
+        before = self.listing
+        self._add([called])
+        return self.listing is not before
+
+    def _add(self, wanted: Sequence[Called]) -> None:
+        while True:
+            missing = [called for called in dict.fromkeys(wanted) if called not in self.listing.found]
+            files = {called: text for called in missing if (text := self._library.text(called)) is not None}
+            if not files:
+                return
+            known = len(self.listing.files)
+            self.listing = self.listing.with_files(files)
+            added = [called for file in range(known, len(self.listing.files)) for called in self.listing.calls(file)]
+            wanted = [called for called in added if not self.listing.programs.named(called)]

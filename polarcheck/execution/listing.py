@@ -1,0 +1,118 @@
+"""The listing of a file and of the files that it calls: all that is known of their blocks before one of them runs."""
+
+from __future__ import annotations
+
+import bisect
+import itertools
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+
+from polarcheck.execution.arithmetic import Arithmetic
+from polarcheck.execution.loops import Loops, find_loops
+from polarcheck.execution.macro import Variables, called_program
+from polarcheck.execution.programs import Called, Program, block_text, find_programs, first_blocks, turns
+from polarcheck.execution.statement import Statement, read_statement
+from polarcheck.machines.machine import Machine
+from polarcheck.reading.joining import joined
+from polarcheck.reading.words import Text
+
+#: Bound of the words of a block, and of the steps of an expression.
+_SIZE = 5_000
+
+
+class Listing:
+    """
+    The text, the programs and the statements, each read once and shared by all runs.
+
+    files: the text of the file itself, then of each called one. text: of all, one behind the other. programs: of all.
+    found: the calls for which a file was found, and its index in files. stops: the blocks at which the flow can turn.
+    """
+
+    def __init__(self, files: Sequence[Text], machine: Machine, found: dict[Called, int] | None = None) -> None:
+        self.files = list(files)
+        self.found = found or {}
+        self.machine = machine
+        self.macro = machine.macro
+        self.ends = frozenset(machine.m_codes.program_end)
+        self.arithmetic = Arithmetic(self.macro.signed_angles, self.macro.largest_number)
+        self.text = joined(self.files)
+        self.programs = find_programs(self.text)
+        self.first_blocks = [*first_blocks(self.text), len(self.text.blocks)]
+        self._flow_codes, self._call_codes = self.macro.flow_codes, self.macro.call_codes
+        self.stops: list[int] = np.flatnonzero(turns(self.text, self._flow_codes | self.ends)).tolist()
+        self._statements: dict[int, Statement] = {}
+        self._loops: dict[int, Loops] = {}
+        self._calls: dict[int, dict[Called, bool]] = {}
+        self._nothing_known = Variables(self.macro)
+        self._nothing_known.forget()
+
+    def with_files(self, files: dict[Called, Text]) -> Listing:
+        """The listing with more called files behind it; what was read of the others is kept."""
+        indices = dict(zip(files, itertools.count(len(self.files)), strict=False))
+        grown = Listing([*self.files, *files.values()], self.machine, self.found | indices)
+        grown._statements, grown._loops, grown._calls = self._statements, self._loops, self._calls
+        return grown
+
+    def statement(self, block: int) -> Statement:
+        """The statement of a block."""
+        if block not in self._statements:
+            self._statements[block] = read_statement(
+                block_text(self.text, block),
+                calls=self._flow_codes,
+                loops=self.macro.loop_numbers,
+                levels=self.macro.bracket_levels,
+                size=_SIZE,
+            )
+        return self._statements[block]
+
+    def _stops_between(self, first: int, end: int) -> list[int]:
+        return self.stops[bisect.bisect_left(self.stops, first) : bisect.bisect_left(self.stops, end)]
+
+    def turns_at(self, block: int) -> bool:
+        """Whether the flow can turn at a block."""
+        at = bisect.bisect_left(self.stops, block)
+        return at < len(self.stops) and self.stops[at] == block
+
+    def macro_statements(self, program: Program) -> list[tuple[int, Statement]]:
+        """The macro statements of a program with their blocks, in order."""
+        stops = self._stops_between(program.first, program.end)
+        return [(block, self.statement(block)) for block in stops if self.text.blocks.is_macro[block]]
+
+    def loops(self, program: Program) -> Loops:
+        """The loops of a program."""
+        if program.first not in self._loops:
+            self._loops[program.first] = find_loops(self.macro_statements(program), self.macro.loop_levels)
+        return self._loops[program.first]
+
+    def calls(self, file: int) -> tuple[Called, ...]:
+        """The programs that the calls of a file name literally, whether they are run or not; each once, in order."""
+        return tuple(self._calls_of(file))
+
+    def named_by(self, files: Iterable[int], *, by_number_only: bool) -> set[int | str]:
+        """
+        The numbers and names (Program.keys) of the programs that some of the files name literally.
+
+        by_number_only: without those named by <NAME>, or in a block with macro.
+        """
+        calls = [call for file in files for call in self._calls_of(file).items()]
+        chosen = [called for called, is_plain in calls if not by_number_only or (is_plain and called.name is None)]
+        return {key for called in chosen for key in called.keys}
+
+    def _calls_of(self, file: int) -> dict[Called, bool]:
+        """The same calls, and whether a block without macro has each."""
+        if file not in self._calls:
+            found = self._calls[file] = {}
+            for block in self._stops_between(self.first_blocks[file], self.first_blocks[file + 1]):
+                called = self._named_in(block)
+                if called is not None:
+                    found[called] = found.get(called, False) or not self.text.blocks.is_macro[block]
+        return self._calls[file]
+
+    def _named_in(self, block: int) -> Called | None:
+        statement = self.statement(block)
+        call = statement if statement.then is None else statement.then
+        if call.call not in self._call_codes:
+            return None
+        called = called_program(call, self._nothing_known, self.macro, self.arithmetic).program
+        return None if called == Called(None, None) else called

@@ -1,0 +1,157 @@
+"""Each key of [macro] decides something: changed, a program is executed or reported otherwise."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import msgspec
+import pytest
+from programs import machine_of, report_of, said, trace_of
+
+from polarcheck.errors import MachineError
+from polarcheck.machines.machine import Macro
+
+_SUB = "M30\nO2\nG0 X#24 Z#4 U#7\nM99\n"
+#: Key -> what it is changed to, and the program; X, Z and U of its rows, or what is said, are no longer the same.
+KEYS: dict[str, tuple[Any, str]] = {
+    "local_variables": ([[1, 26]], "#27=5.\nG0 X#27\nM30\n"),
+    "common_variables": ([[100, 149]], "#150=5.\nG0 X#150\nM30\n"),
+    "retained_variables": ([[500, 531]], "#600=5.\nG0 X#600\nM30\n"),
+    "system_variables": ([[1000, 8999]], "#9500=5.\nG0 X#9500\nM30\n"),
+    "read_only_variables": ([[4001, 4130]], "#5021=5.\nG0 X#5021\nM30\n"),
+    "clock_variables": ([], "#3001=5.\nG0 X#3001\nM30\n"),
+    "alarm_variables": ([], "#3000=1(STOP)\nG0 X5.\nM30\n"),
+    "stop_variables": ([], "#3006=1(TURN)\nG0 X5.\nM30\n"),
+    "subprogram_calls": (["M198"], "M98 P2\n" + _SUB),
+    "macro_calls": ([], "G65 P2 X5.\n" + _SUB),
+    "modal_macro_calls": ([], "G66 P2 X5.\nG0 Z1.\n" + _SUB),
+    "modal_macro_calls_each_block": ([], "G66.1 P2 G1 X5.\nG0 Z1.\n" + _SUB),
+    "modal_macro_cancel": ([], "G66 P2 X5.\nG67\nG0 Z1.\n" + _SUB),
+    "program_returns": (["M97"], "M98 P2\nM30\nO2\nG0 X5.\nM99\nG0 X6.\n"),
+    "computed_increments": ({"G": 0.1, "M": 1, "S": 1, "T": 1, "X": 0.5}, "G0 X[5.3]\nM30\n"),
+    "bracket_levels": (1, "#1=[[5.]]\nG0 X#1\nM30\n"),
+    "loop_numbers": (4, "#1=0\nWHILE[#1 LT 2]DO4\n#1=#1+1\nEND4\nG0 X#1\nM30\n"),
+    "loop_levels": (1, "WHILE[1 EQ 2]DO1\nWHILE[1 EQ 2]DO2\nEND2\nEND1\nG0 X5.\nM30\n"),
+    "subprogram_levels": (1, "M98 P2\nM30\nO2\nM98 P3\nM99\nO3\nG0 X5.\nM99\n"),
+    "macro_levels": (1, "G65 P2 A1.\nM30\nO2\nG65 P3 A1.\nM99\nO3\nG0 X5.\nM99\n"),
+    "repeats_in_p": (False, "M98 P30002\n" + _SUB),
+    "second_arguments": (False, "G65 P2 X5. I1. I2.\n" + _SUB),
+    "signed_angles": (True, "G0 X[ATAN[-1]/[-1]]\nM30\n"),
+    "largest_number": (100, "G0 X[20*20]\nM30\n"),
+    "given": ({500: 5.0}, "G0 X#500\nM30\n"),
+}
+
+
+def outcome(program: str, changes: dict[str, Any]) -> tuple[Any, ...]:
+    trace = trace_of(f"O1\n{program}", changes=changes)
+    report = report_of(f"O1\n{program}", changes=changes)
+    words = [[None if value != value else value for value in trace.word(address).tolist()] for address in "XZU"]
+    return words, said(report), [(entry.rule, entry.reason) for entry in report.not_evaluated]
+
+
+def test_no_key_is_forgotten() -> None:
+    assert [field.name for field in msgspec.structs.fields(Macro)] == list(KEYS)
+
+
+@pytest.mark.parametrize("key", KEYS)
+def test_changing_a_key_changes_a_result(key: str) -> None:
+    value, program = KEYS[key]
+    assert outcome(program, {}) != outcome(program, {"macro": {key: value}})
+
+
+def test_program_ends_are_those_of_the_machine() -> None:
+    """Also in a program that runs straight, in a computed word, and for what counts as a subprogram."""
+    ends = {"m_codes": {"program_end": ["M60"]}}
+    for program in ("O1\nG0 X1.\nM60\nG0 X2.\n", "O1\n#1=60\nG0 X1.\nM#1\nG0 X2.\n"):
+        whole, ended = (trace_of(program, changes=changes) for changes in (None, ends))
+        assert ended.starts.sum() > whole.starts.sum() or len(ended) < len(whole)
+    unknown = "O1\n#500=#1\nIF[#1 EQ 0]GOTO 5\nN5 {}\nM99\n"
+    assert not report_of(unknown.format("M60"), changes=ends).not_evaluated
+    assert report_of(unknown.format("M30"), changes=ends).not_evaluated
+
+
+@pytest.mark.parametrize("end", ["M2", "M02", "M30", "M99"])
+def test_an_end_in_a_block_with_macro_ends_the_program(end: str) -> None:
+    program = f"%\nO1\nG0 Z5.\n#1=5.\nG0 X#1 {end}\n%\n"
+    assert not report_of(program).findings
+    assert [finding.rule for finding in report_of(program.replace(end, "M3")).findings] == ["program-end-missing"]
+
+
+@pytest.mark.parametrize(
+    ("program", "expected"),
+    [
+        ("G21\nG0 X[1.23456]\nM30\n", 1.235),
+        ("G20\nG0 X[1.23456]\nM30\n", 1.2346),
+        ("G0 X[1.23456]\nM30\n", 1.235),
+        ("#1=20\nG#1\nG0 X[1.23456]\nM30\n", 1.2346),
+        ("M98 P2\nG0 X[1.23456]\nM30\nO2\nG20\nM99\n", 1.2346),
+        ("G20\nG21\nG4 X1.\nG0 X[1.23456]\nM30\n", 1.235),
+    ],
+)
+def test_a_computed_length_is_rounded_to_the_least_increment_of_its_unit(program: str, expected: float) -> None:
+    trace = trace_of(f"O1\n{program}")
+    assert trace.word("X")[~(trace.word("X") != trace.word("X"))][-1] == expected
+
+
+def test_the_unit_is_that_of_the_job_where_the_program_says_none() -> None:
+    program = "O1\nG0 X[1.23456]\nM30\n"
+    assert trace_of(program, job={"program_units": "inch"}).word("X")[1] == 1.2346
+    assert trace_of(program, changes={"control": {"units": "inch"}}).word("X")[1] == 1.2346
+    assert trace_of(program, changes={"control": {"least_increment": 0.01}}).word("X")[1] == 1.23
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "said_of_it"),
+    [
+        ("subprogram_calls", ["M098"], "leading zeros"),
+        ("macro_calls", ["CALL"], "expected a G or M code"),
+        ("computed_increments", {"G": 0}, "above 0"),
+        ("local_variables", [[1]], "length 2"),
+    ],
+)
+def test_what_is_no_code_or_range_is_refused(key: str, value: Any, said_of_it: str) -> None:
+    with pytest.raises(MachineError, match=said_of_it):
+        machine_of(changes={"macro": {key: value}})
+
+
+_WITH_NUMBERS = (
+    *(
+        "M98P{}",
+        "G65 P{} A1.",
+        "M98 P2 L{}",
+        "M99 P{}",
+        "GOTO {}",
+        "T{}",
+        "N{} G0 X1.",
+        "M{}",
+        "G{}",
+        "G66P{}",
+        "#{}=1",
+    ),
+    *(
+        "G0 X#{}",
+        "M98 P[{}]",
+        "T[{}]",
+        "G[{}]",
+        "#1={}\nM98 P#1 L#1",
+        "DO{}\nEND{}",
+        "/{} G0 X1.",
+        "O{}",
+        "S{}",
+        "<O{}>",
+    ),
+)
+
+
+#: 20 digits, 309 (ten times that is no float), and 400 (which no float holds).
+@pytest.mark.parametrize("digits", ["1" + "0" * 19, "1" + "0" * 308, "9" * 400])
+@pytest.mark.parametrize("block", _WITH_NUMBERS)
+def test_a_number_of_any_length_is_a_finding_and_no_warning(block: str, digits: str) -> None:
+    report = report_of("O1\nG0 X50.\n" + block.replace("{}", digits) + "\nM30\nO2\nM99\n")
+    assert report.findings or block in ("T[{}]", "G[{}]", "/{} G0 X1.", "<O{}>")
+    report_of(f"O{digits}\nM98 P{digits}\nM30\n")
+
+
+def test_a_call_of_twenty_digits_names_no_program() -> None:
+    report = report_of("O1\nM98P10000000000000000000\nM30\n")
+    assert said(report) == [(2, "subprogram-missing"), (2, "too-many-digits")]
