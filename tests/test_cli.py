@@ -517,7 +517,7 @@ def test_a_profile_is_shown_as_a_profile_that_says_the_same(name: str) -> None:
     shown = call("machines", name).stdout
     Path("copy.toml").write_text(shown, "utf-8")
     said, meant = (
-        msgspec.structs.replace(profiles.load(of).machine, meanings={}, notes=[]) for of in ("copy.toml", name)
+        msgspec.structs.replace(profiles.load(of).machine, known_parameters={}, notes=[]) for of in ("copy.toml", name)
     )
     assert repr(said) == repr(meant)  # NaN differs from itself
 

@@ -303,9 +303,16 @@ def test_native_words_keep_every_position() -> None:
     words = {"TRANSMIT": "G12.1", "CR=": "R", "TRAFOOF": "G13.1", "AB": ""}
     text = "N10 transmit\nG3X5CR=2.5 XTRANSMIT TRANSMITX\nTRAFOOF(1) AB CAB AB1\n"
     found = translation.translated(source.read(text.encode()), words)
-    assert found.code.tobytes() == b"N10    G12.1\nG3X5  R2.5 XTRANSMIT TRANSMITX\n  G13.1(1)    CAB AB1\n"
+    assert found.code.tobytes() == b"N10 G00012.1\nG3X5  R2.5 XTRANSMIT TRANSMITX\nG0013.1(1)    CAB AB1\n"
     assert found.excerpt(4, 12) == "transmit"
     assert translation.translated(found, {}) is found
+
+
+def test_words_of_ones_own_need_no_code() -> None:
+    program = "G0 X60. Y0\nG1 X40. F9\nRADIUS\nX20.\nDIAM\nX20.\n"
+    words = {"x_radius_words": ["RADIUS"], "x_diameter_words": ["DIAM"]}
+    trace = trace_of(program, "fanuc", changes={"control": words})
+    assert trace.x.tolist() == [30, 20, 20, 20, 20, 10]
 
 
 def test_messages_name_the_native_word() -> None:

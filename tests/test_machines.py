@@ -15,16 +15,15 @@ from polarcheck.checking.finding import ERROR
 from polarcheck.checking.rule import load_all
 from polarcheck.commands import main
 from polarcheck.errors import MachineError
-from polarcheck.machines import profiles
-from polarcheck.machines.machine import Machine
+from polarcheck.machines import codes, modal, profiles
+from polarcheck.machines.machine import Machine, meanings
 from polarcheck.machines.parameters import Origin
+from polarcheck.machines.renamed import RENAMED
 from polarcheck.reports.pages import controls, new_machine
 
 PACKAGE = Path(__file__).parent.parent / "polarcheck"
 GROUPS = [field for field in msgspec.structs.fields(Machine) if isinstance(field.type, type)]
 GROUPS = [field for field in GROUPS if issubclass(field.type, msgspec.Struct)]
-#: What shows profiles without using them.
-SHOWN = ("machine.py", "manual.py", "schema.py", "new_machine.py", "controls.py")
 #: Severities of rules that hang on a value of the profile.
 HANGS_ON = {
     "polar.allowed_codes": "code-not-allowed-in-polar",
@@ -36,6 +35,10 @@ HANGS_ON = {
 @pytest.fixture(autouse=True)
 def _in_an_empty_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
+
+
+def field_names(group: str) -> list[str]:
+    return [key.name for field in GROUPS if field.name == group for key in msgspec.structs.fields(field.type)]
 
 
 def load(text: str) -> profiles.Profile:
@@ -77,11 +80,18 @@ def test_every_value_that_is_known_is_in_the_profile(name: str) -> None:
 
 
 @pytest.mark.parametrize("field", GROUPS, ids=lambda field: field.name)
-def test_every_key_is_used(field: msgspec.structs.FieldInfo) -> None:
-    code = "".join(path.read_text("utf-8") for path in PACKAGE.rglob("*.py") if path.name not in SHOWN)
-    code += Path(PACKAGE / "machines" / "profiles.py").read_text("utf-8").partition("class Profile")[2]
-    unused = [key.name for key in msgspec.structs.fields(field.type) if not re.search(rf"\.{key.name}\b", code)]
-    assert not unused
+def test_every_key_says_what_it_means_in_the_class_and_in_the_file(field: msgspec.structs.FieldInfo) -> None:
+    if field.name == "macro" or field.name in ("g_code_system_b", "g_code_system_c"):
+        pytest.skip("said elsewhere")
+    text = (PACKAGE / "machines" / "fanuc.toml").read_text("utf-8")
+    table = text.partition(f"\n[{field.name}]\n")[2].partition("\n[")[0]
+    said = meanings(field.type)
+    assert list(said) == [key.name for key in msgspec.structs.fields(field.type)]
+    for key, meaning in said.items():
+        at_its_line = (f"# {meaning}\n{key} = ", f"# {key}: {meaning}\n", f"  # {meaning}\n")
+        found = re.search(rf"(?:^#.*\n)?^(?:# )?{key}(?: =|:).*\n", table, re.MULTILINE)
+        assert found
+        assert any(text in found[0] for text in at_its_line), key
 
 
 @pytest.mark.parametrize("name", profiles.names())
@@ -112,7 +122,7 @@ def test_alarms_of_another_control_are_not_inherited(name: str) -> None:
 @pytest.mark.parametrize("name", profiles.names())
 def test_parameters_set_what_there_is(name: str) -> None:
     """Every setting of every parameter gives a machine that can be loaded."""
-    for parameter, meaning in profiles.load(name).machine.meanings.items():
+    for parameter, meaning in profiles.load(name).machine.known_parameters.items():
         for setting in (*meaning.values, *([12] if meaning.key else [])):
             number = int(setting) if str(setting).isdecimal() else setting
             changed = profiles.load(name, {"parameters": {parameter: number}})
@@ -138,6 +148,21 @@ def test_the_nearest_profile_counts() -> None:
     assert profiles.load("own.toml", {"limits": {"c_feed": 100}}).machine.limits.c_feed == 100
 
 
+def test_a_table_can_say_the_source_of_its_values_once() -> None:
+    own = load(
+        "inherits = 'fanuc'\n[limits]\nsource = 'plate'\ndoubtful = true\nc_feed = 3600\n"
+        "keep_out = { value = 1, source = 'guess' }\nx_maximum = { value = 90, doubtful = false }\n"
+        "[alarms]\nsource = 'list'\nrapid-in-polar = 'A1'\n[parameters]\nsource = 'screen'\n3410 = 20\n"
+    )
+    assert own.origins["limits.c_feed"] == Origin("own.toml", "plate", True)
+    assert own.origins["limits.keep_out"] == Origin("own.toml", "guess", True)
+    assert own.origins["limits.x_maximum"] == Origin("own.toml", "plate", False)
+    assert own.origins["alarms.rapid-in-polar"] == Origin("own.toml", "list")
+    assert own.machine.alarms.get("source") is None
+    assert own.machine.parameters == {"3410": 20}
+    assert own.machine.arcs.tolerance == 0.02
+
+
 def test_tables_of_another_control_can_be_left_behind() -> None:
     own = load("inherits = 'fanuc'\nreplaces = ['alarms', 'severities']\n[alarms]\nrapid-in-polar = 'A1'\n")
     assert own.machine.alarms == {"rapid-in-polar": "A1"}
@@ -159,21 +184,55 @@ def test_tables_of_another_control_can_be_left_behind() -> None:
         ("inherits = 'fanuc'\n[limits]\nc_feed = { v = 1 }", "own.toml: limits.c_feed: expected value, source and"),
         ("inherits = 'fanuc'\n[polar]\nx = 'radial'", "own.toml: polar.x: invalid enum value 'radial'"),
         ("inherits = 'fanuc'\n[polar]\ncenter_words = ['I']", "own.toml: polar.center_words: "),
-        ("inherits = 'fanuc'\nreplaces = ['limits']", "own.toml: replaces: expected a list of alarms, meanings,"),
+        ("inherits = 'fanuc'\nreplaces = ['limits']", "own.toml: replaces: expected a list of alarms, known_"),
         ("inherits = 'fanuc'\nreplaces = 3", "own.toml: replaces: expected a list of"),
         ("inherits = 'fanuc'\nlimits = 3", "own.toml: limits: expected `object`, got `int`"),
         ("inherits = 'fanuc'\nparameters = 3", "own.toml: parameters: expected `object`, got `int`"),
         ("inherits = 'fanuc'\n[parameters]\n'5451#1' = 1", "own.toml: parameters: no meaning is known for 5451#1; did"),
         ("inherits = 'fanuc'\n[parameters]\n'5450#1' = 2", "own.toml: parameters.5450#1: expected 0 or 1, not 2"),
         ("inherits = 'fanuc'\n[parameters]\n1422 = 'much'", "own.toml: parameters.1422: expected a number, not much"),
-        ("inherits = 'fanuc'\n[meanings]\n1 = 1\n[parameters]\n1 = 1", "own.toml: meanings: Expected `object`"),
+        ("inherits = 'fanuc'\n[known_parameters]\n1 = 1\n[parameters]\n1 = 1", "own.toml: known_parameters: Expected"),
         ("inherits = 'fanuc'\n[control]\nnative_words = { AB = 'G12.1' }", "own.toml: control: native_words: 'G12"),
+        ("inherits = 'fanuc'\n[control]\nx_radius_words = ['RAD']", "own.toml: control: native_words: 'G0.1' has no"),
+        (f"inherits = 'fanuc'\n[control]\nx_radius_words = {list('ABCDEFGHIJ')}", "own.toml: control: no more than 9"),
         ("inherits = 'fanuc'\n[control]\nmotion_codes = { G101 = 'M3' }", "own.toml: control: motion_codes: G101 ="),
+        ("inherits = 'fanuc'\n[g_codes]\nrapid = ['GO']", "own.toml: g_codes.rapid: 'GO' is no code"),
+        ("inherits = 'fanuc'\n[g_codes]\nrapid = ['G0', 'G12.15']", "own.toml: g_codes.rapid: 'G12.15' is no code"),
+        ("inherits = 'fanuc'\n[m_codes]\nlive_tool_on = ['33']", "own.toml: m_codes.live_tool_on: '33' is no code"),
+        ("inherits = 'fanuc'\n[polar]\nallowed_codes = ['G1', 'ROT']", "own.toml: polar.allowed_codes: 'ROT' is no"),
+        ("inherits = 'fanuc'\n[g_codes]\nline = ['G0']", "own.toml: g_codes.line: G0 is in g_codes.rapid, too"),
+        ("inherits = 'fanuc'\n[g_codes]\nrapid = ['G0', 'G33']\n[control]\ng_code_system = 'B'",
+         "own.toml: g_codes.rapid: G33 is in g_code_system_b.thread_cutting, too"),
         ("inherits = ", "own.toml: "),
     ],
 )  # fmt: skip
 def test_what_is_wrong_is_said_in_one_line(text: str, said: str) -> None:
     assert complaint(text).startswith(said)
+
+
+@pytest.mark.parametrize(("old", "new"), RENAMED.items())
+def test_an_old_name_is_told_the_new_one(old: str, new: str) -> None:
+    group, _, key = old.partition(".")
+    assert complaint(f"inherits = 'fanuc'\n[{group}]\n{key or 'x'} = 1") == f"own.toml: {old} is now {new}"
+    group, _, key = new.partition(".")
+    assert group in Machine.__struct_fields__
+    assert not key or key in field_names(group)
+
+
+def test_old_names_are_told_wherever_they_stand(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(RENAMED, "limits.c_rate", "limits.c_feed")
+    told = "limits.c_rate is now limits.c_feed"
+    with pytest.raises(MachineError, match=f"^the command line or job: {told}$"):
+        profiles.load("fanuc", {"limits": {"c_rate": 1}})
+    meaning = "[known_parameters]\n1 = { value = { title = '', key = 'limits.c_rate' } }\n[parameters]\n1 = 2"
+    assert complaint(f"inherits = 'fanuc'\n{meaning}") == f"own.toml: {told}"
+    assert complaint("inherits = 'fanuc'\nreplaces = ['meanings']") == "own.toml: meanings is now known_parameters"
+
+
+@pytest.mark.parametrize("name", profiles.names())
+@pytest.mark.parametrize("system", "ABC")
+def test_built_in_lists_hold_codes(name: str, system: str) -> None:
+    profiles.load(name, {"control": {"g_code_system": system}})  # changes are checked, and what they are made to
 
 
 # ---- control parameters ----
@@ -188,15 +247,16 @@ def test_what_is_wrong_is_said_in_one_line(text: str, said: str) -> None:
         ("fanuc", {"3401#6": 1, "3401#7": 0}, {"control.g_code_system": "B"}),
         ("fanuc", {"3401#7": 1}, {"control.g_code_system": "C"}),
         ("fanuc", {"3410": 20}, {"arcs.tolerance": 0.02}),
-        ("fanuc", {"5003#1": 1, "5003#0": 1}, {"compensation.start_up": "C", "compensation.start_up_moving": "B"}),
+        ("fanuc", {"5003#1": 1, "5003#0": 1}, {"compensation.start_up": "C", "compensation.start_up_with_move": "B"}),
         ("fanuc", {"19625": 6}, {"compensation.read_ahead": 6}),
         ("fanuc", {"5450#1": 1, "5462": 2000}, {"limits.automatic_override": True, "limits.polar_feed": 2000}),
         ("fanuc", {"5463": 0}, {"limits.override_share": 90}),
         ("fanuc", {"1056": 70}, {"limits.override_share": 70}),
-        ("fanuc", {"5450#0": 1}, {"polar.virtual_axis_is": "diameter"}),
+        ("fanuc", {"5450#0": 1}, {"polar.virtual_axis_programming": "diameter"}),
         ("gsk-988", {"5450#6": 1, "5460": 2, "5461": 4}, {"polar.x": "radius", "polar.linear_axis": 2}),
         ("gsk-988", {"5450#1": 1, "5462": 500}, {"limits.automatic_override": True, "limits.polar_feed": 500}),
-        ("mitsubishi-m700", {"1517": 0}, {"polar.virtual_axis": "Y", "polar.other_virtual_axis": ["C", "H"]}),
+        ("mitsubishi-m700", {"1517": 0}, {"polar.virtual_axis": "Y", "polar.virtual_axis_incremental": "V"}),
+        ("mitsubishi-m700", {"1517": 0}, {"polar.virtual_axis_of_other_controls": ["C", "H"]}),
         ("mitsubishi-m700", {"1517": 1, "1516": "C"}, {"polar.virtual_axis": "C"}),
         ("mitsubishi-m700", {"8111": 0, "1019": 1}, {"polar.x": "radius", "control.x": "diameter"}),
         ("mitsubishi-m700", {"8111": 1, "1019": 1}, {"polar.x": "diameter", "control.x": "diameter"}),
@@ -260,3 +320,40 @@ def test_a_new_profile_replaces_no_file(arguments: list[str], told: str) -> None
     assert (found.exit_code, found.stdout, found.stderr) == (2, "", f"polarcheck: {told}\n")
     assert [path.name for path in Path().iterdir()] == ["NL2000.toml"]
     assert Path("NL2000.toml").read_text("utf-8") == "own"
+
+
+# ---- G codes by what they do ----
+
+
+@pytest.mark.parametrize(
+    ("system", "expected"),
+    [
+        ("A", {"G90": ("motion", 9), "G20": ("units", 20), "G98": ("feed_mode", 94), "G99": ("feed_mode", 95)}),
+        ("B", {"G90": ("distance", 90), "G77": ("motion", 9), "G94": ("feed_mode", 94), "G98": ("", 0)}),
+        ("C", {"G20": ("motion", 9), "G70": ("units", 20), "G71": ("units", 21), "G91": ("distance", 91)}),
+    ],
+)
+def test_the_profile_lists_the_modal_groups(system: str, expected: dict[str, tuple[str, int]]) -> None:
+    of_all = {
+        "G0": ("motion", 0), "G3": ("motion", 3), "G2.2": ("motion", 9), "G18": ("plane", 18), "G40": ("side", 40),
+        "G42": ("side", 42), "G93": ("feed_mode", 93), "G96": ("speed", 96), "G97": ("speed", 0),
+        "G57": ("work_offset", 57), "G54.1": ("work_offset", 54), "G83.5": ("drilling", 83), "G80": ("drilling", 0),
+        "G51": ("scaling", 51), "G68.1": ("rotation", 68), "G51.1": ("mirror", 51), "G69": ("mirror", 0),
+        "G66.1": ("modal_call", 66), "G4": ("", 0),
+    }  # fmt: skip
+    machine = profiles.load("fanuc", {"control": {"g_code_system": system}}).machine
+    names, group_of, state_of = codes.modal_tables(machine)
+    for word, (group, state) in (of_all | expected).items():
+        number = codes.code(word)
+        assert (group_of[number], state_of[number]) == (names.index(group) + 1 if group else 0, state), word
+
+
+@pytest.mark.parametrize(("system", "setting"), [("A", "G50"), ("B", "G92"), ("C", "G92")])
+def test_the_profile_lists_the_codes_whose_axis_words_are_no_move(system: str, setting: str) -> None:
+    machine = profiles.load("fanuc", {"control": {"g_code_system": system}}).machine
+    found = codes.code_set(code for key in modal.NO_MOVE for code in machine.codes(key))
+    for word in ("G4", "G10", "G28", "G30", "G52", "G53", "G65", "G66.1", "G107", "G73", setting):
+        assert found[codes.code(word)], word
+    for word in ("G0", "G1", "G2", "G40", "G41", "G54", "G98", "G99", "G12.1"):
+        assert not found[codes.code(word)], word
+    assert machine.codes("coordinate_setting") == [setting]

@@ -138,7 +138,7 @@ def test_why_the_rate_of_c_is_not_known() -> None:
 
 def test_feed_of_the_mode_is_per_minute_where_the_control_takes_nothing_else() -> None:
     program = "O1\nG99 G0 X60. C0\nG1 Z-5. F.2\nG12.1\nX4. C5. F500\nC-5.\nG13.1\n"
-    changes: dict[str, Any] = {"limits": {"c_feed": 3600}, "feed": {"inheritance": "per-minute-only"}}
+    changes: dict[str, Any] = {"limits": {"c_feed": 3600}, "feed": {"carried_into_polar": "per-minute-only"}}
     assert said(report(program, **changes)) == [(5, "c-feed-above-limit"), (6, "c-feed-above-limit")]
 
 

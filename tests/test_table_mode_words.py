@@ -208,7 +208,7 @@ def test_what_may_stand_beside_a_switch(block: str, machine: str, others: list[s
 
 
 def test_codes_beside_a_switch_are_allowed_by_name() -> None:
-    words = table("G12.1 M8 G98 M9\nG1 X20. F100\nG13.1\n", polar={"switch_words": ["M8", "G98"]})
+    words = table("G12.1 M8 G98 M9\nG1 X20. F100\nG13.1\n", polar={"words_beside_switch": ["M8", "G98"]})
     assert shown(words, words.in_rows(words.switches) & ~words.may_stand_beside_switch) == ["M9"]
 
 

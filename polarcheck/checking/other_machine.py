@@ -108,11 +108,11 @@ def _doubt(tables: Tables) -> int:
         hit = _names_other_axis(tables) | tables["arcs"].x_is_misread
         rows = np.flatnonzero(hit)
         return int(trace.sections.enter[trace.section[rows[0]]]) if len(rows) else -1
-    codes = [word for word in trace.machine.polar.other_on if word[1:2].isdigit()]
+    codes = [word for word in trace.machine.polar.on_of_other_controls if word[1:2].isdigit()]
     rows = np.flatnonzero(trace.codes(*codes)) if codes else np.zeros(0, np.int64)
     if len(rows):
         return int(rows[0])
-    return _row_of_word(trace, [word for word in trace.machine.polar.other_on if word not in codes])
+    return _row_of_word(trace, [word for word in trace.machine.polar.on_of_other_controls if word not in codes])
 
 
 def _row_of_word(trace: Trace, words: list[str]) -> int:

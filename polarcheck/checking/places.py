@@ -10,7 +10,7 @@ import numpy as np
 
 from polarcheck.arrays import Mask, Rows
 from polarcheck.checking.tables import Tables
-from polarcheck.machines.codes import code_numbers, spelled
+from polarcheck.machines.codes import code_numbers, code_set
 from polarcheck.table.trace import Trace
 
 
@@ -127,7 +127,7 @@ def words_at_fault(tables: Tables, row: int, names: tuple[str, ...], at: Mask | 
     """
     The executed words of a row that are at fault: those of the mask, or those of the names; empty where there are none.
 
-    names: addresses (X, `,R`), codes (G1, M5), "on" and "off" for the codes of the mode.
+    names: addresses (X, `,R`), lists of G codes of the machine (rapid), "on" and "off" for the codes of the mode.
     """
     if row < 0:
         return []
@@ -156,10 +156,12 @@ def _is_named(trace: Trace, index: int, names: tuple[str, ...]) -> bool:
     if address in names or (address.islower() and f",{address.upper()}" in names):
         return True
     number = int(code_numbers(trace.run.words.value[index : index + 1])[0])
-    spelled_code = spelled(address, number) if address in "GM" and number >= 0 else ""
-    polar_mode = trace.machine.polar
     return (
-        spelled_code in names
-        or ("on" in names and spelled_code in polar_mode.on)
-        or ("off" in names and spelled_code in polar_mode.off)
+        address in "GM" and number >= 0 and any(bool(_codes(trace, name)[number]) for name in names if name.islower())
     )
+
+
+def _codes(trace: Trace, name: str) -> Mask:
+    """A table over code numbers, of what a rule names: the switches of the mode, or a list of the machine."""
+    polar = trace.machine.polar
+    return code_set({"on": polar.on, "off": polar.off}.get(name) or trace.machine.codes(name))

@@ -107,9 +107,9 @@ class Rule(msgspec.Struct, frozen=True):
     """
     One rule: its function and what is said about it.
 
-    parameters: the tables that the function compares, by name. over: what the elements of the mask stand for. at:
-    addresses or codes of the words at fault, "on" and "off" for those of the mode; the whole block if empty or if the
-    block has none of them.
+    parameters: the tables that the function compares, by name. over: what the elements of the mask stand for.
+    at: of the words at fault the addresses, or the lists of the machine that their codes stand in (rapid, line), "on"
+    and "off" for the codes of the mode; the whole block if empty or if the block has none of them.
     needs: columns, as in `trace.radius`, without which the rule cannot say anything where the column `where` holds.
     once: report only the first in each section or program. unless: rules that, firing in the same block, say it better.
     worst: of a block that ran often, the run with the highest value of this column is reported.

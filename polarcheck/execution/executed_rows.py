@@ -12,7 +12,6 @@ from polarcheck.arrays import Mask, Rows
 from polarcheck.execution.run import FlowFault, Remark, Run, is_code
 from polarcheck.execution.statement import Statement, Word
 from polarcheck.machines.machine import Machine
-from polarcheck.machines.modal import MODAL_GROUPS, Units
 from polarcheck.reading.words import Blocks, Text, Words
 
 #: Words that move an axis.
@@ -41,12 +40,12 @@ class ExecutedRows:
         self.text = text
         self.inch = self._inch_at_first = inch_at_first
         words, ends = text.words, machine.m_codes.program_end
-        units = MODAL_GROUPS[machine.control.g_code_system]["units"]
-        self._is_inch = {float(code[1:]): state == Units.INCH for code, state in units.items()}
+        inch, mm = machine.codes("inch"), machine.codes("mm")
+        self._is_inch = {float(code[1:]): code in inch for code in (*inch, *mm)}
         self._is_end = {float(code[1:]) for code in ends}
         self.kept = _kept(words) if skip else np.ones(len(words), bool)
         self.ending = set(words.block[is_code(words, ends) & self.kept].tolist())
-        self._units = np.flatnonzero(is_code(words, units) & self.kept)
+        self._units = np.flatnonzero(is_code(words, (*inch, *mm)) & self.kept)
         self.moving = np.unique(words.block[np.isin(words.address, list(AXES.encode())) & self.kept])
         self.ranges: dict[tuple[int, int], _Range] = {}
         self.words: list[Rows] = []

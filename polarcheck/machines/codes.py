@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import functools
-import re
 from collections.abc import Iterable, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
 
 from polarcheck.arrays import Floats, Mask, States
-from polarcheck.machines.modal import MODAL_GROUPS
+from polarcheck.machines.code_lists import numbers
+from polarcheck.machines.machine import Machine
+from polarcheck.machines.modal import OF_CODE, STATES
 
 #: Not a code that a column can hold.
 NO_CODE = -1
@@ -48,26 +49,26 @@ def renumbered(value: NDArray[np.int32], meant: Mapping[str, str]) -> NDArray[np
 def code_set(words: Iterable[str]) -> Mask:
     """A table over code numbers: whether it is one of the words (`G27-G39` is a range). Its last element is NO_CODE."""
     table = np.zeros(CODE_LIMIT + 1, bool)
-    for word in words:
-        span = _RANGE.fullmatch(word)
-        if span:
-            table[code(span[1]) : code(span[2]) + 1 : 10] = True
-        else:
-            table[code(word)] = True
+    table[numbers(words)] = True
     return table
 
 
-_RANGE = re.compile(r"([GM]\d+)-([GM]\d+)")
+#: For each list of codes of each modal group.
+Lists = tuple[tuple[tuple[str, ...], ...], ...]
+
+
+def modal_tables(machine: Machine) -> tuple[tuple[str, ...], NDArray[np.uint8], States]:
+    """The names of the modal groups, and for each code number its group (from 1, 0 for none) and its state."""
+    return _modal_tables(tuple(tuple(tuple(machine.codes(key)) for key in states) for states in STATES.values()))
 
 
 @functools.cache
-def group_tables(system: str) -> tuple[tuple[str, ...], NDArray[np.uint8], States]:
-    """The names of the modal groups, and for each code number its group (from 1, 0 for none) and its state."""
-    groups = MODAL_GROUPS[system]
+def _modal_tables(lists: Lists) -> tuple[tuple[str, ...], NDArray[np.uint8], States]:
     group_of = np.zeros(CODE_LIMIT + 1, np.uint8)
     state_of = np.zeros(CODE_LIMIT + 1, np.int8)
-    for number, states in enumerate(groups.values(), 1):
-        for word, state in states.items():
-            group_of[code(word)] = number
-            state_of[code(word)] = state
-    return tuple(groups), group_of, state_of
+    for number, (states, of_group) in enumerate(zip(STATES.values(), lists, strict=True), 1):
+        for state, words in zip(states.values(), of_group, strict=True):
+            found = np.flatnonzero(code_set(words))
+            group_of[found] = number
+            state_of[found] = found // 10 if state == OF_CODE else state
+    return tuple(STATES), group_of, state_of

@@ -1,4 +1,8 @@
-"""The control and the lathe as data: every key of a profile, its type and what it means."""
+"""
+The control and the lathe as data: every key of a profile, its type and what it means.
+
+What a key means stands in the docstring of its class and, in the same words, at its line in fanuc.toml.
+"""
 
 import math
 import re
@@ -6,26 +10,47 @@ from typing import Literal, TypeAlias
 
 import msgspec
 
+from polarcheck.machines.code_lists import GCodes, GCodeSystem, is_code
 from polarcheck.machines.parameters import Meaning
 
 #: First and last number of each range.
 Ranges: TypeAlias = list[tuple[int, int]]
 
+#: Lists of G codes that stand in [macro].
+_CALLS = {
+    "macro_call": ("macro_calls",),
+    "modal_macro_call": ("modal_macro_calls", "modal_macro_calls_each_block"),
+    "modal_macro_call_off": ("modal_macro_cancel",),
+}
 _FLOW_CODE = re.compile(r"[GM](?:0|[1-9]\d*)(?:\.[1-9])?")
 
 
-def _is_code(text: str) -> bool:
-    return text[:1] == "G" and text[1:].replace(".", "", 1).isdecimal()
+def meanings(table: type) -> dict[str, str]:
+    """What each key of a table of the profile means, in the words of its docstring."""
+    return dict(re.findall(r"^ {4}(\w+): (.+)$", table.__doc__ or "", re.MULTILINE))
 
 
 class Control(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """
     How the control reads a program.
 
-    x: what X words are outside the polar mode. motion_codes: codes of other numbers, by what they mean (G101 = "G1").
-    native_words: words of the control's own language, and the text of the same length or shorter that is read in their
-    place (TRANSMIT = "G12.1"). x_radius_words, x_diameter_words: what makes X a radius or a diameter from then on, a
-    code alone ("G7") or with another word ("G10.9 X0").
+    g_code_system: A, B or C: which of the tables [g_code_system_a] to [g_code_system_c] counts
+    units: mm or inch: of a program that selects neither
+    least_increment: least input increment [mm, deg]
+    least_increment_inch: least input increment of lengths [inch]
+    number_without_point: whether X10 is ten least increments (least-increment) or ten mm, inch or deg (whole-unit)
+    digit_limit: most digits of a number
+    word_limit: most words of a block
+    m_code_limit: most M codes of a block
+    line_comments: character that begins a comment up to the end of the line, beside comments in parentheses; or empty
+    offset_digits: how many of the last digits of T are the offset number: 2 where T0808 is tool 8 with offset 8
+    unknown_codes_are_errors: whether the control stops at a G code that is not among the known codes
+    x: diameter or radius: what X words are outside the polar mode
+    known_codes: G codes of the control, from the whole list of it; G27-G80 is a range of whole numbers
+    motion_codes: codes that move but have another number here, by what they mean: G101 = "G1"
+    native_words: words of the control's own language, by the code or address that they are read as: TRANSMIT = "G12.1"
+    x_radius_words: what makes X a radius from then on: a code, a code with a word (G10.9 X0), a native word (DIAMOF)
+    x_diameter_words: what makes X a diameter from then on
     """
 
     g_code_system: Literal["A", "B", "C"]
@@ -38,9 +63,9 @@ class Control(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     m_code_limit: int
     line_comments: str
     offset_digits: int
-    known_codes: list[str]
     unknown_codes_are_errors: bool
     x: Literal["diameter", "radius"]
+    known_codes: list[str]
     motion_codes: dict[str, str] = {}
     native_words: dict[str, str] = {}
     x_radius_words: list[str] = []
@@ -51,30 +76,43 @@ class Control(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
             if not word or len(text) > len(word):
                 raise ValueError(f"native_words: {text!r} has no room in the place of {word!r}")
         for name, meant in self.motion_codes.items():
-            if not _is_code(name) or meant not in ("G0", "G1", "G2", "G3"):
+            if not is_code(name) or meant not in ("G0", "G1", "G2", "G3"):
                 raise ValueError(f"motion_codes: {name} = {meant!r}: expected a G code and one of G0, G1, G2, G3")
 
 
 class Polar(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """
-    The polar mode.
+    The polar mode, from G12.1 to G13.1.
 
-    x, virtual_axis_is: what words of the linear and of the virtual axis are in the mode. center_words: of arcs, along
-    the linear and along the virtual axis. linear_axis, rotary_axis: their numbers, as P and Q beside G12.1 name them.
-    infeed_word: beside G12.1, the depth of each cut of a cycle that goes round the contour; empty where there is none.
-    other_on: what begins the polar mode of other controls, by which a program for them is known.
+    on: codes that switch it on
+    off: codes that switch it off, in the order of those that switch it on
+    on_of_other_controls: codes and words that begin the mode elsewhere, by which a program for another control is known
+    words_beside_switch: addresses and codes that may stand in one block with those that switch; N may always
+    virtual_axis: address of the virtual axis (hypothetical axis), a length
+    virtual_axis_incremental: address of its incremental words
+    virtual_axis_of_other_controls: addresses that it has elsewhere and that are wrong here
+    other_controls: the controls on which it has those addresses, as a message names them
+    x: diameter or radius: what X words are in the mode
+    virtual_axis_programming: radius or diameter: what words of the virtual axis are
+    center_words: addresses of arc centers, along X and along the virtual axis
+    linear_axis: number of the linear axis, as P beside G12.1 names it
+    rotary_axis: number of the rotary axis, as Q beside G12.1 names it
+    infeed_word: address beside G12.1 of the infeed of a cycle that goes round the contour; empty without such a cycle
+    allowed_codes: G codes that can be used in the mode, no others
+    plane_before: planes of which one must be selected at G12.1; none where the plane does not matter
+    main_spindle_must_stop: whether a main spindle that turns at G12.1 is a fault
     """
 
     on: list[str]
     off: list[str]
-    switch_words: list[str]
+    on_of_other_controls: list[str] = []
+    words_beside_switch: list[str]
     virtual_axis: str
-    virtual_axis_increment: str
-    other_virtual_axis: list[str]
-    other_virtual_axis_of: str = ""
-    other_on: list[str] = []
+    virtual_axis_incremental: str
+    virtual_axis_of_other_controls: list[str]
+    other_controls: str = ""
     x: Literal["diameter", "radius"]
-    virtual_axis_is: Literal["radius", "diameter"]
+    virtual_axis_programming: Literal["radius", "diameter"]
     center_words: tuple[str, str]
     linear_axis: int
     rotary_axis: int
@@ -90,7 +128,13 @@ class Polar(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
 
 
 class CircularInterpolation(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Circular interpolation."""
+    """
+    Circular interpolation.
+
+    tolerance: how much the radius at the end of an arc may differ from that at its start [mm]
+    radius_word: address of the radius of an arc
+    sweep_limit: largest angle of one arc [deg]
+    """
 
     tolerance: float
     radius_word: str
@@ -98,10 +142,20 @@ class CircularInterpolation(msgspec.Struct, frozen=True, kw_only=True, forbid_un
 
 
 class Compensation(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Cutter compensation."""
+    """
+    Cutter compensation.
+
+    start_up: type of start-up and cancel: A, B, or C, where G41 and G40 alone move the tool
+    start_up_with_move: type, A or B, of blocks that move, where the type is C
+    read_ahead: blocks that the control knows in advance; all but two of them may be without a move
+    interference: alarm or erase: what the control does about interference
+    tangent_tolerance: turn up to which two blocks are tangent to each other [rad]
+    nose_types: nose types, T of the offset table, of a tool whose center is programmed
+    overcut_tolerance: how deep the tool may cut into the contour before it is reported [mm]
+    """
 
     start_up: Literal["A", "B", "C"]
-    start_up_moving: Literal["A", "B"]
+    start_up_with_move: Literal["A", "B"]
     read_ahead: int
     interference: Literal["alarm", "erase"]
     tangent_tolerance: float
@@ -111,9 +165,19 @@ class Compensation(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fie
 
 class Limits(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """
-    What the lathe can do; NaN where the profile does not know. mm, deg, min; accelerations in deg/s2; X as radius.
+    What the lathe can do; NaN where the profile does not know.
 
-    automatic_override: the control slows down where C would turn faster than override_share [%] of c_feed.
+    c_feed: largest cutting feed of the C axis [deg/min]; 100 turns a minute are 36000
+    c_feed_suspicious: feed of the C axis that is suspicious where its limit is not known [deg/min]
+    c_acceleration: largest acceleration of the C axis [deg/s2]
+    polar_feed: largest F in the polar mode [mm/min]
+    automatic_override: whether the control slows down by itself where C would turn too fast
+    override_share: share of the limit of C above which it does so, and which it leaves [%]
+    keep_out: how far the tool center should stay away from the center of C [mm]
+    x_minimum: travel limit of X, as a radius [mm]
+    x_maximum: travel limit of X, as a radius [mm]
+    z_minimum: travel limit of Z [mm]
+    z_maximum: travel limit of Z [mm]
     """
 
     c_feed: float = math.nan
@@ -130,17 +194,38 @@ class Limits(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
 
 
 class Feed(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Feeds that the builder recommends [mm/min]; NaN where it does not."""
+    """
+    Feeds; NaN where the builder recommends none.
+
+    cutting_minimum: lowest F that the builder recommends for cutting [mm/min]
+    cutting_maximum: highest F that the builder recommends for cutting [mm/min]
+    positioning_minimum: lowest F that the builder recommends for positioning in the polar mode [mm/min]
+    positioning_maximum: highest F that the builder recommends for positioning in the polar mode [mm/min]
+    carried_into_polar: F from before G12.1 that holds behind it: any (modal) or none per revolution (per-minute-only)
+    """
 
     cutting_minimum: float = math.nan
     cutting_maximum: float = math.nan
     positioning_minimum: float = math.nan
     positioning_maximum: float = math.nan
-    inheritance: Literal["modal", "per-minute-only"] = "modal"
+    carried_into_polar: Literal["modal", "per-minute-only"] = "modal"
 
 
 class MCodes(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The builder's M codes; empty where the profile does not know them."""
+    """
+    M codes, most of them the builder's; empty where the profile does not know them.
+
+    c_axis_on: the spindle becomes the C axis
+    c_axis_off: the C axis becomes the spindle
+    live_tool_on: the live tool turns, where it has codes of its own
+    live_tool_off: the live tool stops
+    spindle_on: the main spindle turns
+    spindle_off: the main spindle stops
+    tool_change: tool change, beside T
+    optional_stop: optional stop, as it stands between two tools
+    program_end: end of program
+    stops_reading_ahead: codes beyond which the control does not read ahead
+    """
 
     c_axis_on: list[str] = []
     c_axis_off: list[str] = []
@@ -148,8 +233,10 @@ class MCodes(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     live_tool_off: list[str] = []
     spindle_on: list[str] = []
     spindle_off: list[str] = []
+    tool_change: list[str]
+    optional_stop: list[str]
     program_end: list[str]
-    stops_reading: list[str]
+    stops_reading_ahead: list[str]
 
 
 class Macro(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -235,9 +322,14 @@ class Macro(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
 
 class Machine(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """
-    A lathe: the merged profile. severities: rule -> error, warning, note or off. alarms: rule -> alarm. notes: what is
-    not known, or why a rule is silent. meanings: control parameter -> the values that it sets. parameters: those of the
-    user's own control, as it shows them (parameters.py).
+    A lathe: the merged profile.
+
+    title: what messages call it
+    alarms: rule -> alarm that the control shows
+    severities: rule -> error, warning, note or off, where the rule itself says otherwise
+    notes: what is not known, or why a rule is silent
+    known_parameters: control parameter -> the values of this file that it stands for (parameters.Meaning)
+    parameters: control parameter -> its value, as the user's own control shows it
     """
 
     title: str
@@ -248,9 +340,35 @@ class Machine(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     limits: Limits
     feed: Feed
     m_codes: MCodes
+    g_codes: GCodes
+    g_code_system_a: GCodeSystem
+    g_code_system_b: GCodeSystem
+    g_code_system_c: GCodeSystem
     macro: Macro
     alarms: dict[str, str] = {}
     severities: dict[str, Literal["error", "warning", "note", "off"]] = {}
     notes: list[str] = []
-    meanings: dict[str, Meaning] = {}
+    known_parameters: dict[str, Meaning] = {}
     parameters: dict[str, int | float | str] = {}
+
+    @property
+    def system_table(self) -> str:
+        """The table of the G-code system in force."""
+        return f"g_code_system_{self.control.g_code_system.lower()}"
+
+    @property
+    def system(self) -> GCodeSystem:
+        """The codes of the G-code system in force."""
+        system: GCodeSystem = getattr(self, self.system_table)
+        return system
+
+    def table_of(self, key: str) -> str:
+        """The table of a list of G codes: [g_codes], or that of the G-code system in force."""
+        return "g_codes" if key in GCodes.__struct_fields__ else self.system_table
+
+    def codes(self, key: str) -> list[str]:
+        """The codes of a list of G codes, whichever table it is in; calls of macros are those of [macro]."""
+        if key in _CALLS:
+            return [code for name in _CALLS[key] for code in getattr(self.macro, name)]
+        codes: list[str] = getattr(getattr(self, self.table_of(key)), key)
+        return codes

@@ -1,4 +1,4 @@
-"""The modal states of a lathe control and the codes that set them, as data, per G-code system."""
+"""The modal states of a lathe control, and which code list of the machine sets each of them."""
 
 from __future__ import annotations
 
@@ -48,57 +48,53 @@ class Distance(enum.IntEnum):
     INCREMENTAL = 91
 
 
-#: Codes of group 01 that move in ways not simulated: involutes, threads, cycles.
-_CYCLES_OF_ALL = ("G2.2", "G3.2", "G2.4", "G3.4", "G6.2", "G34", "G35", "G36")
+#: A state that is the number of the code itself, without what stands behind its point: 83 for G83 and for G83.5.
+OF_CODE = -2
 
-_MOTION: dict[str, int] = {"G0": Motion.RAPID, "G1": Motion.LINE, "G2": Motion.CW, "G3": Motion.CCW}
-
-_OF_ALL: dict[str, dict[str, int]] = {
-    "plane": {"G17": 17, "G18": 18, "G19": 19},
-    "side": {"G40": Side.OFF, "G41": Side.LEFT, "G42": Side.RIGHT},
-    "speed": {"G96": 96, "G97": 97},
-    "work_offset": {f"G{number}": number for number in range(54, 60)} | {"G54.1": 54},
-    "drilling": {"G80": 0} | {f"G{number}": number for number in range(81, 90)} | {"G83.1": 83, "G83.5": 83},
-    "scaling": {"G51": 51, "G50": 0},
-    "rotation": {"G68.1": 68, "G69.1": 0},
-    "mirror": {"G68": 68, "G69": 0, "G51.1": 51, "G50.1": 0},
-    "modal_call": {"G66": 66, "G66.1": 66, "G67": 0},
+#: Modal group -> code list of the machine (code_lists.py) -> the state that its codes set.
+STATES: dict[str, dict[str, int]] = {
+    "motion": {
+        "rapid": Motion.RAPID,
+        "line": Motion.LINE,
+        "arc_clockwise": Motion.CW,
+        "arc_counterclockwise": Motion.CCW,
+        "motion_not_followed": Motion.CYCLE,
+        "thread_cutting": Motion.CYCLE,
+        "turning_cycle": Motion.CYCLE,
+        "threading_cycle": Motion.CYCLE,
+        "facing_cycle": Motion.CYCLE,
+    },
+    "plane": {"plane_xy": OF_CODE, "plane_zx": OF_CODE, "plane_yz": OF_CODE},
+    "side": {"compensation_off": Side.OFF, "compensation_left": Side.LEFT, "compensation_right": Side.RIGHT},
+    "units": {"inch": Units.INCH, "mm": Units.MM},
+    "feed_mode": {
+        "feed_inverse_time": FeedMode.INVERSE_TIME,
+        "feed_per_minute": FeedMode.PER_MINUTE,
+        "feed_per_revolution": FeedMode.PER_REVOLUTION,
+    },
+    "distance": {"absolute": Distance.ABSOLUTE, "incremental": Distance.INCREMENTAL},
+    "speed": {"constant_surface_speed": OF_CODE, "constant_surface_speed_off": 0},
+    "work_offset": {"work_offset": OF_CODE, "work_offset_extended": OF_CODE},
+    "drilling": {"drilling_cycle": OF_CODE, "drilling_cycle_off": 0},
+    "scaling": {"scaling": OF_CODE, "scaling_off": 0},
+    "rotation": {"rotation": OF_CODE, "rotation_off": 0},
+    "mirror": {"mirror_image": OF_CODE, "mirror_image_off": 0},
+    "modal_call": {"modal_macro_call": OF_CODE, "modal_macro_call_off": 0},
 }
 
-#: Group -> code -> state, for the G-code systems of FANUC lathes (parameter 3401#6, #7).
-MODAL_GROUPS: dict[str, dict[str, dict[str, int]]] = {
-    "A": _OF_ALL
-    | {
-        "motion": _MOTION | dict.fromkeys((*_CYCLES_OF_ALL, "G32", "G90", "G92", "G94"), Motion.CYCLE),
-        "units": {"G20": Units.INCH, "G21": Units.MM},
-        "feed_mode": {"G93": FeedMode.INVERSE_TIME, "G98": FeedMode.PER_MINUTE, "G99": FeedMode.PER_REVOLUTION},
-    },
-    "B": _OF_ALL
-    | {
-        "motion": _MOTION | dict.fromkeys((*_CYCLES_OF_ALL, "G33", "G77", "G78", "G79"), Motion.CYCLE),
-        "units": {"G20": Units.INCH, "G21": Units.MM},
-        "feed_mode": {"G93": FeedMode.INVERSE_TIME, "G94": FeedMode.PER_MINUTE, "G95": FeedMode.PER_REVOLUTION},
-        "distance": {"G90": Distance.ABSOLUTE, "G91": Distance.INCREMENTAL},
-    },
-    "C": _OF_ALL
-    | {
-        "motion": _MOTION | dict.fromkeys((*_CYCLES_OF_ALL, "G33", "G20", "G21", "G24"), Motion.CYCLE),
-        "units": {"G70": Units.INCH, "G71": Units.MM},
-        "feed_mode": {"G93": FeedMode.INVERSE_TIME, "G94": FeedMode.PER_MINUTE, "G95": FeedMode.PER_REVOLUTION},
-        "distance": {"G90": Distance.ABSOLUTE, "G91": Distance.INCREMENTAL},
-    },
-}
-
-_TAKES_AXIS_WORDS = (
-    *("G4", "G10", "G10.9", "G22", "G27", "G28", "G30", "G30.1", "G31", "G37", "G51", "G50.2", "G51.2", "G52", "G53"),
-    *("G65", "G66", "G66.1", "G68", "G68.1", "G7.1", "G107", "G72", "G73", "G74", "G75", "G76"),
+#: The lists of codes beside which axis words are no end point of a move: dwell, offsets, references, shifts, calls.
+NO_MOVE = (
+    "dwell",
+    "data_input",
+    "reference_check",
+    "reference_return",
+    "local_shift",
+    "machine_coordinates",
+    "macro_call",
+    "modal_macro_call",
+    "repetitive_cycle",
+    "coordinate_setting",
+    "axis_words_no_move",
 )
-#: Codes whose axis words are not end points of a move: dwell, offsets, references, shifts, calls, cycles.
-TAKES_AXIS_WORDS: dict[str, tuple[str, ...]] = {
-    "A": (*_TAKES_AXIS_WORDS, "G50", "G70", "G71"),
-    "B": (*_TAKES_AXIS_WORDS, "G92", "G70", "G71"),
-    "C": (*_TAKES_AXIS_WORDS, "G92", "G77", "G78"),
-}
-
-#: The code that sets the work coordinate of the present position (and, with S, the highest spindle speed).
-COORDINATE_SETTING = {"A": "G50", "B": "G92", "C": "G92"}
+#: The lists of codes beside which F is no feed: a time, an argument, the lead of a thread.
+NO_FEED = ("dwell", "data_input", "macro_call", "modal_macro_call", "feed_is_lead")

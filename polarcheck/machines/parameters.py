@@ -8,6 +8,7 @@ from typing import Any
 import msgspec
 
 from polarcheck.errors import MachineError
+from polarcheck.machines.renamed import refuse
 
 
 class Origin(msgspec.Struct, frozen=True):
@@ -39,17 +40,19 @@ def apply(merged: dict[str, Any], table: Mapping[str, Any], profile: str, origin
 
     Raises MachineError, naming profile and parameter, for an unknown parameter or setting.
     """
-    meanings = _meanings(merged, profile)
+    known = _known(merged, profile)
     given = merged["parameters"]
-    for name in table["parameters"]:
-        if name not in meanings:
-            raise MachineError(f"{profile}: parameters: {_unknown(name, meanings)}")
-    # In the order of the meanings, so that the order in which the user lists them makes no difference.
+    named = set(table["parameters"]) - {"source", "doubtful"}
+    for name in sorted(named):
+        if name not in known:
+            raise MachineError(f"{profile}: parameters: {_unknown(name, known)}")
+    # In the order of the known parameters, so that the order in which the user lists them makes no difference.
     copies = []
-    for name, meaning in meanings.items():
-        if name not in table["parameters"]:
+    for name, meaning in known.items():
+        if name not in named:
             continue
         for key, value in _values(name, meaning, given[name], profile).items():
+            refuse(key, profile)
             if _is_given(table, key):
                 continue
             origins[key] = Origin(profile, f"parameter {name} = {given[name]}: {meaning.title}")
@@ -62,11 +65,11 @@ def apply(merged: dict[str, Any], table: Mapping[str, Any], profile: str, origin
         _set(merged, key, merged.get(group, {}).get(last))
 
 
-def _meanings(merged: Mapping[str, Any], profile: str) -> dict[str, Meaning]:
+def _known(merged: Mapping[str, Any], profile: str) -> dict[str, Meaning]:
     try:
-        return msgspec.convert(merged.get("meanings", {}), dict[str, Meaning])
+        return msgspec.convert(merged.get("known_parameters", {}), dict[str, Meaning])
     except msgspec.ValidationError as error:
-        raise MachineError(f"{profile}: meanings: {error}") from None
+        raise MachineError(f"{profile}: known_parameters: {error}") from None
 
 
 def _values(name: str, meaning: Meaning, given: Any, profile: str) -> Mapping[str, Any]:
@@ -94,9 +97,9 @@ def _set(merged: dict[str, Any], key: str, value: Any) -> None:
         values[last] = value
 
 
-def _unknown(name: str, meanings: Mapping[str, Meaning]) -> str:
+def _unknown(name: str, known: Mapping[str, Meaning]) -> str:
     import difflib
 
-    near = difflib.get_close_matches(name, list(meanings), 1)
-    hint = f"did you mean {near[0]}?" if near else f"known are {', '.join(meanings) or 'none'}"
+    near = difflib.get_close_matches(name, list(known), 1)
+    hint = f"did you mean {near[0]}?" if near else f"known are {', '.join(known) or 'none'}"
     return f"no meaning is known for {name}; {hint}"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, get_origin
@@ -12,16 +13,23 @@ from polarcheck.errors import MachineError
 from polarcheck.machines import parameters
 from polarcheck.machines.machine import Machine
 from polarcheck.machines.parameters import Origin
+from polarcheck.machines.renamed import RENAMED, refuse
 
 FOLDER = Path(__file__).parent
 DEFAULT = "fanuc"
+#: Tables that a profile can leave behind.
+_REPLACED = ("alarms", "known_parameters", "severities", "notes")
 
 
 class Profile(msgspec.Struct, frozen=True):
-    """A machine with the name it was asked for by, its chain of inheritance, and the origin of each value."""
+    """
+    A machine with the name it was asked for by, its chain of inheritance, and the origin of each value. written: the
+    machine in the words of its files, where words of the control's own language are no codes yet.
+    """
 
     name: str
     machine: Machine
+    written: Machine
     chain: tuple[str, ...]
     origins: Mapping[str, Origin]
 
@@ -40,13 +48,15 @@ def load(name: str, changes: Mapping[str, Any] | None = None) -> Profile:
     tables: list[tuple[str, dict[str, Any]]] = []
     asked: str | None = name
     folder = Path()
+    own = any(table != "limits" for table in changes or ())
     while asked is not None:
         path, title = _find(asked, folder)
         if any(title == seen for seen, _ in tables):
             raise MachineError(f"{title}: inherits from itself")
-        table = _read(path, title)
+        table = _read(path, title) if path.parent != FOLDER else dict(_built_in(path))
         tables.append((title, table))
         folder = path.parent
+        own |= folder != FOLDER
         asked = table.pop("inherits", None)
         if asked is not None and not isinstance(asked, str):
             raise MachineError(f"{title}: inherits: expected the name of a machine")
@@ -61,12 +71,26 @@ def load(name: str, changes: Mapping[str, Any] | None = None) -> Profile:
             # After the values of farther profiles, before those of nearer ones: the nearest word counts.
             parameters.apply(merged, table, title, origins)
     tables = tables[1:] if changes else tables
-    return Profile(name, _convert(merged, origins, tables[0][0]), tuple(title for title, _ in tables), origins)
+    chain = tuple(title for title, _ in tables)
+    written = _convert(merged, origins, chain[0])
+    machine = written
+    if written.control.x_radius_words or written.control.x_diameter_words:
+        from polarcheck.machines import own_language
+
+        try:
+            machine = own_language.numbered(written)
+        except ValueError as error:
+            raise MachineError(f"{chain[0]}: control: {error}") from None
+    if own:
+        from polarcheck.machines.code_check import check_codes
+
+        check_codes(machine, origins, chain)
+    return Profile(name, machine, written, chain, origins)
 
 
 def _find(name: str, folder: Path) -> tuple[Path, str]:
     built_in = FOLDER / f"{name}.toml"
-    if name in names():
+    if built_in.parent == FOLDER and built_in.is_file():
         return built_in, name
     path = folder / name
     if path.is_file():
@@ -74,6 +98,12 @@ def _find(name: str, folder: Path) -> tuple[Path, str]:
     if name.endswith(".toml"):
         raise MachineError(f"machine {name}: no such file")
     raise MachineError(f"unknown machine {name!r}{_suggestion(name, names())}; `polarcheck machines` lists them")
+
+
+@functools.cache
+def _built_in(path: Path) -> dict[str, Any]:
+    """What stands in a file of ours: most profiles inherit from the same ones."""
+    return _read(path, path.stem)
 
 
 def _read(path: Path, title: str) -> dict[str, Any]:
@@ -87,43 +117,61 @@ def _read(path: Path, title: str) -> dict[str, Any]:
 
 def _replace(merged: dict[str, Any], groups: Any, profile: str, origins: dict[str, Origin]) -> None:
     """Drop whole tables of farther profiles: alarm numbers and parameters of another control are not inherited."""
-    if not isinstance(groups, list) or not set(map(str, groups)) <= {"alarms", "meanings", "severities", "notes"}:
-        raise MachineError(f"{profile}: replaces: expected a list of alarms, meanings, severities, notes")
+    if not isinstance(groups, list) or not set(map(str, groups)) <= {*_REPLACED, *RENAMED}:
+        raise MachineError(f"{profile}: replaces: expected a list of {', '.join(_REPLACED)}")
     for group in groups:
+        refuse(group, profile)
         merged.pop(group, None)
         for key in [key for key in origins if key.partition(".")[0] == group]:
             del origins[key]
 
 
 def _merge(into: dict[str, Any], table: Mapping[str, Any], profile: str, origins: dict[str, Origin]) -> None:
-    """Values of a nearer profile replace those of a farther one; tables are merged key by key."""
+    """
+    Values of a nearer profile replace those of a farther one; tables are merged key by key.
+
+    `source` and `doubtful` of a table hold for those of its values that do not say otherwise.
+    """
     for group, values in table.items():
+        refuse(group, profile)
         if not isinstance(values, Mapping) or "value" in values:
-            into[group] = _unwrapped(values, f"{group}", profile, origins)
+            into[group] = _unwrapped(values, group, Origin(profile, ""), origins)
             continue
         if group not in Machine.__struct_fields__:
             raise MachineError(f"{profile}: unknown table [{group}]{_suggestion(group, Machine.__struct_fields__)}")
         target = into.setdefault(group, {})
+        origin = _origin(values, Origin(profile, ""))
         for key, value in values.items():
-            target[key] = _unwrapped(value, f"{group}.{key}", profile, origins)
+            if key not in ("source", "doubtful"):
+                dotted = f"{group}.{key}"
+                refuse(dotted, profile)
+                target[key] = _unwrapped(value, dotted, origin, origins)
 
 
-def _unwrapped(value: Any, key: str, profile: str, origins: dict[str, Origin]) -> Any:
-    """`{ value = 3, source = "p. 52" }` or a bare value."""
+def _unwrapped(value: Any, key: str, origin: Origin, origins: dict[str, Origin]) -> Any:
+    """`{ value = 3, source = "p. 52" }` or a bare value; origin: of a value that says nothing of its own."""
     if not isinstance(value, Mapping) or ("value" not in value and _is_table(key)):
-        origins[key] = Origin(profile, "")
+        origins[key] = origin
         return value
     wrong = set(value) - {"value", "source", "doubtful"}
     if wrong or "value" not in value:
-        raise MachineError(f"{profile}: {key}: expected value, source and doubtful, not {', '.join(sorted(value))}")
-    origins[key] = Origin(profile, str(value.get("source", "")), bool(value.get("doubtful", False)))
+        said = ", ".join(sorted(value))
+        raise MachineError(f"{origin.profile}: {key}: expected value, source and doubtful, not {said}")
+    origins[key] = _origin(value, origin)
     return value["value"]
+
+
+def _origin(said: Mapping[str, Any], of_table: Origin) -> Origin:
+    source, doubtful = said.get("source", of_table.source), said.get("doubtful", of_table.doubtful)
+    return Origin(of_table.profile, str(source), bool(doubtful))
 
 
 def _is_table(key: str) -> bool:
     """Whether the value of a key is a table itself."""
     group, _, last = key.partition(".")
-    return group == "meanings" or any(field.name == last and get_origin(field.type) is dict for field in _fields(group))
+    return group == "known_parameters" or any(
+        field.name == last and get_origin(field.type) is dict for field in _fields(group)
+    )
 
 
 def _convert(merged: dict[str, Any], origins: Mapping[str, Origin], title: str) -> Machine:

@@ -9,6 +9,7 @@ from collections.abc import Callable, Mapping
 import numpy as np
 from msgspec.structs import replace
 
+from polarcheck.machines.code_lists import is_code
 from polarcheck.reading.source import Source
 
 
@@ -28,8 +29,7 @@ def _translation(words: tuple[tuple[str, str], ...]) -> tuple[re.Pattern[bytes],
     found = [_pattern(word) for word in sorted(meant, key=len, reverse=True)]
 
     def put(match: re.Match[bytes]) -> bytes:
-        word = match[0]
-        return meant[word.upper()].rjust(len(word))[-len(word) :]
+        return _filled(meant[match[0].upper()], len(match[0]))
 
     return re.compile(b"|".join(found), re.IGNORECASE), put
 
@@ -40,9 +40,11 @@ def _pattern(word: bytes) -> bytes:
     return begins + re.escape(word) + ends
 
 
+def _filled(text: bytes, length: int) -> bytes:
+    """A code with zeros before its number, which mean nothing; other text at the end, where its number follows."""
+    return text[:1] + text[1:].rjust(length - 1, b"0") if is_code(text.decode("latin-1")) else text.rjust(length)
+
+
 def shown(native_words: Mapping[str, str], code: str) -> str:
     """The native word for a code such as G13.1, or the code itself."""
-    for word, text in native_words.items():
-        if re.fullmatch(re.escape(code) + r"0*", text.strip()) and (text.strip() == code or "." in code):
-            return word
-    return code
+    return next((word for word, text in native_words.items() if text == code), code)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 
 from polarcheck.arrays import Floats, Mask, Rows, States
 from polarcheck.execution.run import Run
-from polarcheck.machines.codes import code_numbers, code_set, group_tables, renumbered
+from polarcheck.machines.codes import code, code_numbers, code_set, modal_tables, renumbered
 from polarcheck.machines.job import Job
 from polarcheck.machines.machine import Machine
-from polarcheck.machines.modal import MM_PER_INCH, TAKES_AXIS_WORDS, Distance, FeedMode, Motion, Side, Units
+from polarcheck.machines.modal import MM_PER_INCH, NO_FEED, NO_MOVE, Distance, FeedMode, Motion, Side, Units
 from polarcheck.table.filling import before, fill_down
 
 if TYPE_CHECKING:
@@ -115,16 +115,25 @@ class Columns:
                 found[self.run.row[indices[code_set(asked)[numbers]]]] = True
         return found
 
+    def listed(self, *keys: str) -> Mask:
+        """Whether a row has a G code of any of these lists of the machine, as in `reference_return`."""
+        return self.codes(*(code for key in keys for code in self.machine.codes(key)))
+
     def state(self, group: str) -> States:
         """The state of a modal group in each row, after its own codes (modal.MODAL_GROUPS)."""
         return self._column(f"state {group}", lambda: self._filled(group)[0])
+
+    def has_state(self, group: str, codes: Sequence[str]) -> Mask:
+        """Whether the state of a modal group is one that these codes set."""
+        _, _, state_of = modal_tables(self.machine)
+        return np.isin(self.state(group), [state_of[code(word)] for word in codes])
 
     def sets(self, group: str) -> Mask:
         """Whether a row has a code of the group."""
         return self._column(f"sets {group}", lambda: self._filled(group)[1])
 
     def _filled(self, group: str) -> tuple[States, Mask]:
-        names, group_of, state_of = group_tables(self.machine.control.g_code_system)
+        names, group_of, state_of = modal_tables(self.machine)
         written = np.zeros(len(self), bool)
         values = np.full(len(self), _BEFORE.get(group, 0), np.int8)
         if group in names:
@@ -194,7 +203,7 @@ class Columns:
 
     @cached_property
     def _takes_feed(self) -> Mask:
-        return ~self.codes("G4", "G10", "G76", "G92", *self.machine.macro.macro_call_codes)
+        return ~self.listed(*NO_FEED)
 
     @cached_property
     def _tool_number(self) -> Rows:
@@ -300,8 +309,7 @@ class Columns:
     @cached_property
     def uses_axes(self) -> Mask:
         """The axis words of the row are coordinates of a move."""
-        system = self.machine.control.g_code_system
-        return ~self.codes(*TAKES_AXIS_WORDS[system]) & ~self.run.unknown
+        return ~self.listed(*NO_MOVE) & ~self.run.unknown
 
     @cached_property
     def in_cycle(self) -> Mask:

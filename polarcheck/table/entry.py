@@ -10,11 +10,10 @@ from numpy.typing import NDArray
 
 from polarcheck.arrays import Floats, Mask
 from polarcheck.geometry.tolerances import ROUNDING
+from polarcheck.machines.code_lists import numbers
 from polarcheck.machines.codes import code_set
 from polarcheck.table.filling import before, fill_down
 from polarcheck.table.trace import Trace
-
-_FIRST_WORK_OFFSET = 54
 
 
 class Entry:
@@ -96,9 +95,12 @@ class Entry:
     def _work_offset(self) -> tuple[Floats, NDArray[np.object_]]:
         """Where X0 of the work offset in force lies [mm; 0 where the job does not say], and its name."""
         trace = self.trace
-        state = np.where(trace.state("work_offset") == 0, _FIRST_WORK_OFFSET, trace.state("work_offset"))
-        is_extended = fill_down(trace.codes("G54.1"), trace.sets("work_offset") | trace.starts, False).astype(bool)
-        number = fill_down(trace.word("P"), trace.codes("G54.1"), 0.0)
+        first = numbers(trace.machine.codes("work_offset"))[0] // 10  # in force where the program selects none
+        state = np.where(trace.state("work_offset") == 0, first, trace.state("work_offset"))
+        is_extended = fill_down(
+            trace.listed("work_offset_extended"), trace.sets("work_offset") | trace.starts, False
+        ).astype(bool)
+        number = fill_down(trace.word("P"), trace.listed("work_offset_extended"), 0.0)
         shift, name = np.zeros(len(trace)), np.full(len(trace), "", object)
         for offset, origin in trace.job.work_offsets.items():
             written, _, extension = offset.upper().partition(" P")
@@ -124,14 +126,14 @@ class Entry:
     def local_shift(self) -> Floats:
         """X of the G52 in force [mm]."""
         trace = self.trace
-        written = trace.codes("G52") & trace.has("X")
+        written = trace.listed("local_shift") & trace.has("X")
         shift = np.where(written, np.nan_to_num(trace.length_of("X")), 0.0)
         return fill_down(shift, written | trace.starts, 0.0).astype(np.float64)
 
     @cached_property
     def origin_shift(self) -> Floats:
         """How far X0 is known to lie off the spindle axis, as the job or G52 writes it [mm]."""
-        if not self.trace.job.work_offsets and not self.trace.codes("G52").any():
+        if not self.trace.job.work_offsets and not self.trace.listed("local_shift").any():
             return np.zeros(len(self.trace))
         return self._work_offset[0] + self.local_shift
 

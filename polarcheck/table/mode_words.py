@@ -8,14 +8,10 @@ import numpy as np
 
 from polarcheck.arrays import Mask
 from polarcheck.machines.codes import NO_CODE, code_set
-from polarcheck.machines.modal import COORDINATE_SETTING
 from polarcheck.reading.words import NumberFault
 from polarcheck.table.trace import Trace
 
 _AXES = ("X", "Y", "Z", "C", "U", "V", "W", "H")
-#: G10 L.: work offsets; tool offsets (B-63524EN/01, programmable data input).
-_WORK_OFFSETS = (2, 20)
-_TOOL_OFFSETS = (10, 11, 12, 13)
 
 
 class ModeWords:
@@ -43,6 +39,10 @@ class ModeWords:
             if asked:
                 found[indices] = code_set(asked)[numbers]
         return found
+
+    def listed(self, *keys: str) -> Mask:
+        """A G code of any of these lists of the machine, as in `plane_xy`."""
+        return self.codes(*(code for key in keys for code in self.trace.machine.codes(key)))
 
     def first_of(self, *names: str) -> Mask:
         """Of the code or address that is named first of those in its row; `G91` is a code, `U` an address."""
@@ -79,17 +79,17 @@ class ModeWords:
     @cached_property
     def selects_plane(self) -> Mask:
         """G17, G18, G19."""
-        return self.codes("G17", "G18", "G19")
+        return self.listed("plane_xy", "plane_zx", "plane_yz")
 
     @cached_property
     def sets_length_offset(self) -> Mask:
         """G43, G44, G49."""
-        return self.codes("G43", "G44", "G49")
+        return self.listed("tool_length_offset", "tool_length_offset_off")
 
     @cached_property
     def sets_coordinates(self) -> Mask:
         """G50 (G92): axis words say where the tool stands, or with S how fast the spindle may turn."""
-        return self.codes(COORDINATE_SETTING[self.trace.machine.control.g_code_system])
+        return self.listed("coordinate_setting")
 
     @cached_property
     def shifts_origin(self) -> Mask:
@@ -100,11 +100,13 @@ class ModeWords:
         trace = self.trace
         kind = trace.word("L")
         # Without L a lathe takes P0 as the work shift, other numbers as tool offsets.
-        is_work_offset = np.isin(kind, _WORK_OFFSETS) | (np.isnan(kind) & (trace.word("P") == 0))
+        is_work_offset = np.isin(kind, trace.machine.g_codes.data_input_work_offset) | (
+            np.isnan(kind) & (trace.word("P") == 0)
+        )
         sets = self.sets_coordinates
-        shifts = self.codes("G52", "G53", "G54-G59", "G54.1")
+        shifts = self.listed("local_shift", "machine_coordinates", "work_offset", "work_offset_extended")
         shifts |= sets & self.in_rows(trace.has(*_AXES))
-        shifts |= self.codes("G10") & self.in_rows(is_work_offset)
+        shifts |= self.listed("data_input") & self.in_rows(is_work_offset)
         shifts &= self.not_allowed
         return shifts | (sets & self.not_allowed & self.in_rows(self.rows(shifts)))
 
@@ -112,8 +114,10 @@ class ModeWords:
     def changes_tool_offset(self) -> Mask:
         """G10 that changes a tool offset."""
         kind, number = self.trace.word("L"), self.trace.word("P")
-        is_tool_offset = np.isin(kind, _TOOL_OFFSETS) | (np.isnan(kind) & (number > 0))
-        return self.codes("G10") & self.in_rows(is_tool_offset)
+        is_tool_offset = np.isin(kind, self.trace.machine.g_codes.data_input_tool_offset) | (
+            np.isnan(kind) & (number > 0)
+        )
+        return self.listed("data_input") & self.in_rows(is_tool_offset)
 
     # ---- the switches ----
 
@@ -130,8 +134,8 @@ class ModeWords:
         """
         words, polar = self.trace.run.words, self.trace.machine.polar
         of_address = np.zeros(256, bool)
-        of_address[[ord(name) for name in ("N", "O", "/", *polar.switch_words) if len(name) == 1]] = True
-        of_code = self.codes(*polar.on, *polar.off, *(name for name in polar.switch_words if len(name) > 1))
+        of_address[[ord(name) for name in ("N", "O", "/", *polar.words_beside_switch) if len(name) == 1]] = True
+        of_code = self.codes(*polar.on, *polar.off, *(name for name in polar.words_beside_switch if len(name) > 1))
         return np.asarray(of_address[words.address] | of_code | (words.fault != NumberFault.NONE))
 
     # ---- the virtual axis ----
@@ -140,5 +144,5 @@ class ModeWords:
     def of_other_axis(self) -> Mask:
         """A coordinate under the address that other controls give the virtual axis."""
         trace = self.trace
-        named = trace.words_at(trace.word_indices(*trace.machine.polar.other_virtual_axis))
+        named = trace.words_at(trace.word_indices(*trace.machine.polar.virtual_axis_of_other_controls))
         return named & self.in_rows(trace.uses_axes)

@@ -154,10 +154,10 @@ def compensation_path(trace: Trace, row: Rows) -> compensation.Path:
         end=trace.end[row],
         center=trace.center[row],
         side=trace.side[row],
-        side_written=trace.codes("G41", "G42")[row],
+        side_written=trace.writes_side[row],
         radius=trace.radius[row],
         cancel_vector=_cancel_vector(trace, row),
-        stops_reading=trace.codes(*trace.machine.m_codes.stops_reading)[row],
+        stops_reading=trace.codes(*trace.machine.m_codes.stops_reading_ahead)[row],
     )
 
 
@@ -168,7 +168,7 @@ def tool_center_path(trace: Trace, path: compensation.Path) -> compensation.Tool
         path,
         compensation.Method(
             start_up=settings.start_up,
-            start_up_moving=settings.start_up_moving,
+            start_up_moving=settings.start_up_with_move,
             read_ahead=settings.read_ahead,
             interference=settings.interference,
             tangent_tolerance=settings.tangent_tolerance,
@@ -197,5 +197,5 @@ def of_tool(trace: Trace, tool: compensation.ToolPath, row: Rows) -> Moves:
 def _cancel_vector(trace: Trace, row: Rows) -> Points:
     """I and J beside G40 say where the tool leaves (B-63324EN/03 p. 402)."""
     i, j = (trace.length_of(word)[row] for word in trace.machine.polar.center_words)
-    written = trace.codes("G40")[row] & (~np.isnan(i) | ~np.isnan(j))
+    written = trace.writes_cancel[row] & (~np.isnan(i) | ~np.isnan(j))
     return np.where(written, np.nan_to_num(i) + 1j * np.nan_to_num(j), complex("nan+nanj"))

@@ -13,7 +13,7 @@ import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Points, Rows, States
 from polarcheck.geometry import polar
-from polarcheck.machines.modal import COORDINATE_SETTING, Distance, Motion
+from polarcheck.machines.modal import Distance, Motion
 from polarcheck.table.filling import before, fill_down, positions
 from polarcheck.table.lengths import Lengths
 from polarcheck.table.sections import Marks, Sections, find_sections, section_column
@@ -44,7 +44,7 @@ class Positions(Lengths):
     @cached_property
     def _virtual(self) -> tuple[str, str]:
         polar_mode = self.machine.polar
-        return polar_mode.virtual_axis, polar_mode.virtual_axis_increment
+        return polar_mode.virtual_axis, polar_mode.virtual_axis_incremental
 
     @cached_property
     def motion(self) -> States:
@@ -73,14 +73,15 @@ class Positions(Lengths):
     @cached_property
     def sections(self) -> Sections:
         """The polar sections."""
+        m_codes = self.machine.m_codes
         cutting = np.isin(self.motion, (Motion.LINE, Motion.CW, Motion.CCW))
         marks = Marks(
             on=self.switches_on & ~self.switches_off,
             off=self.switches_off,
             starts=self.starts,
-            outside=self.codes("G27", "G28", "G30", "G53"),
-            tool_ends=self.changes_tool | self.ends_program | self.codes("M1", "M6"),
-            rapid=self.codes("G0"),
+            outside=self.listed("reference_check", "reference_return", "machine_coordinates"),
+            tool_ends=self.changes_tool | self.ends_program | self.codes(*m_codes.optional_stop, *m_codes.tool_change),
+            rapid=self.listed("rapid"),
             cuts=cutting & self.has(*self._virtual),
             moves=cutting & self.moves_plane,
             returns=self.codes(*self.machine.macro.program_returns),
@@ -152,18 +153,19 @@ class Positions(Lengths):
     def _forgets(self, axis: str, increment: str) -> Mask:
         """Rows after which an axis is not where its words say: references, shifts, cycles, blocks not executed."""
         named = self.has(axis, increment)
-        lost = (self.codes("G10", "G28", "G30", "G52", "G53") | self.sets_coordinates) & named
+        lost = self.listed("data_input", "reference_return", "local_shift", "machine_coordinates")
+        lost = (lost | self.sets_coordinates) & named
         work_offset = self.state("work_offset")
         lost |= self.sets("work_offset") & (work_offset != before(work_offset, self.starts, 0))
         if axis in "XZ":
-            cycle = (self.motion == Motion.CYCLE) | self.codes("G70", "G71", "G72", "G73", "G74", "G75", "G76")
+            cycle = (self.motion == Motion.CYCLE) | self.listed("repetitive_cycle")
             lost |= cycle | self.changes_tool
         return (lost & (self.section < 0)) | self.run.unknown | self.starts
 
     @cached_property
     def sets_coordinates(self) -> Mask:
         """G50 (G92): axis words say where the tool stands, or with S how fast the spindle may turn."""
-        return self.codes(COORDINATE_SETTING[self.machine.control.g_code_system])
+        return self.listed("coordinate_setting")
 
     def _set_by(self, axis: str) -> Floats:
         """What G50 (G92) or G28 make the coordinate of an axis; NaN where that is not known."""
@@ -194,7 +196,7 @@ class Positions(Lengths):
     def _plane(self) -> tuple[Points, Points]:
         """Plane points after and before each row; the virtual coordinate is NaN outside the mode."""
         x_words = self._programmed("X", "U", self.x_factor, ~self.enters)
-        c_words = self._programmed(*self._virtual, _FACTOR[self.machine.polar.virtual_axis_is], self.in_polar)
+        c_words = self._programmed(*self._virtual, _FACTOR[self.machine.polar.virtual_axis_programming], self.in_polar)
         leave = self.sections.leave[self.sections.leave < len(self)]
         c = positions(*c_words, self.enters, np.zeros(len(self)))
         c = np.where(self.section >= 0, c, np.nan)
@@ -280,8 +282,8 @@ class Positions(Lengths):
         on_plane = self.in_polar & self.moves_plane
         turn[on_plane] = polar.c_sweep(*self._move(on_plane))
         # G28 H0 takes C to its reference point, the zero of its angle (builder's guide: "zero return C-axis").
-        referenced = self.codes("G28", "G30") & self.has("C", "H")
-        values = np.where(referenced, 0.0, np.where(self.codes("G50", "G92"), self.angle_of("C"), np.nan))
+        referenced = self.listed("c_axis_reference") & self.has("C", "H")
+        values = np.where(referenced, 0.0, np.where(self.sets_coordinates, self.angle_of("C"), np.nan))
         return positions(absolute, turn, self._forgets("C", "H"), values)
 
     @cached_property

@@ -26,15 +26,19 @@ class Ramps:
     def start_up_missing(self) -> Mask:
         """G41 or G42 after which nothing moves on the plane before G40 or the end of the mode."""
         trace = self.trace
-        begins = trace.in_polar & trace.codes("G41", "G42") & ~trace.moves_plane & (trace.side_before == Side.OFF)
-        return self._without_move(begins & ~trace.offset_mode, trace.codes("G40") | ~trace.in_polar, trace.starts_up)
+        begins = trace.in_polar & trace.writes_side & ~trace.moves_plane & (trace.side_before == Side.OFF)
+        return self._without_move(begins & ~trace.offset_mode, trace.writes_cancel | ~trace.in_polar, trace.starts_up)
 
     @cached_property
     def cancel_missing(self) -> Mask:
         """A G40 after which nothing moves on the plane before the mode is left or compensation begins again."""
         trace = self.trace
-        ends = trace.codes("G40") & ~trace.moves_plane & (trace.side_before != Side.OFF)
-        return self._without_move(ends & trace.offset_mode, trace.codes("G41", "G42") | ~trace.in_polar, trace.cancels)
+        ends = trace.writes_cancel & ~trace.moves_plane & (trace.side_before != Side.OFF)
+        return self._without_move(
+            ends & trace.offset_mode,
+            trace.writes_side | ~trace.in_polar,
+            trace.cancels,
+        )
 
     def _without_move(self, rows: Mask, ends: Mask, ramp: Mask) -> Mask:
         """Of these rows those after which one of `ends` comes before a move of the ramp."""
@@ -72,7 +76,7 @@ class Ramps:
         """G41 or G42 in offset mode while one of them is in force."""
         trace = self.trace
         in_force = (trace.side != Side.OFF) & (trace.side_before != Side.OFF)
-        return np.asarray(trace.offset_mode & in_force & trace.codes("G41", "G42"))
+        return np.asarray(trace.offset_mode & in_force & trace.writes_side)
 
     @cached_property
     def compensated(self) -> Mask:

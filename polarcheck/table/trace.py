@@ -64,6 +64,16 @@ class Trace(Positions):
     # ---- compensation ----
 
     @cached_property
+    def writes_side(self) -> Mask:
+        """G41 or G42 stands in the row."""
+        return self.listed("compensation_left", "compensation_right")
+
+    @cached_property
+    def writes_cancel(self) -> Mask:
+        """G40 stands in the row."""
+        return self.listed("compensation_off")
+
+    @cached_property
     def side(self) -> States:
         """Cutter compensation in force (Side); after a section it is off, be it that its G40 was forgotten."""
         written = self.sets("side")
@@ -127,7 +137,7 @@ class Trace(Positions):
     @cached_property
     def takes_over_per_minute_only(self) -> bool:
         """F of the mode is per minute, and one per revolution from before is not taken over (M700V p. 73)."""
-        return self.machine.feed.inheritance == "per-minute-only"
+        return self.machine.feed.carried_into_polar == "per-minute-only"
 
     @cached_property
     def entered_per_revolution(self) -> Mask:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from polarcheck.arrays import Mask, Rows
 from polarcheck.execution.programs import block_text, find_programs
-from polarcheck.machines.codes import NO_CODE, code_numbers, code_set, group_tables
+from polarcheck.machines.codes import NO_CODE, code_numbers, code_set, modal_tables
 from polarcheck.machines.machine import Machine
 from polarcheck.reading.surroundings import BLANKS
 from polarcheck.reading.words import NumberFault, Text
@@ -24,8 +24,8 @@ _ADDRESS_BITS[list(b"GMN")] = 0
 _ARGUMENT_SETS = b"IJK"
 #: Groups whose codes have other meanings on lathes with two turrets, or take arguments.
 _UNSURE_GROUPS = ("scaling", "rotation", "mirror")
-#: Codes of group 01 in system A that other systems and mills write beside G0 and G1, in another meaning.
-_OF_OTHER_SYSTEMS = ("G90", "G92", "G94")
+#: Cycles whose codes in system A other systems and mills write beside G0 and G1, in another meaning.
+_OF_OTHER_SYSTEMS = ("turning_cycle", "threading_cycle", "facing_cycle")
 _COMMENT = re.compile(rb"\([^)\n]*+\)?")
 _LETTER_OR_DIGIT = re.compile(rb"[0-9A-Za-z\x80-\xff]")
 _JUMP = r"GOTO|GO\s*\d"
@@ -125,11 +125,11 @@ class Written:
     def overruled(self) -> Rows:
         """Per word: the word of another code of the same modal group that stands before it in the block, else -1."""
         system = self.machine.control.g_code_system
-        names, group_of, _ = group_tables(system)
+        names, group_of, _ = modal_tables(self.machine)
         group = group_of.copy()
         group[np.isin(group, [names.index(name) + 1 for name in _UNSURE_GROUPS])] = 0
         if system == "A":
-            group[code_set(_OF_OTHER_SYSTEMS)] = 0
+            group[code_set(code for key in _OF_OTHER_SYSTEMS for code in self.machine.codes(key))] = 0
         group[NO_CODE] = 0
         kind = group[self._g_codes]
         bits = np.where(kind > 0, np.uint64(1) << kind.astype(np.uint64), np.uint64(0))

@@ -22,7 +22,7 @@ def changed_by(trace: Trace, row: int) -> str:
     """T0808 or G10."""
     if trace.has("T")[row]:
         return f"T{int(trace.tool[row]):02d}{int(trace.offset_number[row]):02d}"
-    return "G10"
+    return trace.machine.codes("data_input")[0]
 
 
 def allowed(machine: Machine) -> str:
@@ -43,7 +43,7 @@ def _along(trace: Trace, row: int, length: float) -> str:
 def fault(trace: Trace, row: int) -> str:
     """What is wrong with a ramp that is shorter than R, or has no length at all."""
     if not trace.moves_plane[row]:
-        code = "G40" if trace.codes("G40")[row] else side(trace, row)
+        code = trace.machine.codes("compensation_off")[0] if trace.writes_cancel[row] else side(trace, row)
         return f"is missing: no move on the plane follows {code}"
     radius = abs(float(trace.radius[row]))
     shown = in_row(radius, trace, row)
@@ -58,7 +58,7 @@ def why(trace: Trace, row: int) -> str:
     following = row + 1
     while following < len(trace) and trace.in_polar[following] and not trace.length[following] > 0:
         following += 1
-    stops = trace.codes(*trace.machine.m_codes.stops_reading)
+    stops = trace.codes(*trace.machine.m_codes.stops_reading_ahead)
     for at in range(row, following):
         if stops[at]:
             return f"line {trace.line[at]} stops reading ahead"

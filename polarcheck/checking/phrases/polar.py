@@ -10,21 +10,15 @@ from polarcheck.machines.machine import Machine
 from polarcheck.table.infeed import Infeed
 from polarcheck.table.trace import Trace
 
-#: What words of systems B and C mean in system A, and of A in B and C.
+#: What the codes of a list of G-code system B are in system A, and what stands for them there.
 _IN_SYSTEM_A = {
-    "G90": "a turning cycle in G-code system A, where X and C are absolute and U and H incremental",
-    "G91": "no code of G-code system A, where U and H are incremental",
-    "G94": "a facing cycle in G-code system A, where G98 is feed per minute",
-    "G95": "no code of G-code system A, where G99 is feed per revolution",
+    "absolute": "a turning cycle in G-code system A, where X and C are absolute and U and H incremental",
+    "incremental": "no code of G-code system A, where U and H are incremental",
+    "feed_per_minute": "a facing cycle in G-code system A, where {} is feed per minute",
+    "feed_per_revolution": "no code of G-code system A, where {} is feed per revolution",
 }
-#: Group and state of what must have ended at G12.1: the code, and what ends it.
-_ENDS = {
-    ("scaling", 51): ("G51", "G50"),
-    ("rotation", 68): ("G68.1", "G69.1"),
-    ("mirror", 68): ("G68", "G69"),
-    ("mirror", 51): ("G51.1", "G50.1"),
-    ("speed", 96): ("G96", "G97"),
-}
+#: Modal groups that must have ended at G12.1, by the list of the codes that begin them.
+_ENDED = {"scaling": "scaling", "rotation": "rotation", "mirror_image": "mirror", "constant_surface_speed": "speed"}
 
 
 def missing_before(trace: Trace, index: int) -> str:
@@ -65,9 +59,13 @@ def side(trace: Trace, row: int) -> str:
 
 
 def _states(trace: Trace, row: int) -> list[tuple[str, str]]:
-    cycle = int(trace.drilling[row])
-    found = [(spelled("G", cycle * 10), "G80")] if cycle else []
-    return found + [ends for (group, state), ends in _ENDS.items() if trace.state(group)[row] == state]
+    """The codes in force in a row that should have ended, each with the code that ends it."""
+    machine, cycle = trace.machine, int(trace.drilling[row])
+    found = [(spelled("G", cycle * 10), " or ".join(machine.codes("drilling_cycle_off")))] if cycle else []
+    for key, group in _ENDED.items():
+        pairs = zip(machine.codes(key), machine.codes(f"{key}_off"), strict=False)
+        found += [(on, off) for on, off in pairs if trace.has_state(group, [on])[row]]
+    return found
 
 
 def in_force(trace: Trace, row: int) -> str:
@@ -82,16 +80,19 @@ def ends(trace: Trace, row: int) -> str:
 
 def meaning(trace: Trace, at: list[int]) -> str:
     """The first word at fault and what it means in this G-code system."""
-    address = chr(int(trace.run.words.address[at[0]]))
-    system = trace.machine.control.g_code_system
-    name = spelled("G", round(float(trace.run.words.value[at[0]]) * 10)) if address == "G" else address
-    other = f"no incremental word of G-code system {system}, where G91 makes X and C incremental"
-    return f"{name} is {_IN_SYSTEM_A.get(name, other)}"
+    machine, word = trace.machine, trace.run.words
+    address = chr(int(word.address[at[0]]))
+    name = spelled("G", round(float(word.value[at[0]]) * 10)) if address == "G" else address
+    for key, text in _IN_SYSTEM_A.items():
+        if name in getattr(machine.g_code_system_b, key):
+            return f"{name} is {text.format(*machine.codes(key))}"
+    system = machine.control.g_code_system
+    return f"{name} is no incremental word of G-code system {system}, where G91 makes X and C incremental"
 
 
 def other_controls(machine: Machine) -> str:
     """Which controls take the address."""
-    controls = machine.polar.other_virtual_axis_of
+    controls = machine.polar.other_controls
     return f"; {controls} would take it" if controls else ""
 
 
@@ -99,11 +100,11 @@ def not_simulated(trace: Trace, infeed: Infeed) -> Iterator[tuple[str, int]]:
     """What of the words beside G12.1 is not simulated, and in how many blocks."""
     mode = trace.machine.polar
     for word, number, axis in (("P", mode.linear_axis, "linear"), ("Q", mode.rotary_axis, "rotary")):
-        if word in mode.switch_words:
+        if word in mode.words_beside_switch:
             value = trace.word(word)
             other = trace.enters & ((value < number) | (value > number))
             yield f"{word} names another {axis} axis than {number}, which is not simulated", int(other.sum())
-    for word in sorted({"X", mode.virtual_axis} & set(mode.switch_words)):
+    for word in sorted({"X", mode.virtual_axis} & set(mode.words_beside_switch)):
         shifts = trace.enters & (abs(trace.word(word)) > 0)
         yield f"the center of the C axis shifted by {word} is not simulated", int(shifts.sum())
     partly = int(infeed.is_simulated_in_part.sum())

@@ -10,7 +10,7 @@ from polarcheck.table.trace import Trace
 def name(entry: Entry, row: int) -> str:
     """What shifts the origin: work offset, G52, or both."""
     shifts = [str(entry.work_offset_name[row])] if entry.work_offset_shift[row] else []
-    return " and ".join([*shifts, "G52"] if entry.local_shift[row] else shifts)
+    return " and ".join([*shifts, entry.trace.machine.codes("local_shift")[0]] if entry.local_shift[row] else shifts)
 
 
 def comment(trace: Trace, row: int) -> str:

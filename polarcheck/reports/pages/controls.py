@@ -23,7 +23,7 @@ _COLUMNS = (
     "polar.x",
     "arcs.radius_word",
     "polar.plane_before",
-    "feed.inheritance",
+    "feed.carried_into_polar",
     "polar.infeed_word",
     "control.g_code_system",
     "control.number_without_point",
@@ -60,7 +60,7 @@ def _said(profile: Profile, key: str) -> str:
     group, _, last = key.partition(".")
     origin = profile.origins.get(key)
     mark = " ?" if origin and origin.doubtful else ""
-    return f"{_shown(getattr(getattr(profile.machine, group), last))}{mark}"
+    return f"{_shown(getattr(getattr(profile.written, group), last))}{mark}"
 
 
 def _page(profile: Profile) -> Iterator[str]:
@@ -70,7 +70,7 @@ def _page(profile: Profile) -> Iterator[str]:
     own = {key: origin for key, origin in profile.origins.items() if origin.profile == profile.name and "." in key}
     if own:
         yield from ("", _row("property", "value", "source"), _row("---", "---", "---"))
-    table = msgspec.to_builtins(profile.machine)
+    table = msgspec.to_builtins(profile.written)
     for key, origin in own.items():
         group, _, last = key.partition(".")
         yield _row(f"`{key}`", _shown(table[group][last], group), _source(origin))
@@ -81,7 +81,7 @@ def _source(origin: Origin) -> str:
 
 
 def _shown(value: Any, group: str = "") -> str:
-    if group == "meanings":
+    if group == "known_parameters":
         return str(value["title"])
     if isinstance(value, bool):
         return "yes" if value else "no"

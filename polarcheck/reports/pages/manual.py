@@ -92,8 +92,8 @@ def profile_text(profile: Profile) -> str:
         "# Change a value with --set TABLE.KEY=VALUE, or in a profile of your own that inherits this one.",
         "",
     ]
-    table = {name: getattr(profile.machine, name) for name in profile.machine.__struct_fields__}
-    meanings, notes = table.pop("meanings", {}), table.pop("notes", [])
+    table = {name: getattr(profile.written, name) for name in profile.written.__struct_fields__}
+    known, notes = table.pop("known_parameters", {}), table.pop("notes", [])
     for note in notes:
         lines += textwrap.wrap(visible(note), _COLUMNS, initial_indent="# - ", subsequent_indent="#   ")
     lines += [""] if notes else []
@@ -106,9 +106,9 @@ def profile_text(profile: Profile) -> str:
         lines += ["", f"[{group}]"] if values else []
         for key, value in values.items():
             lines += _entry(key, value, profile.origins.get(f"{group}.{key}"))
-    if meanings:
+    if known:
         lines += ["", "# Parameters of the control that the table [parameters] of a profile of your own may give:"]
-        lines += [visible(f"#   {number:<8}{meaning.title}") for number, meaning in meanings.items()]
+        lines += [visible(f"#   {number:<8}{meaning.title}") for number, meaning in known.items()]
     return "\n".join(lines) + "\n"
 
 

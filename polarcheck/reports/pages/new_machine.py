@@ -9,33 +9,29 @@ from typing import Any
 
 import msgspec
 
+from polarcheck.machines.machine import meanings
 from polarcheck.machines.parameters import Meaning
 from polarcheck.machines.profiles import Profile, load
 
-#: What no control's manual can know, with an answer as it may look.
-_ASKED: dict[str, dict[str, tuple[Any, str]]] = {
+#: What no control's manual can know, each key with an answer as it may look.
+_ASKED: dict[str, dict[str, Any]] = {
     "limits": {
-        "c_feed": (3600, "largest cutting feed of the C axis [deg/min]; 100 turns a minute are 36000"),
-        "c_acceleration": (7200, "largest acceleration of the C axis [deg/s2]"),
-        "polar_feed": (2000, "largest cutting feed in the polar mode [mm/min]"),
-        "automatic_override": (True, "the control slows down by itself where C would turn too fast"),
-        "keep_out": (0.1, "how far the tool center should stay away from the center of C [mm]"),
-        "x_minimum": (-10.0, "travel of X [mm, radius]"),
-        "x_maximum": (200.0, "travel of X [mm, radius]"),
-        "z_minimum": (-500.0, "travel of Z [mm]"),
-        "z_maximum": (300.0, "travel of Z [mm]"),
+        "c_feed": 3600,
+        "c_acceleration": 7200,
+        "polar_feed": 2000,
+        "automatic_override": True,
+        "keep_out": 0.1,
+        "x_minimum": -10.0,
+        "x_maximum": 200.0,
+        "z_minimum": -500.0,
+        "z_maximum": 300.0,
     },
-    "m_codes": {
-        "c_axis_on": (["M35"], "the spindle becomes the C axis"),
-        "c_axis_off": (["M34"], "the C axis becomes the spindle"),
-        "live_tool_on": (["M33"], "the live tool turns, if it has codes of its own"),
-        "live_tool_off": (["M5"], "the live tool stops"),
-    },
+    "m_codes": {"c_axis_on": ["M35"], "c_axis_off": ["M34"], "live_tool_on": ["M33"], "live_tool_off": ["M5"]},
     "feed": {
-        "cutting_minimum": (25, "feeds that the builder recommends for cutting [mm/min]"),
-        "cutting_maximum": (250, "feeds that the builder recommends for cutting [mm/min]"),
-        "positioning_minimum": (750, "feeds that the builder recommends for positioning in the mode [mm/min]"),
-        "positioning_maximum": (1500, "feeds that the builder recommends for positioning in the mode [mm/min]"),
+        "cutting_minimum": 25,
+        "cutting_maximum": 250,
+        "positioning_minimum": 750,
+        "positioning_maximum": 1500,
     },
 }
 _COLUMNS = 100
@@ -65,36 +61,53 @@ def text(name: str, inherits: str) -> str:
 def _limits(profile: Profile) -> Iterator[str]:
     for group, keys in _ASKED.items():
         yield from ("", f"[{group}]")
-        for key, (answer, text) in keys.items():
-            yield f"#{key} = {_toml(answer)}  # {text}"
+        meaning = meanings(type(getattr(profile.written, group)))
+        for key, answer in keys.items():
+            yield from _answer(key, answer, meaning[key])
         yield from _in_doubt(profile, group, set(keys))
 
 
 def _doubtful(profile: Profile) -> Iterator[str]:
     """What the profile itself is not sure of."""
-    table = msgspec.to_builtins(profile.machine)
+    table = msgspec.to_builtins(profile.written)
     for group, values in table.items():
-        if isinstance(values, dict) and group not in (*_ASKED, "meanings", "parameters", "alarms"):
+        of_other_system = group.startswith("g_code_system_") and group != profile.machine.system_table
+        asked_elsewhere = (*_ASKED, "known_parameters", "parameters", "alarms")
+        if isinstance(values, dict) and group not in asked_elsewhere and not of_other_system:
             found = list(_in_doubt(profile, group, set()))
             if found:
                 yield from ("", f"[{group}]", *found)
 
 
 def _in_doubt(profile: Profile, group: str, told: set[str]) -> Iterator[str]:
-    values = msgspec.to_builtins(getattr(profile.machine, group))
-    for key, value in values.items():
+    """The keys of a table that are in doubt and not among those told, each doubt once."""
+    table = getattr(profile.written, group)
+    meaning = meanings(type(table))
+    said = ""
+    for key, value in msgspec.to_builtins(table).items():
         origin = profile.origins.get(f"{group}.{key}")
         if origin and origin.doubtful and key not in told:
-            yield from _prose(f"in doubt: {origin.source}")
-            yield f"#{_toml_key(key)} = {_toml(value)}"
+            if origin.source != said:
+                yield from _prose(f"in doubt: {origin.source}")
+            said = origin.source
+            yield from _answer(key, value, meaning.get(key, ""))
+
+
+def _answer(key: str, value: Any, meaning: str) -> Iterator[str]:
+    """A key and its value, left out, with what it means behind it or, where that is too long, above it."""
+    line = f"#{_toml_key(key)} = {_toml(value)}"
+    is_short = len(line) + len(meaning) + 4 <= _COLUMNS
+    if meaning and not is_short:
+        yield f"# {meaning}"
+    yield f"{line}  # {meaning}" if meaning and is_short else line
 
 
 def _parameters(profile: Profile) -> Iterator[str]:
     """The control parameters that can be copied from the screen."""
-    if not profile.machine.meanings:
+    if not profile.machine.known_parameters:
         return
     yield from ("", "[parameters]", *_prose("as the control shows them; each sets the values that it stands for"))
-    for name, meaning in profile.machine.meanings.items():
+    for name, meaning in profile.machine.known_parameters.items():
         example = _present(profile, meaning) or next(iter(meaning.values), "3600")
         number = example.replace(".", "").isdecimal()
         yield f"#{_toml(name)} = {example if number else _toml(example)}  # {meaning.title}"

@@ -9,7 +9,7 @@ import msgspec
 
 from polarcheck.checking.finding import Report, Severity
 from polarcheck.machines.job import Job
-from polarcheck.machines.machine import Machine
+from polarcheck.machines.machine import Machine, meanings
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 VERDICTS = ("pass", "fail", "unverified")
@@ -51,16 +51,23 @@ def _machine() -> Schema:
     """A profile as a file holds it: a part of the machine, each value bare or with its source, and what it inherits."""
     made: Schema = _without_nan(msgspec.json.schema(Machine))
     machine = made["$defs"]["Machine"]["properties"]
-    groups = {value["$ref"].rpartition("/")[2] for value in machine.values() if "$ref" in value}
-    for name in groups:
-        properties = made["$defs"][name]["properties"]
-        made["$defs"][name] |= {"required": [], "properties": {key: _sourced(properties[key]) for key in properties}}
+    for kind in {field.type for field in msgspec.structs.fields(Machine) if "$ref" in machine[field.name]}:
+        table, meaning = made["$defs"][kind.__name__], meanings(kind)
+        properties = {
+            key: _sourced(value) | ({"description": meaning[key]} if key in meaning else {})
+            for key, value in table["properties"].items()
+        }
+        table |= {"required": [], "properties": {**_OF_TABLES, **properties}}
+        table["description"] = table.get("description", "").partition("\n")[0]
     for key, value in machine.items():
         if value.get("type") == "object":
             value["additionalProperties"] = _sourced(value["additionalProperties"])
+            value["properties"] = _OF_TABLES
         elif "$ref" not in value:
             machine[key] = _sourced(value)
-    made["$defs"]["Machine"]["required"] = []
+    for key, description in meanings(Machine).items():
+        machine[key]["description"] = description
+    made["$defs"]["Machine"] |= {"required": [], "description": "A lathe, or what makes it differ from another one."}
     for key, (kind, description) in _OF_FILES.items():
         machine[key] = {"description": description, **kind}
     return made
@@ -70,6 +77,11 @@ def _machine() -> Schema:
 _OF_FILES: dict[str, tuple[Schema, str]] = {
     "inherits": ({"type": "string"}, "the name of a built-in machine, or a TOML file"),
     "replaces": ({"type": "array", "items": {"type": "string"}}, "tables of which nothing is inherited"),
+}
+#: Keys that any table of a file may have.
+_OF_TABLES: dict[str, Schema] = {
+    "source": {"type": "string", "description": "of those values of the table that name none of their own"},
+    "doubtful": {"type": "boolean", "description": "whether those values that do not say it themselves are in doubt"},
 }
 
 

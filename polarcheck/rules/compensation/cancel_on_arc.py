@@ -3,7 +3,11 @@ from __future__ import annotations
 from polarcheck.checking.rule import ERROR, Mask, Trace, rule
 
 
-@rule(ERROR, "G40 takes effect on an arc; cancel in a G1 block after the arc", at=("G40", "G2", "G3"))
+@rule(
+    ERROR,
+    "G40 takes effect on an arc; cancel in a G1 block after the arc",
+    at=("compensation_off", "arc_clockwise", "arc_counterclockwise"),
+)
 def cancel_on_arc(trace: Trace) -> Mask:
     """
     Cutter compensation cancelled on an arc.

@@ -6,7 +6,7 @@ from polarcheck.checking.rule import ERROR, Mask, Ramps, Trace, rule
 @rule(
     ERROR,
     "offset cancel {fault}",
-    at=("G40",),
+    at=("compensation_off",),
     needs=("trace.radius", "trace.length"),
     where="ramps.cancel_judged_by_radius",
 )

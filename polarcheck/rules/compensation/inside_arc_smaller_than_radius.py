@@ -6,7 +6,7 @@ from polarcheck.checking.rule import ERROR, Mask, ToolCenter, Trace, rule
 @rule(
     ERROR,
     "arc of {ramps.arc_radius:length} with the tool on its inner side; R {trace.radius:length} must be smaller",
-    at=("G2", "G3", "R", "I", "J"),
+    at=("arc_clockwise", "arc_counterclockwise", "R", "I", "J"),
     needs=("trace.radius",),
     where="ramps.compensated",
 )

@@ -6,7 +6,7 @@ from polarcheck.checking.rule import ERROR, Mask, Trace, rule
 @rule(
     ERROR,
     "offset {trace.offset_number} has nose type T{trace.nose:.0f}; for a mill it must be {allowed}",
-    at=("G41", "G42"),
+    at=("compensation_left", "compensation_right"),
     once="section",
 )
 def nose_type_not_zero(trace: Trace) -> Mask:

@@ -3,7 +3,7 @@ from __future__ import annotations
 from polarcheck.checking.rule import ERROR, Mask, ModeWords, Trace, rule
 
 
-@rule(ERROR, "tool offset changed in the polar mode by {changed_by}; write it {outside}", at=("T", "G10"))
+@rule(ERROR, "tool offset changed in the polar mode by {changed_by}; write it {outside}", at=("T", "data_input"))
 def offset_changed_in_polar(trace: Trace, mode_words: ModeWords) -> Mask:
     """
     Tool offset changed in the polar mode.

@@ -3,7 +3,12 @@ from __future__ import annotations
 from polarcheck.checking.rule import ERROR, Mask, Trace, rule
 
 
-@rule(ERROR, "{side} begins and no tool offset is in force, so that R is 0", at=("G41", "G42"), once="section")
+@rule(
+    ERROR,
+    "{side} begins and no tool offset is in force, so that R is 0",
+    at=("compensation_left", "compensation_right"),
+    once="section",
+)
 def offset_number_missing(trace: Trace) -> Mask:
     """
     Cutter compensation without a tool offset.

@@ -3,7 +3,11 @@ from __future__ import annotations
 from polarcheck.checking.rule import WARNING, Mask, Ramps, Trace, rule
 
 
-@rule(WARNING, "{side} while {before} is in force; write G40 with a move between them", at=("G41", "G42"))
+@rule(
+    WARNING,
+    "{side} while {before} is in force; write G40 with a move between them",
+    at=("compensation_left", "compensation_right"),
+)
 def side_changed_in_offset_mode(trace: Trace, ramps: Ramps) -> Mask:
     """
     Side of compensation changed without G40.

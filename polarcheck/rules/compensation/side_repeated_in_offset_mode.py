@@ -6,7 +6,7 @@ from polarcheck.checking.rule import WARNING, Mask, Ramps, Trace, rule
 @rule(
     WARNING,
     "{side} again: it is in force already, and the tool center does not turn into the corner before it",
-    at=("G41", "G42"),
+    at=("compensation_left", "compensation_right"),
     once="section",
 )
 def side_repeated_in_offset_mode(trace: Trace, ramps: Ramps) -> Mask:

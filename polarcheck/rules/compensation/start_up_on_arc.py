@@ -3,7 +3,11 @@ from __future__ import annotations
 from polarcheck.checking.rule import ERROR, Mask, Trace, rule
 
 
-@rule(ERROR, "{side} begins on an arc; begin it in a G1 block before the arc", at=("G41", "G42", "G2", "G3"))
+@rule(
+    ERROR,
+    "{side} begins on an arc; begin it in a G1 block before the arc",
+    at=("compensation_left", "compensation_right", "arc_clockwise", "arc_counterclockwise"),
+)
 def start_up_on_arc(trace: Trace) -> Mask:
     """
     Cutter compensation begun on an arc.

@@ -6,7 +6,7 @@ from polarcheck.checking.rule import ERROR, Mask, Ramps, Trace, rule
 @rule(
     ERROR,
     "start-up {fault}",
-    at=("G41", "G42"),
+    at=("compensation_left", "compensation_right"),
     needs=("trace.radius", "trace.length"),
     where="ramps.start_up_judged_by_radius",
 )

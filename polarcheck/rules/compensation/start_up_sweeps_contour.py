@@ -6,7 +6,7 @@ from polarcheck.checking.rule import ERROR, Hits, Overcuts, rule
 @rule(
     ERROR,
     "the ramp goes {depth:length} deep into {place}",
-    at=("G40", "G41", "G42"),
+    at=("compensation_off", "compensation_left", "compensation_right"),
     unless=(
         "overcut",
         "start-up-shorter-than-radius",

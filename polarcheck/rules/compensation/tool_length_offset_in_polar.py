@@ -6,7 +6,7 @@ from polarcheck.checking.rule import ERROR, Mask, ModeWords, rule
 @rule(
     ERROR,
     "tool length offset cannot be switched in the polar mode; write it {outside}",
-    at=("G43", "G44", "G49"),
+    at=("tool_length_offset", "tool_length_offset_off"),
 )
 def tool_length_offset_in_polar(mode_words: ModeWords) -> Mask:
     """

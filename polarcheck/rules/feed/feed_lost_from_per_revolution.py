@@ -6,7 +6,7 @@ from polarcheck.checking.rule import ERROR, Feeds, Mask, Trace, rule
 @rule(
     ERROR,
     "no F in the mode: the feed per revolution before G12.1 is not taken over",
-    at=("G1", "G2", "G3"),
+    at=("line", "arc_clockwise", "arc_counterclockwise"),
     unless=("feed-missing-in-polar",),
 )
 def feed_lost_from_per_revolution(trace: Trace, feeds: Feeds) -> Mask:
@@ -19,7 +19,7 @@ def feed_lost_from_per_revolution(trace: Trace, feeds: Feeds) -> Mask:
 
     Source: Mitsubishi M700V programming manual, p. 73: alarm P62.
 
-    Bad, set feed.inheritance="per-minute-only":
+    Bad, set feed.carried_into_polar="per-minute-only":
 
         G99 G0 X60. C0
         G1 Z-5. F.2
@@ -28,7 +28,7 @@ def feed_lost_from_per_revolution(trace: Trace, feeds: Feeds) -> Mask:
         C10.
         G13.1
 
-    Bad, set feed.inheritance="per-minute-only":
+    Bad, set feed.carried_into_polar="per-minute-only":
 
         G99 G0 X60. C0
         G1 Z-5. F.2
@@ -38,7 +38,7 @@ def feed_lost_from_per_revolution(trace: Trace, feeds: Feeds) -> Mask:
         C10. F200
         G13.1
 
-    Good, set feed.inheritance="per-minute-only":
+    Good, set feed.carried_into_polar="per-minute-only":
 
         G99 G0 X60. C0
         G1 Z-5. F.2

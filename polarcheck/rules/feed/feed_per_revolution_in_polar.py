@@ -7,7 +7,7 @@ from polarcheck.machines.modal import FeedMode
 @rule(
     WARNING,
     "feed per revolution of a spindle that turns as the C axis now; write feed per minute",
-    at=("G99", "G95", "G1", "G2", "G3"),
+    at=("feed_per_revolution", "line", "arc_clockwise", "arc_counterclockwise"),
     unless=("feed-missing-in-polar",),
 )
 def feed_per_revolution_in_polar(trace: Trace) -> Mask:

@@ -3,7 +3,11 @@ from __future__ import annotations
 from polarcheck.checking.rule import ERROR, Arcs, Mask, Trace, rule
 
 
-@rule(ERROR, "arc along Z; in the polar mode arcs lie in the plane of X and C", at=("G2", "G3", "Z", "W"))
+@rule(
+    ERROR,
+    "arc along Z; in the polar mode arcs lie in the plane of X and C",
+    at=("arc_clockwise", "arc_counterclockwise", "Z", "W"),
+)
 def arc_off_polar_plane(trace: Trace, arcs: Arcs) -> Mask:
     """
     Arc along Z in the polar mode.

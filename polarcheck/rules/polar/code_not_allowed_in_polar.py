@@ -61,7 +61,8 @@ def code_not_allowed_in_polar(mode_words: ModeWords, machine: Machine) -> Hits:
         G80
     """
     has_its_own_rule = (
-        mode_words.codes("G0", *machine.polar.on, *machine.polar.off)
+        mode_words.listed("rapid")
+        | mode_words.codes(*machine.polar.on, *machine.polar.off)
         | mode_words.selects_plane
         | mode_words.sets_length_offset
         | mode_words.shifts_origin

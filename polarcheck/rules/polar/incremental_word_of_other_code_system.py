@@ -60,7 +60,8 @@ def incremental_word_of_other_code_system(trace: Trace, mode_words: ModeWords, m
         G13.1
     """
     in_system_a = machine.control.g_code_system == "A"
-    codes, increments = ("G90", "G91", "G94", "G95"), ("U", "W", machine.polar.virtual_axis_increment)
+    of_b, increments = machine.g_code_system_b, ("U", "W", machine.polar.virtual_axis_incremental)
+    codes = (*of_b.absolute, *of_b.incremental, *of_b.feed_per_minute, *of_b.feed_per_revolution)
     # The address of another control has a rule of its own: wrong-axis-address-in-polar.
     wrong = mode_words.first_of(*(codes if in_system_a else increments)) & ~mode_words.of_other_axis
     # U is no increment beside a code that takes it for something else, such as G4.

@@ -51,5 +51,5 @@ def modal_state_wrong_at_entry(trace: Trace) -> Hits:
     transformed = (trace.state("scaling") != 0) | (trace.state("rotation") != 0) | (trace.state("mirror") != 0)
     return graded(
         error=trace.enters & (transformed | (trace.drilling != 0)),
-        warning=trace.enters & (trace.state("speed") == 96),
+        warning=trace.enters & (trace.state("speed") != 0),
     )

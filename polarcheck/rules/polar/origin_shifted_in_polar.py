@@ -7,7 +7,14 @@ from polarcheck.checking.rule import ERROR, Mask, ModeWords, rule
     ERROR,
     "{codes} changes the coordinate system in the polar mode; its origin must stay the center of the spindle, "
     "so write {codes} {outside}",
-    at=("G10", "G50", "G92", "G52", "G53", "G54", "G55", "G56", "G57", "G58", "G59", "G54.1"),
+    at=(
+        "data_input",
+        "coordinate_setting",
+        "local_shift",
+        "machine_coordinates",
+        "work_offset",
+        "work_offset_extended",
+    ),
 )
 def origin_shifted_in_polar(mode_words: ModeWords) -> Mask:
     """

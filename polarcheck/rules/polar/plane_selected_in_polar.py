@@ -6,7 +6,7 @@ from polarcheck.checking.rule import ERROR, Mask, ModeWords, rule
 @rule(
     ERROR,
     "{plane} in the polar mode: its plane is always that of X and C; delete it or write it {outside}",
-    at=("G17", "G18", "G19"),
+    at=("plane_xy", "plane_zx", "plane_yz"),
 )
 def plane_selected_in_polar(mode_words: ModeWords) -> Mask:
     """

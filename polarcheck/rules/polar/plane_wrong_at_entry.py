@@ -44,10 +44,6 @@ def plane_wrong_at_entry(trace: Trace, machine: Machine) -> Mask:
         X60.
         G13.1
     """
-    wanted, plane = machine.polar.plane_before, trace.state("plane")
-    is_other = (
-        ((plane == 17) & ("G17" not in wanted))
-        | ((plane == 18) & ("G18" not in wanted))
-        | ((plane == 19) & ("G19" not in wanted))
-    )
+    wanted = machine.polar.plane_before
+    is_other = (trace.state("plane") != 0) & ~trace.has_state("plane", wanted)
     return trace.enters & is_other & bool(wanted)

@@ -52,5 +52,5 @@ def polar_switched_in_offset_mode(trace: Trace) -> Mask:
     """
     # A G41 after which nothing has moved is no offset mode yet; that is start-up-shorter-than-radius.
     leaves_offset_mode = trace.leaves & (trace.side_of_move_before != Side.OFF)
-    side_in_force = (trace.side_before != Side.OFF) & ~trace.codes("G40")
+    side_in_force = (trace.side_before != Side.OFF) & ~trace.writes_cancel
     return (trace.enters | leaves_offset_mode) & side_in_force

@@ -4,7 +4,7 @@ from polarcheck.checking.rule import ERROR, Mask, Trace, rule
 from polarcheck.machines.modal import Motion
 
 
-@rule(ERROR, "G0 cannot be used in the polar mode; write G1 with a high F", at=("G0",))
+@rule(ERROR, "G0 cannot be used in the polar mode; write G1 with a high F", at=("rapid",))
 def rapid_in_polar(trace: Trace) -> Mask:
     """
     Rapid traverse in the polar mode.
@@ -42,6 +42,7 @@ def rapid_in_polar(trace: Trace) -> Mask:
         G0 X60.
     """
     # What G0 means beside a code that can only stand outside is no question of its own.
-    in_rapid = trace.in_polar & (trace.state("motion") == Motion.RAPID) & ~trace.codes("G27", "G28", "G30", "G53")
+    outside = trace.listed("reference_check", "reference_return", "machine_coordinates")
+    in_rapid = trace.in_polar & (trace.state("motion") == Motion.RAPID) & ~outside
     first_move = trace.first_in_section(in_rapid & (trace.motion == Motion.RAPID))
-    return in_rapid & (trace.codes("G0") | first_move)
+    return in_rapid & (trace.listed("rapid") | first_move)

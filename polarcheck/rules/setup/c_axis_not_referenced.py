@@ -46,5 +46,5 @@ def c_axis_not_referenced(trace: Trace, entry: Entry) -> Mask:
         X60.
         G13.1
     """
-    referenced = trace.codes("G28", "G30") & trace.has("C", "H")
+    referenced = trace.listed("c_axis_reference") & trace.has("C", "H")
     return trace.enters & trace.c_axis & ~entry.happened(referenced, since=entry.engages_c_axis)

@@ -3,7 +3,11 @@ from __future__ import annotations
 from polarcheck.checking.rule import ERROR, Entry, Hits, Machine, Trace, rule
 
 
-@rule(ERROR, "the live tool is not running in this cutting move; {codes} is missing", at=("G1", "G2", "G3"))
+@rule(
+    ERROR,
+    "the live tool is not running in this cutting move; {codes} is missing",
+    at=("line", "arc_clockwise", "arc_counterclockwise"),
+)
 def live_tool_stopped_in_cut(trace: Trace, entry: Entry, machine: Machine) -> Hits:
     """
     Cutting move in the polar mode with the live tool stopped.

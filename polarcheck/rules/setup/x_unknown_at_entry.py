@@ -64,5 +64,5 @@ def x_unknown_at_entry(trace: Trace, entry: Entry) -> Mask:
         M99
     """
     positioned = trace.has("X", "U") & (trace.uses_axes | trace.sets_coordinates)
-    lost = trace.changes_tool | (trace.codes("G28", "G30") & trace.has("X", "U"))
+    lost = trace.changes_tool | (trace.listed("reference_return") & trace.has("X", "U"))
     return trace.enters & trace.whole_program & ~entry.happened(positioned, since=lost)

@@ -1,0 +1,265 @@
+"""
+Every key of a machine is used: changing it changes what is reported or traced of some program.
+
+The keys stand in the order of the schema, each with a program and the value to which it is changed.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import Any
+
+import msgspec
+import pytest
+
+from polarcheck.checking import check
+from polarcheck.checking.rule import load_all
+from polarcheck.machines import profiles
+from polarcheck.machines.job import Job, with_tool
+from polarcheck.machines.machine import Machine
+from polarcheck.reports.pages import executed
+
+TABLES = {
+    field.name: [key.name for key in msgspec.structs.fields(field.type)]
+    for field in msgspec.structs.fields(Machine)
+    if isinstance(field.type, type) and issubclass(field.type, msgspec.Struct) and field.name != "macro"
+}
+
+#: Keys that no check reads, and why.
+NOT_CHECKED = {
+    "macro": "each of its keys has its program in test_macro_keys",
+    "notes": "text for `polarcheck machines` and the page of controls",
+    "known_parameters": "read where the profile is loaded; with [parameters] it is used below",
+}
+#: The codes of another G-code system than the one in force: the keys of all three are the same.
+SYSTEMS = ("g_code_system_a", "g_code_system_b", "g_code_system_c")
+
+
+@dataclasses.dataclass(frozen=True)
+class Use:
+    """A program that shows a value: machine, tools and the other values (`also`) are the same before and after."""
+
+    value: Any
+    program: str
+    machine: str = "fanuc"
+    tools: tuple[str, ...] = ()
+    also: dict[str, dict[str, Any]] = dataclasses.field(default_factory=dict)
+
+
+def outcome(use: Use, changes: dict[str, Any]) -> tuple[Any, ...]:
+    """What is reported and traced of the program."""
+    machine, work = profiles.load(use.machine, changes).machine, Job()
+    for tool in use.tools:
+        work = with_tool(work, tool)
+    data = use.program.encode()
+    report = check.check_file(data, machine, work, list(load_all().values()))
+    tables = check.read(data, machine, work)[0][1]
+    of_path = (tables["trace"], tables["tool_center"])
+    moves = list(executed.as_jsonl(executed.moves(*of_path, "tool")))
+    return report, list(executed.as_jsonl(executed.rows(*of_path))), moves
+
+
+FLAT = "O1\nG98 G0 X60. C0\nG12.1\nG1 X40. F200\nC10.\nX60.\nG13.1\nM30\n"
+ARC = "O1\nG98 G0 X60. C0\nG12.1\nG1 X40. F200\nG3 X20. C10. {}\nG1 X60.\nG13.1\nM30\n"
+RAMPS = "O1\nT0101\nG98 G0 X100. C0\nG12.1\n{}G1 G42 X40. F200\n{}C20.\nX10.\nC-20.\nX60.\n{}G40 X100.\nG13.1\nM30\n"
+CUTTER = ("1:radius=4",)
+CORNERS = "O1\nT0101\nG98 G0 X100. C0\nG12.1\nG1 C{}. F500\nG41 {}\nG1 G40 X120.\nG13.1\nM30\n"
+REVERSED = CORNERS.format(20, "X60. F200\nG3 X58. C10. R6.\nG1 X68. C5.\nX66. C8.")
+OUTSIDE = CORNERS.format(20, "X60. F200\nG3 X70. C25. R5.\nG1 X72. C30.")
+APART = CORNERS.format(-20, "X48.2 F200\nC0\nG3 X40. C4.1 R4.1\nX34.556 C-1.02 R4.1\nG1 X40.4 C-10.58")
+GOUGE = """O1
+T0101
+G98 G0 X100. C0
+G12.1
+G1 C3. F500
+G41 X60. F200
+X30.
+C20.
+X-20.
+C-20.
+X30.
+C-3.
+X60.
+G40 X100.
+G13.1
+M30
+"""
+CALL = "O1\nM98 P2\nM30\nO2\nM98 P3\nM99\nO3\nG0 X1.\nM99\n"
+MACRO_CALL = "O1\nG65 P2\nM30\nO2\nG65 P3\nM99\nO3\nG0 X1.\nM99\n"
+ENDED = "O1\nG98 G0 X60. C0\nG12.1\nG1 X40. F200\nC10.\n{}\nG13.1\nM30\n"
+SPINDLE = "O1\nG98 G0 X60. C0\n{}\nG12.1\nG1 X40. F200\nC10.\nX60.\n{}\nG13.1\nM30\n"
+INFEED = """T0202
+G0 X348. C30.
+G12.1 E8.
+G42 G1 X300. C0 F2000
+C80.
+X-300.
+C-80.
+X300.
+C0
+G40 X340.
+G13.1
+M30
+"""
+
+
+def inside(block: str) -> str:
+    """A program with a block in the polar mode."""
+    return f"O1\nG98 G0 X60. C0 Z5.\nG12.1\nG1 X40. F200\n{block}\nC10.\nX60.\nG13.1\nM30\n"
+
+
+def before(*blocks: str) -> str:
+    """A program with blocks before the polar mode."""
+    return "O1\nG98 G0 X60. C0 Z5.\n" + "\n".join(blocks) + "\nG12.1\nG1 X40. F200\nC10.\nX60.\nG13.1\nM30\n"
+
+
+USES = {
+    "title": Use("lathe of ours", FLAT.replace("F200", "F9000"), also={"limits": {"c_feed": 100}}),
+    "control.g_code_system": Use("B", FLAT.replace("G98", "G99")),
+    "control.units": Use("inch", FLAT),
+    "control.least_increment": Use(0.0001, FLAT.replace("40.", "40000")),
+    "control.least_increment_inch": Use(0.001, FLAT.replace("40.", "40000").replace("G98", "G98 G20")),
+    "control.number_without_point": Use("whole-unit", FLAT.replace("40.", "40")),
+    "control.digit_limit": Use(5, FLAT.replace("40.", "123456.")),
+    "control.word_limit": Use(3, FLAT),
+    "control.m_code_limit": Use(1, FLAT.replace("G98", "G98 M8 M9")),
+    "control.line_comments": Use(";", inside("; G0 X1.")),
+    "control.offset_digits": Use(1, FLAT.replace("G98", "T0112\nG98"), tools=("12:radius=3", "2:radius=4")),
+    "control.unknown_codes_are_errors": Use(False, before("G150")),
+    "control.x": Use("radius", FLAT),
+    "control.known_codes": Use(["G0-G119"], before("G160")),
+    "control.motion_codes": Use({"G101": "G1"}, inside("G101 C5.")),
+    "control.native_words": Use({"POLAR": "G12.1"}, FLAT.replace("G12.1", "POLAR")),
+    "control.x_radius_words": Use(["G7"], before("G7", "X50.")),
+    "control.x_diameter_words": Use(["G8"], before("G8", "X50."), also={"control": {"x": "radius"}}),
+    "g_codes.rapid": Use(["G0", "G150"], inside("G150 X50.")),
+    "g_codes.line": Use(["G1", "G150"], FLAT.replace("G1 ", "G150 ")),
+    "g_codes.arc_clockwise": Use(["G2", "G150"], ARC.replace("G3", "G150").format("R15.")),
+    "g_codes.arc_counterclockwise": Use(["G3", "G150"], ARC.replace("G3", "G150").format("R15.")),
+    "g_codes.motion_not_followed": Use(["G150"], inside("G150 C5.")),
+    "g_codes.plane_xy": Use([], before("G17"), also={"polar": {"plane_before": ["G18"]}}),
+    "g_codes.plane_zx": Use([], before("G18"), also={"polar": {"plane_before": ["G17"]}}),
+    "g_codes.plane_yz": Use([], before("G19"), also={"polar": {"plane_before": ["G17"]}}),
+    "g_codes.compensation_off": Use([], OUTSIDE, tools=CUTTER),
+    "g_codes.compensation_left": Use([], OUTSIDE, tools=CUTTER),
+    "g_codes.compensation_right": Use([], RAMPS.format("", "", ""), tools=CUTTER),
+    "g_codes.feed_inverse_time": Use([], before("G93")),
+    "g_codes.constant_surface_speed": Use([], before("G96 S100")),
+    "g_codes.constant_surface_speed_off": Use([], before("G96 S100", "G97")),
+    "g_codes.work_offset": Use(["G54-G58"], before("G59")),
+    "g_codes.work_offset_extended": Use([], before("G54.1 P1")),
+    "g_codes.drilling_cycle": Use([], before("G83 Z1. R2.")),
+    "g_codes.drilling_cycle_off": Use([], before("G83 Z1. R2.", "G80")),
+    "g_codes.scaling": Use([], before("G51 P2")),
+    "g_codes.scaling_off": Use([], before("G51 P2", "G50")),
+    "g_codes.rotation": Use([], before("G68.1 R5.")),
+    "g_codes.rotation_off": Use([], before("G68.1 R5.", "G69.1")),
+    "g_codes.mirror_image": Use([], before("G51.1 X0")),
+    "g_codes.mirror_image_off": Use([], before("G51.1 X0", "G50.1")),
+    "g_codes.tool_length_offset": Use([], inside("G43 H1")),
+    "g_codes.tool_length_offset_off": Use([], inside("G49")),
+    "g_codes.dwell": Use([], inside("G4 X5.")),
+    "g_codes.data_input": Use([], inside("G10 P1 X5.")),
+    "g_codes.data_input_work_offset": Use([], inside("G10 L2 P1 X0")),
+    "g_codes.data_input_tool_offset": Use([], inside("G10 L10 P1 R1.")),
+    "g_codes.reference_check": Use([], before("G27 X0")),
+    "g_codes.reference_return": Use([], before("G28 U0")),
+    "g_codes.c_axis_reference": Use([], before("M35", "G28 H0"), also={"m_codes": {"c_axis_on": ["M35"]}}),
+    "g_codes.local_shift": Use([], before("G52 X1.")),
+    "g_codes.machine_coordinates": Use([], before("G53 X0")),
+    "g_codes.axis_words_no_move": Use([], before("G31 X0")),
+    "g_code_system_a.inch": Use([], before("G20")),
+    "g_code_system_a.mm": Use([], before("G21"), also={"control": {"units": "inch"}}),
+    "g_code_system_a.feed_per_minute": Use([], before("G99", "G98")),
+    "g_code_system_a.feed_per_revolution": Use([], before("G99")),
+    "g_code_system_a.absolute": Use(
+        ["G190"], inside("G191 C5.\nG190"), also={"g_code_system_a": {"incremental": ["G191"]}}
+    ),
+    "g_code_system_a.incremental": Use(["G191"], inside("G191 C5.")),
+    "g_code_system_a.thread_cutting": Use([], before("G32 Z1. F1.")),
+    "g_code_system_a.turning_cycle": Use([], before("G90 X50. Z-5.")),
+    "g_code_system_a.threading_cycle": Use([], before("G92 X50. Z-5. F1.")),
+    "g_code_system_a.facing_cycle": Use([], before("G94 X50. Z-5.")),
+    "g_code_system_a.repetitive_cycle": Use([], before("G71 U1. R1.")),
+    "g_code_system_a.coordinate_setting": Use([], before("G50 X0")),
+    "g_code_system_a.feed_is_lead": Use([], before("G76 X50. F100").replace(" F200", "")),
+    "polar.on": Use(["G112"], FLAT),
+    "polar.off": Use(["G113"], FLAT),
+    "polar.on_of_other_controls": Use([], "O1\nG98 G0 X60. C0\nG137 C0\nG1 X40. Y0 F200\nY10.\nG136\nM30\n"),
+    "polar.words_beside_switch": Use(["X"], FLAT.replace("G12.1", "G12.1 X0")),
+    "polar.virtual_axis": Use("Y", FLAT),
+    "polar.virtual_axis_incremental": Use("V", inside("H5.")),
+    "polar.virtual_axis_of_other_controls": Use([], inside("Y5.")),
+    "polar.other_controls": Use("lathes of ours", inside("Y5.")),
+    "polar.x": Use("radius", FLAT),
+    "polar.virtual_axis_programming": Use("diameter", FLAT),
+    "polar.center_words": Use(["J", "K"], ARC.format("I-10. J0")),
+    "polar.linear_axis": Use(2, FLAT.replace("G12.1", "G12.1 P1"), "gsk-988"),
+    "polar.rotary_axis": Use(4, FLAT.replace("G12.1", "G12.1 Q3"), "gsk-988"),
+    "polar.infeed_word": Use("", INFEED, "gsk-988", ("2:radius=10",)),
+    "polar.allowed_codes": Use(["G1", "G64"], inside("G64")),
+    "polar.plane_before": Use(["G17"], before("G18")),
+    "polar.main_spindle_must_stop": Use(True, before("M3")),
+    "arcs.tolerance": Use(1, ARC.format("I-10.1 J0")),
+    "arcs.radius_word": Use("L", ARC.format("R10.")),
+    "arcs.sweep_limit": Use(45, ARC.format("I-10. J0")),
+    "compensation.start_up": Use("B", OUTSIDE, tools=CUTTER),
+    "compensation.start_up_with_move": Use("B", OUTSIDE, tools=CUTTER, also={"compensation": {"start_up": "C"}}),
+    "compensation.read_ahead": Use(5, RAMPS.format("", "M8\nM9\n", ""), tools=CUTTER),
+    "compensation.interference": Use("erase", REVERSED, tools=CUTTER),
+    "compensation.tangent_tolerance": Use(0.5, APART, tools=CUTTER),
+    "compensation.nose_types": Use([0], RAMPS.format("", "", ""), tools=("1:radius=4,nose=9",)),
+    "compensation.overcut_tolerance": Use(20, GOUGE, tools=CUTTER),
+    "limits.c_feed": Use(100, FLAT),
+    "limits.c_feed_suspicious": Use(100, FLAT),
+    "limits.c_acceleration": Use(0.01, FLAT),
+    "limits.polar_feed": Use(100, FLAT),
+    "limits.automatic_override": Use(True, FLAT, also={"limits": {"c_feed": 100}}),
+    "limits.override_share": Use(50, FLAT, also={"limits": {"c_feed": 100, "automatic_override": True}}),
+    "limits.keep_out": Use(5, FLAT.replace("X40.", "X4.").replace("C10.", "C3.")),
+    "limits.x_minimum": Use(25, FLAT),
+    "limits.x_maximum": Use(25, FLAT),
+    "limits.z_minimum": Use(10, inside("Z1.")),
+    "limits.z_maximum": Use(0, inside("Z1.")),
+    "feed.cutting_minimum": Use(500, FLAT, also={"feed": {"positioning_minimum": 700}}),
+    "feed.cutting_maximum": Use(100, FLAT, also={"feed": {"positioning_minimum": 700}}),
+    "feed.positioning_minimum": Use(700, FLAT, also={"feed": {"cutting_maximum": 100}}),
+    "feed.positioning_maximum": Use(150, FLAT, also={"feed": {"cutting_maximum": 100}}),
+    "feed.carried_into_polar": Use("per-minute-only", FLAT.replace("G98", "G99").replace("F200", "F.2")),
+    "m_codes.c_axis_on": Use(["M35"], FLAT),
+    "m_codes.c_axis_off": Use(["M34"], before("M35", "M34"), also={"m_codes": {"c_axis_on": ["M35"]}}),
+    "m_codes.live_tool_on": Use(["M33"], FLAT),
+    "m_codes.live_tool_off": Use(["M32"], before("M33", "M32"), also={"m_codes": {"live_tool_on": ["M33"]}}),
+    "m_codes.spindle_on": Use([], before("M3")),
+    "m_codes.spindle_off": Use([], before("M3", "M5")),
+    "m_codes.tool_change": Use([], ENDED.format("M6")),
+    "m_codes.optional_stop": Use([], ENDED.format("M1")),
+    "m_codes.program_end": Use(["M30"], FLAT.replace("M30", "M2")),
+    "m_codes.stops_reading_ahead": Use([], RAMPS.format("", "M1\n", ""), tools=CUTTER),
+    "alarms": Use({"rapid-in-polar": "A1"}, inside("G0 X50.")),
+    "severities": Use({"rapid-in-polar": "note"}, inside("G0 X50.")),
+    "parameters": Use({"3410": 1000}, ARC.format("I-10.1 J0")),
+}
+
+
+def changed(key: str, use: Use) -> dict[str, Any]:
+    table, _, name = key.partition(".")
+    changes: dict[str, Any] = {group: dict(values) for group, values in use.also.items()}
+    if name:
+        changes.setdefault(table, {})[name] = use.value
+    else:
+        changes[table] = use.value
+    return changes
+
+
+@pytest.mark.parametrize("key", USES)
+def test_changing_a_key_changes_a_result(key: str) -> None:
+    use = USES[key]
+    assert outcome(use, use.also) != outcome(use, changed(key, use))
+
+
+def test_no_key_is_forgotten() -> None:
+    keys = {field.name for field in msgspec.structs.fields(Machine)} - set(TABLES)
+    keys |= {f"{table}.{key}" for table, names in TABLES.items() for key in names if table not in SYSTEMS[1:]}
+    assert keys == set(USES) | set(NOT_CHECKED)
+    assert not set(USES) & set(NOT_CHECKED)
