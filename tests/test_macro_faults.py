@@ -21,8 +21,6 @@ _ONE_STATEMENT = {
     "missing-comma": "#1=POW[5]",
     "if-format": "IF[1 EQ 2]#1=5",
     "while-format": "WHILE[1 EQ 2]#1=5",
-    "word-format": "G0 X[20] Z--5.",
-    "stray-character": "G0 X[20] ?",
     "too-long": "G0 X[" + "+".join(["1"] * 5_001) + "]",
     "bracket-levels": "#1=[[[[[[5]]]]]]",
     "nc-and-macro": "G0 X40. #1=5",
@@ -65,6 +63,8 @@ _OTHERS: dict[str, tuple[str, str, list[int]]] = {
     "never-run": ("GOTO 10\nG0 X40.\nN10", "", [4]),
 }
 FAULTS = {kind: (statement, "", [3]) for kind, statement in _ONE_STATEMENT.items()} | _OTHERS
+#: Kinds that no rule reports.
+UNREPORTED = {"word-format": "G0 X[20] Z--5.", "stray-character": "G0 X[20] ?"}
 #: Bounds that some of them reach, and limits of the control.
 RUNNING: dict[str, dict[str, Any]] = {
     "too-many-repeats": {"max_blocks": 100},
@@ -76,9 +76,18 @@ CHANGES = {"loop-levels": {"macro": {"loop_levels": 1}}}
 
 
 def test_the_table_has_all_kinds_and_only_rules_that_there_are() -> None:
-    assert set(RULES) == KINDS == set(FAULTS)
+    assert set(RULES) == KINDS == set(FAULTS) | set(UNREPORTED)
     macro = {name for name, rule in load_all().items() if rule.group == "macro"}
-    assert set(RULES.values()) == macro
+    assert set(RULES.values()) == macro | {""}
+
+
+@pytest.mark.parametrize("kind", UNREPORTED)
+def test_what_other_dialects_write_is_found_and_not_reported(kind: str) -> None:
+    program = f"O1\nG0 X50.\n{UNREPORTED[kind]}\nM30\n"
+    assert not report_of(program, only=["macro"]).findings
+    faults: Faults = tables_of(program)["faults"]
+    assert set(faults.kind) == {kind}
+    assert set(faults.rule) == {""}
 
 
 @pytest.mark.parametrize("kind", sorted(FAULTS))

@@ -17,7 +17,7 @@ from polarcheck.execution.kinds import FaultKind, RemarkKind
 from polarcheck.execution.run import Remark, Run
 from polarcheck.machines.machine import Machine
 
-#: The rule that reports each kind of fault.
+#: The rule that reports each kind of fault; "" where none does.
 RULES: Final[Mapping[FaultKind, str]] = {
     "format": "macro-syntax",
     "statement-format": "macro-syntax",
@@ -27,8 +27,9 @@ RULES: Final[Mapping[FaultKind, str]] = {
     "missing-comma": "macro-syntax",
     "if-format": "macro-syntax",
     "while-format": "macro-syntax",
-    "word-format": "macro-syntax",
-    "stray-character": "macro-syntax",
+    # Words of other dialects look so (E=C, CR=10), of which it is not known what the control makes; nothing is said.
+    "word-format": "",
+    "stray-character": "",
     "too-long": "macro-syntax",
     "bracket-levels": "nesting-too-deep",
     "call-levels": "nesting-too-deep",
@@ -76,8 +77,6 @@ _REASONS: Final[Mapping[FaultKind, str]] = {
     "missing-comma": "lacks the comma between two values",
     "if-format": "cannot follow the condition of an IF: write GOTO 10, or THEN and one assignment",
     "while-format": "cannot follow the condition of a WHILE: write DO and a number",
-    "word-format": "is an address without a number that can be read",
-    "stray-character": "means nothing here",
     "too-long": "is longer than a block can be",
     "bracket-levels": "is a bracket more than {bracket_levels} levels deep",
     "call-levels": "calls more than {levels} levels deep and is not followed",

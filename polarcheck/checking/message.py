@@ -66,8 +66,6 @@ class _Template(string.Formatter):
         if name not in self.hits.values:
             return called(phrase(name, self.rule.group), self.tables, self.given)
         value = self.hits.values[name]
-        if callable(value):
-            value = value(self.place.index)
         return value[self.place.index] if isinstance(value, np.ndarray | list) else value
 
     def _shown(self, value: Any) -> Any:

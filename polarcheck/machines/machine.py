@@ -10,6 +10,7 @@ from typing import Literal, TypeAlias
 
 import msgspec
 
+from polarcheck.errors import RuleError
 from polarcheck.machines.code_lists import GCodes, GCodeSystem, is_code
 from polarcheck.machines.parameters import Meaning
 
@@ -367,7 +368,9 @@ class Machine(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
         return "g_codes" if key in GCodes.__struct_fields__ else self.system_table
 
     def codes(self, key: str) -> list[str]:
-        """The codes of a list of G codes, whichever table it is in; calls of macros are those of [macro]."""
+        """The codes of a list of G codes, whichever table it is in; RuleError for a list that there is not."""
+        if key not in _CALLS and key not in GCodes.__struct_fields__ and key not in GCodeSystem.__struct_fields__:
+            raise RuleError(f"there is no list of G codes {key!r}: see [g_codes] and [g_code_system_a]")
         if key in _CALLS:
             return [code for name in _CALLS[key] for code in getattr(self.macro, name)]
         codes: list[str] = getattr(getattr(self, self.table_of(key)), key)

@@ -170,6 +170,12 @@ class Columns:
         """Number of the program in the file, from 0."""
         return np.cumsum(self.starts) - 1
 
+    def anywhere_in_program(self, mask: Mask) -> Mask:
+        """Rows of programs in which any row is in the mask."""
+        found = np.zeros(int(np.count_nonzero(self.starts)) + 1, bool)
+        found[self.program[mask]] = True
+        return found[self.program]
+
     @cached_property
     def ends_program(self) -> Mask:
         """M02, M30."""

@@ -24,12 +24,6 @@ class Entry:
 
     # ---- what is known of the program ----
 
-    def _in_program(self, mask: Mask) -> Mask:
-        """Whether any row of the program is in the mask."""
-        found = np.zeros(int(np.count_nonzero(self.trace.starts)), bool)
-        found[self.trace.program[mask]] = True
-        return found[self.trace.program]
-
     def happened(self, mask: Mask, since: Mask | None = None) -> Mask:
         """Whether a row at or above is in the mask or of unknown effect, from the program head or the last `since`."""
         trace = self.trace
@@ -49,7 +43,7 @@ class Entry:
         """
         if not codes:
             return np.zeros(len(self.trace), bool)
-        return (self.trace.whole_program | self._in_program(self.trace.codes(*codes))) & self._is_known
+        return (self.trace.whole_program | self.trace.anywhere_in_program(self.trace.codes(*codes))) & self._is_known
 
     @cached_property
     def expects_offset(self) -> Mask:
