@@ -43,7 +43,7 @@ def stages(data: bytes) -> dict[str, Callable[[], Any]]:
         return read_words(source.read(data))
 
     def trace(job: Job) -> Trace:
-        table = Trace(straight(read()), lathe, job)
+        table = Trace(straight(read(), lathe.m_codes.program_end), lathe, job)
         _ = table.section, table.c_angle, table.center
         return table
 

@@ -13,7 +13,7 @@ from programs import ROOT, report_of, said, tables_of, trace_of
 from polarcheck.execution import library, programs
 from polarcheck.execution.execute import Execution
 from polarcheck.execution.library import Library
-from polarcheck.execution.programs import Called
+from polarcheck.execution.programs import ProgramName
 from polarcheck.reading import source
 from polarcheck.reading.joining import joined
 from polarcheck.reading.words import read_words
@@ -98,7 +98,7 @@ def test_what_is_not_there_is_looked_for_once(
     monkeypatch.setattr(Library, "find", lambda self, called: looked.append(called) or find(self, called))
     report = report_of("O1\n/G0 Z5.\nM98 P7\nM98 P7\n#1=7\nM98 P#1\nM30\n", job=with_folder(folder))
     assert said(report) == [(line, "subprogram-missing") for line in (3, 4, 6)]
-    assert looked == [Called(7, None)]
+    assert looked == [ProgramName(7, None)]
     assert counts == {"texts": 1, "executions": 2}
 
 
@@ -236,3 +236,10 @@ def test_joined_texts_are_those_that_were_read(encoding: str) -> None:
                 at += 1
         assert at == len(ours)
     assert joined(files[:1]) is files[0]
+
+
+def test_a_folder_that_is_not_there_holds_nothing(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("O2\nM99\n", "utf-8")
+    for name in ("nowhere", "file"):
+        report = report_of("O1\nM98 P2\nM30\n", job=with_folder(tmp_path / name))
+        assert said(report) == [(2, "subprogram-missing")]

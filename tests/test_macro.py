@@ -10,7 +10,7 @@ from macro_values import Variables, assign_arguments, called_program, read_state
 from polarcheck.execution.arithmetic import UNKNOWN
 from polarcheck.execution.expression import Fault
 from polarcheck.execution.macro import assign, word_value
-from polarcheck.execution.programs import Called
+from polarcheck.execution.programs import ProgramName
 
 
 def test_numbers_of_variables() -> None:
@@ -219,17 +219,17 @@ def test_fault_of_an_argument(block: str, kind: str, at_fault: str) -> None:
 )
 def test_called_program(block: str, *, repeats_in_p: bool, program: int | None, repeats: int | None) -> None:
     call = called_program(read_statement(block), variables(v1=68003.0), repeats_in_p=repeats_in_p)
-    assert (call.program, call.repeats, call.fault) == (Called(program, None), repeats, None)
+    assert (call.program, call.repeats, call.fault) == (ProgramName(program, None), repeats, None)
 
 
 def test_called_by_name() -> None:
     call = called_program(read_statement("M98 <sub-1> L2"), Variables())
-    assert (call.program, call.repeats, call.fault) == (Called(None, "sub-1"), 2, None)
+    assert (call.program, call.repeats, call.fault) == (ProgramName(None, "sub-1"), 2, None)
 
 
 @pytest.mark.parametrize("block", ["M98", "G65 A1.", "M98 P0", "M98 P-5", "M98 P123456789", "M98 P10000", "M98 P#1"])
 def test_call_without_a_program_number(block: str) -> None:
     call = called_program(read_statement(block), Variables())
-    assert call.program == Called(None, None)
+    assert call.program == ProgramName(None, None)
     assert call.fault is not None
     assert call.fault.kind == "program-number"

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from programs import tables_of
 
-PER_MINUTE_ONLY = {"feed": {"inheritance": "per-minute-only"}}
+PER_MINUTE_ONLY = {"feed": {"carried_into_polar": "per-minute-only"}}
 
 
 def lines(program: str, column: str, changes: dict[str, Any] | None = None) -> list[int]:

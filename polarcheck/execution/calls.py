@@ -8,16 +8,16 @@ from typing import Protocol
 
 from polarcheck.execution.executed_rows import ExecutedRows
 from polarcheck.execution.expression import Fault, evaluate
-from polarcheck.execution.fault_list import Place
+from polarcheck.execution.fault_list import HasPlace
 from polarcheck.execution.kinds import FaultKind, RemarkKind
 from polarcheck.execution.listing import Listing
 from polarcheck.execution.macro import Variables, assign_arguments, called_program
-from polarcheck.execution.programs import Called, Program
+from polarcheck.execution.programs import Program, ProgramName
 from polarcheck.execution.statement import Statement
 from polarcheck.machines.job import Running
 
 #: Looks for the file of a program that is not in the listing; whether the listing has grown by it.
-Resolver = Callable[[Called], bool]
+Resolver = Callable[[ProgramName], bool]
 
 
 @dataclass(slots=True)
@@ -50,7 +50,7 @@ class Again(Exception):  # noqa: N818 - the listing has grown by a called progra
 class FaultTaker(Protocol):
     """How a fault is reported; see FaultList.add."""
 
-    def __call__(self, kind: FaultKind, block: int, place: Place, **values: str | int | float) -> None: ...
+    def __call__(self, kind: FaultKind, block: int, place: HasPlace, **values: str | int | float) -> None: ...
 
 
 class RemarkTaker(Protocol):
@@ -68,7 +68,7 @@ class Calls:
     rows: ExecutedRows
     used: set[int]
     passed: set[int]
-    resolved: dict[Called, Program | None]
+    resolved: dict[ProgramName, Program | None]
     modal: ModalCall | None
     changes: int
     variables: Variables
@@ -120,9 +120,9 @@ class Calls:
         inside = modal is None or any(level.program is modal.program for level in self.stack)
         return None if inside else modal
 
-    def find(self, called: Called) -> Program | None:
+    def find(self, called: ProgramName) -> Program | None:
         """The program of a call, its file read where need be; it is the same all through a run."""
-        if called == Called(None, None):
+        if called == ProgramName(None, None):
             return None
         if called not in self.resolved:
             self.resolved[called] = self._look_up(called)
@@ -131,7 +131,7 @@ class Calls:
             self.used.add(program.file)
         return program
 
-    def _look_up(self, called: Called) -> Program | None:
+    def _look_up(self, called: ProgramName) -> Program | None:
         """In the file itself and those used so far, then in the folders; a file that no call used does not count."""
         candidates = self.listing.programs.named(called)
         for program in candidates:
@@ -145,9 +145,9 @@ class Calls:
         self.passed.update(program.file for program in candidates)
         return None
 
-    def missing(self, statement: Statement, block: int, called: Called) -> None:
+    def missing(self, statement: Statement, block: int, called: ProgramName) -> None:
         """A program that is not known or not there: what it would do is not known either."""
-        if called == Called(None, None):
+        if called == ProgramName(None, None):
             self.remark("program-unknown", block)
         else:
             self.fault("program-not-found", block, statement, program=str(called))

@@ -10,12 +10,12 @@ import numpy as np
 from polarcheck.execution.calls import Again, Calls, Level, ModalCall, Resolver, Stop
 from polarcheck.execution.executed_rows import AXES, ExecutedRows
 from polarcheck.execution.expression import Fault, decide, evaluate
-from polarcheck.execution.fault_list import FaultList, Place
+from polarcheck.execution.fault_list import FaultList, HasPlace
 from polarcheck.execution.kinds import FaultKind, RemarkKind
 from polarcheck.execution.library import Shelf
 from polarcheck.execution.listing import Listing
 from polarcheck.execution.macro import Variables, assign, word_value
-from polarcheck.execution.programs import Called, Program
+from polarcheck.execution.programs import Program, ProgramName
 from polarcheck.execution.run import Remark
 from polarcheck.execution.statement import Kind, Statement, Word
 from polarcheck.machines.codes import code_numbers, code_set
@@ -36,7 +36,7 @@ class Execution(Calls):
         self.listing, self.asked, self.resolve, self.skip = listing, asked, resolve, skip
         self.used = used
         self.passed: set[int] = set()
-        self.resolved: dict[Called, Program | None] = {}
+        self.resolved: dict[ProgramName, Program | None] = {}
         self.rows = ExecutedRows(listing.text, listing.machine, skip=skip, inch_at_first=inch)
         self.faults = FaultList(listing.text)
         self._remarks: dict[tuple[RemarkKind, int], Remark] = {}
@@ -62,21 +62,19 @@ class Execution(Calls):
         listing, every = self.listing, range(len(self.listing.files))
         own = [program for program in listing.programs.programs if not program.file]
         named = listing.named_by(every, by_number_only=False)
+        called = listing.named_by(self.used, by_number_only=True)
         ran = False
         for program in sorted(own, key=lambda program: not named.isdisjoint(program.keys)):
-            if not self._was_run(program) and not self._is_called(program, named):
+            if not self._was_run(program) and called.isdisjoint(program.keys):
+                known = len(self.used)
                 self._run_program(program)
                 ran = True
+                if len(self.used) > known:
+                    called = listing.named_by(self.used, by_number_only=True)
         if not ran:
             self._run_program(own[0])
         if self.passed & self.used:
             raise Again
-
-    def _is_called(self, program: Program, named: set[int | str]) -> bool:
-        """Whether a plain call by number, in a file that is used, names the program; named: what any call names."""
-        if named.isdisjoint(program.keys):
-            return False
-        return not self.listing.named_by(self.used, by_number_only=True).isdisjoint(program.keys)
 
     def _was_run(self, program: Program) -> bool:
         return bool(self.visited[program.first : program.end].any())
@@ -147,7 +145,7 @@ class Execution(Calls):
         self.stopped = True
         raise Stop
 
-    def fault(self, kind: FaultKind, block: int, place: Place, **values: str | int | float) -> None:
+    def fault(self, kind: FaultKind, block: int, place: HasPlace, **values: str | int | float) -> None:
         self.faults.add(kind, block, place, len(self.rows), **values)
 
     def found(self, fault: Fault | None, block: int) -> None:

@@ -10,7 +10,7 @@ from polarcheck.execution.run import FlowFault
 from polarcheck.reading.words import Text
 
 
-class Place(Protocol):
+class HasPlace(Protocol):
     """Characters of a block, end exclusive: a fault, an expression, a statement."""
 
     @property
@@ -27,7 +27,7 @@ class FaultList:
         self._starts = text.blocks.start
         self._found: dict[tuple[FaultKind, int, int], FlowFault] = {}
 
-    def add(self, kind: FaultKind, block: int, place: Place, row: int, **values: str | int | float) -> None:
+    def add(self, kind: FaultKind, block: int, place: HasPlace, row: int, **values: str | int | float) -> None:
         """Keep a fault; not again what was found there before."""
         key = (kind, block, place.start)
         if key not in self._found:

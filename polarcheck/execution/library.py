@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import re
 from collections.abc import Sequence
 from functools import cached_property
@@ -10,7 +11,7 @@ from pathlib import Path
 import msgspec
 
 from polarcheck.execution.listing import Listing
-from polarcheck.execution.programs import Called, read_text
+from polarcheck.execution.programs import ProgramName, read_text
 from polarcheck.machines.machine import Machine
 from polarcheck.reading.source import Source, read
 from polarcheck.reading.words import Text
@@ -27,14 +28,18 @@ class Library:
     def __init__(self, folders: Sequence[str], machine: Machine) -> None:
         self._folders = [Path(folder).resolve() for folder in folders]
         self._machine = machine
-        self._texts: dict[Called, Text | None] = {}
+        self._texts: dict[ProgramName, Text | None] = {}
 
     @cached_property
     def _paths(self) -> list[tuple[Path, list[Path]]]:
-        """Each folder and what lies in it, by name."""
-        return [(folder, sorted(folder.iterdir())) for folder in self._folders if folder.is_dir()]
+        """Each folder that can be listed, and what lies in it, by name."""
+        found = []
+        for folder in self._folders:
+            with contextlib.suppress(OSError):
+                found.append((folder, sorted(folder.iterdir())))
+        return found
 
-    def text(self, called: Called) -> Text | None:
+    def text(self, called: ProgramName) -> Text | None:
         """The program of a call, read; None where no folder has it, or too many have been looked for."""
         if called not in self._texts:
             if len(self._texts) > _MOST_LOOKED_FOR:
@@ -43,7 +48,7 @@ class Library:
             self._texts[called] = read_text(source, self._machine) if source is not None else None
         return self._texts[called]
 
-    def find(self, called: Called) -> Source | None:
+    def find(self, called: ProgramName) -> Source | None:
         """
         A program in the folders of the job, never outside them: O1234, 1234.nc, O1234.NC, or its <name>.
 
@@ -67,7 +72,7 @@ def _is_program(path: Path) -> bool:
     return path.is_file() and path.stat().st_size < _LARGEST
 
 
-def _with_head(path: Path, called: Called) -> Source | None:
+def _with_head(path: Path, called: ProgramName) -> Source | None:
     try:
         data = path.read_bytes()
     except OSError:
@@ -93,13 +98,13 @@ class Shelf:
         self.listing = Listing([text], machine)
         self._add([called for called in self.listing.calls(0) if not self.listing.programs.named(called)])
 
-    def add(self, called: Called) -> bool:
+    def add(self, called: ProgramName) -> bool:
         """Look for the file of a call whose number was computed; whether the listing has grown by it."""
         before = self.listing
         self._add([called])
         return self.listing is not before
 
-    def _add(self, wanted: Sequence[Called]) -> None:
+    def _add(self, wanted: Sequence[ProgramName]) -> None:
         while True:
             missing = [called for called in dict.fromkeys(wanted) if called not in self.listing.found]
             files = {called: text for called in missing if (text := self._library.text(called)) is not None}

@@ -11,7 +11,7 @@ import numpy as np
 from polarcheck.execution.arithmetic import Arithmetic
 from polarcheck.execution.loops import Loops, find_loops
 from polarcheck.execution.macro import Variables, called_program
-from polarcheck.execution.programs import Called, Program, block_text, find_programs, first_blocks, turns
+from polarcheck.execution.programs import Program, ProgramName, block_text, find_programs, first_blocks, turns
 from polarcheck.execution.statement import Statement, read_statement
 from polarcheck.machines.machine import Machine
 from polarcheck.reading.joining import joined
@@ -29,7 +29,7 @@ class Listing:
     found: the calls for which a file was found, and its index in files. stops: the blocks at which the flow can turn.
     """
 
-    def __init__(self, files: Sequence[Text], machine: Machine, found: dict[Called, int] | None = None) -> None:
+    def __init__(self, files: Sequence[Text], machine: Machine, found: dict[ProgramName, int] | None = None) -> None:
         self.files = list(files)
         self.found = found or {}
         self.machine = machine
@@ -43,11 +43,11 @@ class Listing:
         self.stops: list[int] = np.flatnonzero(turns(self.text, self._flow_codes | self.ends)).tolist()
         self._statements: dict[int, Statement] = {}
         self._loops: dict[int, Loops] = {}
-        self._calls: dict[int, dict[Called, bool]] = {}
+        self._calls: dict[int, dict[ProgramName, bool]] = {}
         self._nothing_known = Variables(self.macro)
         self._nothing_known.forget()
 
-    def with_files(self, files: dict[Called, Text]) -> Listing:
+    def with_files(self, files: dict[ProgramName, Text]) -> Listing:
         """The listing with more called files behind it; what was read of the others is kept."""
         indices = dict(zip(files, itertools.count(len(self.files)), strict=False))
         grown = Listing([*self.files, *files.values()], self.machine, self.found | indices)
@@ -66,9 +66,6 @@ class Listing:
             )
         return self._statements[block]
 
-    def _stops_between(self, first: int, end: int) -> list[int]:
-        return self.stops[bisect.bisect_left(self.stops, first) : bisect.bisect_left(self.stops, end)]
-
     def turns_at(self, block: int) -> bool:
         """Whether the flow can turn at a block."""
         at = bisect.bisect_left(self.stops, block)
@@ -76,8 +73,9 @@ class Listing:
 
     def macro_statements(self, program: Program) -> list[tuple[int, Statement]]:
         """The macro statements of a program with their blocks, in order."""
-        stops = self._stops_between(program.first, program.end)
-        return [(block, self.statement(block)) for block in stops if self.text.blocks.is_macro[block]]
+        low, high = (bisect.bisect_left(self.stops, block) for block in (program.first, program.end))
+        is_macro = self.text.blocks.is_macro
+        return [(block, self.statement(block)) for block in self.stops[low:high] if is_macro[block]]
 
     def loops(self, program: Program) -> Loops:
         """The loops of a program."""
@@ -85,7 +83,7 @@ class Listing:
             self._loops[program.first] = find_loops(self.macro_statements(program), self.macro.loop_levels)
         return self._loops[program.first]
 
-    def calls(self, file: int) -> tuple[Called, ...]:
+    def calls(self, file: int) -> tuple[ProgramName, ...]:
         """The programs that the calls of a file name literally, whether they are run or not; each once, in order."""
         return tuple(self._calls_of(file))
 
@@ -99,20 +97,21 @@ class Listing:
         chosen = [called for called, is_plain in calls if not by_number_only or (is_plain and called.name is None)]
         return {key for called in chosen for key in called.keys}
 
-    def _calls_of(self, file: int) -> dict[Called, bool]:
+    def _calls_of(self, file: int) -> dict[ProgramName, bool]:
         """The same calls, and whether a block without macro has each."""
         if file not in self._calls:
             found = self._calls[file] = {}
-            for block in self._stops_between(self.first_blocks[file], self.first_blocks[file + 1]):
+            blocks = np.flatnonzero(turns(self.files[file], self._call_codes)) + self.first_blocks[file]
+            for block in blocks.tolist():
                 called = self._named_in(block)
                 if called is not None:
                     found[called] = found.get(called, False) or not self.text.blocks.is_macro[block]
         return self._calls[file]
 
-    def _named_in(self, block: int) -> Called | None:
+    def _named_in(self, block: int) -> ProgramName | None:
         statement = self.statement(block)
         call = statement if statement.then is None else statement.then
         if call.call not in self._call_codes:
             return None
         called = called_program(call, self._nothing_known, self.macro, self.arithmetic).program
-        return None if called == Called(None, None) else called
+        return None if called == ProgramName(None, None) else called

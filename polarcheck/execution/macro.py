@@ -7,24 +7,38 @@ Which variables there are, and which codes call, is the profile's to say: its ta
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import enum
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Final
 
 from polarcheck.execution.arithmetic import UNKNOWN, Arithmetic, Value, round_to
 from polarcheck.execution.expression import DEFAULT, Fault, evaluate
 from polarcheck.execution.kinds import FaultKind
-from polarcheck.execution.programs import Called
+from polarcheck.execution.programs import ProgramName
 from polarcheck.execution.statement import Statement, Word
 from polarcheck.machines.machine import Macro
 
 
 @dataclass(slots=True)
-class _Level:
+class _Locals:
     """The local variables of one macro, and what those hold that were not assigned."""
 
     values: dict[int, Value] = field(default_factory=dict)
     unassigned: Value = None
+
+
+class VariableKind(enum.Enum):
+    """What a number of a variable is on a control."""
+
+    NONE = enum.auto()
+    VACANT = enum.auto()  # #0
+    LOCAL = enum.auto()
+    COMMON = enum.auto()
+    RETAINED = enum.auto()
+    SYSTEM = enum.auto()
+    CLOCK = enum.auto()
+    READ_ONLY = enum.auto()
 
 
 class Variables:
@@ -39,48 +53,54 @@ class Variables:
         self._macro = macro
         self._shared: dict[int, Value] = dict(given or {})
         self._unassigned: Value = None
-        self._levels: list[_Level] = [_Level()]
+        self._levels: list[_Locals] = [_Locals()]
+        self._kinds: dict[int, VariableKind] = {}
 
     @property
     def depth(self) -> int:
         """How many macro calls deep; 0 in the main program."""
         return len(self._levels) - 1
 
-    def exists(self, number: float) -> bool:
-        """Whether the control has a variable of this number; one that is not whole is rounded."""
+    def kind(self, number: float) -> VariableKind:
+        """What a variable of this number is; one that is not whole is rounded."""
         if not -0.5 < number < 1e9:
-            return False
-        macro, whole = self._macro, _whole(number)
-        shared = (*macro.common_variables, *macro.retained_variables, *macro.system_variables)
-        return whole == 0 or _within(whole, macro.local_variables) or _within(whole, shared)
+            return VariableKind.NONE
+        whole = _whole(number)
+        if whole not in self._kinds:
+            self._kinds[whole] = _kind(whole, self._macro)
+        return self._kinds[whole]
+
+    def exists(self, number: float) -> bool:
+        """Whether the control has a variable of this number."""
+        return self.kind(number) is not VariableKind.NONE
 
     def read(self, number: float) -> Value:
         """The value of a variable that exists."""
-        whole, macro = _whole(number), self._macro
-        if whole == 0:
-            return None
-        if _within(whole, macro.local_variables):
+        whole, kind = _whole(number), self.kind(number)
+        if kind is VariableKind.LOCAL:
             return self._levels[-1].values.get(whole, self._levels[-1].unassigned)
-        if _within(whole, macro.clock_variables):
+        if kind is VariableKind.VACANT:
+            return None
+        if kind is VariableKind.CLOCK:
             return UNKNOWN
-        return self._shared.get(whole, self._unassigned if _within(whole, macro.common_variables) else UNKNOWN)
+        return self._shared.get(whole, self._unassigned if kind is VariableKind.COMMON else UNKNOWN)
 
     def write(self, number: float, value: Value) -> FaultKind | None:
         """Assign; None makes vacant. Gives the kind of fault, if any. A number that is unknown may be any."""
         if number != number:
             self.forget()
             return None
-        if not self.exists(number):
+        kind = self.kind(number)
+        if kind is VariableKind.NONE:
             return "variable-number"
-        whole, macro = _whole(number), self._macro
-        if whole == 0 or _within(whole, macro.read_only_variables):
+        if kind in (VariableKind.VACANT, VariableKind.READ_ONLY):
             return "read-only"
-        (self._levels[-1].values if _within(whole, macro.local_variables) else self._shared)[whole] = value
+        (self._levels[-1].values if kind is VariableKind.LOCAL else self._shared)[_whole(number)] = value
         return None
 
     def enter(self, arguments: Mapping[int, Value]) -> None:
         """A macro call: new local variables, vacant but for the arguments."""
-        self._levels.append(_Level(dict(arguments)))
+        self._levels.append(_Locals(dict(arguments)))
 
     def leave(self) -> None:
         """The return from a macro: the caller's local variables are back. In the main program nothing happens."""
@@ -89,17 +109,27 @@ class Variables:
 
     def forget(self) -> None:
         """Any variable in reach may have been assigned: all are unknown until assigned again."""
-        self._levels[-1] = _Level(unassigned=UNKNOWN)
+        self._levels[-1] = _Locals(unassigned=UNKNOWN)
         self._shared = {}
         self._unassigned = UNKNOWN
 
 
 def _whole(number: float) -> int:
-    return int(round_to(number, 1))
+    whole = int(number)
+    return whole if whole == number else int(round_to(number, 1))
 
 
-def _within(number: int, ranges: Sequence[tuple[int, int]]) -> bool:
-    return any(first <= number <= last for first, last in ranges)
+def _kind(number: int, macro: Macro) -> VariableKind:
+    ranges = (
+        (VariableKind.READ_ONLY, macro.read_only_variables),
+        (VariableKind.CLOCK, macro.clock_variables),
+        (VariableKind.LOCAL, macro.local_variables),
+        (VariableKind.COMMON, macro.common_variables),
+        (VariableKind.RETAINED, macro.retained_variables),
+        (VariableKind.SYSTEM, macro.system_variables),
+    )
+    found = (kind for kind, spans in ranges if any(first <= number <= last for first, last in spans))
+    return next(found, VariableKind.NONE) if number else VariableKind.VACANT
 
 
 def assign(statement: Statement, variables: Variables, arithmetic: Arithmetic = DEFAULT) -> Fault | None:
@@ -210,12 +240,12 @@ def _after_call(statement: Statement) -> tuple[Word, ...]:
 class ProgramCall:
     """Which program a call names, how often (None: unknown), the fault."""
 
-    program: Called
+    program: ProgramName
     repeats: int | None
     fault: Fault | None
 
 
-_UNKNOWN_PROGRAM: Final = Called(None, None)
+_UNKNOWN_PROGRAM: Final = ProgramName(None, None)
 
 
 def called_program(
@@ -236,7 +266,7 @@ def called_program(
         value, fault = evaluate(words["L"].value, variables, arithmetic)
         repeats = None if value != value else 1 if value is None else max(_whole(value), 0)
     if "<" in words:
-        return ProgramCall(Called(None, words["<"].written), repeats, fault)
+        return ProgramCall(ProgramName(None, words["<"].written), repeats, fault)
     if "P" not in words:
         return ProgramCall(_UNKNOWN_PROGRAM, repeats, Fault("program-number", statement.start, statement.end))
     value, fault_of_number = evaluate(words["P"].value, variables, arithmetic)
@@ -249,4 +279,4 @@ def called_program(
         repeats = times
     if not 0 < number <= 99_999_999:
         return ProgramCall(_UNKNOWN_PROGRAM, repeats, Fault("program-number", words["P"].start, words["P"].end))
-    return ProgramCall(Called(number, None), repeats, fault)
+    return ProgramCall(ProgramName(number, None), repeats, fault)

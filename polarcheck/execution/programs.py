@@ -27,7 +27,7 @@ _NUMBER_LIMIT = 1e15
 _SEQUENCE_NUMBER = re.compile(r"[\s/]*(?:/\s*\d\s*)?(?:[O:]\s*\d+\s*)?N\s*(\d+)", re.IGNORECASE)
 
 
-class Called(NamedTuple):
+class ProgramName(NamedTuple):
     """How a call names its program: by number or by name; both None where that is computed and not known."""
 
     number: int | None
@@ -63,7 +63,7 @@ class Program(msgspec.Struct, frozen=True):
 
     @property
     def keys(self) -> tuple[int | str, ...]:
-        """Its number and its name in capitals, as in Called.keys."""
+        """Its number and its name in capitals, as in ProgramName.keys."""
         number = () if self.number is None else (self.number,)
         return number if self.name is None else (*number, self.name.upper())
 
@@ -80,7 +80,7 @@ class Programs:
             for key in program.keys:
                 self._by_key.setdefault(key, []).append(program)
 
-    def named(self, called: Called) -> list[Program]:
+    def named(self, called: ProgramName) -> list[Program]:
         """The programs that a call can mean: those of that name, before those of that number, in order."""
         return [program for key in called.keys for program in self._by_key.get(key, [])]
 

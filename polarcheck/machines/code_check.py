@@ -1,4 +1,4 @@
-"""Whether the code lists of a machine hold codes, and no code stands for two states of one modal group."""
+"""Whether the code lists of a machine hold codes, and no code stands for two modal states."""
 
 from __future__ import annotations
 
@@ -10,16 +10,17 @@ from polarcheck.machines.machine import Machine, MCodes
 from polarcheck.machines.modal import STATES
 from polarcheck.machines.parameters import Origin
 
-#: Table -> its lists of codes, and the letters that they begin with.
-_LISTS = {
-    "control": (("known_codes",), "G"),
-    "g_codes": (GCodes.__struct_fields__, "G"),
-    "g_code_system_a": (GCodeSystem.__struct_fields__, "G"),
-    "g_code_system_b": (GCodeSystem.__struct_fields__, "G"),
-    "g_code_system_c": (GCodeSystem.__struct_fields__, "G"),
-    "polar": (("on", "off", "allowed_codes", "plane_before"), "GM"),
-    "m_codes": (MCodes.__struct_fields__, "GM"),
+#: Lists of G codes, in which `G54-G59` is a range.
+_RANGES = {
+    "control": ("known_codes",),
+    "polar": ("allowed_codes",),
+    "g_codes": GCodes.__struct_fields__,
+    "g_code_system_a": GCodeSystem.__struct_fields__,
+    "g_code_system_b": GCodeSystem.__struct_fields__,
+    "g_code_system_c": GCodeSystem.__struct_fields__,
 }
+#: Lists of G and M codes, each written by itself.
+_SINGLE = {"polar": ("on", "off", "plane_before"), "m_codes": MCodes.__struct_fields__}
 
 
 def check_codes(machine: Machine, origins: Mapping[str, Origin], chain: Sequence[str]) -> None:
@@ -28,18 +29,19 @@ def check_codes(machine: Machine, origins: Mapping[str, Origin], chain: Sequence
 
     chain: the profiles, the nearest first; of two lists with the same code that of the nearer one is named.
     """
-    for table, (keys, letters) in _LISTS.items():
-        for key in keys:
-            for code in getattr(getattr(machine, table), key):
-                if isinstance(code, str) and not is_code(code, letters):
-                    raise MachineError(f"{origins[f'{table}.{key}'].profile}: {table}.{key}: {code!r} is no code")
+    for lists, is_one in ((_RANGES, is_code), (_SINGLE, _is_single)):
+        for table, keys in lists.items():
+            for key in keys:
+                for code in getattr(getattr(machine, table), key):
+                    if isinstance(code, str) and not is_one(code):
+                        raise MachineError(f"{origins[f'{table}.{key}'].profile}: {table}.{key}: {code!r} is no code")
 
     def distance(key: str) -> int:
         profile = origins[key].profile
         return chain.index(profile) if profile in chain else -1
 
+    list_of: dict[int, str] = {}
     for states in STATES.values():
-        list_of: dict[int, str] = {}
         for key in states:
             full = f"{machine.table_of(key)}.{key}"
             for number in numbers(machine.codes(key)):
@@ -47,3 +49,7 @@ def check_codes(machine: Machine, origins: Mapping[str, Origin], chain: Sequence
                     nearer, other = sorted((full, list_of[number]), key=distance)
                     code = f"G{number / 10:g}"
                     raise MachineError(f"{origins[nearer].profile}: {nearer}: {code} is in {other}, too")
+
+
+def _is_single(text: str) -> bool:
+    return is_code(text, "GM") and "-" not in text

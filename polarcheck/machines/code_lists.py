@@ -141,3 +141,11 @@ def numbers(words: Iterable[str]) -> list[int]:
         start = round(float(first[1:]) * 10)
         found += range(start, round(float(last[1:]) * 10) + 1, 10) if last else (start,)
     return found
+
+
+def expanded(words: Iterable[str]) -> list[str]:
+    """The codes one by one, those of a range too."""
+    found: list[str] = []
+    for word in words:
+        found += [f"{word[0]}{number // 10}" for number in numbers([word])] if "-" in word else [word]
+    return found

@@ -11,18 +11,12 @@ from typing import Literal, TypeAlias
 import msgspec
 
 from polarcheck.errors import RuleError
-from polarcheck.machines.code_lists import GCodes, GCodeSystem, is_code
+from polarcheck.machines.code_lists import GCodes, GCodeSystem, expanded, is_code
 from polarcheck.machines.parameters import Meaning
 
 #: First and last number of each range.
 Ranges: TypeAlias = list[tuple[int, int]]
 
-#: Lists of G codes that stand in [macro].
-_CALLS = {
-    "macro_call": ("macro_calls",),
-    "modal_macro_call": ("modal_macro_calls", "modal_macro_calls_each_block"),
-    "modal_macro_call_off": ("modal_macro_cancel",),
-}
 _FLOW_CODE = re.compile(r"[GM](?:0|[1-9]\d*)(?:\.[1-9])?")
 
 
@@ -364,14 +358,18 @@ class Machine(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
         return system
 
     def table_of(self, key: str) -> str:
-        """The table of a list of G codes: [g_codes], or that of the G-code system in force."""
-        return "g_codes" if key in GCodes.__struct_fields__ else self.system_table
+        """The table of a list of codes: that of the G-code system in force where it differs between systems."""
+        for table in ("g_codes", "macro", self.system_table):
+            if key in getattr(self, table).__struct_fields__:
+                return table
+        raise RuleError(f"there is no list of G codes {key!r}: see [g_codes], [g_code_system_a] and [macro]")
+
+    @property
+    def listed_codes(self) -> list[str]:
+        """The codes of all lists of [g_codes] and of the G-code system in force: what the control has, too."""
+        lists = [*msgspec.structs.astuple(self.g_codes), *msgspec.structs.astuple(self.system)]
+        return [code for codes in lists for code in codes if isinstance(code, str)]
 
     def codes(self, key: str) -> list[str]:
-        """The codes of a list of G codes, whichever table it is in; RuleError for a list that there is not."""
-        if key not in _CALLS and key not in GCodes.__struct_fields__ and key not in GCodeSystem.__struct_fields__:
-            raise RuleError(f"there is no list of G codes {key!r}: see [g_codes] and [g_code_system_a]")
-        if key in _CALLS:
-            return [code for name in _CALLS[key] for code in getattr(self.macro, name)]
-        codes: list[str] = getattr(getattr(self, self.table_of(key)), key)
-        return codes
+        """The codes of a list, whichever table it is in, one by one. Raises RuleError for a list that there is not."""
+        return expanded(getattr(getattr(self, self.table_of(key)), key))

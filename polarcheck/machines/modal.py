@@ -79,7 +79,7 @@ STATES: dict[str, dict[str, int]] = {
     "scaling": {"scaling": OF_CODE, "scaling_off": 0},
     "rotation": {"rotation": OF_CODE, "rotation_off": 0},
     "mirror": {"mirror_image": OF_CODE, "mirror_image_off": 0},
-    "modal_call": {"modal_macro_call": OF_CODE, "modal_macro_call_off": 0},
+    "modal_call": {"modal_macro_calls": OF_CODE, "modal_macro_calls_each_block": OF_CODE, "modal_macro_cancel": 0},
 }
 
 #: The lists of codes beside which axis words are no end point of a move: dwell, offsets, references, shifts, calls.
@@ -90,11 +90,19 @@ NO_MOVE = (
     "reference_return",
     "local_shift",
     "machine_coordinates",
-    "macro_call",
-    "modal_macro_call",
+    "macro_calls",
+    "modal_macro_calls",
+    "modal_macro_calls_each_block",
     "repetitive_cycle",
     "coordinate_setting",
     "axis_words_no_move",
 )
 #: The lists of codes beside which F is no feed: a time, an argument, the lead of a thread.
-NO_FEED = ("dwell", "data_input", "macro_call", "modal_macro_call", "feed_is_lead")
+NO_FEED = (
+    "dwell",
+    "data_input",
+    "macro_calls",
+    "modal_macro_calls",
+    "modal_macro_calls_each_block",
+    "feed_is_lead",
+)

@@ -16,6 +16,7 @@ RENAMED = {
     "feed.inheritance": "feed.carried_into_polar",
     "compensation.start_up_moving": "compensation.start_up_with_move",
     "m_codes.stops_reading": "m_codes.stops_reading_ahead",
+    "macro.increment": "control.least_increment",
 }
 
 

@@ -89,7 +89,7 @@ class Entry:
     def _work_offset(self) -> tuple[Floats, NDArray[np.object_]]:
         """Where X0 of the work offset in force lies [mm; 0 where the job does not say], and its name."""
         trace = self.trace
-        first = numbers(trace.machine.codes("work_offset"))[0] // 10  # in force where the program selects none
+        first = next(iter(numbers(trace.machine.codes("work_offset"))), 0) // 10  # where the program selects none
         state = np.where(trace.state("work_offset") == 0, first, trace.state("work_offset"))
         is_extended = fill_down(
             trace.listed("work_offset_extended"), trace.sets("work_offset") | trace.starts, False

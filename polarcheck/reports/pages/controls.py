@@ -13,6 +13,7 @@ from typing import Any
 import msgspec
 
 from polarcheck.machines import profiles
+from polarcheck.machines.machine import Machine, meanings
 from polarcheck.machines.parameters import Origin
 from polarcheck.machines.profiles import Profile
 
@@ -28,6 +29,9 @@ _COLUMNS = (
     "control.g_code_system",
     "control.number_without_point",
 )
+
+#: Tables whose keys are those of [g_code_system_a].
+_SAME_KEYS = ("g_code_system_b", "g_code_system_c")
 
 
 def text() -> str:
@@ -46,7 +50,19 @@ def text() -> str:
     ]
     for profile in loaded:
         lines += ["", f"## {profile.name}", "", *_page(profile)]
+    lines += ["", "## What the keys mean", "", *_keys()]
     return "\n".join(lines) + "\n"
+
+
+def _keys() -> Iterator[str]:
+    yield _row("key", "meaning")
+    yield _row("---", "---")
+    for field in msgspec.structs.fields(Machine):
+        if isinstance(field.type, type) and issubclass(field.type, msgspec.Struct) and field.name not in _SAME_KEYS:
+            for key, meaning in meanings(field.type).items():
+                yield _row(f"`{field.name}.{key}`", meaning)
+    for key, meaning in meanings(Machine).items():
+        yield _row(f"`{key}`", meaning)
 
 
 def _overview(loaded: list[Profile]) -> Iterator[str]:

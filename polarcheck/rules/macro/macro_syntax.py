@@ -26,7 +26,6 @@ def macro_syntax(faults: Faults) -> Mask:
         O0001
         #1 5             (expect: macro-syntax)
         IF[#1 EQ 5]M8    (expect: macro-syntax)
-        G1 X[#100*2] Z   (expect: macro-syntax)
         M30
 
     Good:
