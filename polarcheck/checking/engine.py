@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import bisect
-import hashlib
 from collections.abc import Mapping
 
 import numpy as np
@@ -139,6 +138,8 @@ def _severity(rule: Rule, hits: Hits, place: Place) -> Severity:
 
 def _fingerprint(rule: str, block: str) -> str:
     """The same for the same rule in the same block, wherever that stands."""
+    import hashlib  # late: a program without findings does not need it
+
     return hashlib.sha256(f"{rule}\0{places.squeezed(block)}".encode("utf-8", "replace")).hexdigest()[:16]
 
 

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Points, Rows
 from polarcheck.geometry.compensation import Phase
-from polarcheck.geometry.segments import Curves
 from polarcheck.machines.modal import Side
 from polarcheck.table.moves import Moves, programmed_moves
 from polarcheck.table.tool_center import ToolCenter
 from polarcheck.table.trace import Trace
+
+if TYPE_CHECKING:
+    from polarcheck.geometry.segments import Curves
 
 
 def loop_of_row(trace: Trace) -> Rows:
@@ -112,6 +114,8 @@ _NOTHING = Cuts(np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0), np.ze
 
 
 def _curves(moves: Moves, loop: Rows, chosen: Mask) -> Curves:
+    from polarcheck.geometry.segments import Curves
+
     row = moves.row[chosen]
     return Curves(moves.start[chosen], moves.end[chosen], moves.center[chosen], moves.kind[chosen], loop[row], row)
 
