@@ -10,7 +10,8 @@ import numpy as np
 
 from polarcheck.arrays import Mask, Rows
 from polarcheck.checking.tables import Tables
-from polarcheck.machines.codes import code_numbers, code_set
+from polarcheck.machines.code_lists import numbers
+from polarcheck.machines.codes import code_numbers
 from polarcheck.table.trace import Trace
 
 
@@ -156,12 +157,10 @@ def _is_named(trace: Trace, index: int, names: tuple[str, ...]) -> bool:
     if address in names or (address.islower() and f",{address.upper()}" in names):
         return True
     number = int(code_numbers(trace.run.words.value[index : index + 1])[0])
-    return (
-        address in "GM" and number >= 0 and any(bool(_codes(trace, name)[number]) for name in names if name.islower())
-    )
+    return address in "GM" and number >= 0 and any(number in _codes(trace, name) for name in names if name.islower())
 
 
-def _codes(trace: Trace, name: str) -> Mask:
-    """A table over code numbers, of what a rule names: the switches of the mode, or a list of the machine."""
+def _codes(trace: Trace, name: str) -> list[int]:
+    """The code numbers of what a rule names: the switches of the mode, or a list of the machine."""
     polar = trace.machine.polar
-    return code_set({"on": polar.on, "off": polar.off}.get(name) or trace.machine.codes(name))
+    return numbers({"on": polar.on, "off": polar.off}.get(name) or trace.machine.codes(name))

@@ -16,6 +16,7 @@ from polarcheck.checking.finding import NOTE as NOTE
 from polarcheck.checking.finding import WARNING as WARNING
 from polarcheck.checking.finding import Severity as Severity
 from polarcheck.checking.tables import OF_TEXT
+from polarcheck.checking.tables import parameters as parameters_of
 from polarcheck.errors import RuleError, UsageError
 
 if TYPE_CHECKING:
@@ -177,7 +178,7 @@ def rule(
         name = function.__name__.replace("_", "-")
         if over not in OVER:
             raise RuleError(f"rule {name}: over={over!r}: expected one of {', '.join(OVER)}")
-        parameters = function.__code__.co_varnames[: function.__code__.co_argcount]
+        parameters = parameters_of(function)
         return Rule(name, group, severity, message, function, over, at, needs, where, once, unless, worst, parameters)
 
     return make

@@ -60,16 +60,19 @@ class Columns:
         found[indices] = True
         return found
 
+    def with_words(self, words: Rows | Mask) -> Mask:
+        """Per row: whether it has one of these executed words, given by indices or as a mask."""
+        found = np.zeros(len(self), bool)
+        found[self.run.row[words]] = True
+        return found
+
     def word(self, address: str) -> Floats:
         """The written value per row, the last where it is repeated; NaN where it is not written."""
         return self._column(f"word {address}", lambda: self._scatter(address, self.run.words.value))
 
     def has(self, *addresses: str) -> Mask:
         """Whether a row has a word of any of the addresses."""
-        found = np.zeros(len(self), bool)
-        for address in addresses:
-            found[self.run.row[self.word_indices(address)]] = True
-        return found
+        return self.with_words(self.word_indices(*addresses))
 
     def _scatter(self, address: str, values: Floats) -> Floats:
         column = np.full(len(self), np.nan)
@@ -92,7 +95,7 @@ class Columns:
 
     @cached_property
     def g_codes(self) -> NDArray[np.int32]:
-        """Their codes as whole numbers (modal.code)."""
+        """Their codes as whole numbers (codes.code)."""
         written = code_numbers(self.run.words.value[self.g_words])
         return renumbered(written, self.machine.control.motion_codes)
 
@@ -106,26 +109,34 @@ class Columns:
         """Their codes as whole numbers."""
         return code_numbers(self.run.words.value[self.m_words])
 
-    def codes(self, *words: str) -> Mask:
-        """Whether a row has any of these G or M codes."""
-        found = np.zeros(len(self), bool)
+    def code_indices(self, *words: str) -> Rows:
+        """The executed words that are any of these G or M codes (`G54-G59` is a range)."""
+        found = [np.zeros(0, np.int64)]
         for letter, indices, numbers in (("G", self.g_words, self.g_codes), ("M", self.m_words, self.m_codes)):
             asked = [word for word in words if word[0] == letter]
             if asked:
-                found[self.run.row[indices[code_set(asked)[numbers]]]] = True
-        return found
+                found.append(indices[code_set(asked)[numbers]])
+        return np.concatenate(found)
+
+    def codes(self, *words: str) -> Mask:
+        """Whether a row has any of these G or M codes."""
+        return self.with_words(self.code_indices(*words))
 
     def listed(self, *keys: str) -> Mask:
         """Whether a row has a G code of any of these lists of the machine, as in `reference_return`."""
         return self.codes(*(code for key in keys for code in self.machine.codes(key)))
 
+    @cached_property
+    def _modal(self) -> tuple[tuple[str, ...], NDArray[np.uint8], States]:
+        return modal_tables(self.machine)
+
     def state(self, group: str) -> States:
-        """The state of a modal group in each row, after its own codes (modal.MODAL_GROUPS)."""
+        """The state of a modal group in each row, after its own codes (modal.STATES)."""
         return self._column(f"state {group}", lambda: self._filled(group)[0])
 
     def has_state(self, group: str, codes: Sequence[str]) -> Mask:
         """Whether the state of a modal group is one that these codes set."""
-        _, _, state_of = modal_tables(self.machine)
+        _, _, state_of = self._modal
         return np.isin(self.state(group), [state_of[code(word)] for word in codes])
 
     def sets(self, group: str) -> Mask:
@@ -133,7 +144,7 @@ class Columns:
         return self._column(f"sets {group}", lambda: self._filled(group)[1])
 
     def _filled(self, group: str) -> tuple[States, Mask]:
-        names, group_of, state_of = modal_tables(self.machine)
+        names, group_of, state_of = self._modal
         written = np.zeros(len(self), bool)
         values = np.full(len(self), _BEFORE.get(group, 0), np.int8)
         if group in names:
@@ -212,7 +223,8 @@ class Columns:
         return ~self.listed(*NO_FEED)
 
     @cached_property
-    def _tool_number(self) -> Rows:
+    def tool_called(self) -> Rows:
+        """What T calls in each row, tool and offset as one number: 808 for T0808; 0 before the first."""
         written, called = self.has("T"), self.word("T")
         # A longer number calls nothing (too-many-digits), and none that a whole number could hold.
         value = np.where(np.abs(called) < _LONGEST_TOOL_NUMBER, called, 0).astype(np.int64)
@@ -221,12 +233,12 @@ class Columns:
     @cached_property
     def tool(self) -> Rows:
         """Tool number in force, 0 before the first."""
-        return np.asarray(self._tool_number // 10**self.machine.control.offset_digits)
+        return np.asarray(self.tool_called // 10**self.machine.control.offset_digits)
 
     @cached_property
     def offset_number(self) -> Rows:
         """Offset number in force, 0 for none."""
-        return np.asarray(self._tool_number % 10**self.machine.control.offset_digits)
+        return np.asarray(self.tool_called % 10**self.machine.control.offset_digits)
 
     @cached_property
     def changes_tool(self) -> Mask:

@@ -49,8 +49,7 @@ class Entry:
     def expects_offset(self) -> Mask:
         """A T word stands above, or would: in a whole program."""
         trace = self.trace
-        called = fill_down(trace.has("T"), trace.has("T") | trace.starts, False).astype(bool)
-        return np.asarray(called | (trace.whole_program & self._is_known))
+        return trace.has_called_tool | (trace.whole_program & self._is_known)
 
     # ---- the C axis ----
 
@@ -59,8 +58,6 @@ class Entry:
         """The C axis is engaged here and was not before."""
         trace = self.trace
         return np.asarray(trace.c_axis & ~before(trace.c_axis, trace.starts, False).astype(bool))
-
-    # ---- X ----
 
     # ---- spindle and live tool ----
 
@@ -79,9 +76,7 @@ class Entry:
     @cached_property
     def spindle_code(self) -> Mask:
         """Rows with a code of the main spindle or of its C axis."""
-        found = np.zeros(len(self.trace), bool)
-        found[self.trace.run.row[self.spindle_words]] = True
-        return found
+        return self.trace.with_words(self.spindle_words)
 
     # ---- tool offset, origin ----
 

@@ -22,9 +22,7 @@ class ModeWords:
 
     def rows(self, words: Mask) -> Mask:
         """Per row: whether it has one of these words."""
-        found = np.zeros(len(self.trace), bool)
-        found[self.trace.run.row[words]] = True
-        return found
+        return self.trace.with_words(words)
 
     def in_rows(self, rows: Mask) -> Mask:
         """Stands in one of these rows."""
@@ -32,13 +30,7 @@ class ModeWords:
 
     def codes(self, *names: str) -> Mask:
         """One of these G or M codes; `G54-G59` is a range."""
-        trace = self.trace
-        found = np.zeros(len(trace.run.words), bool)
-        for letter, indices, numbers in (("G", trace.g_words, trace.g_codes), ("M", trace.m_words, trace.m_codes)):
-            asked = [name for name in names if name[0] == letter]
-            if asked:
-                found[indices] = code_set(asked)[numbers]
-        return found
+        return self.trace.words_at(self.trace.code_indices(*names))
 
     def listed(self, *keys: str) -> Mask:
         """A G code of any of these lists of the machine, as in `plane_xy`."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -15,6 +16,7 @@ from polarcheck.table.tool_center import ToolCenter
 from polarcheck.table.trace import Trace
 
 if TYPE_CHECKING:
+    from polarcheck.geometry.contour import Overcut
     from polarcheck.geometry.segments import Curves
 
 
@@ -57,10 +59,25 @@ class Overcuts:
         return bool(np.any(self.trace.compensates & (np.abs(self.trace.radius) > 0)))
 
     @cached_property
+    def _loop(self) -> Rows:
+        return loop_of_row(self.trace)
+
+    @cached_property
+    def _loop_of_ramps(self) -> Rows:
+        """As loop_of_row; an offset cancel belongs to the loop above it."""
+        loop = self._loop
+        last = np.maximum.accumulate(np.where(loop >= 0, np.arange(len(loop)), 0))
+        return np.where(self.trace.cancels, loop[last], loop)
+
+    @cached_property
+    def _objected(self) -> Mask:
+        return objected(self.trace, self.tool_center)
+
+    @cached_property
     def _walls(self) -> tuple[Curves, Mask]:
         """The contour that is programmed in offset mode, and on which side of each block the tool is."""
         trace = self.trace
-        programmed, loop = programmed_moves(trace), loop_of_row(trace)
+        programmed, loop = programmed_moves(trace), self._loop
         rows = programmed.row
         walls = _curves(programmed, loop, (loop[rows] >= 0) & ~trace.starts_up[rows] & programmed.known)
         return walls, (trace.side[walls.row] == Side.LEFT) ^ (trace.radius[walls.row] < 0)
@@ -72,11 +89,8 @@ class Overcuts:
             return _NOTHING
         from polarcheck.geometry import contour
 
-        trace, tool = self.trace, self.tool_center.moves
-        path = _curves(tool, loop_of_row(trace), (tool.phase == Phase.OFFSET) & tool.known)
-        radius, tolerance = np.abs(trace.radius[path.row]), trace.machine.compensation.overcut_tolerance
-        found = contour.overcuts(*self._walls, path, radius, tolerance)
-        return Cuts(path.row[found.move], found.row, found.depth, found.place)
+        tool = self.tool_center.moves
+        return self._found(contour.overcuts, self._loop, (tool.phase == Phase.OFFSET) & tool.known)
 
     @cached_property
     def sweeps(self) -> Cuts:
@@ -85,12 +99,16 @@ class Overcuts:
             return _NOTHING
         from polarcheck.geometry import contour
 
-        trace, tool = self.trace, self.tool_center.moves
+        tool = self.tool_center.moves
         is_ramp = ((tool.phase == Phase.START_UP) | (tool.phase == Phase.CANCEL)) & tool.known
-        ramps = _curves(tool, _loop_of_ramps(trace), is_ramp & _at_depth(trace, tool.row))
-        radius, tolerance = np.abs(trace.radius[ramps.row]), trace.machine.compensation.overcut_tolerance
-        found = contour.sweeps(*self._walls, ramps, radius, tolerance)
-        return Cuts(ramps.row[found.move], found.row, found.depth, found.place)
+        return self._found(contour.sweeps, self._loop_of_ramps, is_ramp & _at_depth(self.trace, tool.row))
+
+    def _found(self, search: Callable[..., Overcut], loop: Rows, chosen: Mask) -> Cuts:
+        """What a search of `contour` finds along the chosen moves of the tool center."""
+        path = _curves(self.tool_center.moves, loop, chosen)
+        radius, tolerance = np.abs(self.trace.radius[path.row]), self.trace.machine.compensation.overcut_tolerance
+        found = search(*self._walls, path, radius, tolerance)
+        return Cuts(path.row[found.move], found.row, found.depth, found.place)
 
     @cached_property
     def depth(self) -> Floats:
@@ -100,14 +118,14 @@ class Overcuts:
     @cached_property
     def sweep_depth(self) -> Floats:
         """Of the cut into the contour by a ramp [mm], in loops that are not overcut anyway."""
-        loop = _loop_of_ramps(self.trace)
+        loop = self._loop_of_ramps
         return np.where(np.isin(loop, loop[self.depth > 0]), 0.0, self._depth_of(self.sweeps))
 
     def _depth_of(self, cuts: Cuts) -> Floats:
         """Per row the depth of its worst cut [mm]; 0 for none, and where the control objects anyway."""
         column = np.zeros(len(self.trace))
         np.maximum.at(column, cuts.row, cuts.depth)
-        return np.where(objected(self.trace, self.tool_center), 0.0, column)
+        return np.where(self._objected, 0.0, column)
 
 
 _NOTHING = Cuts(np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0), np.zeros(0, np.complex128))
@@ -118,13 +136,6 @@ def _curves(moves: Moves, loop: Rows, chosen: Mask) -> Curves:
 
     row = moves.row[chosen]
     return Curves(moves.start[chosen], moves.end[chosen], moves.center[chosen], moves.kind[chosen], loop[row], row)
-
-
-def _loop_of_ramps(trace: Trace) -> Rows:
-    """As loop_of_row; an offset cancel belongs to the loop above it."""
-    loop = loop_of_row(trace)
-    last = np.maximum.accumulate(np.where(loop >= 0, np.arange(len(loop)), 0))
-    return np.where(trace.cancels, loop[last], loop)
 
 
 def _at_depth(trace: Trace, row: Rows) -> Mask:

@@ -41,11 +41,6 @@ class Trace(Positions):
     # ---- tool offset ----
 
     @cached_property
-    def tool_called(self) -> Rows:
-        """What T calls in each row, tool and offset as one number: 808 for T0808; 0 before the first."""
-        return self._tool_number
-
-    @cached_property
     def tool_called_before(self) -> Rows:
         """What T called above the row."""
         return before(self.tool_called, self.starts, 0)
