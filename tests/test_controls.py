@@ -241,8 +241,11 @@ def test_every_pass_is_checked() -> None:
     """A pass that the contour alone would hide: inside a pocket the first passes are nearest to the center."""
     pocket = "G98 G0 X4. C0\nG12.1 E4.\nG1 X40. F100\nC20.\nX-40.\nC-20.\nX40.\nC0\nG13.1\n"
     limit = {"limits": {"c_feed": 700}}
-    assert (5, "c-feed-above-limit") in said(report_of(pocket, "gsk-988", changes=limit))
-    assert (5, "c-feed-above-limit") not in said(report_of(pocket.replace(" E4.", ""), "gsk-988", changes=limit))
+    of_passes, of_contour = (
+        [found.values["c_feed"] for found in report_of(program, "gsk-988", changes=limit).findings]
+        for program in (pocket, pocket.replace(" E4.", ""))
+    )
+    assert max(of_passes) > max([0.0, *of_contour])
 
 
 def test_what_is_not_simulated_is_said() -> None:
@@ -390,7 +393,9 @@ def test_rapid_traverse_is_silent_where_the_control_takes_it(name: str) -> None:
 
 
 def other(program: str, name: str) -> str:
-    found = [finding for finding in report_of(program, name).findings if finding.rule == "other-machine-fits"]
+    shown = report_of(program, name).findings
+    every = [one for finding in shown for one in (finding, *finding.follows)]
+    found = [finding for finding in every if finding.rule == "other-machine-fits"]
     assert all(finding.severity == "note" for finding in found)
     assert len(found) < 2
     return found[0].message if found else ""

@@ -12,14 +12,14 @@ from typing import Any
 
 import numpy as np
 import pytest
-from programs import report_of, said, tables_of
+from programs import machine_of, report_of, said, tables_of
 
 from polarcheck.checking import message, tables
 from polarcheck.checking.engine import Engine
 from polarcheck.checking.finding import ERROR, NOTE, WARNING, Finding
 from polarcheck.checking.other_machine import OtherMachine
 from polarcheck.checking.rule import FOLDER, Hits, Rule, graded, load_all, rule
-from polarcheck.checking.tables import MAKERS, OF_TEXT, PARTS, Tables
+from polarcheck.checking.tables import MAKERS, OF_TEXT, PARTS, SPANS, Tables
 from polarcheck.errors import RuleError
 
 RULES = load_all()
@@ -56,8 +56,10 @@ def made_rule(function: Any, **options: Any) -> Rule:
     return rule(options.pop("severity"), options.pop("message"), **options)(function)
 
 
-def findings(made: Tables, function: Any, **options: Any) -> list[Finding]:
-    return Engine(made, {}).findings(made_rule(function, **options))
+def findings(made: Tables, function: Any, *others: Rule, **options: Any) -> list[Finding]:
+    """What a rule of this function finds; others: rules that it may follow from."""
+    one = made_rule(function, **options)
+    return [found for found in Engine(made, {}, [one, *others]).findings() if found.rule == one.name]
 
 
 # ---- tables ----
@@ -90,7 +92,9 @@ def test_tables_of_the_text_are_made_of_nothing_that_runs() -> None:
 def test_every_name_of_a_rule_stands_for_something(one: Rule, made: Tables) -> None:
     for path in (*one.needs, *([one.where] if one.needs else []), *([one.worst] if one.worst else [])):
         assert len(made.column(path)) == len(made["trace"]), path
-    assert set(one.unless) <= set(RULES)
+    assert {name for names in one.follows.values() for name in names} <= set(RULES)
+    for span in (*one.follows, one.once or "block"):
+        assert len(made.column(SPANS[span])) == len(made["trace"])
     assert all(made["machine"].codes(name) for name in one.at if name.islower() and name not in ("on", "off"))
     hits = one.hits(made)
     for _, name, _, _ in string.Formatter().parse(one.message):
@@ -100,7 +104,7 @@ def test_every_name_of_a_rule_stands_for_something(one: Rule, made: Tables) -> N
             made.column(name)
         elif name not in hits.values:
             phrase = message.phrase(name, one.group)
-            assert set(tables.parameters(phrase)) <= {*made, "place", "row", "index", "at"}, name
+            assert set(tables.parameters(phrase)) <= {*made, "place", "row", "index", "at", "count"}, name
 
 
 # ---- what rules return ----
@@ -239,24 +243,81 @@ def test_a_phrase_of_a_section_knows_its_row_and_its_index() -> None:
 # ---- one finding per place ----
 
 
-def test_a_rule_gives_way_whatever_it_is_over(monkeypatch: pytest.MonkeyPatch) -> None:
-    """`unless` of a rule over words was an index into the rows, and raised an IndexError."""
+def x_words(words: Any) -> Any:
+    return words.address == ord("X")
+
+
+def has_y(trace: Any) -> Any:
+    return trace.has("Y")
+
+
+def only_sections(sections: Any) -> Any:
+    return sections.left
+
+
+def test_a_finding_follows_whatever_its_rule_and_the_cause_are_over() -> None:
     made = tables_of("G21\n" * 3 + "G1 X1. Y1. Z1. U1. W1. H1.\nG1 X2.\n" + "G4 X1.\n" * 5)
+    causes = made_rule(has_y), made_rule(only_sections, over="sections")
+    follows = {"block": ("has-y", "only-sections")}
+    found = Engine(made, {}, [made_rule(x_words, over="words", follows=follows), *causes]).findings()
+    assert [(one.rule, one.line) for one in found] == [
+        *(("x-words", line) for line in (5, 6, 7, 8, 9, 10)),
+        ("has-y", 4),
+    ]
+    assert [(one.rule, one.line) for one in found[-1].follows] == [("x-words", 4)]
 
-    def x_words(words: Any) -> Any:
-        return words.address == ord("X")
 
-    def has_y(trace: Any) -> Any:
-        return trace.has("Y")
+def test_a_finding_follows_only_a_cause_that_is_reported() -> None:
+    made = tables_of("G1 X1. Y1.\n")
+    (found,) = findings(made, x_words, over="words", follows={"block": ("has-y",)})
+    assert (found.line, found.follows) == (1, [])
 
-    def only_sections(sections: Any) -> Any:
-        return sections.left
 
-    better = made_rule(has_y)
-    of_sections = made_rule(only_sections, over="sections")
-    monkeypatch.setattr("polarcheck.checking.engine.load_all", lambda: {"has-y": better, "only-sections": of_sections})
-    found = findings(made, x_words, over="words", unless=("has-y", "only-sections"))
-    assert [one.line for one in found] == [5, 6, 7, 8, 9, 10]
+def test_the_cause_is_as_severe_as_the_worst_that_follows() -> None:
+    made = tables_of("G1 X1. Y1.\nG1 X1.\n")
+    cause = made_rule(has_y, severity=NOTE)
+    effect = made_rule(x_words, severity=ERROR, over="words", follows={"block": ("has-y",)})
+    alone, raised = Engine(made, {}, [effect, cause]).findings()
+    assert (alone.rule, alone.line, alone.severity) == ("x-words", 2, "error")
+    assert (raised.rule, raised.severity, [one.severity for one in raised.follows]) == ("has-y", "error", ["error"])
+
+
+def test_a_chain_of_causes_ends_at_its_first() -> None:
+    """What follows from a finding that follows itself is listed under the one that stands alone."""
+
+    def has_u(trace: Any) -> Any:
+        return trace.has("U")
+
+    made = tables_of("G1 X1. Y1. U1.\n")
+    chain = [
+        made_rule(x_words, over="words", follows={"block": ("has-y",)}),
+        made_rule(has_y, follows={"program": ("has-u",)}),
+        made_rule(has_u),
+    ]
+    (found,) = Engine(made, {}, chain).findings()
+    assert (found.rule, [one.rule for one in found.follows]) == ("has-u", ["has-y", "x-words"])
+
+
+def test_a_cause_reaches_to_the_end_of_its_section_and_no_further() -> None:
+    made = tables_of(PROGRAM)
+
+    def begins(trace: Any) -> Any:
+        return trace.enters & (trace.program == 0)
+
+    def has_c(trace: Any) -> Any:
+        return trace.has("C") & (trace.in_polar | trace.leaves)
+
+    cause, effect = made_rule(begins), made_rule(has_c, follows={"section": ("begins",)})
+    found = Engine(made, {}, [cause, effect]).findings()
+    assert [(one.rule, one.line) for one in found] == [("begins", 4), ("has-c", 14)]
+    assert [one.line for one in found[0].follows] == [6]
+
+
+def test_causes_go_round_in_no_circle() -> None:
+    edges = {name: {cause for names in one.follows.values() for cause in names} for name, one in RULES.items()}
+    while leaves := {name for name, causes in edges.items() if not causes & set(edges)}:
+        edges = {name: causes for name, causes in edges.items() if name not in leaves}
+    assert not edges
 
 
 def test_a_block_that_ran_often_is_one_finding_at_its_worst_run() -> None:
@@ -294,7 +355,7 @@ def test_what_hangs_on_the_text_alone_is_looked_for_once(monkeypatch: pytest.Mon
     assert not told["rapid-in-polar"]
 
 
-def test_other_machines_are_asked_last(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_each_rule_is_asked_once(monkeypatch: pytest.MonkeyPatch) -> None:
     order: list[str] = []
     hits = Rule.hits
 
@@ -304,8 +365,8 @@ def test_other_machines_are_asked_last(monkeypatch: pytest.MonkeyPatch) -> None:
 
     monkeypatch.setattr(Rule, "hits", noted)
     report_of("G98 G0 X60. C0\nG12.1\nG1 X40. F100\nG13.1\n")
-    assert order[-1] == "other-machine-fits"
-    assert len(order) == len(set(order))
+    off = {name for name, level in machine_of().severities.items() if level == "off"}
+    assert sorted(order) == sorted(set(RULES) - off)
 
 
 def test_a_rule_names_what_it_is_over() -> None:

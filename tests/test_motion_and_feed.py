@@ -125,12 +125,14 @@ def test_why_the_rate_of_c_is_not_known() -> None:
     assert reasons(report(compensated, limits=limits)) == [(text, 3)]
     assert reasons(report(compensated, "8:radius=4", limits=limits)) == []
     per_revolution = report(ENTRY + "G1 G99 C10. F.2\n", limits=limits)
-    assert reasons(per_revolution) == [("the feed is not known: F is per revolution of a spindle", 1)]
+    assert reasons(per_revolution) == [
+        ("the feed is not known: F is per revolution of a spindle; write feed per minute before it, G98", 1)
+    ]
     excerpt = report("G12.1\nG1 X40. C10.\nC5.\n", limits=limits)
     assert said(excerpt) == []
     assert reasons(excerpt) == [
-        ("the position is not known: X was not programmed before the polar mode", 1),
-        ("the feed is not known: no F is in force", 1),
+        ("the position is not known: X was not programmed before the polar mode; write G0 X... before it", 1),
+        ("the feed is not known: no F is in force; write one before the cutting move", 1),
     ]
     missing = report(ENTRY + "G1 C10.\n", limits=limits)
     assert (said(missing), reasons(missing)) == ([(4, "feed-missing-in-polar")], [])
@@ -139,7 +141,7 @@ def test_why_the_rate_of_c_is_not_known() -> None:
 def test_feed_of_the_mode_is_per_minute_where_the_control_takes_nothing_else() -> None:
     program = "O1\nG99 G0 X60. C0\nG1 Z-5. F.2\nG12.1\nX4. C5. F500\nC-5.\nG13.1\n"
     changes: dict[str, Any] = {"limits": {"c_feed": 3600}, "feed": {"carried_into_polar": "per-minute-only"}}
-    assert said(report(program, **changes)) == [(5, "c-feed-above-limit"), (6, "c-feed-above-limit")]
+    assert said(report(program, **changes)) == [(6, "c-feed-above-limit")]
 
 
 def test_travel_in_the_mode_is_the_distance_of_the_tool_center() -> None:

@@ -295,11 +295,11 @@ def test_json_is_the_contract() -> None:
     assert list(shown["tool"]) == ["name", "version"]
     assert list(shown["summary"]) == ["files", "errors", "warnings", "notes", "silenced"]
     (checked,) = shown["files"]
-    keys = ["path", "programs", "blocks", "sections", "verdict", "findings", "not_evaluated"]
-    assert list(checked) == keys
+    keys = ["path", "programs", "blocks", "sections", "verdict", "polar_sections", "findings", "not_evaluated"]
+    assert list(checked) == [*keys, "looked_at"]
     keys = "rule severity message line column end_line end_column block program section_line alarm values count source"
-    assert list(checked["findings"][0]) == [*keys.split(), "fingerprint", "fix"]
-    assert list(checked["not_evaluated"][0])[:3] == ["rule", "reason", "blocks"]
+    assert list(checked["findings"][0]) == [*keys.split(), "fingerprint", "fix", "follows"]
+    assert list(checked["not_evaluated"][0]) == ["rule", "reason", "blocks", "matters"]
 
 
 def test_json_never_holds_nan() -> None:

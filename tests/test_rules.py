@@ -53,7 +53,7 @@ def test_a_constant_mask_fails(rule: Rule, value: bool) -> None:
         hits = found if isinstance(found, Hits) else Hits(found)
         return replace(hits, mask=np.full_like(hits.mask, value), severity=None, at=None)
 
-    changed = replace(rule, function=constant, unless=())
+    changed = replace(rule, function=constant, follows={})
     verdicts = []
     for example in examples(rule.page):
         expected = sorted(place for place in example.expected if place[1] == rule.name)

@@ -2,23 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 
 import msgspec
 
-from polarcheck.checking.engine import Engine, program_heads
-from polarcheck.checking.finding import ERROR, FileReport, Finding, NotEvaluated, Severity
+from polarcheck.checking.called_files import in_the_file
+from polarcheck.checking.engine import Engine, in_order, program_heads, with_following
+from polarcheck.checking.finding import ERROR, SEVERITIES, FileReport, Finding, NotEvaluated
 from polarcheck.checking.not_evaluated import unevaluated, unexecuted
 from polarcheck.checking.other_machine import OtherMachine
-from polarcheck.checking.rule import Rule
+from polarcheck.checking.polar_sections import polar_sections
+from polarcheck.checking.rule import Hits, Rule
 from polarcheck.checking.tables import Tables
 from polarcheck.execution.runs import runs
 from polarcheck.machines.job import Job
 from polarcheck.machines.machine import Machine
 from polarcheck.reading import source
-from polarcheck.table.trace import Trace
 
-SEVERITIES = {"note": Severity.NOTE, "warning": Severity.WARNING, "error": Severity.ERROR}
+#: At what is looked in any program.
+LOOKED_AT = ("text", "flow", "position")
 
 
 def read(
@@ -47,132 +49,103 @@ def check_runs(
 ) -> FileReport:
     """All findings of the rules in the runs of one file; what hangs on its text alone is looked for once."""
     (state, tables), *more = found
-    first = check_run(tables, rules, severities)
+    engine = engine_of(tables, rules, severities)
+    first = report_of(engine)
     if not more:
         return first
-    of_text = {rule.name for rule in rules if rule.of_text}
-    of_run = [rule for rule in rules if not rule.of_text]
     ((other, tables),) = more
-    return _merged((state, first), (other, check_run(tables, of_run, severities)), of_text)
+    of_text = {rule.name: engine.hits(rule) for rule in engine.rules.values() if rule.of_text}
+    second = report_of(engine_of(tables, rules, severities, of_text))
+    return _merged((state, first), (other, second), of_text)
 
 
-def check_run(tables: Tables, rules: Sequence[Rule], severities: Mapping[str, str] | None = None) -> FileReport:
-    """All findings of the rules in the tables of one run."""
-    trace: Trace = tables["trace"]
-    engine = Engine(tables, {**trace.machine.severities, **(severities or {})})
-    findings: list[Finding] = []
-    not_evaluated: list[NotEvaluated] = list(unexecuted(tables))
-    asked = [rule for rule in rules if engine.severities.get(rule.name) != "off"]
-    for rule in (rule for rule in asked if "other_machine" not in rule.parameters):
-        findings += engine.findings(rule)
+def engine_of(
+    tables: Tables,
+    rules: Sequence[Rule],
+    severities: Mapping[str, str] | None = None,
+    known: Mapping[str, Hits] | None = None,
+) -> Engine:
+    """The rules that are not off, over the tables of one run. known: what is known already of some of them."""
+    machine: Machine = tables["machine"]
+    levels = {**machine.severities, **(severities or {})}
+    tables.give("other_machine", OtherMachine(tables))
+    return Engine(tables, levels, [rule for rule in rules if levels.get(rule.name) != "off"], known)
+
+
+def report_of(engine: Engine) -> FileReport:
+    """All that is found in one run, and what of it could not be evaluated."""
+    tables, trace = engine.tables, engine.trace
+    findings = in_order(in_the_file(engine.findings(), trace))
+    not_evaluated = [*unexecuted(tables)]
+    for rule in engine.rules.values():
         not_evaluated += unevaluated(tables, rule)
-    # Whether the program is one for another machine is asked last, of what this machine has made of it.
-    for rule in (rule for rule in asked if "other_machine" in rule.parameters):
-        tables.give("other_machine", OtherMachine(tables))
-        findings += engine.findings(rule)
-    findings = _sorted(_in_the_file(findings, trace))
     not_evaluated += engine.unlisted
-    own = [name for block, name in program_heads(trace) if not _part(trace, int(trace.text.blocks.line[block]))]
+    text = trace.text
+    own = [name for block, name in program_heads(trace) if not text.source.part_of(int(text.blocks.line[block]))]
     return FileReport(
-        path=trace.text.source.path,
+        path=text.source.path,
         programs=own,
         blocks=len(trace),
         sections=len(trace.sections),
         verdict=verdict(findings, not_evaluated),
+        polar_sections=polar_sections(tables),
         findings=findings,
         not_evaluated=not_evaluated,
+        looked_at=["polar sections", *LOOKED_AT] if len(trace.sections) else [*LOOKED_AT],
     )
 
 
-def _sorted(findings: Sequence[Finding]) -> list[Finding]:
-    return sorted(findings, key=lambda found: (found.line, found.column, -SEVERITIES[found.severity], found.rule))
-
-
-def _part(trace: Trace, line: int) -> tuple[str, int] | None:
-    return trace.text.source.part_of(line)
-
-
-def _in_the_file(findings: Sequence[Finding], trace: Trace) -> list[Finding]:
-    """
-    Findings in a called program that lies in another file are shown at the block that calls it.
-
-    What its text alone has wrong is left to a check of that file.
-    """
-    if not trace.text.source.parts:
-        return list(findings)
-    found = []
-    for finding in findings:
-        part = _part(trace, finding.line)
-        if part is None:
-            found.append(finding)
-            continue
-        call = _call_of(trace, finding.line)
-        if call is None:
-            continue
-        line, block = call
-        text = trace.text.source.line_text(line)
-        found.append(
-            msgspec.structs.replace(
-                finding,
-                message=f"in {part[0]}, line {part[1]}, {finding.block}: {finding.message}",
-                line=line,
-                end_line=line,
-                column=1 + len(text) - len(text.lstrip()),
-                end_column=1 + len(text.rstrip()),
-                block=block,
-                section_line=None
-                if finding.section_line and _part(trace, finding.section_line)
-                else finding.section_line,
-            )
-        )
-    return found
-
-
-def _call_of(trace: Trace, line: int) -> tuple[int, str] | None:
-    """The line and text of the block of this file that ran last before a line of a called program; None if none did."""
-    rows = (trace.line == line).nonzero()[0]
-    if not len(rows):
-        return None
-    first_part = trace.text.source.parts[0][0]
-    own = (trace.line[: rows[0]] < first_part).nonzero()[0]
-    if not len(own):
-        return None
-    found = int(trace.line[own[-1]])
-    return found, trace.text.source.line_text(found).strip()
+#: What tells a finding from others of the same file.
+_Place = tuple[str, int, int]
 
 
 def _merged(first: tuple[str, FileReport], second: tuple[str, FileReport], of_text: Collection[str]) -> FileReport:
     """
     One report of the runs with block skip off and on; what only one of them shows says which.
 
-    of_text: the rules that only the first run was asked for, since they hang on the text alone.
+    of_text: the rules that hang on the text alone, so that both runs show the same of them.
     """
     (skip_off, off), (skip_on, on) = first, second
-    shown_off, shown_on = (
-        {(found.rule, found.line, found.column) for found in report.findings} for report in (off, on)
-    )
+    shown_off, shown_on = ({_place(found) for found in _all(report.findings)} for report in (off, on))
 
-    def told(found: Finding, others: set[tuple[str, int, int]], state: str) -> Finding:
-        if found.rule in of_text or (found.rule, found.line, found.column) in others:
-            return found
-        return msgspec.structs.replace(found, message=f"{found.message} (with block skip {state})")
+    def told(found: Finding, others: set[_Place], state: str) -> Finding:
+        follows = [told(one, others, state) for one in found.follows]
+        if found.rule in of_text or _place(found) in others:
+            return msgspec.structs.replace(found, follows=follows)
+        return msgspec.structs.replace(found, message=f"{found.message} (with block skip {state})", follows=follows)
 
-    findings = [told(found, shown_on, skip_off) for found in off.findings]
-    findings += [
-        told(found, shown_off, skip_on)
-        for found in on.findings
-        if (found.rule, found.line, found.column) not in shown_off
-    ]
+    following = {_place(found): found.follows for found in on.findings}
+    findings = []
+    for found in off.findings:
+        more = [
+            told(one, shown_off, skip_on) for one in following.get(_place(found), ()) if _place(one) not in shown_off
+        ]
+        shown = told(found, shown_on, skip_off)
+        findings.append(with_following(shown, [*shown.follows, *more]))
+    findings += [told(found, shown_off, skip_on) for found in on.findings if _place(found) not in shown_off]
     not_evaluated = list(dict.fromkeys((*off.not_evaluated, *on.not_evaluated)))
-    findings = _sorted(findings)
+    findings = in_order(findings)
     return msgspec.structs.replace(
         off,
         blocks=max(off.blocks, on.blocks),
         sections=max(off.sections, on.sections),
+        polar_sections=list(dict.fromkeys((*off.polar_sections, *on.polar_sections))),
         findings=findings,
         not_evaluated=not_evaluated,
+        looked_at=max(off.looked_at, on.looked_at, key=len),
         verdict=verdict(findings, not_evaluated),
     )
+
+
+def _place(found: Finding) -> _Place:
+    return found.rule, found.line, found.column
+
+
+def _all(findings: Sequence[Finding]) -> Iterator[Finding]:
+    """The findings and what follows from them."""
+    for found in findings:
+        yield found
+        yield from found.follows
 
 
 def verdict(findings: Sequence[Finding], not_evaluated: Sequence[NotEvaluated], fail_on: str = "warning") -> str:
@@ -180,4 +153,4 @@ def verdict(findings: Sequence[Finding], not_evaluated: Sequence[NotEvaluated], 
     limit = SEVERITIES.get(fail_on, ERROR + 1)
     if any(SEVERITIES[finding.severity] >= limit for finding in findings):
         return "fail"
-    return "unverified" if not_evaluated else "pass"
+    return "unverified" if any(missing.matters for missing in not_evaluated) else "pass"

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import bisect
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from functools import cached_property
 
+import msgspec
 import numpy as np
 
 from polarcheck.arrays import Rows
 from polarcheck.checking import places
-from polarcheck.checking.finding import Finding, NotEvaluated, Severity
+from polarcheck.checking.finding import SEVERITIES, Finding, NotEvaluated, Severity
 from polarcheck.checking.places import PLACES, Place
-from polarcheck.checking.rule import Hits, Rule, load_all
+from polarcheck.checking.rule import Hits, Rule
 from polarcheck.checking.tables import Tables
-from polarcheck.errors import RuleError
 from polarcheck.table.trace import Trace
 
 #: More findings of one rule in one file are counted, not listed: nobody reads them, and hostile files stay bounded.
@@ -21,15 +22,39 @@ LISTED = 1000
 _BLOCK_LENGTH = 200
 
 
-class Engine:
-    """The hits of one run, each rule run once. severities: by rule, where it is not the rule's own."""
+class _Listed(msgspec.Struct, frozen=True):
+    """
+    The findings of one rule. index: the elements hit, sorted. finding: for each of them the finding that stands for it.
+    cause: for each finding the rule and the element that it follows from; None where it stands alone.
+    """
 
-    def __init__(self, tables: Tables, severities: Mapping[str, str]) -> None:
+    index: Rows
+    finding: Rows
+    findings: list[Finding]
+    cause: list[tuple[str, int] | None]
+
+
+class Engine:
+    """
+    The hits of one run, each rule run once.
+
+    severities: by rule, where it is not the rule's own. rules: those that are asked; none that is off. known: the hits
+    of some of them.
+    """
+
+    def __init__(
+        self,
+        tables: Tables,
+        severities: Mapping[str, str],
+        rules: Iterable[Rule],
+        known: Mapping[str, Hits] | None = None,
+    ) -> None:
         self.tables = tables
         self.trace: Trace = tables["trace"]
         self.severities = severities
+        self.rules = {rule.name: rule for rule in rules}
         self.unlisted: list[NotEvaluated] = []
-        self._hits: dict[str, Hits] = {}
+        self._hits: dict[str, Hits] = dict(known or {})
         self._heads = program_heads(self.trace)
 
     def hits(self, rule: Rule) -> Hits:
@@ -38,47 +63,95 @@ class Engine:
             self._hits[rule.name] = rule.hits(self.tables)
         return self._hits[rule.name]
 
-    def findings(self, rule: Rule) -> list[Finding]:
-        """One finding per place."""
+    def findings(self) -> list[Finding]:
+        """One finding per cause; what follows from it is listed in it, and raises its severity."""
+        listed = {rule.name: found for rule in self.rules.values() if (found := self._listed(rule)) is not None}
+        following: dict[tuple[str, int], list[Finding]] = {}
+        for found in listed.values():
+            for finding, cause in zip(found.findings, found.cause, strict=True):
+                if cause is not None:
+                    following.setdefault(_root(listed, cause), []).append(finding)
+        return [
+            with_following(finding, following.get((name, number), []))
+            for name, found in listed.items()
+            for number, finding in enumerate(found.findings)
+            if found.cause[number] is None
+        ]
+
+    def _listed(self, rule: Rule) -> _Listed | None:
         hits = self.hits(rule)
         index = np.flatnonzero(hits.mask)
         if not len(index):
-            return []
-        for other in rule.unless:
-            index = self._without(rule, index, other)
-        index, count = self._merged(rule, index)
-        if len(index) > LISTED:
-            reason = f"only the first {LISTED} of {len(index)} findings are listed"
-            self.unlisted.append(NotEvaluated(rule=rule.name, reason=reason, blocks=len(index) - LISTED))
-            index, count = index[:LISTED], count[:LISTED]
-        found = [PLACES[rule.over](self.tables, at) for at in index.tolist()]
-        return [self._finding(rule, place, hits, runs) for place, runs in zip(found, count.tolist(), strict=True)]
+            return None
+        cause, element = self._causes(rule, index)
+        finding = np.zeros(len(index), np.int64)
+        findings: list[Finding] = []
+        causes: list[tuple[str, int] | None] = []
+        for follows in (False, True):
+            at = np.flatnonzero((cause >= 0) == follows)
+            if not len(at):
+                continue
+            chosen, group, count = self._merged(rule, index[at])
+            finding[at] = np.minimum(group, LISTED - 1) + len(findings)
+            for number, runs in zip(chosen[:LISTED].tolist(), count.tolist(), strict=False):
+                first = at[number]
+                place = PLACES[rule.over](self.tables, int(index[first]))
+                findings.append(self._finding(rule, place, hits, runs))
+                causes.append((self._names[cause[first]], int(element[first])) if follows else None)
+            if len(chosen) > LISTED:
+                self.unlisted.append(_unlisted(rule, len(chosen)))
+        return _Listed(index, finding, findings, causes)
 
-    def _without(self, rule: Rule, index: Rows, name: str) -> Rows:
-        """The elements that do not stand in a block in which the other rule fires."""
-        rules = load_all()
-        if name not in rules:
-            raise RuleError(f"rule {rule.name}: no rule {name} to give way to")
-        other = rules[name]
-        elsewhere = places.blocks(other.over, self.tables)[np.flatnonzero(self.hits(other).mask)]
-        return index[~np.isin(places.blocks(rule.over, self.tables)[index], elsewhere)]
+    @cached_property
+    def _names(self) -> list[str]:
+        return list(self.rules)
 
-    def _merged(self, rule: Rule, index: Rows) -> tuple[Rows, Rows]:
-        """One row for each block that ran often, or for each section or program, and how many it stands for."""
-        if rule.over != "rows":
-            return index, np.ones(len(index), np.int64)
-        trace = self.trace
-        key = {"section": trace.section, "program": trace.program, "": trace.run.block}[rule.once][index]
+    def _causes(self, rule: Rule, index: Rows) -> tuple[Rows, Rows]:
+        """
+        For each of these elements the number of the rule that it follows from, -1 for none, and the element of that.
+
+        Only a cause that is itself reported counts: that of a rule which is not asked explains nothing to the reader.
+        """
+        cause, element = np.full(len(index), -1), np.full(len(index), -1)
+        for span, names in rule.follows.items():
+            for name in names:
+                if name not in self.rules:
+                    continue
+                other = self.rules[name]
+                hit = np.flatnonzero(self.hits(other).mask)
+                if not len(hit):
+                    continue
+                theirs = places.span_of(span, other.over, self.tables)[hit]
+                order = np.argsort(theirs, kind="stable")
+                own = places.span_of(span, rule.over, self.tables)[index]
+                at = order[np.minimum(np.searchsorted(theirs[order], own), len(hit) - 1)]
+                found = (theirs[at] == own) & (own >= 0) & (cause < 0)
+                cause[found], element[found] = self._names.index(name), hit[at[found]]
+        return cause, element
+
+    def _merged(self, rule: Rule, index: Rows) -> tuple[Rows, Rows, Rows]:
+        """
+        Which of the elements are reported, by their number in `index`, for each element the one that stands for it, by
+        its number among those, and for each of those how many it stands for.
+
+        It is one for each block, which counts its runs, or for each section, program or the like, which counts blocks.
+        """
+        if rule.over != "rows" and not rule.once:
+            every = np.arange(len(index))
+            return every, every, np.ones(len(index), np.int64)
+        key = places.span_of(rule.once or "block", rule.over, self.tables)[index]
+        key = np.where(key < 0, -1 - np.arange(len(index)), key)  # outside of all, each is by itself
         _, first, group, count = np.unique(key, return_index=True, return_inverse=True, return_counts=True)
-        chosen = index[first]
-        if rule.worst and len(chosen) < len(index):
+        runs = count
+        if rule.once:
+            block = places.blocks(rule.over, self.tables)[index]
+            runs = np.bincount(np.unique(np.stack((group, block)), axis=1)[0], minlength=len(first))
+        if rule.worst and len(first) < len(index):
             value = self.tables.column(rule.worst)[index]
             order = np.lexsort((-np.arange(len(index)), value, group))
-            chosen = index[order[np.cumsum(count) - 1]]
-        if rule.once:
-            count = np.ones_like(count)
-        order = np.argsort(chosen, kind="stable")
-        return chosen[order], count[order]
+            first = order[np.cumsum(count) - 1]
+        order = np.argsort(first, kind="stable")
+        return first[order], np.argsort(order)[group], runs[order]
 
     def _finding(self, rule: Rule, place: Place, hits: Hits, count: int) -> Finding:
         from polarcheck.checking.message import fill
@@ -90,7 +163,7 @@ class Engine:
         start, end = places.span(self.tables, place, at)
         source = trace.text.source
         line, end_line = source.line_of(start), source.line_of(max(end - 1, start))
-        text, values = fill(rule, hits, self.tables, place, at)
+        text, values = fill(rule, hits, self.tables, place, at, count)
         block = _block_text(trace, place.block)
         section = int(trace.section[place.row]) if place.row >= 0 else -1
         return Finding(
@@ -116,6 +189,11 @@ class Engine:
         return self._heads[at - 1][1] if at else None
 
 
+def _unlisted(rule: Rule, count: int) -> NotEvaluated:
+    reason = f"only the first {LISTED} of {count} findings are listed"
+    return NotEvaluated(rule=rule.name, reason=reason, blocks=count - LISTED, matters=False)
+
+
 def program_heads(trace: Trace) -> list[tuple[int, str]]:
     """The block and the name of each program that has an O number or <name>, in order."""
     text, table = trace.text, trace.text.words
@@ -129,6 +207,31 @@ def program_heads(trace: Trace) -> list[tuple[int, str]]:
     return [
         (int(block), places.squeezed(text.source.excerpt(int(start), int(end)))) for block, start, end in sorted(heads)
     ]
+
+
+def _root(listed: Mapping[str, _Listed], cause: tuple[str, int]) -> tuple[str, int]:
+    """The finding that stands alone at the end of a chain of causes, as rule and number."""
+    while True:
+        name, element = cause
+        found = listed[name]
+        number = int(found.finding[np.searchsorted(found.index, element)])
+        above = found.cause[number]
+        if above is None:
+            return name, number
+        cause = above
+
+
+def with_following(finding: Finding, following: list[Finding]) -> Finding:
+    """The finding with what follows from it, as severe as the worst of that."""
+    if not following:
+        return finding
+    severity = max((finding.severity, *(found.severity for found in following)), key=SEVERITIES.__getitem__)
+    return msgspec.structs.replace(finding, severity=severity, follows=in_order(following))
+
+
+def in_order(findings: Iterable[Finding]) -> list[Finding]:
+    """In the order of the lines; at one place the worst first."""
+    return sorted(findings, key=lambda found: (found.line, found.column, -SEVERITIES[found.severity], found.rule))
 
 
 def _severity(rule: Rule, hits: Hits, place: Place) -> Severity:

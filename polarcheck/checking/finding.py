@@ -18,6 +18,9 @@ class Severity(enum.IntEnum):
 
 NOTE, WARNING, ERROR = Severity.NOTE, Severity.WARNING, Severity.ERROR
 
+#: By the names that findings and configuration have for them.
+SEVERITIES = {severity.name.lower(): severity for severity in Severity}
+
 
 class Edit(msgspec.Struct, frozen=True, kw_only=True):
     """Replace the characters from start to end (lines and columns from 1, end exclusive) by text."""
@@ -38,7 +41,11 @@ class Fix(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Finding(msgspec.Struct, frozen=True, kw_only=True):
-    """One reported fault. Lines and columns count from 1, columns in characters; end_column is behind the last one."""
+    """
+    One reported fault. Lines and columns count from 1, columns in characters; end_column is behind the last one.
+
+    follows: the findings that would not be there without this one; they count nowhere.
+    """
 
     rule: str
     severity: str
@@ -56,26 +63,62 @@ class Finding(msgspec.Struct, frozen=True, kw_only=True):
     source: str = ""
     fingerprint: str = ""
     fix: Fix | None = None
+    follows: list[Finding] = []
 
 
 class NotEvaluated(msgspec.Struct, frozen=True, kw_only=True):
-    """What was not looked at, why, in how many blocks."""
+    """
+    What was not looked at, why, in how many blocks.
+
+    matters: something could be wrong there that would be found otherwise, so that the file is unverified.
+    """
 
     rule: str
     reason: str
     blocks: int
+    matters: bool = True
+
+
+class PolarSection(msgspec.Struct, frozen=True, kw_only=True):
+    """
+    What the verdict rests on in one polar section.
+
+    Lines: of its G12.1 and of its end. units: of the program there. offset: the number whose radius counts; null for
+    none. radius [mm] and where it comes from: command line, job, offset table, program, comment, none. nearest: the
+    smallest distance of the tool center to the center of C in a cutting move [mm]. c_feed: highest rate of C [deg/min],
+    its line and the limit of the machine. ramp_used: how much of a start-up or offset cancel its radius needs, the
+    highest; 1 at the limit. time: of all moves on the plane [s]. null is not known, or not there.
+    """
+
+    line: int
+    end_line: int
+    units: str
+    offset: int | None
+    radius: float | None
+    radius_source: str
+    nearest: float | None
+    c_feed: float | None
+    c_feed_line: int | None
+    c_feed_limit: float | None
+    ramp_used: float | None
+    time: float | None
 
 
 class FileReport(msgspec.Struct, frozen=True, kw_only=True):
-    """All about one file. Verdict: pass, fail or unverified."""
+    """
+    All about one file. Verdict: pass, fail or unverified. polar_sections: what it rests on. looked_at: at what of it
+    was looked; outside polar sections text, flow and position only.
+    """
 
     path: str
     programs: list[str]
     blocks: int
     sections: int
     verdict: str
+    polar_sections: list[PolarSection] = []
     findings: list[Finding]
     not_evaluated: list[NotEvaluated]
+    looked_at: list[str] = []
 
 
 class Producer(msgspec.Struct, frozen=True):

@@ -6,8 +6,8 @@ The form of a name in braces says what it is:
 - `{X}`: the last word of that address in the row, as it is written;
 - any other: a value that the rule hands over (Hits.values), else a phrase, a function of that name in
   phrases/<group of the rule>.py or phrases/common.py.
-A phrase takes by their names the tables that it needs, and `place`, `row`, `index` (see Place) or `at`, the executed
-words at fault.
+A phrase takes by their names the tables that it needs, and `place`, `row`, `index` (see Place), `at`, the executed
+words at fault, or `count`, how many elements the finding stands for.
 """
 
 from __future__ import annotations
@@ -31,21 +31,24 @@ _PHRASES = "polarcheck.checking.phrases"
 _SETTINGS = ("machine", "job")
 
 
-def fill(rule: Rule, hits: Hits, tables: Tables, place: Place, at: list[int]) -> tuple[str, dict[str, Any]]:
+def fill(
+    rule: Rule, hits: Hits, tables: Tables, place: Place, at: list[int], count: int = 1
+) -> tuple[str, dict[str, Any]]:
     """
     The message at one place, and the values in it as data (mm, deg, min), by the last part of their names.
 
-    at: the executed words at fault. Raises RuleError for a name that stands for nothing.
+    at: the executed words at fault. count: how many elements the finding stands for. Raises RuleError for a name that
+    stands for nothing.
     """
-    template = _Template(rule, hits, tables, place, at)
+    template = _Template(rule, hits, tables, place, at, count)
     return template.vformat(rule.message, (), {}), template.used
 
 
 class _Template(string.Formatter):
-    def __init__(self, rule: Rule, hits: Hits, tables: Tables, place: Place, at: list[int]) -> None:
+    def __init__(self, rule: Rule, hits: Hits, tables: Tables, place: Place, at: list[int], count: int) -> None:
         self.rule, self.hits, self.tables = rule, hits, tables
         self.place = place
-        self.given: dict[str, Any] = {"place": place, "row": place.row, "index": place.index, "at": at}
+        self.given: dict[str, Any] = {"place": place, "row": place.row, "index": place.index, "at": at, "count": count}
         self.used: dict[str, Any] = {}
 
     def get_field(self, field_name: str, args: Any, kwargs: Any) -> tuple[Any, str]:

@@ -18,6 +18,8 @@ from polarcheck.table.trace import Trace
 #: Columns that hang on the offset in force, and those that hang on the whole move.
 _OF_OFFSETS = ("trace.radius", "trace.cutter_diameter", "trace.nose")
 _OF_MOVES = ("tool_center.c_feed", "tool_center.c_acceleration")
+#: Columns without which a finding may be missing, but hardly is: lists of offsets have T for turning tools alone.
+_WITHOUT_WEIGHT = ("trace.nose",)
 #: Causes, beside the offset numbers, for which a move is not known.
 _POSITION, _NO_FEED, _FEED_OF_SPINDLE = -3, -2, -1
 
@@ -51,7 +53,7 @@ def unevaluated(tables: Tables, rule: Rule) -> Iterator[NotEvaluated]:
             reason = _REASONS.get(name, _plain(name))(trace, row)
             reasons[reason] = reasons.get(reason, 0) + count
         for reason, count in reasons.items():
-            yield NotEvaluated(rule=rule.name, reason=reason, blocks=count)
+            yield NotEvaluated(rule=rule.name, reason=reason, blocks=count, matters=name not in _WITHOUT_WEIGHT)
     yield from _SAID_OF.get(rule.name, _nothing)(tables, rule)
 
 
@@ -103,7 +105,7 @@ def _no_offset(what: str, key: str) -> Callable[[Trace, int], str]:
     def reason(trace: Trace, row: int) -> str:
         number = int(trace.offset_number[row])
         if not number:
-            return f"no {what}: no tool offset is in force"
+            return f"no {what}: no tool offset is in force; call one before the polar mode, as in T0808"
         tool = f"T{int(trace.tool[row]):02d}{number:02d}"
         return f"no {what} for {tool}: give --tool {number}:{key}=... or [tools.{number}] {key} in polarcheck.toml"
 
@@ -111,13 +113,28 @@ def _no_offset(what: str, key: str) -> Callable[[Trace, int], str]:
 
 
 def _position(trace: Trace, row: int) -> str:
-    return "the position is not known: X was not programmed before the polar mode"
+    starts = np.flatnonzero(trace.starts[: row + 1])
+    lost = np.flatnonzero(trace.run.unknown[starts[-1] if len(starts) else 0 : row + 1])
+    if not len(lost):
+        return "the position is not known: X was not programmed before the polar mode; write G0 X... before it"
+    at = int(lost[-1] + (starts[-1] if len(starts) else 0))
+    block = int(trace.run.block[at])
+    text = trace.text.source.excerpt(int(trace.text.blocks.start[block]), int(trace.text.blocks.end[block]))
+    written = " ".join(text.split())[:_BLOCK_LENGTH]
+    remedy = f"{_REMEDY}, or program X and C after it"
+    return f"the position is not known after line {int(trace.line[at])}, {written}, which is not executed{remedy}"
+
+
+#: What is given for a called program.
+_REMEDY = "; --subprograms FOLDER says where called programs lie"
+_BLOCK_LENGTH = 40
 
 
 def _feed(trace: Trace, row: int) -> str:
     if trace.per_minute[row]:
-        return "the feed is not known: no F is in force"
-    return "the feed is not known: F is per revolution of a spindle"
+        return "the feed is not known: no F is in force; write one before the cutting move"
+    codes = " or ".join(trace.machine.codes("feed_per_minute"))
+    return f"the feed is not known: F is per revolution of a spindle; write feed per minute before it, {codes}"
 
 
 def _plain(name: str) -> Callable[[Trace, int], str]:

@@ -9,7 +9,7 @@ import msgspec
 import numpy as np
 
 from polarcheck.arrays import Mask, Rows
-from polarcheck.checking.tables import Tables
+from polarcheck.checking.tables import SPANS, Tables
 from polarcheck.machines.code_lists import numbers
 from polarcheck.machines.codes import code_numbers
 from polarcheck.table.trace import Trace
@@ -44,6 +44,31 @@ def blocks(over: str, tables: Tables) -> Rows:
         return np.zeros(1, np.int64)
     found: Rows = getattr(trace.text, over).block
     return found
+
+
+def rows(over: str, tables: Tables) -> Rows:
+    """The row of each element of what a rule is over, the first that runs it; -1 where none does."""
+    trace: Trace = tables["trace"]
+    if over == "rows":
+        return np.arange(len(trace))
+    if over == "sections":
+        return trace.sections.enter
+    if over == "programs":
+        return _last_rows(trace)
+    if over == "files":
+        return np.full(1, -1)
+    if over == "faults":
+        return np.array([min(fault.row, len(trace) - 1) for fault in trace.run.faults], np.int64)
+    return trace.row_of_block[blocks(over, tables)]
+
+
+def span_of(name: str, over: str, tables: Tables) -> Rows:
+    """For each element of what a rule is over which block, section or the like (SPANS) it belongs to, -1 for none."""
+    if name == "block":
+        return blocks(over, tables)
+    column: Rows = tables.column(SPANS[name])
+    at = rows(over, tables)
+    return np.where(at >= 0, column[at], -1) if len(column) else np.full(len(at), -1)
 
 
 def of_row(tables: Tables, index: int) -> Place:

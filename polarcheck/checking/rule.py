@@ -7,6 +7,7 @@ import importlib
 import re
 from collections.abc import Callable, Mapping
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import msgspec
@@ -15,7 +16,7 @@ from polarcheck.checking.finding import ERROR as ERROR
 from polarcheck.checking.finding import NOTE as NOTE
 from polarcheck.checking.finding import WARNING as WARNING
 from polarcheck.checking.finding import Severity as Severity
-from polarcheck.checking.tables import OF_TEXT
+from polarcheck.checking.tables import OF_TEXT, SPANS
 from polarcheck.checking.tables import parameters as parameters_of
 from polarcheck.errors import RuleError, UsageError
 
@@ -112,8 +113,10 @@ class Rule(msgspec.Struct, frozen=True):
     at: of the words at fault the addresses, or the lists of the machine that their codes stand in (rapid, line), "on"
     and "off" for the codes of the mode; the whole block if empty or if the block has none of them.
     needs: columns, as in `trace.radius`, without which the rule cannot say anything where the column `where` holds.
-    once: report only the first in each section or program. unless: rules that, firing in the same block, say it better.
-    worst: of a block that ran often, the run with the highest value of this column is reported.
+    once: what is one cause, so that one finding stands for all of it (SPANS): a section, a program, an F word.
+    follows: what it follows from: by how far that reaches (SPANS) the rules that report the cause. Where one of them
+    fires within the same block, section or the like, the finding is listed under that one.
+    worst: of those that one finding stands for, the one with the highest value of this column is reported.
     """
 
     name: str
@@ -126,7 +129,7 @@ class Rule(msgspec.Struct, frozen=True):
     needs: tuple[str, ...]
     where: str
     once: str
-    unless: tuple[str, ...]
+    follows: Mapping[str, tuple[str, ...]]
     worst: str
     parameters: tuple[str, ...]
 
@@ -168,7 +171,7 @@ def rule(
     needs: tuple[str, ...] = (),
     where: str = "trace.in_polar",
     once: str = "",
-    unless: tuple[str, ...] = (),
+    follows: Mapping[str, tuple[str, ...]] = MappingProxyType({}),
     worst: str = "",
 ) -> Callable[[Callable[..., Any]], Rule]:
     """Make a rule of a function; see Rule. Its parameters name the tables that it compares."""
@@ -178,8 +181,10 @@ def rule(
         name = function.__name__.replace("_", "-")
         if over not in OVER:
             raise RuleError(f"rule {name}: over={over!r}: expected one of {', '.join(OVER)}")
+        if unknown := {*follows, *([once] if once else [])} - set(SPANS):
+            raise RuleError(f"rule {name}: {unknown.pop()!r}: expected one of {', '.join(SPANS)}")
         parameters = parameters_of(function)
-        return Rule(name, group, severity, message, function, over, at, needs, where, once, unless, worst, parameters)
+        return Rule(name, group, severity, message, function, over, at, needs, where, once, follows, worst, parameters)
 
     return make
 

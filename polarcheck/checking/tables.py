@@ -34,6 +34,16 @@ MAKERS = {
 }
 #: Tables that are a column of another one.
 PARTS = {"sections": "trace.sections", "moves": "tool_center.moves"}
+#: How far a cause reaches, or what one finding stands for: the column whose value its rows have in common.
+SPANS = {
+    "block": "run.block",
+    "section": "trace.whole_section",
+    "program": "trace.program",
+    "loop": "ramps.loop",
+    "pause": "ramps.pause",
+    "way": "ramps.way",
+    "feed": "trace.feed_word",
+}
 #: Tables that hang on the text and the machine alone: what is found in them is the same however the program runs.
 OF_TEXT = frozenset({"text", "words", "machine", "job", "written"})
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 import msgspec
 
@@ -12,13 +12,27 @@ from polarcheck.errors import JobError, UsageError
 
 
 class Tool(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """An entry of the offset table and what is mounted there; NaN is unknown."""
+    """An entry of the offset table and what is mounted there; NaN is unknown. source: who says so."""
+
+    source: ClassVar[str] = "job"
 
     radius: Annotated[float, msgspec.Meta(description="R of the offset table, with wear")] = math.nan
     nose: Annotated[int, msgspec.Meta(ge=0, le=9, description="T of the offset table; 0 for a mill")] | None = None
     diameter: Annotated[float, msgspec.Meta(gt=0, description="of the cutter, where R is not half of it")] = math.nan
     mount: Literal["axial", "radial"] | None = None
     shape: Literal["flat", "ball"] | None = None
+
+
+class AskedTool(Tool, frozen=True):
+    """One whose R the command line gives."""
+
+    source: ClassVar[str] = "command line"
+
+
+class PunchedTool(Tool, frozen=True):
+    """One that the control has punched out."""
+
+    source: ClassVar[str] = "offset table"
 
 
 class Stock(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -114,9 +128,10 @@ def with_tool(job: Job, option: str) -> Job:
             meant = f"did you mean {near[0]}?" if near else f"keys are {', '.join(Tool.__struct_fields__)}"
             raise UsageError(f"--tool {option}: {key or 'no key'}: {meant}")
         values[key] = _number(value)
-    known = msgspec.to_builtins(job.tools.get(int(number), Tool()))
+    before = job.tools.get(int(number), Tool())
+    known, kind = msgspec.to_builtins(before), AskedTool if "radius" in values else type(before)
     try:
-        tool = msgspec.convert({**_given(known), **values}, Tool, strict=False)
+        tool = msgspec.convert({**_given(known), **values}, kind, strict=False)
     except msgspec.ValidationError as error:
         text, _, where = str(error).partition(" - at `$.")
         raise UsageError(f"--tool {option}: {where.rstrip('`')}: {text[:1].lower()}{text[1:]}") from None

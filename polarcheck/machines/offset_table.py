@@ -7,7 +7,7 @@ import re
 from pathlib import Path
 
 from polarcheck.errors import JobError
-from polarcheck.machines.job import Tool
+from polarcheck.machines.job import PunchedTool, Tool
 
 _OFFSET = re.compile(r"G10\s*P\s*(\d+)((?:\s*[A-Z]\s*[-+]?\d*\.?\d*)*)")
 _VALUE = re.compile(r"([RQ])\s*([-+]?\d*\.?\d+|[-+]?\d+\.)")
@@ -38,6 +38,6 @@ def read(path: Path, title: str) -> dict[int, Tool]:
     if not radius and not nose:
         raise JobError(f"{title}: no offsets found; expected blocks such as G10 P10008 R0.375 Q0")
     return {
-        number: Tool(radius=radius.get(number, math.nan), nose=nose.get(number))
+        number: PunchedTool(radius=radius.get(number, math.nan), nose=nose.get(number))
         for number in sorted(radius.keys() | nose.keys())
     }

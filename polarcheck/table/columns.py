@@ -219,6 +219,14 @@ class Columns:
         return fill_down(value, written | self.starts, np.nan)
 
     @cached_property
+    def feed_word(self) -> Rows:
+        """Where in the file the F in force is written, its first character; -1 before the first."""
+        words = self.word_indices("F")
+        at = np.full(len(self), -1, np.int64)
+        at[self.run.row[words]] = self.run.words.start[words]
+        return fill_down(at, (self.has("F") & self._takes_feed) | self.starts, -1)
+
+    @cached_property
     def _takes_feed(self) -> Mask:
         return ~self.listed(*NO_FEED)
 

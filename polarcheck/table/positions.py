@@ -13,6 +13,7 @@ import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Points, Rows, States
 from polarcheck.geometry import polar
+from polarcheck.machines.code_lists import numbers
 from polarcheck.machines.modal import Distance, Motion
 from polarcheck.table.filling import before, fill_down, positions
 from polarcheck.table.lengths import Lengths
@@ -33,7 +34,7 @@ class Positions(Lengths):
     def moves_plane(self) -> Mask:
         """Programs the linear or the virtual axis, an arc by its center alone included."""
         is_arc = np.isin(self.state("motion"), (Motion.CW, Motion.CCW))
-        axes = self.has(*_PLANE_AXES, *self._virtual)
+        axes = self.has(*_PLANE_AXES) | self.programs_virtual_axis
         return self.uses_axes & (axes | (is_arc & self.has("I", "J", "K") & ~self.has("Z", "W"))) & ~self.switches_on
 
     @cached_property
@@ -42,9 +43,16 @@ class Positions(Lengths):
         return self.uses_axes & self.has("Z", "W")
 
     @cached_property
-    def _virtual(self) -> tuple[str, str]:
-        polar_mode = self.machine.polar
-        return polar_mode.virtual_axis, polar_mode.virtual_axis_incremental
+    def _virtual(self) -> tuple[tuple[str, str], ...]:
+        """The addresses of the virtual axis, absolute and incremental; after them those that it has elsewhere."""
+        mode = self.machine.polar
+        elsewhere = mode.virtual_axis_of_other_controls
+        return (mode.virtual_axis, mode.virtual_axis_incremental), *zip(elsewhere[::2], elsewhere[1::2], strict=False)
+
+    @cached_property
+    def programs_virtual_axis(self) -> Mask:
+        """Has a word of the virtual axis, be it under the address of another control."""
+        return self.has(*(address for pair in self._virtual for address in pair))
 
     @cached_property
     def motion(self) -> States:
@@ -82,7 +90,7 @@ class Positions(Lengths):
             outside=self.listed("reference_check", "reference_return", "machine_coordinates"),
             tool_ends=self.changes_tool | self.ends_program | self.codes(*m_codes.optional_stop, *m_codes.tool_change),
             rapid=self.listed("rapid"),
-            cuts=cutting & self.has(*self._virtual),
+            cuts=cutting & self.programs_virtual_axis,
             moves=cutting & self.moves_plane,
             returns=self.codes(*self.machine.macro.program_returns),
         )
@@ -93,11 +101,20 @@ class Positions(Lengths):
         """Number of the polar section, its G12.1 included; -1 outside."""
         return section_column(self.sections, len(self))
 
+    @cached_property
+    def whole_section(self) -> Rows:
+        """The same, with its G13.1."""
+        return np.where(self.leaves, before(self.section, self.starts, -1), self.section)
+
     def anywhere_in_section(self, mask: Mask) -> Mask:
         """Rows of sections in which any row is in the mask."""
         hit = np.zeros(len(self.sections) + 1, bool)
         hit[self.section[mask & (self.section >= 0)]] = True
         return hit[self.section]
+
+    def count_in_section(self, mask: Mask) -> Rows:
+        """Per section how many of its rows are in the mask."""
+        return np.bincount(self.section[mask & (self.section >= 0)], minlength=len(self.sections))
 
     @cached_property
     def enters(self) -> Mask:
@@ -134,6 +151,21 @@ class Positions(Lengths):
     # ---- positions ----
 
     @cached_property
+    def units(self) -> States:
+        """
+        Units.INCH or Units.MM. A code that cannot stand in the mode has a finding for that, and changes none: with it
+        the contour would be another.
+        """
+        assumed: States = super().units
+        allowed = set(numbers(self.machine.polar.allowed_codes))
+        codes = [code for key in ("inch", "mm") for code in self.machine.codes(key)]
+        refused = self.codes(*(code for code in codes if not allowed.issuperset(numbers([code])))) & self.in_polar
+        if not refused.any():
+            return assumed
+        written = self.sets("units") & ~refused
+        return fill_down(assumed, written | self.starts, assumed[0])
+
+    @cached_property
     def incremental(self) -> Mask:
         """G91 in systems B and C."""
         return np.asarray(self.state("distance") == Distance.INCREMENTAL)
@@ -149,6 +181,23 @@ class Positions(Lengths):
         steps = np.where(written & self.incremental, value, 0.0) + np.where(has_step, step, 0.0)
         broken = written & np.isnan(value)
         return absolute, np.where(broken, np.nan, steps)
+
+    @cached_property
+    def _virtual_coordinates(self) -> tuple[Floats, Floats]:
+        """
+        The virtual axis as _programmed gives an axis.
+
+        A row that names it by the address of another control has a finding for that, and means it nevertheless.
+        """
+        factor = _FACTOR[self.machine.polar.virtual_axis_programming]
+        own, *elsewhere = self._virtual
+        absolute, steps = self._programmed(*own, factor, self.in_polar)
+        for pair in elsewhere:
+            meant = self.has(*pair) & ~self.has(*own)
+            if meant.any():
+                other = self._programmed(*pair, factor, self.in_polar & meant)
+                absolute, steps = np.where(meant, other[0], absolute), np.where(meant, other[1], steps)
+        return absolute, steps
 
     def _forgets(self, axis: str, increment: str) -> Mask:
         """Rows after which an axis is not where its words say: references, shifts, cycles, blocks not executed."""
@@ -196,7 +245,7 @@ class Positions(Lengths):
     def _plane(self) -> tuple[Points, Points]:
         """Plane points after and before each row; the virtual coordinate is NaN outside the mode."""
         x_words = self._programmed("X", "U", self.x_factor, ~self.enters)
-        c_words = self._programmed(*self._virtual, _FACTOR[self.machine.polar.virtual_axis_programming], self.in_polar)
+        c_words = self._virtual_coordinates
         leave = self.sections.leave[self.sections.leave < len(self)]
         c = positions(*c_words, self.enters, np.zeros(len(self)))
         c = np.where(self.section >= 0, c, np.nan)

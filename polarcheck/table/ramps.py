@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask
+from polarcheck.arrays import Floats, Mask, Rows
 from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.machines.modal import Side
 from polarcheck.table.tool_center import ToolCenter
@@ -19,6 +19,26 @@ class Ramps:
     def __init__(self, trace: Trace, tool_center: ToolCenter) -> None:
         self.trace = trace
         self.tool_center = tool_center
+
+    # ---- how far a fault reaches ----
+
+    @cached_property
+    def loop(self) -> Rows:
+        """Number of the loop of each row of a section: from its start-up, or G12.1, to the next; -1 outside."""
+        trace = self.trace
+        return np.where(trace.whole_section >= 0, np.cumsum(trace.starts_up | trace.enters), -1)
+
+    @cached_property
+    def pause(self) -> Rows:
+        """The same number for a move on the plane and the rows after it that do not move there; -1 outside sections."""
+        moves = self.trace.in_polar & self.trace.moves_plane
+        return np.where(self.trace.whole_section >= 0, np.cumsum(moves), -1)
+
+    @cached_property
+    def way(self) -> Rows:
+        """The same number for a move on the plane and the rows that lead up to it; -1 outside sections."""
+        moves = self.trace.in_polar & self.trace.moves_plane
+        return np.where(self.trace.whole_section >= 0, np.cumsum(moves) - moves, -1)
 
     # ---- start-up and offset cancel ----
 
@@ -68,6 +88,15 @@ class Ramps:
     def cancel_judged_by_radius(self) -> Mask:
         """Offset cancels likewise."""
         return np.asarray(self.trace.cancels & ~self.trace.is_arc & (self.trace.length != 0))
+
+    @cached_property
+    def used(self) -> Floats:
+        """How much of the move of a ramp its R needs, 1 where it just suffices; NaN for other rows and unknown ones."""
+        trace = self.trace
+        is_ramp = (trace.starts_up | trace.cancels) & (trace.length > 0)
+        used = np.full(len(trace), np.nan)
+        np.divide(np.abs(trace.radius), trace.length, out=used, where=is_ramp)
+        return used
 
     # ---- in offset mode ----
 

@@ -2,7 +2,7 @@ O0002
 G40 G97 G98
 T0101
 G0 X120. C0 Z5.
-G112              (expect: diameter-radius-mixed, other-machine-fits)
+G112              (expect: diameter-radius-mixed)
 G1 X40. C10. F100
 G3 X20. C20. I-10. J0
 G1 X-20.

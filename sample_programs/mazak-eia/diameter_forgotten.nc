@@ -5,7 +5,7 @@ M200
 G28 H0
 G0 X120. C0 Z5.
 G17 XC
-G12.1             (expect: diameter-radius-mixed, other-machine-fits)
+G12.1             (expect: diameter-radius-mixed)
 G1 X20. C10. F200
 G3 X10. C20. I-10. J0
 G1 X-10.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from polarcheck.checking.phrases.common import executed_word
 from polarcheck.checking.quantity import in_row
 from polarcheck.table.center import Center
 from polarcheck.table.tool_center import ToolCenter
@@ -23,6 +24,17 @@ def _range(trace: Trace, row: int, least: float, most: float) -> str:
     return f"{shown.length(least):.4g} to {shown.length(most):.4g} {shown.unit}/min"
 
 
+def feed_word(trace: Trace, row: int) -> str:
+    """The F word in force in a row, and its line where that is another."""
+    words = trace.word_indices("F")
+    at = words[trace.run.words.start[words] == trace.feed_word[row]]
+    if not len(at):
+        return f"F {in_row(float(trace.feed[row]), trace, row):feed}"
+    line = int(trace.line[trace.run.row[at[0]]])
+    written = executed_word(trace, int(at[0]))
+    return written if line == trace.line[row] else f"{written} of line {line}"
+
+
 def verdict(trace: Trace, tool_center: ToolCenter, row: int) -> str:
     """What the machine allows of C, as far as the profile knows."""
     limits = trace.machine.limits
@@ -35,11 +47,12 @@ def verdict(trace: Trace, tool_center: ToolCenter, row: int) -> str:
     return f"{allows} and slows the feed down to {tool_center.override[row]:.2g} %, {slowed:feed}"
 
 
-def advice(trace: Trace, tool_center: ToolCenter, row: int) -> str:
+def advice(trace: Trace, tool_center: ToolCenter, row: int, count: int) -> str:
     """The highest F, or what to give to learn it."""
+    where = f"for its {count} blocks" if count > 1 else "here"
     if np.isnan(trace.machine.limits.c_feed):
-        return "limits.c_feed would give the highest F here"
-    return f"highest F here: {in_row(float(tool_center.feed_allowed[row]), trace, row):feed}"
+        return f"--set limits.c_feed=... would give the highest F {where}"
+    return f"highest F {where}: {in_row(float(tool_center.feed_allowed[row]), trace, row):feed}"
 
 
 def meeting(center: Center, tool_center: ToolCenter, row: int) -> str:

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from polarcheck.checking.phrases.common import executed_word, switch_off
 from polarcheck.machines.codes import spelled
 from polarcheck.machines.machine import Machine
+from polarcheck.table.arcs import Arcs
 from polarcheck.table.infeed import Infeed
 from polarcheck.table.trace import Trace
 
@@ -109,3 +110,9 @@ def not_simulated(trace: Trace, infeed: Infeed) -> Iterator[tuple[str, int]]:
         yield f"the center of the C axis shifted by {word} is not simulated", int(shifts.sum())
     partly = int(infeed.is_simulated_in_part.sum())
     yield "of an infeed cycle only the passes next to the contour are simulated", partly
+
+
+def what(trace: Trace, arcs: Arcs, index: int) -> str:
+    """What becomes of a section without the second axis."""
+    off = int(trace.count_in_section(arcs.is_no_circle)[index])
+    return f"and {off} arcs are no circles" if off > 1 else "through the center of the C axis"

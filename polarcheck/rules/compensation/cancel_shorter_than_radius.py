@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from polarcheck.checking.causes import SECTION_READ_OTHERWISE
 from polarcheck.checking.rule import ERROR, Mask, Ramps, Trace, rule
 
 
@@ -9,6 +10,7 @@ from polarcheck.checking.rule import ERROR, Mask, Ramps, Trace, rule
     at=("compensation_off",),
     needs=("trace.radius", "trace.length"),
     where="ramps.cancel_judged_by_radius",
+    follows={"section": (*SECTION_READ_OTHERWISE, "polar-switched-in-offset-mode")},
 )
 def cancel_shorter_than_radius(trace: Trace, ramps: Ramps) -> Mask:
     """

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from polarcheck.checking.causes import NO_SUCH_ARC, SECTION_READ_OTHERWISE
 from polarcheck.checking.rule import ERROR, Mask, ToolCenter, Trace, rule
 
 
@@ -9,6 +10,7 @@ from polarcheck.checking.rule import ERROR, Mask, ToolCenter, Trace, rule
     at=("arc_clockwise", "arc_counterclockwise", "R", "I", "J"),
     needs=("trace.radius",),
     where="ramps.compensated",
+    follows={"loop": NO_SUCH_ARC, "section": SECTION_READ_OTHERWISE},
 )
 def inside_arc_smaller_than_radius(trace: Trace, tool_center: ToolCenter) -> Mask:
     """

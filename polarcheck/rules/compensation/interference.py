@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from polarcheck.checking.causes import NO_SUCH_ARC, SECTION_READ_OTHERWISE
 from polarcheck.checking.rule import ERROR, Mask, Ramps, ToolCenter, rule
 
 
@@ -8,6 +9,7 @@ from polarcheck.checking.rule import ERROR, Mask, Ramps, ToolCenter, rule
     "tool center would run backwards here: the contour is too narrow or too short for R {trace.radius:length}",
     needs=("trace.radius",),
     where="ramps.compensated",
+    follows={"loop": NO_SUCH_ARC, "section": SECTION_READ_OTHERWISE},
 )
 def interference(tool_center: ToolCenter, ramps: Ramps) -> Mask:
     """

@@ -8,6 +8,8 @@ from polarcheck.checking.rule import ERROR, Mask, Trace, rule
     "offset {trace.offset_number} has nose type T{trace.nose:.0f}; for a mill it must be {allowed}",
     at=("compensation_left", "compensation_right"),
     once="section",
+    needs=("trace.nose",),
+    where="trace.starts_up",
 )
 def nose_type_not_zero(trace: Trace) -> Mask:
     """

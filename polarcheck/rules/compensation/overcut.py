@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from polarcheck.checking.causes import NO_SUCH_ARC, SECTION_READ_OTHERWISE
 from polarcheck.checking.rule import ERROR, Mask, Overcuts, rule
 
 
@@ -9,15 +10,17 @@ from polarcheck.checking.rule import ERROR, Mask, Overcuts, rule
     needs=("trace.radius",),
     where="trace.offset_mode",
     worst="overcuts.depth",
-    unless=(
-        "inside-arc-smaller-than-radius",
-        "interference",
-        "no-offset-intersection",
-        "movement-missing-in-offset-mode",
-        "side-changed-in-offset-mode",
-        "side-repeated-in-offset-mode",
-        "start-up-shorter-than-radius",
-    ),
+    follows={
+        "block": ("inside-arc-smaller-than-radius", "interference", "no-offset-intersection"),
+        "loop": (
+            *NO_SUCH_ARC,
+            "start-up-shorter-than-radius",
+            "side-changed-in-offset-mode",
+            "side-repeated-in-offset-mode",
+        ),
+        "pause": ("movement-missing-in-offset-mode",),
+        "section": SECTION_READ_OTHERWISE,
+    },
 )
 def overcut(overcuts: Overcuts) -> Mask:
     """

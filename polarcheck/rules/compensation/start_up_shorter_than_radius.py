@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from polarcheck.checking.causes import SECTION_READ_OTHERWISE
 from polarcheck.checking.rule import ERROR, Mask, Ramps, Trace, rule
 
 
@@ -9,6 +10,7 @@ from polarcheck.checking.rule import ERROR, Mask, Ramps, Trace, rule
     at=("compensation_left", "compensation_right"),
     needs=("trace.radius", "trace.length"),
     where="ramps.start_up_judged_by_radius",
+    follows={"way": ("approach-inside-stock",), "section": (*SECTION_READ_OTHERWISE, "polar-switched-in-offset-mode")},
 )
 def start_up_shorter_than_radius(trace: Trace, ramps: Ramps) -> Mask:
     """

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from polarcheck.checking.causes import NO_SUCH_ARC, SECTION_READ_OTHERWISE
 from polarcheck.checking.rule import ERROR, Hits, Overcuts, rule
 
 
@@ -7,14 +8,20 @@ from polarcheck.checking.rule import ERROR, Hits, Overcuts, rule
     ERROR,
     "the ramp goes {depth:length} deep into {place}",
     at=("compensation_off", "compensation_left", "compensation_right"),
-    unless=(
-        "overcut",
-        "start-up-shorter-than-radius",
-        "cancel-shorter-than-radius",
-        "start-up-on-arc",
-        "cancel-on-arc",
-        "movement-missing-in-offset-mode",
-    ),
+    once="loop",
+    follows={
+        "block": (
+            "overcut",
+            "start-up-shorter-than-radius",
+            "cancel-shorter-than-radius",
+            "start-up-on-arc",
+            "cancel-on-arc",
+        ),
+        "loop": NO_SUCH_ARC,
+        "pause": ("movement-missing-in-offset-mode",),
+        "section": (*SECTION_READ_OTHERWISE, "polar-switched-in-offset-mode"),
+    },
+    worst="overcuts.sweep_depth",
 )
 def start_up_sweeps_contour(overcuts: Overcuts) -> Hits:
     """

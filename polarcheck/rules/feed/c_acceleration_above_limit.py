@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from polarcheck.checking.causes import NO_SUCH_ARC, SECTION_READ_OTHERWISE
 from polarcheck.checking.rule import WARNING, Center, Feeds, Mask, Trace, rule
 
 
@@ -11,7 +12,8 @@ from polarcheck.checking.rule import WARNING, Center, Feeds, Mask, Trace, rule
     at=("F",),
     needs=("tool_center.c_acceleration",),
     where="feeds.is_limited_in_acceleration",
-    unless=("c-feed-above-limit",),
+    once="feed",
+    follows={"feed": ("c-feed-above-limit",), "block": NO_SUCH_ARC, "section": SECTION_READ_OTHERWISE},
     worst="tool_center.c_acceleration",
 )
 def c_acceleration_above_limit(trace: Trace, center: Center, feeds: Feeds) -> Mask:

@@ -1,15 +1,18 @@
 from __future__ import annotations
 
+from polarcheck.checking.causes import NO_SUCH_ARC, SECTION_READ_OTHERWISE
 from polarcheck.checking.rule import ERROR, WARNING, Center, Hits, Machine, ToolCenter, rule
 
 
 @rule(
     ERROR,
-    "C axis would turn at {tool_center.c_feed:.0f} deg/min, {verdict}; "
+    "C axis would turn at {tool_center.c_feed:.0f} deg/min with {feed_word}, {verdict}; "
     "nearest distance {tool_center.nearest:length}; {advice}",
     at=("F",),
     needs=("tool_center.c_feed",),
     where="trace.cuts",
+    once="feed",
+    follows={"block": NO_SUCH_ARC, "section": SECTION_READ_OTHERWISE},
     worst="tool_center.c_feed",
 )
 def c_feed_above_limit(center: Center, tool_center: ToolCenter, machine: Machine) -> Hits:
@@ -20,7 +23,7 @@ def c_feed_above_limit(center: Center, tool_center: ToolCenter, machine: Machine
     faster C must turn for it: F / L, where L is their smallest distance. Above the limit the control stops with an
     alarm or, with automatic override, slows down. Use F < L * R * pi / 180, with R the limit of C in deg/min, or keep
     away from the center. limits.c_feed of the profile is R; without it only a rate that no C axis cuts with is
-    reported.
+    reported. One finding stands for all blocks that an F word governs, at the one with the highest rate.
 
     Source: FANUC B-62764EN/01, p. 52; B-63324EN/03, p. 192.
 
@@ -46,6 +49,16 @@ def c_feed_above_limit(center: Center, tool_center: ToolCenter, machine: Machine
         G12.1
         G1 C1. F50
         X-40. F200        (expect: c-feed-above-limit)
+        G13.1
+
+    Bad, set limits.c_feed=3600:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X4. C2. F500
+        X-4.              (expect: c-feed-above-limit)
+        C-2.
+        X4.
         G13.1
 
     Good, set limits.c_feed=3600:

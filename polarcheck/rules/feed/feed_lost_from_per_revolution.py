@@ -7,7 +7,7 @@ from polarcheck.checking.rule import ERROR, Feeds, Mask, Trace, rule
     ERROR,
     "no F in the mode: the feed per revolution before G12.1 is not taken over",
     at=("line", "arc_clockwise", "arc_counterclockwise"),
-    unless=("feed-missing-in-polar",),
+    follows={"block": ("feed-missing-in-polar",)},
 )
 def feed_lost_from_per_revolution(trace: Trace, feeds: Feeds) -> Mask:
     """

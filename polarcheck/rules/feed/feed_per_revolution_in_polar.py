@@ -8,7 +8,7 @@ from polarcheck.machines.modal import FeedMode
     WARNING,
     "feed per revolution of a spindle that turns as the C axis now; write feed per minute",
     at=("feed_per_revolution", "line", "arc_clockwise", "arc_counterclockwise"),
-    unless=("feed-missing-in-polar",),
+    follows={"block": ("feed-missing-in-polar",)},
 )
 def feed_per_revolution_in_polar(trace: Trace) -> Mask:
     """

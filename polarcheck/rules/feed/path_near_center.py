@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from polarcheck.checking.causes import NO_SUCH_ARC, SECTION_READ_OTHERWISE
 from polarcheck.checking.rule import WARNING, Center, Hits, Machine, ToolCenter, rule
 
 
@@ -7,7 +8,7 @@ from polarcheck.checking.rule import WARNING, Center, Hits, Machine, ToolCenter,
     WARNING,
     "tool center comes within {tool_center.nearest:length} of the center of the C axis; keep {keep_out:length} away",
     at=("X", "U", "C", "H"),
-    unless=("c-feed-above-limit",),
+    follows={"block": ("c-feed-above-limit", *NO_SUCH_ARC), "section": SECTION_READ_OTHERWISE},
     worst="tool_center.c_feed",
 )
 def path_near_center(center: Center, tool_center: ToolCenter, machine: Machine) -> Hits:

@@ -1,9 +1,15 @@
 from __future__ import annotations
 
+from polarcheck.checking.causes import NO_SUCH_ARC, SECTION_READ_OTHERWISE
 from polarcheck.checking.rule import ERROR, Arcs, Center, Mask, Trace, rule
 
 
-@rule(ERROR, "tool center {meeting}", at=("X", "U", "C", "H"))
+@rule(
+    ERROR,
+    "tool center {meeting}",
+    at=("X", "U", "C", "H"),
+    follows={"way": ("x-not-positive-at-entry",), "block": NO_SUCH_ARC, "section": SECTION_READ_OTHERWISE},
+)
 def path_through_center(trace: Trace, center: Center, arcs: Arcs) -> Mask:
     """
     Path through the center of the C axis.

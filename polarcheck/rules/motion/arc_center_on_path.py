@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from polarcheck.checking.causes import SECTION_READ_OTHERWISE
 from polarcheck.checking.rule import ERROR, Arcs, Mask, rule
 from polarcheck.geometry.tolerances import ROUNDING
 
@@ -8,7 +9,7 @@ from polarcheck.geometry.tolerances import ROUNDING
     ERROR,
     "the center of the arc is its start or its end: a radius of 0",
     at=("I", "J"),
-    unless=("diameter-radius-mixed",),
+    follows={"section": SECTION_READ_OTHERWISE},
 )
 def arc_center_on_path(arcs: Arcs) -> Mask:
     """

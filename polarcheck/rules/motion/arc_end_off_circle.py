@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from polarcheck.checking.causes import SECTION_READ_OTHERWISE
 from polarcheck.checking.rule import ERROR, Arcs, Hits, Machine, rule
 
 
@@ -10,7 +11,7 @@ from polarcheck.checking.rule import ERROR, Arcs, Hits, Machine, rule
     at=("X", "U", "C", "H", "I", "J"),
     needs=("arcs.end_radius",),
     where="arcs.by_center",
-    unless=("arc-center-on-path", "diameter-radius-mixed"),
+    follows={"block": ("arc-center-on-path",), "section": SECTION_READ_OTHERWISE},
 )
 def arc_end_off_circle(arcs: Arcs, machine: Machine) -> Hits:
     """

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from polarcheck.checking.causes import SECTION_READ_OTHERWISE
 from polarcheck.checking.rule import ERROR, Arcs, Machine, Mask, rule
 
 
@@ -10,7 +11,7 @@ from polarcheck.checking.rule import ERROR, Arcs, Machine, Mask, rule
     at=("X", "U", "C", "H", "R"),
     needs=("arcs.chord",),
     where="arcs.by_radius",
-    unless=("diameter-radius-mixed",),
+    follows={"section": SECTION_READ_OTHERWISE},
 )
 def arc_radius_too_small(arcs: Arcs, machine: Machine) -> Mask:
     """

@@ -23,7 +23,7 @@ def diameter_radius_mixed(arcs: Arcs) -> Mask:
     Bad:
 
         G98 G0 X60. C0
-        G12.1             (expect: diameter-radius-mixed, other-machine-fits)
+        G12.1             (expect: diameter-radius-mixed)
         G1 X20. C10. F200
         G3 X10. C20. I-10. J0
         G1 X-10.
@@ -34,7 +34,7 @@ def diameter_radius_mixed(arcs: Arcs) -> Mask:
     Bad, set polar.x="radius":
 
         G98 G0 X60. C0
-        G12.1             (expect: diameter-radius-mixed, other-machine-fits)
+        G12.1             (expect: diameter-radius-mixed)
         G1 X40. C10. F200
         G3 X20. C20. I-10. J0
         G1 X60.
@@ -43,7 +43,7 @@ def diameter_radius_mixed(arcs: Arcs) -> Mask:
     Bad, set polar.x="radius":
 
         G98 G0 X60. C0
-        G12.1             (expect: diameter-radius-mixed, other-machine-fits)
+        G12.1             (expect: diameter-radius-mixed)
         G1 X40. C10. F200
         G3 X20. C20. R10.
         G1 X-20.

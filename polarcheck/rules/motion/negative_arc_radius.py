@@ -4,7 +4,10 @@ from polarcheck.checking.rule import WARNING, Arcs, Mask, rule
 
 
 @rule(
-    WARNING, "negative radius of an arc: more than 180 deg, or an alarm", at=("R",), unless=("full-circle-by-radius",)
+    WARNING,
+    "negative radius of an arc: more than 180 deg, or an alarm",
+    at=("R",),
+    follows={"block": ("full-circle-by-radius",)},
 )
 def negative_arc_radius(arcs: Arcs) -> Mask:
     """

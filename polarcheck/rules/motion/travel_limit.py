@@ -1,10 +1,18 @@
 from __future__ import annotations
 
+from polarcheck.checking.causes import SECTION_READ_OTHERWISE
 from polarcheck.checking.rule import ERROR, Machine, Mask, Trace, Travel, rule
 from polarcheck.geometry.tolerances import ROUNDING
 
 
-@rule(ERROR, "{travel}", at=("X", "U", "C", "H", "Z", "W"), needs=("travel.most_x",), where="travel.is_limited_in_x")
+@rule(
+    ERROR,
+    "{travel}",
+    at=("X", "U", "C", "H", "Z", "W"),
+    needs=("travel.most_x",),
+    where="travel.is_limited_in_x",
+    follows={"section": SECTION_READ_OTHERWISE},
+)
 def travel_limit(trace: Trace, travel: Travel, machine: Machine) -> Mask:
     """
     Move beyond the travel of X or Z.

@@ -3,7 +3,11 @@ from __future__ import annotations
 from polarcheck.checking.rule import ERROR, Hits, Machine, ModeWords, graded, rule
 
 
-@rule(ERROR, "{codes} cannot be used in the polar mode; write it {outside}")
+@rule(
+    ERROR,
+    "{codes} cannot be used in the polar mode; write it {outside}",
+    follows={"block": ("incremental-word-of-other-code-system",)},
+)
 def code_not_allowed_in_polar(mode_words: ModeWords, machine: Machine) -> Hits:
     """
     Code that cannot be used in the polar mode.

@@ -4,7 +4,7 @@ from polarcheck.checking.rule import ERROR, Mask, Trace, rule
 from polarcheck.machines.modal import Side
 
 
-@rule(ERROR, "{switch} while {side} is in force; G40 must be in force here", at=("on", "off"))
+@rule(ERROR, "{switch} while {side} is in force; G40 must be in force here", at=("on", "off"), once="section")
 def polar_switched_in_offset_mode(trace: Trace) -> Mask:
     """
     Polar mode switched on or off while G41 or G42 is in force.

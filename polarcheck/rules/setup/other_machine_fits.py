@@ -1,9 +1,10 @@
 from __future__ import annotations
 
+from polarcheck.checking.causes import SECTION_READ_OTHERWISE
 from polarcheck.checking.rule import NOTE, Mask, OtherMachine, rule
 
 
-@rule(NOTE, "reads well on another machine: {fit}", at=("on",))
+@rule(NOTE, "reads well on another machine: {fit}", at=("on",), follows={"program": SECTION_READ_OTHERWISE})
 def other_machine_fits(other_machine: OtherMachine) -> Mask:
     """
     Program for another machine.
@@ -13,15 +14,6 @@ def other_machine_fits(other_machine: OtherMachine) -> Mask:
     which control the program is for, and check it with --machine.
 
     Source: FANUC B-62764EN/01, p. 51; Haas codes, G112; Mitsubishi M700V, p. 73 and 77; Okuma OSP-P300 post.
-
-    Bad:
-
-        G98 G0 X80. Y0
-        G112              (expect: other-machine-fits)
-        G1 X20. F200
-        Y10.              (expect: wrong-axis-address-in-polar)
-        X30.
-        G113
 
     Good, machine haas-lathe:
 

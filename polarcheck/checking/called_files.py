@@ -1,0 +1,65 @@
+"""Findings in a called program of another file, shown at the block of this file that calls it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import msgspec
+
+from polarcheck.checking.finding import Finding
+from polarcheck.table.trace import Trace
+
+
+def in_the_file(findings: Sequence[Finding], trace: Trace) -> list[Finding]:
+    """
+    Findings in a called program that lies in another file are shown at the block that calls it.
+
+    What its text alone has wrong is left to a check of that file; what follows from that is shown for itself.
+    """
+    if not trace.text.source.parts:
+        return list(findings)
+    found: list[Finding] = []
+    for finding in findings:
+        following = in_the_file(finding.follows, trace)
+        shown = _shown(finding, trace)
+        if shown is None:
+            found += following
+        else:
+            found.append(msgspec.structs.replace(shown, follows=following))
+    return found
+
+
+def _shown(finding: Finding, trace: Trace) -> Finding | None:
+    source = trace.text.source
+    part = source.part_of(finding.line)
+    if part is None:
+        return finding
+    call = _call_of(trace, finding.line)
+    if call is None:
+        return None
+    line, block = call
+    text = source.line_text(line)
+    section_line = finding.section_line
+    return msgspec.structs.replace(
+        finding,
+        message=f"in {part[0]}, line {part[1]}, {finding.block}: {finding.message}",
+        line=line,
+        end_line=line,
+        column=1 + len(text) - len(text.lstrip()),
+        end_column=1 + len(text.rstrip()),
+        block=block,
+        section_line=None if section_line and source.part_of(section_line) else section_line,
+    )
+
+
+def _call_of(trace: Trace, line: int) -> tuple[int, str] | None:
+    """The line and text of the block of this file that ran last before a line of a called program; None if none did."""
+    rows = (trace.line == line).nonzero()[0]
+    if not len(rows):
+        return None
+    first_part = trace.text.source.parts[0][0]
+    own = (trace.line[: rows[0]] < first_part).nonzero()[0]
+    if not len(own):
+        return None
+    found = int(trace.line[own[-1]])
+    return found, trace.text.source.line_text(found).strip()

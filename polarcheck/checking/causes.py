@@ -1,0 +1,29 @@
+"""Rules that report a cause from which findings of many other rules follow, by what is wrong."""
+
+#: The control, or X, or the second axis is another than the one that the section was written for.
+SECTION_READ_OTHERWISE = (
+    "wrong-axis-address-in-polar",
+    "diameter-radius-mixed",
+    "second-axis-never-programmed",
+)
+#: An arc that there is not, so that nobody knows the way to its end.
+NO_SUCH_ARC = (
+    "arc-center-on-path",
+    "arc-end-off-circle",
+    "arc-radius-too-small",
+    "arc-without-center",
+    "arc-word-of-other-plane",
+    "arc-off-polar-plane",
+)
+#: What stands in a block of its own in the mode and cannot: without it there would be fewer blocks without movement.
+OUT_OF_PLACE = (
+    "plane-selected-in-polar",
+    "origin-shifted-in-polar",
+    "offset-changed-in-polar",
+    "code-not-allowed-in-polar",
+    "spindle-code-in-polar",
+    "tool-length-offset-in-polar",
+    "polar-entered-twice",
+    "unknown-code",
+    "rapid-in-polar",
+)

@@ -1,0 +1,115 @@
+"""What the verdict of a file rests on: each polar section, its radius, and how near it comes to a limit."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from polarcheck.arrays import Floats, Mask, Rows
+from polarcheck.checking.finding import PolarSection
+from polarcheck.checking.tables import Tables
+from polarcheck.machines.modal import Units
+from polarcheck.table.center import Center
+from polarcheck.table.moves import Moves
+from polarcheck.table.ramps import Ramps
+from polarcheck.table.tool_center import ToolCenter
+from polarcheck.table.trace import Trace
+
+#: Digits behind the point: a nanometer, and as much of a degree.
+_DIGITS = 6
+
+
+def polar_sections(tables: Tables) -> list[PolarSection]:
+    """One element for each polar section, in order."""
+    trace: Trace = tables["trace"]
+    sections = trace.sections
+    if not len(sections):
+        return []
+    tool_center: ToolCenter = tables["tool_center"]
+    center: Center = tables["center"]
+    fastest = _fastest(trace, np.where(center.cuts_off_center, tool_center.c_feed, np.nan))
+    at_entry = _offset_rows(trace)
+    nearest = _least(trace, np.where(trace.cuts, tool_center.nearest, np.nan))
+    ramp = _ramp_used(trace, tables["ramps"])
+    time = _time(tool_center.moves, len(sections))
+    limit = _number(trace.machine.limits.c_feed)
+    last = np.where(sections.left & ~sections.returned, sections.leave, sections.leave - 1)
+    found = []
+    for index, (enter, end, row, fast) in enumerate(
+        zip(sections.enter.tolist(), last.tolist(), at_entry.tolist(), fastest.tolist(), strict=True)
+    ):
+        found.append(
+            PolarSection(
+                line=int(trace.line[enter]),
+                end_line=int(trace.line[min(end, len(trace) - 1)]),
+                units="inch" if trace.units[enter] == Units.INCH else "mm",
+                offset=int(trace.offset_number[row]) or None,
+                radius=_number(trace.radius[row]),
+                radius_source=_radius_source(trace, row),
+                nearest=_number(nearest[index]),
+                c_feed=_number(tool_center.c_feed[fast]) if fast >= 0 else None,
+                c_feed_line=int(trace.line[fast]) if fast >= 0 else None,
+                c_feed_limit=limit,
+                ramp_used=_number(ramp[index]),
+                time=_number(time[index]),
+            )
+        )
+    return found
+
+
+def _number(value: float) -> float | None:
+    """A value as JSON can hold it, without the dust of the last bits; None for one that is not known or not there."""
+    return round(float(value), _DIGITS) + 0.0 if np.isfinite(value) else None
+
+
+def _offset_rows(trace: Trace) -> Rows:
+    """Per section the row whose tool offset counts: the first that is compensated, else G12.1."""
+    rows = trace.sections.enter.copy()
+    first = np.flatnonzero(trace.first_in_section(trace.compensates))
+    rows[trace.section[first]] = first
+    return rows
+
+
+def _radius_source(trace: Trace, row: int) -> str:
+    if np.isnan(trace.radius[row]):
+        return "none"
+    tool = trace.job.tools.get(int(trace.offset_number[row]))
+    if trace.radius_is_from_comment[row] or tool is None:
+        return "comment"
+    return tool.source
+
+
+def _of_sections(trace: Trace, values: Floats, fold: Callable[..., None], none: float) -> Floats:
+    """Per section the least or the largest of the values of its rows that are known; NaN where there is none."""
+    found = np.full(len(trace.sections), none)
+    rows = np.flatnonzero(np.isfinite(values) & (trace.section >= 0))
+    fold(found, trace.section[rows], values[rows])
+    found[np.isinf(found)] = np.nan
+    return found
+
+
+def _least(trace: Trace, values: Floats) -> Floats:
+    return _of_sections(trace, values, np.minimum.at, np.inf)
+
+
+def _fastest(trace: Trace, c_feed: Floats) -> Rows:
+    """Per section the first row with its highest rate of C, -1 where none is known."""
+    highest = _of_sections(trace, c_feed, np.maximum.at, -np.inf)
+    is_highest: Mask = (trace.section >= 0) & (c_feed == np.append(highest, np.nan)[trace.section])
+    rows = np.full(len(trace.sections), -1)
+    found = np.flatnonzero(is_highest)[::-1]
+    rows[trace.section[found]] = found
+    return rows
+
+
+def _ramp_used(trace: Trace, ramps: Ramps) -> Floats:
+    """Per section how much of a start-up or offset cancel its R needs, the highest."""
+    return _of_sections(trace, ramps.used, np.maximum.at, -np.inf)
+
+
+def _time(moves: Moves, count: int) -> Floats:
+    """Per section how long its moves on the plane take [s]; NaN where that of one of them is not known."""
+    total = np.zeros(count)
+    np.add.at(total, moves.section, moves.time)
+    return total

@@ -1,0 +1,47 @@
+from __future__ import annotations
+
+from polarcheck.checking.rule import ERROR, Arcs, Center, Mask, Sections, Trace, rule
+
+#: One arc or one way across the center may be a slip of its own.
+_SEVERAL = 2
+
+
+@rule(
+    ERROR,
+    "no {machine.polar.virtual_axis} word in this section: the tool moves along X alone, {what}",
+    over="sections",
+    at=("on",),
+)
+def second_axis_never_programmed(trace: Trace, sections: Sections, arcs: Arcs, center: Center) -> Mask:
+    """
+    Section without any word of the second axis.
+
+    A post that leaves out the second axis makes a line of a contour: the tool goes to and fro along X, through the
+    center of the C axis, and no arc ends on its circle. The control stops with an alarm at the first of them. Have the
+    post write the second axis; one finding stands for all that is wrong with the path.
+
+    Source: B-62764EN/01, p. 51: the contour is programmed with the linear axis and the rotary axis.
+
+    Bad:
+
+        G98 G0 X60. C0
+        G12.1              (expect: second-axis-never-programmed)
+        G1 X40. F100
+        G3 X20. I-20. J5.
+        G1 X-20.
+        G3 X-40. I10. J-5.
+        G13.1
+
+    Good:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. F100
+        G3 I-20. J0
+        G1 X50.
+        G13.1
+    """
+    without = ~trace.anywhere_in_section(trace.programs_virtual_axis)[sections.enter]
+    no_circle = trace.count_in_section(arcs.is_no_circle) >= _SEVERAL
+    across = trace.count_in_section(trace.cuts & center.meets_center) >= _SEVERAL
+    return without & (no_circle | across)
