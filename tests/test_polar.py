@@ -130,6 +130,17 @@ def test_c_acceleration_is_that_of_the_path(move: Move) -> None:
 
 
 @few
+@given(smooth_moves)
+def test_x_acceleration_is_that_of_the_path(move: Move) -> None:
+    points, feed = sampled(move, 16_001), 600.0
+    seconds = way(points) / 16_000 / feed * 60
+    x = np.abs(points)
+    found = np.abs(np.diff(x, 2)).max() / seconds**2
+    rounding = 1e-12 / seconds**2
+    assert move.of(rates.x_acceleration, feed) == pytest.approx(found, rel=2e-2, abs=rounding + 1e-6)
+
+
+@few
 @given(moves, st.floats(1, 1e5))
 def test_feed_allowed_is_just_allowed(move: Move, limit: float) -> None:
     feed = move.of(rates.feed_allowed, limit)
@@ -148,6 +159,7 @@ def test_line_beside_the_center() -> None:
     assert line.of(polar.nearest) == 2
     assert line.of(polar.farthest) == pytest.approx(math.sqrt(104))
     assert line.of(rates.x_feed, 600) == pytest.approx(600 * 10 / math.sqrt(104))
+    assert line.of(rates.x_acceleration, 600) == pytest.approx(10**2 / 2)
     assert line.of(rates.feed_allowed, 3600) == pytest.approx(125.664, abs=1e-3)
 
 
@@ -155,6 +167,7 @@ def test_line_that_stops_before_the_foot() -> None:
     line = Move(3 + 2j, 10 + 2j)
     assert line.of(rates.c_feed, 600) == pytest.approx(5288.841, abs=1e-3)
     assert line.of(polar.nearest) == pytest.approx(math.sqrt(13))
+    assert line.of(rates.x_acceleration, 600) == pytest.approx(10**2 * 2**2 / 13**1.5)
     end = Move(10 + 2j, 10.0001 + 2j)
     assert end.of(rates.c_feed, 600) == pytest.approx(661.105, abs=2e-2)
 
@@ -175,6 +188,9 @@ def test_c_turns_back_within_an_arc_that_leaves_the_center_outside() -> None:
     assert far_half.of(rates.c_feed, 600) == pytest.approx(math.degrees(600 / 14))
     near_half = Move(10 + 4j, 10 - 4j, 10, CCW)
     assert near_half.of(rates.c_feed, 600) == pytest.approx(math.degrees(100))
+    # X = |center + R turned|; its acceleration (F / R)^2 e R / r where it is nearest and farthest.
+    assert near_half.of(rates.x_acceleration, 600) == pytest.approx((10 / 4) ** 2 * 10 * 4 / 6)
+    assert far_half.of(rates.x_acceleration, 600) == pytest.approx((10 / 4) ** 2 * 10 * 4 / 14)
     # Where the path points at the center, C stands and X has all of F.
     assert Move(14, 6, 10, CCW).of(rates.x_feed, 600) == pytest.approx(600)
     assert Move(12, -8, 2, CCW).of(rates.x_feed, 600) == pytest.approx(600 * 2 / 10)
@@ -224,6 +240,8 @@ def test_line_through_the_center(ends: tuple[complex, complex]) -> None:
     assert line.of(polar.nearest) == 0
     assert line.of(polar.c_sweep) == 180
     assert line.of(rates.x_feed, 100) == pytest.approx(100)
+    assert line.of(rates.x_acceleration, 100) == math.inf
+    assert line.of(rates.x_acceleration, 0) == 0
 
 
 @pytest.mark.parametrize("ends", [(0, 3 + 4j), (3 + 4j, 0), (1, 7), (-6 - 8j, -3 - 4j), (1e-13, 10j), (10j, 1e-13j)])
@@ -234,6 +252,7 @@ def test_line_along_a_radius(ends: tuple[complex, complex]) -> None:
     assert line.of(rates.feed_allowed, 3600) == math.inf
     assert line.of(polar.c_sweep) == 0
     assert line.of(rates.x_feed, 100) == pytest.approx(100)
+    assert line.of(rates.x_acceleration, 100) == 0
 
 
 def test_arc_from_the_center_turns_c_evenly() -> None:
@@ -243,6 +262,9 @@ def test_arc_from_the_center_turns_c_evenly() -> None:
     assert arc.of(polar.c_sweep) == pytest.approx(-90)
     assert arc.of(polar.nearest) == 0
     assert arc.of(rates.x_feed, 600) == pytest.approx(600)
+    assert arc.of(rates.x_acceleration, 600) == pytest.approx(10**2 * 10 / (2 * 5) ** 2)
+    assert Move(10 + 0j, 10 + 0j, 5, CCW).of(rates.x_acceleration, 600) == math.inf
+    assert Move(10 + 0j, 10 + 0j, 0, CCW).of(rates.x_acceleration, 600) == 0
     assert Move(0, 0, 5, CCW).of(polar.c_sweep) == pytest.approx(180)
 
 

@@ -1,4 +1,4 @@
-"""What a move on the polar plane asks of the axes of the machine: rates and accelerations of C, the rate of X."""
+"""What a move on the polar plane asks of the axes of the machine: rates and accelerations of C and of X."""
 
 from __future__ import annotations
 
@@ -141,3 +141,39 @@ def _x_share_at(arcs: ArcsFromCenter, point: Points) -> Floats:
     spoke = np.abs(point - arcs.center)
     share = np.abs(cross(arcs.center, point)) / (spoke * np.abs(point))
     return np.where(point == 0, 1.0, share)
+
+
+@quiet
+def x_acceleration(start: Points, end: Points, center: Points, kind: States, feed: Floats | float) -> Floats:
+    """
+    Largest |X acceleration| within each move at the feed F [mm/s^2, X as a radius], not at its ends.
+
+    On a line F^2 d^2 / r^3, largest at the nearest point. On an arc F^2 |r^4 - (R^2 - e^2)^2| / (4 R^2 r^3), whose
+    signed value rises with r: largest at the nearest or the farthest point. inf through the center, where X turns back
+    at once.
+    """
+    lines = lines_from_center(start, end)
+    bend = lines.offset**2 / lines.near**3
+    bend = np.where(lines.offset == 0, np.where(lines.has_foot, np.inf, 0.0), bend)
+    arcs = arcs_from_center(start, end, center, kind, rows := rows_of_arcs(kind))
+    bend[rows] = _x_bend_of_arcs(arcs)
+    return _scaled(bend, (np.asarray(feed) / 60) ** 2)
+
+
+def _x_bend_of_arcs(arcs: ArcsFromCenter) -> Floats:
+    """Largest change of the X rate per way and way [1/mm]."""
+    bend = np.maximum(_x_bend_at(arcs, arcs.start), _x_bend_at(arcs, arcs.end))
+    share = arcs.away / arcs.radius
+    bend = np.maximum(bend, np.where(arcs.passes_near, share / np.abs(arcs.inside), 0.0))
+    bend = np.maximum(bend, np.where(arcs.passes_far, share / arcs.around, 0.0))
+    # With the center of C on the circle, R^2 - e^2 is 0.
+    reach = np.maximum(np.abs(arcs.start), np.abs(arcs.end))
+    reach = np.where(arcs.passes_far, arcs.around, reach)
+    bend = np.where(arcs.through, np.where(arcs.crosses, np.inf, reach / (2 * arcs.radius) ** 2), bend)
+    return np.where((arcs.radius == 0) | (arcs.away == 0), 0.0, bend) + arcs.unknown
+
+
+def _x_bend_at(arcs: ArcsFromCenter, point: Points) -> Floats:
+    """At an end of the arc, from the point itself: (p . s) (p . m) / (R^2 r^3) with s the spoke and m the center."""
+    spoke = point - arcs.center
+    return np.asarray(np.abs(dot(point, spoke) * dot(point, arcs.center)) / (np.abs(spoke) ** 2 * np.abs(point) ** 3))
