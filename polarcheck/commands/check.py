@@ -34,9 +34,7 @@ def _outputs(ctx: click.Context, parameter: click.Parameter, values: tuple[str, 
 @options.machine
 @options.changes
 @options.tools
-@option(
-    "--offsets", type=click.Path(exists=True, dir_okay=False, path_type=Path), help="Offset table from the control."
-)
+@options.offsets
 @options.units
 @many("--select", metavar="RULE", help="Only these rules, groups or alarms (PS0146).")
 @many("--ignore", metavar="RULE", help="All but these.")
@@ -61,7 +59,7 @@ def _outputs(ctx: click.Context, parameter: click.Parameter, values: tuple[str, 
 @options.config
 @options.no_config
 @option("--block-skip", type=click.Choice(["off", "on", "both"]), help="Of blocks with /; both is the default.")
-@option("--subprograms", multiple=True, metavar="FOLDER", help="Where programs that are called lie.")
+@options.subprograms
 @option("--max-blocks", type=click.IntRange(1), help="Executed blocks after which a program counts as endless.")
 @option("--max-statements", type=click.IntRange(1), help="The same for macro statements and calls.")
 @option("--max-seconds", type=click.FloatRange(0, min_open=True), help="The same for seconds.")

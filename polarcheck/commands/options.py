@@ -14,10 +14,24 @@ Decorator = Callable[[Any], Any]
 DEBUG = "polarcheck.debug"
 
 
+class _Narrower(click.Option):
+    """A choice with fewer values than that of `check` of the same name: from the environment it takes its own only."""
+
+    def resolve_envvar_value(self, ctx: click.Context) -> str | None:
+        """What the environment says, unless that is a value which only `check` has."""
+        value = super().resolve_envvar_value(ctx)
+        return value if isinstance(self.type, click.Choice) and value in self.type.choices else None
+
+
 def option(*names: str, **attributes: Any) -> Decorator:
     """An option of click that the environment can give, too: POLARCHECK_FAIL_ON for --fail-on."""
     written = max((name for name in names if name.startswith("--")), key=len)
     return click.option(*names, envvar="POLARCHECK_" + written[2:].upper().replace("-", "_"), **attributes)
+
+
+def narrower(*names: str, **attributes: Any) -> Decorator:
+    """The same for a choice whose values are not those that the option of this name has in `check`."""
+    return option(*names, cls=_Narrower, **attributes)
 
 
 def many(*names: str, **attributes: Any) -> Decorator:
@@ -60,6 +74,10 @@ changes = option(
     "--set", "changes", multiple=True, metavar="KEY=VALUE", help="A value of the machine: limits.c_feed=3600."
 )
 tools = option("--tool", "tools", multiple=True, metavar="N:KEY=VALUE", help="Tool offset N: 8:radius=0.375,nose=0.")
+offsets = option(
+    "--offsets", type=click.Path(exists=True, dir_okay=False, path_type=Path), help="Offset table from the control."
+)
+subprograms = option("--subprograms", multiple=True, metavar="FOLDER", help="Where programs that are called lie.")
 units = option("--units", type=click.Choice(["mm", "inch"]), help="Of programs with neither G20 nor G21.")
 radius_from_comments = option(
     "--radius-from-comments", is_flag=True, help="Take unknown radii from comments such as 3/4 DIA. CUTTER."

@@ -5,12 +5,12 @@ from __future__ import annotations
 import click
 
 from polarcheck.commands import options
+from polarcheck.commands.options import narrower
 from polarcheck.commands.output import show
 
 
-# POLARCHECK_FORMAT is meant for the reports of `check`, which have other formats.
 @click.command
-@click.option("--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True)
+@narrower("--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True)
 @options.debug
 def rules(form: str) -> None:
     """List all rules: severity, name, title."""

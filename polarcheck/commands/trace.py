@@ -8,8 +8,8 @@ from typing import Any
 import click
 
 from polarcheck.commands import options
-from polarcheck.commands.options import option
-from polarcheck.commands.output import show
+from polarcheck.commands.options import narrower, option
+from polarcheck.commands.output import show, warn
 
 
 @click.command
@@ -17,10 +17,12 @@ from polarcheck.commands.output import show
 @options.machine
 @options.changes
 @options.tools
+@options.offsets
 @options.units
 @option("--path", "which", type=click.Choice(["tool", "programmed"]), help="The moves of a path, not the blocks.")
-@option("--format", "form", type=click.Choice(["csv", "jsonl"]), default="csv", show_default=True)
-@option("--block-skip", type=click.Choice(["off", "on"]), default="off", show_default=True, help="Of blocks with /.")
+@narrower("--format", "form", type=click.Choice(["csv", "jsonl"]), default="csv", show_default=True)
+@narrower("--block-skip", type=click.Choice(["off", "on"]), default="off", show_default=True, help="Of blocks with /.")
+@options.subprograms
 @options.radius_from_comments
 @options.config
 @options.no_config
@@ -30,7 +32,9 @@ def trace(path: str, which: str | None, form: str, no_config: bool, encoding: st
     """
     Show what FILE does, block by block or, with --path, move by move inside polar sections.
 
-    Lengths are mm, X as a radius, angles deg, feeds mm/min. --path tool is the path of the tool center.
+    Lengths are mm, X as a radius, angles deg, feeds mm/min. --path tool is the path of the tool center. What is run
+    with G41 or G42 while the radius is not known is shown as programmed: those moves have "programmed" under path, and
+    a line on standard error says what to give.
     """
     from polarcheck.checking import check
     from polarcheck.commands import settings
@@ -41,5 +45,8 @@ def trace(path: str, which: str | None, form: str, no_config: bool, encoding: st
     tables = check.read(files.read(path), found.machine, found.job, files.shown(path), encoding)[0][1]
     of_path = (tables["trace"], tables["tool_center"])
     items = executed.moves(*of_path, which) if which else executed.rows(*of_path)
+    unknown = executed.without_radius(*of_path) if which == "tool" else ""
+    if unknown:
+        warn(unknown)
     for line in (executed.as_csv if form == "csv" else executed.as_jsonl)(items):
         show(line.encode())

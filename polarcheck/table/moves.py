@@ -12,6 +12,7 @@ import numpy as np
 from polarcheck.arrays import Floats, Mask, Points, Rows, States
 from polarcheck.geometry import compensation, polar, rates
 from polarcheck.machines.modal import Motion
+from polarcheck.table.filling import before
 from polarcheck.table.trace import Trace
 
 
@@ -70,6 +71,21 @@ class Moves(msgspec.Struct, frozen=True, dict=True):
         return np.where(self.known, rates.c_acceleration(*self.shape, self.feed), np.nan)
 
     @cached_property
+    def x_feed(self) -> Floats:
+        """Highest rate of X on the way [mm/min, radius]; NaN where feed, radius or position is not known."""
+        return np.where(self.known, rates.x_feed(*self.shape, self.feed), np.nan)
+
+    @cached_property
+    def x_acceleration(self) -> Floats:
+        """Highest acceleration of X on the way [mm/s2, radius]."""
+        return np.where(self.known, rates.x_acceleration(*self.shape, self.feed), np.nan)
+
+    @cached_property
+    def is_of_tool(self) -> Mask:
+        """The tool center runs there: its path is known or, without G41 and G42, the programmed one."""
+        return np.asarray(self.known | (self.phase == compensation.Phase.CANCELLED))
+
+    @cached_property
     def time(self) -> Floats:
         """How long the move takes [s]."""
         return polar.time(self.length, self.feed)
@@ -87,6 +103,21 @@ class Moves(msgspec.Struct, frozen=True, dict=True):
         """Some of the moves."""
         columns: dict[str, Any] = {name: getattr(self, name) for name in self.__struct_fields__}
         return Moves(**{name: column if name == "entry" else column[rows] for name, column in columns.items()})
+
+
+def z_along(trace: Trace, moves: Moves) -> tuple[Floats, Floats]:
+    """Z before and after each move [mm], NaN unknown; where a block is several moves, it goes as the way does."""
+    begins = np.ones(len(moves), bool)
+    begins[1:] = np.diff(moves.row) != 0
+    first, ends = np.flatnonzero(begins), np.append(begins[1:], True)[: len(moves)]
+    way = np.cumsum(np.nan_to_num(moves.length))
+    count = np.diff(np.append(first, len(moves)))
+    done = way - np.repeat((way - np.nan_to_num(moves.length))[first], count)
+    whole = np.repeat(done[ends], count)
+    share = np.where(ends, 1.0, np.divide(done, whole, out=np.zeros(len(moves)), where=whole > 0))
+    z_from, z_to = before(trace.z, trace.starts, np.nan)[moves.row], trace.z[moves.row]
+    after = np.where(ends, z_to, z_from + share * (z_to - z_from))
+    return np.where(begins, z_from, np.append(np.nan, after[:-1])[: len(moves)]), after
 
 
 def joined(parts: Sequence[Moves]) -> Moves:

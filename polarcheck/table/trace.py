@@ -38,6 +38,12 @@ class Trace(Positions):
         whole[self.program[self.codes(*self.machine.macro.program_returns) & (self.run.depth == 0)]] = False
         return whole[self.program]
 
+    @cached_property
+    def line_in_file(self) -> Rows:
+        """Line of the file itself; in a program that is called from another file, that of the call."""
+        parts = self.text.source.parts
+        return fill_down(self.line, self.line < parts[0].first_line, 1) if parts else self.line
+
     # ---- tool offset ----
 
     @cached_property
@@ -121,6 +127,13 @@ class Trace(Positions):
     def offset_mode(self) -> Mask:
         """The move before was made with compensation."""
         return np.asarray(self.in_polar & (self.side_of_move_before != Side.OFF))
+
+    @cached_property
+    def radius_of_move(self) -> Floats:
+        """R by which the tool center is off the path [mm]: of the offset in force; in a cancel, of the move before."""
+        used = self.compensates & self.moves_plane
+        last = fill_down(self.radius, used | self.starts, np.nan)
+        return np.where(self.offset_mode & (self.side == Side.OFF), last, self.radius)
 
     # ---- feed ----
 

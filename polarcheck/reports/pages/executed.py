@@ -11,7 +11,7 @@ import msgspec
 import numpy as np
 
 from polarcheck.machines.modal import FeedMode, Motion, Side
-from polarcheck.table.moves import Moves, programmed_moves
+from polarcheck.table.moves import Moves, programmed_moves, z_along
 from polarcheck.table.tool_center import ToolCenter
 from polarcheck.table.trace import Trace
 
@@ -22,10 +22,17 @@ _KINDS = {Motion.CW: "cw", Motion.CCW: "ccw"}
 
 class Move(msgspec.Struct, frozen=True):
     """
-    One move inside a polar section; a contract.
+    One move on the polar plane inside a polar section; a contract.
 
-    Plane points are [x, c] in mm as radius. x_axis: X of the machine as a radius [mm], never negative. c_axis: C of the
-    machine [deg], continuous along the section. feed [mm/min], nearest [mm], c_feed [deg/min], time [s]; null unknown.
+    line: of its block in the file; in a program called from another file, of the call. start, end, center: plane points
+    [x, c] in mm as radius. z: before and after [mm]; a block that moves Z alone is no move of the plane, and the next
+    one begins where it ends. path: the one that was asked for, "tool" or "programmed"; but a move of the tool's is
+    "programmed" where it is run in offset mode, start-up and offset cancel included, and R (or the position) is not
+    known, so that the programmed one stands in its place. Without G41 and G42 both are one. radius: R of the offset in
+    force [mm], whether it is used or not. x_axis: X of the machine as a radius [mm], never negative. c_axis: C of the
+    machine [deg], continuous along the section. feed [mm/min], time [s]; of the tool center nearest [mm], c_feed
+    [deg/min], x_feed [mm/min], c_acceleration [deg/s2], x_acceleration [mm/s2]: the highest on the way. null is
+    unknown; a rate is null where it has no bound, too, through the center of C.
     """
 
     line: int
@@ -34,11 +41,17 @@ class Move(msgspec.Struct, frozen=True):
     start: list[float | None]
     end: list[float | None]
     center: list[float | None] | None
+    z: list[float | None]
+    path: str
+    radius: float | None
     feed: float | None
     x_axis: list[float | None]
     c_axis: list[float | None]
     nearest: float | None
     c_feed: float | None
+    x_feed: float | None
+    c_acceleration: float | None
+    x_acceleration: float | None
     time: float | None
 
 
@@ -55,22 +68,45 @@ def moves(trace: Trace, tool_center: ToolCenter, path: str) -> Iterator[Move]:
     """The moves of the tool center path ("tool") or of the programmed path ("programmed"), in order."""
     table: Moves = tool_center.moves if path == "tool" else programmed_moves(trace)
     c_from, c_to = table.c_angles
+    z_from, z_to = z_along(trace, table)
     for index in range(len(table)):
-        center = table.center[index]
+        center, row = table.center[index], table.row[index]
         yield Move(
-            int(trace.line[table.row[index]]),
-            int(table.section[index]),
-            _KINDS.get(Motion(int(table.kind[index])), "line"),
-            _point(table.start[index]),
-            _point(table.end[index]),
-            None if np.isnan(center) else _point(center),
-            _number(table.feed[index]),
-            [_number(abs(table.start[index])), _number(abs(table.end[index]))],
-            [_number(c_from[index]), _number(c_to[index])],
-            _number(table.nearest[index]),
-            _number(table.c_feed[index]),
-            _number(table.time[index]),
+            line=int(trace.line_in_file[row]),
+            section=int(table.section[index]),
+            kind=_KINDS.get(Motion(int(table.kind[index])), "line"),
+            start=_point(table.start[index]),
+            end=_point(table.end[index]),
+            center=None if np.isnan(center) else _point(center),
+            z=[_number(z_from[index]), _number(z_to[index])],
+            path=path if table.is_of_tool[index] else "programmed",
+            radius=_number(trace.radius_of_move[row]),
+            feed=_number(table.feed[index]),
+            x_axis=[_number(abs(table.start[index])), _number(abs(table.end[index]))],
+            c_axis=[_number(c_from[index]), _number(c_to[index])],
+            nearest=_number(table.nearest[index]),
+            c_feed=_number(table.c_feed[index]),
+            x_feed=_number(table.x_feed[index]),
+            c_acceleration=_number(table.c_acceleration[index]),
+            x_acceleration=_number(table.x_acceleration[index]),
+            time=_number(table.time[index]),
         )
+
+
+def without_radius(trace: Trace, tool_center: ToolCenter) -> str:
+    """One line on the moves of the tool center path that are the programmed one for want of R; empty without them."""
+    table = tool_center.moves
+    unknown = table.row[~table.is_of_tool & np.isnan(trace.radius_of_move[table.row])]
+    offsets = trace.offset_number[unknown]
+    tools = {int(number): int(trace.tool[row]) for number, row in zip(offsets, unknown, strict=True) if number}
+    causes = [f"no radius for {', '.join(f'T{tool:02d}{number:02d}' for number, tool in tools.items())}"] * bool(tools)
+    remedies = [f"give {' '.join(f'--tool {number}:radius=...' for number in tools)} or --offsets FILE"] * bool(tools)
+    if not offsets.all():
+        line = int(trace.line_in_file[unknown[offsets == 0][0]])
+        causes.append(f"no tool offset is in force at line {line}")
+        remedies.append("call one with T")
+    said = "what is run with G41 or G42 is shown as programmed, not as the tool runs"
+    return f"{', '.join(causes)}: {said}; {', '.join(remedies)}" if causes else ""
 
 
 _SIDES = {Side.OFF: "G40", Side.LEFT: "G41", Side.RIGHT: "G42"}
@@ -92,7 +128,7 @@ def rows(trace: Trace, tool_center: ToolCenter) -> Iterator[dict[str, Any]]:
         in_polar = bool(trace.in_polar[row])
         moving = in_polar and bool(trace.moves_plane[row])
         yield {
-            "line": int(trace.line[row]),
+            "line": int(trace.line_in_file[row]),
             "program": int(trace.program[row]),
             "depth": int(trace.run.depth[row]),
             "section": int(trace.section[row]),
@@ -124,21 +160,27 @@ def as_csv(items: Iterator[Any]) -> Iterator[str]:
     """A header and one line per item; points become two columns."""
     header: list[str] = []
     for item in items:
-        flat: dict[str, Any] = {}
-        table = item if isinstance(item, dict) else msgspec.structs.asdict(item)
-        for name, value in table.items():
-            if name in _PAIRS:
-                first, second = value or (None, None)
-                flat |= {f"{name}_{_PAIRS[name][0]}": first, f"{name}_{_PAIRS[name][1]}": second}
-            else:
-                flat[name] = value
+        flat = item if isinstance(item, dict) else _flat(item)
         if not header:
             header = list(flat)
             yield _line(header)
         yield _line(["" if value is None else value for value in flat.values()])
 
 
-_PAIRS = dict.fromkeys(("start", "end", "center"), ("x", "c")) | dict.fromkeys(("x_axis", "c_axis"), ("from", "to"))
+def _flat(move: Move) -> dict[str, Any]:
+    flat: dict[str, Any] = {}
+    for name, value in msgspec.structs.asdict(move).items():
+        if name in _PAIRS:
+            flat |= {f"{name}_{end}": part for end, part in zip(_PAIRS[name], value or (None, None), strict=True)}
+        else:
+            flat[name] = value
+    return flat
+
+
+_PAIRS = {
+    **dict.fromkeys(("start", "end", "center"), ("x", "c")),
+    **dict.fromkeys(("z", "x_axis", "c_axis"), ("from", "to")),
+}
 
 
 def _line(values: list[Any]) -> str:
