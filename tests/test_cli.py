@@ -275,7 +275,16 @@ def test_folders_files_and_standard_input_are_checked_in_order_and_once() -> Non
     shown = json.loads(result.stdout)
     assert [file["path"] for file in shown["files"]] == ["-", "sub/O0001", "b.nc", "a.nc"]
     assert [file["verdict"] for file in shown["files"]] == ["fail", "fail", "pass", "pass"]
-    assert shown["summary"] == {"files": 4, "errors": 2, "warnings": 0, "notes": 0, "silenced": 0}
+    assert shown["summary"] == {
+        "files": 4,
+        "errors": 2,
+        "warnings": 0,
+        "notes": 0,
+        "silenced": 0,
+        "pass": 2,
+        "unverified": 0,
+        "fail": 2,
+    }
 
 
 def test_a_folder_without_programs_is_a_warning() -> None:
@@ -368,6 +377,24 @@ def test_the_machine_of_a_job_lies_beside_it_and_the_report_names_it() -> None:
     assert named == [str(Path("sub/mine.toml"))] * 2
     asked = check("sub", "--machine", "fanuc-16i", *only)
     assert json.loads(asked.stdout)["machine"] == "fanuc-16i"
+
+
+def test_each_file_has_its_machine_where_the_jobs_name_several() -> None:
+    machines = {"one": "fanuc-16i", "two": "fanuc-30i"}
+    for folder, machine in machines.items():
+        Path(folder).mkdir()
+        Path(folder, "a.nc").write_text(GOOD, "utf-8")
+        Path(folder, "polarcheck.toml").write_text(f"machine = '{machine}'\n", "utf-8")
+    shown = json.loads(check(*machines, *RAPID_ONLY, "--format", "json").stdout)
+    assert shown["machine"] is None
+    assert [file["machine"] for file in shown["files"]] == ["fanuc-16i", "fanuc-30i"]
+    told = check(*machines, *RAPID_ONLY).stdout
+    assert "pass  one/a.nc: no findings, 1 polar section, 6 blocks, for fanuc-16i\n" in told
+    assert told.endswith("\n2 files checked for 2 machines: 2 pass; no findings\n")
+    # One that cannot be read is no file of the report.
+    assert json.loads(check("one", "gone.nc", *RAPID_ONLY, "--format", "json").stdout)["machine"] == "fanuc-16i"
+    asked = check(*machines, *RAPID_ONLY, "--machine", "mitsubishi-m700")
+    assert asked.stdout.endswith("\n2 files checked for mitsubishi-m700: 2 pass; no findings\n")
 
 
 def test_units_are_those_of_programs_that_do_not_say() -> None:

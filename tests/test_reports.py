@@ -9,11 +9,13 @@ import unicodedata
 from typing import Any
 
 import jsonschema
+import msgspec
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from polarcheck.checking.finding import Edit, FileReport, Finding, Fix, NotEvaluated, Producer, Report, Summary
+from polarcheck.checking import batch
+from polarcheck.checking.finding import Edit, FileReport, Finding, Fix, NotEvaluated, Report
 from polarcheck.checking.rule import load_all
 from polarcheck.reading.excerpt import cells, excerpt, visible
 from polarcheck.reports import Background, formats, render
@@ -48,20 +50,20 @@ def missing(rule: str = "interference", reason: str = "no radius for T0808", blo
 
 def file(*findings: Finding, path: str = "a.nc", **changes: Any) -> FileReport:
     verdict = "fail" if findings else "pass"
-    given = {"path": path, "programs": ["O0001"], "blocks": 40, "sections": 1, "verdict": verdict, "not_evaluated": []}
+    given = {
+        "path": path,
+        "machine": "fanuc",
+        "programs": ["O0001"],
+        "blocks": 40,
+        "sections": 1,
+        "verdict": verdict,
+        "not_evaluated": [],
+    }
     return FileReport(**{**given, "findings": list(findings), **changes})
 
 
 def report(*files: FileReport) -> Report:
-    severities = [found.severity for file in files for found in file.findings]
-    summary = Summary(
-        files=len(files),
-        errors=severities.count("error"),
-        warnings=severities.count("warning"),
-        notes=severities.count("note"),
-        silenced=0,
-    )
-    return Report(schema=1, tool=Producer("polarcheck", "0.1.0"), machine="fanuc", files=list(files), summary=summary)
+    return batch.report(list(files), "fanuc")
 
 
 def text(*files: FileReport, lines: dict[int, str] | None = None, **changes: Any) -> str:
@@ -140,13 +142,40 @@ unverified  x2.nc: no findings, 1 polar section, 40 blocks
 unverified  x3.nc: no findings, 1 polar section, 40 blocks
 unverified  x4.nc: no findings, 1 polar section, 40 blocks
 
-25 files checked for fanuc: 5 unverified, 20 pass; no findings
+25 files checked for fanuc: 5 unverified, 20 pass (no polar section); no findings
 """
     )
 
 
 def test_a_program_without_polar_mode_is_said_to_have_none() -> None:
-    assert "pass  a.nc: no findings, no polar section, 40 blocks\n" in text(file(sections=0))
+    assert "pass (no polar section)  a.nc: no findings, 40 blocks\n" in text(file(sections=0))
+    assert "fail  a.nc: 1 error, no polar section, 40 blocks\n" in text(file(finding(), sections=0))
+    assert "unverified  a.nc: no findings, no polar section" in text(file(sections=0, verdict="unverified"))
+    assert (
+        text(file(), file(path="b.nc", sections=0))
+        == """\
+pass                     a.nc: no findings, 1 polar section, 40 blocks
+pass (no polar section)  b.nc: no findings, 40 blocks
+
+2 files checked for fanuc: 2 pass (1 with no polar section); no findings
+"""
+    )
+
+
+def test_machines_are_named_by_file_where_they_differ() -> None:
+    files = [file(finding(severity="warning"), machine="fanuc-16i"), file(path="b.nc", machine="mine/n\x1bl.toml")]
+    shown = text(*files)
+    assert "fail  a.nc: 1 warning, 1 polar section, 40 blocks, for fanuc-16i\n" in shown
+    assert "pass  b.nc: no findings, 1 polar section, 40 blocks, for mine/n\\x1bl.toml\n" in shown
+    assert "\n2 files checked for 2 machines: 1 fail, 1 pass; 1 warning\n" in shown
+    told = json.loads(render("json", report(*files), Background()))
+    assert told["machine"] is None
+    assert [checked["machine"] for checked in told["files"]] == ["fanuc-16i", "mine/n\x1bl.toml"]
+    alike = report(*(msgspec.structs.replace(checked, machine="okuma-osp") for checked in files))
+    assert alike.machine == "okuma-osp"
+    assert "2 files checked for okuma-osp: 1 fail, 1 pass; 1 warning" in render("text", alike, Background())
+    assert ", for okuma-osp" not in render("text", alike, Background())
+    assert report().machine == "fanuc"
 
 
 def test_program_count_and_fix_are_shown() -> None:
@@ -293,13 +322,30 @@ def test_json_is_the_contract() -> None:
     shown = json.loads(render("json", report(file(finding(), not_evaluated=[missing()])), Background()))
     assert list(shown) == ["schema", "tool", "machine", "files", "summary"]
     assert list(shown["tool"]) == ["name", "version"]
-    assert list(shown["summary"]) == ["files", "errors", "warnings", "notes", "silenced"]
+    assert list(shown["summary"]) == [
+        *("files", "errors", "warnings", "notes", "silenced", "pass", "unverified", "fail")
+    ]
     (checked,) = shown["files"]
-    keys = ["path", "programs", "blocks", "sections", "verdict", "polar_sections", "findings", "not_evaluated"]
-    assert list(checked) == [*keys, "looked_at"]
+    keys = "path machine programs blocks sections verdict polar_sections findings not_evaluated looked_at".split()
+    assert list(checked) == keys
     keys = "rule severity message line column end_line end_column block program section_line alarm values count source"
     assert list(checked["findings"][0]) == [*keys.split(), "fingerprint", "fix", "follows"]
     assert list(checked["not_evaluated"][0]) == ["rule", "reason", "blocks", "matters"]
+
+
+def test_verdicts_are_counted() -> None:
+    files = [file(finding()), file(), file(verdict="unverified", not_evaluated=[missing()]), file(finding())]
+    told = json.loads(render("json", report(*files), Background()))["summary"]
+    assert told == {
+        "files": 4,
+        "errors": 2,
+        "warnings": 0,
+        "notes": 0,
+        "silenced": 0,
+        "pass": 1,
+        "unverified": 1,
+        "fail": 2,
+    }
 
 
 def test_json_never_holds_nan() -> None:
@@ -323,5 +369,5 @@ def test_json_fits_its_schema_and_the_schema_can_refuse() -> None:
     )
     check = jsonschema.Draft202012Validator(schema.schema("report"))
     check.validate(shown)
-    for change in ({"schema": 2}, {"files": [{**shown["files"][0], "verdict": "good"}]}, {"machine": None}):
+    for change in ({"schema": 2}, {"files": [{**shown["files"][0], "verdict": "good"}]}, {"machine": 3}):
         assert not check.is_valid({**shown, **change})

@@ -33,7 +33,8 @@ def settings(path: Path) -> dict[str, Any]:
 
 @cache
 def report_of_sample(path: Path) -> FileReport:
-    return report_of(path.read_bytes(), **settings(path), path=path.name)
+    given = settings(path)
+    return msgspec.structs.replace(report_of(path.read_bytes(), **given, path=path.name), machine=given["machine"])
 
 
 @pytest.mark.parametrize("path", SAMPLES, ids=NAMES)

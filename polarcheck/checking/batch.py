@@ -72,7 +72,7 @@ def check_files(tasks: Iterable[Task], tell: Tell, encoding: str | None = None, 
             tell(str(error))
             continue
         verdict = check.verdict(found.findings, found.not_evaluated, fail_on)
-        reports.append(msgspec.structs.replace(found, verdict=verdict))
+        reports.append(msgspec.structs.replace(found, machine=task.settings.name, verdict=verdict))
         if found.findings:
             lines[found.path] = _lines(text, found)
     return Checked(reports, lines)
@@ -97,17 +97,26 @@ def _lines(text: Source, found: FileReport) -> dict[int, str]:
 
 
 def report(reports: list[FileReport], machine: str) -> Report:
-    """The report over all files."""
+    """The report over all files; machine: what a report without files is for."""
     severities = [finding.severity for file in reports for finding in file.findings]
+    verdicts = [file.verdict for file in reports]
+    machines = {file.machine for file in reports} or {machine}
     summary = Summary(
         files=len(reports),
         errors=severities.count("error"),
         warnings=severities.count("warning"),
         notes=severities.count("note"),
         silenced=0,
+        passed=verdicts.count("pass"),
+        unverified=verdicts.count("unverified"),
+        fail=verdicts.count("fail"),
     )
     return Report(
-        schema=SCHEMA, tool=Producer("polarcheck", __version__), machine=machine, files=reports, summary=summary
+        schema=SCHEMA,
+        tool=Producer("polarcheck", __version__),
+        machine=machines.pop() if len(machines) == 1 else None,
+        files=reports,
+        summary=summary,
     )
 
 

@@ -106,11 +106,13 @@ class PolarSection(msgspec.Struct, frozen=True, kw_only=True):
 
 class FileReport(msgspec.Struct, frozen=True, kw_only=True):
     """
-    All about one file. Verdict: pass, fail or unverified. polar_sections: what it rests on. looked_at: at what of it
+    All about one file. machine: its name, as it was asked for. Verdict: pass, fail or unverified. polar_sections: what
+    it rests on. looked_at: at what of it
     was looked; outside polar sections text, flow and position only.
     """
 
     path: str
+    machine: str = ""
     programs: list[str]
     blocks: int
     sections: int
@@ -136,13 +138,16 @@ class Summary(msgspec.Struct, frozen=True, kw_only=True):
     warnings: int
     notes: int
     silenced: int
+    passed: int = msgspec.field(name="pass")
+    unverified: int
+    fail: int
 
 
 class Report(msgspec.Struct, frozen=True, kw_only=True):
-    """The whole report; the JSON contract, whose number is `schema`."""
+    """The whole report; the JSON contract, whose number is `schema`. machine: of all files; null where they differ."""
 
     schema: int
     tool: Producer
-    machine: str
+    machine: str | None
     files: list[FileReport]
     summary: Summary

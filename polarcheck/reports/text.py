@@ -79,9 +79,9 @@ def _report(report: Report, background: Background, page: _Page) -> Iterator[str
         return
     if len(report.files) > _LISTED:
         yield from _not_evaluated(report.files, page)
-    yield from _verdicts(report.files, page)
+    yield from _verdicts(report, page)
     yield ""
-    yield _summary(report)
+    yield summary(report)
     known = [found.rule for file in report.files for found in file.findings if found.rule in background.rules]
     if known:
         yield page.paint("aside", f"More about a rule: polarcheck explain {known[0]}")
@@ -158,29 +158,43 @@ def _place(path: str, group: Sequence[NotEvaluated]) -> str:
     return f"{path}, {counted(max(missing.blocks for missing in group), 'block')}"
 
 
-def _verdicts(files: Sequence[FileReport], page: _Page) -> Iterator[str]:
-    shown = [file for file in files if file.verdict != "pass" or len(files) <= _LISTED]
-    width = max((len(file.verdict) for file in shown), default=0)
+def _verdicts(report: Report, page: _Page) -> Iterator[str]:
+    shown = [file for file in report.files if file.verdict != "pass" or len(report.files) <= _LISTED]
+    width = max((len(verdict(file)) for file in shown), default=0)
     for file in shown:
-        sections = counted(file.sections, "polar section") if file.sections else "no polar section"
-        facts = [_severities(file.findings), sections, counted(file.blocks, "block")]
-        word = page.paint(file.verdict, file.verdict) + " " * (width - len(file.verdict))
-        yield f"{word}  {visible(file.path)}: {', '.join(facts)}"
+        word = verdict(file)
+        facts = [severities(Counter(found.severity for found in file.findings))]
+        if word == file.verdict:
+            facts.append(counted(file.sections, "polar section") if file.sections else "no polar section")
+        facts.append(counted(file.blocks, "block"))
+        machine = f", for {visible(file.machine)}" if report.machine is None else ""
+        space = " " * (width - len(word))
+        yield f"{page.paint(file.verdict, word)}{space}  {visible(file.path)}: {', '.join(facts)}{machine}"
 
 
-def _summary(report: Report) -> str:
-    files, total = report.files, report.summary
-    verdicts = Counter(file.verdict for file in files)
-    counts = [f"{verdicts[verdict]} {verdict}" for verdict in ("fail", "unverified", "pass") if verdicts[verdict]]
-    parts = [_severities([found for file in files for found in file.findings])]
-    if total.silenced:
-        parts.append(f"{total.silenced} silenced")
-    of_verdicts = f": {', '.join(counts)}" if len(files) > 1 else ""
-    return f"{counted(len(files), 'file')} checked for {visible(report.machine)}{of_verdicts}; {', '.join(parts)}"
+def verdict(file: FileReport) -> str:
+    """The verdict in words: a pass of a file in which there was nothing to look at says so."""
+    return file.verdict if file.sections or file.verdict != "pass" else "pass (no polar section)"
 
 
-def _severities(findings: Sequence[Finding]) -> str:
-    number = Counter(found.severity for found in findings)
+def summary(report: Report) -> str:
+    """One line over all files."""
+    total, verdicts = report.summary, ""
+    if len(report.files) > 1:
+        empty = sum(file.verdict == "pass" and not file.sections for file in report.files)
+        how_many = f"{empty} with " if empty < total.passed else ""
+        of_pass = f"{total.passed} pass" + (f" ({how_many}no polar section)" if empty else "")
+        counts = {f"{total.fail} fail": total.fail, f"{total.unverified} unverified": total.unverified}
+        verdicts = ": " + ", ".join([text for text, count in counts.items() if count] + [of_pass] * bool(total.passed))
+    machines = len({file.machine for file in report.files})
+    machine = f"{machines} machines" if report.machine is None else visible(report.machine)
+    found = [severities({"error": total.errors, "warning": total.warnings, "note": total.notes})]
+    found += [f"{total.silenced} silenced"] if total.silenced else []
+    return f"{counted(len(report.files), 'file')} checked for {machine}{verdicts}; {', '.join(found)}"
+
+
+def severities(number: Mapping[str, int]) -> str:
+    """`2 errors, 1 note`."""
     return ", ".join(counted(number[one], one) for one in SEVERITIES if number[one]) or "no findings"
 
 
