@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import re
+import shlex
 import signal
 import subprocess
 import sys
@@ -220,7 +221,7 @@ def test_a_reader_who_goes_away_changes_no_exit_code() -> None:
         (["--config", "gone.toml"], "'gone.toml' does not exist"),
         (["--encoding", "utf-99"], "unknown encoding 'utf-99'"),
         (["--output", "report.json"], "'report.json': expected FORMAT:FILE"),
-        (["--output", "xml:a.xml"], "expected FORMAT:FILE, the format one of concise, json, text"),
+        (["--output", "xml:a.xml"], "expected FORMAT:FILE, the format one of concise, json, short, text"),
         (["--units", "cm"], "'cm' is not one of 'mm', 'inch'"),
     ],
 )
@@ -459,9 +460,43 @@ def test_options_come_from_the_environment_too() -> None:
     assert call("rules", POLARCHECK_FORMAT="concise").exit_code == 0
     for command in main.commands.values():
         for option in command.params:
-            if isinstance(option, click.Option) and command.name != "rules":
+            if isinstance(option, click.Option):
                 written = max(option.opts, key=len).lstrip("-").upper().replace("-", "_")
                 assert option.envvar == f"POLARCHECK_{written}"
+
+
+def test_the_report_is_long_for_up_to_three_files_and_short_beyond() -> None:
+    make(a__nc=RAPID, b__nc=GOOD, c__nc=GOOD)
+    long = check(".", *RAPID_ONLY).stdout
+    assert long.startswith("error: G0 cannot be used in the polar mode")
+    assert long == check(".", *RAPID_ONLY, "--format", "text").stdout
+    make(d__nc=COMPENSATED)
+    result = check(".", *RAPID_ONLY, "--select", "start-up-shorter-than-radius")
+    assert result.exit_code == 1
+    assert result.stderr == ""
+    first, empty, summary, fails, unverified = result.stdout.splitlines()
+    assert re.fullmatch(r"a\.nc:4:1: error: G0 .* \[rapid-in-polar\]", first)
+    assert empty == ""
+    assert summary == "4 files checked for fanuc: 1 fail, 1 unverified, 2 pass; 1 error"
+    chosen = "polarcheck check --select rapid-in-polar --select start-up-shorter-than-radius"
+    assert fails == f"What is wrong with one of them, in full: {chosen} a.nc"
+    assert unverified == f"Why one of them is unverified: {chosen} d.nc"
+    assert check(".", *RAPID_ONLY, POLARCHECK_FORMAT="text").stdout.startswith("error: G0 cannot")
+    assert check(".", *RAPID_ONLY, "--format", "concise").stdout == first + "\n"
+    assert check("a.nc", *RAPID_ONLY, POLARCHECK_FORMAT="short").stdout.startswith(first + "\n\n1 file checked")
+
+
+def test_what_shows_a_file_in_full_holds_the_options_that_were_given() -> None:
+    make(**dict.fromkeys(("b__nc", "c__nc", "d__nc"), GOOD))
+    Path("it's a.nc").write_text(RAPID, "utf-8")
+    given = ("--machine", "fanuc-30i", "--set", "limits.c_feed=1000", "--tool", "1:radius=4")
+    flags = ("--strict", "--no-config")
+    shown = check(
+        *flags, *given, "--color", "never", "-o", "json:a.json", ".", *RAPID_ONLY, POLARCHECK_UNITS="mm"
+    ).stdout
+    command = re.findall(r"in full: polarcheck (.*)", shown)[0]
+    assert command == " ".join(("check", *given, *RAPID_ONLY, *flags)) + " 'it'\"'\"'s a.nc'"
+    assert call(*shlex.split(command)).stdout.startswith("error: G0 cannot be used")
 
 
 def test_the_concise_report_says_elsewhere_that_something_was_not_evaluated() -> None:

@@ -315,6 +315,34 @@ def test_concise_is_one_line_for_each_finding() -> None:
     )
 
 
+# ---- short ----
+
+
+def test_short_is_the_lines_of_concise_and_what_to_run_next() -> None:
+    files = [file(), file(finding(), path="b c.nc"), file(finding(severity="note"), path="d.nc", verdict="pass")]
+    files += [file(path="e.nc", verdict="unverified", not_evaluated=[missing()]), file(finding(), path="f.nc")]
+    shown = render("short", report(*files), Background(command="polarcheck check --machine fanuc"))
+    assert shown == render("concise", report(*files), Background()) + (
+        """
+5 files checked for fanuc: 2 fail, 1 unverified, 2 pass; 2 errors, 1 note
+What is wrong with one of them, in full: polarcheck check --machine fanuc 'b c.nc'
+Why one of them is unverified: polarcheck check --machine fanuc e.nc
+"""
+    )
+    colored = render("short", report(*files), Background(color=True, command="polarcheck check --machine fanuc"))
+    assert "b c.nc:12:1: \x1b[1;31merror\x1b[0m: G0" in colored
+    assert re.sub(r"\x1b\[[\d;]*m", "", colored) == shown
+    assert render("short", report(*files), Background(quiet=True)) == render("concise", report(*files), Background())
+
+
+def test_short_has_nothing_to_add_where_all_pass_and_nothing_to_run_for_standard_input() -> None:
+    assert render("short", report(file(), file(path="b.nc")), Background()) == (
+        "2 files checked for fanuc: 2 pass; no findings\n"
+    )
+    assert "in full" not in render("short", report(file(finding(), path="-")), Background())
+    assert render("short", report(), Background()) == ""
+
+
 # ---- json ----
 
 

@@ -15,7 +15,11 @@ from polarcheck.errors import PolarcheckError
 from polarcheck.reports import formats
 
 #: Reports for people come in the encoding of their terminal; all others are UTF-8.
-_FOR_PEOPLE = ("text", "concise")
+_FOR_PEOPLE = ("text", "concise", "short")
+#: Of more files than this the report is short, if no format is asked for.
+_LONG = 3
+#: Options that change how a report looks or where it goes, but not what it says.
+_OF_OUTPUT = ("form", "outputs", "color", "quiet")
 _FORMATS = formats()
 
 
@@ -45,7 +49,11 @@ def _outputs(ctx: click.Context, parameter: click.Parameter, values: tuple[str, 
 )  # fmt: skip
 @option("--strict", is_flag=True, help="Fail where something could not be evaluated, too.")
 @option(
-    "--format", "form", type=click.Choice(_FORMATS), default="text", show_default=True, help="Of the report on stdout."
+    "--format",
+    "form",
+    type=click.Choice(_FORMATS),
+    show_default=f"text for up to {_LONG} files, else short",
+    help="Of the report on stdout.",
 )
 @option(
     "-o",
@@ -76,15 +84,40 @@ def check(ctx: click.Context, /, paths: tuple[str, ...], **asked: Any) -> None:
 
     Ends with 0 if all is well, 1 with findings, 2 if something could not be read or understood, 3 for a bug.
     """
-    ctx.exit(_check(paths, **asked))
+    ctx.exit(_check(paths, _command(ctx), **asked))
+
+
+def _command(ctx: click.Context) -> str:
+    """The command line without its paths and what is said of the output: what checks one of the files likewise."""
+    words = ["polarcheck check"]
+    for parameter in ctx.command.params:
+        name = parameter.name or ""
+        if isinstance(parameter, click.Option) and name not in _OF_OUTPUT and _is_written(ctx, name):
+            value = ctx.params[name]
+            values = value if parameter.multiple else [value]
+            words += [
+                max(parameter.opts, key=len) + ("" if parameter.is_flag else f" {_quoted(one)}") for one in values
+            ]
+    return " ".join(words)
+
+
+def _is_written(ctx: click.Context, name: str) -> bool:
+    return ctx.get_parameter_source(name) is click.core.ParameterSource.COMMANDLINE and name in ctx.params
+
+
+def _quoted(value: object) -> str:
+    import shlex
+
+    return shlex.quote(str(value))
 
 
 def _check(
     paths: tuple[str, ...],
+    command: str,
     *,
     fail_on: str,
     strict: bool,
-    form: str,
+    form: str | None,
     outputs: list[tuple[str, Path]],
     no_config: bool,
     extensions: tuple[str, ...],
@@ -109,7 +142,8 @@ def _check(
     for failure in failures:
         say(failure)
     status = COULD_NOT_RUN if failures else batch.status(report, strict)
-    plain = reports.Background(checked.lines, rule.load_all(), COLUMNS, color=False, quiet=quiet)
+    form = form or ("text" if len(report.files) <= _LONG else "short")
+    plain = reports.Background(checked.lines, rule.load_all(), COLUMNS, color=False, quiet=quiet, command=command)
     for kind, path in outputs:
         try:
             files.write(path, reports.render(kind, report, plain))
@@ -117,7 +151,7 @@ def _check(
             say(str(error))
             status = COULD_NOT_RUN
     is_colored = in_color(color)
-    shown = reports.Background(checked.lines, plain.rules, columns(), is_colored, quiet)
+    shown = plain._replace(columns=columns(), color=is_colored)
     text = reports.render(form, report, shown)
     show(text if form in _FOR_PEOPLE else text.encode(), is_colored or None)
     if form == "concise" and not quiet and any(file.verdict == "unverified" for file in report.files):

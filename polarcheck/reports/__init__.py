@@ -13,6 +13,17 @@ if TYPE_CHECKING:
     from polarcheck.checking.rule import Rule
 
 SEVERITIES = ("error", "warning", "note")
+_STYLES = {
+    "error": "1;31",
+    "warning": "1;33",
+    "note": "1;36",
+    "not evaluated": "1;35",
+    "fail": "1;31",
+    "unverified": "1;35",
+    "pass": "1;32",
+    "message": "1",
+    "aside": "2",
+}
 
 
 class Background(NamedTuple):
@@ -20,7 +31,7 @@ class Background(NamedTuple):
     What a report may show beside its findings.
 
     lines: by path and line number, those that findings stand in. rules: by name. columns: the width of the terminal.
-    quiet: findings only.
+    quiet: findings only. command: what checks a file behind it as these were checked.
     """
 
     lines: Mapping[str, Mapping[int, str]] = MappingProxyType({})
@@ -28,6 +39,7 @@ class Background(NamedTuple):
     columns: int = 100
     color: bool = False
     quiet: bool = False
+    command: str = "polarcheck check"
 
 
 def formats() -> list[str]:
@@ -44,3 +56,8 @@ def render(form: str, report: Report, background: Background) -> str:
 def counted(number: int, noun: str) -> str:
     """`1 error`, `2 errors`."""
     return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
+
+
+def painted(style: str, text: str) -> str:
+    """The text in color for a terminal."""
+    return f"\x1b[{_STYLES[style]}m{text}\x1b[0m" if text else text

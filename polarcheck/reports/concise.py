@@ -5,16 +5,21 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from polarcheck.reading.excerpt import visible
+from polarcheck.reports import painted
 
 if TYPE_CHECKING:
-    from polarcheck.checking.finding import Report
+    from polarcheck.checking.finding import FileReport, Finding, Report
     from polarcheck.reports import Background
 
 
 def concise(report: Report, background: Background | None = None) -> str:
     """`path:line:column: severity: message [rule]`, nothing else."""
-    return "".join(
-        visible(f"{file.path}:{found.line}:{found.column}: {found.severity}: {found.message} [{found.rule}]") + "\n"
-        for file in report.files
-        for found in file.findings
-    )
+    return "".join(line(file, found) + "\n" for file in report.files for found in file.findings)
+
+
+def line(file: FileReport, found: Finding, color: bool = False) -> str:
+    """The line of a finding, with its severity in color where that is asked for."""
+    severity = visible(found.severity)
+    severity = painted(found.severity, severity) if color else severity
+    place, message = visible(f"{file.path}:{found.line}:{found.column}"), visible(f"{found.message} [{found.rule}]")
+    return f"{place}: {severity}: {message}"

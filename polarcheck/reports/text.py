@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 from polarcheck.reading.excerpt import excerpt, visible
-from polarcheck.reports import SEVERITIES, Background, counted
+from polarcheck.reports import SEVERITIES, Background, counted, painted
 
 if TYPE_CHECKING:
     from polarcheck.checking.finding import FileReport, Finding, Fix, NotEvaluated, Report
@@ -22,17 +22,6 @@ _NARROWEST = 60
 _LISTED = 10
 #: Places that are listed where many files lack the same.
 _PLACES = 3
-_STYLES = {
-    "error": "1;31",
-    "warning": "1;33",
-    "note": "1;36",
-    "not evaluated": "1;35",
-    "fail": "1;31",
-    "unverified": "1;35",
-    "pass": "1;32",
-    "message": "1",
-    "aside": "2",
-}
 _SENTENCE_END = re.compile(r"(?<!\be\.g\.)(?<!\bi\.e\.)(?<!\bp\.)(?<=[.?!])\s+(?=[A-Z0-9(])")
 
 
@@ -43,7 +32,7 @@ class _Page(NamedTuple):
     color: bool
 
     def paint(self, style: str, text: str) -> str:
-        return f"\x1b[{_STYLES[style]}m{text}\x1b[0m" if self.color and text else text
+        return painted(style, text) if self.color else text
 
     def heading(self, word: str, text: str) -> Iterator[str]:
         indent = len(word) + 2
