@@ -18,6 +18,7 @@ import jsonschema
 import msgspec
 import pytest
 from click.testing import CliRunner, Result
+from programs import ROOT
 
 import polarcheck
 from polarcheck.checking import batch
@@ -553,6 +554,46 @@ def test_explain_suggests_the_nearest_name() -> None:
     assert result.stderr == "polarcheck: unknown rule 'rapid-in-poler'; did you mean rapid-in-polar?\n"
 
 
+@pytest.mark.parametrize("word", ["pass", "unverified", "fail"])
+def test_explain_has_a_page_for_each_word_of_a_verdict(word: str) -> None:
+    title, line, empty, *text = call("explain", word).stdout.splitlines()
+    assert title.startswith(f"{word}: ")
+    assert (line, empty) == ("=" * len(title), "")
+    assert max(map(len, text)) <= 120
+    assert call("explain", word.upper()).stdout == call("explain", word).stdout
+    assert title in call("explain", "verdicts").stdout
+    for help_of in (["--help"], ["check", "--help"]):
+        assert word in call(*help_of).stdout
+
+
+def test_explain_unverified_names_the_remedy_of_each_reason() -> None:
+    page = call("explain", "not evaluated").stdout
+    assert page == call("explain", "Not-Evaluated").stdout == call("explain", "unverified").stdout
+    remedies = (
+        "--tool 8:radius=",
+        "--offsets",
+        "limits.c_feed=",
+        "--subprograms",
+        "[run.variables]",
+        "--machine",
+        "F in",
+    )
+    assert [remedy for remedy in remedies if remedy not in page] == []
+    assert "nose type" in page
+
+
+def test_the_examples_of_the_page_end_as_it_says(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(ROOT)
+    page = call("explain", "unverified").stdout
+    examples = re.findall(r"^    polarcheck (check .*)\n        (\w+)", page, re.MULTILINE)
+    assert [verdict for _, verdict in examples] == ["unverified", "pass"]
+    for arguments, verdict in examples:
+        result = call(*arguments.split())
+        assert result.exit_code == 0
+        assert re.search(rf"^{verdict}  ", result.stdout, re.MULTILINE)
+        assert call(*arguments.split(), "--strict").exit_code == (verdict != "pass")
+
+
 def test_rules_lists_all_of_them_by_group() -> None:
     known = load_all()
     lines = call("rules").stdout.splitlines()
@@ -648,6 +689,7 @@ def test_a_report_fits_its_schema() -> None:
         (["--help"], {"numpy", "shapely", "rich", "msgspec", "tomllib"}),
         (["--version"], {"numpy", "shapely", "rich", "msgspec", "tomllib"}),
         (["check", "--help"], {"numpy", "shapely", "rich"}),
+        (["explain", "unverified"], {"numpy", "shapely", "rich", "polarcheck.checking.rule"}),
         (["explain", "rapid-in-polar"], {"numpy", "shapely", "rich"}),
         (["rules"], {"numpy", "shapely", "rich"}),
         (["machines", "fanuc"], {"numpy", "shapely", "rich"}),

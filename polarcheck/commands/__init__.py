@@ -123,6 +123,10 @@ def main(ctx: click.Context) -> None:
     polarcheck check programs/ --machine fanuc-30i --set limits.c_feed=3600
     polarcheck explain PS0146
 
+    The verdict of a file is pass (all that matters was looked at, and nothing is wrong), fail, or unverified (nothing
+    wrong was found, but something that matters could not be judged, such as the path of a cutter whose radius is not
+    known). `polarcheck explain unverified` says more, and what to give.
+
     Every option can also be given by the environment: POLARCHECK_MACHINE for --machine.
     """
     if ctx.invoked_subcommand is None:

@@ -47,7 +47,7 @@ def _outputs(ctx: click.Context, parameter: click.Parameter, values: tuple[str, 
     "--fail-on", type=click.Choice(["error", "warning", "note", "never"]), default="warning", show_default=True,
     help="The least severity that fails.",
 )  # fmt: skip
-@option("--strict", is_flag=True, help="Fail where something could not be evaluated, too.")
+@option("--strict", is_flag=True, help="Fail where a file is unverified, too.")
 @option(
     "--format",
     "form",
@@ -82,7 +82,16 @@ def check(ctx: click.Context, /, paths: tuple[str, ...], **asked: Any) -> None:
     """
     Check NC programs: files, folders, or - for standard input.
 
-    Ends with 0 if all is well, 1 with findings, 2 if something could not be read or understood, 3 for a bug.
+    The verdict of each is one of these (polarcheck explain pass, unverified, fail):
+
+    \b
+    pass        all that matters was looked at, and nothing is wrong
+    unverified  nothing wrong was found, but something that matters could
+                not be judged: the report says what to give
+    fail        something is wrong, or probably not what was meant
+
+    Ends with 0 if no file fails (nor is unverified, with --strict), 1 if one does, 2 if something could not be read or
+    understood, 3 for a bug.
     """
     ctx.exit(_check(paths, _command(ctx), **asked))
 

@@ -1,0 +1,121 @@
+"""The words of a verdict, as `polarcheck explain` tells them to a setter: pass, unverified, fail."""
+
+from __future__ import annotations
+
+from types import MappingProxyType
+
+#: By verdict; the first line is the title.
+PAGES = MappingProxyType(
+    {
+        "pass": """\
+pass: all that matters was looked at, and nothing is wrong.
+
+The rules looked at the polar sections of the program and could judge what matters there. Nothing
+was found at or above --fail-on: no error and no warning, unless you said otherwise. Notes may stand
+in the report; they work, but are good to know.
+
+A pass is as good as what you gave. It rests on the lathe, the units, the cutter radius of each
+section and where that came from, the nearest distance to the center, and the highest rate of C with
+its limit. The report says them: read them once. With the wrong lathe or the wrong radius a bad
+program can pass.
+
+    polarcheck check --machine lathe3.toml --tool 1:radius=4 --set limits.c_feed=3600 O1234.NC
+
+Outside the polar sections the text of the program, its flow (calls, jumps, loops) and positions are
+looked at, and nothing else. Not looked at anywhere: holder, chuck, tool length, spindle speed, the
+depth of a cut.
+
+pass (no polar section): the program never enters the polar mode, so that there was nothing to judge
+in it. If it is meant to, its code for the mode is that of another control: `polarcheck machines`
+lists them, --machine names one.
+
+The exit code is 0.
+""",
+        "unverified": """\
+unverified: nothing wrong was found, but something that matters could not be judged.
+
+It is no pass. A fault may be there, and polarcheck could not see it, for want of something that
+only you know. The report lists under "not evaluated" what was not judged, for which rules, in how
+many blocks, and what to give.
+
+Each entry says whether it matters ("matters" in the JSON report). Only those that do make a file
+unverified. Two are listed and do not: a nose type that is not given, and a limit of the C axis that
+is not given while the highest rate found is one that every C axis manages. The report tells that
+rate in any case: compare it with the lathe's manual.
+
+What to give:
+
+    no radius for T0808       --tool 8:radius=9.525 on the command line, or in polarcheck.toml
+                              [tools.8] and radius = 9.525; 8 is the number of the offset, the
+                              last digits of T0808. From the table that the control punches out:
+                              --offsets TOOLOFST.TXT. From comments such as (3/4 DIA. CUTTER):
+                              --radius-from-comments.
+    no tool offset in force   call the tool with its offset, T0808, in the program before G12.1.
+    no limit of the C axis    --set limits.c_feed=3600, or in polarcheck.toml [limits] and
+                              c_feed = 3600. It is the highest rate of C at feed in deg/min; 10
+                              turns a minute are 3600.
+    feed not known            an F in the polar mode, per minute (G98, or G94).
+    position not known        X and C in a block before G12.1: G0 X60. C0. If a program that is
+                              called positions the tool, the folder that it lies in:
+                              --subprograms FOLDER, or [run] and subprograms.
+    a program is missing      the same folder.
+    a variable is not known   [run.variables] and 500 = 1.0 in polarcheck.toml for #500 = 1.0.
+    not simulated             nothing helps: what the control does there is not known. Judge it
+                              yourself.
+    another control's file    the lathe that it is for: --machine NAME. `polarcheck machines`
+                              lists them.
+
+Lengths are in the units of the program, unless the job file says `units`.
+
+An example, with a sample of polarcheck and without the job file beside it:
+
+    polarcheck check --no-config sample_programs/hexagon.nc
+        unverified: no radius for T0101. The path of the cutter and the rate of C are not known.
+    polarcheck check --no-config --tool 1:radius=4 --set limits.c_feed=3600 sample_programs/hexagon.nc
+        pass
+
+The exit code is 0; with --strict it is 1.
+""",
+        "fail": """\
+fail: something is wrong, or probably not what was meant.
+
+At least one finding is as bad as --fail-on says, which is a warning if you do not say it:
+
+    error      the control stops with an alarm, or the part is scrap
+    warning    probably not what was meant
+    note       works, but is good to know; it fails a file with --fail-on note only
+
+Each finding names the block, what is wrong with it, the alarm that this control shows where one is
+known, and what to write instead. `polarcheck explain` with the name of its rule, or with the number
+of the alarm, says why:
+
+    polarcheck explain rapid-in-polar
+    polarcheck explain PS0146
+
+If your lathe differs, make a rule a note, or leave it out, for one check or in polarcheck.toml for
+all programs beside it:
+
+    --severity rapid-in-polar=note         [severities] and rapid-in-polar = "note"
+    --ignore rapid-in-polar                ignore = ["rapid-in-polar"]
+
+A file that fails may have entries under "not evaluated", too: `polarcheck explain unverified`.
+
+The exit code is 1.
+""",
+    }
+)
+_ALSO = MappingProxyType({"passed": "pass", "failed": "fail", "not evaluated": "unverified"})
+
+
+def page(word: str) -> str:
+    """The page of a verdict, of all three for `verdict`; empty for any other word. Case and hyphens are free."""
+    plain = " ".join(word.lower().replace("-", " ").replace("_", " ").split())
+    if plain in ("verdict", "verdicts"):
+        return "\n\n".join(map(_headed, PAGES.values()))
+    found = PAGES.get(_ALSO.get(plain, plain), "")
+    return _headed(found) if found else ""
+
+
+def _headed(text: str) -> str:
+    title, _, rest = text.partition("\n")
+    return f"{title}\n{'=' * len(title)}\n{rest}"
