@@ -87,6 +87,12 @@ def test_moves_as_csv_have_a_column_for_each_coordinate() -> None:
     assert {"start_x", "start_c", "x_axis_from", "c_axis_to", "time"} <= set(rows[0])
 
 
+def test_the_page_of_the_trace_names_each_field_once() -> None:
+    page = (SAMPLES.parent / "docs" / "trace.md").read_text("utf-8")
+    rows = [line.split("|")[1] for line in page.splitlines() if line.startswith("| `")]
+    assert sorted(name.strip(" `") for row in rows for name in row.split(",")) == sorted(KEYS)
+
+
 # ---- whose path it is ----
 
 #: Straight in, along a face with both ramps in it, and out; inch on one control, mm on the other.
