@@ -406,15 +406,6 @@ def test_a_program_for_another_machine_is_known() -> None:
     assert "X is a radius" in other(M700V, "fanuc")
     assert "--machine haas-lathe" in other(HAAS, "fanuc")
     assert "Y is the second axis" in other(HAAS, "fanuc")
-    okuma = "G94 G0 X120. C0\nG137 C0\nG101 X20. Y0 F200\nG103 X10. Y10. L10.\nG136\n"
-    assert "--machine okuma-osp" in other(okuma, "fanuc")
-    assert "G137 begins the polar mode there" in other(okuma, "fanuc")
-    transmit = "G0 X60 Y0\nTRANSMIT\nG1 X40 Y5 F9\nTRAFOOF\n"
-    assert "TRANSMIT begins the polar mode there" in other(transmit, "fanuc")
-    assert "--machine gsk-988" in other(GSK_CYCLE, "haas-lathe")
-    assert "--machine fanuc" not in other(GSK_CYCLE, "haas-lathe")
-    of_c = "G98 G0 X60. C0\nG12.1\nG1 X40. F100\nC5.\nG13.1\n"
-    assert "G12.1 begins the polar mode there" in other(of_c, "haas-lathe")
 
 
 def test_a_program_under_its_own_machine_is_left_alone() -> None:

@@ -10,7 +10,7 @@ import numpy as np
 from polarcheck.arrays import Floats, Mask, Rows
 from polarcheck.checking.finding import NotEvaluated
 from polarcheck.checking.macro_faults import reason_of
-from polarcheck.checking.phrases.polar import not_simulated
+from polarcheck.checking.phrases.polar import not_simulated, not_understood, on_cylinder
 from polarcheck.checking.rule import Rule
 from polarcheck.checking.tables import Tables
 from polarcheck.table.trace import Trace
@@ -32,7 +32,11 @@ def unexecuted(tables: Tables) -> Iterator[NotEvaluated]:
         reasons.setdefault(reason_of(remark), []).append(int(trace.text.blocks.line[remark.block]))
     for reason, lines in reasons.items():
         yield NotEvaluated(rule="all", reason=reason, blocks=len(lines))
-    for reason, count in not_simulated(trace, tables["infeed"]):
+    for reason, count in (
+        *not_simulated(trace, tables["infeed"]),
+        not_understood(trace, tables["other_mode"]),
+        on_cylinder(trace),
+    ):
         if count:
             yield NotEvaluated(rule="all", reason=reason, blocks=count)
 

@@ -1,15 +1,13 @@
-"""Whether a program that this machine reads badly is one for another: by its codes, its axis, and X in its arcs."""
+"""Whether a section that this machine reads badly is one for another: by its axis, and by X in its arcs."""
 
 from __future__ import annotations
 
-import functools
 from functools import cached_property
 
 import msgspec
 import numpy as np
 
 from polarcheck.arrays import Mask
-from polarcheck.checking.phrases.common import switch
 from polarcheck.checking.tables import Tables
 from polarcheck.execution.run import straight
 from polarcheck.machines import profiles
@@ -17,7 +15,7 @@ from polarcheck.machines.machine import Machine
 from polarcheck.machines.profiles import Profile
 from polarcheck.reading import source
 from polarcheck.reading.translation import translated
-from polarcheck.reading.words import NumberFault, read_words
+from polarcheck.reading.words import read_words
 from polarcheck.table.mode_words import ModeWords
 from polarcheck.table.trace import Trace
 
@@ -67,8 +65,8 @@ def _find(tables: Tables) -> Fit | None:
     """
     The machines that read the program well where this one does not.
 
-    Cheap for a program that is read well: only an axis address or a code of other controls, or arcs that close with X
-    read the other way, make it look at other machines.
+    Cheap for a program that is read well: only an axis address of other controls, or arcs that close with X read the
+    other way, make it look at other machines.
     """
     trace: Trace = tables["trace"]
     row = _doubt(tables)
@@ -76,7 +74,7 @@ def _find(tables: Tables) -> Fit | None:
         return None
     fitting: dict[tuple[str, ...], list[Profile]] = {}
     told = [_reads(trace.machine)]
-    for profile in _profiles():
+    for profile in profiles.built_in():
         if _reads(profile.machine) in told:
             continue
         reasons = _reasons(tables, profile.machine)
@@ -89,12 +87,6 @@ def _find(tables: Tables) -> Fit | None:
     return Fit(row, tuple(fitting[reasons]), reasons)
 
 
-@functools.cache
-def _profiles() -> tuple[Profile, ...]:
-    """All machines; those from which others inherit come first, to speak for them."""
-    return tuple(sorted((profiles.load(name) for name in profiles.names()), key=lambda profile: len(profile.chain)))
-
-
 def _reads(machine: Machine) -> tuple[object, ...]:
     """What of a machine makes it read a program otherwise than another."""
     control, mode = machine.control, machine.polar
@@ -104,29 +96,10 @@ def _reads(machine: Machine) -> tuple[object, ...]:
 def _doubt(tables: Tables) -> int:
     """The row at which the program does not look like one for this machine; -1 for none."""
     trace: Trace = tables["trace"]
-    if len(trace.sections):
-        hit = _names_other_axis(tables) | tables["arcs"].x_is_misread
-        rows = np.flatnonzero(hit)
-        return int(trace.sections.enter[trace.section[rows[0]]]) if len(rows) else -1
-    codes = [word for word in trace.machine.polar.on_of_other_controls if word[1:2].isdigit()]
-    rows = np.flatnonzero(trace.codes(*codes)) if codes else np.zeros(0, np.int64)
-    if len(rows):
-        return int(rows[0])
-    return _row_of_word(trace, [word for word in trace.machine.polar.on_of_other_controls if word not in codes])
-
-
-def _row_of_word(trace: Trace, words: list[str]) -> int:
-    """The first row with one of these native words of other controls, which read as letters without digits here."""
-    bare = trace.run.words.fault == NumberFault.NO_DIGITS
-    if not words or not bare.any():
+    if not len(trace.sections):
         return -1
-    text = trace.text.source.code.tobytes().upper()
-    places = [place for word in words if (place := text.find(word.encode())) >= 0]
-    if not places:
-        return -1
-    block = int(np.searchsorted(trace.text.blocks.start, min(places), side="right")) - 1
-    rows = np.flatnonzero(trace.run.block == block)
-    return int(rows[0]) if len(rows) else -1
+    rows = np.flatnonzero(_names_other_axis(tables) | tables["arcs"].x_is_misread)
+    return int(trace.sections.enter[trace.section[rows[0]]]) if len(rows) else -1
 
 
 def _reasons(tables: Tables, machine: Machine) -> tuple[str, ...]:
@@ -140,8 +113,6 @@ def _reasons(tables: Tables, machine: Machine) -> tuple[str, ...]:
     if arcs.is_no_circle.any() or arcs.x_is_misread.any() or _switch_is_not_alone(there):
         return ()
     reasons = []
-    if not len(trace.sections):
-        reasons.append(f"{switch(other, int(other.sections.enter[0]))} begins the polar mode there")
     if mode.virtual_axis != own.virtual_axis and np.any(other.has(mode.virtual_axis) & other.in_polar):
         reasons.append(f"{mode.virtual_axis} is the second axis of the polar plane there")
     if mode.x != own.x and np.any(tables["arcs"].x_is_misread):

@@ -46,6 +46,7 @@ class GCodes(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     c_axis_reference: codes that, with C or H, take the C axis to its reference point, the zero of its angle
     local_shift: local coordinate system
     machine_coordinates: move in machine coordinates
+    cylindrical_interpolation: cylindrical interpolation, which is not simulated; its word 0, or none, ends it
     axis_words_no_move: further codes beside which axis words are no end point of a move
     """
 
@@ -84,6 +85,7 @@ class GCodes(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     c_axis_reference: list[str]
     local_shift: list[str]
     machine_coordinates: list[str]
+    cylindrical_interpolation: list[str]
     axis_words_no_move: list[str]
 
 

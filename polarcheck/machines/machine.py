@@ -81,7 +81,8 @@ class Polar(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
 
     on: codes that switch it on
     off: codes that switch it off, in the order of those that switch it on
-    on_of_other_controls: codes and words that begin the mode elsewhere, by which a program for another control is known
+    on_of_other_controls: codes and words that begin the mode on any control, which tell programs for another one
+    on_of_other_meaning: those of them that mean something else here, where axis words stand beside them
     words_beside_switch: addresses and codes that may stand in one block with those that switch; N may always
     virtual_axis: address of the virtual axis (hypothetical axis), a length
     virtual_axis_incremental: address of its incremental words
@@ -101,6 +102,7 @@ class Polar(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     on: list[str]
     off: list[str]
     on_of_other_controls: list[str] = []
+    on_of_other_meaning: list[str] = []
     words_beside_switch: list[str]
     virtual_axis: str
     virtual_axis_incremental: str

@@ -39,6 +39,12 @@ def names() -> list[str]:
     return sorted(path.stem for path in FOLDER.glob("*.toml"))
 
 
+@functools.cache
+def built_in() -> tuple[Profile, ...]:
+    """All built-in machines; those from which others inherit come first, to speak for them."""
+    return tuple(sorted((load(name) for name in names()), key=lambda profile: len(profile.chain)))
+
+
 def load(name: str, changes: Mapping[str, Any] | None = None) -> Profile:
     """
     The profile of a built-in machine or of a TOML file of the user's own; changes are merged over it.

@@ -10,7 +10,7 @@ import numpy as np
 from msgspec.structs import replace
 
 from polarcheck.machines.code_lists import is_code
-from polarcheck.reading.source import Source
+from polarcheck.reading.source import Positions, Source
 
 
 def translated(source: Source, native_words: Mapping[str, str]) -> Source:
@@ -32,6 +32,14 @@ def _translation(words: tuple[tuple[str, str], ...]) -> tuple[re.Pattern[bytes],
         return _filled(meant[match[0].upper()], len(match[0]))
 
     return re.compile(b"|".join(found), re.IGNORECASE), put
+
+
+def spans(source: Source, word: str) -> tuple[Positions, Positions]:
+    """Where a word of a control's own language stands in a source, from each place to the one behind it."""
+    pattern = re.compile(_pattern(word.upper().encode("latin-1")), re.IGNORECASE)
+    found = [match.span() for match in pattern.finditer(source.code.tobytes())]
+    begins, ends = np.array(found, np.int64).reshape(-1, 2).T
+    return begins, ends
 
 
 def _pattern(word: bytes) -> bytes:

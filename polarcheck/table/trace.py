@@ -16,6 +16,9 @@ from polarcheck.machines.modal import FeedMode, Motion, Side
 from polarcheck.table.filling import before, fill_down
 from polarcheck.table.positions import Positions
 
+#: Addresses that name the rotary axis of a cylinder with its radius, or the radius itself.
+_CYLINDER_WORDS = ("A", "B", "C", "H", "Q", "R")
+
 
 class Trace(Positions):
     """The table of one file on one machine for one job; see the properties for its columns, and those it inherits."""
@@ -43,6 +46,16 @@ class Trace(Positions):
         """Line of the file itself; in a program that is called from another file, that of the call."""
         parts = self.text.source.parts
         return fill_down(self.line, self.line < parts[0].first_line, 1) if parts else self.line
+
+    @cached_property
+    def on_cylinder(self) -> Mask:
+        """Cylindrical interpolation is in force: from G7.1 with a radius to G7.1 C0 or another tool."""
+        written = self.listed("cylindrical_interpolation")
+        if not written.any():
+            return written
+        radius = np.array([self.has(address) & ~(self.word(address) == 0) for address in _CYLINDER_WORDS])
+        ends = self.changes_tool | self.ends_program | self.starts
+        return fill_down(written & radius.any(axis=0), written | ends, False).astype(bool)
 
     # ---- tool offset ----
 

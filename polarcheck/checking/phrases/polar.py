@@ -8,7 +8,9 @@ from polarcheck.checking.phrases.common import executed_word, switch_off
 from polarcheck.machines.codes import spelled
 from polarcheck.machines.machine import Machine
 from polarcheck.table.arcs import Arcs
+from polarcheck.reading.translation import shown
 from polarcheck.table.infeed import Infeed
+from polarcheck.table.other_mode import OtherMode
 from polarcheck.table.trace import Trace
 
 #: What the codes of a list of G-code system B are in system A, and what stands for them there.
@@ -97,6 +99,27 @@ def other_controls(machine: Machine) -> str:
     return f"; {controls} would take it" if controls else ""
 
 
+def begun_by(other_mode: OtherMode, row: int) -> str:
+    """The code or word of another control that begins its mode."""
+    return other_mode.switch(row).name
+
+
+def on_of_this(machine: Machine) -> str:
+    """What begins the mode on this machine, in its own language."""
+    return " or ".join(shown(machine.control.native_words, code) for code in machine.polar.on)
+
+
+def with_machines(other_mode: OtherMode, row: int) -> str:
+    """The machines that know the code, as in `--machine fanuc or gsk-988`."""
+    *others, last = [profile.name for profile in other_mode.machines(row)]
+    return f"--machine {', '.join(others)} or {last}" if others else f"--machine {last}"
+
+
+def else_a_macro(other_mode: OtherMode, row: int) -> str:
+    """What else it may be, where nothing behind it tells."""
+    return "" if other_mode.is_followed[row] else ", unless it is a macro of the builder"
+
+
 def not_simulated(trace: Trace, infeed: Infeed) -> Iterator[tuple[str, int]]:
     """What of the words beside G12.1 is not simulated, and in how many blocks."""
     mode = trace.machine.polar
@@ -116,3 +139,24 @@ def what(trace: Trace, arcs: Arcs, index: int) -> str:
     """What becomes of a section without the second axis."""
     off = int(trace.count_in_section(arcs.is_no_circle)[index])
     return f"and {off} arcs are no circles" if off > 1 else "through the center of the C axis"
+
+
+def not_understood(trace: Trace, other_mode: OtherMode) -> tuple[str, int]:
+    """Which code may begin the mode of another control, of which nothing is looked at, and in how many blocks."""
+    rows = other_mode.may_be_macro.nonzero()[0]
+    if not len(rows):
+        return "", 0
+    code, line = other_mode.switch(int(rows[0])).name, int(trace.line[rows[0]])
+    reason = (
+        f"{code} in line {line} begins the polar mode on another control, or is a macro of the builder: give --machine"
+    )
+    return f"{reason}, or take it out of polar.on_of_other_controls", len(rows)
+
+
+def on_cylinder(trace: Trace) -> tuple[str, int]:
+    """Where cylindrical interpolation is begun, which is not simulated, and in how many blocks it is in force."""
+    rows = trace.on_cylinder.nonzero()[0]
+    if not len(rows):
+        return "", 0
+    reason = f"cylindrical interpolation, from line {int(trace.line[rows[0]])} on, is not simulated"
+    return f"{reason}: look at it on the control", len(rows)

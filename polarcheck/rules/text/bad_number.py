@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Mask, Words, rule
+from polarcheck.checking.rule import ERROR, Mask, OtherMode, Words, rule
 
 
 @rule(ERROR, "{text}: {number_fault}", over="words")
-def bad_number(words: Words) -> Mask:
+def bad_number(words: Words, other_mode: OtherMode) -> Mask:
     """
     A number that a control cannot read.
 
@@ -30,5 +30,4 @@ def bad_number(words: Words) -> Mask:
         C-5.
         G13.1
     """
-    # Compares nothing: the reader says so of each word, and other rules keep off the blocks of such words.
-    return words.is_unreadable
+    return words.is_unreadable & ~other_mode.explained

@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Mask, Written, rule
+from polarcheck.checking.rule import ERROR, Mask, OtherMode, Written, rule
 
 
 @rule(ERROR, "{stray}", over="strays")
-def stray_character(written: Written) -> Mask:
+def stray_character(written: Written, other_mode: OtherMode) -> Mask:
     """
     Character that is no part of a word.
 
@@ -43,5 +43,4 @@ def stray_character(written: Written) -> Mask:
         G13.1
         M30 %
     """
-    # Compares nothing: the table picks the first stray character of each block that can be read otherwise.
-    return written.is_first_stray
+    return written.is_first_stray & ~other_mode.explained_strays

@@ -1,13 +1,13 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, NOTE, Hits, Machine, Words, Written, graded, rule
+from polarcheck.checking.rule import ERROR, NOTE, Hits, Machine, OtherMode, Words, Written, graded, rule
 
 #: Controls have no codes of their own from here on; programs that call macros by a G code have (parameter 6050).
 OWN_CODES_END = 200
 
 
 @rule(ERROR, "{code} is no code of this control{times}", over="words")
-def unknown_code(words: Words, written: Written, machine: Machine) -> Hits:
+def unknown_code(words: Words, written: Written, machine: Machine, other_mode: OtherMode) -> Hits:
     """
     G code that the control does not have.
 
@@ -39,7 +39,7 @@ def unknown_code(words: Words, written: Written, machine: Machine) -> Hits:
         X60.
         G13.10
     """
-    unknown = written.unknown_code_count > 0
+    unknown = (written.unknown_code_count > 0) & ~other_mode.explained
     if not machine.control.unknown_codes_are_errors:
         return Hits(unknown, NOTE)
     may_call_macro = (words.value >= OWN_CODES_END) & (words.decimals == 0)

@@ -1,0 +1,79 @@
+from __future__ import annotations
+
+from polarcheck.checking.rule import ERROR, Hits, OtherMode, graded, rule
+
+
+@rule(
+    ERROR,
+    "{begun_by} begins no polar mode on {machine.title}, where {on_of_this} does; check it with {with_machines}"
+    "{else_a_macro}",
+    once="program",
+)
+def polar_code_of_another_control(other_mode: OtherMode) -> Hits:
+    """
+    Polar mode begun by the code of another control.
+
+    The codes that switch the polar mode differ from control to control: G12.1, G112, G137, TRANSMIT. A control that
+    does not know the code stops at it or, worse, takes it for something else, and turns C by degrees where a length is
+    meant. Nothing of such a section is looked at here. Check the program with the machine that it is for, or have it
+    written for this one. Standing alone, without the code that ends the mode and without a move of the second axis at
+    feed behind it, the code may be a macro of the builder and is a warning. One finding stands for the program.
+
+    Source: FANUC B-62764EN/01, p. 51; Haas codes, G112; Okuma OSP-P300 post, G137; Siemens manual, TRANSMIT.
+
+    Bad, machine haas-lathe:
+
+        O1
+        G98 G0 X60. C0
+        G12.1             (expect: polar-code-of-another-control)
+        G1 X40. F200
+        C10.
+        X60.
+        G13.1
+        M30
+
+    Bad:
+
+        O1
+        G98 G0 X100. C0
+        G137 C0           (expect: polar-code-of-another-control)
+        G101 X20. F200
+        G103 X10. Y10. L10.
+        G136
+        M30
+
+    Bad, machine okuma-osp:
+
+        O1
+        G112              (expect: polar-code-of-another-control)
+        G0 Z5.
+        M30
+
+    Good, machine haas-lathe:
+
+        O1
+        G17 G98
+        M5
+        M154
+        G28 H0
+        T0101
+        M133 P1000
+        G0 X80. C0
+        G112
+        G1 X20. F20.
+        Y10.
+        X-20.
+        G113
+        M135
+        M155
+        M30
+
+    Good, machine okuma-osp:
+
+        O1
+        G0 X20. Z2.
+        G112 X24. Z-8. L4. F1.5
+        M30
+    """
+    # Compares nothing: what the code is for shows in the blocks behind it, which the table looks at.
+    return graded(error=other_mode.is_followed, warning=other_mode.may_be_macro, at=other_mode.words)

@@ -1,0 +1,214 @@
+"""The polar mode of other controls in a program: the codes that begin it there and not here, and what belongs to it."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Iterable
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from polarcheck.arrays import Mask, Rows
+from polarcheck.machines import profiles
+from polarcheck.machines.code_lists import is_code
+from polarcheck.machines.codes import code_numbers, code_set
+from polarcheck.machines.modal import Motion
+from polarcheck.machines.profiles import Profile
+from polarcheck.reading.translation import spans
+from polarcheck.reading.words import NumberFault, Words
+from polarcheck.table.filling import fill_down
+from polarcheck.table.trace import Trace
+
+#: Axes whose words, beside a code that has another meaning here, say that this is what is meant.
+_AXES = ("X", "Y", "Z", "U", "V", "W")
+
+
+class Switch(NamedTuple):
+    """A code or word that begins the mode elsewhere, the rows with it, and the machines that know it."""
+
+    name: str
+    rows: Rows
+    known_by: tuple[Profile, ...]
+
+
+class OtherMode:
+    """
+    Which rows begin the mode of another control, and whether what follows is meant for it.
+
+    Cheap for a program without such a code: only one that has it makes other machines be looked at.
+    """
+
+    def __init__(self, trace: Trace) -> None:
+        self.trace = trace
+
+    @cached_property
+    def switches(self) -> tuple[Switch, ...]:
+        """The codes that begin the mode on other controls, of those that the program has."""
+        trace, polar = self.trace, self.trace.machine.polar
+        own = {*polar.on, *trace.machine.control.native_words}
+        found = []
+        for name in polar.on_of_other_controls:
+            rows = np.zeros(0, np.int64) if name in own else self._rows(name)
+            rows = rows[~trace.in_polar[rows]] if len(rows) else rows
+            if name in polar.on_of_other_meaning:
+                rows = rows[~trace.has(*_AXES)[rows]]
+            if len(rows) and known_by(name):
+                found.append(Switch(name, rows, known_by(name)))
+        return tuple(found)
+
+    @cached_property
+    def begins(self) -> Mask:
+        """The row begins the mode of another control."""
+        return _mask(self.trace, np.concatenate([np.zeros(0, np.int64), *(switch.rows for switch in self.switches)]))
+
+    def switch(self, row: int) -> Switch:
+        """The code or word in a row that begins the mode elsewhere. Raises IndexError for a row without one."""
+        found = [switch for switch in self.switches if row in switch.rows]
+        return found[0]
+
+    @cached_property
+    def is_followed(self) -> Mask:
+        """Of the rows that begin it those behind which the code that ends it follows, or a move in the mode."""
+        found = np.zeros(len(self.trace), bool)
+        for switch in self.switches:
+            found[switch.rows] = self._is_followed(switch)[switch.rows]
+        return found
+
+    @cached_property
+    def may_be_macro(self) -> Mask:
+        """The row begins it, and nothing in its program tells whether it is no macro of the builder."""
+        return self.begins & ~self.trace.anywhere_in_program(self.is_followed)
+
+    def _is_followed(self, switch: Switch) -> Mask:
+        """Rows from a beginning on to the next one, or to the next program, in which something belongs to the mode."""
+        begins = _mask(self.trace, switch.rows)
+        ends = self._has(off for profile in switch.known_by for off in ends_of(profile, switch.name))
+        axes = {profile.machine.polar.virtual_axis for profile in switch.known_by}
+        at_feed = np.isin(self.trace.motion, (Motion.LINE, Motion.CW, Motion.CCW))
+        at_feed |= self._has(code for profile in switch.known_by for code in profile.machine.control.motion_codes)
+        cuts = at_feed & self.trace.has(*axes) & self._within(begins, ends)
+        stretch = np.cumsum(begins | self.trace.starts)
+        found = np.zeros(len(self.trace) + 1, bool)
+        found[stretch[ends | cuts]] = True
+        return found[stretch]
+
+    def _within(self, begins: Mask, ends: Mask) -> Mask:
+        """Rows in the mode of the other control: until its end, the next tool, or a section of this control."""
+        trace = self.trace
+        ends = ends | trace.changes_tool | trace.ends_program | trace.enters | trace.starts
+        return fill_down(begins, begins | ends, False).astype(bool)
+
+    def machines(self, row: int) -> tuple[Profile, ...]:
+        """
+        Of the machines that know the code in a row those that read it well: with the words beside it, and with the
+        axes of the moves behind it. One speaks for all that read it alike.
+        """
+        switch = self.switch(row)
+        within = self._within(_mask(self.trace, np.array([row])), self._has(ends_of(switch.known_by[0], switch.name)))
+        beside = {chr(self.trace.run.words.address[at]) for at in np.flatnonzero(self.trace.run.row == row)}
+
+        def reads(profile: Profile) -> bool:
+            return not is_code(switch.name) or beside <= {*"GNO/", *profile.machine.polar.words_beside_switch}
+
+        def moves(profile: Profile) -> bool:
+            return bool(np.any(within & self.trace.has(profile.machine.polar.virtual_axis)))
+
+        found = switch.known_by
+        for fits in (reads, moves):
+            found = tuple(filter(fits, found)) or found
+        alike: dict[object, Profile] = {}
+        for profile in found:
+            alike.setdefault(_reading(profile), profile)
+        return tuple(alike.values())
+
+    @cached_property
+    def words(self) -> Mask:
+        """Per executed word: the code or word that begins the mode."""
+        found = np.zeros(len(self.trace.run.words), bool)
+        for switch in self.switches:
+            found |= self._named(switch.name) & np.isin(self.trace.run.row, switch.rows)
+        return found
+
+    @cached_property
+    def explained(self) -> Mask:
+        """
+        Per word of the file: belongs to the language of a control whose mode the program begins, and is its switches,
+        its moves, or a word of its own. That the control does not know it is no fault of its own.
+        """
+        words = self.trace.text.words
+        found = np.zeros(len(words), bool)
+        for switch in self.switches:
+            for profile in switch.known_by:
+                control, polar = profile.machine.control, profile.machine.polar
+                codes = code_set([*polar.on, *polar.off, *control.motion_codes])
+                of_g = words.address == ord("G")
+                found[of_g] |= codes[code_numbers(words.value[of_g])]
+                for name in control.native_words:
+                    found |= self._of_word(name, words)
+        return found
+
+    @cached_property
+    def explained_strays(self) -> Mask:
+        """Per stray character of the file: begins a comment on such a control."""
+        text = self.trace.text
+        signs = [profile.machine.control.line_comments for switch in self.switches for profile in switch.known_by]
+        return np.isin(text.source.code[text.strays.start], [ord(sign) for sign in signs if sign])
+
+    # ---- codes and native words alike ----
+
+    def _has(self, names: Iterable[str]) -> Mask:
+        """Rows with one of these codes or words."""
+        rows = [self._rows(name) for name in dict.fromkeys(names)]
+        return _mask(self.trace, np.concatenate([np.zeros(0, np.int64), *rows]))
+
+    def _rows(self, name: str) -> Rows:
+        """The rows with a code or word, in order."""
+        return np.flatnonzero(self.trace.with_words(self._named(name)))
+
+    def _named(self, name: str) -> Mask:
+        """Per executed word: is this code, or stands in this word."""
+        if is_code(name):
+            return self.trace.words_at(self.trace.code_indices(name))
+        return self._of_word(name, self.trace.run.words)
+
+    def _of_word(self, name: str, words: Words) -> Mask:
+        """Per word: stands in this word of a control's own language, which reads as letters without digits here."""
+        found = np.zeros(len(words), bool)
+        bare = np.flatnonzero(words.fault == NumberFault.NO_DIGITS)
+        if not len(bare):
+            return found
+        begins, ends = spans(self.trace.text.source, name)
+        at = words.start[bare]
+        found[bare] = np.searchsorted(begins, at, side="right") > np.searchsorted(ends, at, side="right")
+        return found
+
+
+@functools.cache
+def known_by(name: str) -> tuple[Profile, ...]:
+    """The machines that begin the mode by a code or word."""
+    return tuple(profile for profile in profiles.built_in() if _meant(profile, name) in profile.machine.polar.on)
+
+
+def ends_of(profile: Profile, name: str) -> list[str]:
+    """What ends the mode on a machine that begins it by a code or word, in its own language first."""
+    control, polar = profile.machine.control, profile.machine.polar
+    code = dict(zip(polar.on, polar.off, strict=False)).get(_meant(profile, name), polar.off[0])
+    return [*(word for word, text in control.native_words.items() if text == code), code]
+
+
+def _meant(profile: Profile, name: str) -> str:
+    """The code that a word of the machine's own language stands for; a code stands for itself."""
+    return profile.machine.control.native_words.get(name, name)
+
+
+def _mask(trace: Trace, rows: Rows) -> Mask:
+    found = np.zeros(len(trace), bool)
+    found[rows] = True
+    return found
+
+
+def _reading(profile: Profile) -> tuple[object, ...]:
+    """What of a machine makes it read a section otherwise than another."""
+    mode = profile.machine.polar
+    return mode.virtual_axis, mode.x, tuple(mode.words_beside_switch), profile.machine.arcs.radius_word

@@ -1,0 +1,181 @@
+"""A program for another machine is never green: codes that begin the polar mode elsewhere, and one finding for them."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator
+
+import pytest
+from programs import ROOT, machine_of, report_of, said, tables_of
+
+from polarcheck.checking.finding import FileReport, Finding
+from polarcheck.machines import profiles
+
+RULE = "polar-code-of-another-control"
+SAMPLES = ROOT / "sample_programs"
+#: Programs that a machine reads as if they were its own, beside those that it writes the same way.
+WRONG = ("haas-lathe", "okuma-osp")
+TURNING = "O1\nG98 G0 X60. Z2.\n{}G1 Z-10. F200\nG0 X80.\nM30\n"
+
+
+def programs() -> Iterator[tuple[str, str]]:
+    """Each sample program with the machine that it is for."""
+    for path in sorted(SAMPLES.rglob("*.[nm]*")):
+        own = path.parent.name if path.parent != SAMPLES else profiles.DEFAULT
+        yield path.relative_to(SAMPLES).as_posix(), own
+
+
+PAIRS = [(path, own, name) for (path, own), name in itertools.product(programs(), profiles.names()) if name != own]
+
+
+def alike(name: str, own: str) -> bool:
+    """Whether one machine begins the mode as the other writes it, in its own language too."""
+    own_words = machine_of(own).control.native_words.keys() - machine_of(name).control.native_words.keys()
+    return not own_words & {"TRANSMIT"} and bool({*machine_of(name).polar.on} & {*machine_of(own).polar.on})
+
+
+def the_one(report: FileReport) -> Finding:
+    (found,) = report.findings
+    assert found.rule == RULE
+    return found
+
+
+def test_all_sample_programs_have_a_machine_and_there_are_enough_of_them() -> None:
+    assert {own for _, own in programs()} == {*profiles.names()}
+    assert len(PAIRS) > 600
+
+
+@pytest.mark.parametrize("name", profiles.names())
+def test_a_program_for_another_machine_is_read_or_fails_with_one_finding(name: str) -> None:
+    for path, own, other in PAIRS:
+        if other != name:
+            continue
+        data = (SAMPLES / path).read_bytes()
+        own_sections = len(tables_of(data, own)["sections"])
+        report = report_of(data, name, "1:radius=4", "8:radius=4", path=path)
+        rules = [found.rule for found in report.findings if found.severity != "note"]
+        if report.sections < own_sections:
+            assert report.verdict == "fail", (path, name)
+            assert rules == [RULE], (path, name, rules)
+        else:
+            assert alike(name, own), (path, name)
+            assert RULE not in rules, (path, name)
+
+
+@pytest.mark.parametrize("name", WRONG)
+@pytest.mark.parametrize(
+    ("program", "line"),
+    [
+        ("rapid_in_polar", 9),
+        ("narrow_groove", 9),
+        ("arc_off_circle", 9),
+        ("polar_never_left", 9),
+        ("ramp_too_short", 9),
+        ("through_the_center", 9),
+        ("c_axis_too_fast", 9),
+    ],
+)
+def test_a_program_full_of_faults_does_not_pass_under_the_wrong_machine(program: str, line: int, name: str) -> None:
+    report = report_of((SAMPLES / f"{program}.nc").read_bytes(), name, "8:radius=9.525")
+    assert report.verdict == "fail"
+    assert the_one(report).severity == "error"
+    assert the_one(report).line == line
+    assert "--machine fanuc" in the_one(report).message
+
+
+@pytest.mark.parametrize(
+    ("program", "name", "machines"),
+    [
+        ("O1\nG98 G0 X50. Z2. C0\nG112\nG1 X40. Y5. F200\nG113\nM30\n", "okuma-osp", "haas-lathe or citizen"),
+        ("O1\nG20 G98 G0 X2. C0\nG112\nG1 X1.5 C.2 F8.\nM30\n", "okuma-osp", "fanuc, gsk-988 or lsis"),
+        ("O1\nG98 G0 X50. Z2. C0\nG137 C0\nG1 X40. Y5. F200\nG136\nM30\n", "fanuc", "okuma-osp"),
+        ("O1\nG98 G0 X50. Z2. C0\nG137 C0\nG101 X40. Y5. F200\nM30\n", "haas-lathe", "okuma-osp"),
+        ("O1\nG98 G0 X50. Z2. C0\nG137 C15.\nG136\nM30\n", "mazak-eia", "okuma-osp"),
+        ("O1\nG94 G0 X50. C0\nG112\nG1 X40. F200\nG113\nM30\n", "siemens-transmit", "fanuc, gsk-988"),
+        ("O1\nG98 G0 X50. C0\nG12.1 E2.\nG1 X40. C5. F200\nG13.1\nM30\n", "haas-lathe", "gsk-988"),
+        ("O1\nG98 G0 X50. C0\nG12.1 D0 E=C\nG1 X40. Y5. F200\nG13.1\nM30\n", "lsis", "citizen"),
+        ("G0 X60 Y0\nTRANSMIT\nG1 X40 Y5 F9\nTRAFOOF\nM30\n", "fanuc", "siemens-transmit"),
+        ("G0 X60 Y0\nDIAMOF\ntransmit(1)\nG3 X40 Y5 CR=9\nTRAFOOF\nDIAMON\nM30\n", "okuma-osp", "siemens-transmit"),
+    ],
+)
+def test_the_one_finding_names_the_machines_that_know_the_code(program: str, name: str, machines: str) -> None:
+    found = the_one(report_of(program, name))
+    assert found.severity == "error"
+    assert f"--machine {machines}" in found.message
+
+
+@pytest.mark.parametrize(
+    ("code", "name"), [("G137", "fanuc"), ("G112", "okuma-osp"), ("G12.1", "haas-lathe"), ("G112", "mazak-eia")]
+)
+def test_a_code_that_stands_alone_may_be_a_macro(code: str, name: str) -> None:
+    report = report_of(TURNING.format(f"{code}\n"), name)
+    assert the_one(report).severity == "warning"
+    assert "macro of the builder" in the_one(report).message
+    (entry,) = report.not_evaluated
+    assert f"{code} in line 3" in entry.reason
+    assert "--machine" in entry.reason
+
+
+def test_what_follows_behind_the_next_tool_or_in_a_section_of_this_control_tells_nothing() -> None:
+    section = "G0 X60. C0\nG12.1\nG1 X40. F200\nC10.\nX60.\nG13.1\nG0 Z50.\n"
+    found = [one for one in report_of(TURNING.format(f"G137\n{section}")).findings if one.rule == RULE]
+    assert [one.severity for one in found] == ["warning"]
+    turning = TURNING.format("T0101\nG137\nT0202\nG1 C90. F500\n")
+    assert [(one.rule, one.severity) for one in report_of(turning).findings] == [(RULE, "warning")]
+
+
+def test_one_finding_stands_for_the_program() -> None:
+    section = "G0 X60. C0\nG137 C0\nG101 X40. Y5. F200\nG136\n"
+    assert said(report_of(TURNING.format(section * 3))) == [(4, RULE)]
+    assert the_one(report_of(TURNING.format(f"G137\n{section}"))).line == 5
+
+
+@pytest.mark.parametrize(
+    ("program", "name"),
+    [
+        ("O1\nG0 X20. Z2.\nG112 X24. Z-8. L4. F1.5\nG113 X20. Z-12. L4. F1.5\nM30\n", "okuma-osp"),
+        ("N10 G0 X20 Z2\nN20 G112 X10 Y5\nN30 M30\n", "siemens-transmit"),
+        ("O1 (NOT FOR TRANSMIT)\nG0 X20. Z2.\n(G137 C0)\nM30\n", "fanuc"),
+    ],
+)
+def test_a_code_in_its_own_meaning_is_none_of_another_control(program: str, name: str) -> None:
+    assert RULE not in {found.rule for found in report_of(program, name).findings}
+
+
+def test_an_unknown_code_elsewhere_is_still_said() -> None:
+    program = "O1\nG98 G0 X50. C0\nG137 C0\nG101 X40. Y5. F200\nG136\nG12.11\nX F5\nM30\n"
+    assert said(report_of(program)) == [(3, RULE), (6, "unknown-code"), (7, "bad-number")]
+
+
+def test_every_code_that_begins_the_mode_is_known_everywhere() -> None:
+    listed = set(machine_of().polar.on_of_other_controls)
+    for name in profiles.names():
+        machine = machine_of(name)
+        words = machine.control.native_words
+        assert set(machine.polar.on) <= listed, name
+        assert {word for word, code in words.items() if code in machine.polar.on} <= listed, name
+        assert set(machine.polar.on_of_other_controls) == listed, name
+
+
+# ---- cylindrical interpolation ----
+
+
+@pytest.mark.parametrize(
+    ("code", "blocks", "name"),
+    [
+        ("G7.1 C20.\nG1 G41 C30. F200\nZ-5.\nG7.1 C0\n", 3, "fanuc"),
+        ("G20\nG107 C.75\nG1 C30. F8.\nG107 C0\n", 2, "fanuc-30i"),
+        ("G107 C0 Q2.5\nG1 C30. F8.\nG107\n", 2, "haas-lathe"),
+    ],
+)
+def test_cylindrical_interpolation_is_not_simulated(code: str, blocks: int, name: str) -> None:
+    report = report_of(TURNING.format(f"T0101\n{code}"), name)
+    told = [entry for entry in report.not_evaluated if "cylindrical interpolation" in entry.reason]
+    assert [entry.blocks for entry in told] == [blocks]
+    assert f"from line {4 + code.startswith('G20')} on" in told[0].reason
+    assert report.verdict != "pass"
+
+
+@pytest.mark.parametrize("code", ["G7.1 C0\n", "G107\n", ""])
+def test_a_program_that_only_cancels_it_is_simulated(code: str) -> None:
+    assert report_of(TURNING.format(code)).verdict == "pass"
