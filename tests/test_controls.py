@@ -425,3 +425,25 @@ def test_messages_name_the_virtual_axis_of_the_control() -> None:
     program = "T0101\nG98 G17 G0 X60. C0\nG112\nG1 Y5. F200\nG41 Y7.\nX20.\nG40 Y30.\nG113\n"
     found = report_of(program, "haas-lathe", "1:radius=5", "1:nose=0", changes={"control": {"units": "mm"}}).findings
     assert "2 mm in Y" in next(f.message for f in found if f.rule == "start-up-shorter-than-radius")
+
+
+@pytest.mark.parametrize(
+    ("name", "units", "axis", "severity", "said_of_z"),
+    [
+        ("fanuc", "", "C", "warning", "Z moves on its own there, not on the line in space"),
+        ("fanuc-16i", "G20 ", "C", "warning", "Z moves on its own"),
+        ("turning-center", "", "C", "error", "this lathe cannot move Z together with the plane"),
+        ("doosan", "", "C", "note", "Z moves on its own"),
+        ("haas-lathe", "", "Y", "note", "one more corner"),
+        ("okuma-osp", "", "Y", "note", "one more corner"),
+    ],
+)
+def test_what_z_does_beside_x_hangs_on_the_lathe(
+    name: str, units: str, axis: str, severity: str, said_of_z: str
+) -> None:
+    polar = machine_of(name).polar
+    program = f"{units}G98 G0 X2.4 Z.1 C0\n{polar.on[0]}\nG1 X1.5 {axis}.4 Z-.5 F40.\nX2.4\n{polar.off[0]}\n"
+    (found,) = [one for one in report_of(program, name).findings if one.rule == "z-with-plane-axis"]
+    assert found.severity == severity
+    assert said_of_z in found.message
+    assert f"X1.5 {axis}.4 Z-.5 in one block" in found.message

@@ -231,6 +231,7 @@ USES = {
     "polar.other_controls": Use("lathes of ours", inside("Y5.")),
     "polar.x": Use("radius", FLAT),
     "polar.virtual_axis_programming": Use("diameter", FLAT),
+    "polar.other_axes": Use("forbidden", inside("X50. Z1.")),
     "polar.center_words": Use(["J", "K"], ARC.format("I-10. J0")),
     "polar.linear_axis": Use(2, FLAT.replace("G12.1", "G12.1 P1"), "gsk-988"),
     "polar.rotary_axis": Use(4, FLAT.replace("G12.1", "G12.1 Q3"), "gsk-988"),

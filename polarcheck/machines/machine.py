@@ -90,6 +90,7 @@ class Polar(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     other_controls: the controls on which it has those addresses, as a message names them
     x: diameter or radius: what X words are in the mode
     virtual_axis_programming: radius or diameter: what words of the virtual axis are
+    other_axes: what Z does in one block with X or C: independent of them, together with them, or forbidden
     center_words: addresses of arc centers, along X and along the virtual axis
     linear_axis: number of the linear axis, as P beside G12.1 names it
     rotary_axis: number of the rotary axis, as Q beside G12.1 names it
@@ -110,6 +111,7 @@ class Polar(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     other_controls: str = ""
     x: Literal["diameter", "radius"]
     virtual_axis_programming: Literal["radius", "diameter"]
+    other_axes: Literal["independent", "together", "forbidden"]
     center_words: tuple[str, str]
     linear_axis: int
     rotary_axis: int

@@ -20,6 +20,12 @@ _IN_SYSTEM_A = {
     "feed_per_minute": "a facing cycle in G-code system A, where {} is feed per minute",
     "feed_per_revolution": "no code of G-code system A, where {} is feed per revolution",
 }
+#: What Z does in one block with axes of the plane, by polar.other_axes.
+_OF_Z = {
+    "independent": "Z moves on its own there, not on the line in space",
+    "together": "compensation may take it for one more corner",
+    "forbidden": "this lathe cannot move Z together with the plane",
+}
 #: Modal groups that must have ended at G12.1, by the list of the codes that begin them.
 _ENDED = {"scaling": "scaling", "rotation": "rotation", "mirror_image": "mirror", "constant_surface_speed": "speed"}
 
@@ -39,6 +45,11 @@ def missing_before(trace: Trace, index: int) -> str:
 def others(trace: Trace, at: list[int]) -> str:
     """The words at fault as they are written."""
     return " ".join(executed_word(trace, index) for index in at)
+
+
+def what_z_does(machine: Machine) -> str:
+    """What Z does in one block with the axes of the plane, or what comes of it."""
+    return _OF_Z[machine.polar.other_axes]
 
 
 def since(trace: Trace, row: int) -> int:

@@ -6,19 +6,20 @@ from polarcheck.machines.modal import Motion
 
 @rule(
     WARNING,
-    "Z moves together with X or C in the polar mode; write Z in a block of its own",
-    at=("X", "U", "C", "H", "Z", "W"),
+    "{others} in one block in the polar mode: {what_z_does}; write Z in a block of its own",
+    at=("X", "U", "C", "H", "Y", "V", "Z", "W"),
 )
 def z_with_plane_axis(trace: Trace) -> Mask:
     """
     Z in one block with X or C.
 
-    Z is not part of the polar plane. Some lathes cannot interpolate it with X or C in the mode, others move it along
-    independently; compensation may take such a block for one more corner. Move Z in a block of its own: in the plane
-    first and then in on approach, out first and then in the plane on retract. A block that repeats X and C as they are
-    moves Z only.
+    Z is not part of the polar plane. FANUC's manual lets such an axis move, but on its own: Z may arrive before X and C
+    do, or after them, and the tool does not follow the line in space from start to end. Some lathes cannot move them
+    together at all. Where it works as posts write it, compensation may still take the block for one more corner. Move Z
+    in a block of its own: in the plane first and then in on approach, out first and then in the plane on retract. A
+    block that repeats X and C as they are moves Z only. The machine's profile says what Z does (polar.other_axes).
 
-    Source: builder's guide to G12.1, linear interpolation; FANUC B-62764EN/01, p. 51.
+    Source: FANUC B-62764EN/01, p. 51, axes that are not in the plane; builder's guide to G12.1, linear interpolation.
 
     Bad:
 
