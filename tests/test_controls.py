@@ -447,3 +447,90 @@ def test_what_z_does_beside_x_hangs_on_the_lathe(
     assert found.severity == severity
     assert said_of_z in found.message
     assert f"X1.5 {axis}.4 Z-.5 in one block" in found.message
+
+
+# ---- what one lathe forbids and another takes ----
+
+
+def graded(program: str, name: str, *rules: str) -> list[tuple[int, str, str]]:
+    found = report_of(program, name, "8:radius=1").findings
+    return [(one.line, one.severity, one.rule) for one in found if one.rule in rules]
+
+
+HEAD = "O1\nG20 G40 G97 {}\nT0808\nM5\nM35\nG28 H0\nM33 S900\nG98 G0 X2.4 Z.1 C0\n"
+GUIDE = HEAD + "G12.1\n{}G1 {}X1.6 F40.\n{}C.3\nX2.4\nG13.1\nM30\n"
+PLANES = "plane-selected-in-polar", "plane-wrong-at-entry"
+
+
+@pytest.mark.parametrize(
+    ("before", "behind", "beside", "later", "expected"),
+    [
+        ("G18", "", "", "", []),
+        ("G17", "G18\n", "", "", []),
+        ("", "G18\n", "", "", []),
+        ("G17", "", "G18 ", "", []),
+        ("G18", "", "", "G18 ", []),
+        ("G17", "", "", "G18 ", [(9, "error", "plane-wrong-at-entry")]),
+        ("G17", "", "", "", [(9, "error", "plane-wrong-at-entry")]),
+        ("G18", "G17\n", "", "", [(10, "error", "plane-selected-in-polar")]),
+        ("G18", "", "", "G19 ", [(11, "error", "plane-selected-in-polar")]),
+    ],
+)
+def test_g18_may_stand_right_behind_g12_1_where_the_guide_wants_it(
+    before: str, behind: str, beside: str, later: str, expected: list[tuple[int, str, str]]
+) -> None:
+    assert graded(GUIDE.format(before, behind, beside, later), "turning-center", *PLANES) == expected
+
+
+@pytest.mark.parametrize(
+    ("name", "plane", "severity"),
+    [
+        ("fanuc", "G18", ["error"]),
+        ("doosan", "G18", ["note"]),
+        ("mazak-eia", "G17", []),
+        ("mazak-eia", "G19", ["warning"]),
+        ("haas-lathe", "G17", []),
+    ],
+)
+def test_a_plane_in_the_mode_is_graded_as_posts_and_shops_do_it(name: str, plane: str, severity: list[str]) -> None:
+    on, off = machine_of(name).polar.on[0], machine_of(name).polar.off[0]
+    program = f"O1\nG17 G98 G0 X50. Z2. C0\n{on}\n{plane}\nG1 X40. F200\n{off}\nM30\n"
+    assert [found[1] for found in graded(program, name, "plane-selected-in-polar")] == severity
+
+
+def test_an_unknown_code_from_100_on_may_be_a_macro_of_the_builder() -> None:
+    program = "O1\nG0 X50. Z2.\nG150 X1.\nG199\nG250\nG9.5\nG150.5\nM30\n"
+    expected = [(3, "warning"), (4, "warning"), (5, "warning"), (6, "error"), (7, "error")]
+    for name in ("fanuc", "fanuc-16i", "doosan"):
+        assert [found[:2] for found in graded(program, name, "unknown-code")] == expected
+
+
+def test_words_beside_g112_are_a_note_where_nothing_forbids_them() -> None:
+    program = "O1\nG17 G98 G0 X50. Z2. C0\n{} M8\nG1 X40. F200\n{} M9\nM30\n"
+    rule = "polar-switch-not-alone"
+    told = graded(program.format("G112", "G113"), "haas-lathe", rule)
+    assert [(line, severity) for line, severity, _ in told] == [(3, "note"), (5, "note")]
+    told = graded(program.format("G12.1", "G13.1"), "fanuc", rule)
+    assert [(line, severity) for line, severity, _ in told] == [(3, "error"), (5, "error")]
+
+
+def test_codes_that_a_haas_has() -> None:
+    program = "O1\nG14\nG17 G98 G390\nG0 X50. Z2. C0 Y0\nG112\nG1 X20. F200\nG391 X-5. Y3.\nG390 X10.\nG113\nM30\n"
+    report = report_of(program, "haas-lathe")
+    assert not {"unknown-code", "code-not-allowed-in-polar"} & {found.rule for found in report.findings}
+    trace = tables_of(program, "haas-lathe", changes={"control": {"units": "mm"}})["trace"]
+    assert trace.end[[5, 6, 7]] == pytest.approx([20, 15 + 3j, 10 + 3j])
+
+
+@pytest.mark.parametrize("name", ["fanuc", "fanuc-16i", "gsk-988", "turning-center"])
+def test_feed_per_revolution_in_the_mode_is_a_note_where_the_documents_allow_it(name: str) -> None:
+    told = graded("O1\nG99 G0 X50. Z2. C0\nG12.1\nG1 X40. F.2\nG13.1\nM30\n", name, "feed-per-revolution-in-polar")
+    assert [(line, severity) for line, severity, _ in told] == [(4, "note")]
+
+
+@pytest.mark.parametrize("plane", ["G17 XC", "G17XC", "G17 UH", "G91 G17 XU\nG90"])
+def test_a_mazak_selects_the_plane_with_its_axes(plane: str) -> None:
+    program = f"O1\nG94 G0 X50. Z2. C0\n{plane}\nG12.1\nG1 X40. F200\nG13.1\nM30\n"
+    assert not {"bad-number", "plane-wrong-at-entry"} & {
+        found.rule for found in report_of(program, "mazak-eia").findings
+    }

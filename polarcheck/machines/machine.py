@@ -96,7 +96,7 @@ class Polar(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     rotary_axis: number of the rotary axis, as Q beside G12.1 names it
     infeed_word: address beside G12.1 of the infeed of a cycle that goes round the contour; empty without such a cycle
     allowed_codes: G codes that can be used in the mode, no others
-    plane_before: planes of which one must be selected at G12.1; none where the plane does not matter
+    plane_before: planes of which one must be selected before G12.1 or right behind it; none where it does not matter
     main_spindle_must_stop: whether a main spindle that turns at G12.1 is a fault
     """
 

@@ -59,6 +59,25 @@ class Entry:
         trace = self.trace
         return np.asarray(trace.c_axis & ~before(trace.c_axis, trace.starts, False).astype(bool))
 
+    # ---- the plane ----
+
+    @cached_property
+    def plane_is_right(self) -> Mask:
+        """
+        Per G12.1: a plane that the profile wants is in force, or is selected in the section before it moves or with its
+        first move; also where the program has selected none, and the profile wants none.
+        """
+        trace, wanted = self.trace, self.trace.machine.polar.plane_before
+        right = (trace.state("plane") == 0) | trace.has_state("plane", wanted) | (not wanted)
+        selects = trace.first_in_section(trace.codes(*wanted) & trace.in_polar)
+        if selects.any():
+            first = np.full(len(trace.sections), len(trace))
+            moves = trace.first_in_section(trace.moves & trace.in_polar)
+            first[trace.section[moves]] = np.flatnonzero(moves)
+            rows = np.flatnonzero(selects)
+            right[trace.sections.enter[trace.section[rows[rows <= first[trace.section[rows]]]]]] = True
+        return np.asarray(right)
+
     # ---- spindle and live tool ----
 
     @cached_property

@@ -1,11 +1,11 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Mask, Trace, rule
+from polarcheck.checking.rule import NOTE, Mask, Trace, rule
 from polarcheck.machines.modal import FeedMode
 
 
 @rule(
-    WARNING,
+    NOTE,
     "feed per revolution of a spindle that turns as the C axis now; write feed per minute",
     at=("feed_per_revolution", "line", "arc_clockwise", "arc_counterclockwise"),
     follows={"block": ("feed-missing-in-polar",)},
@@ -15,7 +15,8 @@ def feed_per_revolution_in_polar(trace: Trace) -> Mask:
     Feed per revolution in the polar mode.
 
     The spindle that F counts is the C axis now. Unless the lathe counts the turns of the live tool, the tool stands
-    still or creeps. G98 (G94) gives the feed per minute, also for what comes after G13.1.
+    still or creeps. The manuals allow it, so that it is a note. G98 (G94) gives the feed per minute, also for what
+    comes after G13.1.
 
     Source: FANUC B-62764EN/01, p. 51; builder's guide to G12.1, feed command.
 

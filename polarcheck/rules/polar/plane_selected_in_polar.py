@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Mask, ModeWords, rule
+from polarcheck.checking.rule import ERROR, Machine, Mask, ModeWords, rule
 
 
 @rule(
@@ -8,12 +8,13 @@ from polarcheck.checking.rule import ERROR, Mask, ModeWords, rule
     "{plane} in the polar mode: its plane is always that of X and C; delete it or write it {outside}",
     at=("plane_xy", "plane_zx", "plane_yz"),
 )
-def plane_selected_in_polar(mode_words: ModeWords) -> Mask:
+def plane_selected_in_polar(mode_words: ModeWords, machine: Machine) -> Mask:
     """
     Plane selected in the polar mode.
 
     In the mode the plane is that of X and C, whatever G17, G18 or G19 was in force before; that one comes back at
-    G13.1. Selecting a plane in the mode stops the control with an alarm. Delete the code, or write it before G12.1.
+    G13.1. Selecting a plane in the mode stops the control with an alarm. Delete the code, or write it before G12.1. On
+    lathes that are set up for one plane, selecting that one is right in the mode, too (polar.plane_before).
 
     Source: FANUC B-62764EN/01, p. 50; 30i alarm list, PS0146; Mitsubishi M700V programming manual, P485.
 
@@ -31,7 +32,18 @@ def plane_selected_in_polar(mode_words: ModeWords) -> Mask:
 
         G98 G18 G0 X2.4 C0
         G12.1
-        G1 G18 X1.6 F40.  (expect: plane-selected-in-polar)
+        G1 G17 X1.6 F40.  (expect: plane-selected-in-polar)
+        G1 G41 X.8 C.4 F5.
+        C-.4
+        G40 X2.4
+        G13.1
+
+    Good, machine turning-center:
+
+        G98 G18 G0 X2.4 C0
+        G12.1
+        G18
+        G1 X1.6 F40.
         G1 G41 X.8 C.4 F5.
         C-.4
         G40 X2.4
@@ -47,4 +59,5 @@ def plane_selected_in_polar(mode_words: ModeWords) -> Mask:
         G13.1
         G17
     """
-    return mode_words.rows(mode_words.not_allowed & mode_words.selects_plane)
+    is_wanted = mode_words.codes(*machine.polar.plane_before)
+    return mode_words.rows(mode_words.not_allowed & mode_words.selects_plane & ~is_wanted)

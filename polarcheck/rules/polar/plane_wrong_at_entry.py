@@ -1,16 +1,17 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Machine, Mask, Trace, rule
+from polarcheck.checking.rule import ERROR, Entry, Mask, Trace, rule
 
 
-@rule(ERROR, "{plane} is in force at {switch}; {wanted} must be, write it before", at=("on",))
-def plane_wrong_at_entry(trace: Trace, machine: Machine) -> Mask:
+@rule(ERROR, "{plane} is in force at {switch}; {wanted} must be, write it before or right behind", at=("on",))
+def plane_wrong_at_entry(trace: Trace, entry: Entry) -> Mask:
     """
     Polar mode entered in another plane than the lathe wants.
 
     Most controls set the plane in force aside at G12.1. Some lathes are set up for one plane, and stop or read arcs
-    and compensation in the wrong one. Write that plane code before G12.1; it is in the machine's profile
-    (polar.plane_before). Where the program selects no plane, the one after power-on is taken to be right.
+    and compensation in the wrong one. Write that plane code before G12.1, or as the first block behind it; it is in the
+    machine's profile (polar.plane_before). Where the program selects no plane, the one after power-on is taken to be
+    right.
 
     Source: builder's guide to G12.1, plane selection.
 
@@ -35,6 +36,17 @@ def plane_wrong_at_entry(trace: Trace, machine: Machine) -> Mask:
         G40 X2.4
         G13.1
 
+    Good, machine turning-center:
+
+        G17 G98 G0 X2.4 C0
+        G12.1
+        G18
+        G1 C.4 F40.
+        G1 G41 X.8 F5.
+        C-.4
+        G40 X2.4
+        G13.1
+
     Good:
 
         G17 G98 G0 X60. C0
@@ -44,6 +56,4 @@ def plane_wrong_at_entry(trace: Trace, machine: Machine) -> Mask:
         X60.
         G13.1
     """
-    wanted = machine.polar.plane_before
-    is_other = (trace.state("plane") != 0) & ~trace.has_state("plane", wanted)
-    return trace.enters & is_other & bool(wanted)
+    return trace.enters & ~entry.plane_is_right

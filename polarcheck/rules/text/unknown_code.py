@@ -2,8 +2,8 @@ from __future__ import annotations
 
 from polarcheck.checking.rule import ERROR, NOTE, Hits, Machine, OtherMode, Words, Written, graded, rule
 
-#: Controls have no codes of their own from here on; programs that call macros by a G code have (parameter 6050).
-OWN_CODES_END = 200
+#: From here on controls have few codes of their own, and programs call macros of the builder (parameter 6050).
+OWN_CODES_END = 100
 
 
 @rule(ERROR, "{code} is no code of this control{times}", over="words")
@@ -11,7 +11,7 @@ def unknown_code(words: Words, written: Written, machine: Machine, other_mode: O
     """
     G code that the control does not have.
 
-    The control stops at a G code that it does not know, or whose option it lacks. From G200 on it may be a macro of the
+    The control stops at a G code that it does not know, or whose option it lacks. From G100 on it may be a macro of the
     builder, called by a code that a parameter sets, and is a warning: add it to `known_codes` of a machine profile of
     your own. It is a note where the whole list of a control was not at hand. Each code is reported once, at its first
     place.
@@ -29,6 +29,7 @@ def unknown_code(words: Words, written: Written, machine: Machine, other_mode: O
         G98 G0 X60. C0
         G505 X1.          (expect: unknown-code)
         G505 X2.
+        G150 X2.          (expect: unknown-code)
 
     Good:
 
