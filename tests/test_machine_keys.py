@@ -250,6 +250,7 @@ USES = {
     "compensation.nose_types": Use([0], RAMPS.format("", "", ""), tools=("1:radius=4,nose=9",)),
     "compensation.overcut_tolerance": Use(20, GOUGE, tools=CUTTER),
     "limits.c_feed": Use(100, FLAT),
+    "limits.c_feed_harmless": Use(100, FLAT),
     "limits.c_feed_suspicious": Use(100, FLAT),
     "limits.c_acceleration": Use(0.01, FLAT),
     "limits.polar_feed": Use(100, FLAT),

@@ -109,12 +109,25 @@ def test_a_word_in_a_loop_is_reported_once() -> None:
 
 
 LIMIT = "FANUC lathe control gives no limit of the C axis; highest rate found {} deg/min, line {}"
+REMEDY = ": give the lathe's own, --set limits.c_feed=..."
 
 
 def test_the_highest_rate_is_told_where_there_is_nothing_to_compare_it_with() -> None:
-    program = ENTRY + "G1 C10. F200\nX-60.\nC-10.\n"
-    assert reasons(report(program)) == [(LIMIT.format(1146, 5), 3)]
+    program = ENTRY + "G1 C10. F1000\nX-60.\nC-10.\n"
+    assert reasons(report(program)) == [(LIMIT.format(5730, 5) + REMEDY, 3)]
     assert reasons(report(program, limits={"c_feed": 3600})) == []
+    inch = "O1 T0808\nG20 G98 G0 X2.4 C0\nG12.1\nG1 C.1 F10.\nX-2.4\n"
+    assert reasons(report(inch)) == [(LIMIT.format(5730, 5) + REMEDY, 2)]
+
+
+@pytest.mark.parametrize("name", ["fanuc", "gsk-988", "turning-center"])
+def test_a_rate_that_every_c_axis_manages_needs_no_limit(name: str) -> None:
+    """57.3 deg is a radian: with F628.3 at 10 mm from the center C turns at 3,600 deg/min."""
+    program = "O1\nG21 G98 G0 X60. C0\nG12.1\nG1 C10. F{}\nX-60.\n"
+    needs = [report_of(program.format(feed), name).not_evaluated for feed in (100, 628.3, 628.4)]
+    assert [len(entries) for entries in needs] == [0, 0, 1]
+    assert needs[2][0].reason.endswith("highest rate found 3600 deg/min, line 5" + REMEDY)
+    assert report_of(program.format(628.4), name, changes={"limits": {"c_feed_harmless": 4000}}).not_evaluated == []
 
 
 def test_why_the_rate_of_c_is_not_known() -> None:

@@ -93,16 +93,21 @@ def _nothing(tables: Tables, rule: Rule) -> Iterator[NotEvaluated]:
 
 
 def _c_axis_without_limit(tables: Tables, rule: Rule) -> Iterator[NotEvaluated]:
-    """The highest rate of C, for the setter to compare, where the profile has nothing to compare it with."""
+    """
+    The highest rate of C, for the setter to compare, where the profile has nothing to compare it with; not where every
+    C axis manages it.
+    """
     trace: Trace = tables["trace"]
     c_feed: Floats = tables["tool_center"].c_feed
     rows = np.flatnonzero(tables["center"].cuts_off_center & np.isfinite(c_feed))
-    if not np.isnan(trace.machine.limits.c_feed) or not np.any(c_feed[rows] > 0):
+    limits = trace.machine.limits
+    if not np.isnan(limits.c_feed) or not np.any(c_feed[rows] > limits.c_feed_harmless):
         return
     at = int(rows[np.argmax(c_feed[rows])])
     line, rate = int(trace.line[at]), float(c_feed[at])
     reason = f"{trace.machine.title} gives no limit of the C axis; highest rate found {rate:.0f} deg/min, line {line}"
-    yield NotEvaluated(rule=rule.name, reason=reason, blocks=len(rows))
+    remedy = "give the lathe's own, --set limits.c_feed=..."
+    yield NotEvaluated(rule=rule.name, reason=f"{reason}: {remedy}", blocks=len(rows))
 
 
 def _no_offset(what: str, key: str) -> Callable[[Trace, int], str]:

@@ -167,6 +167,7 @@ class Limits(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     What the lathe can do; NaN where the profile does not know.
 
     c_feed: largest cutting feed of the C axis [deg/min]; 100 turns a minute are 36000
+    c_feed_harmless: feed of the C axis that every lathe manages, so that its limit does not matter [deg/min]
     c_feed_suspicious: feed of the C axis that is suspicious where its limit is not known [deg/min]
     c_acceleration: largest acceleration of the C axis [deg/s2]
     polar_feed: largest F in the polar mode [mm/min]
@@ -180,6 +181,7 @@ class Limits(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     """
 
     c_feed: float = math.nan
+    c_feed_harmless: float
     c_feed_suspicious: float
     c_acceleration: float = math.nan
     polar_feed: float = math.nan
