@@ -10,6 +10,7 @@ from programs import ROOT, machine_of, report_of, said, tables_of
 
 from polarcheck.checking.finding import FileReport, Finding
 from polarcheck.machines import profiles
+from polarcheck.table import other_mode
 
 RULE = "polar-code-of-another-control"
 SAMPLES = ROOT / "sample_programs"
@@ -140,6 +141,27 @@ def test_one_finding_stands_for_the_program() -> None:
 )
 def test_a_code_in_its_own_meaning_is_none_of_another_control(program: str, name: str) -> None:
     assert RULE not in {found.rule for found in report_of(program, name).findings}
+
+
+@pytest.mark.parametrize("skipped", ["/G137 C0\n", "/G137 C0\n/G136\n"])
+def test_a_skipped_code_is_said_once(skipped: str) -> None:
+    report = report_of(TURNING.format(skipped))
+    assert [(one.line, one.rule) for one in report.findings] == [(3, RULE)]
+    assert report.findings[0].message.endswith("(with block skip off)")
+
+
+def test_a_code_with_a_computed_word_is_seen() -> None:
+    program = "O1\n#1=15.\nG98 G0 X50. Z2.\nG137 C#1\nG1 X40. Y5. F200\nG136\nM30\n"
+    assert said(report_of(program)) == [(4, RULE)]
+
+
+def test_only_a_program_with_such_a_code_makes_other_machines_be_looked_at(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[str] = []
+    monkeypatch.setattr(other_mode, "known_by", lambda name: asked.append(name) or ())
+    report_of((SAMPLES / "hexagon.nc").read_bytes(), "fanuc", "8:radius=4")
+    assert asked == []
+    report_of((SAMPLES / "hexagon.nc").read_bytes(), "haas-lathe", "8:radius=4")
+    assert asked == ["G12.1"]
 
 
 def test_an_unknown_code_elsewhere_is_still_said() -> None:

@@ -44,18 +44,25 @@ class OtherMode:
 
     @cached_property
     def switches(self) -> tuple[Switch, ...]:
-        """The codes that begin the mode on other controls, of those that the program has."""
-        trace, polar = self.trace, self.trace.machine.polar
-        own = {*polar.on, *trace.machine.control.native_words}
+        """The codes that begin the mode on other controls, of those that the program executes."""
+        trace, words = self.trace, self.trace.run.words
         found = []
-        for name in polar.on_of_other_controls:
-            rows = np.zeros(0, np.int64) if name in own else self._rows(name)
-            rows = rows[~trace.in_polar[rows]] if len(rows) else rows
-            if name in polar.on_of_other_meaning:
+        for name in self._in_text:
+            rows = np.flatnonzero(trace.with_words(self._of_name(name, words)) & ~trace.in_polar)
+            if name in trace.machine.polar.on_of_other_meaning:
                 rows = rows[~trace.has(*_AXES)[rows]]
-            if len(rows) and known_by(name):
+            if len(rows):
                 found.append(Switch(name, rows, known_by(name)))
         return tuple(found)
+
+    @cached_property
+    def _in_text(self) -> list[str]:
+        """The codes that begin the mode on other controls, of those that stand in the file, executed or not."""
+        polar, tables = self.trace.machine.polar, (self.trace.text.words, self.trace.run.words)
+        own = {*polar.on, *self.trace.machine.control.native_words}
+        names = [name for name in polar.on_of_other_controls if name not in own]
+        names = [name for name in names if any(self._of_name(name, words).any() for words in tables)]
+        return [name for name in names if known_by(name)]
 
     @cached_property
     def begins(self) -> Mask:
@@ -127,7 +134,7 @@ class OtherMode:
         """Per executed word: the code or word that begins the mode."""
         found = np.zeros(len(self.trace.run.words), bool)
         for switch in self.switches:
-            found |= self._named(switch.name) & np.isin(self.trace.run.row, switch.rows)
+            found |= self._of_name(switch.name, self.trace.run.words) & np.isin(self.trace.run.row, switch.rows)
         return found
 
     @cached_property
@@ -138,14 +145,15 @@ class OtherMode:
         """
         words = self.trace.text.words
         found = np.zeros(len(words), bool)
-        for switch in self.switches:
-            for profile in switch.known_by:
+        of_other_meaning = [] if self.switches else self.trace.machine.polar.on_of_other_meaning
+        for name in self._in_text:
+            for profile in known_by(name) if name not in of_other_meaning else ():
                 control, polar = profile.machine.control, profile.machine.polar
                 codes = code_set([*polar.on, *polar.off, *control.motion_codes])
                 of_g = words.address == ord("G")
                 found[of_g] |= codes[code_numbers(words.value[of_g])]
-                for name in control.native_words:
-                    found |= self._of_word(name, words)
+                for word in control.native_words:
+                    found |= self._of_name(word, words)
         return found
 
     @cached_property
@@ -159,18 +167,18 @@ class OtherMode:
 
     def _has(self, names: Iterable[str]) -> Mask:
         """Rows with one of these codes or words."""
-        rows = [self._rows(name) for name in dict.fromkeys(names)]
-        return _mask(self.trace, np.concatenate([np.zeros(0, np.int64), *rows]))
+        found = np.zeros(len(self.trace), bool)
+        for name in dict.fromkeys(names):
+            found |= self.trace.with_words(self._of_name(name, self.trace.run.words))
+        return found
 
-    def _rows(self, name: str) -> Rows:
-        """The rows with a code or word, in order."""
-        return np.flatnonzero(self.trace.with_words(self._named(name)))
-
-    def _named(self, name: str) -> Mask:
-        """Per executed word: is this code, or stands in this word."""
-        if is_code(name):
-            return self.trace.words_at(self.trace.code_indices(name))
-        return self._of_word(name, self.trace.run.words)
+    def _of_name(self, name: str, words: Words) -> Mask:
+        """Per word of the file, or executed word: is this code, or stands in this word."""
+        if not is_code(name):
+            return self._of_word(name, words)
+        found = words.address == ord("G")
+        found[found] = code_set([name])[code_numbers(words.value[found])]
+        return np.asarray(found)
 
     def _of_word(self, name: str, words: Words) -> Mask:
         """Per word: stands in this word of a control's own language, which reads as letters without digits here."""
