@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from polarcheck.checking.phrases.common import executed_word, switch_off
 from polarcheck.machines.codes import spelled
 from polarcheck.machines.machine import Machine
-from polarcheck.table.arcs import Arcs
 from polarcheck.reading.translation import shown
+from polarcheck.table.arcs import Arcs
 from polarcheck.table.infeed import Infeed
 from polarcheck.table.other_mode import OtherMode
 from polarcheck.table.trace import Trace
