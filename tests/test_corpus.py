@@ -46,7 +46,7 @@ JUDGED = [
     Judged("polar-nx-nl1500y-full-raw.nc", "fanuc", (), [(176, "warning", "z-with-plane-axis")]),
     Judged("polar-seed-gsk-o0001-single.nc", "gsk-988", ("2:radius=6",), []),
     Judged("polar-seed-gsk-o0001-single.nc", "gsk-988", R10, []),
-    Judged("polar-seed-gsk-o0002-cycle-e8.nc", "gsk-988", R10, [(29, "warning", "cancel-shorter-than-radius")]),
+    Judged("polar-seed-gsk-o0002-cycle-e8.nc", "gsk-988", R10, []),
     Judged("polar-seed-sample-two-flats.nc", "turning-center", ("8:radius=0",), []),
     Judged("polar-seed-flats-method-a.nc", "turning-center", ("1:radius=0.25",), [(28, "error", "bad-number")]),
     Judged("polar-seed-flats-method-b.nc", "turning-center", ("1:radius=0.25",), [(21, "error", "bad-number")]),

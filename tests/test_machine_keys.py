@@ -247,6 +247,7 @@ USES = {
     "compensation.read_ahead": Use(5, RAMPS.format("", "M8\nM9\n", ""), tools=CUTTER),
     "compensation.interference": Use("erase", REVERSED, tools=CUTTER),
     "compensation.tangent_tolerance": Use(0.5, APART, tools=CUTTER),
+    "compensation.leaving_cancels": Use(True, CORNERS.format(20, "X60. F200\nC5.\nG40\nG13.1\nG12.1"), tools=CUTTER),
     "compensation.nose_types": Use([0], RAMPS.format("", "", ""), tools=("1:radius=4,nose=9",)),
     "compensation.overcut_tolerance": Use(20, GOUGE, tools=CUTTER),
     "limits.c_feed": Use(100, FLAT),

@@ -354,7 +354,18 @@ def test_json_is_the_contract() -> None:
         *("files", "errors", "warnings", "notes", "silenced", "pass", "unverified", "fail")
     ]
     (checked,) = shown["files"]
-    keys = ["path", "machine", "programs", "blocks", "sections", "verdict", "polar_sections", "findings", "not_evaluated", "looked_at"]
+    keys = [
+        "path",
+        "machine",
+        "programs",
+        "blocks",
+        "sections",
+        "verdict",
+        "polar_sections",
+        "findings",
+        "not_evaluated",
+        "looked_at",
+    ]
     assert list(checked) == keys
     keys = "rule severity message line column end_line end_column block program section_line alarm values count source"
     assert list(checked["findings"][0]) == [*keys.split(), "fingerprint", "fix", "follows"]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 import pytest
-from programs import tables_of
+from programs import report_of, said, tables_of
 
 HEAD = "T0101\nG98 G0 X60. C0\nG12.1\n"
 
@@ -34,6 +34,12 @@ def lines(program: str, column: str, *tools: str, **more: object) -> list[int]:
         ("G1 G41 X40. F100\nC5.\nG40\nG41\nC-5.\nG40 X60.\nG13.1\n", [], [3]),
         ("G1 G41 X40. F100\nC5.\nG40\nZ5.\nX60.\nG13.1\n", [], []),
         ("G1 G41 X40. F100\nC5.\nG40\nG0 X60.\nG13.1\n", [], []),
+        # Words that name the present position are no move either.
+        ("G1 G42 X60. C0 F100\nX40.\nC5.\nG40 X40. C5.\nX60.\nG13.1\n", [], []),
+        ("G1 G42 X60. Z1. F100\nG13.1\n", [1], []),
+        ("G1 G42 U0 F100\nG40 X40.\nG13.1\n", [1], []),
+        ("G1 G41 X40. F100\nC5.\nG40 X40.\nG13.1\n", [], [3]),
+        ("G1 G41 X40. F100\nC5.\nG40 H0\nC5.\nG13.1\n", [], [3]),
         # Without a move there is no offset mode that G40 could end.
         ("G1 X40. F100\nG40\nG13.1\n", [], []),
         # The mode left in offset mode is a fault of its own.
@@ -65,10 +71,8 @@ def test_the_next_section_makes_up_for_nothing() -> None:
         ("X54. C4.", "1:radius=5.001", True),
         ("X52.002", "1:radius=-4", True),
         ("X52.", "1:radius=-4", False),
-        # No way at all needs no R to be called too short, but one of 0.
-        ("X60.", "1:radius=4", True),
-        ("X60.", "2:radius=4", True),
-        ("X60.", "1:radius=0", False),
+        # No way at all is no ramp: the next block that moves is.
+        ("X60.", "1:radius=4", False),
         ("X60.002", "2:radius=4", False),
     ],
 )
@@ -78,12 +82,12 @@ def test_moves_shorter_than_the_radius(move: str, tool: str, short: bool) -> Non
 
 
 def test_what_hangs_on_a_radius_that_is_not_known() -> None:
-    """Straight ramps of some length; one of none is judged without R, one on an arc is no ramp at all."""
+    """Straight ramps; a block without a move is none, and neither is an arc."""
     straight = "G1 G41 X40. F100\nC50.\nG40 X100.\nG13.1\n"
     assert lines(straight, "start_up_judged_by_radius") == [1]
     assert lines(straight, "cancel_judged_by_radius") == [3]
     standing = "G1 G41 X60. F100\nC50.\nG40 C50.\nG13.1\n"
-    assert lines(standing, "start_up_judged_by_radius") == []
+    assert lines(standing, "start_up_judged_by_radius") == [2]
     assert lines(standing, "cancel_judged_by_radius") == []
     on_arc = "G1 X50. F100\nG41 G3 X40. C5. I-5. J0\nG1 X20.\nG40 G2 X30. C0 R9.\nG13.1\n"
     assert lines(on_arc, "start_up_judged_by_radius") == []
@@ -92,6 +96,63 @@ def test_what_hangs_on_a_radius_that_is_not_known() -> None:
     unknown = tables_of("G98\nG12.1\nG1 G41 X40. F100\nC50.\nG40 X100.\nG13.1\n")
     assert math.isnan(unknown["trace"].length[2])
     assert unknown["ramps"].start_up_judged_by_radius.tolist() == [False] * 2 + [True] + [False] * 3
+
+
+#: A contour of lines about the center, from its start-up to its offset cancel, on a sound approach and retract.
+AROUND = "{start}G12.1\n{on}C10.\nX-40.\nC-10.\nX40.\nC0\n{off}G13.1\nG0 Z50.\nM30\n"
+ON_MM = ("O1\nG21 G40 G97 G98 G18\nT0101\nG0 X140. Z2. C0\n", "1:radius=6")
+ON_INCH = ("O1\nG20 G40 G97 G98 G18\nT0101\nG0 X140. Z.1 C0\n", "1:radius=.375")
+G40_ALONE, G40_STANDING = "G40\nX140.\n", "G40 X40. C0\nX140.\n"
+
+
+@pytest.mark.parametrize("machine", ["fanuc", "turning-center", "gsk-988"])
+@pytest.mark.parametrize(("start", "tool"), [ON_MM, ON_INCH], ids=["mm", "inch"])
+@pytest.mark.parametrize("off", ["G40 X140.\n", G40_ALONE, G40_STANDING, "G40 U0\nX140.\n"])
+@pytest.mark.parametrize(
+    "on",
+    [
+        "G01 G42 X140. C0 F50.\nG01 X40.\n",
+        "G1 G42 F50.\nX40.\n",
+        "G1 G42 U0 H0 F50.\nM8\nX40.\n",
+        "G42\nG1 Z-.1 F50.\nX40.\n",
+    ],
+)
+def test_a_block_that_moves_nothing_is_no_ramp(on: str, off: str, start: str, tool: str, machine: str) -> None:
+    report = report_of(
+        AROUND.format(start=start, on=on, off=off), machine, tool, only=("compensation", "motion", "feed")
+    )
+    assert [found for found in report.findings if found.severity != "note"] == []
+
+
+def test_the_move_after_a_standing_block_is_the_ramp() -> None:
+    """Of 5 mm along X, in diameters 10 mm, where 6 mm are asked for."""
+    program = AROUND.format(start=ON_MM[0], on="G1 X50. F500\nG42 X50. C0\nX40.\n", off="G40 X40.\nX50.\n")
+    assert said(report_of(program, "fanuc", ON_MM[1])) == [
+        (8, "start-up-shorter-than-radius"),
+        (15, "cancel-shorter-than-radius"),
+    ]
+
+
+def test_an_arc_after_a_standing_block_is_the_ramp() -> None:
+    program = "G1 X50. F200\nG42 X50.\nG3 X40. C5. I-5. J0\nG1 X20.\nG40 C20.\nG13.1\n"
+    assert said(report_of(HEAD + program, "fanuc", "1:radius=4")) == [(6, "start-up-on-arc")]
+
+
+@pytest.mark.parametrize("off", ["G40\n", "G40 X40.\n", "G40 X40. C0\n", "G40 U0\n"])
+@pytest.mark.parametrize(
+    ("machine", "severity"), [("fanuc", "error"), ("gsk-988", "note"), ("turning-center", "error")]
+)
+def test_a_cancel_that_never_comes(off: str, machine: str, severity: str) -> None:
+    program = AROUND.format(start=ON_MM[0], on="G1 G42 X40. F50.\n", off=off)
+    found = [(one.rule, one.severity) for one in report_of(program, machine, ON_MM[1]).findings if one.line == 12]
+    assert found == [("cancel-shorter-than-radius", severity)]
+
+
+def test_a_cancel_too_short_is_an_error_on_every_control() -> None:
+    program = AROUND.format(start=ON_MM[0], on="G1 G42 X40. F50.\n", off="G40 X45.\n")
+    for machine in ("fanuc", "gsk-988"):
+        (found,) = report_of(program, machine, ON_MM[1]).findings
+        assert (found.rule, found.severity) == ("cancel-shorter-than-radius", "error")
 
 
 @pytest.mark.parametrize(

@@ -15,9 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from polarcheck.arrays import Floats, Mask, Points, Rows, States
-from polarcheck.geometry.compensation_input import ZERO, Method, Path, Programmed, fits, moving_rows
+from polarcheck.geometry.compensation_input import Method, Path, Programmed, fits, moving_rows
 from polarcheck.geometry.offset_vectors import Vectors, end_vectors
-from polarcheck.geometry.tolerances import ROUNDING
+from polarcheck.geometry.tolerances import ROUNDING, ZERO
 from polarcheck.machines.modal import Motion
 
 __all__ = ["Method", "Path", "Phase", "ToolPath", "tool_center_path"]

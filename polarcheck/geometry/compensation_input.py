@@ -9,11 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from polarcheck.arrays import Floats, Mask, Points, Rows, States
-from polarcheck.geometry.tolerances import ROUNDING
+from polarcheck.geometry.tolerances import ROUNDING, ZERO
 from polarcheck.machines.modal import Motion, Side
-
-#: A length below this [mm] is no movement.
-ZERO = 1e-9
 
 
 class Method(msgspec.Struct, frozen=True):

@@ -4,3 +4,5 @@ from __future__ import annotations
 
 #: What the arithmetic may shift a point by [mm]; a thousandth of the least increment.
 ROUNDING = 1e-6
+#: A length below this [mm] is no movement.
+ZERO = 1e-9

@@ -149,6 +149,7 @@ class Compensation(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fie
     read_ahead: blocks that the control knows in advance; all but two of them may be without a move
     interference: alarm or erase: what the control does about interference
     tangent_tolerance: turn up to which two blocks are tangent to each other [rad]
+    leaving_cancels: whether G13.1 takes back an offset after whose G40 nothing has moved
     nose_types: nose types, T of the offset table, of a tool whose center is programmed
     overcut_tolerance: how deep the tool may cut into the contour before it is reported [mm]
     """
@@ -158,6 +159,7 @@ class Compensation(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fie
     read_ahead: int
     interference: Literal["alarm", "erase"]
     tangent_tolerance: float
+    leaving_cancels: bool
     nose_types: list[int]
     overcut_tolerance: float
 

@@ -27,7 +27,7 @@ def loop_of_row(trace: Trace) -> Rows:
     A loop reaches from a start-up to its offset cancel, and a Z move in it begins another one: the same contour at
     another depth is another loop.
     """
-    begins = trace.starts_up | (trace.moves_z & ~trace.moves_plane)
+    begins = trace.starts_up | (trace.moves_z & ~trace.travels)
     return np.where(trace.compensates, np.cumsum(begins), -1)
 
 
@@ -140,8 +140,8 @@ def _curves(moves: Moves, loop: Rows, chosen: Mask) -> Curves:
 
 def _at_depth(trace: Trace, row: Rows) -> Mask:
     """Whether a ramp is at the depth of the contour: the block of the contour beside it is no Z move."""
-    moves_z = trace.moves_z & ~trace.moves_plane
-    moving = np.flatnonzero(trace.in_polar & (trace.moves_plane | moves_z))
+    moves_z = trace.moves_z & ~trace.travels
+    moving = np.flatnonzero(trace.in_polar & (trace.travels | moves_z))
     at = np.searchsorted(moving, row)
     above = moving[np.maximum(at - 1, 0)]
     below = moving[np.minimum(at + 1, len(moving) - 1)] if len(moving) else row
@@ -156,7 +156,7 @@ def objected(trace: Trace, tool_center: ToolCenter) -> Mask:
     """
     rows = tool_center.inside_arc_too_small | tool_center.interferes | tool_center.no_intersection
     rows |= tool_center.movement_missing | tool_center.arc_center_on_path
-    moving = np.flatnonzero(trace.in_polar & trace.moves_plane)
+    moving = np.flatnonzero(trace.travels)
     on = rows[moving]
     near = on.copy()
     near[1:] |= on[:-1]

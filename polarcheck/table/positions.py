@@ -13,6 +13,7 @@ import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Points, Rows, States
 from polarcheck.geometry import polar
+from polarcheck.geometry.tolerances import ZERO
 from polarcheck.machines.code_lists import numbers
 from polarcheck.machines.modal import Distance, Motion
 from polarcheck.table.filling import before, fill_down, positions
@@ -308,6 +309,17 @@ class Positions(Lengths):
     def is_arc(self) -> Mask:
         """An arc on the polar plane."""
         return self.in_polar & self.moves_plane & np.isin(self.motion, (Motion.CW, Motion.CCW))
+
+    @cached_property
+    def travels(self) -> Mask:
+        """
+        A move on the polar plane of some length, round a full circle, or of a length that is not known.
+
+        Words that name the present position are no movement (B-63664EN p. 170), nor is an arc by R to its start.
+        """
+        still = np.abs(self.end - self.start) <= ZERO
+        is_full = self.is_arc & ~np.isnan(self.center)
+        return np.asarray(self.in_polar & self.moves_plane & (~still | is_full))
 
     @cached_property
     def length(self) -> Floats:

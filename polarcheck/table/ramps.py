@@ -46,14 +46,14 @@ class Ramps:
     def start_up_missing(self) -> Mask:
         """G41 or G42 after which nothing moves on the plane before G40 or the end of the mode."""
         trace = self.trace
-        begins = trace.in_polar & trace.writes_side & ~trace.moves_plane & (trace.side_before == Side.OFF)
+        begins = trace.in_polar & trace.writes_side & ~trace.travels & (trace.side_before == Side.OFF)
         return self._without_move(begins & ~trace.offset_mode, trace.writes_cancel | ~trace.in_polar, trace.starts_up)
 
     @cached_property
     def cancel_missing(self) -> Mask:
         """A G40 after which nothing moves on the plane before the mode is left or compensation begins again."""
         trace = self.trace
-        ends = trace.writes_cancel & ~trace.moves_plane & (trace.side_before != Side.OFF)
+        ends = trace.writes_cancel & ~trace.travels & (trace.side_before != Side.OFF)
         return self._without_move(
             ends & trace.offset_mode,
             trace.writes_side | ~trace.in_polar,
@@ -65,7 +65,7 @@ class Ramps:
         if not rows.any():
             return rows
         trace = self.trace
-        events = np.flatnonzero((trace.in_polar & trace.moves_plane) | ends)
+        events = np.flatnonzero(trace.travels | ends)
         at = np.flatnonzero(rows)
         found = np.append(events, len(trace))[np.searchsorted(events, at, side="right")]
         alone = np.zeros(len(trace), bool)
@@ -74,20 +74,19 @@ class Ramps:
 
     @cached_property
     def shorter_than_radius(self) -> Mask:
-        """The row moves less than R on the plane; of a row that moves nothing it is enough that R is not known as 0."""
+        """The row moves, and less than R on the plane."""
         trace = self.trace
-        stands = (trace.length == 0) & (trace.radius != 0)
-        return np.asarray(stands | (trace.length < np.abs(trace.radius) - ROUNDING))
+        return np.asarray(trace.travels & (trace.length < np.abs(trace.radius) - ROUNDING))
 
     @cached_property
     def start_up_judged_by_radius(self) -> Mask:
-        """Start-ups that nothing can be said of without R: straight, and of some length or an unknown one."""
-        return np.asarray(self.trace.starts_up & ~self.trace.is_arc & (self.trace.length != 0))
+        """Start-ups that nothing can be said of without R: straight ones."""
+        return np.asarray(self.trace.starts_up & ~self.trace.is_arc)
 
     @cached_property
     def cancel_judged_by_radius(self) -> Mask:
         """Offset cancels likewise."""
-        return np.asarray(self.trace.cancels & ~self.trace.is_arc & (self.trace.length != 0))
+        return np.asarray(self.trace.cancels & ~self.trace.is_arc)
 
     @cached_property
     def used(self) -> Floats:
@@ -110,7 +109,7 @@ class Ramps:
     @cached_property
     def compensated(self) -> Mask:
         """Moves on the plane with compensation in force."""
-        return np.asarray(self.trace.compensates & self.trace.moves_plane)
+        return np.asarray(self.trace.compensates & self.trace.travels)
 
     @cached_property
     def arc_radius(self) -> Floats:
@@ -127,7 +126,7 @@ class Ramps:
         ramp on an arc, and another G41 or G42 have rules of their own, and explain what does not fit beside them.
         """
         trace, tool_center = self.trace, self.tool_center
-        moving = np.flatnonzero(trace.in_polar & trace.moves_plane)
+        moving = np.flatnonzero(trace.travels)
         on_arc = trace.is_arc & (trace.starts_up | trace.cancels)
         cause = (tool_center.inside_arc_too_small | on_arc | self.writes_side_again)[moving]
         faulty = (tool_center.no_intersection | tool_center.interferes)[moving]

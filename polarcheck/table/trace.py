@@ -107,12 +107,12 @@ class Trace(Positions):
     @cached_property
     def on_plane(self) -> Mask:
         """
-        A move on the polar plane, be it in rapid traverse; a cycle is none.
+        A move on the polar plane, be it in rapid traverse; a cycle is none, and neither is a move of no length.
 
         At G0 most controls alarm. A start-up or offset cancel in it is one nevertheless: what was meant is G1, and
         compensation itself asks for G0 or G1 (B-63324EN/03 p. 402).
         """
-        return np.asarray(self.in_polar & self.moves_plane & ~self.in_cycle)
+        return np.asarray(self.travels & ~self.in_cycle)
 
     @cached_property
     def cuts(self) -> Mask:
@@ -132,7 +132,7 @@ class Trace(Positions):
     @cached_property
     def side_of_move_before(self) -> States:
         """Compensation of the last row above that moved on the plane in this section."""
-        fixed = (self.in_polar & self.moves_plane) | self.enters
+        fixed = self.travels | self.enters
         side = fill_down(np.where(self.enters, Side.OFF, self.side).astype(np.int8), fixed, Side.OFF)
         return before(side, self.starts, Side.OFF).astype(np.int8)
 

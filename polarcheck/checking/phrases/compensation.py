@@ -41,16 +41,14 @@ def _along(trace: Trace, row: int, length: float) -> str:
 
 
 def fault(trace: Trace, row: int) -> str:
-    """What is wrong with a ramp that is shorter than R, or has no length at all."""
-    if not trace.moves_plane[row]:
+    """What is wrong with a ramp that is shorter than R, or never comes."""
+    if not trace.travels[row]:
         code = trace.machine.codes("compensation_off")[0] if trace.writes_cancel[row] else side(trace, row)
         return f"is missing: no move on the plane follows {code}"
     radius = abs(float(trace.radius[row]))
     shown = in_row(radius, trace, row)
-    if trace.length[row] > 0:
-        moved = _along(trace, row, float(trace.length[row]))
-        return f"moves {moved}; with R {shown:length} it needs {_along(trace, row, radius)}"
-    return "does not move the tool" + (f"; it has to move R, {shown:length}, on the plane" if radius == radius else "")
+    moved = _along(trace, row, float(trace.length[row]))
+    return f"moves {moved}; with R {shown:length} it needs {_along(trace, row, radius)}"
 
 
 def why(trace: Trace, row: int) -> str:

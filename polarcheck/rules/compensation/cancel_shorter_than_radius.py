@@ -1,7 +1,7 @@
 from __future__ import annotations
 
 from polarcheck.checking.causes import SECTION_READ_OTHERWISE
-from polarcheck.checking.rule import ERROR, Mask, Ramps, Trace, rule
+from polarcheck.checking.rule import ERROR, Hits, Machine, Ramps, Trace, graded, rule
 
 
 @rule(
@@ -12,14 +12,15 @@ from polarcheck.checking.rule import ERROR, Mask, Ramps, Trace, rule
     where="ramps.cancel_judged_by_radius",
     follows={"section": (*SECTION_READ_OTHERWISE, "polar-switched-in-offset-mode")},
 )
-def cancel_shorter_than_radius(trace: Trace, ramps: Ramps) -> Mask:
+def cancel_shorter_than_radius(trace: Trace, ramps: Ramps, machine: Machine) -> Hits:
     """
     Offset cancel shorter than the cutter radius.
 
     Cutter compensation is taken back in the G1 block with G40, or in the next one that moves. That block must move at
     least the R of the tool offset: along X twice R where X is a diameter, along C once R, at an angle R on the plane.
     After a shorter one, or a G40 after which nothing moves on the plane, the tool is not where the program takes it to
-    be, and it may turn back into the contour.
+    be, and it may turn back into the contour. A block that names the present position is no move. Where the manual of
+    the control leaves the mode so, a G40 without a move is a note.
 
     Source: builder's guide to G12.1, cutter compensation function and sample program.
 
@@ -45,6 +46,18 @@ def cancel_shorter_than_radius(trace: Trace, ramps: Ramps) -> Mask:
         G40                (expect: cancel-shorter-than-radius)
         G13.1
 
+    Bad, machine gsk-988, tool 2:radius=4:
+
+        T0202
+        G0 X60. C0
+        G12.1
+        G1 G42 X40. F200
+        C10.
+        X-40.
+        C0
+        G40 X-40.          (expect: cancel-shorter-than-radius)
+        G13.1
+
     Good, tool 8:radius=9.525:
 
         T0808
@@ -60,4 +73,7 @@ def cancel_shorter_than_radius(trace: Trace, ramps: Ramps) -> Mask:
     """
     short = trace.cancels & ~trace.is_arc & ramps.shorter_than_radius
     # With R 0 an offset cancel needs no length; an R that is not known is not 0.
-    return short | (ramps.cancel_missing & (trace.radius != 0))
+    missing = ramps.cancel_missing & (trace.radius != 0)
+    if machine.compensation.leaving_cancels:
+        return graded(error=short, note=missing)
+    return graded(error=short | missing)

@@ -19,7 +19,7 @@ def start_up_shorter_than_radius(trace: Trace, ramps: Ramps) -> Mask:
     Cutter compensation is built up in the G1 block with G41 or G42, or in the next one that moves. That block must move
     at least the R of the tool offset: along X twice R where X is a diameter, along C once R, at an angle R on the
     plane. A shorter one starts inside the offset and cuts into the contour, or turns the tool back. A G41 after which
-    nothing moves before G40 or G13.1 builds up nothing.
+    nothing moves before G40 or G13.1 builds up nothing; a block that names the present position is no move.
 
     Source: builder's guide to G12.1, cutter compensation function.
 
@@ -42,6 +42,17 @@ def start_up_shorter_than_radius(trace: Trace, ramps: Ramps) -> Mask:
         G1 C13. F1500
         G41                (expect: start-up-shorter-than-radius)
         G13.1
+
+    Good, tool 1:radius=6:
+
+        T0101
+        G98 G0 X140. C0
+        G112
+        G1 G41 X140. C0 F500
+        X40.
+        C-13.
+        G40 X140.
+        G113
 
     Good, tool 8:radius=9.525:
 
