@@ -43,6 +43,47 @@ def test_a_stop_at_the_center_is_reported_once() -> None:
     assert said(report("O1\nG98 G0 X0 C0\nG12.1\nG1 X60. F200\nC5.\n")) == [(4, "path-through-center")]
 
 
+ALONG_Z = "G1 X40. C16. F200\nZ-8.\n{}\nG1 X60.\n"
+INCH_ALONG_Z = "G20\nG1 X2. C.8 F8.\nZ-.3\n{}\nG1 X3.\n"
+
+
+@pytest.mark.parametrize(
+    ("program", "arc"),
+    [
+        # 16 mm along C, which 5 mm do not reach: an arc of C and Z.
+        (ALONG_Z, "G2 C0. Z-10. R5."),
+        (ALONG_Z, "G3 X20. Z-10. R4."),
+        (ALONG_Z, "G2 X30. W-2. R-2."),
+        (ALONG_Z, "G2 H-16. Z-10. J-5."),
+        (ALONG_Z, "G2 X36. Z-10. I-2. K0."),
+        (ALONG_Z, "G3 X36. Z-10. I-2. K-2."),
+        (ALONG_Z, "G3 X36. Z-10. K-2."),
+        (ALONG_Z, "G2 C0. Z-10."),
+        # C stays: by R that is no arc of the plane.
+        (ALONG_Z, "G2 C16. Z-10. R2."),
+        (INCH_ALONG_Z, "G2 C0. Z-.4 R.2"),
+        (INCH_ALONG_Z, "G3 X1.2 Z-.4 R.1"),
+    ],
+)
+def test_an_arc_of_z_and_one_axis_is_an_arc_of_another_plane(program: str, arc: str) -> None:
+    found = report(ENTRY + program.format(arc))
+    (line,) = (number for number, text in enumerate((ENTRY + program.format(arc)).split("\n"), 1) if text == arc)
+    assert said(found) == [(line, "arc-off-polar-plane")]
+    assert found.findings[0].alarm == "PS0021"
+
+
+@pytest.mark.parametrize(
+    "arc", ["G2 C0. Z-10. R8.", "G2 C0. Z-10. R20.", "G2 C0. Z-10. J-8.", "G3 X20. Z-10. R5.", "G2 C0. W-2. I0 J-8."]
+)
+def test_an_arc_whose_other_axis_stays_is_a_helix(arc: str) -> None:
+    assert said(report(ENTRY + ALONG_Z.format(arc))) == [(6, "helical-arc-in-polar")]
+
+
+def test_a_helix_of_both_axes_that_is_no_circle_is_said_to_be_none() -> None:
+    arc = "G2 X30. C0. Z-10. R5."
+    assert said(report(ENTRY + ALONG_Z.format(arc))) == [(6, "arc-radius-too-small"), (6, "helical-arc-in-polar")]
+
+
 def test_helical_arcs_are_errors_where_the_builder_forbids_them() -> None:
     program = ENTRY + "G1 X40. C10. F5.\nG3 X20. C20. R10. Z-1.\n"
     severity = {name: report(program, name=name).findings[-1].severity for name in ("fanuc", "turning-center")}

@@ -88,8 +88,26 @@ class Arcs:
         return np.where(self.by_radius, self.trace.length_of(self.trace.machine.arcs.radius_word), np.nan)
 
     @cached_property
+    def is_off_plane(self) -> Mask:
+        """
+        Arcs along Z: with no word of the plane, or with one axis of it where no arc of the plane fits.
+
+        Where one fits, the axis that stays where it is was left out, and Z makes a helix of it.
+        """
+        trace, polar = self.trace, self.trace.machine.polar
+        one_axis = trace.has("X", "U") ^ trace.has(polar.virtual_axis, polar.virtual_axis_incremental)
+        to_start = self.by_radius & self.ends_at_start
+        fits_none = ~self.has_word_of_plane | (one_axis & (self._misses_circle | to_start))
+        return np.asarray(self.in_force & trace.moves_z & fits_none)
+
+    @cached_property
     def is_no_circle(self) -> Mask:
         """Arcs about which a finding says that there is no such circle; what follows from their shape means nothing."""
+        return np.asarray(self._misses_circle | self.is_off_plane)
+
+    @cached_property
+    def _misses_circle(self) -> Mask:
+        """Arcs whose center or radius is missing, of another plane, or does not fit their ends."""
         trace, tolerance = self.trace, self.trace.machine.arcs.tolerance
         no_center = ~self.by_radius & ~self.by_center & ~self.ends_at_start
         return np.asarray(
@@ -121,7 +139,7 @@ class Arcs:
         since a quarter of a circle without its C fits by chance. Arcs by R fit often, so that they speak only where
         there are several, and none of them does.
         """
-        trace, arc = self.trace, np.flatnonzero(self.trace.is_arc)
+        trace, arc = self.trace, np.flatnonzero(self.trace.is_arc & ~self.is_off_plane)
         if not len(arc):
             return np.zeros(len(trace), bool)
         tolerance = trace.machine.arcs.tolerance

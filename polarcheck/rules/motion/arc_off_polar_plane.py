@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Arcs, Mask, Trace, rule
+from polarcheck.checking.rule import ERROR, Arcs, Mask, rule
 
 
 @rule(
@@ -8,12 +8,14 @@ from polarcheck.checking.rule import ERROR, Arcs, Mask, Trace, rule
     "arc along Z; in the polar mode arcs lie in the plane of X and C",
     at=("arc_clockwise", "arc_counterclockwise", "Z", "W"),
 )
-def arc_off_polar_plane(trace: Trace, arcs: Arcs) -> Mask:
+def arc_off_polar_plane(arcs: Arcs) -> Mask:
     """
     Arc along Z in the polar mode.
 
     In the mode G2 and G3 are arcs of X and C. A block of theirs with Z and neither X nor C is no such arc, and the
-    control stops with an alarm. Often it is a move of Z behind an arc, where G1 was forgotten.
+    control stops with an alarm. Often it is a move of Z behind an arc, where G1 was forgotten. With Z and only one of X
+    and C it is an arc of another plane, too, unless an arc of X and C fits it: then it is a helix, and the axis that
+    stays where it is was left out.
 
     Source: FANUC alarm 021; B-62764EN/01, p. 51.
 
@@ -35,6 +37,16 @@ def arc_off_polar_plane(trace: Trace, arcs: Arcs) -> Mask:
         G1 X60.
         G13.1
 
+    Bad:
+
+        G98 G0 X60. Z2. C0
+        G12.1
+        G1 X40. C16. F200
+        Z-8.
+        G2 C0. Z-10. R5.  (expect: arc-off-polar-plane)
+        G1 X60.
+        G13.1
+
     Good:
 
         G98 G0 X60. C0
@@ -44,4 +56,5 @@ def arc_off_polar_plane(trace: Trace, arcs: Arcs) -> Mask:
         G1 Z5.
         G13.1
     """
-    return arcs.in_force & trace.moves_z & ~arcs.has_word_of_plane
+    # Compares nothing: whether an arc of the plane fits is a formula, on which helical-arc-in-polar hangs as well.
+    return arcs.is_off_plane

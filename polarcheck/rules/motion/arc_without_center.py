@@ -3,7 +3,12 @@ from __future__ import annotations
 from polarcheck.checking.rule import ERROR, Arcs, Mask, Trace, rule
 
 
-@rule(ERROR, "arc without R, I or J", at=("arc_clockwise", "arc_counterclockwise", "X", "U", "C", "H"))
+@rule(
+    ERROR,
+    "arc without R, I or J",
+    at=("arc_clockwise", "arc_counterclockwise", "X", "U", "C", "H"),
+    unless=("arc-off-polar-plane",),
+)
 def arc_without_center(trace: Trace, arcs: Arcs) -> Mask:
     """
     Arc with neither radius nor center.

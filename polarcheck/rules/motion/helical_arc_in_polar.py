@@ -41,4 +41,4 @@ def helical_arc_in_polar(trace: Trace, arcs: Arcs) -> Mask:
         G1 X60.
         G13.1
     """
-    return arcs.in_force & trace.moves_z & arcs.has_word_of_plane
+    return arcs.in_force & trace.moves_z & ~arcs.is_off_plane
