@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from programs import trace_of
+from programs import report_of, said, trace_of
 
 NAN = math.nan
 
@@ -87,3 +87,42 @@ def test_side_and_ramps_of_a_section() -> None:
     assert np.flatnonzero(trace.cancels).tolist() == [6]
     assert np.flatnonzero(trace.offset_mode).tolist() == [4, 5, 6]
     assert np.flatnonzero(trace.cuts).tolist() == [3, 4, 5, 6, 10]
+
+
+# ---- H beside G43 is the number of an offset ----
+
+HEAD = "O1\nG21 G40 G97 G98 G18\nT0101\n"
+CUT = "G12.1\n{}G1 X40. F200\n{}C10.\nX60.\nG13.1\nG0 Z50.\nM30\n"
+LENGTH_OFFSETS = ["G43 H01", "G43 H1", "G44 H02.", "G49 H0", "H1 G43"]
+
+
+@pytest.mark.parametrize("block", LENGTH_OFFSETS)
+@pytest.mark.parametrize("at", [0, 1])
+@pytest.mark.parametrize("units", ["G21", "G20"])
+def test_a_length_offset_in_the_mode_moves_nothing_on_the_plane(block: str, at: int, units: str) -> None:
+    program = HEAD.replace("G21", units) + "G0 X60. Z2. C0\n" + CUT
+    blocks = ["", ""]
+    plain = trace_of(program.format(*blocks))
+    blocks[at] = f"{block}\n"
+    trace = trace_of(program.format(*blocks))
+    added = trace.listed("tool_length_offset", "tool_length_offset_off")
+    assert not trace.travels[added].any()
+    assert not trace.moves_plane[added].any()
+    np.testing.assert_array_equal(trace.end[~added], plain.end)
+    np.testing.assert_array_equal(trace.c_angle[~added], plain.c_angle)
+    found = report_of(program.format(*blocks), only=("polar", "compensation", "feed", "setup"))
+    assert said(found) == [(6 + at, "tool-length-offset-in-polar")]
+
+
+@pytest.mark.parametrize("block", LENGTH_OFFSETS)
+def test_a_length_offset_positions_no_c(block: str) -> None:
+    assert after(f"G0 C30.\n{block}\nH5.\n", "c_angle") == [30, 30, 35]
+    program = f"{HEAD}{block}\nG0 X60. Z2.\n" + CUT.format("", "")
+    assert (6, "c-angle-unknown-at-entry") in said(report_of(program))
+    assert "c-angle-unknown-at-entry" not in {rule for _, rule in said(report_of(program.replace("Z2.\n", "Z2. H0\n")))}
+
+
+def test_a_length_offset_is_no_word_of_the_other_axis() -> None:
+    """Haas calls the virtual axis Y, and C and H are words of other controls."""
+    program = HEAD.replace(" G18", "") + "G0 X60. Z2. C0\nG17\nG112\nG43 H01\nG1 X40. F200\nY10.\nX60.\nG113\nM30\n"
+    assert said(report_of(program, "haas-lathe", only=("polar",))) == []

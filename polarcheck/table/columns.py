@@ -49,10 +49,15 @@ class Columns:
 
     def word_indices(self, *addresses: str) -> Rows:
         """The words of an address, in order, then those of the next; `,R` is an address of its own."""
+        found = [self._words_of(address) for address in addresses]
+        return found[0] if len(found) == 1 else np.concatenate((np.zeros(0, np.int64), *found))
+
+    def _words_of(self, address: str) -> Rows:
         order, ends = self._by_address
-        numbers = [ord(address[1].lower()) if address[0] == "," else ord(address) for address in addresses]
-        found = [order[ends[number - 1] : ends[number]] for number in numbers]
-        return found[0] if len(found) == 1 else np.concatenate((order[:0], *found))
+        number = ord(address[1].lower()) if address[0] == "," else ord(address)
+        found = order[ends[number - 1] : ends[number]]
+        # H beside G43 is the number of an offset, and no increment of C.
+        return found[~self.switches_length_offset[self.run.row[found]]] if address == "H" and len(found) else found
 
     def words_at(self, indices: Rows) -> Mask:
         """Per executed word: whether it is one of these."""
@@ -133,6 +138,11 @@ class Columns:
     def state(self, group: str) -> States:
         """The state of a modal group in each row, after its own codes (modal.STATES)."""
         return self._column(f"state {group}", lambda: self._filled(group)[0])
+
+    @cached_property
+    def switches_length_offset(self) -> Mask:
+        """G43, G44, G49."""
+        return self.listed("tool_length_offset", "tool_length_offset_off")
 
     def has_state(self, group: str, codes: Sequence[str]) -> Mask:
         """Whether the state of a modal group is one that these codes set."""

@@ -23,7 +23,7 @@ class Lengths(Columns):
         """Per word: the end, the center or the radius of a move."""
         words = self.run.words
         is_length = np.isin(words.address, list(b"XYZCUVWHIJKR"))
-        is_offset_number = (words.address == ord("H")) & self.listed("tool_length_offset")[self.run.row]
+        is_offset_number = (words.address == ord("H")) & self.switches_length_offset[self.run.row]
         moves = self.uses_axes & ~self.in_cycle
         return np.asarray(is_length & ~is_offset_number & moves[self.run.row])
 
