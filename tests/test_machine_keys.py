@@ -274,7 +274,7 @@ USES = {
     "m_codes.spindle_on": Use([], before("M3")),
     "m_codes.spindle_off": Use([], before("M3", "M5")),
     "m_codes.tool_change": Use([], ENDED.format("M6")),
-    "m_codes.optional_stop": Use([], ENDED.format("M1")),
+    "m_codes.optional_stop": Use([], ENDED.format("G28 U0\nM1")),
     "m_codes.program_end": Use(["M30"], FLAT.replace("M30", "M2")),
     "m_codes.stops_reading_ahead": Use([], RAMPS.format("", "M1\n", ""), tools=CUTTER),
     "alarms": Use({"rapid-in-polar": "A1"}, inside("G0 X50.")),

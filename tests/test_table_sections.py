@@ -40,6 +40,17 @@ def sections(program: str) -> list[tuple[int, int, bool]]:
         ("G12.1\nG1 X40. F100\nC5.\nT0202\nG12.1\nG1 X40.\nC5.\nG13.1\nM30\n", [(1, 4, False), (5, 8, True)]),
         # A move in X alone after G28 does not bring the mode back.
         ("G12.1\nG1 X40. F100\nC5.\nG28 U0\nG1 X30.\nT0202\nM30\n", [(1, 4, False)]),
+        # M1 before the retract, or anywhere in the work of a tool, ends nothing.
+        ("G12.1\nG1 X40. F100\nC5.\nM1\nX60.\nG13.1\nM30\n", [(1, 6, True)]),
+        ("G12.1\nG1 X40. F100\nC5.\nM01\nG0 X60.\nG13.1\nM30\n", [(1, 6, True)]),
+        ("G12.1\nG1 X40. F100\nC5.\n/M1\nG13.1\nG0 X60.\nM30\n", [(1, 5, True)]),
+        # Behind a reference return it stands between two tools, and the G13.1 behind it at the head of the next one.
+        ("G12.1\nG1 X40. F100\nC5.\nX60.\nG30 U0 W0\nM1\nG40\nG13.1\nT0202\nM30\n", [(1, 5, False)]),
+        ("G12.1\nG1 X40. F100\nC5.\nG0 X60.\nM1\nT0202\nG13.1\nM30\n", [(1, 4, False)]),
+        ("G12.1\nG1 X40. F100\nC5.\nX60.\nM1\nT0202\nM30\n", [(1, 6, False)]),
+        # A program that begins with a switch begins another program: nothing of the one before reaches into it.
+        ("G12.1\nG1 X40. F100\nC5.\nO2 G12.1\nG1 X40.\nG13.1\nM30\n", [(1, 4, False), (4, 6, True)]),
+        ("G12.1\nG1 X40. F100\nC5.\nO2 G13.1\nM30\n", [(1, 4, False)]),
         # The G13.1 of another tool does not belong to it.
         ("G12.1\nG1 X40. F100\nC5.\nT0202\nG13.1\nM30\n", [(1, 4, False)]),
     ],
@@ -72,13 +83,14 @@ def marks(generator: np.random.Generator, count: int) -> Marks:
         return generator.random(count) < share
 
     on, off, cuts = some(0.2), some(0.15), some(0.4)
-    starts = some(0.05) & ~on & ~off
+    starts = some(0.05)
     return Marks(
         on=on & ~off,
         off=off,
         starts=starts,
         outside=some(0.05),
         tool_ends=some(0.05),
+        stops=some(0.05),
         rapid=some(0.2),
         cuts=cuts,
         moves=cuts | some(0.2),

@@ -13,8 +13,8 @@ class Marks(msgspec.Struct, frozen=True):
     Per row, what tells where the mode can and cannot be on.
 
     on, off: the switching codes. starts: a program begins. outside: codes that can only stand outside (reference
-    return). tool_ends: tool change, stop, program end. rapid: G0 is written. cuts: a cutting move with a word of the
-    virtual axis. moves: any cutting move in the plane. returns: M99.
+    return). tool_ends: tool change, program end. stops: M1, between two tools or in the work of one. rapid: G0 is
+    written. cuts: a cutting move with a word of the virtual axis. moves: any cutting move in the plane. returns: M99.
     """
 
     on: Mask
@@ -22,6 +22,7 @@ class Marks(msgspec.Struct, frozen=True):
     starts: Mask
     outside: Mask
     tool_ends: Mask
+    stops: Mask
     rapid: Mask
     cuts: Mask
     moves: Mask
@@ -53,7 +54,8 @@ def find_sections(marks: Marks) -> Sections:
 
     Where that was forgotten, the section ends as it was meant: before the first G0, reference return or tool change
     after the last cut, so that one missing word is one fault. Whether it was forgotten is seen by what follows the last
-    move of the virtual axis: a tool change or stop, the end of the program, or rapid traverse before another G12.1.
+    move of the virtual axis: a tool change, the end of the program, or rapid traverse before another G12.1. M1 says so
+    only behind a reference return: it then stands between two tools, and the G13.1 after it is one for safety.
     """
     count = len(marks.on)
     enter = np.flatnonzero(marks.on)
@@ -61,14 +63,16 @@ def find_sections(marks: Marks) -> Sections:
         return Sections(enter, enter, np.zeros(0, bool), np.zeros(0, bool), enter)
     closers = np.flatnonzero(marks.on | marks.off | marks.starts)
     end = _first_after(closers, enter, count)
-    closed_by = np.append(np.where(marks.off, 1, np.where(marks.on, 2, 3)), 3)[end]
+    # A program that begins with a switch, as in `O2 G12.1`, begins first of all.
+    closed_by = np.append(np.select([marks.starts, marks.off], [3, 1], 2), 3)[end]
     by_off, by_on, by_end = closed_by == 1, closed_by == 2, closed_by == 3
 
     last_cut = np.maximum(enter, _last_before(np.flatnonzero(marks.cuts), end))
     tool_end = _first_after(np.flatnonzero(marks.tool_ends), last_cut, count)
     outside = _first_after(np.flatnonzero(marks.tool_ends | marks.outside), last_cut, count)
     rapid = _first_after(np.flatnonzero(marks.tool_ends | marks.outside | marks.rapid), last_cut, count)
-    forgotten = (by_off & (tool_end < end)) | (by_on & (rapid < end)) | by_end
+    stop = _first_after(np.flatnonzero(marks.stops), outside, count)
+    forgotten = (by_off & (np.minimum(tool_end, stop) < end)) | (by_on & (rapid < end)) | by_end
     limit = np.minimum(np.where(by_on, rapid, outside), end)
     last_move = np.maximum(enter, _last_before(np.flatnonzero(marks.moves), limit))
     meant = np.minimum(
