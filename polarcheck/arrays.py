@@ -16,4 +16,4 @@ Points: TypeAlias = NDArray[np.complex128]
 #: Whole numbers: rows, words, blocks, lines, counts.
 Rows: TypeAlias = NDArray[np.int64]
 #: Small whole numbers: a state or a kind per row, such as Motion or Side.
-States: TypeAlias = NDArray[np.int8]
+States: TypeAlias = NDArray[np.int16]

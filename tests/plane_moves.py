@@ -12,7 +12,7 @@ from polarcheck.geometry.compensation import Path
 from polarcheck.machines.modal import Motion
 
 #: In the order of the fields of Path.
-PATH_TYPES = (np.int64, np.int8, np.bool_, *[complex] * 3, np.int8, np.bool_, np.float64, complex, np.bool_)
+PATH_TYPES = (np.int64, np.int16, np.bool_, *[complex] * 3, np.int16, np.bool_, np.float64, complex, np.bool_)
 
 
 def path_of_rows(rows: Iterable[tuple[Any, ...]]) -> Path:

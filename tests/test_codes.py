@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from programs import report_of, said, trace_of
 
 from polarcheck.machines.codes import NO_CODE, code, code_numbers, code_set, renumbered, spelled
 
@@ -29,3 +30,17 @@ def test_codes_of_other_numbers_are_read_as_what_they_mean() -> None:
     written = np.array([1010, 10, 1020, NO_CODE], np.int32)
     assert renumbered(written, {"G101": "G1", "G102": "G2"}).tolist() == [10, 10, 20, NO_CODE]
     assert renumbered(written, {}) is written
+
+
+@pytest.mark.parametrize("cycle", ["G81", "G127", "G128", "G256", "G283", "G999"])
+def test_a_code_of_any_number_is_a_state(cycle: str) -> None:
+    """A builder's cycle by a number above G127, which a column of bytes would hold as another number, or as none."""
+    changes = {"g_codes": {"drilling_cycle": ["G83", cycle]}}
+    program = f"O1\nG98 G0 X60. Z2. C0\n{cycle} Z-5. F100\nG12.1\nG1 X40.\nC10.\nX60.\nG13.1\nM30\n"
+    trace = trace_of(program, changes=changes)
+    assert trace.drilling.tolist() == [0, 0, *[int(cycle[1:])] * 2, *[0] * 5]
+    assert trace.in_cycle.tolist() == [False] * 2 + [True] * 2 + [False] * 5
+    (found,) = report_of(program, changes=changes, only=["modal-state-wrong-at-entry"]).findings
+    assert cycle in found.message
+    stopped = program.replace("G12.1", "G80\nG12.1")
+    assert said(report_of(stopped, changes=changes, only=["modal-state-wrong-at-entry"])) == []

@@ -572,7 +572,7 @@ def test_mirroring_swaps_g41_and_g42(program, rules):
     tool = tool_center_path(path_of(program), control(rules))
     mirrored = tool_center_path(path_of(transformed(program, mirror=True)), control(rules))
     assert flagged(mirrored) == flagged(tool)
-    swapped = np.array([0, 1, Motion.CCW, Motion.CW], dtype=np.int8)[tool.kind]
+    swapped = np.array([0, 1, Motion.CCW, Motion.CW], dtype=np.int16)[tool.kind]
     points = {name: getattr(tool, name).conj() for name in ("start", "end", "center")}
     assert_same(mirrored, replace(tool, kind=swapped, **points))
 

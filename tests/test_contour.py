@@ -324,7 +324,7 @@ def by_hand(*lines: tuple[complex, complex]) -> Curves:
     """Lines of one loop, rows from 1."""
     start, end = np.array(lines, dtype=complex).T
     count = len(lines)
-    kind, loops = np.full(count, Motion.LINE, dtype=np.int8), np.zeros(count, dtype=np.int64)
+    kind, loops = np.full(count, Motion.LINE, dtype=np.int16), np.zeros(count, dtype=np.int64)
     return Curves(start, end, np.full(count, NAN), kind, loops, np.arange(1, count + 1))
 
 
@@ -375,9 +375,9 @@ def test_a_gap_in_the_path_cuts_nothing() -> None:
 def test_an_arc_that_misses_its_end_is_followed_to_it() -> None:
     """The tool's path misses its circle alike; 3410 allows some hundredths."""
     contour = Curves(
-        *columns([(20, 0 + 20.02j, 0)]), np.array([Motion.CCW], np.int8), np.zeros(1, int), np.zeros(1, int)
+        *columns([(20, 0 + 20.02j, 0)]), np.array([Motion.CCW], np.int16), np.zeros(1, int), np.zeros(1, int)
     )
-    path = Curves(*columns([(25, 0 + 25.02j, 0)]), np.array([Motion.CCW], np.int8), np.zeros(1, int), np.zeros(1, int))
+    path = Curves(*columns([(25, 0 + 25.02j, 0)]), np.array([Motion.CCW], np.int16), np.zeros(1, int), np.zeros(1, int))
     left = np.array([False])
     assert len(overcuts(contour, left, path, np.full(1, 5.0)).row) == 0
     assert overcuts(contour, left, path, np.full(1, 5.01)).depth == pytest.approx([0.01], abs=0.001)

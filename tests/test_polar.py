@@ -34,7 +34,7 @@ class Move(NamedTuple):
 
 def columns(*moves: Move) -> tuple[Any, ...]:
     start, end, center, kind = zip(*moves, strict=True) if moves else [()] * 4
-    return (*(np.array(points, dtype=complex) for points in (start, end, center)), np.array(kind, dtype=np.int8))
+    return (*(np.array(points, dtype=complex) for points in (start, end, center)), np.array(kind, dtype=np.int16))
 
 
 def sampled(move: Move, count: int = 10_001) -> np.ndarray:
@@ -378,13 +378,13 @@ def test_a_circle_whose_ends_differ_by_rounding_is_full() -> None:
 )
 def test_center_from_radius(end: complex, radius: float, kind: Motion, center: complex) -> None:
     found = polar.center_from_radius(
-        np.array([20 + 10j]), np.array([end]), np.array([radius]), np.array([kind], dtype=np.int8), 0.00101
+        np.array([20 + 10j]), np.array([end]), np.array([radius]), np.array([kind], dtype=np.int16), 0.00101
     )
     assert [found[0].real, found[0].imag] == pytest.approx([center.real, center.imag], nan_ok=True)
 
 
 def test_center_of_a_half_circle_whose_radius_is_short_by_rounding() -> None:
-    start, end, kind = np.array([0.1 + 0.2j]), np.array([7.3 - 4.9j]), np.array([CCW], dtype=np.int8)
+    start, end, kind = np.array([0.1 + 0.2j]), np.array([7.3 - 4.9j]), np.array([CCW], dtype=np.int16)
     radius = np.nextafter(np.abs(end - start) / 2, 0)
     assert polar.center_from_radius(start, end, radius, kind)[0] == pytest.approx(3.7 - 2.35j)
 
@@ -437,7 +437,7 @@ def test_unknown_stays_unknown(function: Any, more: Any, move: Move) -> None:
 @pytest.mark.parametrize(("function", "more"), PER_MOVE)
 def test_no_moves_give_nothing(function: Any, more: Any) -> None:
     empty = np.zeros(0, dtype=complex)
-    assert len(function(empty, empty, empty, np.zeros(0, dtype=np.int8), *more)) == 0
+    assert len(function(empty, empty, empty, np.zeros(0, dtype=np.int16), *more)) == 0
 
 
 @pytest.mark.parametrize("move", [Move(3 + 4j, 3 + 4j), Move(0, 0), Move(5, 5, 5, CCW)])

@@ -100,7 +100,7 @@ def graded(
     import numpy as np
 
     given = [(level, mask) for level, mask in ((NOTE, note), (WARNING, warning), (ERROR, error)) if mask is not None]
-    severity = np.zeros(len(given[0][1]), np.int8)
+    severity = np.zeros(len(given[0][1]), np.int16)
     for level, mask in given:
         severity[mask] = level
     return Hits(severity > 0, severity, at, values or {})

@@ -23,7 +23,7 @@ from polarcheck.machines.modal import Motion
 __all__ = ["Method", "Path", "Phase", "ToolPath", "tool_center_path"]
 
 _NOWHERE = complex(np.nan, np.nan)
-_KINDS = np.array([Motion.CW, Motion.LINE, Motion.CCW], dtype=np.int8)
+_KINDS = np.array([Motion.CW, Motion.LINE, Motion.CCW], dtype=np.int16)
 
 
 class Phase(enum.IntEnum):
@@ -40,8 +40,8 @@ class ToolPath(msgspec.Struct, frozen=True):
     The moves of the tool center in order, and what the control would object to.
 
     Per move, k of them. row: int[k], into Path; the block whose F applies: a line across a corner belongs to the latter
-    block. kind: int8[k], Motion LINE, CW or CCW. start, end, center: complex128[k] [mm], center NaN for lines; an arc
-    that ends where it starts is a full circle. phase: int8[k]. corner: bool[k], a line that the control adds between
+    block. kind: int16[k], Motion LINE, CW or CCW. start, end, center: complex128[k] [mm], center NaN for lines; an arc
+    that ends where it starts is a full circle. phase: int16[k]. corner: bool[k], a line that the control adds between
     two blocks. known: bool[k], False where a position or R is unknown and the move is therefore the programmed one.
 
     Per row of the Path, n of them, bool[n]. inside_arc_too_small: arc radius not above R on its inner side (PS0041).
@@ -272,7 +272,7 @@ def _along(programmed: Programmed, blocks: _Blocks) -> _Ways:
     """The blocks themselves; those that R has used up are left out."""
     on, before_on = programmed.on, programmed.before_on
     returns = (before_on | programmed.left_over) & ~on & ~programmed.is_arc
-    phase = np.full(len(on), Phase.CANCELLED, dtype=np.int8)
+    phase = np.full(len(on), Phase.CANCELLED, dtype=np.int16)
     phase[on & ~before_on] = Phase.START_UP
     phase[returns] = Phase.CANCEL
     phase[blocks.in_mode] = Phase.OFFSET
@@ -290,7 +290,7 @@ def _along(programmed: Programmed, blocks: _Blocks) -> _Ways:
         start=blocks.entry[kept],
         end=blocks.leave[kept],
         center=np.where(turning != 0, programmed.center[kept], _NOWHERE),
-        kind=_KINDS[turning.astype(np.int8) + 1],
+        kind=_KINDS[turning.astype(np.int16) + 1],
         phase=phase[kept],
         known=blocks.known[kept],
     )
@@ -305,8 +305,8 @@ def _lines(order: Rows, row: Rows, start: Points, end: Points, phase: NDArray[np
         start=start[kept],
         end=end[kept],
         center=np.full(len(kept), _NOWHERE),
-        kind=np.full(len(kept), Motion.LINE, dtype=np.int8),
-        phase=phase[kept].astype(np.int8),
+        kind=np.full(len(kept), Motion.LINE, dtype=np.int16),
+        phase=phase[kept].astype(np.int16),
         known=np.ones(len(kept), dtype=np.bool_),
     )
 

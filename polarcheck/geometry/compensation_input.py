@@ -42,11 +42,11 @@ class Path(msgspec.Struct, frozen=True):
     """
     Rows of the polar sections in order, one per executed block; all arrays of one length n.
 
-    section: int[n]. motion: int8[n], Motion of the row; RAPID counts as LINE.
+    section: int[n]. motion: int16[n], Motion of the row; RAPID counts as LINE.
     moves: bool[n], the row commands X or C, be it by no length; False for Z, M, S, T, dwell alone.
     start, end, center: complex128[n] [mm], programmed plane points; center NaN for lines; NaN = unknown.
     An arc without length and center, as by R with the end at the start, does not move.
-    side: int8[n], Side in force after the row's own code. side_written: bool[n], the row has G41 or G42 itself.
+    side: int16[n], Side in force after the row's own code. side_written: bool[n], the row has G41 or G42 itself.
     radius: float64[n] [mm], R of the offset in force, signed; NaN = unknown.
     cancel_vector: complex128[n], I + jJ beside G40, else NaN.
     stops_reading: bool[n], the control reads no further (M00, M01, M30, ...) before the row is done.

@@ -2,7 +2,7 @@
 The polar plane and the two machine axes behind it: X as a radius, and C.
 
 Moves come as arrays of one length n. start, end, center: complex128 [mm], plane points x + 1j*c, center NaN for lines.
-kind: int8, Motion LINE, CW or CCW; all else counts as LINE, a rapid being the worst case of its straight way.
+kind: int16, Motion LINE, CW or CCW; all else counts as LINE, a rapid being the worst case of its straight way.
 A line of no length is a point. An arc that ends where it starts is a full circle; its radius is that of its start.
 Unknown (NaN) in, unknown out; nothing is raised.
 

@@ -20,7 +20,7 @@ class Curves:
     """
     Curves of a contour or of a tool center path, n of them in the order in which they run.
 
-    start, end, center: complex128[n] [mm], center NaN for lines. kind: int8[n], Motion.
+    start, end, center: complex128[n] [mm], center NaN for lines. kind: int16[n], Motion.
     loop: int[n], number of the run of blocks from a start-up to its cancel at one depth. row: int[n], programmed row.
     """
 

@@ -65,7 +65,7 @@ def modal_tables(machine: Machine) -> tuple[tuple[str, ...], NDArray[np.uint8], 
 @functools.cache
 def _modal_tables(lists: Lists) -> tuple[tuple[str, ...], NDArray[np.uint8], States]:
     group_of = np.zeros(CODE_LIMIT + 1, np.uint8)
-    state_of = np.zeros(CODE_LIMIT + 1, np.int8)
+    state_of = np.zeros(CODE_LIMIT + 1, np.int16)
     for number, (states, of_group) in enumerate(zip(STATES.values(), lists, strict=True), 1):
         for state, words in zip(states.values(), of_group, strict=True):
             found = np.flatnonzero(code_set(words))

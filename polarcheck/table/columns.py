@@ -156,7 +156,7 @@ class Columns:
     def _filled(self, group: str) -> tuple[States, Mask]:
         names, group_of, state_of = self._modal
         written = np.zeros(len(self), bool)
-        values = np.full(len(self), _BEFORE.get(group, 0), np.int8)
+        values = np.full(len(self), _BEFORE.get(group, 0), np.int16)
         if group in names:
             chosen = group_of[self.g_codes] == names.index(group) + 1
             rows = self.run.row[self.g_words[chosen]]
@@ -165,7 +165,7 @@ class Columns:
         state = fill_down(values, written | self.starts, _BEFORE.get(group, 0))
         self._columns[f"sets {group}"] = written
         self._columns[f"state {group}"] = state
-        return state.astype(np.int8), written
+        return state.astype(np.int16), written
 
     # ---- place in the file ----
 
@@ -209,7 +209,7 @@ class Columns:
         """Units.INCH or Units.MM; where the program does not say, those of the job or the machine."""
         assumed = self.job.program_units or self.machine.control.units
         state = self.state("units")
-        return np.where(state == 0, Units.INCH if assumed == "inch" else Units.MM, state).astype(np.int8)
+        return np.where(state == 0, Units.INCH if assumed == "inch" else Units.MM, state).astype(np.int16)
 
     @cached_property
     def scale(self) -> Floats:

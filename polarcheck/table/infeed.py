@@ -100,7 +100,7 @@ class Infeed:
         trace, on = self.trace, contour[1:]
         start = trace.start[contour[0]]
         shape = (trace.start[on] - start, trace.end[on] - start, trace.center[on] - start)
-        kind = np.where(np.isnan(trace.center[on]), Motion.LINE, trace.motion[on]).astype(np.int8)
+        kind = np.where(np.isnan(trace.center[on]), Motion.LINE, trace.motion[on]).astype(np.int16)
         return float(np.nan_to_num(np.min(polar.nearest(*shape, kind))))
 
     def _simulated(self, row: int, moves_left: int) -> Floats:
@@ -139,7 +139,7 @@ class Infeed:
         path = replace(compensation_path(trace, rows), section=np.repeat(np.arange(len(found)), count))
         is_known = np.ones(len(rows), bool)
         if (path.side == Side.OFF).all():
-            side = np.full(len(rows), self._side_of_start(contour), np.int8)
+            side = np.full(len(rows), self._side_of_start(contour), np.int16)
             path = replace(path, side=side, radius=offset)
         else:
             # Of an unknown radius the pass shows where it lies to the contour, and is marked as not known.

@@ -20,7 +20,7 @@ class Moves(msgspec.Struct, frozen=True, dict=True):
     """
     One element per move, in order.
 
-    row: the row of the trace that it belongs to. section: its polar section. kind: int8, Motion. start, end, center:
+    row: the row of the trace that it belongs to. section: its polar section. kind: int16, Motion. start, end, center:
     plane points [mm]. feed: along the path [mm/min]. known: False where the radius or a position is unknown. phase:
     compensation.Phase. corner: a line that the control adds. entry: C angle at which each section begins [deg].
     """
@@ -163,7 +163,7 @@ def programmed_moves(trace: Trace) -> Moves:
         center=center,
         feed=trace.feed[row],
         known=~np.isnan(polar.length(start, end, center, kind)),
-        phase=np.zeros(len(row), np.int8),
+        phase=np.zeros(len(row), np.int16),
         corner=np.zeros(len(row), bool),
         entry=trace.section_entry,
     )
@@ -172,7 +172,7 @@ def programmed_moves(trace: Trace) -> Moves:
 def _kind(trace: Trace, row: Rows) -> States:
     """Motion of each move; an arc whose center is not known is followed along its chord."""
     kind = trace.motion[row]
-    return np.where(trace.is_arc[row] & np.isnan(trace.center[row]), Motion.LINE, kind).astype(np.int8)
+    return np.where(trace.is_arc[row] & np.isnan(trace.center[row]), Motion.LINE, kind).astype(np.int16)
 
 
 def compensation_path(trace: Trace, row: Rows) -> compensation.Path:

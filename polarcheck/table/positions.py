@@ -60,7 +60,7 @@ class Positions(Lengths):
         """What the row does with its axis words (Motion); NONE without axis words."""
         moving = self.moves_plane | self.moves_z | (self.uses_axes & self.has("C", "H", "Y", "V"))
         motion = np.where(self.in_cycle, Motion.CYCLE, self.state("motion"))
-        return np.where(moving, motion, Motion.NONE).astype(np.int8)
+        return np.where(moving, motion, Motion.NONE).astype(np.int16)
 
     @cached_property
     def moves(self) -> Mask:

@@ -92,12 +92,12 @@ class Trace(Positions):
         """Cutter compensation in force (Side); after a section it is off, be it that its G40 was forgotten."""
         written = self.sets("side")
         state = np.where(written, self.state("side"), Side.OFF)
-        return fill_down(state, written | self._rows(self.sections.leave) | self.starts, Side.OFF).astype(np.int8)
+        return fill_down(state, written | self._rows(self.sections.leave) | self.starts, Side.OFF).astype(np.int16)
 
     @cached_property
     def side_before(self) -> States:
         """Cutter compensation in force before the row."""
-        return before(self.side, self.starts, Side.OFF).astype(np.int8)
+        return before(self.side, self.starts, Side.OFF).astype(np.int16)
 
     @cached_property
     def compensates(self) -> Mask:
@@ -133,8 +133,8 @@ class Trace(Positions):
     def side_of_move_before(self) -> States:
         """Compensation of the last row above that moved on the plane in this section."""
         fixed = self.travels | self.enters
-        side = fill_down(np.where(self.enters, Side.OFF, self.side).astype(np.int8), fixed, Side.OFF)
-        return before(side, self.starts, Side.OFF).astype(np.int8)
+        side = fill_down(np.where(self.enters, Side.OFF, self.side).astype(np.int16), fixed, Side.OFF)
+        return before(side, self.starts, Side.OFF).astype(np.int16)
 
     @cached_property
     def offset_mode(self) -> Mask:
