@@ -126,3 +126,43 @@ def test_a_length_offset_is_no_word_of_the_other_axis() -> None:
     """Haas calls the virtual axis Y, and C and H are words of other controls."""
     program = HEAD.replace(" G18", "") + "G0 X60. Z2. C0\nG17\nG112\nG43 H01\nG1 X40. F200\nY10.\nX60.\nG113\nM30\n"
     assert said(report_of(program, "haas-lathe", only=("polar",))) == []
+
+
+# ---- the virtual axis under the address of another control ----
+
+SQUARE = "G1 X40. F200\n{0}10.\nX-40.\n{0}-10.\nX40.\n{1}10.\nX60.\n"
+AROUND = "O1\nG40 G97 G98\nT0101\nG0 X60. Z2. C0\n{2}\n" + SQUARE + "{3}\nG0 Z50.\nM30\n"
+
+
+@pytest.mark.parametrize(
+    ("machine", "parameters", "own", "others", "switches"),
+    [
+        ("fanuc", {}, "CH", "YV", ("G12.1", "G13.1")),
+        ("mitsubishi-m700", {"1517": 0}, "YV", "CH", ("G12.1", "G13.1")),
+        ("mitsubishi-m700", {"1517": 1}, "CH", "YV", ("G12.1", "G13.1")),
+        ("haas-lathe", {}, "YV", "CH", ("G112", "G113")),
+    ],
+)
+def test_a_wrong_address_of_the_virtual_axis_is_read_as_it_was_meant(
+    machine: str, parameters: dict[str, int], own: str, others: str, switches: tuple[str, str]
+) -> None:
+    """One finding for the section, and the path that the program means: no way through the center."""
+    changes = {"parameters": parameters}
+    right, wrong = (AROUND.format(*addresses, *switches) for addresses in (own, others))
+    meant, read = (trace_of(program, machine, changes=changes) for program in (right, wrong))
+    np.testing.assert_array_equal(read.end, meant.end)
+    np.testing.assert_array_equal(read.c_angle, meant.c_angle)
+    groups = ("polar", "compensation", "feed", "motion")
+    plain, found = (said(report_of(program, machine, changes=changes, only=groups)) for program in (right, wrong))
+    # H is an increment in G-code system A only.
+    others_said = [one for one in plain if one[1] != "incremental-word-of-other-code-system"]
+    assert found == sorted([*others_said, (7, "wrong-axis-address-in-polar")])
+
+
+def test_one_wrong_address_among_right_ones() -> None:
+    """A slip in one block; beside the right address the right one counts."""
+    program = AROUND.format("C", "H", "G12.1", "G13.1")
+    plain = trace_of(program)
+    for slip in ("C10.\nX-40.", "Y10.\nX-40."), ("C-10.", "Y-10."), ("H10.", "V10."), ("H10.", "H10. Y3."):
+        np.testing.assert_array_equal(trace_of(program.replace(*slip)).end, plain.end)
+        assert len(report_of(program.replace(*slip), only=("polar", "feed", "motion")).findings) == 1

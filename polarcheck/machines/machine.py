@@ -86,7 +86,7 @@ class Polar(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     words_beside_switch: addresses and codes that may stand in one block with those that switch; N may always
     virtual_axis: address of the virtual axis (hypothetical axis), a length
     virtual_axis_incremental: address of its incremental words
-    virtual_axis_of_other_controls: addresses that it has elsewhere and that are wrong here
+    virtual_axis_of_other_controls: addresses, absolute and incremental, that it has elsewhere and that are wrong here
     other_controls: the controls on which it has those addresses, as a message names them
     x: diameter or radius: what X words are in the mode
     virtual_axis_programming: radius or diameter: what words of the virtual axis are

@@ -10,7 +10,7 @@ LAST_DIGIT = 0.1
     WARNING,
     "arc of {arcs.sweep:.0f} deg; {machine.title} takes {machine.arcs.sweep_limit:.0f} in one block",
     at=("X", "U", "C", "H", "I", "J", "R"),
-    unless=("arc-off-polar-plane",),
+    follows={"block": ("arc-off-polar-plane",)},
 )
 def arc_sweep_above_limit(arcs: Arcs, machine: Machine) -> Mask:
     """

@@ -7,7 +7,7 @@ from polarcheck.checking.rule import ERROR, Arcs, Mask, Trace, rule
     ERROR,
     "arc without R, I or J",
     at=("arc_clockwise", "arc_counterclockwise", "X", "U", "C", "H"),
-    unless=("arc-off-polar-plane",),
+    follows={"block": ("arc-off-polar-plane",)},
 )
 def arc_without_center(trace: Trace, arcs: Arcs) -> Mask:
     """

@@ -3,7 +3,7 @@ from __future__ import annotations
 from polarcheck.checking.rule import ERROR, Arcs, Hits, Machine, Trace, rule
 
 
-@rule(ERROR, "{word} is not of the polar plane; the center is {center}", unless=("arc-off-polar-plane",))
+@rule(ERROR, "{word} is not of the polar plane; the center is {center}", follows={"block": ("arc-off-polar-plane",)})
 def arc_word_of_other_plane(trace: Trace, arcs: Arcs, machine: Machine) -> Hits:
     """
     Center of an arc with K.
