@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
-import pytest
+import math
 
+import pytest
+from programs import report_of, said, trace_of
+
+from polarcheck.checking.finding import FileReport
 from polarcheck.table.radius_comments import radius_in
 
 
@@ -30,3 +34,79 @@ from polarcheck.table.radius_comments import radius_in
 def test_radius_of_a_comment(comment: str, inch: bool, radius: float | None) -> None:
     found = radius_in(comment, inch)
     assert found == (None if radius is None else pytest.approx(radius))
+
+
+# ---- a comment that tells the cutter of a path of its center ----
+
+ASKED = {"radius_from_comments": True}
+INCH = "O1\nG20 G40 G97 G98 G18\nT0808 (3/4 DIA. CUTTER)\n"
+MM = "O1\nG21 G40 G97 G98 G18\nT0303 (D=20. END MILL)\n"
+#: A flat of 1 inch or 30 mm, from a start-up and to an offset cancel at given diameters.
+FLAT_INCH = "G0 X{0} Z.1 C0\nG12.1\nG1 C.5 F50.\nG41 X2. F7.\nC-.5\nG40 X{1} F50.\nG13.1\n"
+FLAT_MM = "G0 X{0} Z2. C0\nG12.1\nG1 C15. F500\nG41 X50. F200\nC-15.\nG40 X{1}\nG13.1\n"
+END = "G0 Z50.\nM30\n"
+
+
+def asked(program: str, *tools: str) -> FileReport:
+    return report_of(program + END, "fanuc", *tools, job=ASKED)
+
+
+def untaken(report: FileReport) -> list[tuple[str, int]]:
+    """What is not evaluated of ramps."""
+    return [(one.reason, one.blocks) for one in report.not_evaluated if one.rule == "start-up-shorter-than-radius"]
+
+
+@pytest.mark.parametrize(
+    ("program", "taken", "offset"),
+    [
+        (INCH + FLAT_INCH.format("2.6", "2.6"), "0.375 inch", 8),
+        (INCH + FLAT_INCH.format("2.4", "2.74"), "0.375 inch", 8),
+        (MM + FLAT_MM.format("65.", "65."), "10 mm", 3),
+        (MM + FLAT_MM.format("69.", "52."), "10 mm", 3),
+    ],
+)
+def test_ramps_all_shorter_than_the_cutter_are_those_of_its_center(program: str, taken: str, offset: int) -> None:
+    report = asked(program)
+    assert said(report) == [(3, "radius-from-comment")]
+    (note,) = report.findings
+    assert note.severity == "note"
+    assert note.values["taken"] == 0
+    assert f"in place of {taken}" in note.message
+    assert f"--tool {offset}:radius=" in note.message
+    ((reason, blocks),) = untaken(report)
+    assert f"R of offset {offset} is taken as 0" in reason
+    assert blocks == 2
+    assert report.verdict == "unverified"
+    trace = trace_of(program + END, job=ASKED)
+    assert set(trace.radius[trace.compensates]) == {0.0}
+    assert not math.isnan(trace.cutter_diameter[trace.compensates][0]), "the cutter itself has one"
+    # A radius of a job is believed.
+    told = asked(program, f"{offset}:radius={taken.split()[0]}")
+    assert {rule for _, rule in said(told)} == {"start-up-shorter-than-radius", "cancel-shorter-than-radius"}
+    assert untaken(told) == []
+
+
+@pytest.mark.parametrize(
+    ("program", "expected"),
+    [
+        # One ramp that is long enough for the cutter, and one that is not.
+        (MM + FLAT_MM.format("70.", "69."), [(9, "cancel-shorter-than-radius")]),
+        (INCH + FLAT_INCH.format("2.74", "2.75"), [(7, "start-up-shorter-than-radius")]),
+        (MM + FLAT_MM.format("70.", "70."), []),
+    ],
+)
+def test_where_one_ramp_is_long_enough_the_other_is_a_fault(program: str, expected: list[tuple[int, str]]) -> None:
+    report = asked(program)
+    assert said(report) == [(3, "radius-from-comment"), *expected]
+    assert f"{report.findings[0].values['taken']:.3f}" in ("10.000", "9.525")
+    assert untaken(report) == []
+
+
+def test_each_section_is_judged_by_its_own_ramps() -> None:
+    report = asked(MM + FLAT_MM.format("65.", "65.") + FLAT_MM.format("80.", "80."))
+    assert said(report) == [(3, "radius-from-comment")]
+    assert "but 0 in the polar mode of line 5" in report.findings[0].message
+    assert [blocks for _, blocks in untaken(report)] == [2]
+    # A section without ramps says nothing.
+    plain = "G0 X80. C0\nG12.1\nG1 X50. F200\nC5.\nX80.\nG13.1\n"
+    assert "in place of" in asked(MM + FLAT_MM.format("65.", "65.") + plain).findings[0].message

@@ -110,6 +110,20 @@ def _c_axis_without_limit(tables: Tables, rule: Rule) -> Iterator[NotEvaluated]:
     yield NotEvaluated(rule=rule.name, reason=f"{reason}: {remedy}", blocks=len(rows))
 
 
+def _ramps_of_center(tables: Tables, rule: Rule) -> Iterator[NotEvaluated]:
+    """The ramps of sections that are taken for paths of the tool center since they are all too short for a comment."""
+    trace: Trace = tables["trace"]
+    ramps = np.flatnonzero((trace.starts_up | trace.cancels) & trace.is_path_of_center)
+    first, counts = _groups(trace.offset_number[ramps])
+    for row, count in sorted(zip(ramps[first].tolist(), counts.tolist(), strict=True)):
+        number = int(trace.offset_number[row])
+        reason = (
+            f"R of offset {number} is taken as 0, since every ramp is shorter than the radius of its comment; whether "
+            f"they are too short is open: give --tool {number}:radius=... or [tools.{number}] radius in polarcheck.toml"
+        )
+        yield NotEvaluated(rule=rule.name, reason=reason, blocks=count)
+
+
 def _no_offset(what: str, key: str) -> Callable[[Trace, int], str]:
     def reason(trace: Trace, row: int) -> str:
         number = int(trace.offset_number[row])
@@ -165,4 +179,7 @@ _REASONS: dict[str, Callable[[Trace, int], str]] = {
     "trace.feed": _feed,
 }
 
-_SAID_OF: dict[str, Callable[[Tables, Rule], Iterator[NotEvaluated]]] = {"c-feed-above-limit": _c_axis_without_limit}
+_SAID_OF: dict[str, Callable[[Tables, Rule], Iterator[NotEvaluated]]] = {
+    "c-feed-above-limit": _c_axis_without_limit,
+    "start-up-shorter-than-radius": _ramps_of_center,
+}

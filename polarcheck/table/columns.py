@@ -276,7 +276,7 @@ class Columns:
         return {"mm": 1.0, "inch": MM_PER_INCH}[self.job.units] if self.job.units else self.scale
 
     @cached_property
-    def radius(self) -> Floats:
+    def radius_of_offset(self) -> Floats:
         """R of the tool offset in force [mm]; NaN where neither the job nor, if asked for, a comment knows it."""
         return np.where(np.isnan(self._radius_of_job), self._radius_of_comments, self._radius_of_job)
 
@@ -308,7 +308,7 @@ class Columns:
     def cutter_diameter(self) -> Floats:
         """Diameter of the cutter in force [mm], twice R where the job gives no other; NaN unknown."""
         given = self._offset_column({n: tool.diameter for n, tool in self.job.tools.items()}) * self.job_scale
-        return np.where(np.isnan(given) & (self.radius > 0), 2 * self.radius, given)
+        return np.where(np.isnan(given) & (self.radius_of_offset > 0), 2 * self.radius_of_offset, given)
 
     @cached_property
     def nose(self) -> Floats:

@@ -12,6 +12,7 @@ import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Rows, States
 from polarcheck.execution.programs import find_programs
+from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.machines.modal import FeedMode, Motion, Side
 from polarcheck.table.filling import before, fill_down
 from polarcheck.table.positions import Positions
@@ -147,6 +148,25 @@ class Trace(Positions):
         used = self.compensates & self.moves_plane
         last = fill_down(self.radius, used | self.starts, np.nan)
         return np.where(self.offset_mode & (self.side == Side.OFF), last, self.radius)
+
+    # ---- the radius that it takes ----
+
+    @cached_property
+    def is_path_of_center(self) -> Mask:
+        """
+        Rows of sections whose straight ramps are all shorter than the R that a comment gives.
+
+        The comment tells the cutter, and not what stands in the offset table: with R 0 the program is that of the tool
+        center, and then a ramp needs no length (builder's guide to G12.1, sample program).
+        """
+        ramps = (self.starts_up | self.cancels) & ~self.is_arc & self.radius_is_from_comment
+        short = ramps & (self.length < self.radius_of_offset - ROUNDING)
+        return np.asarray(self.anywhere_in_section(short) & ~self.anywhere_in_section(ramps & ~short))
+
+    @cached_property
+    def radius(self) -> Floats:
+        """R with which the rows are compensated [mm]; NaN where it is not known."""
+        return np.where(self.is_path_of_center, 0.0, self.radius_of_offset)
 
     # ---- feed ----
 

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from polarcheck.checking.other_machine import OtherMachine
+from polarcheck.checking.quantity import in_row
 from polarcheck.table.entry import Entry
 from polarcheck.table.trace import Trace
 
@@ -13,9 +16,35 @@ def name(entry: Entry, row: int) -> str:
     return " and ".join([*shifts, entry.trace.machine.codes("local_shift")[0]] if entry.local_shift[row] else shifts)
 
 
-def comment(trace: Trace, row: int) -> str:
-    """The comment that R was taken from."""
-    return trace.radius_comments[int(trace.offset_number[row])].comment
+def _sections_of_center(trace: Trace, row: int) -> tuple[list[int], bool]:
+    """Lines of the G12.1 of the sections of a T word in which R is taken as 0; whether it has no others with ramps."""
+    called = np.flatnonzero(trace.has("T"))
+    until = int(np.append(called, len(trace))[np.searchsorted(called, row, side="right")])
+    has_ramps = trace.enters & trace.anywhere_in_section(trace.starts_up | trace.cancels)
+    enters = row + np.flatnonzero(has_ramps[row:until])
+    of_center = trace.is_path_of_center[enters]
+    return trace.line[enters[of_center]].tolist(), bool(of_center.all())
+
+
+def taken(trace: Trace, row: int) -> float:
+    """R that is taken for the offset of a T word [mm]."""
+    lines, are_all = _sections_of_center(trace, row)
+    return 0.0 if lines and are_all else float(trace.radius_of_offset[row])
+
+
+def origin(trace: Trace, row: int) -> str:
+    """The comment that R was taken from, and where it is taken as 0 instead."""
+    comment = trace.radius_comments[int(trace.offset_number[row])].comment
+    lines, are_all = _sections_of_center(trace, row)
+    if not lines:
+        return f"from the comment: {comment}"
+    radius = f"{in_row(float(trace.radius_of_offset[row]), trace, row):length}"
+    shorter = "every ramp is shorter there, as on a path of the tool center"
+    remedy = f"give --tool {int(trace.offset_number[row])}:radius=..."
+    if are_all:
+        return f"in place of {radius} of the comment {comment}: {shorter}; {remedy}"
+    sections = f"{'line' if len(lines) == 1 else 'lines'} {', '.join(map(str, lines))}"
+    return f"from the comment {comment}, but 0 in the polar mode of {sections}: {shorter}; {remedy}"
 
 
 def fit(other_machine: OtherMachine) -> str:
