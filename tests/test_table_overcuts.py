@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from programs import tables_of
+from programs import report_of, said, tables_of
 
 from polarcheck.checking.tables import Tables
 from polarcheck.table.overcuts import Cuts, loop_of_row, objected
@@ -133,3 +133,45 @@ def test_a_loop_that_is_overcut_anyway_has_no_swept_corner() -> None:
     assert depths(tables, "sweep_depth") == {}
     wide = program.replace("C3.", "C5.").replace("C-3.\n", "C-5.\n")
     assert set(depths(tables_of(wide, "fanuc", "1:radius=4"), "sweep_depth")) == {5}
+
+
+# ---- radii that adjust a path of the tool center ----
+
+FLATS = """O1
+G20 G40 G97 G98 G18
+T0808
+G0 X2.15 Z.1 C0
+G12.1
+G1 C.5339 F60.
+G1 G41 X1.75 F7.
+Z-.88
+G1 C-.5339
+G2 X-1.75 R1.025 F60.
+G1 C.5339 F7.
+G1 G40 X-2.15 F60.
+G13.1
+G0 X2.5
+M30
+"""
+#: A square from the middle of its side and back, with the end over the beginning.
+SQUARE = (
+    "O1\nG21 G40 G97 G98 G18\nT0808\nG0 X90. Z2. C0\nG12.1\nG1 G42 X50. F200\nC25.\nX-50.\nC-25.\nX50.\nC25.\n"
+    "X-50.\nG40 C50.\nG13.1\nG0 X100.\nM30\n"
+)
+
+
+@pytest.mark.parametrize("radius", ["-.005", ".005", "0", "-.01", ".01", "-.0002", ".0002", "-.001"])
+@pytest.mark.parametrize("machine", ["fanuc", "haas-lathe", "gsk-988"])
+def test_an_adjusted_path_of_the_center_has_no_walls(radius: str, machine: str) -> None:
+    """The guide's own sample, an inch program; and a contour in mm, with as many mm and with inches."""
+    groups = ("compensation", "feed", "motion")
+    assert said(report_of(FLATS, machine, f"8:radius={radius}", only=groups)) == []
+    assert said(report_of(SQUARE, machine, f"8:radius={radius}", only=groups)) == []
+    in_mm = f"8:radius={float(radius) * 25.4:.4f}"
+    assert said(report_of(SQUARE, machine, in_mm, only=groups)) == []
+
+
+def test_a_cutter_on_the_wrong_side_is_one_all_the_same() -> None:
+    """A negative R exchanges the sides: a cutter of that size goes through the part."""
+    assert (12, "start-up-sweeps-contour") in said(report_of(FLATS, "fanuc", "8:radius=-.15"))
+    assert said(report_of(FLATS, "fanuc", "8:radius=.15", only=["compensation"])) == []

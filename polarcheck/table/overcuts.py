@@ -10,6 +10,7 @@ import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Points, Rows
 from polarcheck.geometry.compensation import Phase
+from polarcheck.geometry.tolerances import ADJUSTMENT, ROUNDING
 from polarcheck.machines.modal import Side
 from polarcheck.table.moves import Moves, programmed_moves
 from polarcheck.table.tool_center import ToolCenter
@@ -54,9 +55,18 @@ class Overcuts:
         self.tool_center = tool_center
 
     @cached_property
+    def _has_walls(self) -> Mask:
+        """
+        Rows whose R is known as that of a cutter, so that what is programmed is the wall of the part.
+
+        Of a path of the tool center, which a small R of either sign adjusts, neither side is one.
+        """
+        return np.asarray(np.abs(self.trace.radius) > ADJUSTMENT + ROUNDING)
+
+    @cached_property
     def _compensates(self) -> bool:
-        """Whether any section is compensated with a known R other than 0."""
-        return bool(np.any(self.trace.compensates & (np.abs(self.trace.radius) > 0)))
+        """Whether any section is compensated, and has walls."""
+        return bool(np.any(self.trace.compensates & self._has_walls))
 
     @cached_property
     def _loop(self) -> Rows:
@@ -105,7 +115,7 @@ class Overcuts:
 
     def _found(self, search: Callable[..., Overcut], loop: Rows, chosen: Mask) -> Cuts:
         """What a search of `contour` finds along the chosen moves of the tool center."""
-        path = _curves(self.tool_center.moves, loop, chosen)
+        path = _curves(self.tool_center.moves, loop, chosen & self._has_walls[self.tool_center.moves.row])
         radius, tolerance = np.abs(self.trace.radius[path.row]), self.trace.machine.compensation.overcut_tolerance
         found = search(*self._walls, path, radius, tolerance)
         return Cuts(path.row[found.move], found.row, found.depth, found.place)
