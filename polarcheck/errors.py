@@ -9,6 +9,13 @@ What can go wrong on our side. What is wrong in a program is a finding, never an
     `-- RuleError         a rule without severity, message, docstring: a bug in a rule file
 """
 
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+#: From a part of a name with fewer letters none is guessed.
+_LEAST = 3
+
 
 class PolarcheckError(Exception):
     """Base of all; its text is one line that names the file or option, the key, and what was meant."""
@@ -32,3 +39,21 @@ class JobError(PolarcheckError):
 
 class RuleError(PolarcheckError):
     """A rule file that is not a rule; found when the rules are loaded."""
+
+
+def suggestion(wrong: str, known: Iterable[str], most: int = 3) -> str:
+    """
+    `; did you mean fanuc-30i?`: the names that begin with what is written, in any case, else the one that is nearest,
+    else those that hold it; empty where there is none.
+    """
+    names = {name.lower(): name for name in known}
+    word = wrong.strip().lower()
+    near = [word] if word in names else [name for name in names if name.startswith(word)]
+    if not near or len(word) < _LEAST:
+        import difflib
+
+        near = difflib.get_close_matches(word, names, 1)
+    if not near and len(word) >= _LEAST:
+        near = [name for name in names if word in name]
+    *others, last = [names[name] for name in near[:most]] or [""]
+    return f"; did you mean {', '.join(others)}{' or ' if others else ''}{last}?" if last else ""

@@ -216,7 +216,32 @@ def test_a_reader_who_goes_away_changes_no_exit_code() -> None:
         (["--set", "limits.c_feed"], "expected TABLE.KEY=VALUE"),
         (["--tool", "radius=3"], "--tool radius=3: expected NUMBER:KEY=VALUE as in 8:radius=0.375"),
         (["--tool", "8:radus=3"], "--tool 8:radus=3: radus: did you mean radius?"),
-        (["--tool", "8:radius=big"], "--tool 8:radius=big: radius: expected"),
+        (["--tool", "8:radius=big"], "--tool 8:radius=big: radius: expected a number from -1000 to 1000, found 'big'"),
+        (["--tool", "1:radius=4,0"], "--tool 1:radius=4,0: radius: write 4.0, with a decimal point"),
+        (["--tool", "8:nose=0,radius=,375"], "radius: write .375, with a decimal point"),
+        (["--tool", "8:radius=4,5,nose=0"], "radius: write 4.5, with a decimal point"),
+        (["--tool", "T0808:radius=4"], "expected the offset number alone, as in 8:radius=0.375"),
+        (["--tool", "-1:radius=4"], "--tool -1:radius=4: expected NUMBER:KEY=VALUE"),
+        (["--tool", "0:radius=4"], "--tool 0:radius=4: expected the number of a tool offset, 8 for T0808, found 0"),
+        (["--tool", "8:radius=nan"], "radius: expected a number from -1000 to 1000, found nan"),
+        (["--tool", "8:diameter=inf"], "diameter: expected a number above 0, 2000 at most, found inf"),
+        (["--tool", "8:radius=1e308"], "radius: expected a number from -1000 to 1000, found 1e+308"),
+        (["--tool", "8:nose=12"], "nose: expected a whole number from 0 to 9, found 12"),
+        (["--tool", "8:mount=foo"], "mount: expected axial or radial, found 'foo'"),
+        (["--offsets", "big.txt"], "big.txt: offset 8: radius: expected a number from -1000 to 1000, found 1e+30"),
+        (["--offsets", "nose.txt"], "nose.txt: offset 8: nose: expected a whole number from 0 to 9, found 12"),
+        (["--set", "limits.c_feed=-5"], "--set: limits.c_feed: expected a number above 0, found -5"),
+        (["--set", "limits.c_feed=nan"], "--set: limits.c_feed: expected a number above 0, found nan"),
+        (["--set", "limits.z_maximum=inf"], "--set: limits.z_maximum: expected a number, found inf"),
+        (
+            ["--set", "severities.rapid=off"],
+            "--set: severities.rapid: unknown rule 'rapid'; did you mean rapid-in-polar?",
+        ),
+        (["--machine", "haas"], "unknown machine 'haas'; did you mean haas-lathe?"),
+        (["--subprograms", "gone"], "'gone' does not exist"),
+        (["--subprograms", "a.nc"], "'a.nc' is a file"),
+        (["--max-seconds", "nan"], "'--max-seconds': expected a number above 0, found nan"),
+        (["--max-seconds", "inf"], "'--max-seconds': expected a number above 0, found inf"),
         (["--offsets", "gone.txt"], "'gone.txt' does not exist"),
         (["--offsets", "a.nc"], "a.nc: no offsets found"),
         (["--config", "gone.toml"], "'gone.toml' does not exist"),
@@ -227,7 +252,7 @@ def test_a_reader_who_goes_away_changes_no_exit_code() -> None:
     ],
 )
 def test_what_means_nothing_is_named_in_one_line(arguments: list[str], told: str) -> None:
-    make(a__nc=GOOD)
+    make(a__nc=GOOD, big__txt=f"G10 P10008 R1{'0' * 30}. Q0\n", nose__txt="G10 P10008 R4. Q12\n")
     result = check("a.nc", *arguments)
     assert result.exit_code == 2
     assert result.stdout == ""
@@ -248,6 +273,33 @@ def test_what_means_nothing_is_named_in_one_line(arguments: list[str], told: str
         ("severities = { poler = 'off' }\n", "polarcheck.toml: severities: unknown rule 'poler'"),
         ("[limits]\nc_fed = 3\n", "unknown key limits.c_fed"),
         ("offsets = 'gone.txt'\n", "gone.txt: No such file"),
+        ("select = ['rapid']\n", "polarcheck.toml: select: unknown rule 'rapid'; did you mean rapid-in-polar?"),
+        ("tools = 3\n", "polarcheck.toml: tools: expected a table, found 3"),
+        ("[tools.-1]\nradius = 4\n", "tools.-1: expected the number of a tool offset, 8 for T0808, found -1"),
+        ("[tools.T1]\nradius = 4\n", "tools.T1: expected the number of a tool offset, 8 for T0808, found T1"),
+        ("[tools.8]\nradus = 4\n", "polarcheck.toml: unknown key tools.8.radus; did you mean radius?"),
+        (
+            "[tools.8]\nradius = '4,5'\n",
+            "tools.8.radius: expected a number from -1000 to 1000, found '4,5'; write 4.5,",
+        ),
+        ("[tools.8]\nradius = nan\n", "tools.8.radius: expected a number from -1000 to 1000, found nan"),
+        ("[tools.8]\nmount = 'foo'\n", "polarcheck.toml: tools.8.mount: expected axial or radial, found 'foo'"),
+        (
+            "[work_offsets.G77]\nx = 1\n",
+            'polarcheck.toml: work_offsets.G77: expected G54 to G59 or "G54.1 P1", found G77',
+        ),
+        ("[work_offsets.'G55 P1']\nx = 1\n", "work_offsets.G55 P1: expected G54 to G59 or"),
+        ("[work_offsets.G54]\nx = inf\n", "work_offsets.G54.x: expected a number from -20000 to 20000, found inf"),
+        ("[run]\nsubprograms = ['gone']\n", "polarcheck.toml: run.subprograms: there is no folder 'gone'"),
+        ("[run]\nsubprograms = 'gone'\n", "run.subprograms: expected a list of texts, found 'gone'"),
+        ("[run]\nmax_seconds = inf\n", "run.max_seconds: expected a number above 0, found inf"),
+        ("[run.variables]\n'#100' = 1\n", "run.variables.#100: expected the number of a variable, 100 for #100"),
+        ("[run.variables]\n100 = nan\n", "run.variables.100: expected a number, found nan"),
+        ("[stock]\ndiameter = inf\n", "stock.diameter: expected a number above 0, 20000 at most, found inf"),
+        ("[stock]\nclearance = -2\n", "stock.clearance: expected a number from 0 to 20000, found -2"),
+        ("units = 'cm'\n", "polarcheck.toml: units: expected mm or inch, found 'cm'"),
+        ("[limits]\nc_feed = -5\n", "polarcheck.toml: limits.c_feed: expected a number above 0, found -5"),
+        ("[limits]\nc_feed = 'fast'\n", "polarcheck.toml: limits.c_feed: expected a number"),
     ],
 )
 def test_a_broken_job_file_is_named_with_its_key(text: str, told: str) -> None:
@@ -257,6 +309,43 @@ def test_a_broken_job_file_is_named_with_its_key(text: str, told: str) -> None:
     assert result.stderr.count("\n") == 1
     assert told in result.stderr
     assert check("a.nc", "--no-config", *RAPID_ONLY).exit_code == 0
+
+
+def test_a_work_offset_is_one_of_the_machine() -> None:
+    make(a__nc=GOOD, polarcheck__toml="[work_offsets]\nG59.x = 1\n'G54.1 P3'.x = 2\n'g54.1 P48'.x = 3\n")
+    assert check("a.nc", *RAPID_ONLY).exit_code == 0
+    make(mine__toml="inherits = 'fanuc'\n[g_codes]\nwork_offset = ['G54-G58']\nwork_offset_extended = []\n")
+    result = check("a.nc", *RAPID_ONLY, "--machine", "mine.toml")
+    assert result.stderr == "polarcheck: polarcheck.toml: work_offsets.G59: expected G54 to G58, found G59\n"
+
+
+@pytest.mark.parametrize("number", ["1", "T1", "t01"])
+def test_a_tool_is_given_by_its_offset_number(number: str) -> None:
+    make(a__nc=COMPENSATED)
+    assert findings("a.nc", *RAMP_ONLY, "--tool", f"{number}:radius=15") == [("start-up-shorter-than-radius", "error")]
+
+
+@pytest.mark.parametrize("radius", ["-.005", "0", "+.0001", "-4."])
+def test_tiny_and_negative_radii_are_sound(radius: str) -> None:
+    make(a__nc=COMPENSATED, polarcheck__toml=f"[tools.1]\nradius = {float(radius)}\n")
+    assert check("a.nc", *RAMP_ONLY).exit_code == 0
+    assert check("a.nc", *RAMP_ONLY, "--tool", f"1:radius={radius}", "--no-config").exit_code == 0
+
+
+def test_a_job_that_is_no_table_is_told() -> None:
+    make(a__nc=GOOD, pyproject__toml="[tool]\npolarcheck = 3\n# [tool.polarcheck]\n")
+    result = check("a.nc")
+    assert (result.exit_code, result.stderr) == (2, "polarcheck: pyproject.toml: expected a table, found 3\n")
+
+
+@pytest.mark.parametrize("arguments", [["a.nc"], ["gone.nc", "--machine", "fanuc"], ["."], ["-"], ["O1234"]])
+def test_a_program_in_the_place_of_a_command_means_check(arguments: list[str]) -> None:
+    make(a__nc=GOOD, O1234=GOOD)
+    result = call(*arguments)
+    assert (result.exit_code, result.stdout) == (2, "")
+    meant = f"did you mean `polarcheck check {' '.join(arguments)}`?"
+    assert result.stderr == f"polarcheck: {arguments[0]} is no command; {meant}\n"
+    assert "did you mean" not in call("chck").stderr
 
 
 def test_without_a_command_or_a_path_something_is_missing() -> None:
@@ -592,6 +681,14 @@ def test_the_examples_of_the_page_end_as_it_says(monkeypatch: pytest.MonkeyPatch
         assert result.exit_code == 0
         assert re.search(rf"^{verdict}  ", result.stdout, re.MULTILINE)
         assert call(*arguments.split(), "--strict").exit_code == (verdict != "pass")
+
+
+def test_explain_suggests_what_begins_with_the_word() -> None:
+    assert call("explain", "rapid").stderr == "polarcheck: unknown rule 'rapid'; did you mean rapid-in-polar?\n"
+    assert call("explain", "start-up").stderr.endswith(
+        "did you mean start-up-on-arc, start-up-shorter-than-radius or start-up-sweeps-contour?\n"
+    )
+    assert call("explain", "qqqqqq").stderr == "polarcheck: unknown rule 'qqqqqq'; `polarcheck rules` lists them\n"
 
 
 def test_rules_lists_all_of_them_by_group() -> None:

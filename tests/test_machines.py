@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from pathlib import Path
 from typing import Any
@@ -179,21 +180,21 @@ def test_tables_of_another_control_can_be_left_behind() -> None:
         ("inherits = 'own.toml'", "own.toml: inherits from itself"),
         ("inherits = 3", "own.toml: inherits: expected the name of a machine"),
         ("inherits = 'gone.toml'", "machine gone.toml: no such file"),
-        ("title = 'x'", "own.toml: "),
+        ("title = 'x'", "own.toml: control is missing"),
         ("inherits = 'fanuc'\n[limit]\nc_feed = 1", "own.toml: unknown table [limit]; did you mean limits?"),
         ("inherits = 'fanuc'\n[limits]\nc_fed = 1", "own.toml: unknown key limits.c_fed; did you mean c_feed?"),
-        ("inherits = 'fanuc'\n[limits]\nc_feed = '1'", "own.toml: limits.c_feed: expected `float`, got `str`"),
+        ("inherits = 'fanuc'\n[limits]\nc_feed = '1'", "own.toml: limits.c_feed: expected a number above 0, found '1'"),
         ("inherits = 'fanuc'\n[limits]\nc_feed = { v = 1 }", "own.toml: limits.c_feed: expected value, source and"),
-        ("inherits = 'fanuc'\n[polar]\nx = 'radial'", "own.toml: polar.x: invalid enum value 'radial'"),
+        ("inherits = 'fanuc'\n[polar]\nx = 'radial'", "own.toml: polar.x: expected diameter or radius, found 'radial'"),
         ("inherits = 'fanuc'\n[polar]\ncenter_words = ['I']", "own.toml: polar.center_words: "),
         ("inherits = 'fanuc'\nreplaces = ['limits']", "own.toml: replaces: expected a list of alarms, known_"),
         ("inherits = 'fanuc'\nreplaces = 3", "own.toml: replaces: expected a list of"),
-        ("inherits = 'fanuc'\nlimits = 3", "own.toml: limits: expected `object`, got `int`"),
-        ("inherits = 'fanuc'\nparameters = 3", "own.toml: parameters: expected `object`, got `int`"),
+        ("inherits = 'fanuc'\nlimits = 3", "own.toml: limits: expected a table, found 3"),
+        ("inherits = 'fanuc'\nparameters = 3", "own.toml: parameters: expected a table, found 3"),
         ("inherits = 'fanuc'\n[parameters]\n'5451#1' = 1", "own.toml: parameters: no meaning is known for 5451#1; did"),
         ("inherits = 'fanuc'\n[parameters]\n'5450#1' = 2", "own.toml: parameters.5450#1: expected 0 or 1, not 2"),
         ("inherits = 'fanuc'\n[parameters]\n1422 = 'much'", "own.toml: parameters.1422: expected a number, not much"),
-        ("inherits = 'fanuc'\n[known_parameters]\n1 = 1\n[parameters]\n1 = 1", "own.toml: known_parameters: Expected"),
+        ("inherits = 'fanuc'\n[known_parameters]\n1 = 1\n[parameters]\n1 = 1", "own.toml: known_parameters.1: expect"),
         ("inherits = 'fanuc'\n[control]\nnative_words = { AB = 'G12.1' }", "own.toml: control: native_words: 'G12"),
         ("inherits = 'fanuc'\n[control]\nx_radius_words = ['RAD']", "own.toml: control: native_words: 'G0.1' has no"),
         (f"inherits = 'fanuc'\n[control]\nx_radius_words = {list('ABCDEFGHIJ')}", "own.toml: control: no more than 9"),
@@ -215,6 +216,93 @@ def test_tables_of_another_control_can_be_left_behind() -> None:
 )  # fmt: skip
 def test_what_is_wrong_is_said_in_one_line(text: str, said: str) -> None:
     assert complaint(text).startswith(said)
+
+
+@pytest.mark.parametrize(
+    ("values", "said"),
+    [
+        ("[limits]\nc_feed = -3", "limits.c_feed: expected a number above 0, found -3"),
+        ("[limits]\nc_feed = '3600,5'", "limits.c_feed: expected a number above 0, found '3600,5'; write 3600.5, with"),
+        ("[limits]\nc_feed = inf", "limits.c_feed: expected a number above 0, found inf"),
+        ("[limits]\nx_minimum = -inf", "limits.x_minimum: expected a number, found -inf"),
+        ("[limits]\nkeep_out = -1", "limits.keep_out: expected a number of 0 or more, found -1"),
+        ("[limits]\noverride_share = nan", "limits.override_share: expected a number above 0, found nan"),
+        ("[limits]\nx_maximum = -20", "limits.x_maximum: expected a number above 0, found -20"),
+        ("[limits]\nx_minimum = 50\nx_maximum = 20", "limits: x_minimum is 50, above x_maximum, 20"),
+        ("[feed]\ncutting_minimum = 9\ncutting_maximum = 8", "feed: cutting_minimum is 9, above cutting_maximum, 8"),
+        ("[parameters]\n1422 = -5", "parameters.1422: limits.c_feed: expected a number above 0, found -5"),
+        ("[parameters]\n1422 = nan", "parameters.1422: limits.c_feed: expected a number above 0, found nan"),
+        ("[parameters]\n5461 = 1", "parameters.5461: polar: linear_axis and rotary_axis are both 1; expected two axes"),
+        ("[parameters]\n5460 = 4\n5461 = 4", "parameters.5460 and parameters.5461: polar: linear_axis and rotary_"),
+        ("[parameters]\n5461 = 0", "parameters.5461: polar.rotary_axis: expected the number of an axis from 1 to 99"),
+        ("[polar]\nrotary_axis = 1", "polar: linear_axis and rotary_axis are both 1; expected two axes"),
+        ("[polar]\nc_feed = 1", "unknown key polar.c_feed; did you mean limits.c_feed?"),
+        ("[polar]\non = []", "polar.on: expected a list of codes, at least one, found []"),
+        ("[polar]\nvirtual_axis = 'Y1'", "polar.virtual_axis: expected an address, one letter, found 'Y1'"),
+        ("[polar]\ncenter_words = ['I']", "polar.center_words: expected a list of two texts, found ['I']"),
+        ("[compensation]\nread_ahead = -3", "compensation.read_ahead: expected a whole number of 2 or more, found -3"),
+        ("[compensation]\nnose_types = [12]", "compensation.nose_types: expected a whole number from 0 to 9, found 12"),
+        ("[control]\noffset_digits = 0", "control.offset_digits: expected a whole number from 1 to 8, found 0"),
+        ("[control]\nunknown_codes_are_errors = 'no'", "control.unknown_codes_are_errors: expected true or false, fo"),
+        ("[arcs]\nsweep_limit = 400", "arcs.sweep_limit: expected a number above 0, 360 at most, found 400"),
+        ("[macro]\ngiven = { 0 = 1 }", "macro.given.0: expected the number of a variable, 100 for #100, found 0"),
+        ("[macro]\nlocal_variables = [[33, 1]]", "macro: local_variables: the range 33 to 1 ends before it begins"),
+    ],
+)  # fmt: skip
+def test_values_that_make_no_sense_are_refused(values: str, said: str) -> None:
+    assert complaint(f"inherits = 'fanuc'\n{values}\n").startswith(f"own.toml: {said}")
+
+
+@pytest.mark.parametrize(
+    "values",
+    [
+        "[limits]\nx_minimum = -50\nz_minimum = -400\nz_maximum = -5",
+        "[limits]\nkeep_out = 0",
+        "[parameters]\n5460 = 2\n5461 = 4",
+        "[macro]\ngiven = { 100 = -5 }",
+        "[compensation]\ntangent_tolerance = 0",
+    ],
+)
+def test_values_that_make_sense_are_taken(values: str) -> None:
+    load(f"inherits = 'fanuc'\n{values}\n")
+
+
+def test_a_profile_can_say_that_it_does_not_know() -> None:
+    Path("shop.toml").write_text("inherits = 'fanuc'\n[limits]\nc_feed = 3600\nx_maximum = 90\n", "utf-8")
+    own = load("inherits = 'shop.toml'\n[limits]\nc_feed = { value = nan, source = 'other motor' }\n")
+    assert math.isnan(own.machine.limits.c_feed)
+    assert own.machine.limits.x_maximum == 90
+    assert own.origins["limits.c_feed"] == Origin("own.toml", "other motor")
+    with pytest.raises(MachineError, match=r"^--set: limits\.c_feed: expected a number above 0, found nan$"):
+        profiles.load("own.toml", [("--set", {"limits": {"c_feed": math.nan}})])
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("haas", "did you mean haas-lathe?"),
+        ("FANUC-30i", "did you mean fanuc-30i?"),
+        ("Siemens", "did you mean siemens-iso or siemens-transmit?"),
+        ("30i", "did you mean fanuc-30i?"),
+        ("mazac-eia", "did you mean mazak-eia?"),
+    ],
+)
+def test_a_machine_is_suggested_by_a_part_of_its_name(name: str, said: str) -> None:
+    with pytest.raises(MachineError, match=re.escape(f"unknown machine {name!r}; {said}; `polarcheck machines` lists")):
+        profiles.load(name)
+
+
+@pytest.mark.parametrize("table", ["alarms", "severities"])
+@pytest.mark.parametrize(
+    ("rule", "said"),
+    [("rapid_in_polar", "; did you mean rapid-in-polar?"), ("nope", "; `polarcheck rules` lists them")],
+)
+def test_a_rule_that_there_is_not_is_refused(table: str, rule: str, said: str) -> None:
+    Path("own.toml").write_text(f"inherits = 'fanuc'\n[{table}]\n{rule} = 'off'\n", "utf-8")
+    Path("lathe.toml").write_text("inherits = 'own.toml'\n", "utf-8")
+    found = machines("lathe.toml")
+    assert (found.exit_code, found.stdout) == (2, "")
+    assert found.stderr == f"polarcheck: own.toml: {table}.{rule}: unknown rule {rule!r}{said}\n"
 
 
 @pytest.mark.parametrize(("old", "new"), RENAMED.items())

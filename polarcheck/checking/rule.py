@@ -18,7 +18,7 @@ from polarcheck.checking.finding import WARNING as WARNING
 from polarcheck.checking.finding import Severity as Severity
 from polarcheck.checking.tables import OF_TEXT, SPANS
 from polarcheck.checking.tables import parameters as parameters_of
-from polarcheck.errors import RuleError, UsageError
+from polarcheck.errors import RuleError, UsageError, suggestion
 
 if TYPE_CHECKING:
     from polarcheck.arrays import Floats as Floats
@@ -220,9 +220,7 @@ def find(name: str, rules: dict[str, Rule]) -> list[Rule]:
         return list(rules.values())
     found = [rule for rule in rules.values() if wanted in (rule.name, rule.group)]
     if not found:
-        import difflib
-
         known = [*rules, *{rule.group for rule in rules.values()}]
-        near = difflib.get_close_matches(wanted, known, 1)
-        raise UsageError(f"unknown rule {name!r}" + (f"; did you mean {near[0]}?" if near else ""))
+        near = suggestion(wanted, known) or "; `polarcheck rules` lists them"
+        raise UsageError(f"unknown rule {name!r}{near}")
     return found

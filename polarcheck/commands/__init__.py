@@ -69,6 +69,15 @@ class Commands(click.Group):
             sys.exit(status)
         return status
 
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """The command that is named; where a program stands in its place `check` was left out."""
+        name = args[0]
+        if name not in NAMES and (any(mark in name for mark in "./\\") or name == "-" or os.path.exists(name)):  # noqa: PTH110  Path.exists raises for some names
+            ctx.fail(f"{name} is no command; did you mean `polarcheck check {' '.join(args)}`?")
+        return super().resolve_command(ctx, args)
+
     def invoke(self, ctx: click.Context) -> Any:
         """Run a command; what it did not expect is a bug of ours, never a finding."""
         try:

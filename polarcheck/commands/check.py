@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +22,19 @@ _LONG = 3
 #: Options that change how a report looks or where it goes, but not what it says.
 _OF_OUTPUT = ("form", "outputs", "color", "quiet")
 _FORMATS = formats()
+
+
+class Seconds(click.FloatRange):
+    """A time; float() knows nan and inf, which are none."""
+
+    name = "seconds"
+
+    def convert(self, value: Any, parameter: click.Parameter | None, ctx: click.Context | None) -> float:
+        """The number of seconds of an option."""
+        found = float(super().convert(value, parameter, ctx))
+        if not math.isfinite(found):
+            self.fail(f"expected a number above 0, found {value}", parameter, ctx)
+        return found
 
 
 def _outputs(ctx: click.Context, parameter: click.Parameter, values: tuple[str, ...]) -> list[tuple[str, Path]]:
@@ -70,7 +84,7 @@ def _outputs(ctx: click.Context, parameter: click.Parameter, values: tuple[str, 
 @options.subprograms
 @option("--max-blocks", type=click.IntRange(1), help="Executed blocks after which a program counts as endless.")
 @option("--max-statements", type=click.IntRange(1), help="The same for macro statements and calls.")
-@option("--max-seconds", type=click.FloatRange(0, min_open=True), help="The same for seconds.")
+@option("--max-seconds", type=Seconds(0, min_open=True), help="The same for seconds.")
 @options.radius_from_comments
 @many("--extensions", metavar="EXT", help="Of the programs in a folder, instead of .nc, .tap, .eia and others.")
 @options.encoding("programs")

@@ -66,9 +66,13 @@ def load(path: Path) -> Job:
     except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
         raise JobError(f"{path}: {error}") from None
     if path.name == _PROJECT:
-        table = table.get("tool", {}).get("polarcheck", {})
+        tools = table.get("tool", {})
+        table = tools.get("polarcheck", {}) if isinstance(tools, dict) else {}
     job = from_table(table, str(path))
     folders = [str(path.parent / folder) for folder in job.run.subprograms]
+    for written, folder in zip(job.run.subprograms, folders, strict=True):
+        if not Path(folder).is_dir():
+            raise JobError(f"{path}: run.subprograms: there is no folder {written!r}")
     job = msgspec.structs.replace(job, run=msgspec.structs.replace(job.run, subprograms=folders))
     if job.offsets is not None:
         from polarcheck.machines import offset_table

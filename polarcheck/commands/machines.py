@@ -34,7 +34,18 @@ def machines(name: str | None, lathe: str | None, inherits: str | None) -> None:
         return
     if lathe:
         raise click.UsageError(f"{lathe}: a second name is for `machines new LATHE --from NAME`")
-    show(manual.profile_text(profiles.load(name)) if name else manual.machine_list())
+    show(_profile(name) if name else manual.machine_list())
+
+
+def _profile(name: str) -> str:
+    from polarcheck.checking.rule import load_all
+    from polarcheck.commands import selection
+    from polarcheck.machines import profiles
+    from polarcheck.reports.pages import manual
+
+    profile = profiles.load(name)
+    selection.check_names(profile, load_all())
+    return manual.profile_text(profile)
 
 
 def _write(name: str, inherits: str) -> Path:

@@ -77,7 +77,10 @@ tools = option("--tool", "tools", multiple=True, metavar="N:KEY=VALUE", help="To
 offsets = option(
     "--offsets", type=click.Path(exists=True, dir_okay=False, path_type=Path), help="Offset table from the control."
 )
-subprograms = option("--subprograms", multiple=True, metavar="FOLDER", help="Where programs that are called lie.")
+subprograms = option(
+    "--subprograms", type=click.Path(exists=True, file_okay=False), multiple=True, metavar="FOLDER",
+    help="Where programs that are called lie.",
+)  # fmt: skip
 units = option("--units", type=click.Choice(["mm", "inch"]), help="Of programs with neither G20 nor G21.")
 radius_from_comments = option(
     "--radius-from-comments", is_flag=True, help="Take unknown radii from comments such as 3/4 DIA. CUTTER."

@@ -9,8 +9,9 @@ from typing import Any
 from polarcheck.checking import rule as all_rules
 from polarcheck.checking.rule import Rule
 from polarcheck.commands.job_files import JobFile
-from polarcheck.errors import UsageError
+from polarcheck.errors import MachineError, UsageError, suggestion
 from polarcheck.machines.machine import Machine
+from polarcheck.machines.profiles import Profile
 
 LEVELS = ("error", "warning", "note", "off")
 _ALARM = re.compile(r"([A-Za-z]{0,3})\s?(\d+)")
@@ -85,6 +86,16 @@ def severities(
         if rule and rule.name not in asked and changed.get(rule.name, machine.severities.get(rule.name)) == "off":
             changed[rule.name] = rule.severity.name.lower()
     return changed
+
+
+def check_names(profile: Profile, known: Rules) -> None:
+    """Raises MachineError, which names the file and the key, where a machine names a rule that there is not."""
+    for table, names in (("alarms", profile.machine.alarms), ("severities", profile.machine.severities)):
+        for name in names:
+            if name not in known:
+                key = f"{table}.{name}"
+                near = suggestion(name, known) or "; `polarcheck rules` lists them"
+                raise MachineError(f"{profile.origins[key].profile}: {key}: unknown rule {name!r}{near}")
 
 
 def _levels(pairs: Iterable[tuple[str, str]], known: Rules, machine: Machine) -> dict[str, str]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -16,7 +16,7 @@ from polarcheck.commands.job_files import JobFile
 from polarcheck.commands.selection import Rules
 from polarcheck.errors import UsageError
 from polarcheck.machines import profiles
-from polarcheck.machines.job import Job, Running, with_tool
+from polarcheck.machines.job import Job, Running, check_work_offsets, with_tool
 from polarcheck.machines.machine import Machine
 
 
@@ -96,7 +96,9 @@ def _changed(job: Job, options: Options) -> Job:
 
 def _settings(options: Options, found: JobFile, known: Rules) -> Settings:
     name = machine_name(options.machine, found)
-    machine = profiles.load(name, merged_changes(found.job.limits, options.changes)).machine
+    of_job = {"limits": found.job.limits} if found.job.limits else {}
+    machine = _machine(name, [("--set", changes(options.changes)), (str(found.path), of_job)], known)
+    check_work_offsets(found.job, machine, str(found.path))
     levels = selection.severities(options.severities, options.select, found, known, machine)
     rules = selection.chosen(options.select, options.ignore, found, known, machine)
     return Settings(name, machine, found.job, rules, levels)
@@ -113,20 +115,26 @@ def machine_name(asked: str | None, found: JobFile) -> str:
     return name
 
 
-def merged_changes(limits: Mapping[str, Any], options: Iterable[str]) -> dict[str, Any]:
+def changes(options: Iterable[str]) -> dict[str, Any]:
     """
-    What to change in a profile: the limits of the job, and over them `--set limits.c_feed=3600`.
+    What to change in a profile: `--set limits.c_feed=3600`.
 
     Raises UsageError for an option that is not TABLE.KEY=VALUE.
     """
-    changes: dict[str, Any] = {"limits": dict(limits)} if limits else {}
+    found: dict[str, Any] = {}
     for option in options:
         key, equals, text = (part.strip() for part in option.partition("="))
         table, _, name = key.partition(".")
         if not equals or not table or not name:
             raise UsageError(f"--set {option}: expected TABLE.KEY=VALUE as in limits.c_feed=3600")
-        changes.setdefault(table, {})[name] = toml_value(text)
-    return changes
+        found.setdefault(table, {})[name] = toml_value(text)
+    return found
+
+
+def _machine(name: str, over: Sequence[profiles.Change], known: Rules) -> Machine:
+    profile = profiles.load(name, over)
+    selection.check_names(profile, known)
+    return profile.machine
 
 
 def toml_value(text: str) -> Any:
@@ -145,4 +153,4 @@ def here(machine: str | None) -> tuple[str, Machine]:
     """The machine for a command without programs: the one asked for, else that of the job of the working folder."""
     found = JobFile(Job()) if machine else jobs_in_folders(Options())(Path())
     name = machine_name(machine, found)
-    return name, profiles.load(name).machine
+    return name, _machine(name, (), load_all())

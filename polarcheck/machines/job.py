@@ -3,12 +3,23 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping
 from typing import Annotated, Any, ClassVar, Literal
 
 import msgspec
 
-from polarcheck.errors import JobError, UsageError
+from polarcheck.errors import JobError, UsageError, suggestion
+from polarcheck.machines.fitting import EXPECTED, MisfitError, fitted
+from polarcheck.machines.machine import Machine, Variable
+
+#: Lengths in the units of the file, mm or inch: no lathe and no cutter is larger.
+_LARGEST_CUTTER, _LARGEST_LATHE = 1000, 20_000
+
+#: T has eight digits at most.
+OffsetNumber = Annotated[
+    int, msgspec.Meta(ge=1, le=99_999_999, extra={EXPECTED: "the number of a tool offset, 8 for T0808"})
+]
 
 
 class Tool(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -16,9 +27,15 @@ class Tool(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
 
     source: ClassVar[str] = "job"
 
-    radius: Annotated[float, msgspec.Meta(description="R of the offset table, with wear")] = math.nan
+    # A negative R is the builder's own way to make a contour a little larger.
+    radius: Annotated[
+        float,
+        msgspec.Meta(ge=-_LARGEST_CUTTER, le=_LARGEST_CUTTER, description="R of the offset table, with wear"),
+    ] = math.nan
     nose: Annotated[int, msgspec.Meta(ge=0, le=9, description="T of the offset table; 0 for a mill")] | None = None
-    diameter: Annotated[float, msgspec.Meta(gt=0, description="of the cutter, where R is not half of it")] = math.nan
+    diameter: Annotated[
+        float, msgspec.Meta(gt=0, le=2 * _LARGEST_CUTTER, description="of the cutter, where R is not half of it")
+    ] = math.nan
     mount: Literal["axial", "radial"] | None = None
     shape: Literal["flat", "ball"] | None = None
 
@@ -38,14 +55,14 @@ class PunchedTool(Tool, frozen=True):
 class Stock(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """The bar or blank."""
 
-    diameter: Annotated[float, msgspec.Meta(gt=0)] = math.nan
-    clearance: Annotated[float, msgspec.Meta(ge=0)] = 0.0
+    diameter: Annotated[float, msgspec.Meta(gt=0, le=_LARGEST_LATHE)] = math.nan
+    clearance: Annotated[float, msgspec.Meta(ge=0, le=_LARGEST_LATHE)] = 0.0
 
 
 class WorkOffset(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Where X0 of a work offset lies: 0 on the spindle axis."""
 
-    x: float = 0.0
+    x: Annotated[float, msgspec.Meta(ge=-_LARGEST_LATHE, le=_LARGEST_LATHE)] = 0.0
 
 
 class Running(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -58,7 +75,7 @@ class Running(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     max_blocks: Annotated[int, msgspec.Meta(ge=1, description="executed blocks")] = 200_000
     max_statements: Annotated[int, msgspec.Meta(ge=1, description="macro statements, calls and returns")] = 50_000
     max_seconds: Annotated[float, msgspec.Meta(gt=0)] = 20.0
-    variables: Annotated[dict[int, float], msgspec.Meta(description="values of #-variables, by number")] = {}
+    variables: Annotated[dict[Variable, float], msgspec.Meta(description="values of #-variables, by number")] = {}
 
 
 class Job(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -74,7 +91,7 @@ class Job(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True)
     program_units: (
         Annotated[Literal["mm", "inch"], msgspec.Meta(description="of programs with neither G20 nor G21")] | None
     ) = None
-    tools: dict[int, Tool] = {}
+    tools: dict[OffsetNumber, Tool] = {}
     stock: Stock = Stock()
     run: Running = Running()
     radius_from_comments: Annotated[
@@ -91,51 +108,75 @@ class Job(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True)
     limits: dict[str, float | bool] = {}
 
 
-def from_table(table: Mapping[str, Any], title: str) -> Job:
+def from_table(table: Any, title: str) -> Job:
     """A job from the values of a file. Raises JobError that names the title and the key."""
     try:
-        return msgspec.convert(dict(table), Job, strict=False)
-    except msgspec.ValidationError as error:
-        text, _, where = str(error).partition(" - at `$")
-        key = where.rstrip("`").lstrip(".")
-        if "unknown field" in text:
-            unknown = text.split("`")[1]
-            known = {field for kind in (Job, Tool, Stock, WorkOffset, Running) for field in kind.__struct_fields__}
-            import difflib
-
-            near = difflib.get_close_matches(unknown, known, 1)
-            hint = f"; did you mean {near[0]}?" if near else ""
-            raise JobError(f"{title}: unknown key {f'{key}.{unknown}' if key else unknown}{hint}") from None
-        raise JobError(f"{title}: {key or 'file'}: {text[:1].lower()}{text[1:]}") from None
+        return fitted(table, Job)
+    except MisfitError as misfit:
+        raise JobError(f"{title}: {misfit}") from None
 
 
 def with_tool(job: Job, option: str) -> Job:
     """
-    The job with one `--tool 8:radius=0.375,nose=0` merged in.
+    The job with one `--tool 8:radius=0.375,nose=0` merged in; T8 is the offset number 8, too.
 
     Raises UsageError that says what was meant.
     """
-    number, colon, pairs = option.partition(":")
-    if not colon or not number.strip().isdecimal():
+    written, colon, pairs = option.partition(":")
+    number = _offset_number(written.strip(), option) if colon else None
+    if number is None:
         raise UsageError(f"--tool {option}: expected NUMBER:KEY=VALUE as in 8:radius=0.375")
     values: dict[str, Any] = {}
     for pair in pairs.split(","):
         key, equals, value = (part.strip() for part in pair.partition("="))
+        if key.isdecimal() and not equals and values:
+            last, before = list(values.items())[-1]
+            raise UsageError(f"--tool {option}: {last}: write {before}.{key}, with a decimal point")
         if key not in Tool.__struct_fields__ or not equals:
-            import difflib
-
-            near = difflib.get_close_matches(key, Tool.__struct_fields__, 1)
-            meant = f"did you mean {near[0]}?" if near else f"keys are {', '.join(Tool.__struct_fields__)}"
-            raise UsageError(f"--tool {option}: {key or 'no key'}: {meant}")
+            meant = suggestion(key, Tool.__struct_fields__).removeprefix("; ")
+            raise UsageError(f"--tool {option}: {key or 'no key'}: {meant or f'keys are {_KEYS_OF_TOOL}'}")
         values[key] = _number(value)
-    before = job.tools.get(int(number), Tool())
-    known, kind = msgspec.to_builtins(before), AskedTool if "radius" in values else type(before)
+    known = job.tools.get(number, Tool())
+    kind = AskedTool if "radius" in values else type(known)
     try:
-        tool = msgspec.convert({**_given(known), **values}, kind, strict=False)
-    except msgspec.ValidationError as error:
-        text, _, where = str(error).partition(" - at `$.")
-        raise UsageError(f"--tool {option}: {where.rstrip('`')}: {text[:1].lower()}{text[1:]}") from None
-    return msgspec.structs.replace(job, tools={**job.tools, int(number): tool})
+        table = {**_given(msgspec.to_builtins(known)), **values}
+        tool = kind(**msgspec.structs.asdict(fitted({"tools": {number: table}}, Job).tools[number]))
+    except MisfitError as misfit:
+        text = re.sub(rf"^tools\.{number}(\.|: )", "", str(misfit))
+        raise UsageError(f"--tool {option}: {text}") from None
+    return msgspec.structs.replace(job, tools={**job.tools, number: tool})
+
+
+_KEYS_OF_TOOL = ", ".join(Tool.__struct_fields__)
+
+
+def _offset_number(written: str, option: str) -> int | None:
+    """The number before the colon, or that of T8; of T0808 it hangs on the control which digits are the offset."""
+    digits = written[1:] if written[:1] in ("T", "t") else written
+    if not digits.isascii() or not digits.isdecimal():
+        return None
+    if digits != written and len(digits) > _DIGITS_OF_OFFSET:
+        raise UsageError(
+            f"--tool {option}: expected the offset number alone, as in {int(digits[-_DIGITS_OF_OFFSET:])}:radius=0.375"
+        )
+    return int(digits)
+
+
+#: T8 and T08 can only be read in one way.
+_DIGITS_OF_OFFSET = 2
+
+
+def check_work_offsets(job: Job, machine: Machine, title: str) -> None:
+    """Raises JobError, which names the title and the key, for a work offset that the machine does not have."""
+    known = machine.codes("work_offset")
+    extended = machine.codes("work_offset_extended")
+    for name in job.work_offsets:
+        code, _, number = name.upper().partition(" P")
+        if code in known if not number else code in extended and number.isdecimal():
+            continue
+        listed = [code.replace("-", " to ") for code in machine.g_codes.work_offset]
+        expected = " or ".join([*listed, *(f'"{code} P1"' for code in extended)]) or "none on this machine"
+        raise JobError(f"{title}: work_offsets.{name}: expected {expected}, found {name}")
 
 
 def _number(text: str) -> float | str:
@@ -144,7 +185,7 @@ def _number(text: str) -> float | str:
         value = float(text)
     except ValueError:
         return text
-    return int(value) if value.is_integer() else value
+    return int(value) if value.is_integer() and abs(value) < _LARGEST_LATHE else value
 
 
 def _given(values: Mapping[str, Any]) -> dict[str, Any]:

@@ -6,16 +6,31 @@ What a key means stands in the docstring of its class and, in the same words, at
 
 import math
 import re
-from typing import Literal, TypeAlias
+from typing import Annotated, Literal, TypeAlias
 
 import msgspec
 
 from polarcheck.errors import RuleError
 from polarcheck.machines.code_lists import GCodes, GCodeSystem, expanded, is_code
+from polarcheck.machines.fitting import EXPECTED
 from polarcheck.machines.parameters import Meaning
 
 #: First and last number of each range.
 Ranges: TypeAlias = list[tuple[int, int]]
+
+Positive: TypeAlias = Annotated[float, msgspec.Meta(gt=0)]
+NotNegative: TypeAlias = Annotated[float, msgspec.Meta(ge=0)]
+Count: TypeAlias = Annotated[int, msgspec.Meta(ge=1)]
+Codes: TypeAlias = Annotated[list[str], msgspec.Meta(min_length=1, extra={EXPECTED: "a list of codes, at least one"})]
+Address: TypeAlias = Annotated[str, msgspec.Meta(pattern="^[A-Z]$", extra={EXPECTED: "an address, one letter"})]
+AddressOrNone: TypeAlias = Annotated[
+    str, msgspec.Meta(pattern="^[A-Z]?$", extra={EXPECTED: "an address, one letter, or none"})
+]
+Variable: TypeAlias = Annotated[int, msgspec.Meta(ge=1, extra={EXPECTED: "the number of a variable, 100 for #100"})]
+#: Controls number their axes with two digits.
+AxisNumber: TypeAlias = Annotated[
+    int, msgspec.Meta(ge=1, le=99, extra={EXPECTED: "the number of an axis from 1 to 99"})
+]
 
 _FLOW_CODE = re.compile(r"[GM](?:0|[1-9]\d*)(?:\.[1-9])?")
 
@@ -23,6 +38,14 @@ _FLOW_CODE = re.compile(r"[GM](?:0|[1-9]\d*)(?:\.[1-9])?")
 def meanings(table: type) -> dict[str, str]:
     """What each key of a table of the profile means, in the words of its docstring."""
     return dict(re.findall(r"^ {4}(\w+): (.+)$", table.__doc__ or "", re.MULTILINE))
+
+
+def _ascend(table: msgspec.Struct, *pairs: tuple[str, str]) -> None:
+    """Raises ValueError for a pair of keys of which the first is above the second; NaN is above nothing."""
+    for low, high in pairs:
+        least, most = getattr(table, low), getattr(table, high)
+        if least > most:
+            raise ValueError(f"{low} is {least:g}, above {high}, {most:g}")
 
 
 class Control(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -50,14 +73,14 @@ class Control(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
 
     g_code_system: Literal["A", "B", "C"]
     units: Literal["mm", "inch"]
-    least_increment: float
-    least_increment_inch: float
+    least_increment: Positive
+    least_increment_inch: Positive
     number_without_point: Literal["least-increment", "whole-unit"]
-    digit_limit: int
-    word_limit: int
-    m_code_limit: int
+    digit_limit: Count
+    word_limit: Count
+    m_code_limit: Count
     line_comments: str
-    offset_digits: int
+    offset_digits: Annotated[int, msgspec.Meta(ge=1, le=8)]
     unknown_codes_are_errors: bool
     x: Literal["diameter", "radius"]
     known_codes: list[str]
@@ -100,25 +123,29 @@ class Polar(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     main_spindle_must_stop: whether a main spindle that turns at G12.1 is a fault
     """
 
-    on: list[str]
-    off: list[str]
+    on: Codes
+    off: Codes
     on_of_other_controls: list[str] = []
     on_of_other_meaning: list[str] = []
     words_beside_switch: list[str]
-    virtual_axis: str
-    virtual_axis_incremental: str
+    virtual_axis: Address
+    virtual_axis_incremental: AddressOrNone
     virtual_axis_of_other_controls: list[str]
     other_controls: str = ""
     x: Literal["diameter", "radius"]
     virtual_axis_programming: Literal["radius", "diameter"]
     other_axes: Literal["independent", "together", "forbidden"]
-    center_words: tuple[str, str]
-    linear_axis: int
-    rotary_axis: int
-    infeed_word: str
+    center_words: tuple[Address, Address]
+    linear_axis: AxisNumber
+    rotary_axis: AxisNumber
+    infeed_word: AddressOrNone
     allowed_codes: list[str]
     plane_before: list[str]
     main_spindle_must_stop: bool
+
+    def __post_init__(self) -> None:
+        if self.linear_axis == self.rotary_axis:
+            raise ValueError(f"linear_axis and rotary_axis are both {self.linear_axis}; expected two axes")
 
     @property
     def other_center_word(self) -> str:
@@ -135,9 +162,9 @@ class CircularInterpolation(msgspec.Struct, frozen=True, kw_only=True, forbid_un
     sweep_limit: largest angle of one arc [deg]
     """
 
-    tolerance: float
-    radius_word: str
-    sweep_limit: float
+    tolerance: NotNegative
+    radius_word: Address
+    sweep_limit: Annotated[float, msgspec.Meta(gt=0, le=360)]
 
 
 class Compensation(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -156,12 +183,12 @@ class Compensation(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fie
 
     start_up: Literal["A", "B", "C"]
     start_up_with_move: Literal["A", "B"]
-    read_ahead: int
+    read_ahead: Annotated[int, msgspec.Meta(ge=2)]
     interference: Literal["alarm", "erase"]
-    tangent_tolerance: float
+    tangent_tolerance: Annotated[float, msgspec.Meta(ge=0, le=math.pi / 2)]
     leaving_cancels: bool
-    nose_types: list[int]
-    overcut_tolerance: float
+    nose_types: Annotated[list[Annotated[int, msgspec.Meta(ge=0, le=9)]], msgspec.Meta(min_length=1)]
+    overcut_tolerance: NotNegative
 
 
 class Limits(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -182,18 +209,21 @@ class Limits(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     z_maximum: travel limit of Z [mm]
     """
 
-    c_feed: float = math.nan
-    c_feed_harmless: float
-    c_feed_suspicious: float
-    c_acceleration: float = math.nan
-    polar_feed: float = math.nan
+    c_feed: Positive = math.nan
+    c_feed_harmless: Positive
+    c_feed_suspicious: Positive
+    c_acceleration: Positive = math.nan
+    polar_feed: Positive = math.nan
     automatic_override: bool = False
-    override_share: float
-    keep_out: float = math.nan
+    override_share: Positive
+    keep_out: NotNegative = math.nan
     x_minimum: float = math.nan
-    x_maximum: float = math.nan
+    x_maximum: Positive = math.nan
     z_minimum: float = math.nan
     z_maximum: float = math.nan
+
+    def __post_init__(self) -> None:
+        _ascend(self, ("x_minimum", "x_maximum"), ("z_minimum", "z_maximum"))
 
 
 class Feed(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -207,11 +237,14 @@ class Feed(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     carried_into_polar: F from before G12.1 that holds behind it: any (modal) or none per revolution (per-minute-only)
     """
 
-    cutting_minimum: float = math.nan
-    cutting_maximum: float = math.nan
-    positioning_minimum: float = math.nan
-    positioning_maximum: float = math.nan
+    cutting_minimum: NotNegative = math.nan
+    cutting_maximum: Positive = math.nan
+    positioning_minimum: NotNegative = math.nan
+    positioning_maximum: Positive = math.nan
     carried_into_polar: Literal["modal", "per-minute-only"] = "modal"
+
+    def __post_init__(self) -> None:
+        _ascend(self, ("cutting_minimum", "cutting_maximum"), ("positioning_minimum", "positioning_maximum"))
 
 
 class MCodes(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -288,16 +321,16 @@ class Macro(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     modal_macro_cancel: list[str]
     program_returns: list[str]
     computed_increments: dict[str, float]
-    bracket_levels: int
-    loop_numbers: int
-    loop_levels: int
-    subprogram_levels: int
-    macro_levels: int
+    bracket_levels: Count
+    loop_numbers: Count
+    loop_levels: Count
+    subprogram_levels: Count
+    macro_levels: Count
     repeats_in_p: bool
     second_arguments: bool
     signed_angles: bool
-    largest_number: float
-    given: dict[int, float] = {}
+    largest_number: Positive
+    given: dict[Variable, float] = {}
 
     def __post_init__(self) -> None:
         for code in self.flow_codes:
@@ -306,6 +339,10 @@ class Macro(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
         for address, increment in self.computed_increments.items():
             if not re.fullmatch("[A-Z]", address) or not increment > 0:
                 raise ValueError(f"computed_increments: {address} = {increment}: expected a letter and a value above 0")
+        for kind in ("local", "common", "retained", "system", "read_only", "clock"):
+            for first, last in getattr(self, f"{kind}_variables"):
+                if first > last:
+                    raise ValueError(f"{kind}_variables: the range {first} to {last} ends before it begins")
 
     @property
     def macro_call_codes(self) -> frozenset[str]:

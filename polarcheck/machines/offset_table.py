@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-import math
 import re
+from collections.abc import Mapping
 from pathlib import Path
 
 from polarcheck.errors import JobError
+from polarcheck.machines.fitting import MisfitError, fitted
 from polarcheck.machines.job import PunchedTool, Tool
 
 _OFFSET = re.compile(r"G10\s*P\s*(\d+)((?:\s*[A-Z]\s*[-+]?\d*\.?\d*)*)")
@@ -20,7 +21,7 @@ def read(path: Path, title: str) -> dict[int, Tool]:
     The offsets of a table (`G10 P10008 X.. Z.. R.. Q..`) by offset number; R of geometry and wear are added.
 
     Lengths are in the units of the table. Raises JobError, which names the title, for a file that cannot be read or
-    holds no offset.
+    holds no offset or one that cannot be.
     """
     try:
         text = path.read_bytes().decode("latin-1").upper()
@@ -37,7 +38,12 @@ def read(path: Path, title: str) -> dict[int, Tool]:
                 nose[number] = int(float(value))
     if not radius and not nose:
         raise JobError(f"{title}: no offsets found; expected blocks such as G10 P10008 R0.375 Q0")
-    return {
-        number: PunchedTool(radius=radius.get(number, math.nan), nose=nose.get(number))
-        for number in sorted(radius.keys() | nose.keys())
-    }
+    return {number: _tool(number, radius, nose, title) for number in sorted(radius.keys() | nose.keys())}
+
+
+def _tool(number: int, radius: Mapping[int, float], nose: Mapping[int, int], title: str) -> Tool:
+    given = {key: values[number] for key, values in (("radius", radius), ("nose", nose)) if number in values}
+    try:
+        return fitted(given, PunchedTool)
+    except MisfitError as misfit:
+        raise JobError(f"{title}: offset {number}: {misfit}") from None

@@ -7,16 +7,21 @@ from typing import Any
 
 import msgspec
 
-from polarcheck.errors import MachineError
+from polarcheck.errors import MachineError, suggestion
+from polarcheck.machines.fitting import MisfitError, fitted
 from polarcheck.machines.renamed import refuse
 
 
 class Origin(msgspec.Struct, frozen=True):
-    """Where a value of a profile comes from: the profile, the source it names, whether that is in doubt."""
+    """
+    Where a value of a profile comes from: the profile, the source it names, whether that is in doubt, and the control
+    parameter that it was given by.
+    """
 
     profile: str
     source: str
     doubtful: bool = False
+    parameter: str = ""
 
 
 class Meaning(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -55,7 +60,7 @@ def apply(merged: dict[str, Any], table: Mapping[str, Any], profile: str, origin
             refuse(key, profile)
             if _is_given(table, key):
                 continue
-            origins[key] = Origin(profile, f"parameter {name} = {given[name]}: {meaning.title}")
+            origins[key] = Origin(profile, f"parameter {name} = {given[name]}: {meaning.title}", parameter=name)
             if isinstance(value, str) and value.startswith("= "):
                 copies.append((key, value[2:]))
             else:
@@ -67,9 +72,9 @@ def apply(merged: dict[str, Any], table: Mapping[str, Any], profile: str, origin
 
 def _known(merged: Mapping[str, Any], profile: str) -> dict[str, Meaning]:
     try:
-        return msgspec.convert(merged.get("known_parameters", {}), dict[str, Meaning])
-    except msgspec.ValidationError as error:
-        raise MachineError(f"{profile}: known_parameters: {error}") from None
+        return fitted(merged.get("known_parameters", {}), dict[str, Meaning], "known_parameters")
+    except MisfitError as misfit:
+        raise MachineError(f"{profile}: {misfit}") from None
 
 
 def _values(name: str, meaning: Meaning, given: Any, profile: str) -> Mapping[str, Any]:
@@ -98,8 +103,5 @@ def _set(merged: dict[str, Any], key: str, value: Any) -> None:
 
 
 def _unknown(name: str, known: Mapping[str, Meaning]) -> str:
-    import difflib
-
-    near = difflib.get_close_matches(name, list(known), 1)
-    hint = f"did you mean {near[0]}?" if near else f"known are {', '.join(known) or 'none'}"
-    return f"no meaning is known for {name}; {hint}"
+    hint = suggestion(name, known) or f"; known are {', '.join(known) or 'none'}"
+    return f"no meaning is known for {name}{hint}"

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Mapping
+import math
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, get_origin
 
 import msgspec
 
-from polarcheck.errors import MachineError
+from polarcheck.errors import MachineError, suggestion
 from polarcheck.machines import parameters
+from polarcheck.machines.fitting import MisfitError, fitted
 from polarcheck.machines.machine import Machine
 from polarcheck.machines.parameters import Origin
 from polarcheck.machines.renamed import RENAMED, refuse
@@ -45,16 +47,23 @@ def built_in() -> tuple[Profile, ...]:
     return tuple(sorted((load(name) for name in names()), key=lambda profile: len(profile.chain)))
 
 
-def load(name: str, changes: Mapping[str, Any] | None = None) -> Profile:
-    """
-    The profile of a built-in machine or of a TOML file of the user's own; changes are merged over it.
+#: Values of a machine, and what told them: a file or an option.
+Change = tuple[str, Mapping[str, Any]]
 
-    Raises MachineError, naming the file and the key, for an unknown machine, key, type or circle of inheritance.
+
+def load(name: str, changes: Mapping[str, Any] | Sequence[Change] | None = None) -> Profile:
     """
+    The profile of a built-in machine or of a TOML file of the user's own.
+
+    changes: merged over it; one table, or several with what told each, the nearest first. Raises MachineError, naming
+    the file or option and the key, for an unknown machine or key, a value that does not fit, a circle of inheritance.
+    """
+    over = [("the command line or job", changes)] if isinstance(changes, Mapping) else changes or []
+    over = [(title, table) for title, table in over if table]
     tables: list[tuple[str, dict[str, Any]]] = []
     asked: str | None = name
     folder = Path()
-    own = any(table != "limits" for table in changes or ())
+    own = any(group != "limits" for _, table in over for group in table)
     while asked is not None:
         path, title = _find(asked, folder)
         if any(title == seen for seen, _ in tables):
@@ -68,17 +77,17 @@ def load(name: str, changes: Mapping[str, Any] | None = None) -> Profile:
             raise MachineError(f"{title}: inherits: expected the name of a machine")
     merged: dict[str, Any] = {}
     origins: dict[str, Origin] = {}
-    if changes:
-        tables.insert(0, ("the command line or job", dict(changes)))
+    chain = tuple(title for title, _ in tables)
+    tables = [*((title, dict(table)) for title, table in over), *tables]
     for title, table in reversed(tables):
         _replace(merged, table.pop("replaces", []), title, origins)
         _merge(merged, table, title, origins)
+        if title in chain:
+            _forget(merged, table)
         if isinstance(table.get("parameters"), Mapping):
             # After the values of farther profiles, before those of nearer ones: the nearest word counts.
             parameters.apply(merged, table, title, origins)
-    tables = tables[1:] if changes else tables
-    chain = tuple(title for title, _ in tables)
-    written = _convert(merged, origins, chain[0])
+    written = _convert(merged, origins, [title for title, _ in tables])
     machine = written
     if written.control.x_radius_words or written.control.x_diameter_words:
         from polarcheck.machines import own_language
@@ -103,7 +112,7 @@ def _find(name: str, folder: Path) -> tuple[Path, str]:
         return path, str(path)
     if name.endswith(".toml"):
         raise MachineError(f"machine {name}: no such file")
-    raise MachineError(f"unknown machine {name!r}{_suggestion(name, names())}; `polarcheck machines` lists them")
+    raise MachineError(f"unknown machine {name!r}{suggestion(name, names())}; `polarcheck machines` lists them")
 
 
 @functools.cache
@@ -144,7 +153,7 @@ def _merge(into: dict[str, Any], table: Mapping[str, Any], profile: str, origins
             into[group] = _unwrapped(values, group, Origin(profile, ""), origins)
             continue
         if group not in Machine.__struct_fields__:
-            raise MachineError(f"{profile}: unknown table [{group}]{_suggestion(group, Machine.__struct_fields__)}")
+            raise MachineError(f"{profile}: unknown table [{group}]{suggestion(group, Machine.__struct_fields__)}")
         target = into.setdefault(group, {})
         origin = _origin(values, Origin(profile, ""))
         for key, value in values.items():
@@ -180,20 +189,45 @@ def _is_table(key: str) -> bool:
     )
 
 
-def _convert(merged: dict[str, Any], origins: Mapping[str, Origin], title: str) -> Machine:
+def _forget(merged: dict[str, Any], table: Mapping[str, Any]) -> None:
+    """Leave out what a profile gives as NaN: not known, whatever the profile that it inherits from says."""
+    for group, values in table.items():
+        for key in values if isinstance(values, Mapping) and isinstance(merged[group], dict) else ():
+            value = merged[group].get(key)
+            if isinstance(value, float) and math.isnan(value) and _may_be_unknown(group, key):
+                del merged[group][key]
+
+
+def _may_be_unknown(group: str, key: str) -> bool:
+    default = next((field.default for field in _fields(group) if field.name == key), None)
+    return isinstance(default, float) and math.isnan(default)
+
+
+def _convert(merged: dict[str, Any], origins: Mapping[str, Origin], titles: Sequence[str]) -> Machine:
+    """titles: of the profiles and what else has told values, the nearest first."""
     try:
-        return msgspec.convert(merged, Machine)
-    except msgspec.ValidationError as error:
-        text, _, where = str(error).partition(" - at `$")
-        key = where.rstrip("`").lstrip(".")
-        if "unknown field" in text:
-            unknown = text.split("`")[1]
-            known = {field.name for group in Machine.__struct_fields__ for field in _fields(group)}
-            dotted = f"{key}.{unknown}" if key else unknown
-            profile = origins[dotted].profile if dotted in origins else title
-            raise MachineError(f"{profile}: unknown key {dotted}{_suggestion(unknown, known)}") from None
-        profile = origins[key].profile if key in origins else title
-        raise MachineError(f"{profile}: {key or 'profile'}: {text[:1].lower()}{text[1:]}") from None
+        return fitted(merged, Machine)
+    except MisfitError as misfit:
+        raise MachineError(_objection(misfit, origins, titles)) from None
+
+
+def _objection(misfit: MisfitError, origins: Mapping[str, Origin], titles: Sequence[str]) -> str:
+    """A value that does not fit, by the file in which it stands and the parameter by which it was given."""
+    text = str(misfit)
+    # A key of a table, or those of a group that do not go together.
+    at_fault = [key for key in origins if f"{misfit.key}.".startswith(f"{key}.")] or [
+        key for key in origins if key.startswith(f"{misfit.key}.") and key.partition(".")[2] in text.split()
+    ]
+    of_fault = sorted((origins[key] for key in at_fault), key=lambda origin: titles.index(origin.profile))
+    title = of_fault[0].profile if of_fault else titles[0]
+    given = [f"parameters.{origin.parameter}" for origin in of_fault if origin.parameter and origin.profile == title]
+    if given:
+        return f"{title}: {' and '.join(given)}: {text}"
+    group, _, key = misfit.key.rpartition(".")
+    if text.startswith("unknown key") and group in Machine.__struct_fields__:
+        elsewhere = [f"{other}.{key}" for other in Machine.__struct_fields__ if key in _names(other)]
+        text = f"unknown key {misfit.key}; did you mean {elsewhere[0]}?" if elsewhere else text
+    return f"{title}: {text}"
 
 
 def _fields(group: str) -> tuple[msgspec.structs.FieldInfo, ...]:
@@ -201,8 +235,5 @@ def _fields(group: str) -> tuple[msgspec.structs.FieldInfo, ...]:
     return msgspec.structs.fields(kind) if isinstance(kind, type) and issubclass(kind, msgspec.Struct) else ()
 
 
-def _suggestion(wrong: str, known: Any) -> str:
-    import difflib
-
-    near = difflib.get_close_matches(wrong, list(known), 1)
-    return f"; did you mean {near[0]}?" if near else ""
+def _names(group: str) -> set[str]:
+    return {field.name for field in _fields(group)}

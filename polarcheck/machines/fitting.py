@@ -1,0 +1,191 @@
+"""
+Values of TOML files and options as the types that hold them. What does not fit is told in plain words, with the key
+as the user writes it: types of Python and paths with `[...]` mean nothing to a setter.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+import types
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Annotated, Any, Literal, NamedTuple, TypeVar, Union, get_args, get_origin
+
+import msgspec
+
+from polarcheck.errors import suggestion
+
+#: Key of `extra` in msgspec.Meta: what is expected, where the type and its bounds do not say it well.
+EXPECTED = "expected"
+#: Characters of a value that are shown.
+_LONGEST = 40
+
+Kind = TypeVar("Kind")
+
+
+class MisfitError(Exception):
+    """
+    A value that does not fit its key; the text is one line that begins with the key.
+
+    key: where it stands, with points between (`tools.8.radius`); empty for the file as a whole.
+    """
+
+    def __init__(self, key: str, text: str) -> None:
+        super().__init__(text)
+        self.key = key
+
+
+class _Part(NamedTuple):
+    """A value within a table, its key, and the type that it should fit."""
+
+    key: str
+    value: Any
+    kind: Any
+
+
+def fitted(table: Any, kind: type[Kind], key: str = "") -> Kind:
+    """
+    The table as a value of a type; no number of it is infinite or NaN. key: where the table itself stands.
+
+    Raises MisfitError for the first value that does not fit.
+    """
+    try:
+        found = msgspec.convert(table, kind, str_keys=True)
+    except msgspec.ValidationError as error:
+        misfit = next(_misfits(_Part(key, table, kind)), None)
+        raise misfit or MisfitError(key, _plain(error)) from None
+    if not _is_finite(table):
+        raise next(_misfits(_Part(key, table, kind)))
+    return found
+
+
+def _is_finite(value: Any) -> bool:
+    if isinstance(value, Mapping):
+        return all(map(_is_finite, value.values()))
+    if isinstance(value, list | tuple):
+        return all(map(_is_finite, value))
+    return not isinstance(value, float) or math.isfinite(value)
+
+
+def _misfits(part: _Part) -> Iterator[MisfitError]:
+    """What does not fit, the innermost values first: the table around one fits only if they do."""
+    kind = _bare(part.kind)
+    if isinstance(part.value, Mapping):
+        if isinstance(kind, type) and issubclass(kind, msgspec.Struct):
+            yield from _of_struct(part, kind)
+        elif get_origin(kind) is dict:
+            yield from _of_dict(part, kind)
+    elif isinstance(part.value, list) and get_origin(kind) is list:
+        for value in part.value:
+            yield from _misfits(_Part(part.key, value, get_args(kind)[0]))
+    try:
+        msgspec.convert(part.value, part.kind, str_keys=True)
+    except msgspec.ValidationError as error:
+        yield _misfit(part, error)
+    else:
+        if isinstance(part.value, float) and not math.isfinite(part.value):
+            yield _misfit(part)
+
+
+def _of_struct(part: _Part, kind: type[msgspec.Struct]) -> Iterator[MisfitError]:
+    fields = {field.name: field for field in msgspec.structs.fields(kind)}
+    for name, value in part.value.items():
+        key = _below(part.key, name)
+        if name not in fields:
+            yield MisfitError(key, f"unknown key {key}{suggestion(str(name), fields)}")
+        else:
+            yield from _misfits(_Part(key, value, fields[name].type))
+    for name, field in fields.items():
+        if field.required and name not in part.value:
+            yield MisfitError(_below(part.key, name), f"{_below(part.key, name)} is missing")
+
+
+def _of_dict(part: _Part, kind: Any) -> Iterator[MisfitError]:
+    of_keys, of_values = get_args(kind)
+    for name, value in part.value.items():
+        key = _below(part.key, name)
+        try:
+            msgspec.convert(name, of_keys, strict=False)
+        except msgspec.ValidationError:
+            yield MisfitError(key, f"{key}: expected {_expected(of_keys)}, found {name}")
+        yield from _misfits(_Part(key, value, of_values))
+
+
+def _misfit(part: _Part, error: Exception | None = None) -> MisfitError:
+    if isinstance(part.value, Mapping) and error is not None and isinstance(error.__cause__, ValueError):
+        text = _plain(error)  # what the type itself objects to
+    else:
+        text = f"expected {_expected(part.kind)}, found {shown(part.value)}{_with_point(part)}"
+    return MisfitError(part.key, f"{part.key}: {text}" if part.key else text)
+
+
+def _plain(error: Exception) -> str:
+    text = str(error).partition(" - at `$")[0]
+    return f"{text[:1].lower()}{text[1:]}"
+
+
+def _below(key: str, name: object) -> str:
+    return f"{key}.{name}" if key else str(name)
+
+
+def _bare(kind: Any) -> Any:
+    """A type without its bounds, and without the None of a value that may be left out."""
+    while get_origin(kind) is Annotated:
+        kind = get_args(kind)[0]
+    if get_origin(kind) in (Union, types.UnionType):
+        left = [one for one in get_args(kind) if one is not type(None)]
+        return _bare(left[0]) if len(left) == 1 else kind
+    return kind
+
+
+_PLAIN = {bool: "true or false", float: "a number", int: "a whole number", str: "a text"}
+_PLURAL = {float: "numbers", int: "whole numbers", str: "texts"}
+
+
+def _expected(kind: Any) -> str:
+    """What a type holds, in words."""
+    given = get_args(kind)
+    if get_origin(kind) in (Union, types.UnionType):
+        return " or ".join(_expected(one) for one in given if one is not type(None))
+    if get_origin(kind) is Annotated:
+        metas = [meta for meta in given[1:] if isinstance(meta, msgspec.Meta)]
+        said = [meta.extra[EXPECTED] for meta in metas if meta.extra and EXPECTED in meta.extra]
+        return str(said[0]) if said else _expected(given[0]) + "".join(map(_bounds, metas))
+    if get_origin(kind) is Literal:
+        return _alternatives(map(str, given))
+    if get_origin(kind) in (list, tuple):
+        count = "two " if get_origin(kind) is tuple else ""
+        return f"a list of {count}{_PLURAL.get(_bare(given[0]), 'values')}"
+    return _PLAIN.get(kind, "a table")
+
+
+def _bounds(meta: msgspec.Meta) -> str:
+    if meta.min_length:
+        return ", at least one"
+    if meta.ge is not None and meta.le is not None:
+        return f" from {meta.ge:g} to {meta.le:g}"
+    least = f" of {meta.ge:g} or more" if meta.ge is not None else f" above {meta.gt:g}" if meta.gt is not None else ""
+    return f"{least}, {meta.le:g} at most" if meta.le is not None else least
+
+
+def _alternatives(names: Iterable[str]) -> str:
+    *others, last = names
+    return f"{', '.join(others)} or {last}" if others else last
+
+
+def shown(value: Any) -> str:
+    """A value as TOML writes it, not too long."""
+    if isinstance(value, Mapping):
+        return "a table"
+    if isinstance(value, bool):
+        return str(value).lower()
+    text = f"{value:.12g}" if isinstance(value, float) else repr(value)
+    return text if len(text) <= _LONGEST else f"{text[:_LONGEST]}..."
+
+
+def _with_point(part: _Part) -> str:
+    """What to write for a number with a decimal comma."""
+    text = part.value
+    if _bare(part.kind) is float and isinstance(text, str) and re.fullmatch(r"[-+]?\d*,\d+", text.strip()):
+        return f"; write {text.strip().replace(',', '.')}, with a decimal point"
+    return ""
