@@ -8,6 +8,9 @@ The form of a name in braces says what it is:
   phrases/<group of the rule>.py or phrases/common.py.
 A phrase takes by their names the tables that it needs, and `place`, `row`, `index` (see Place), `at`, the executed
 words at fault, or `count`, how many elements the finding stands for.
+
+The format behind the colon is one of quantity.Quantity; `{trace.feed:feed/limit}` has as many digits as it takes to
+tell the feed from the limit, another name of the message.
 """
 
 from __future__ import annotations
@@ -52,12 +55,25 @@ class _Template(string.Formatter):
         self.used: dict[str, Any] = {}
 
     def get_field(self, field_name: str, args: Any, kwargs: Any) -> tuple[Any, str]:
-        table, dot, _ = field_name.partition(".")
-        value = self._column(field_name) if dot else self._named(field_name)
+        table = field_name.partition(".")[0]
+        value = self._value(field_name)
         if table not in _SETTINGS:
             value = self._shown(value)
             self.used[field_name.rpartition(".")[2]] = value.data if isinstance(value, Quantity) else value
         return value, field_name
+
+    def format_field(self, value: Any, format_spec: str) -> str:
+        form, is_compared, other = format_spec.partition("/")
+        if not is_compared:
+            return str(super().format_field(value, format_spec))
+        values = (self._shown(one) for one in (value, self._value(other)))
+        mine, its = (one if isinstance(one, Quantity) else None for one in values)
+        if mine is None or its is None:
+            raise RuleError(f"{self.rule.name}: {format_spec}: only numbers can be told apart")
+        return mine.beside(its, form)
+
+    def _value(self, name: str) -> Any:
+        return self._column(name) if "." in name else self._named(name)
 
     def _column(self, path: str) -> Any:
         found = self.tables.column(path)
@@ -73,7 +89,7 @@ class _Template(string.Formatter):
 
     def _shown(self, value: Any) -> Any:
         value = value.item() if isinstance(value, np.generic) else value
-        return value if isinstance(value, str) else in_row(value, self.tables["trace"], self.place.row)
+        return value if isinstance(value, str | Quantity) else in_row(value, self.tables["trace"], self.place.row)
 
 
 def called(function: Callable[..., Any], tables: Mapping[str, Any], given: Mapping[str, Any]) -> Any:

@@ -14,6 +14,9 @@ from polarcheck.machines.code_lists import numbers
 from polarcheck.machines.codes import code_numbers
 from polarcheck.table.trace import Trace
 
+#: A % with what else stands on its line, and blanks.
+_MARK = re.compile(r"(?:%[^\r\n]*)?[\0-\x20\x7f\xa0]*")
+
 
 class Place(msgspec.Struct, frozen=True):
     """
@@ -132,6 +135,10 @@ def _of_span(name: str) -> Callable[[Tables, int], Place]:
         start = int(spans.start[index])
         end = int(spans.end[index])
         if name == "outside":
+            # It begins behind the % that ends the program, which is no part of the text.
+            mark = _MARK.match(trace.text.source.excerpt(start, end))
+            start = min(start + (mark.end() if mark else 0), end - 1)
+            block = int(np.searchsorted(trace.text.blocks.start, start, side="right")) - 1
             end = min(end, max(int(trace.text.blocks.end[block]), start + 1))
         return Place(start, end, block, int(trace.row_of_block[block]), index)
 

@@ -9,13 +9,19 @@ import numpy as np
 from polarcheck.machines.modal import MM_PER_INCH, Units
 from polarcheck.table.trace import Trace
 
+#: Digits behind the point that a program writes, in mm and in inch.
+_DIGITS = {"length": (3, 4), "diameter": (3, 4), "feed": (3, 4), "whole": (0, 0)}
+#: Values that agree in so many digits more are the same.
+_MOST_DIGITS = 9
+
 
 class Quantity:
     """
     A value of one row that knows how to show itself.
 
     Formats beyond Python's: `length` and `feed` turn mm and mm/min to the program's units, `diameter` doubles a radius
-    where the program writes diameters, `point` shows a plane point as X and C words.
+    where the program writes diameters, `highest` is a feed of three digits that is never above the value, `whole` has
+    no digits behind the point, `point` shows a plane point as X and C words.
     """
 
     def __init__(self, value: Any, inch: bool, diameter: bool) -> None:
@@ -24,17 +30,29 @@ class Quantity:
         self.diameter = diameter
 
     def __format__(self, form: str) -> str:
+        if form in _DIGITS:
+            return self.shown(form)
         value = self.value
-        if form == "length":
-            return f"{_short(self.length(value), self.inch)} {self.unit}"
-        if form == "diameter":
-            return f"{_short(self.length(value) * (2 if self.diameter else 1), self.inch)} {self.unit}"
-        if form == "feed":
+        if form == "highest":
             return f"{_rounded_down(self.length(value))} {self.unit}/min"
         if form == "point":
-            x = self.length(value.real) * (2 if self.diameter else 1)
-            return f"X{_short(x, self.inch)} C{_short(self.length(value.imag), self.inch)}"
+            x, c = self.length(value.real) * (2 if self.diameter else 1), self.length(value.imag)
+            digits = _DIGITS["length"][self.inch]
+            return f"X{_short(x, digits)} C{_short(c, digits)}"
         return format(value, form)
+
+    def shown(self, form: str, more: int = 0) -> str:
+        """In the form `length`, `diameter`, `feed` or `whole`; more: digits beyond those that a program writes."""
+        digits = _DIGITS[form][self.inch] + more
+        if form == "whole":
+            return _short(self.value, digits)
+        factor = 2 if form == "diameter" and self.diameter else 1
+        return f"{_short(self.length(self.value) * factor, digits)} {self.unit}{'/min' if form == 'feed' else ''}"
+
+    def beside(self, other: Quantity, form: str) -> str:
+        """With as many digits as it takes to tell it from another value that is shown in the same form."""
+        texts = ((self.shown(form, more), other.shown(form, more)) for more in range(_MOST_DIGITS))
+        return next((text for text, of_other in texts if text != of_other), self.shown(form))
 
     def length(self, value: float) -> float:
         """mm to the program's unit."""
@@ -60,9 +78,10 @@ def _finite(value: float) -> float | None:
     return round(value, 9) if np.isfinite(value) else None
 
 
-def _short(value: float, inch: bool) -> str:
-    """At most the digits that a program writes."""
-    text = f"{value:.{4 if inch else 3}f}".rstrip("0").rstrip(".")
+def _short(value: float, digits: int) -> str:
+    """At most so many digits behind the point."""
+    text = f"{value:.{digits}f}"
+    text = text.rstrip("0").rstrip(".") if digits else text
     return "0" if text in ("-0", "") else text
 
 

@@ -154,8 +154,8 @@ def _expected(kind: Any) -> str:
     if get_origin(kind) is Literal:
         return _alternatives(map(str, given))
     if get_origin(kind) in (list, tuple):
-        count = "two " if get_origin(kind) is tuple else ""
-        return f"a list of {count}{_PLURAL.get(_bare(given[0]), 'values')}"
+        of_what = _PLURAL.get(_bare(given[0]), "values")
+        return f"a list of {of_what}, of length {len(given)}" if get_origin(kind) is tuple else f"a list of {of_what}"
     return _PLAIN.get(kind, "a table")
 
 

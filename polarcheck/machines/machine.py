@@ -80,7 +80,7 @@ class Control(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     word_limit: Count
     m_code_limit: Count
     line_comments: str
-    offset_digits: Annotated[int, msgspec.Meta(ge=1, le=8)]
+    offset_digits: Annotated[int, msgspec.Meta(ge=1, le=4)]
     unknown_codes_are_errors: bool
     x: Literal["diameter", "radius"]
     known_codes: list[str]
@@ -212,13 +212,13 @@ class Limits(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     c_feed: Positive = math.nan
     c_feed_harmless: Positive
     c_feed_suspicious: Positive
-    c_acceleration: Positive = math.nan
+    c_acceleration: NotNegative = math.nan
     polar_feed: Positive = math.nan
     automatic_override: bool = False
     override_share: Positive
     keep_out: NotNegative = math.nan
     x_minimum: float = math.nan
-    x_maximum: Positive = math.nan
+    x_maximum: NotNegative = math.nan
     z_minimum: float = math.nan
     z_maximum: float = math.nan
 

@@ -32,6 +32,12 @@ class Entry:
         return fill_down(happened, written, False).astype(bool)
 
     @cached_property
+    def loses_x(self) -> Mask:
+        """X is somewhere else afterwards, where no program can know: a tool change, a reference return of X."""
+        trace = self.trace
+        return np.asarray(trace.changes_tool | (trace.listed("reference_return") & trace.has("X", "U")))
+
+    @cached_property
     def _is_known(self) -> Mask:
         """No row of unknown effect stands at or above in the program."""
         return ~self.happened(np.zeros(len(self.trace), bool))

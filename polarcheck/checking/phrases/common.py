@@ -4,14 +4,24 @@ from __future__ import annotations
 
 from polarcheck.checking.places import Place, squeezed
 from polarcheck.machines.codes import code_numbers, spelled
+from polarcheck.machines.machine import Machine
 from polarcheck.reading.translation import shown
 from polarcheck.reading.words import Text
 from polarcheck.table.trace import Trace
 
+#: Of what is written; more is cut off [characters].
+_LONGEST = 40
+
+
+def short(written: str) -> str:
+    """What is written, in one line and not too long."""
+    line = " ".join(written.split())
+    return line if len(line) <= _LONGEST else f"{line[:_LONGEST]} ..."
+
 
 def text(text: Text, place: Place) -> str:
     """What stands at the place."""
-    return text.source.excerpt(place.start, place.end)
+    return short(text.source.excerpt(place.start, place.end))
 
 
 def written(trace: Trace, row: int, address: str) -> str:
@@ -29,7 +39,7 @@ def word(trace: Trace, at: list[int]) -> str:
 def executed_word(trace: Trace, index: int) -> str:
     """An executed word as it is written, without blanks; `:` is O."""
     table = trace.run.words
-    return squeezed(trace.text.source.excerpt(int(table.start[index]), int(table.end[index])))
+    return short(squeezed(trace.text.source.excerpt(int(table.start[index]), int(table.end[index]))))
 
 
 def codes(trace: Trace, at: list[int]) -> str:
@@ -38,6 +48,11 @@ def codes(trace: Trace, at: list[int]) -> str:
     numbers = code_numbers(table.value[at])
     named = [spelled(chr(int(table.address[index])), int(number)) for index, number in zip(at, numbers, strict=True)]
     return ", ".join(dict.fromkeys(named))
+
+
+def centers(machine: Machine) -> str:
+    """The addresses of arc centers: I or J."""
+    return " or ".join(machine.polar.center_words)
 
 
 def switch(trace: Trace, row: int) -> str:

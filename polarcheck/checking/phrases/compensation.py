@@ -30,14 +30,17 @@ def allowed(machine: Machine) -> str:
     return " or ".join(str(number) for number in machine.compensation.nose_types)
 
 
-def _along(trace: Trace, row: int, length: float) -> str:
-    """A way on the plane as the program writes it: along X on the diameter, else as it is."""
-    shown = in_row(length, trace, row)
+def _along(trace: Trace, row: int, length: float, other: float) -> str:
+    """
+    A way on the plane as the program writes it: along X on the diameter, else as it is; other: another way, from which
+    it can be told.
+    """
+    shown, beside = in_row(length, trace, row), in_row(other, trace, row)
     start, end = trace.start[row], trace.end[row]
     if start.imag == end.imag and start != end and shown.diameter:
-        return f"{shown:diameter} in X on the diameter"
+        return f"{shown.beside(beside, 'diameter')} in X on the diameter"
     virtual = f" in {trace.machine.polar.virtual_axis}" if start.real == end.real and start != end else ""
-    return f"{shown:length}{virtual}"
+    return f"{shown.beside(beside, 'length')}{virtual}"
 
 
 def fault(trace: Trace, row: int) -> str:
@@ -47,8 +50,9 @@ def fault(trace: Trace, row: int) -> str:
         return f"is missing: no move on the plane follows {code}"
     radius = abs(float(trace.radius[row]))
     shown = in_row(radius, trace, row)
-    moved = _along(trace, row, float(trace.length[row]))
-    return f"moves {moved}; with R {shown:length} it needs {_along(trace, row, radius)}"
+    length = float(trace.length[row])
+    moved, needed = _along(trace, row, length, radius), _along(trace, row, radius, length)
+    return f"moves {moved}; with R {shown.beside(in_row(length, trace, row), 'length')} it needs {needed}"
 
 
 def why(trace: Trace, row: int) -> str:

@@ -40,11 +40,12 @@ def verdict(trace: Trace, tool_center: ToolCenter, row: int) -> str:
     limits = trace.machine.limits
     if np.isnan(limits.c_feed):
         return f"{float(tool_center.c_feed[row]) / 360:.0f} turns a minute and more than a C axis cuts with"
-    allows = f"{trace.machine.title} allows {limits.c_feed:.0f}"
+    rate, limit = (in_row(float(value), trace, row) for value in (tool_center.c_feed[row], limits.c_feed))
+    allows = f"{trace.machine.title} allows {limit.beside(rate, 'whole')}"
     if not limits.automatic_override:
         return allows
     slowed = in_row(float(tool_center.true_feed[row]), trace, row)
-    return f"{allows} and slows the feed down to {tool_center.override[row]:.2g} %, {slowed:feed}"
+    return f"{allows} and slows the feed down to {tool_center.override[row]:.2g} %, {slowed:highest}"
 
 
 def advice(trace: Trace, tool_center: ToolCenter, row: int, count: int) -> str:
@@ -52,7 +53,7 @@ def advice(trace: Trace, tool_center: ToolCenter, row: int, count: int) -> str:
     where = f"for its {count} blocks" if count > 1 else "here"
     if np.isnan(trace.machine.limits.c_feed):
         return f"--set limits.c_feed=... would give the highest F {where}"
-    return f"highest F {where}: {in_row(float(tool_center.feed_allowed[row]), trace, row):feed}"
+    return f"highest F {where}: {in_row(float(tool_center.feed_allowed[row]), trace, row):highest}"
 
 
 def meeting(center: Center, tool_center: ToolCenter, row: int) -> str:

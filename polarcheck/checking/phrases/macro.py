@@ -3,28 +3,21 @@
 from __future__ import annotations
 
 from polarcheck.checking.macro_faults import Faults
+from polarcheck.checking.phrases.common import short
 from polarcheck.checking.places import Place
 from polarcheck.execution.programs import block_text
 from polarcheck.machines.machine import Machine
 from polarcheck.reading.words import Text
 
-#: Of what is written; more is cut off [characters].
-_SHOWN = 40
-
 
 def shown(text: Text, place: Place) -> str:
     """What stands at the place, in one line and not too long."""
-    return _short(text.source.excerpt(place.start, place.end))
+    return short(text.source.excerpt(place.start, place.end))
 
 
 def block(text: Text, place: Place) -> str:
     """The whole block without its comments, likewise."""
-    return _short(block_text(text, place.block))
-
-
-def _short(written: str) -> str:
-    line = " ".join(written.split())
-    return line if len(line) <= _SHOWN else f"{line[:_SHOWN]} ..."
+    return short(block_text(text, place.block))
 
 
 def reason(faults: Faults, index: int) -> str:
@@ -44,7 +37,7 @@ def count(faults: Faults, index: int) -> int:
 
 def expression(faults: Faults, index: int) -> str:
     """The expression at fault."""
-    return str(faults.values(index)["expression"])
+    return short(str(faults.values(index)["expression"]))
 
 
 def variable(faults: Faults, text: Text, place: Place, index: int) -> str:

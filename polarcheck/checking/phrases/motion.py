@@ -77,5 +77,5 @@ def travel(trace: Trace, travel: Travel, row: int) -> str:
     for axis, form, value, limit, sign in ends:
         if np.isfinite(value) and sign * value > sign * limit + ROUNDING:
             goes, ends_at = (in_row(length, trace, row) for length in (value, limit))
-            return f"{axis} would go to {goes:{form}}, its travel ends at {ends_at:{form}}"
+            return f"{axis} would go to {goes.beside(ends_at, form)}, its travel ends at {ends_at.beside(goes, form)}"
     return ""

@@ -26,6 +26,8 @@ _OF_Z = {
     "together": "compensation may take it for one more corner",
     "forbidden": "this lathe cannot move Z together with the plane",
 }
+#: More words of a block are counted, not listed.
+_LISTED = 6
 #: Modal groups that must have ended at G12.1, by the list of the codes that begin them.
 _ENDED = {"scaling": "scaling", "rotation": "rotation", "mirror_image": "mirror", "constant_surface_speed": "speed"}
 
@@ -44,7 +46,9 @@ def missing_before(trace: Trace, index: int) -> str:
 
 def others(trace: Trace, at: list[int]) -> str:
     """The words at fault as they are written."""
-    return " ".join(executed_word(trace, index) for index in at)
+    words = [executed_word(trace, index) for index in at]
+    more = f" and {len(words) - _LISTED} more" if len(words) > _LISTED else ""
+    return " ".join(words[:_LISTED]) + more
 
 
 def what_z_does(machine: Machine) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from polarcheck.checking.other_machine import OtherMachine
+from polarcheck.checking.phrases.common import executed_word, short
 from polarcheck.checking.quantity import in_row
 from polarcheck.table.entry import Entry
 from polarcheck.table.trace import Trace
@@ -34,7 +35,7 @@ def taken(trace: Trace, row: int) -> float:
 
 def origin(trace: Trace, row: int) -> str:
     """The comment that R was taken from, and where it is taken as 0 instead."""
-    comment = trace.radius_comments[int(trace.offset_number[row])].comment
+    comment = short(trace.radius_comments[int(trace.offset_number[row])].comment)
     lines, are_all = _sections_of_center(trace, row)
     if not lines:
         return f"from the comment: {comment}"
@@ -45,6 +46,30 @@ def origin(trace: Trace, row: int) -> str:
         return f"in place of {radius} of the comment {comment}: {shorter}; {remedy}"
     sections = f"{'line' if len(lines) == 1 else 'lines'} {', '.join(map(str, lines))}"
     return f"from the comment {comment}, but 0 in the polar mode of {sections}: {shorter}; {remedy}"
+
+
+def to_clear(trace: Trace, entry: Entry, row: int) -> str:
+    """What X has to clear: stock and cutter, and the clearance where the job wants one."""
+    stock, cutter, clearance = (
+        f"{in_row(float(value[row]), trace, row):length}"
+        for value in (entry.stock_diameter, trace.cutter_diameter, entry.clearance)
+    )
+    if entry.clearance[row] > 0:
+        return f"stock {stock}, cutter {cutter} and clearance {clearance} need"
+    return f"stock {stock} and cutter {cutter} need"
+
+
+def unknown_since(trace: Trace, entry: Entry, row: int) -> str:
+    """`is not known since T0404 in line 7`, or that X was never positioned."""
+    first = int(np.flatnonzero(trace.starts[: row + 1])[-1]) if trace.starts[: row + 1].any() else 0
+    lost = first + np.flatnonzero(entry.loses_x[first : row + 1])
+    if not len(lost):
+        return "has not been positioned in this program"
+    at = int(lost[-1])
+    named = "T" if trace.has("T")[at] else "GXU"
+    low, high = np.searchsorted(trace.run.row, (at, at + 1))
+    words = [index for index in range(low, high) if chr(int(trace.run.words.address[index])) in named]
+    return f"is not known since {' '.join(executed_word(trace, word) for word in words)} in line {int(trace.line[at])}"
 
 
 def fit(other_machine: OtherMachine) -> str:

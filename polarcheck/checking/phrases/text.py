@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+import numpy as np
+
+from polarcheck.checking.phrases.common import short
+from polarcheck.checking.places import squeezed
 from polarcheck.machines.codes import code_numbers, spelled
 from polarcheck.reading.numbers import NumberFault
 from polarcheck.reading.words import Text, Words
 from polarcheck.table.written import Written
 
+#: Of many words of one address so many are listed, and the last.
+_LISTED = 3
 _NUMBER_FAULTS = {
     NumberFault.NO_DIGITS: "no digits after the address",
     NumberFault.TWO_POINTS: "two decimal points",
@@ -32,6 +38,20 @@ def code(text: Text, index: int) -> str:
 def other(text: Text, written: Written, index: int) -> str:
     """The code of the same group that stands before this one."""
     return code(text, int(written.overruled[index]))
+
+
+def repeated(text: Text, index: int) -> str:
+    """`X is written twice in this block: X10. and X20.`, with the words of the address as they are written."""
+    words = text.words
+    low, high = np.searchsorted(words.block, (words.block[index], words.block[index] + 1))
+    same = low + np.flatnonzero(words.address[low:high] == words.address[index])
+    spans = zip(words.start[same].tolist(), words.end[same].tolist(), strict=True)
+    *others, last = (short(squeezed(text.source.excerpt(start, end))) for start, end in spans)
+    others = others if len(others) <= _LISTED else [*others[:_LISTED], "..."]
+    letter = chr(int(words.address[index]))
+    address = f",{letter.upper()}" if letter.islower() else letter
+    often = "twice" if len(same) == 2 else f"{len(same)} times"
+    return f"{address} is written {often} in this block: {', '.join(others)} and {last}"
 
 
 def times(written: Written, index: int) -> str:

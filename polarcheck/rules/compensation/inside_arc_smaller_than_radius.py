@@ -6,7 +6,8 @@ from polarcheck.checking.rule import ERROR, Mask, ToolCenter, Trace, rule
 
 @rule(
     ERROR,
-    "arc of {ramps.arc_radius:length} with the tool on its inner side; R {trace.radius:length} must be smaller",
+    "arc of {ramps.arc_radius:length/trace.radius} with the tool on its inner side; "
+    "R {trace.radius:length/ramps.arc_radius} must be smaller",
     at=("arc_clockwise", "arc_counterclockwise", "R", "I", "J"),
     needs=("trace.radius",),
     where="ramps.compensated",

@@ -6,7 +6,7 @@ from polarcheck.checking.rule import ERROR, WARNING, Center, Hits, Machine, Tool
 
 @rule(
     ERROR,
-    "C axis would turn at {tool_center.c_feed:.0f} deg/min with {feed_word}, {verdict}; "
+    "C axis would turn at {tool_center.c_feed:whole/tool_center.c_feed_limit} deg/min with {feed_word}, {verdict}; "
     "nearest distance {tool_center.nearest:length}; {advice}",
     at=("F",),
     needs=("tool_center.c_feed",),

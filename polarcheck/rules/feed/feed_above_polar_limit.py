@@ -5,7 +5,7 @@ from polarcheck.checking.rule import WARNING, Feeds, Hits, Machine, Trace, rule
 
 @rule(
     WARNING,
-    "F is {trace.feed:feed}, {machine.title} moves with {limit:feed} at most in the polar mode",
+    "F is {trace.feed:feed/limit}, {machine.title} moves with {limit:feed/trace.feed} at most in the polar mode",
     at=("F",),
 )
 def feed_above_polar_limit(trace: Trace, feeds: Feeds, machine: Machine) -> Hits:

@@ -6,7 +6,8 @@ from polarcheck.checking.rule import ERROR, Arcs, Hits, Machine, rule
 
 @rule(
     ERROR,
-    "the arc starts {arcs.start_radius:length} from its center and ends {arcs.end_radius:length} from it; "
+    "the arc starts {arcs.start_radius:length/arcs.end_radius} from its center and "
+    "ends {arcs.end_radius:length/arcs.start_radius} from it; "
     "{tolerance:length} of difference is allowed",
     at=("X", "U", "C", "H", "I", "J"),
     needs=("arcs.end_radius",),

@@ -8,7 +8,8 @@ LAST_DIGIT = 0.1
 
 @rule(
     WARNING,
-    "arc of {arcs.sweep:.0f} deg; {machine.title} takes {machine.arcs.sweep_limit:.0f} in one block",
+    "arc of {arcs.sweep:whole/machine.arcs.sweep_limit} deg; {machine.title} takes "
+    "{machine.arcs.sweep_limit:whole/arcs.sweep} in one block",
     at=("X", "U", "C", "H", "I", "J", "R"),
     follows={"block": ("arc-off-polar-plane",)},
 )

@@ -5,7 +5,7 @@ from polarcheck.checking.rule import ERROR, Arcs, Mask, Trace, rule
 
 @rule(
     ERROR,
-    "arc without R, I or J",
+    "arc without {machine.arcs.radius_word}, {centers}",
     at=("arc_clockwise", "arc_counterclockwise", "X", "U", "C", "H"),
     follows={"block": ("arc-off-polar-plane",)},
 )

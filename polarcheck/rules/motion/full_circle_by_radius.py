@@ -3,7 +3,9 @@ from __future__ import annotations
 from polarcheck.checking.rule import WARNING, Arcs, Machine, Mask, Trace, rule
 
 
-@rule(WARNING, "arc by radius that ends where it starts: nothing moves; a full circle needs I or J", at=("X", "C", "R"))
+@rule(
+    WARNING, "arc by radius that ends where it starts: nothing moves; a full circle needs {centers}", at=("X", "C", "R")
+)
 def full_circle_by_radius(trace: Trace, arcs: Arcs, machine: Machine) -> Mask:
     """
     Full circle with R.

@@ -6,8 +6,7 @@ from polarcheck.geometry.tolerances import ROUNDING
 
 @rule(
     ERROR,
-    "X stands at {trace.x:diameter} at {switch}; stock {stock:length} and cutter {trace.cutter_diameter:length} need "
-    "{needed:diameter} or more",
+    "X stands at {trace.x:diameter/needed} at {switch}; {to_clear} {needed:diameter/trace.x} or more",
     at=("on",),
     needs=("trace.cutter_diameter",),
     where="entry.approaches_stock",

@@ -3,7 +3,7 @@ from __future__ import annotations
 from polarcheck.checking.rule import WARNING, Entry, Mask, Trace, rule
 
 
-@rule(WARNING, "X has not been positioned before {switch}", at=("on",))
+@rule(WARNING, "X {unknown_since}; position it outside the part before {switch}", at=("on",))
 def x_unknown_at_entry(trace: Trace, entry: Entry) -> Mask:
     """
     X not positioned before the polar mode.
@@ -64,5 +64,4 @@ def x_unknown_at_entry(trace: Trace, entry: Entry) -> Mask:
         M99
     """
     positioned = trace.has("X", "U") & (trace.uses_axes | trace.sets_coordinates)
-    lost = trace.changes_tool | (trace.listed("reference_return") & trace.has("X", "U"))
-    return trace.enters & trace.whole_program & ~entry.happened(positioned, since=lost)
+    return trace.enters & trace.whole_program & ~entry.happened(positioned, since=entry.loses_x)

@@ -29,8 +29,8 @@ def text_outside_program(written: Written) -> Mask:
         O0001
         T0101
         M30
-        %                             (expect: text-outside-program)
-        CHECK THE CLAMP FIRST
+        %
+        CHECK THE CLAMP FIRST         (expect: text-outside-program)
 
     Good:
 

@@ -3,7 +3,7 @@ from __future__ import annotations
 from polarcheck.checking.rule import WARNING, Mask, Written, rule
 
 
-@rule(WARNING, "a word of this address stands before it in the block; the control takes one of them", over="words")
+@rule(WARNING, "{repeated}; the control takes the last: write one of them, or a block for each", over="words")
 def word_repeated(written: Written) -> Mask:
     """
     Same address twice in a block.
