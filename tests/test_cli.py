@@ -683,6 +683,22 @@ def test_the_examples_of_the_page_end_as_it_says(monkeypatch: pytest.MonkeyPatch
         assert call(*arguments.split(), "--strict").exit_code == (verdict != "pass")
 
 
+@pytest.mark.parametrize(
+    ("machine", "words"),
+    [
+        ("fanuc-30i", ""),
+        ("haas-lathe", "from G112 to G113, with Y as its virtual axis, with X as a radius"),
+        ("siemens-transmit", "from TRANSMIT to TRAFOOF, with Y as its virtual axis, with X as a radius"),
+    ],
+)
+def test_explain_says_how_the_mode_is_programmed_on_the_machine(machine: str, words: str) -> None:
+    shown = " ".join(call("explain", "arc-off-polar-plane", "--machine", machine).stdout.split())
+    assert (f"the mode is programmed {words}." in shown) == bool(words)
+    assert ("Examples without a machine are those of FANUC lathe control" in shown) == bool(words)
+    assert "X and C" not in shown
+    assert "the mode is programmed" not in call("explain", "empty-program", "--machine", machine).stdout
+
+
 def test_explain_suggests_what_begins_with_the_word() -> None:
     assert call("explain", "rapid").stderr == "polarcheck: unknown rule 'rapid'; did you mean rapid-in-polar?\n"
     assert call("explain", "start-up").stderr.endswith(

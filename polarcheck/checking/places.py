@@ -160,7 +160,8 @@ def words_at_fault(tables: Tables, row: int, names: tuple[str, ...], at: Mask | 
     """
     The executed words of a row that are at fault: those of the mask, or those of the names; empty where there are none.
 
-    names: addresses (X, `,R`), lists of G codes of the machine (rapid), "on" and "off" for the codes of the mode.
+    names: addresses (X, `,R`; C is the virtual axis, too, whatever its address), lists of G codes of the machine
+    (rapid), "on" and "off" for the codes of the mode.
     """
     if row < 0:
         return []
@@ -186,6 +187,9 @@ def squeezed(text: str) -> str:
 
 def _is_named(trace: Trace, index: int, names: tuple[str, ...]) -> bool:
     address = chr(int(trace.run.words.address[index]))
+    polar = trace.machine.polar
+    if address in (polar.virtual_axis, polar.virtual_axis_incremental) and "C" in names:
+        return True
     if address in names or (address.islower() and f",{address.upper()}" in names):
         return True
     number = int(code_numbers(trace.run.words.value[index : index + 1])[0])

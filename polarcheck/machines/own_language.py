@@ -1,6 +1,8 @@
-"""Words of a control's own language that stand for no G code (DIAMOF): each gets a code that no control has."""
+"""Words of a control's own language: those that stand for no G code (DIAMOF) get a code that no control has."""
 
 from __future__ import annotations
+
+from collections.abc import Mapping
 
 from msgspec.structs import replace
 
@@ -39,3 +41,8 @@ def numbered(machine: Machine) -> Machine:
         ),
         polar=replace(polar, allowed_codes=coded(polar.allowed_codes)),
     )
+
+
+def shown(native_words: Mapping[str, str], code: str) -> str:
+    """The native word for a code such as G13.1, or the code itself."""
+    return next((word for word, text in native_words.items() if text == code), code)

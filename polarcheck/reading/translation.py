@@ -51,8 +51,3 @@ def _pattern(word: bytes) -> bytes:
 def _filled(text: bytes, length: int) -> bytes:
     """A code with zeros before its number, which mean nothing; other text at the end, where its number follows."""
     return text[:1] + text[1:].rjust(length - 1, b"0") if is_code(text.decode("latin-1")) else text.rjust(length)
-
-
-def shown(native_words: Mapping[str, str], code: str) -> str:
-    """The native word for a code such as G13.1, or the code itself."""
-    return next((word for word, text in native_words.items() if text == code), code)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from polarcheck.checking.places import Place, squeezed
 from polarcheck.machines.codes import code_numbers, spelled
 from polarcheck.machines.machine import Machine
-from polarcheck.reading.translation import shown
+from polarcheck.machines.own_language import shown
 from polarcheck.reading.words import Text
 from polarcheck.table.trace import Trace
 

@@ -13,6 +13,7 @@ import msgspec
 
 from polarcheck.machines import profiles
 from polarcheck.machines.machine import Machine
+from polarcheck.machines.own_language import shown
 from polarcheck.machines.profiles import Profile
 from polarcheck.reading.excerpt import visible
 
@@ -35,7 +36,25 @@ def _page(rule: Rule, machine: Machine) -> str:
     facts = [rule.group, machine.severities.get(rule.name, rule.severity.name.lower())]
     facts += [f"alarm {alarm} on {machine.title}"] if alarm else []
     head = f"{rule.name} ({', '.join(facts)})"
-    return f"{head}\n{'=' * len(head)}\n\n{rule.page.strip()}"
+    return "\n\n".join([f"{head}\n{'=' * len(head)}", *_other_words(rule, machine), rule.page.strip()])
+
+
+def _other_words(rule: Rule, machine: Machine) -> Iterator[str]:
+    """What a page that is written in the words of the default machine means on another one."""
+    usual, polar = profiles.load(profiles.DEFAULT).machine, machine.polar
+    if usual.polar.on[0] not in rule.page:
+        return
+    begins, ends = (shown(machine.control.native_words, codes[0]) for codes in (polar.on, polar.off))
+    words = [] if begins == usual.polar.on[0] else [f"from {begins} to {ends}"]
+    if polar.virtual_axis != usual.polar.virtual_axis:
+        words.append(f"with {polar.virtual_axis} as its virtual axis")
+    if polar.x != usual.polar.x:
+        words.append(f"with X as a {polar.x}")
+    if words:
+        text = f"On {machine.title} the mode is programmed {', '.join(words)}. Examples without a machine are those of "
+        yield "\n".join(
+            textwrap.wrap(f"{text}{usual.title}, with {usual.polar.virtual_axis} as the virtual axis.", _COLUMNS)
+        )
 
 
 def catalogue(rules: Mapping[str, Rule]) -> str:

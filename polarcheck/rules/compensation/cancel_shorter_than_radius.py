@@ -17,10 +17,10 @@ def cancel_shorter_than_radius(trace: Trace, ramps: Ramps, machine: Machine) -> 
     Offset cancel shorter than the cutter radius.
 
     Cutter compensation is taken back in the G1 block with G40, or in the next one that moves. That block must move at
-    least the R of the tool offset: along X twice R where X is a diameter, along C once R, at an angle R on the plane.
-    After a shorter one, or a G40 after which nothing moves on the plane, the tool is not where the program takes it to
-    be, and it may turn back into the contour. A block that names the present position is no move. Where the manual of
-    the control leaves the mode so, a G40 without a move is a note.
+    least the R of the tool offset: along X twice R where X is a diameter, along the virtual axis once R, at an angle R
+    on the plane. After a shorter one, or a G40 after which nothing moves on the plane, the tool is not where the
+    program takes it to be, and it may turn back into the contour. A block that names the present position is no move.
+    Where the manual of the control leaves the mode so, a G40 without a move is a note.
 
     Source: builder's guide to G12.1, cutter compensation function and sample program.
 

@@ -16,7 +16,8 @@ def nose_type_not_zero(trace: Trace) -> Mask:
     Nose type of a turning tool in the offset of a mill.
 
     T of the tool offset says where on the nose the programmed point lies. For a mill it is the cutter center, type 0
-    (or 9); with another type compensation shifts the contour by R in X, in C, or both. Set T to 0 in the offset table.
+    (or 9); with another type compensation shifts the contour by R along one or both axes of the plane. Set T to 0 in
+    the offset table.
 
     Source: builder's guide to G12.1, cutter compensation data setting; FANUC B-62754EN/01, tool nose radius
     compensation.

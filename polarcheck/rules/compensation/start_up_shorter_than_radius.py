@@ -17,9 +17,9 @@ def start_up_shorter_than_radius(trace: Trace, ramps: Ramps) -> Mask:
     Start-up shorter than the cutter radius.
 
     Cutter compensation is built up in the G1 block with G41 or G42, or in the next one that moves. That block must move
-    at least the R of the tool offset: along X twice R where X is a diameter, along C once R, at an angle R on the
-    plane. A shorter one starts inside the offset and cuts into the contour, or turns the tool back. A G41 after which
-    nothing moves before G40 or G13.1 builds up nothing; a block that names the present position is no move.
+    at least the R of the tool offset: along X twice R where X is a diameter, along the virtual axis once R, at an angle
+    R on the plane. A shorter one starts inside the offset and cuts into the contour, or turns the tool back. A G41
+    after which nothing moves before G40 or G13.1 builds up nothing; a block that names the present position is no move.
 
     Source: builder's guide to G12.1, cutter compensation function.
 

@@ -12,10 +12,10 @@ def arc_off_polar_plane(arcs: Arcs) -> Mask:
     """
     Arc along Z in the polar mode.
 
-    In the mode G2 and G3 are arcs of X and C. A block of theirs with Z and neither X nor C is no such arc, and the
-    control stops with an alarm. Often it is a move of Z behind an arc, where G1 was forgotten. With Z and only one of X
-    and C it is an arc of another plane, too, unless an arc of X and C fits it: then it is a helix, and the axis that
-    stays where it is was left out.
+    In the mode G2 and G3 are arcs of the polar plane. A block of theirs with Z and no axis of the plane is no such arc,
+    and the control stops with an alarm. Often it is a move of Z behind an arc, where G1 was forgotten. With Z and only
+    one axis of the plane it is an arc of another plane, too, unless an arc of the polar plane fits it: then it is a
+    helix, and the axis that stays where it is was left out.
 
     Source: FANUC alarm 021; B-62764EN/01, p. 51.
 

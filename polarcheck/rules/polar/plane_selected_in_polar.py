@@ -13,7 +13,7 @@ def plane_selected_in_polar(mode_words: ModeWords, machine: Machine) -> Mask:
     """
     Plane selected in the polar mode.
 
-    In the mode the plane is that of X and C, whatever G17, G18 or G19 was in force before; that one comes back at
+    In the mode the plane is the polar plane, whatever G17, G18 or G19 was in force before; that one comes back at
     G13.1. Selecting a plane in the mode stops the control with an alarm. Delete the code, or write it before G12.1. On
     lathes that are set up for one plane, selecting that one is right in the mode, too (polar.plane_before).
 
