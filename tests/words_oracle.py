@@ -155,6 +155,7 @@ def _read_block(block: str, place: int, line: int, found: Reading) -> None:
     if len(words) > 1 and words[0].address == "O" and ":" in block.lstrip(BLANKS)[:1]:
         words[0].address = "N"
     if is_macro or _is_statement(words):
+        found.strays += [at for at in strays[-1:] if not block[at - place + 1 :].strip(BLANKS)]
         return
     found.words += words
     found.strays += strays

@@ -21,7 +21,8 @@ class Quantity:
 
     Formats beyond Python's: `length` and `feed` turn mm and mm/min to the program's units, `diameter` doubles a radius
     where the program writes diameters, `highest` is a feed of three digits that is never above the value, `whole` has
-    no digits behind the point, `point` shows a plane point as X and C words.
+    no digits behind the point, `point` shows a plane point as X and C words, `blocks` tells a
+    number of blocks above one.
     """
 
     def __init__(self, value: Any, inch: bool, diameter: bool) -> None:
@@ -39,6 +40,8 @@ class Quantity:
             x, c = self.length(value.real) * (2 if self.diameter else 1), self.length(value.imag)
             digits = _DIGITS["length"][self.inch]
             return f"X{_short(x, digits)} C{_short(c, digits)}"
+        if form == "blocks":
+            return f" (in {value} blocks)" if value > 1 else ""
         return format(value, form)
 
     def shown(self, form: str, more: int = 0) -> str:

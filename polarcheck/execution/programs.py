@@ -167,9 +167,12 @@ def needs_flow(text: Text, codes: Iterable[str]) -> bool:
 
 
 def block_text(text: Text, block: int) -> str:
-    """A block with its comments blanked, so that places in it stay what they are."""
+    """A block as the control would read it: comments and stray characters blanked."""
     start, end = int(text.blocks.start[block]), int(text.blocks.end[block])
     found = text.source.excerpt(start, end)
+    for at in text.strays.start[slice(*np.searchsorted(text.strays.block, (block, block + 1)))].tolist():
+        if found[at - start] != "%":  # ends what is read
+            found = found[: at - start] + " " + found[at - start + 1 :]
     low, high = np.searchsorted(text.comments.block, (block, block + 1))
     for index in range(low, high):
         first, last = int(text.comments.start[index]) - start, int(text.comments.end[index]) - start

@@ -48,7 +48,7 @@ def _kinds() -> Bytes:
 
 
 _KINDS = _kinds().tobytes()
-_COMMA, _COLON, _SLASH, _SEMICOLON = b",:/;"
+_COMMA, _COLON, _SLASH, _STAR = b",:/*"
 _UPPER = np.arange(256, dtype=np.uint8)
 _UPPER[97:123] -= 32
 _UPPER[_COLON] = ord("O")
@@ -172,7 +172,7 @@ def read_words(source: Source, line_comments: str = "") -> Text:
     def spans(ranges: Ranges) -> Spans:
         return Spans(ranges.start, ranges.end, _block_of(ranges.start, starts))
 
-    strays = np.sort(np.append(table.strays[~is_macro[_block_of(table.strays, starts)]], around.strays))
+    strays = np.sort(np.append(table.strays[_is_told(table, code, is_macro, starts)], around.strays))
     outside = around.outside
     if data[end_of_data + 1 :].translate(None, BLANKS + b"\n"):
         outside = Ranges(np.append(outside.start, end_of_data), np.append(outside.end, len(data)))
@@ -197,6 +197,18 @@ def _block_of(at: Positions, starts: Positions) -> Positions:
     return np.searchsorted(starts, at, side="right") - 1
 
 
+def _is_told(table: _Table, code: Bytes, is_macro: Mask, starts: Positions) -> Mask:
+    """
+    Which stray characters are none of a macro statement: those of other blocks, and at the end of any block.
+
+    A * at the end of a statement lacks its second number, unless other blocks end with a * as well.
+    """
+    in_statement = is_macro[_block_of(table.strays, starts)]
+    is_star = code[table.strays] == _STAR
+    ends_any_block = bool(np.any(is_star & ~in_statement))
+    return np.asarray(~in_statement | (table.is_last_stray & (ends_any_block | ~is_star)))
+
+
 #: A text is read in pieces of about so many characters: faster, since they fit into the cache, and in less memory.
 _PIECE = 1 << 18
 #: Where a line may be cut that is longer: before a word, and not before one that may be a corner word (,C ,R ,A).
@@ -204,12 +216,18 @@ _CUT = re.compile(rb"[\nBD-QS-Zbd-qs-z]")
 
 
 class _Table(msgspec.Struct, frozen=True):
-    """What is read of a text or of a piece of it; breaks: the ends of its blocks; macro: signs of macro statements."""
+    """
+    What is read of a text or of a piece of it.
+
+    breaks: the ends of its blocks. strays, is_last_stray: characters of no word, and whether they stand at the end of
+    a block, where they are no part of a macro statement, either. macro: signs of macro statements.
+    """
 
     words: Words
     breaks: Positions
     dots: Ranges
     strays: Positions
+    is_last_stray: Mask
     macro: Positions
 
 
@@ -249,12 +267,13 @@ def _read_piece(text: bytes, offset: np.signedinteger[Any], blocks: np.signedint
     text = text.translate(None, BLANKS)
     marks = _Marks(np.frombuffer(text, np.uint8), np.frombuffer(text.translate(_KINDS), np.uint8), at, at, at[:0])
     strays = macro = at[:0]
+    is_last_stray = np.zeros(0, bool)
     if marks.kind.max() > Character.COMMA:
-        marks, strays, macro = _without_others(marks)
+        marks, strays, is_last_stray, macro = _without_others(marks)
     breaks = np.flatnonzero(marks.kind == Character.BREAK)
     words, dots = _words(marks, breaks)
     words.block.__iadd__(blocks)
-    return _Table(words, marks.at[breaks[1:]], dots, strays, macro)
+    return _Table(words, marks.at[breaks[1:]], dots, strays, is_last_stray, macro)
 
 
 class _Marks(msgspec.Struct, frozen=True):
@@ -272,20 +291,23 @@ class _Marks(msgspec.Struct, frozen=True):
     corners: Positions
 
 
-def _without_others(marks: _Marks) -> tuple[_Marks, Positions, Positions]:
+def _without_others(marks: _Marks) -> tuple[_Marks, Positions, Mask, Positions]:
     """The marks without those that are no part of a word: strays, and signs of macro statements."""
     code, kind, start = marks.code, marks.kind.copy(), marks.start.copy()
     others = np.flatnonzero(kind > Character.COMMA)
     before, follower = kind[others - 1], code[others + 1]
     kind[others[(code[others] == _COLON) & (before == Character.BREAK)]] = Character.LETTER  # stands for O
+    kind[others[(code[others] == _STAR) & (kind[others + 1] == Character.BREAK)]] = Character.STRAY
     commas = others[(code[others] == _COMMA) & np.isin(follower, list(b"CRAcra"))]
     kind[commas] = Character.COMMA
     start[commas + 1] = marks.at[commas]
+    strays = np.flatnonzero(kind == Character.STRAY)
     kept = kind < Character.COMMA
     corners = np.cumsum(kept)[commas + 1] - 1
     return (
         _Marks(code[kept], kind[kept], marks.at[kept], start[kept], corners),
-        marks.at[kind == Character.STRAY],
+        marks.at[strays],
+        kind[strays + 1] == Character.BREAK,
         marks.at[kind == Character.MACRO],
     )
 

@@ -13,6 +13,7 @@ from polarcheck.arrays import Mask, Rows
 from polarcheck.execution.programs import block_text, find_programs
 from polarcheck.machines.codes import NO_CODE, code_numbers, code_set, modal_tables
 from polarcheck.machines.machine import Machine
+from polarcheck.reading.source import OTHER
 from polarcheck.reading.surroundings import BLANKS
 from polarcheck.reading.words import NumberFault, Text
 
@@ -22,6 +23,8 @@ _ADDRESS_BITS[65:123] = np.uint64(1) << np.arange(58, dtype=np.uint64)
 _ADDRESS_BITS[list(b"GMN")] = 0
 #: In macro calls, argument specification II.
 _ARGUMENT_SETS = b"IJK"
+#: What is wrong in the same way more often than this is one habit, of a post or of whoever typed it, and is told once.
+_HABIT = 5
 #: Groups whose codes have other meanings on lathes with two turrets, or take arguments.
 _UNSURE_GROUPS = ("scaling", "rotation", "mirror")
 #: Cycles whose codes in system A other systems and mills write beside G0 and G1, in another meaning.
@@ -44,7 +47,41 @@ class Written:
         """One element, the file: how many words and blocks of macro it has."""
         return np.array([len(self.words) + np.count_nonzero(self.text.blocks.is_macro)])
 
+    def _habits(self, index: Rows, *kinds: NDArray[Any], block: Rows | None = None, often: int = _HABIT) -> Rows:
+        """
+        Of faulty elements those to tell, each with the number of blocks that it stands for, 0 where it is not told.
+
+        index: ascending. kinds: of each; more than `often` of one kind are told at the first of them.
+        block: of each element, where they are no words.
+        """
+        of_all = self.words.block if block is None else block
+        found = np.zeros(len(of_all), np.int64)
+        if not len(index):
+            return found
+        order = np.lexsort((index, *kinds))
+        at, begins = of_all[index[order]], np.zeros(len(index), bool)
+        begins[0] = True
+        for kind in kinds:
+            begins[1:] |= np.diff(kind[order].astype(np.int64)) != 0
+        of_kind = np.cumsum(begins) - 1
+        in_new_block = begins | np.append(True, np.diff(at) != 0)
+        is_habit = (np.bincount(of_kind) > often)[of_kind]
+        count = np.where(is_habit, np.bincount(of_kind, in_new_block)[of_kind], 1)
+        found[index[order]] = np.where(begins | ~is_habit, count, 0)
+        return found
+
     # ---- words of a block ----
+
+    @cached_property
+    def unreadable_count(self) -> Rows:
+        """Per word: where a number that cannot be read is told, in how many blocks such ones stand, else 0."""
+        index = np.flatnonzero(self.words.is_unreadable)
+        return self._habits(index, self.words.fault[index], self.words.address[index])
+
+    @cached_property
+    def wrong_dash_count(self) -> Rows:
+        """The same of words with a dash of print."""
+        return self._habits(np.flatnonzero(self.words.has_wrong_dash))
 
     def _in_broken_block(self, index: Rows) -> Mask:
         """Whether something in the block of a word cannot be read, so that what else is there means little."""
@@ -99,17 +136,20 @@ class Written:
         return index[1:][same], index[:-1][same]
 
     @cached_property
-    def repeats(self) -> Mask:
-        """The first word of a block whose address stood in it before."""
+    def repeat_count(self) -> Rows:
+        """
+        Per word: at the first word of a block whose address stood in it before 1, else 0.
+
+        Where that is so of one address in many blocks, how many they are, at the first of them.
+        """
         words = self.words
         suspects = self._suspects(np.arange(len(words)), _ADDRESS_BITS[words.address])
         calls = words.block[self._g_words[code_set(self.machine.macro.macro_call_codes)[self._g_codes]]]
         is_argument = np.isin(words.address[suspects], list(_ARGUMENT_SETS)) & np.isin(words.block[suspects], calls)
         suspects = suspects[~is_argument]
         again = np.sort(self._again(suspects, words.address[suspects])[0])
-        found = np.zeros(len(words), bool)
-        found[again[np.append(True, words.block[again][1:] != words.block[again][:-1])[: len(again)]]] = True
-        return found
+        first = again[np.append(True, words.block[again][1:] != words.block[again][:-1])[: len(again)]]
+        return self._habits(first, words.address[first])
 
     # ---- G codes ----
 
@@ -153,6 +193,13 @@ class Written:
             _, first, count = np.unique(self.words.value[words], return_index=True, return_counts=True)
             counts[words[first]] = count
         return counts
+
+    @cached_property
+    def overruled_count(self) -> Rows:
+        """Per word: where an overruled code is told, in how many blocks the same two codes stand, else 0."""
+        index = np.flatnonzero(self.overruled >= 0)
+        later, other = (code_numbers(self.words.value[at]) for at in (index, self.overruled[index]))
+        return self._habits(index, later, other)
 
     # ---- digits, case ----
 
@@ -217,9 +264,9 @@ class Written:
     # ---- characters ----
 
     @cached_property
-    def is_first_stray(self) -> Mask:
+    def stray_count(self) -> Rows:
         """
-        The first stray character of its block.
+        Per stray character: at the first in the file in how many blocks it is the first stray one, else 0.
 
         Not where a word of the block cannot be read for itself, nor a ) that a nested comment has left over.
         """
@@ -229,7 +276,28 @@ class Written:
         unreadable = self.words.block[self.words.is_unreadable]
         is_left_over = self.text.source.code[strays.start] == ord(")")
         is_left_over &= np.isin(strays.block, self.text.comments.block[self.text.nested])
-        return np.asarray(first & ~np.isin(strays.block, unreadable) & ~is_left_over)
+        index = np.flatnonzero(first & ~np.isin(strays.block, unreadable) & ~is_left_over)
+        return self._habits(index, self._characters(strays.start[index]), block=strays.block, often=1)
+
+    def _characters(self, at: Rows) -> Rows:
+        """The characters at some positions, as numbers."""
+        source = self.text.source
+        code = source.code[at].astype(np.int64)
+        if np.any(code == OTHER):
+            code[code == OTHER] = [ord(source.excerpt(place, place + 1)) for place in at[code == OTHER].tolist()]
+        return code
+
+    @cached_property
+    def nested_count(self) -> Rows:
+        """Per comment: where it is told that another one opens in it, in how many blocks that is so, else 0."""
+        block = self.text.comments.block
+        return self._habits(np.flatnonzero(self.text.nested), block=block)
+
+    @cached_property
+    def unclosed_count(self) -> Rows:
+        """The same of comments that are not closed."""
+        block = self.text.comments.block
+        return self._habits(np.flatnonzero(self.text.unclosed), block=block)
 
     @cached_property
     def is_first_dots(self) -> Mask:
@@ -269,6 +337,11 @@ class Written:
         count = np.zeros(len(spans), np.int64)
         count[index[first]] = np.add.reduceat(length, first) if len(first) else 0
         return count
+
+    @cached_property
+    def foreign_line_count(self) -> Rows:
+        """Per run of foreign characters: where a line with such is told, how many lines it stands for, else 0."""
+        return self._habits(np.flatnonzero(self.foreign_count > 0), block=self.text.foreign.block)
 
 
 def _inside(at: Rows, spans: object) -> Mask:

@@ -1,15 +1,16 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Mask, OtherMode, Words, rule
+from polarcheck.checking.rule import ERROR, Hits, OtherMode, Written, rule
 
 
-@rule(ERROR, "{text}: {number_fault}", over="words")
-def bad_number(words: Words, other_mode: OtherMode) -> Mask:
+@rule(ERROR, "{text}: {number_fault}{count:blocks}", over="words")
+def bad_number(written: Written, other_mode: OtherMode) -> Hits:
     """
     A number that a control cannot read.
 
     An address without digits, a number with two points or two signs or a sign behind its digits, digits without an
-    address: the control stops at this block. The rest of the block is read as if the word were not there.
+    address: the control stops at this block. The rest of the block is read as if the word were not there. What is wrong
+    in the same way with more than five words of an address is reported once.
 
     Source: FANUC alarms 004 to 007.
 
@@ -30,4 +31,4 @@ def bad_number(words: Words, other_mode: OtherMode) -> Mask:
         C-5.
         G13.1
     """
-    return words.is_unreadable & ~other_mode.explained
+    return Hits((written.unreadable_count > 0) & ~other_mode.explained, values={"count": written.unreadable_count})

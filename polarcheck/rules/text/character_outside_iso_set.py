@@ -1,16 +1,17 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import NOTE, Mask, Written, rule
+from polarcheck.checking.rule import NOTE, Hits, Written, rule
 
 
-@rule(NOTE, "{characters} not in the ISO set of controls", over="foreign")
-def character_outside_iso_set(written: Written) -> Mask:
+@rule(NOTE, "{characters} not in the ISO set of controls{count:blocks}", over="foreign")
+def character_outside_iso_set(written: Written) -> Hits:
     """
     Character that controls have no code for.
 
     Programs are sent in the ISO code: control characters, NUL and anything beyond plain ASCII may come out as another
-    character, or raise a TH alarm on the way into the control, even in a comment. Each line is reported once. NUL at
-    the head of a file is the leader of a tape, and harmless on a control that skips it.
+    character, or raise a TH alarm on the way into the control, even in a comment. Each line is reported once, more than
+    five lines at the first of them. NUL at the head of a file is the leader of a tape, and harmless on a control that
+    skips it.
 
     Source: FANUC B-63524EN/01, p. 649 and tape code list.
 
@@ -34,4 +35,4 @@ def character_outside_iso_set(written: Written) -> Mask:
         X60.
         G13.1
     """
-    return written.foreign_count > 0
+    return Hits(written.foreign_line_count > 0, values={"count": written.foreign_line_count})

@@ -1,16 +1,21 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Mask, Written, rule
+from polarcheck.checking.rule import WARNING, Hits, Written, rule
 
 
-@rule(WARNING, "{code} and {other} of one modal group in a block; the control takes the last, {code}", over="words")
-def codes_of_one_group(written: Written) -> Mask:
+@rule(
+    WARNING,
+    "{code} and {other} of one modal group in a block; the control takes the last, {code}{count:blocks}",
+    over="words",
+)
+def codes_of_one_group(written: Written) -> Hits:
     """
     Two G codes of one modal group in a block.
 
     They exclude each other: the control takes the last one or, with parameter 3403#6 set, stops with an alarm. Write
-    only the one that is meant. Not reported are G90, G92 and G94 beside G0 to G3 in G-code system A, where they are
-    cycles: other systems and mills write them so, in another meaning.
+    only the one that is meant. The same two in more than five blocks are reported once. Not reported are G90, G92 and
+    G94 beside G0 to G3 in G-code system A, where they are cycles: other systems and mills write them so, in another
+    meaning.
 
     Source: FANUC alarm 5074; B-62754EN/01, G code list.
 
@@ -38,4 +43,4 @@ def codes_of_one_group(written: Written) -> Mask:
         X60.
         G13.1
     """
-    return written.overruled >= 0
+    return Hits(written.overruled_count > 0, values={"count": written.overruled_count})

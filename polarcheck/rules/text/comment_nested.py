@@ -1,17 +1,19 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Mask, Text, rule
+from polarcheck.checking.rule import WARNING, Hits, Written, rule
 
 
 @rule(
-    WARNING, "a parenthesis opens inside this comment; the control closes the comment at the first )", over="comments"
+    WARNING,
+    "a parenthesis opens inside this comment; the control closes the comment at the first ){count:blocks}",
+    over="comments",
 )
-def comment_nested(text: Text) -> Mask:
+def comment_nested(written: Written) -> Hits:
     """
     Comment inside a comment.
 
     Comments do not nest. The first `)` ends the comment, and what follows it is read as words of the block. Use no
-    parentheses inside a comment.
+    parentheses inside a comment. More than five in a file are reported once.
 
     Source: FANUC B-62754EN/01, configuration of a program, control-out and control-in.
 
@@ -27,5 +29,4 @@ def comment_nested(text: Text) -> Mask:
 
         T0101 (MILL) (NEW)
     """
-    # Compares nothing: the reader says so of each comment.
-    return text.nested
+    return Hits(written.nested_count > 0, values={"count": written.nested_count})

@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Mask, Text, rule
+from polarcheck.checking.rule import ERROR, Hits, Written, rule
 
 
-@rule(ERROR, "this comment is not closed on its line", over="comments")
-def comment_not_closed(text: Text) -> Mask:
+@rule(ERROR, "this comment is not closed on its line{count:blocks}", over="comments")
+def comment_not_closed(written: Written) -> Hits:
     """
     Comment without its closing parenthesis.
 
@@ -25,5 +25,4 @@ def comment_not_closed(text: Text) -> Mask:
         T0101 (MILL)
         M30
     """
-    # Compares nothing: the reader says so of each comment.
-    return text.unclosed
+    return Hits(written.unclosed_count > 0, values={"count": written.unclosed_count})

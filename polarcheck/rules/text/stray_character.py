@@ -1,16 +1,16 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Mask, OtherMode, Written, rule
+from polarcheck.checking.rule import ERROR, Hits, OtherMode, Written, rule
 
 
-@rule(ERROR, "{stray}", over="strays")
-def stray_character(written: Written, other_mode: OtherMode) -> Mask:
+@rule(ERROR, "{stray}{count:blocks}", over="strays")
+def stray_character(written: Written, other_mode: OtherMode) -> Hits:
     """
     Character that is no part of a word.
 
     A block holds letters with their numbers, and nothing else outside comments. The control stops at any other
-    character. A % inside a block is the end of the program to it. Of several in a block the first is reported; what can
-    be read around them is read.
+    character. A % inside a block is the end of the program to it. Of several in a block the first is reported, each
+    character once in a file, as a $ or * at the end of every block; what can be read around them is read.
 
     Source: FANUC alarms 009 and 5010.
 
@@ -43,4 +43,4 @@ def stray_character(written: Written, other_mode: OtherMode) -> Mask:
         G13.1
         M30 %
     """
-    return written.is_first_stray & ~other_mode.explained_strays
+    return Hits((written.stray_count > 0) & ~other_mode.explained_strays, values={"count": written.stray_count})

@@ -1,16 +1,16 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Mask, Words, rule
+from polarcheck.checking.rule import ERROR, Hits, Written, rule
 
 
-@rule(ERROR, "{text} is written with a dash of print; write a minus sign", over="words")
-def wrong_dash(words: Words) -> Mask:
+@rule(ERROR, "{text} is written with a dash of print; write a minus sign{count:blocks}", over="words")
+def wrong_dash(written: Written) -> Hits:
     """
     Dash where a minus sign is meant.
 
     Programs copied from web pages or manuals have the dashes of print, U+2013, U+2014 or U+2212, in place of the minus
     sign. They look alike on the screen. The control does not know the character and stops, or loses it and moves to the
-    other side. Here the word is read as negative.
+    other side. Here the word is read as negative. More than five in a file are reported once.
 
     Source: FANUC alarm 009; tape code list of B-63524EN/01.
 
@@ -33,4 +33,4 @@ def wrong_dash(words: Words) -> Mask:
         G13.1
     """
     # Compares nothing: the reader says so of each word.
-    return words.has_wrong_dash
+    return Hits(written.wrong_dash_count > 0, values={"count": written.wrong_dash_count})
