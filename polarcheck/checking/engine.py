@@ -197,7 +197,7 @@ def _unlisted(rule: Rule, count: int) -> NotEvaluated:
 def program_heads(trace: Trace) -> list[tuple[int, str]]:
     """The block and the name of each program that has an O number or <name>, in order."""
     text, table = trace.text, trace.text.words
-    is_head = table.address == ord("O")
+    is_head = table.begins_program
     numbered = is_head & ~np.isnan(table.value)
     heads = list(zip(table.block[numbered], table.start[numbered], table.end[numbered], strict=True))
     bare = set(table.block[is_head & np.isnan(table.value)].tolist())

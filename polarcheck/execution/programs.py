@@ -128,7 +128,7 @@ def find_programs(text: Text) -> Programs:
     """The programs of a text, in order; a file without any O number is one program."""
     heads: dict[int, tuple[int | None, str | None]] = {}
     words = text.words
-    numbered = np.flatnonzero((words.address == ord("O")) & ~np.isnan(words.value))
+    numbered = np.flatnonzero(words.begins_program & ~np.isnan(words.value))
     for index in numbered.tolist():
         value = float(words.value[index])
         heads.setdefault(int(words.block[index]), (int(value) if value < _NUMBER_LIMIT else None, None))
@@ -167,12 +167,14 @@ def needs_flow(text: Text, codes: Iterable[str]) -> bool:
 
 
 def block_text(text: Text, block: int) -> str:
-    """A block as the control would read it: comments and stray characters blanked."""
+    """A block as the control would read it: comments and stray characters blanked, digits for letters."""
     start, end = int(text.blocks.start[block]), int(text.blocks.end[block])
     found = text.source.excerpt(start, end)
     for at in text.strays.start[slice(*np.searchsorted(text.strays.block, (block, block + 1)))].tolist():
         if found[at - start] != "%":  # ends what is read
             found = found[: at - start] + " " + found[at - start + 1 :]
+    for at in text.letters[slice(*np.searchsorted(text.letters, (start, end)))].tolist():
+        found = found[: at - start] + ("0" if found[at - start] in "oO" else "1") + found[at - start + 1 :]
     low, high = np.searchsorted(text.comments.block, (block, block + 1))
     for index in range(low, high):
         first, last = int(text.comments.start[index]) - start, int(text.comments.end[index]) - start

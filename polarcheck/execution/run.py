@@ -73,7 +73,7 @@ def straight(text: Text, ends: Iterable[str]) -> Run:
     starts = np.zeros(len(block), bool)
     if len(block):
         starts[0] = True
-        starts[row[text.words.address == ord("O")]] = True
+        starts[row[text.words.begins_program]] = True
         after = row[is_code(text.words, ends)] + 1
         starts[after[after < len(block)]] = True
     return Run(text, text.words, row, block, starts, text.blocks.is_macro[block], np.zeros(len(block), np.int64))

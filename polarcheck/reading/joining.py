@@ -55,6 +55,7 @@ def joined(files: Sequence[Text]) -> Text:
         dots=table(Spans, [file.dots for file in files]),
         outside=table(Spans, [file.outside for file in files]),
         tape_marks=moved([file.tape_marks for file in files], characters),
+        letters=moved([file.letters for file in files], characters),
     )
 
 

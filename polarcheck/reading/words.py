@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from polarcheck.arrays import Floats, Mask
+from polarcheck.reading.letters import read_as_digits
 from polarcheck.reading.numbers import NumberFault, Numbers, read_numbers
 from polarcheck.reading.source import CTRL_Z, DASH, LF, Bytes, Positions, Source
 from polarcheck.reading.surroundings import BLANKS, Ranges, foreign, narrow, read_surroundings
@@ -58,6 +59,9 @@ _STATEMENTS = {b"GOTO": False, b"GO": True, b"DO": True, b"END": True, b"EN": Tr
 )
 _BEGINS_STATEMENT = np.isin(np.arange(256), [letters[0] for letters in _STATEMENTS])
 
+#: M2, M30, M99: the end of a program.
+_ENDS = (2, 30, 99)
+
 
 class Words(msgspec.Struct, frozen=True):
     """
@@ -89,6 +93,23 @@ class Words(msgspec.Struct, frozen=True):
         follows = np.zeros(len(self), bool)
         follows[1:] = empty[:-1] & empty[1:] & (self.block[1:] == self.block[:-1])
         return np.asarray(bad & ~follows)
+
+    @property
+    def begins_program(self) -> Mask:
+        """
+        An O at the head of its block, be it behind a / or an N word; elsewhere it is no program number.
+
+        But behind the M code that ends a program: what a control puts out may lack the line end there, as in M99O0810.
+        """
+        found = self.address == ord("O")
+        at = np.flatnonzero(found)
+        first = np.searchsorted(self.block, self.block[at])
+        inside = at > first
+        if np.any(inside):
+            before = np.append(0, np.cumsum(np.isin(self.address, list(b"N/"))))
+            is_end = (self.address[at - 1] == ord("M")) & np.isin(self.value[at - 1], _ENDS)
+            found[at] = (before[at] - before[first] == at - first) | (inside & is_end)
+        return np.asarray(found)
 
     @property
     def has_wrong_dash(self) -> Mask:
@@ -130,7 +151,8 @@ class Text(msgspec.Struct, frozen=True):
 
     unclosed, nested: per comment. names: of programs, <...>. strays: characters that are no part of any word. foreign:
     runs of characters outside the ISO set, in comments too. dots: lines of points, for blocks left out. outside: text
-    before and after the programs. tape_marks: positions of % at a line's head or end.
+    before and after the programs. tape_marks: positions of % at a line's head or end. letters: positions of letters O
+    and I that are read as the digits 0 and 1.
     """
 
     source: Source
@@ -145,6 +167,7 @@ class Text(msgspec.Struct, frozen=True):
     dots: Spans
     outside: Spans
     tape_marks: Positions
+    letters: Positions
 
 
 def read_words(source: Source, line_comments: str = "") -> Text:
@@ -157,6 +180,7 @@ def read_words(source: Source, line_comments: str = "") -> Text:
     lines_end_at_cr = data.find(b"\n") < 0
     code = np.frombuffer(bytearray(stored.replace(b"\r", b"\n") if lines_end_at_cr else stored), np.uint8)
     around = read_surroundings(code, line_comments)
+    letters = read_as_digits(code)
     table = _read_pieces(code.tobytes())
     _mark_alignment(table.words, code)
     breaks = table.breaks[:-1]
@@ -189,6 +213,7 @@ def read_words(source: Source, line_comments: str = "") -> Text:
         dots=spans(table.dots),
         outside=spans(outside),
         tape_marks=around.tape_marks,
+        letters=letters,
     )
 
 

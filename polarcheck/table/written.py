@@ -231,6 +231,15 @@ class Written:
         found[index[~self._in_broken_block(index)][:1]] = True
         return found
 
+    @cached_property
+    def letter_count(self) -> Rows:
+        """
+        Per word: at the first of a word with letters for digits how often it is written so in the file, else 0.
+        """
+        starts, letters = self.words.start, self.text.letters
+        index, first = np.unique(np.searchsorted(starts, letters, side="right") - 1, return_index=True)
+        return self._habits(index, self._characters(letters[first]))
+
     # ---- the end of a program ----
 
     @cached_property

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from polarcheck.checking.phrases.common import short
-from polarcheck.checking.places import squeezed
+from polarcheck.checking.places import Place, squeezed
 from polarcheck.machines.codes import code_numbers, spelled
 from polarcheck.reading.numbers import NumberFault
 from polarcheck.reading.words import Text, Words
@@ -26,6 +26,22 @@ _NUMBER_FAULTS = {
 def number_fault(words: Words, index: int) -> str:
     """What is wrong with the number of a word."""
     return _NUMBER_FAULTS[NumberFault(int(words.fault[index]))]
+
+
+def letter(text: Text, place: Place) -> str:
+    """The letter that stands for a digit in a word, and the digit."""
+    letters = text.letters
+    at = int(letters[np.searchsorted(letters, place.start)])
+    return "O for the digit 0" if text.source.excerpt(at, at + 1) in "oO" else "I for the digit 1"
+
+
+def meant(text: Text, place: Place) -> str:
+    """A word with its digits in the place of letters."""
+    first, end = np.searchsorted(text.letters, (place.start, place.end))
+    found = text.source.excerpt(place.start, place.end)
+    for at in (text.letters[first:end] - place.start).tolist():
+        found = found[:at] + ("0" if found[at] in "oO" else "1") + found[at + 1 :]
+    return found.upper()
 
 
 def code(text: Text, index: int) -> str:

@@ -1,0 +1,119 @@
+"""
+Letters that stand where a digit is meant, O for 0 and I for 1: found, and read as the digits.
+
+Works on one code per character with comments, names and remarks blanked. What is text and no block, and what belongs to
+macro statements (GOTO 10, DO1), is left as it is.
+"""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+
+from polarcheck.reading.source import DASH, LF, Bytes, Positions
+
+_SEMICOLON, _SMALL = ord(";"), 0x20
+_O, _I = b"oi"
+_IS_BREAK = np.isin(np.arange(256), (LF, _SEMICOLON))
+#: Behind these an O is part of what stands there; behind anything else, as a blank, it begins a word.
+_JOINS = np.isin(
+    np.arange(256), list(bytes([*b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789.+-", DASH]))
+)
+_IS_LETTER = np.isin(np.arange(256), list(b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz"))
+_BEGINS_WORD = _IS_LETTER | np.isin(np.arange(256), [*b"+-", DASH])
+#: Before these, or a point and these, an I has a number of its own.
+_BEGINS_NUMBER = np.isin(np.arange(256), list(bytes([*b"0123456789+-#[=", DASH])))
+
+_SIGN = rb"[-+\x96]"
+_NUMBER = rb"[-+\x96.\s]*+\d[-+\x96.\d\s]*+"
+_HEAD = rb"\s*+(?:/\s*+\d?+\s*+)*+(?:N\s*+\d++\s*+(?:/\s*+\d?+\s*+)*+)?+"
+#: An address with a number in which letters stand; an I with a number of its own is an address.
+_WORD = re.compile(
+    rb"([A-Z:])(" + _SIGN + rb"?(?:[OI]++|[\d.])(?:[\d.O]|I(?!\s*+(?:" + _SIGN + rb"|\.?[\dO])))*+)", re.IGNORECASE
+)
+#: A block in which every address has digits.
+_BLOCK = re.compile(rb"\s*+(?:/\s*+\d?+\s*+|(?:,?[A-Z]|:)" + _NUMBER + rb")*+[*$!&\s]*+", re.IGNORECASE)
+#: Macro statements.
+_OTHER = re.compile(
+    rb".*?(?:[#\[\]=]|G\s*+O\s*+T\s*+O)|" + _HEAD + rb"(?:D\s*+O\s*+\d|G\s*+O\s*+\d++\s*+\Z)",
+    re.IGNORECASE | re.DOTALL,
+)
+_PROGRAM_AFTER_NUMBER = re.compile(_HEAD + rb"[O:]\d++\s*+", re.IGNORECASE)
+_NUMBERED_WORD = re.compile(rb"[A-Z]\s*+" + _SIGN + rb"?+(?:\d|\.\d)", re.IGNORECASE)
+#: A program number behind the end of the program before it, and the offset number of old mills, T1O1.
+_OTHER_O = re.compile(rb"M0*+(?:2|30|99)O\d{4,8}|T\d++O\d++", re.IGNORECASE)
+#: Addresses of which a word may be letters alone, as XO; the second where another word of the block has digits; the
+#: third with a letter right behind, as in G1 XOZ5., which POS1 and LOT5 are not.
+_OF_ZERO, _OF_ZERO_BESIDE, _OF_ZERO_BEFORE_LETTER = b"MXYZCUW", b"MXYZABCUVWIJKRFSHDPQE", b"XYZCUW"
+
+
+def read_as_digits(code: Bytes) -> Positions:
+    """Put the digits that are meant in the place of letters O and I, and give their positions."""
+    suspects = _suspects(code)
+    if not len(suspects):
+        return suspects
+    breaks = np.append(np.flatnonzero(_IS_BREAK[code]), len(code))
+    index = np.unique(np.searchsorted(breaks, suspects))
+    starts = np.append(0, breaks + 1)[index]
+    found = [
+        start + place
+        for start, end in zip(starts.tolist(), breaks[index].tolist(), strict=True)
+        for place in _in_block(code[start:end].tobytes())
+    ]
+    at = np.array(found, np.int64)
+    code[at] = np.where(code[at] | _SMALL == _O, ord("0"), ord("1"))
+    return at
+
+
+def _suspects(code: Bytes) -> Positions:
+    """Letters O that a word or number goes on with, and letters I behind an address, or without a number."""
+    small = code | _SMALL
+    o = np.flatnonzero(small == _O)
+    o = o[o > 0]
+    o = o[_JOINS[code[o - 1]]]
+    i = np.flatnonzero(small == _I)
+    i = i[i > 0]
+    longer = np.append(code, [LF, LF])
+    behind = np.where(longer[i + 1] == ord("."), longer[i + 2], longer[i + 1])
+    i = i[_BEGINS_WORD[code[i - 1]] | (_JOINS[code[i - 1]] & ~_BEGINS_NUMBER[behind])]
+    return np.union1d(o, i)
+
+
+def _in_block(block: bytes) -> list[int]:
+    """The places of such letters in a block; none where it would be no sound block with the digits, either."""
+    if _OTHER.match(block) or _PROGRAM_AFTER_NUMBER.fullmatch(block):
+        return []
+    meant = bytearray(block)
+    places: list[int] = []
+    numbered = _NUMBERED_WORD.search(block)
+    first_numbered = numbered.start() if numbered else len(block)
+    end_before = 0
+    for word in _WORD.finditer(block):
+        letters = [at for at in range(word.start(2), word.end(2)) if block[at] | _SMALL in (_O, _I)]
+        if not letters:
+            continue
+        stands_alone = word.start() in (0, end_before) or not _IS_LETTER[block[word.start() - 1]]
+        if not (stands_alone and _may_be_number(block, word, first_numbered)):
+            return []
+        end_before = word.end()
+        for at in letters:
+            meant[at] = ord("0") if block[at] | _SMALL == _O else ord("1")
+        places += letters
+    return places if _BLOCK.fullmatch(meant) else []
+
+
+def _may_be_number(block: bytes, word: re.Match[bytes], first_numbered: int) -> bool:
+    """Whether letters in the number of a word can be digits, and are not a word of prose."""
+    address, number = word[1].upper(), word[2].upper().lstrip(b"+-\x96")
+    if number.count(b".") > 1 or _OTHER_O.fullmatch(word[0]):
+        return False
+    if any(48 <= character < 58 for character in number):
+        return address != b"N" or b"." not in number
+    if address == b"G":
+        return len(number) < 3
+    if len(number.rstrip(b".")) > 2 or b"I" in number:
+        return False
+    if word.end() < len(block) and _IS_LETTER[block[word.end()]]:
+        return address in _OF_ZERO_BEFORE_LETTER and first_numbered < word.start()
+    return address in _OF_ZERO or (address in _OF_ZERO_BESIDE and first_numbered < len(block))

@@ -1,0 +1,47 @@
+from __future__ import annotations
+
+from polarcheck.checking.rule import ERROR, Hits, Written, rule
+
+
+@rule(ERROR, "{text}: letter {letter}; write {meant}{count:blocks}", over="words")
+def letter_for_digit(written: Written) -> Hits:
+    """
+    Letter O or I where a digit is meant.
+
+    `GO X60.` looks like `G0 X60.` on the screen. The control stops at it: G has no number, and O in a block is no
+    program number. Typed programs and printed ones that were read in have such letters, O for 0 and I for 1; more than
+    five are reported once. Here the word is read with the digit, so that the rest of the program is judged as it is
+    meant. In macro statements (GOTO 10), and in blocks that would be none with the digit, either, letters are left as
+    they are.
+
+    Source: FANUC alarms 006 and 009.
+
+    Bad:
+
+        O0001
+        T0101
+        G98 GO X60. C0    (expect: letter-for-digit)
+        G12.1
+        G1 X4O. F2OO      (expect: letter-for-digit, letter-for-digit)
+        C-O.5             (expect: letter-for-digit)
+        XI0.              (expect: letter-for-digit)
+        G13.1
+        M3O               (expect: letter-for-digit)
+
+    Good:
+
+        %
+        O0001
+        T0101
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. F200
+        C5.
+        G1 X38.I0C6.
+        G1 X60. C0
+        G13.1
+        N10 GOTO 20
+        N20 M30
+        %
+    """
+    return Hits(written.letter_count > 0, values={"count": written.letter_count})
