@@ -69,7 +69,11 @@ def engine_of(
     machine: Machine = tables["machine"]
     levels = {**machine.severities, **(severities or {})}
     tables.give("other_machine", OtherMachine(tables))
-    return Engine(tables, levels, [rule for rule in rules if levels.get(rule.name) != "off"], known)
+    asked = [rule for rule in rules if levels.get(rule.name) != "off"]
+    if tables["dialect"].recognised is not None:
+        # Nothing that the words of another language seem to say is worth telling.
+        asked = [rule for rule in asked if "dialect" in rule.parameters]
+    return Engine(tables, levels, asked, known)
 
 
 def report_of(engine: Engine) -> FileReport:

@@ -27,6 +27,10 @@ _POSITION, _NO_FEED, _FEED_OF_SPINDLE = -3, -2, -1
 def unexecuted(tables: Tables) -> Iterator[NotEvaluated]:
     """Blocks that were not executed."""
     trace: Trace = tables["trace"]
+    language = tables["dialect"].recognised
+    if language is not None:
+        yield NotEvaluated(rule="all", reason=f"the file is written for {language.title}", blocks=len(trace))
+        return
     reasons: dict[str, list[int]] = {}
     for remark in trace.run.remarks:
         reasons.setdefault(reason_of(remark), []).append(int(trace.text.blocks.line[remark.block]))

@@ -31,6 +31,7 @@ MAKERS = {
     "feeds": "polarcheck.table.feeds:Feeds",
     "unpointed": "polarcheck.table.unpointed:Unpointed",
     "written": "polarcheck.table.written:Written",
+    "dialect": "polarcheck.table.dialect:Dialect",
     "faults": "polarcheck.checking.macro_faults:Faults",
 }
 #: Tables that are a column of another one.
@@ -46,7 +47,7 @@ SPANS = {
     "feed": "trace.feed_word",
 }
 #: Tables that hang on the text and the machine alone: what is found in them is the same however the program runs.
-OF_TEXT = frozenset({"text", "words", "machine", "job", "written"})
+OF_TEXT = frozenset({"text", "words", "machine", "job", "written", "dialect"})
 
 
 class Tables(Mapping[str, Any]):

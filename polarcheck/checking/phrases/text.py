@@ -9,6 +9,7 @@ from polarcheck.checking.places import Place, squeezed
 from polarcheck.machines.codes import code_numbers, spelled
 from polarcheck.reading.numbers import NumberFault
 from polarcheck.reading.words import Text, Words
+from polarcheck.table.dialect import Dialect
 from polarcheck.table.written import Written
 
 #: Of many words of one address so many are listed, and the last.
@@ -21,6 +22,8 @@ _NUMBER_FAULTS = {
     NumberFault.NO_ADDRESS: "a number without an address",
     NumberFault.WRONG_DASH: "a dash that is not a minus sign",
 }
+#: More of a line is not needed to find it.
+_SIGN_LENGTH = 40
 
 
 def number_fault(words: Words, index: int) -> str:
@@ -74,6 +77,14 @@ def times(written: Written, index: int) -> str:
     """How often the code stands in the file, where it is more than once."""
     count = int(written.unknown_code_count[index])
     return f" ({count} times in this file)" if count > 1 else ""
+
+
+def written_for(dialect: Dialect) -> str:
+    """For what a file in another language is written, and what shows it."""
+    found = dialect.recognised
+    if found is None:
+        return "this file is a program in ISO code"
+    return f"this file is written for {found.title}, as `{found.sign[:_SIGN_LENGTH]}` in line {found.line} shows"
 
 
 def stray(text: Text, index: int) -> str:

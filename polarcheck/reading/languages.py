@@ -1,0 +1,171 @@
+"""
+Languages in which other machines are programmed, and the signs by which a file of theirs is told from a program.
+
+A sign is something that no lathe program in ISO code has, outside its comments. One alone may be a slip or a title that
+lacks its parentheses; a language is named where signs of several kinds agree.
+"""
+
+from __future__ import annotations
+
+import functools
+import re
+
+import msgspec
+
+#: A file of another world shows it near its head; pictures that slicers put there are shorter.
+_LOOKED_AT = 100_000
+_COMMENT = re.compile(rb"\([^)\n]*+\)")
+_REMARK = re.compile(rb";[^\n]*+")
+_LINE = rb"^[ \t]*+(?:/?[ \t]*+N?\d++[ \t]++)?"
+
+
+class Sign(msgspec.Struct, frozen=True):
+    """
+    Something that stands in files of one language: a regular expression.
+
+    weight: 2 for what is unmistakable where it stands once.
+    """
+
+    pattern: bytes
+    weight: int = 1
+
+
+class Language(msgspec.Struct, frozen=True):
+    """
+    One language: what is said of a file in it, and its signs.
+
+    needed: the sum of weights of signs that name it. never: what stands in no file of it, outside its comments.
+    """
+
+    title: str
+    signs: tuple[Sign, ...]
+    needed: int = 2
+    never: bytes = b""
+
+
+class Recognised(msgspec.Struct, frozen=True):
+    """The language of a file, and the first of its signs as it is written."""
+
+    title: str
+    sign: str
+    line: int
+
+
+_O_WORD = rb"^[ \t]*+(?:N\d++[ \t]*+)?O"
+_OPENS = rb"(?:sub|if|while|do|repeat)"
+_CLOSES = rb"(?:endsub|endif|endwhile|endrepeat|elseif|else|while|return|break|continue)"
+_ENDS = rb"[ \t\r]*+(?:\[|;|$)"
+
+LANGUAGES = (
+    # linuxcnc.org/docs/html/gcode/o-code.html; named parameters in gcode/overview.html
+    Language(
+        "LinuxCNC",
+        (
+            Sign(_O_WORD + rb"[ \t]*+<[^>\n]++>[ \t]*+(?:call|" + _OPENS + b"|" + _CLOSES + rb")\b", 2),
+            Sign(_O_WORD + rb"\d++[ \t]*+(?:call|if|elseif|while|repeat)[ \t]*+\[", 2),
+            Sign(_O_WORD + rb"\d++[ \t]*+(?:call|" + _OPENS + rb")" + _ENDS),
+            Sign(_O_WORD + rb"\d++[ \t]*+" + _CLOSES + _ENDS),
+            Sign(rb"#<_?[a-z][^<>\n]{0,60}>", 2),
+        ),
+    ),
+    # marlinfw.org/meta/gcode; E is the filament. A lathe may have an E word, and M104, but then codes of a lathe, too.
+    Language(
+        "a 3D printer",
+        (
+            Sign(_LINE + rb"G0*[0123][ \t]++[^;\n]*?E[ \t]?-?(?:\d|\.\d)"),
+            Sign(_LINE + rb"G92[ \t]++E-?\d[\d.]*+[ \t\r]*+(?:;|$)"),
+            Sign(_LINE + rb"M10[49][ \t]++(?:T\d[ \t]++)?S[1-3]?\d?\d(?!\d)"),
+            Sign(_LINE + rb"M1[49]0[ \t]++S1?\d?\d(?!\d)"),
+            Sign(rb"^;[ \t]*+(?:LAYER\b|TYPE:|FLAVOR:|generated (?:by|with) \w*(?:Slic|Cura|Simplify)|LAYER_CHANGE)"),
+        ),
+        never=_LINE + rb"[O:]\d{1,8}[ \t]*+$|\bG0*(?:9[6789](?!\d)|12\.1)|\bT\d{4}(?!\d)",
+    ),
+    # TNC 640, klartext programming; also with sequence numbers 0, 1, 2
+    Language(
+        "a Heidenhain control (plain language)",
+        (
+            Sign(_LINE + rb"BEGIN[ \t]++PGM\b"),
+            Sign(_LINE + rb"END[ \t]++PGM\b"),
+            Sign(_LINE + rb"TOOL[ \t]++(?:CALL|DEF)\b"),
+            Sign(_LINE + rb"(?:L|CC)[ \t]++(?:I?[XYZABC][-+]?\d[\d.]*+[ \t\r]*+)+(?:R[0LR]\b|F[ \t]?MAX|$)"),
+            Sign(_LINE + rb"CYCL[ \t]++(?:DEF|CALL)\b"),
+            Sign(_LINE + rb"BLK[ \t]++FORM\b"),
+            Sign(_LINE + rb"LBL[ \t]++\d"),
+            Sign(_LINE + rb"FN[ \t]?\d++[ \t]?:"),
+            Sign(_LINE + rb"[LC][PTR]?[ \t][^\n]*\b(?:F[ \t]?MAX|DR[-+])"),
+        ),
+    ),
+    # MillPlus IT: the first line names the memory, %PM of programs, %MM of macros; the second the program's number
+    Language("MillPlus", (Sign(rb"\A\s*+(?:N\d++[ \t]++)?%[PM]M\d*+[ \t]*+\n\s*+N9\d{3,6}\b", 2),)),
+    # ShopBot command reference
+    Language(
+        "ShopBot",
+        (
+            Sign(rb"^[ \t]*+J(?:[2-6]|[XYZABS])[ \t]*+,[ \t]*+-?[\d.]"),
+            Sign(rb"^[ \t]*+M(?:[2-6]|[XYZAB])[ \t]*+,[ \t]*+-?[\d.]"),
+            Sign(rb"^[ \t]*+(?:MS|JS|TR|VS|VR)[ \t]*+,[ \t]*+[\d.]"),
+            Sign(rb"^[ \t]*+(?:C[#6-9][ \t]*+$|SO[ \t]*+,|&\w++[ \t]*+=)"),
+        ),
+    ),
+    # HP-GL; CAMM-GL of Roland
+    Language(
+        "a plotter (HPGL)",
+        (
+            Sign(rb"(?:^|;)[ \t]*+P[UDA][ \t]*+-?\d++[ ,]++-?\d++", 1),
+            Sign(rb"(?:^|;)[ \t]*+(?:IN|PU|PD|DF)[ \t]*+;", 1),
+            Sign(rb"(?:^|;)[ \t]*+(?:SP|VS)[ \t]*+\d++[ \t]*+;", 1),
+            Sign(rb"^[ \t]*+[!^](?:MC|PR|PA|DF|IN)\b", 1),
+        ),
+    ),
+    # RS-274X: format, apertures, and operations D01 to D03
+    Language(
+        "a photoplotter (Gerber)",
+        (
+            Sign(rb"^%FS[LTD]?[AI]X\d\dY\d\d\*%"),
+            Sign(rb"^%ADD\d++[A-Z]"),
+            Sign(rb"^%MO(?:IN|MM)\*%"),
+            Sign(rb"^(?:[XY]-?\d++)++D0?[123]\*"),
+        ),
+    ),
+    # Excellon drill format
+    Language(
+        "a drilling machine for circuit boards (Excellon)",
+        (
+            Sign(rb"^M48[ \t\r]*+$"),
+            Sign(rb"^(?:METRIC|INCH)(?:,[LT]Z)?+(?:,[\d.]++)?+[ \t\r]*+$"),
+            Sign(rb"^T\d\d?C\d*+\.\d++[ \t\r]*+$"),
+        ),
+        needed=3,
+    ),
+    # ISO 4343, CLDATA of APT
+    Language(
+        "a postprocessor (cutter location data)",
+        (
+            Sign(rb"^[ \t]*+GOTO[ \t]*+/[ \t]*+-?[\d.]"),
+            Sign(rb"^[ \t]*+FEDRAT[ \t]*+/"),
+            Sign(rb"^[ \t]*+(?:SPINDL|LOADTL|LOAD|COOLNT|RAPID|TLDATA|CUTTER|MULTAX|UNITS)[ \t]*+/"),
+            Sign(rb"^[ \t]*+(?:PARTNO|PPRINT|MACHIN)\b"),
+        ),
+    ),
+)
+
+
+def recognised(text: bytes) -> Recognised | None:
+    """The language of a text that is no program in ISO code, and its first sign; None where nothing says so."""
+    text = _COMMENT.sub(lambda comment: b" " * len(comment[0]), text[:_LOOKED_AT].replace(b"\r\n", b" \n"))
+    for language in LANGUAGES:
+        found = [(match, sign) for sign in language.signs if (match := _compiled(sign.pattern).search(text))]
+        if sum(sign.weight for _, sign in found) < language.needed:
+            continue
+        if language.never and _compiled(language.never).search(_REMARK.sub(b"", text)):
+            continue
+        first = min((match for match, _ in found), key=lambda match: match.start())
+        begin = text.rfind(b"\n", 0, first.start()) + 1
+        line = text[begin:].partition(b"\n")[0]
+        return Recognised(language.title, line.decode("latin-1").strip(), text.count(b"\n", 0, begin) + 1)
+    return None
+
+
+@functools.cache
+def _compiled(pattern: bytes) -> re.Pattern[bytes]:
+    return re.compile(pattern, re.IGNORECASE | re.MULTILINE)

@@ -1,0 +1,47 @@
+"""Whether a file is a program in ISO code at all, or written in the language of another machine."""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+
+from polarcheck.arrays import Mask
+from polarcheck.reading.languages import Recognised, recognised
+from polarcheck.reading.words import Text
+
+
+class Dialect:
+    """What is known of the language of a file; one element, the file."""
+
+    def __init__(self, text: Text) -> None:
+        self.text = text
+
+    @cached_property
+    def recognised(self) -> Recognised | None:
+        """The language of another machine, and the first place that shows it; None for a program in ISO code."""
+        return recognised(self._own_characters()) if self._looks_odd() else None
+
+    @property
+    def is_other(self) -> Mask:
+        """The file is written in such a language."""
+        return np.array([self.recognised is not None])
+
+    def _looks_odd(self) -> bool:
+        """Something stands in the file that sound programs seldom have: most files need no closer look."""
+        text = self.text
+        behind_marks = text.source.code[np.minimum(text.tape_marks + 1, len(text.source.code) - 1)]
+        return bool(
+            np.any(text.words.is_unreadable)
+            or np.any(text.words.address == ord("E"))
+            or np.any(text.blocks.is_macro)
+            or len(text.strays)
+            or len(text.outside)
+            or np.any(behind_marks >= ord("A"))
+        )
+
+    def _own_characters(self) -> bytes:
+        """The characters of the file itself, without the files that it calls."""
+        source = self.text.source
+        end = int(source.line_starts[source.parts[0].first_line - 1]) if source.parts else len(source.code)
+        return source.code[:end].tobytes()
