@@ -81,6 +81,10 @@ def test_letters_are_left(written: str) -> None:
     assert as_read(f"G0 X1.\n{written}\n") == f"G0 X1.\n{written}\n"
 
 
+def test_a_block_that_nobody_typed_is_left() -> None:
+    assert as_read("GO" * 600) == "GO" * 600
+
+
 HEAD = "O1\nG21 G40 G97 G98 G18\nT0101\nG0 X50. Z2. C0\nG12.1\nG1 X40. F200\nC10.\nX50. C0\nG13.1\n"
 INCH = HEAD.replace("G21", "G20").replace("X50. Z2.", "X2. Z.1").replace("F200", "F8.")
 

@@ -15,7 +15,8 @@ from polarcheck.reading.source import DASH, LF, Bytes, Positions
 
 _SEMICOLON, _SMALL = ord(";"), 0x20
 _O, _I = b"oi"
-_IS_BREAK = np.isin(np.arange(256), (LF, _SEMICOLON))
+_POINT = ord(".")
+_TWO_BREAKS = np.full(2, LF, np.uint8)
 #: Behind these an O is part of what stands there; behind anything else, as a blank, it begins a word.
 _JOINS = np.isin(
     np.arange(256), list(bytes([*b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789.+-", DASH]))
@@ -25,6 +26,8 @@ _BEGINS_WORD = _IS_LETTER | np.isin(np.arange(256), [*b"+-", DASH])
 #: Before these, or a point and these, an I has a number of its own.
 _BEGINS_NUMBER = np.isin(np.arange(256), list(bytes([*b"0123456789+-#[=", DASH])))
 
+#: A longer block is none that somebody typed.
+_LONGEST = 1000
 _SIGN = rb"[-+\x96]"
 _NUMBER = rb"[-+\x96.\s]*+\d[-+\x96.\d\s]*+"
 _HEAD = rb"\s*+(?:/\s*+\d?+\s*+)*+(?:N\s*+\d++\s*+(?:/\s*+\d?+\s*+)*+)?+"
@@ -53,7 +56,7 @@ def read_as_digits(code: Bytes) -> Positions:
     suspects = _suspects(code)
     if not len(suspects):
         return suspects
-    breaks = np.append(np.flatnonzero(_IS_BREAK[code]), len(code))
+    breaks = np.append(np.flatnonzero((code == LF) | (code == _SEMICOLON)), len(code))
     index = np.unique(np.searchsorted(breaks, suspects))
     starts = np.append(0, breaks + 1)[index]
     found = [
@@ -68,21 +71,20 @@ def read_as_digits(code: Bytes) -> Positions:
 
 def _suspects(code: Bytes) -> Positions:
     """Letters O that a word or number goes on with, and letters I behind an address, or without a number."""
-    small = code | _SMALL
-    o = np.flatnonzero(small == _O)
-    o = o[o > 0]
-    o = o[_JOINS[code[o - 1]]]
-    i = np.flatnonzero(small == _I)
-    i = i[i > 0]
-    longer = np.append(code, [LF, LF])
-    behind = np.where(longer[i + 1] == ord("."), longer[i + 2], longer[i + 1])
-    i = i[_BEGINS_WORD[code[i - 1]] | (_JOINS[code[i - 1]] & ~_BEGINS_NUMBER[behind])]
-    return np.union1d(o, i)
+    small = code | np.uint8(_SMALL)
+    at = np.flatnonzero((small == _O) | (small == _I))
+    at = at[at > 0]
+    before = code[at - 1]
+    longer = np.append(code, _TWO_BREAKS)
+    behind = longer[at + 1]
+    behind = np.where(behind == _POINT, longer[at + 2], behind)
+    is_o = small[at] == _O
+    return np.asarray(at[_JOINS[before] & (is_o | _BEGINS_WORD[before] | ~_BEGINS_NUMBER[behind])])
 
 
 def _in_block(block: bytes) -> list[int]:
     """The places of such letters in a block; none where it would be no sound block with the digits, either."""
-    if _OTHER.match(block) or _PROGRAM_AFTER_NUMBER.fullmatch(block):
+    if len(block) > _LONGEST or _OTHER.match(block) or _PROGRAM_AFTER_NUMBER.fullmatch(block):
         return []
     meant = bytearray(block)
     places: list[int] = []
