@@ -99,3 +99,53 @@ def test_a_misplaced_cycle_is_a_drilling_cycle_that_the_profile_does_not_allow()
     assert lines(table(program), "in_misplaced_cycle") == [1, 2, 6, 7]
     allowed = {"allowed_codes": ["G1", "G81"]}
     assert lines(table(program, polar=allowed), "in_misplaced_cycle") == [1, 2]
+
+
+def moved(*blocks: str, units: str = "G21", machine: str = "fanuc", start: str = "X50. C0") -> list[int]:
+    """The lines of the series of a section that look like a turn; its first block is line 4."""
+    on, off = ("G112", "G113") if machine == "haas-lathe" else ("G12.1", "G13.1")
+    return lines(table("\n".join([units, f"G0 {start}", on, *blocks, off, ""]), machine), "in_series")
+
+
+@pytest.mark.parametrize(
+    ("blocks", "count"),
+    [
+        (["X40. C72.", "C144.", "C216.", "C288.", "C360."], 5),
+        (["C-72.", "C-144.", "C-216.", "C-288.", "C-360."], 5),
+        (["H72."] * 5, 5),
+        # One step before the full turn, since there is the first place again.
+        (["C72.", "C144.", "C216.", "C288."], 4),
+        (["C40.", "C81.", "C183.", "C300.", "C360."], 5),
+        ([f"C{angle / 2}" for angle in range(1, 721)], 720),
+        ([f"X{40 + angle % 3 / 10} C{angle * 10}." for angle in range(1, 721)], 720),
+        (["C36.", "C72.", "C108.", "C144.", "C180."], 5),
+        (["C27.", "C100.", "C270."], 3),
+        # A block without the virtual axis does not end it, and what goes back does not belong to it.
+        (["C100.", "X39.", "C200.", "X40.", "C360.", "C0"], 5 - 2),
+    ],
+)
+def test_a_steady_way_to_a_full_turn(blocks: list[str], count: int) -> None:
+    assert len(moved(*blocks)) == count
+    assert len(moved(*blocks, units="G20")) == count
+    as_y = [block.replace("C", "Y").replace("H", "V") for block in blocks]
+    assert len(moved(*as_y, machine="haas-lathe", start="X50. Y0")) == count
+
+
+@pytest.mark.parametrize(
+    "blocks",
+    [
+        # A flat, in steps, across the center and on one side of it.
+        ["C-180.", "C-120.", "C-60.", "C0", "C60.", "C120.", "C180."],
+        [f"C{length}." for length in range(-20, 21, 4)],
+        ["C50.", "C100.", "C150.", "C190."],
+        # A face that is not along C.
+        ["X300. C60.", "X200. C120.", "X100. C180."],
+        # Arcs, and a contour with another side.
+        ["G2 X60. C60. R90.", "X30. C120. R90.", "X40. C180. R90."],
+        ["C60.", "C120.", "C180.", "X-40.", "C0", "C-180.", "X40.", "C0"],
+        ["C180.", "C360."],
+        [],
+    ],
+)
+def test_a_contour_is_no_steady_way_to_a_full_turn(blocks: list[str]) -> None:
+    assert moved(*blocks) == []

@@ -8,6 +8,7 @@ import numpy as np
 
 from polarcheck.arrays import Floats, Mask
 from polarcheck.machines.codes import code_set
+from polarcheck.table.series import Series, find_series
 from polarcheck.table.trace import Trace
 
 #: What is written where C turns by an angle [deg].
@@ -46,16 +47,32 @@ class Angles:
         return both
 
     @cached_property
+    def series(self) -> Series:
+        """Moves of the virtual axis in one direction, one after another."""
+        return find_series(self.trace)
+
+    @cached_property
+    def in_series(self) -> Mask:
+        """In a series that goes steadily to a turn, or to half of one, while X stays where it is."""
+        return np.asarray(self.series.in_rows(self.series.is_angle.astype(np.float64), len(self.trace)) == 1.0)
+
+    @cached_property
     def virtual_length(self) -> Floats:
         """The virtual axis as a length [mm], without its sign; NaN where it is not written."""
         return np.abs(self.trace.length_of(self.trace.machine.polar.virtual_axis))
 
     @cached_property
+    def farthest(self) -> Floats:
+        """How far the row goes, or the series that it belongs to, as a length of the virtual axis [mm]."""
+        ends = np.abs(self.series.in_rows(self.series.end, len(self.trace))) * self.trace.scale
+        return np.where(self.in_series, ends, self.virtual_length)
+
+    @cached_property
     def reach(self) -> Floats:
-        """How far the section lies from the center without the usual angles [mm]; NaN outside sections."""
+        """How far the section lies from the center without what may be angles [mm]; NaN outside sections."""
         trace = self.trace
         farthest = np.zeros(len(trace.sections))
-        for column in (np.abs(trace.x), np.where(self.is_usual, np.nan, self.virtual_length)):
+        for column in (np.abs(trace.x), np.where(self.is_usual | self.in_series, np.nan, self.virtual_length)):
             known = (trace.section >= 0) & np.isfinite(column)
             np.maximum.at(farthest, trace.section[known], column[known])
         return np.append(farthest, np.nan)[trace.section]

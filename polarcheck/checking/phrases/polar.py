@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from polarcheck.checking.phrases.common import executed_word, switch_off
+from polarcheck.checking.phrases.common import executed_word, outside, switch_off
 from polarcheck.machines.codes import spelled
 from polarcheck.machines.machine import Machine
 from polarcheck.reading.translation import shown
+from polarcheck.table.angles import Angles
 from polarcheck.table.arcs import Arcs
 from polarcheck.table.infeed import Infeed
 from polarcheck.table.other_mode import OtherMode
@@ -175,3 +176,18 @@ def on_cylinder(trace: Trace) -> tuple[str, int]:
         return "", 0
     reason = f"cylindrical interpolation, from line {int(trace.line[rows[0]])} on, is not simulated"
     return f"{reason}: look at it on the control", len(rows)
+
+
+def where(trace: Trace, row: int) -> str:
+    """Where a code belongs that the mode does not take; beside a drilling cycle C is an angle there."""
+    is_cycle = trace.listed("drilling_cycle")[row]
+    return outside(trace, row) + (", where its C is an angle again" if is_cycle else "")
+
+
+def begins(angles: Angles, row: int) -> str:
+    """What a word that looks like an angle does: it is one length, or a step to one."""
+    if not angles.in_series[row]:
+        return "is"
+    series = angles.series
+    count = int(series.in_rows(series.count.astype(float), len(angles.trace))[row])
+    return f"is one of {count} steps at nearly the same X to"

@@ -5,7 +5,7 @@ from polarcheck.checking.rule import ERROR, Hits, Machine, ModeWords, graded, ru
 
 @rule(
     ERROR,
-    "{codes} cannot be used in the polar mode; write it {outside}",
+    "{codes} cannot be used in the polar mode; write it {where}",
     follows={"block": ("incremental-word-of-other-code-system",)},
 )
 def code_not_allowed_in_polar(mode_words: ModeWords, machine: Machine) -> Hits:

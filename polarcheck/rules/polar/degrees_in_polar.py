@@ -8,8 +8,8 @@ _FAR = 2.0
 
 @rule(
     WARNING,
-    "{word} is a length of {angles.virtual_length:length} in the polar mode and looks like an angle: "
-    "the rest of the section lies within {angles.reach:length} of the center",
+    "{word} {begins} a length of {angles.farthest:length} in the polar mode and looks like an angle: the rest of the "
+    "section lies within {angles.reach:length} of the center",
     once="section",
 )
 def degrees_in_polar(trace: Trace, angles: Angles, machine: Machine, job: Job) -> Hits:
@@ -19,7 +19,8 @@ def degrees_in_polar(trace: Trace, angles: Angles, machine: Machine, job: Job) -
     In the mode C is no angle but a coordinate of the face, in mm or inch like X. C180. does not turn the part by half a
     turn: it sends the tool 180 mm away from the center. Write the point on the contour, half as large as a diameter, or
     turn C before G12.1. Suspected are 30, 45, 60, 90 and other usual angles more than twice as far out as anything else
-    in the section, unless the same length stands there with both signs.
+    in the section, unless the same length stands there with both signs, and C that goes from 0 steadily to 180, 270 or
+    360 as far out while X stays where it is.
 
     Source: FANUC B-62764EN/01, p. 51; builder's guide to G12.1, layout of the plane.
 
@@ -43,6 +44,33 @@ def degrees_in_polar(trace: Trace, angles: Angles, machine: Machine, job: Job) -
         C360.
         G13.1
 
+    Bad:
+
+        G98 G0 X50. C0
+        G12.1
+        G1 X40. F200
+        C72.              (expect: degrees-in-polar)
+        C144.
+        C216.
+        C288.
+        C360.
+        X50.
+        G13.1
+
+    Good:
+
+        G98 G0 X120. C-60.
+        G12.1
+        G1 X100. F200
+        C-40.
+        C-20.
+        C0
+        C20.
+        C40.
+        C60.
+        X120.
+        G13.1
+
     Good:
 
         G98 G0 X150. C0
@@ -59,8 +87,8 @@ def degrees_in_polar(trace: Trace, angles: Angles, machine: Machine, job: Job) -
         X150.
         G13.1
     """
-    far_out = (angles.reach > 0) & (angles.virtual_length > _FAR * angles.reach)
-    in_stock = angles.virtual_length <= job.stock.diameter / 2 * trace.job_scale
-    is_length = in_stock | angles.has_both_signs | angles.in_misplaced_cycle
-    virtual_words = trace.words_at(trace.word_indices(machine.polar.virtual_axis))
-    return Hits(angles.is_usual & far_out & ~is_length, at=virtual_words)
+    is_angle = angles.in_series | (angles.is_usual & ~angles.has_both_signs)
+    far_out = (angles.reach > 0) & (angles.farthest > _FAR * angles.reach)
+    in_stock = angles.farthest <= job.stock.diameter / 2 * trace.job_scale
+    words = trace.word_indices(machine.polar.virtual_axis, machine.polar.virtual_axis_incremental)
+    return Hits(is_angle & far_out & ~in_stock & ~angles.in_misplaced_cycle, at=trace.words_at(words))
