@@ -62,3 +62,183 @@ def test_a_drilling_cycle_says_that_its_c_is_an_angle_again() -> None:
         )
     [(_, _, message)] = found(TURN.format("G97 S2000"))
     assert message.endswith("after G13.1")
+
+
+# ---- a mode that was never entered ----
+
+NEVER = "G0 X50. Z2. C0/{}/G1 C-10. F500./G42 X40./C10./G40 X50./{}"
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "machine"),
+    [
+        ("M5", "G13.1", "fanuc"),
+        ("M5", "G113", "fanuc-16i"),
+        ("M5", "G40 G13.1", "fanuc"),
+        # The section before is over, and a G13.1 for safety begins none.
+        ("G13.1", "G13.1", "fanuc-30i"),
+        ("G12.1/G1 X40. F200./C10./X50./G13.1/G0 X50. C0", "G13.1", "fanuc"),
+    ],
+)
+def test_the_end_of_a_mode_that_was_never_entered(before: str, after: str, machine: str) -> None:
+    [(block, rule, message)] = found(NEVER.format(before, after), machine, "1:radius=4")
+    assert (block, rule) == (after, "polar-never-entered")
+    assert message.endswith("write G112 before it" if after == "G113" else "write G12.1 before it")
+
+
+def test_it_names_the_first_line_that_turns() -> None:
+    [(_, _, message)] = found(NEVER.format("M5", "G13.1"), "fanuc", "1:radius=4")
+    assert "from line 8 on C moves" in message
+
+
+def test_the_virtual_axis_is_that_of_the_machine() -> None:
+    blocks = "M154/M133 P500/G17/G0 X2. Y0/G1 G41 X1. F10./Y.5/Y-.5/G40 X2./G113"
+    report = said(blocks, "haas-lathe", "1:radius=.1", head=INCH)
+    assert report == [("G113", "polar-never-entered")]
+
+
+@pytest.mark.parametrize(
+    ("blocks", "head"),
+    [
+        # For safety, at the head, after a contour of turning, and after C has moved without compensation.
+        ("G40 G13.1/G0 X50. Z2.", MM),
+        ("G0 X50. Z2./G1 G42 X40. F200./Z-10./G40 X50./G40 G13.1", MM),
+        ("G0 X50. Z2. C0/G1 C90. F200./G40 G13.1", MM),
+        # The contour was of another tool.
+        ("G0 X50. Z2. C0/G1 G42 X40. F200./C10./G40 X50./T0202/G40 G13.1", MM),
+        # G12.1 may stand in what is not shown.
+        ("G1 G42 X40. F200./C10./G40 X50./G13.1", ""),
+        ("M98 P9000/G1 G42 X40. F200./C10./G40 X50./G13.1", MM),
+        # On a cylinder.
+        ("G0 X50. Z2. C0/G7.1 C25./G1 G42 Z-5. F200./C90./G40 Z2./G7.1 C0/G13.1", MM),
+    ],
+)
+def test_what_needs_no_entry(blocks: str, head: str) -> None:
+    assert "polar-never-entered" not in [rule for _, rule in said(blocks, head=head)]
+
+
+# ---- F without a mode of feed ----
+
+FLAT = "G0 X50. Z2. C0/G12.1/G1 X40. {}/C10./C-10./X50./G13.1"
+
+
+@pytest.mark.parametrize(
+    ("feed", "head", "machine"),
+    [
+        ("F200", MM, "fanuc"),
+        ("F5.", MM, "fanuc-16i"),
+        ("F10.", INCH, "fanuc"),
+        ("F.2", INCH, "fanuc-30i"),
+        ("F200", MM, "siemens-iso"),
+        ("F120", MM, "doosan"),
+    ],
+)
+def test_f_of_which_nobody_knows_what_it_means(feed: str, head: str, machine: str) -> None:
+    without = head.replace("G98 ", "")
+    assert said(FLAT.format(feed), machine, head=without).count((f"G1 X40. {feed}", "feed-mode-unknown")) == 1
+    per_minute = head if machine != "siemens-iso" else head.replace("G98", "G94")
+    assert "feed-mode-unknown" not in [rule for _, rule in said(FLAT.format(feed), machine, head=per_minute)]
+
+
+@pytest.mark.parametrize(
+    ("feed", "head", "machine"),
+    [
+        ("F.2", MM, "fanuc"),
+        ("F4.9", MM, "fanuc"),
+        ("F.19", INCH, "fanuc"),
+        ("F200", MM, "mitsubishi-m700"),
+        ("F200", MM, "citizen"),
+        # The manual's own examples have none.
+        ("F200", MM, "gsk-988"),
+        # An excerpt, and feed per minute of another G-code system.
+        ("F200", "G21 G40\nT0101\n", "fanuc"),
+        ("F200", MM + "G94\n", "fanuc"),
+        ("F200", MM + "M98 P9000\n", "fanuc"),
+        ("F200", MM + "G99\n", "fanuc"),
+    ],
+)
+def test_f_that_may_be_meant_as_it_is(feed: str, head: str, machine: str) -> None:
+    rules = [rule for _, rule in said(FLAT.format(feed), machine, head=head.replace("G98 ", ""))]
+    assert "feed-mode-unknown" not in rules
+
+
+# ---- no F in force ----
+
+
+@pytest.mark.parametrize(
+    ("head", "machine", "expected"),
+    [
+        ("G98", "fanuc", "feed-missing-in-polar"),
+        ("G98", "fanuc-16i", "feed-missing-in-polar"),
+        ("G94", "mitsubishi-m700", "feed-missing-in-polar"),
+        ("G95/G0 X50. Z2./G1 Z1. F.2", "mitsubishi-m700", "feed-lost-from-per-revolution"),
+        ("G98/G0 X50. Z2./G1 Z1. F100", "fanuc", ""),
+        ("G94/G0 X50. Z2./G1 Z1. F100", "mitsubishi-m700", ""),
+    ],
+)
+@pytest.mark.parametrize("move", ["G1 Z-5.", "G1 Z-.2"])
+def test_the_first_move_at_feed_may_be_of_z_alone(head: str, machine: str, expected: str, move: str) -> None:
+    blocks = f"{head}/G0 X50. Z2. C0/G12.1/{move}/X40. F200/C10./C-10./X50./G13.1"
+    report = said(blocks, machine, head="O1\nG21 G40 G97 T0101\n")
+    assert [entry for entry in report if entry[1].startswith("feed-")] == ([(move, expected)] if expected else [])
+
+
+# ---- rapid traverse through the center ----
+
+AFTER = "G0 X50. Z2. C0/G12.1/G1 X40. F200./C10./C-10./X-50./G13.1/{}"
+
+
+@pytest.mark.parametrize(
+    ("blocks", "at"),
+    [
+        ("G0 X-60.", "G0 X-60."),
+        ("G0 Z50./X-60. Z60.", "X-60. Z60."),
+        ("G0 U-120.", "G0 U-120."),
+        ("G0 Z50./X60./T0101/X-5./X-60./X60.", "X-5."),
+    ],
+)
+@pytest.mark.parametrize("head", [MM, INCH])
+def test_rapid_traverse_to_the_other_side(blocks: str, at: str, head: str) -> None:
+    assert said(AFTER.format(blocks), head=head) == [(at, "rapid-through-center")]
+
+
+@pytest.mark.parametrize(
+    "blocks",
+    [
+        "G0 X60.",
+        "G0 X0/G1 Z-5.",
+        "G0 X60./G1 X-1.6",
+        "G0 Z50./T0202/G0 X-60.",
+        "G28 U-5.",
+        "G53 X-200.",
+    ],
+)
+def test_x_above_0_or_not_in_rapid_or_of_another_tool(blocks: str) -> None:
+    assert said(AFTER.format(blocks)) == []
+
+
+def test_rapid_traverse_below_0_before_the_mode_is_another_matter() -> None:
+    assert said("G0 X60. Z2./X-1./X60.") == []
+
+
+# ---- D before the mode ----
+
+
+@pytest.mark.parametrize("block", ["D1", "N5 D8", "T0101 D1"])
+@pytest.mark.parametrize("machine", ["fanuc", "fanuc-30i"])
+def test_d_before_the_mode(block: str, machine: str) -> None:
+    blocks = f"{block}/G0 X60. Z2. C-15./G12.1/G1 C15. F500./G41 X40. F200./C-15./G40 X60./G13.1"
+    assert said(blocks, machine, "1:radius=4") == [(block, "d-word-on-lathe")]
+    assert said(blocks, machine, "1:radius=.1", head=INCH) == [(block, "d-word-on-lathe")]
+
+
+@pytest.mark.parametrize(
+    "blocks",
+    [
+        "D1/G0 X60. Z2./G1 X40. F.2",
+        "G71 P1 Q2 U.4 W.1 D2. F.2",
+        "D1/T0202/G0 X60. Z2. C0/G12.1/G1 X40. F200./C5./X60./G13.1",
+    ],
+)
+def test_d_that_belongs_to_no_section(blocks: str) -> None:
+    assert "d-word-on-lathe" not in [rule for _, rule in said(blocks)]

@@ -79,6 +79,12 @@ class Columns:
         """Whether a row has a word of any of the addresses."""
         return self.with_words(self.word_indices(*addresses))
 
+    def consists_of(self, *addresses: str) -> Mask:
+        """Whether a row has words of these addresses and no others; N and block skip may stand beside them."""
+        beside = np.zeros(256, bool)
+        beside[[ord(address) for address in (*addresses, "N", "/")]] = True
+        return self.has(*addresses) & ~self.with_words(~beside[self.run.words.address])
+
     def _scatter(self, address: str, values: Floats) -> Floats:
         column = np.full(len(self), np.nan)
         at = self.word_indices(address)

@@ -7,9 +7,13 @@ from functools import cached_property
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask
+from polarcheck.machines.modal import Units
 from polarcheck.table.filling import fill_down
 from polarcheck.table.tool_center import ToolCenter
 from polarcheck.table.trace import Trace
+
+#: From here on F is no feed per revolution [in the units of the program: mm, inch].
+_NOT_PER_REVOLUTION = {Units.MM: 5.0, Units.INCH: 0.2}
 
 
 class Feeds:
@@ -45,6 +49,24 @@ class Feeds:
         trace = self.trace
         given = trace.given_in_section(trace.has("F"))
         return np.asarray(trace.entered_per_revolution & ~given & trace.takes_over_per_minute_only)
+
+    @cached_property
+    def mode_is_unknown(self) -> Mask:
+        """No code of feed per minute or per revolution, of whichever G-code system, stands above in a whole program."""
+        trace, machine = self.trace, self.trace.machine
+        systems = (machine.g_code_system_a, machine.g_code_system_b, machine.g_code_system_c)
+        codes = [code for system in systems for code in (*system.feed_per_minute, *system.feed_per_revolution)]
+        says = trace.codes(*codes) | trace.sets("feed_mode") | trace.run.unknown
+        said = fill_down(says, says | trace.starts, False).astype(bool)
+        return np.asarray(trace.whole_program & ~said)
+
+    @cached_property
+    def is_too_high_per_revolution(self) -> Mask:
+        """F in force is too high for one per revolution: 5 mm or .2 inch, and more."""
+        trace = self.trace
+        inch = trace.units == Units.INCH
+        least = np.where(inch, _NOT_PER_REVOLUTION[Units.INCH], _NOT_PER_REVOLUTION[Units.MM])
+        return np.asarray(trace.feed_number / trace.scale >= least)
 
     @cached_property
     def begins(self) -> Mask:

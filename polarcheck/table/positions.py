@@ -285,6 +285,11 @@ class Positions(Lengths):
         return self._plane[0].real
 
     @cached_property
+    def x_before(self) -> Floats:
+        """X before the row as a radius [mm]."""
+        return self._plane[1].real
+
+    @cached_property
     def z(self) -> Floats:
         """Z after the row [mm]; NaN while unknown."""
         words = self._programmed("Z", "W", 1.0, np.ones(len(self), bool))

@@ -121,6 +121,11 @@ class Trace(Positions):
         return self.in_polar & self.moves_plane & np.isin(self.motion, (Motion.LINE, Motion.CW, Motion.CCW))
 
     @cached_property
+    def moves_at_feed(self) -> Mask:
+        """A move in the polar mode at feed, that of Z alone included."""
+        return self.in_polar & self.moves & np.isin(self.motion, (Motion.LINE, Motion.CW, Motion.CCW))
+
+    @cached_property
     def starts_up(self) -> Mask:
         """The move in which compensation is built up."""
         return np.asarray(self.on_plane & (self.side != Side.OFF) & (self.side_of_move_before == Side.OFF))

@@ -67,6 +67,13 @@ def switch_off(trace: Trace, row: int) -> str:
     return shown(trace.machine.control.native_words, code)
 
 
+def switch_on(trace: Trace, row: int) -> str:
+    """The code that begins the mode which the code in this row ends: G112 for G113."""
+    polar = trace.machine.polar
+    code = dict(zip(polar.off, polar.on, strict=False)).get(_switch(trace, row), polar.on[0])
+    return shown(trace.machine.control.native_words, code)
+
+
 def _switch(trace: Trace, row: int) -> str:
     polar = trace.machine.polar
     return next((name for name in (*polar.on, *polar.off) if trace.codes(name)[row]), polar.on[0])

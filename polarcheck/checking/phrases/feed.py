@@ -6,6 +6,7 @@ import numpy as np
 
 from polarcheck.checking.phrases.common import executed_word
 from polarcheck.checking.quantity import in_row
+from polarcheck.machines.machine import Machine
 from polarcheck.table.center import Center
 from polarcheck.table.tool_center import ToolCenter
 from polarcheck.table.trace import Trace
@@ -65,3 +66,8 @@ def meeting(center: Center, tool_center: ToolCenter, row: int) -> str:
     if abs(moves.start[at]) < least:
         return "starts at the center of the C axis, where C has no angle"
     return "passes through the center of the C axis, where C would have to turn by 180 deg at once"
+
+
+def per_minute(machine: Machine) -> str:
+    """The code of feed per minute."""
+    return machine.codes("feed_per_minute")[0]

@@ -10,6 +10,7 @@ from polarcheck.machines.machine import Machine
 from polarcheck.reading.translation import shown
 from polarcheck.table.angles import Angles
 from polarcheck.table.arcs import Arcs
+from polarcheck.table.entry import Entry
 from polarcheck.table.infeed import Infeed
 from polarcheck.table.other_mode import OtherMode
 from polarcheck.table.trace import Trace
@@ -191,3 +192,8 @@ def begins(angles: Angles, row: int) -> str:
     series = angles.series
     count = int(series.in_rows(series.count.astype(float), len(angles.trace))[row])
     return f"is one of {count} steps at nearly the same X to"
+
+
+def turned(trace: Trace, entry: Entry, row: int) -> int:
+    """The line in which C first moves at feed in offset mode above a G13.1 that no G12.1 began."""
+    return int(trace.line[entry.turned_in_offset_mode[row]])

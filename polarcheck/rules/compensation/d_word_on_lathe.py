@@ -1,16 +1,21 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Mask, Trace, rule
+from polarcheck.checking.rule import ERROR, Entry, Mask, Trace, rule
 
 
-@rule(ERROR, "{D} in the polar mode: on a lathe R comes with the tool offset, as in T0808", at=("D",))
-def d_word_on_lathe(trace: Trace) -> Mask:
+@rule(
+    ERROR,
+    "{D} calls no radius on a lathe: R comes with the tool offset; delete it, and call the offset with T, as in T0808",
+    at=("D",),
+)
+def d_word_on_lathe(trace: Trace, entry: Entry) -> Mask:
     """
     D word for cutter compensation.
 
     On machining centers D calls the radius of the cutter. A lathe takes R from the tool offset that T calls, and does
     not know D: it is an alarm, or the radius is not the one that D was to call. Delete D, put R into the offset table,
-    and call the offset with T before G12.1.
+    and call the offset with T before G12.1. Before the mode D is meant so where it stands alone in its block, or beside
+    T alone.
 
     Source: builder's guide to G12.1, cutter compensation data setting and notes.
 
@@ -24,6 +29,18 @@ def d_word_on_lathe(trace: Trace) -> Mask:
         G40 X60.
         G13.1
 
+    Bad, tool 8:radius=4:
+
+        T0808
+        D8                (expect: d-word-on-lathe)
+        G98 G0 X60. C0
+        G12.1
+        G1 C20. F500
+        G41 X40. F200
+        C-20.
+        G40 X60.
+        G13.1
+
     Good:
 
         T0808
@@ -34,4 +51,6 @@ def d_word_on_lathe(trace: Trace) -> Mask:
         G40 X60.
         G13.1
     """
-    return trace.in_polar & trace.uses_axes & trace.has("D")
+    in_mode = trace.in_polar & trace.uses_axes & trace.has("D")
+    before_mode = entry.is_before_mode & trace.has("D") & trace.consists_of("D", "T")
+    return in_mode | before_mode

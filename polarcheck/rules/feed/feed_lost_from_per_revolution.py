@@ -14,8 +14,8 @@ def feed_lost_from_per_revolution(trace: Trace, feeds: Feeds) -> Mask:
     Feed per revolution before G12.1, and no F in the mode.
 
     Some controls take the F in force over into the mode only if it is per minute. After G99 (G95) the mode needs an F
-    of its own, which then is per minute; without one the control stops at the first cutting move. After G13.1 the feed
-    per revolution is there again.
+    of its own, which then is per minute; without one the control stops at the first move at feed, be it Z alone. After
+    G13.1 the feed per revolution is there again.
 
     Source: Mitsubishi M700V programming manual, p. 73: alarm P62.
 
@@ -38,6 +38,16 @@ def feed_lost_from_per_revolution(trace: Trace, feeds: Feeds) -> Mask:
         C10. F200
         G13.1
 
+    Bad, set feed.carried_into_polar="per-minute-only":
+
+        G99 G0 X60. Z2. C0
+        G1 Z1. F.2
+        G12.1
+        Z-5.              (expect: feed-lost-from-per-revolution)
+        X40. F200
+        C10.
+        G13.1
+
     Good, set feed.carried_into_polar="per-minute-only":
 
         G99 G0 X60. C0
@@ -47,4 +57,4 @@ def feed_lost_from_per_revolution(trace: Trace, feeds: Feeds) -> Mask:
         C10.
         G13.1
     """
-    return trace.first_in_section(trace.cuts & feeds.lost)
+    return trace.first_in_section(trace.moves_at_feed & feeds.lost)

@@ -8,7 +8,8 @@ def feed_missing_in_polar(trace: Trace, feeds: Feeds) -> Mask:
     """
     Cutting move without a feed.
 
-    No F stands above this block, or F0 does. The control stops with an alarm at the first G1, G2 or G3 that moves.
+    No F stands above this block, or F0 does. The control stops with an alarm at the first G1, G2 or G3 that moves,
+    be it Z alone.
 
     Source: FANUC alarm 011; Mitsubishi alarm P62.
 
@@ -28,6 +29,15 @@ def feed_missing_in_polar(trace: Trace, feeds: Feeds) -> Mask:
         C10. F200
         G13.1
 
+    Bad:
+
+        G98 G0 X60. Z2. C0
+        G12.1
+        G1 Z-5.           (expect: feed-missing-in-polar)
+        X40. F200
+        C10.
+        G13.1
+
     Good:
 
         G98 G0 X60. C0
@@ -37,4 +47,4 @@ def feed_missing_in_polar(trace: Trace, feeds: Feeds) -> Mask:
         C10.
         G13.1
     """
-    return trace.first_in_section(trace.cuts & feeds.missing)
+    return trace.first_in_section(trace.moves_at_feed & feeds.missing)

@@ -1,0 +1,66 @@
+from __future__ import annotations
+
+from polarcheck.checking.rule import ERROR, Entry, Mask, Trace, rule
+
+
+@rule(
+    ERROR,
+    "{switch} ends a polar mode that was never entered: from line {turned} on {machine.polar.virtual_axis} moves at "
+    "feed with G41 or G42 as outside the mode, not on the contour; write {switch_on} before it",
+    at=("off",),
+)
+def polar_never_entered(trace: Trace, entry: Entry) -> Mask:
+    """
+    G13.1 after a contour that no G12.1 began.
+
+    Cutter compensation and moves of C at feed belong into the polar mode. Without its G12.1 the control takes C as an
+    angle, and compensates in another plane or stops: the shape is not cut. Write G12.1 before G41 or G42. A G13.1 for
+    safety, at the head of a program or of a tool, ends nothing and is right.
+
+    Source: FANUC B-62764EN/01, p. 50; builder's guide to G12.1, cutter compensation in the mode.
+
+    Bad, tool 1:radius=4:
+
+        O1
+        T0101
+        G98 G0 X60. C0
+        G1 C-20. F500
+        G42 X40. F200
+        C20.
+        G40 X60.
+        G13.1             (expect: polar-never-entered)
+        M30
+
+    Bad, tool 1:radius=4:
+
+        O1
+        T0101
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. F200
+        C20.
+        X60.
+        G13.1
+        G1 G41 X40. C5.
+        C20.
+        G40 X60.
+        G13.1             (expect: polar-never-entered)
+        M30
+
+    Good, tool 1:radius=4:
+
+        O1
+        G40 G13.1
+        T0101
+        G98 G0 X60. Z2. C0
+        G1 C30. F500
+        G40 G13.1
+        T0202
+        G0 X50. Z2.
+        G1 G42 X40. F200
+        Z-20.
+        G40 X60.
+        G40 G13.1
+        M30
+    """
+    return trace.switches_off & (entry.turned_in_offset_mode >= 0)
