@@ -22,6 +22,8 @@ KEYS: dict[str, tuple[Any, str]] = {
     "clock_variables": ([], "#3001=5.\nG0 X#3001\nM30\n"),
     "alarm_variables": ([], "#3000=1(STOP)\nG0 X5.\nM30\n"),
     "stop_variables": ([], "#3006=1(TURN)\nG0 X5.\nM30\n"),
+    "tool_offset_variables": ([], "G98 G0 X60. C0\nG12.1\n#2001=.5\nG1 X40. F200\nX60.\nG13.1\nM30\n"),
+    "work_offset_variables": ([], "G98 G0 X60. C0\nG12.1\n#5221=.5\nG1 X40. F200\nX60.\nG13.1\nM30\n"),
     "subprogram_calls": (["M198"], "M98 P2\n" + _SUB),
     "macro_calls": ([], "G65 P2 X5.\n" + _SUB),
     "modal_macro_calls": ([], "G66 P2 X5.\nG0 Z1.\n" + _SUB),

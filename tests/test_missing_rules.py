@@ -242,3 +242,53 @@ def test_d_before_the_mode(block: str, machine: str) -> None:
 )
 def test_d_that_belongs_to_no_section(blocks: str) -> None:
     assert "d-word-on-lathe" not in [rule for _, rule in said(blocks)]
+
+
+# ---- offsets as variables ----
+
+ASSIGNED = "G0 X50. Z2. C0/G12.1/G1 X40. F200./{}/C10./C-10./X50./G13.1"
+
+
+@pytest.mark.parametrize(
+    ("block", "rule"),
+    [
+        ("#2001=.5", "offset-changed-in-polar"),
+        ("#2201=4.", "offset-changed-in-polar"),
+        ("#[2700+1]=#[2700+1]-.1", "offset-changed-in-polar"),
+        ("#15001=0", "offset-changed-in-polar"),
+        ("#5221=.1", "origin-shifted-in-polar"),
+        ("#5201=0", "origin-shifted-in-polar"),
+        ("IF[1EQ1]THEN #7001=.1", "origin-shifted-in-polar"),
+    ],
+)
+@pytest.mark.parametrize("machine", ["fanuc", "fanuc-16i", "haas-lathe"])
+def test_an_offset_assigned_in_the_mode(block: str, rule: str, machine: str) -> None:
+    blocks = ASSIGNED.format(block)
+    if machine == "haas-lathe":
+        blocks = "G17/M154/M133 P500/" + blocks.replace("C", "Y").replace("12.1", "112").replace("13.1", "113")
+    assert said(blocks, machine, head=MM if machine != "haas-lathe" else MM.replace(" G18", "")) == [(block, rule)]
+
+
+def test_it_names_the_variable() -> None:
+    [(_, _, message)] = found(ASSIGNED.format("#[2000+12]=.5"))
+    assert message == "tool offset changed in the polar mode by #2012; write it before G12.1 or after G13.1"
+    [(_, _, message)] = found(ASSIGNED.format("#5241=.5"), head=INCH)
+    assert message.startswith("#5241 changes the coordinate system in the polar mode")
+
+
+@pytest.mark.parametrize(
+    "blocks",
+    [
+        # Outside the mode, other variables, and in the branch that does not run.
+        "#2001=.5/#5221=0/" + ASSIGNED.format("G4 X1.") + "/#2001=0",
+        ASSIGNED.format("#100=2001/#501=#2001/#1=5221"),
+        ASSIGNED.format("IF[1EQ2]THEN #2001=.5"),
+    ],
+)
+def test_an_offset_left_alone_in_the_mode(blocks: str) -> None:
+    assert said(blocks) == []
+
+
+def test_an_assignment_is_a_row_that_moves_nothing() -> None:
+    blocks = "G0 X50. Z2. C-15./G12.1/G1 C15. F500./G41 X40. F200./C5./#2001=.1/C-15./G40 X50./G13.1"
+    assert said(blocks, "fanuc", "1:radius=2") == [("#2001=.1", "offset-changed-in-polar")]

@@ -202,6 +202,8 @@ class Execution(Calls):
         self.found(assign(statement, self.variables, arithmetic), block)
         after = self.variables.read(number) if number is not None and self.variables.exists(number) else None
         self.changes += before != after or number is None or number != number
+        if number is not None and macro.is_of_offset(number):
+            self.rows.add_assigned(block, round(number), len(self.stack) - 1)
         if number in macro.alarm_variables or number in macro.stop_variables:
             self.remark("stops-itself", block, number=int(number or 0))
             if number in macro.alarm_variables:

@@ -55,6 +55,7 @@ class ExecutedRows:
         self.starts: list[int] = []
         self.unknown: list[int] = []
         self.computed: list[tuple[int, Word, float]] = []
+        self.assigned: dict[int, int] = {}
         self.count = 0
 
     def __len__(self) -> int:
@@ -121,6 +122,11 @@ class ExecutedRows:
             self.inch = self._is_inch.get(value, self.inch) if word.address == "G" else self.inch
         return any(word.address == "M" and value in self._is_end for word, value in words)
 
+    def add_assigned(self, block: int, number: int, depth: int) -> None:
+        """A block that assigns a variable of an offset: a row without words."""
+        self.assigned[self.count] = number
+        self.add_computed(block, (), depth)
+
     def add_call(self, block: int, statement: Statement, depth: int, has_arguments: bool) -> None:
         """A block with a call: its words, but those that are arguments belong to the macro."""
         if self.text.blocks.is_macro[block]:
@@ -159,6 +165,7 @@ class ExecutedRows:
             np.repeat([depth for depth, _ in self.depth], [rows for _, rows in self.depth]).astype(np.int64),
             faults,
             remarks,
+            {row: number for row, number in self.assigned.items() if row < self.count},
         )
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 import msgspec
 import numpy as np
@@ -43,7 +43,8 @@ class Run(msgspec.Struct, frozen=True):
 
     words: in order of execution. row: the row of each word, ascending. block: the index into text.blocks of each row.
     starts: rows at which a program begins, so that nothing before them counts. unknown: rows whose effect is not known.
-    depth: of calls. faults: what macro and flow found. remarks: what was not evaluated.
+    depth: of calls. faults: what macro and flow found. remarks: what was not evaluated. assigned: row -> the variable
+    of an offset that it assigns.
     """
 
     text: Text
@@ -55,6 +56,7 @@ class Run(msgspec.Struct, frozen=True):
     depth: Rows
     faults: tuple[FlowFault, ...] = ()
     remarks: tuple[Remark, ...] = ()
+    assigned: Mapping[int, int] = {}
 
     def __len__(self) -> int:
         return len(self.block)

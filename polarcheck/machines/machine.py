@@ -287,6 +287,8 @@ class Macro(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     clock_variables: ranges of system variables that count on by themselves: not known even after an assignment
     alarm_variables: system variables by which a program ends itself with an alarm: #3000 = 1 (MESSAGE)
     stop_variables: system variables by which a program stops with a message until cycle start: #3006 = 1 (MESSAGE)
+    tool_offset_variables: ranges of system variables that are tool offsets, so that an assignment changes one
+    work_offset_variables: ranges of system variables that are work offsets
     subprogram_calls: codes that call a subprogram by its number in P or its <NAME>; M198 that of another device
     macro_calls: codes that call a macro once; the other words of the block are its arguments
     modal_macro_calls: codes after which each block that moves an axis calls the macro
@@ -314,6 +316,8 @@ class Macro(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     clock_variables: Ranges
     alarm_variables: list[int]
     stop_variables: list[int]
+    tool_offset_variables: Ranges
+    work_offset_variables: Ranges
     subprogram_calls: list[str]
     macro_calls: list[str]
     modal_macro_calls: list[str]
@@ -343,6 +347,11 @@ class Macro(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
             for first, last in getattr(self, f"{kind}_variables"):
                 if first > last:
                     raise ValueError(f"{kind}_variables: the range {first} to {last} ends before it begins")
+
+    def is_of_offset(self, number: float) -> bool:
+        """Whether a variable is a tool offset or a work offset."""
+        ranges = (*self.tool_offset_variables, *self.work_offset_variables)
+        return any(first - 0.5 <= number < last + 0.5 for first, last in ranges)
 
     @property
     def macro_call_codes(self) -> frozenset[str]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -96,6 +96,14 @@ class Columns:
             self._columns[name] = make()
         column: Column = self._columns[name]
         return column
+
+    def assigns(self, ranges: Iterable[tuple[int, int]]) -> Mask:
+        """Whether a row assigns a variable of an offset in one of these ranges."""
+        found = np.zeros(len(self), bool)
+        spans = list(ranges)
+        for row, number in self.run.assigned.items():
+            found[row] = any(first <= number <= last for first, last in spans)
+        return found
 
     # ---- codes ----
 

@@ -87,7 +87,7 @@ class Entry:
         trace, mode = self.trace, self.trace.machine.polar
         foreign = [code for code in mode.on_of_other_controls if code[1:2].isdigit()]
         begun = trace.switches_on | trace.codes(*foreign) | trace.run.unknown
-        begun |= trace.listed("axis_words_no_move") & trace.has("C", "H")
+        begun |= trace.listed("cylindrical_interpolation")
         since = trace.changes_tool | trace.switches_off | trace.starts
         at_feed = np.isin(trace.motion, (Motion.LINE, Motion.CW, Motion.CCW)) & (trace.side != Side.OFF)
         turns = at_feed & trace.has(mode.virtual_axis, mode.virtual_axis_incremental) & (trace.section < 0)

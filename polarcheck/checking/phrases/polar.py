@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from polarcheck.checking.phrases.common import executed_word, outside, switch_off
+from polarcheck.checking.phrases.common import codes, executed_word, outside, switch_off
 from polarcheck.machines.codes import spelled
 from polarcheck.machines.machine import Machine
-from polarcheck.reading.translation import shown
+from polarcheck.machines.own_language import shown
 from polarcheck.table.angles import Angles
 from polarcheck.table.arcs import Arcs
 from polarcheck.table.entry import Entry
@@ -177,6 +177,11 @@ def on_cylinder(trace: Trace) -> tuple[str, int]:
         return "", 0
     reason = f"cylindrical interpolation, from line {int(trace.line[rows[0]])} on, is not simulated"
     return f"{reason}: look at it on the control", len(rows)
+
+
+def shifted_by(trace: Trace, row: int, at: list[int]) -> str:
+    """What shifts the origin: codes, as in G55, or the variable of a work offset."""
+    return codes(trace, at) if at else f"#{trace.run.assigned[row]}"
 
 
 def where(trace: Trace, row: int) -> str:

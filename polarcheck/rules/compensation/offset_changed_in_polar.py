@@ -1,16 +1,16 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Mask, ModeWords, Trace, rule
+from polarcheck.checking.rule import ERROR, Machine, Mask, ModeWords, Trace, rule
 
 
 @rule(ERROR, "tool offset changed in the polar mode by {changed_by}; write it {outside}", at=("T", "data_input"))
-def offset_changed_in_polar(trace: Trace, mode_words: ModeWords) -> Mask:
+def offset_changed_in_polar(trace: Trace, mode_words: ModeWords, machine: Machine) -> Mask:
     """
     Tool offset changed in the polar mode.
 
     The offset must be set before G12.1 and cannot be changed before G13.1: a T word with another tool or offset, T0800,
-    or G10 on an offset stops the control or shifts the plane off the center of the spindle, and the contour with it.
-    Leave the mode, change the offset, position, and enter again.
+    G10 on an offset, or an assignment to its system variable stops the control or shifts the plane off the center of
+    the spindle, and the contour with it. Leave the mode, change the offset, position, and enter again.
 
     Source: FANUC B-62764EN/01, p. 52; Mitsubishi M700V programming manual, P485.
 
@@ -23,6 +23,7 @@ def offset_changed_in_polar(trace: Trace, mode_words: ModeWords) -> Mask:
         T0111             (expect: offset-changed-in-polar)
         C10.
         G10 P11 X0.1      (expect: offset-changed-in-polar)
+        #2001=.5          (expect: offset-changed-in-polar)
         X60.
         G13.1
 
@@ -31,6 +32,7 @@ def offset_changed_in_polar(trace: Trace, mode_words: ModeWords) -> Mask:
         T0101
         G98 G0 X60. C0
         G10 P1 R4.
+        #2001=.5
         G12.1
         G1 X40. F200
         T0101
@@ -41,4 +43,5 @@ def offset_changed_in_polar(trace: Trace, mode_words: ModeWords) -> Mask:
     """
     calls_another = trace.in_polar & trace.has("T") & (trace.tool_called != trace.tool_called_before)
     writes_one = mode_words.rows(mode_words.changes_tool_offset & mode_words.not_allowed)
-    return calls_another | writes_one
+    assigns_one = trace.in_polar & trace.assigns(machine.macro.tool_offset_variables)
+    return calls_another | writes_one | assigns_one

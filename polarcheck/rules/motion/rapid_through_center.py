@@ -10,7 +10,7 @@ from polarcheck.machines.modal import Motion
     "{word} in rapid traverse outside the polar mode goes across the center, to {trace.x:diameter} in X, the other "
     "side of the spindle; write an X above 0",
     at=("X", "U"),
-    unless=("travel-limit",),
+    follows={"block": ("travel-limit",)},
 )
 def rapid_through_center(trace: Trace, entry: Entry) -> Mask:
     """

@@ -1,12 +1,12 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Mask, ModeWords, rule
+from polarcheck.checking.rule import ERROR, Machine, Mask, ModeWords, Trace, rule
 
 
 @rule(
     ERROR,
-    "{codes} changes the coordinate system in the polar mode; its origin must stay the center of the spindle, "
-    "so write {codes} {outside}",
+    "{shifted_by} changes the coordinate system in the polar mode; its origin must stay the center of the spindle, "
+    "so write {shifted_by} {outside}",
     at=(
         "data_input",
         "coordinate_setting",
@@ -16,14 +16,14 @@ from polarcheck.checking.rule import ERROR, Mask, ModeWords, rule
         "work_offset_extended",
     ),
 )
-def origin_shifted_in_polar(mode_words: ModeWords) -> Mask:
+def origin_shifted_in_polar(mode_words: ModeWords, trace: Trace, machine: Machine) -> Mask:
     """
     Origin shifted in the polar mode.
 
     The mode turns X and C of the program into X and C of the lathe about the center of the spindle, which must be the
     origin when it begins and stay it until it ends. Another work offset, a local shift, G50 (G92 in systems B and C)
-    with axis words, machine coordinates, or G10 on a work offset stop the control or displace the contour. Set the
-    origin before G12.1.
+    with axis words, machine coordinates, G10 on a work offset, or an assignment to its system variable stop the control
+    or displace the contour. Set the origin before G12.1.
 
     Source: FANUC B-62764EN/01, p. 51; builder's guide to G12.1, coordinate system origin; 30i alarm list, PS0146.
 
@@ -48,6 +48,7 @@ def origin_shifted_in_polar(mode_words: ModeWords) -> Mask:
         G50 X50.          (expect: origin-shifted-in-polar)
         G1 C-10.
         G10 L2 P1 X1.     (expect: origin-shifted-in-polar)
+        #5221=.5          (expect: origin-shifted-in-polar)
         X60.
         G13.1
 
@@ -62,4 +63,5 @@ def origin_shifted_in_polar(mode_words: ModeWords) -> Mask:
         G13.1
         G55
     """
-    return mode_words.rows(mode_words.not_allowed & mode_words.shifts_origin)
+    assigns_one = trace.in_polar & trace.assigns(machine.macro.work_offset_variables)
+    return mode_words.rows(mode_words.not_allowed & mode_words.shifts_origin) | assigns_one
