@@ -292,3 +292,81 @@ def test_an_offset_left_alone_in_the_mode(blocks: str) -> None:
 def test_an_assignment_is_a_row_that_moves_nothing() -> None:
     blocks = "G0 X50. Z2. C-15./G12.1/G1 C15. F500./G41 X40. F200./C5./#2001=.1/C-15./G40 X50./G13.1"
     assert said(blocks, "fanuc", "1:radius=2") == [("#2001=.1", "offset-changed-in-polar")]
+
+
+# ---- an origin that can be computed ----
+
+SHIFTED = "{}/G0 X50. Z2. C0/G12.1/G1 X40. F200./C10./C-10./X50./G13.1"
+G92 = "O1\nG21 G40 G97 G94 G18\nT0101\n"
+
+
+@pytest.mark.parametrize(
+    ("blocks", "name", "shift"),
+    [
+        ("G10 L2 P1 X.5/G54", "G10 on G54", "0.5"),
+        ("G10 L2 P1 X.5", "G10 on G54", "0.5"),
+        ("G10 L2 P2 X-1./G54/G55", "G10 on G55", "-1"),
+        ("G10 L2 P3 X.5/G10 L2 P3 U.25/G56", "G10 on G56", "0.75"),
+        ("G10 L20 P4 X.2/G54.1 P4", "G10 on G54.1 P4", "0.2"),
+        ("G10 L2 P0 X.1", "G10 P0", "0.1"),
+        ("G10 P0 U.1", "G10 P0", "0.1"),
+        ("G0 X2.6/G50 X2.5", "G50", "0.1"),
+        ("G0 X2.6/Z5./G1 U.4 F.1/G50 X2.5", "G50", "0.5"),
+        ("G50 U.5", "G50", "-0.5"),
+        ("G0 X60./G50 U-.5/G50 U.25", "G50", "0.25"),
+        ("G10 L2 P1 X.5/G52 X.25/G50 U-.25", "G10 on G54 and G52 and G50", "1"),
+    ],
+)
+@pytest.mark.parametrize(("head", "unit"), [(MM, "mm"), (INCH, "inch")])
+def test_an_origin_that_the_program_moves(blocks: str, name: str, shift: str, head: str, unit: str) -> None:
+    [(block, rule, message)] = found(SHIFTED.format(blocks), head=head)
+    assert (block, rule) == ("G12.1", "origin-off-center")
+    assert message == f"{name} puts X0 {shift} {unit} off the spindle axis at G12.1"
+
+
+@pytest.mark.parametrize(
+    "blocks", ["G0 X30./G92 X29.8", "G91 G92 X.2/G90", "G10 L2 P1 X.5/G54", "G90 G10 L2 P1 X1./G54"]
+)
+def test_an_origin_in_g_code_system_b(blocks: str) -> None:
+    changes = ("siemens-iso", "mazak-eia") if "G10" in blocks else ("siemens-iso",)
+    for machine in changes:
+        assert ("G12.1", "origin-off-center") in said(SHIFTED.format(blocks), machine, head=G92)
+
+
+@pytest.mark.parametrize(
+    "blocks",
+    [
+        "G10 L2 P1 X0/G54",
+        "G10 L2 P1 X.5/G10 L2 P1 X0/G54",
+        "G10 L2 P2 X.5/G54",
+        "G10 L2 P1 Z-.5/G54",
+        # The way from the reference position of the lathe, and a tool offset.
+        "G10 L2 P1 X-260.5/G54",
+        "G10 P1 X.5",
+        "G10 L10 P1 X.5",
+        # Where X stands is what is set, or is not known.
+        "G0 X2.6/G50 X2.6",
+        "G50 X200. Z100.",
+        "G28 U0/G50 X250.",
+        "G50 S2000",
+        "G50 U.5/G50 U-.5",
+        # Each tool has an origin of its own.
+        "G0 X200./G50 X198.5/T0202",
+        "G0 X200./G50 X198.5 T0202",
+        "G10 L2 P1 X.5/M98 P9000",
+    ],
+)
+def test_an_origin_at_the_center_or_unknown(blocks: str) -> None:
+    assert "origin-off-center" not in [rule for _, rule in said(SHIFTED.format(blocks))]
+
+
+def test_what_the_program_sets_takes_the_place_of_the_job() -> None:
+    job = {"work_offsets": {"G54": {"x": 0.5}}}
+
+    def rules(blocks: str) -> list[str]:
+        program = f"{MM}{SHIFTED.format(blocks)}/M30\n".replace("/", "\n")
+        return [finding.rule for finding in report_of(program, job=job).findings]
+
+    assert rules("G54") == ["origin-off-center"]
+    assert rules("G10 L2 P1 X0") == []
+    assert rules("G10 L2 P1 U-.5") == []

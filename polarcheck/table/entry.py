@@ -6,14 +6,13 @@ from collections.abc import Sequence
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from polarcheck.arrays import Floats, Mask, Rows
 from polarcheck.geometry.tolerances import ROUNDING
-from polarcheck.machines.code_lists import numbers
 from polarcheck.machines.codes import code_set
 from polarcheck.machines.modal import Motion, Side
 from polarcheck.table.filling import before, fill_down
+from polarcheck.table.origin import Origin
 from polarcheck.table.trace import Trace
 
 
@@ -147,50 +146,14 @@ class Entry:
     # ---- tool offset, origin ----
 
     @cached_property
-    def _work_offset(self) -> tuple[Floats, NDArray[np.object_]]:
-        """Where X0 of the work offset in force lies [mm; 0 where the job does not say], and its name."""
-        trace = self.trace
-        first = next(iter(numbers(trace.machine.codes("work_offset"))), 0) // 10  # where the program selects none
-        state = np.where(trace.state("work_offset") == 0, first, trace.state("work_offset"))
-        is_extended = fill_down(
-            trace.listed("work_offset_extended"), trace.sets("work_offset") | trace.starts, False
-        ).astype(bool)
-        number = fill_down(trace.word("P"), trace.listed("work_offset_extended"), 0.0)
-        shift, name = np.zeros(len(trace)), np.full(len(trace), "", object)
-        for offset, origin in trace.job.work_offsets.items():
-            written, _, extension = offset.upper().partition(" P")
-            named = (
-                ~is_extended & (state == _number(written))
-                if not extension
-                else is_extended & (number == _number(extension))
-            )
-            shift[named], name[named] = origin.x, offset.upper()
-        return shift * trace.job_scale, name
+    def origin(self) -> Origin:
+        """Where X0 lies."""
+        return Origin(self.trace)
 
     @property
-    def work_offset_shift(self) -> Floats:
-        """Where X0 of the work offset in force lies [mm]; 0 where the job does not say."""
-        return self._work_offset[0]
-
-    @property
-    def work_offset_name(self) -> NDArray[np.object_]:
-        """The name of the work offset in force, as the job has it; empty where it has none."""
-        return self._work_offset[1]
-
-    @cached_property
-    def local_shift(self) -> Floats:
-        """X of the G52 in force [mm]."""
-        trace = self.trace
-        written = trace.listed("local_shift") & trace.has("X")
-        shift = np.where(written, np.nan_to_num(trace.length_of("X")), 0.0)
-        return fill_down(shift, written | trace.starts, 0.0).astype(np.float64)
-
-    @cached_property
     def origin_shift(self) -> Floats:
-        """How far X0 is known to lie off the spindle axis, as the job or G52 writes it [mm]."""
-        if not self.trace.job.work_offsets and not self.trace.listed("local_shift").any():
-            return np.zeros(len(self.trace))
-        return self._work_offset[0] + self.local_shift
+        """How far X0 is known to lie off the spindle axis, as it is written [mm]."""
+        return self.origin.shift
 
     # ---- stock and tool ----
 
@@ -225,8 +188,3 @@ class Entry:
         """The job says of the tool in force that it is a flat end mill that points at the outer diameter."""
         wrong = [n for n, tool in self.trace.job.tools.items() if tool.mount == "radial" and tool.shape == "flat"]
         return np.isin(self.trace.offset_number, wrong)
-
-
-def _number(text: str) -> float:
-    digits = text.lstrip("GP ")
-    return float(digits) if digits.replace(".", "", 1).isdecimal() else float("nan")

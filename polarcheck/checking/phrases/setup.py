@@ -12,9 +12,8 @@ from polarcheck.table.trace import Trace
 
 
 def name(entry: Entry, row: int) -> str:
-    """What shifts the origin: work offset, G52, or both."""
-    shifts = [str(entry.work_offset_name[row])] if entry.work_offset_shift[row] else []
-    return " and ".join([*shifts, entry.trace.machine.codes("local_shift")[0]] if entry.local_shift[row] else shifts)
+    """What shifts the origin: work offset, G52, G50, or several of them."""
+    return " and ".join(entry.origin.causes(row))
 
 
 def _sections_of_center(trace: Trace, row: int) -> tuple[list[int], bool]:

@@ -11,7 +11,9 @@ def origin_off_center(trace: Trace, entry: Entry) -> Hits:
 
     The control takes X0 as the center that C turns about. If the work offset or a local shift in force puts X0
     elsewhere, every radius and every angle of the shape is wrong. Set X of the work offset to the spindle axis and
-    cancel G52 before G12.1. Known are the work offsets of the job, `[work_offsets.G54] x = 0`, and G52 in the program.
+    cancel G52 before G12.1. Known are the work offsets of the job, `[work_offsets.G54] x = 0`, and in the program G52,
+    G10 on a work offset up to 50 mm (beyond, it is the way from the reference position of the lathe), and G50 (G92 in
+    systems B and C) with U, or with X where the program says where X stands.
 
     Source: FANUC B-62764EN/01, p. 51; builder's guide to G12.1, coordinate system origin.
 
@@ -26,11 +28,45 @@ def origin_off_center(trace: Trace, entry: Entry) -> Hits:
         G13.1
         G52 X0.
 
+    Bad:
+
+        G10 L2 P1 X.5
+        G54
+        G98 G0 X60. C0
+        G12.1             (expect: origin-off-center)
+        G1 X40. F200
+        C10.
+        X60.
+        G13.1
+
+    Bad:
+
+        G98 G0 X60. Z2.
+        G50 X59.8
+        G0 X62. C0
+        G12.1             (expect: origin-off-center)
+        G1 X40. F200
+        C10.
+        X60.
+        G13.1
+
     Bad, set job.work_offsets.G55.x=0.5:
 
         G55
         G98 G0 X60. C0
         G12.1             (expect: origin-off-center)
+        G1 X40. F200
+        C10.
+        X60.
+        G13.1
+
+    Good:
+
+        G10 L2 P1 X-260.5
+        G50 X200. Z100.
+        G98 G0 X60. C0
+        G50 X60. S2000
+        G12.1
         G1 X40. F200
         C10.
         X60.
