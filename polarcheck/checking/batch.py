@@ -12,7 +12,9 @@ from polarcheck import __version__
 from polarcheck.checking import check
 from polarcheck.checking.finding import FileReport, Producer, Report, Summary
 from polarcheck.checking.settings import Settings
+from polarcheck.checking.tables import Tables
 from polarcheck.errors import PolarcheckError, SourceError
+from polarcheck.machines.job import AskedTool
 from polarcheck.reading import files
 from polarcheck.reading.source import Source
 from polarcheck.reading.words import Text
@@ -30,10 +32,15 @@ class Task(msgspec.Struct, frozen=True):
 
 
 class Checked(msgspec.Struct, frozen=True):
-    """The reports of the files that could be read, and by path and number the lines that their findings stand in."""
+    """
+    The reports of the files that could be read, and by path and number the lines that their findings stand in.
+
+    not_called: offset numbers that the command line gives and no program calls.
+    """
 
     files: list[FileReport]
     lines: dict[str, dict[int, str]]
+    not_called: list[int]
 
 
 def plan(
@@ -64,10 +71,12 @@ def check_files(tasks: Iterable[Task], tell: Tell, encoding: str | None = None, 
     """Check one file after the other; tell is told, in one line, of those that cannot be read."""
     reports: list[FileReport] = []
     lines: dict[str, dict[int, str]] = {}
+    asked: set[int] = set()
+    called: set[int] = set()
     for task in tasks:
         try:
             data = files.read(task.path)
-            found, text = _check(task, data, encoding)
+            found, text, offsets = _check(task, data, encoding)
         except SourceError as error:
             tell(str(error))
             continue
@@ -75,20 +84,28 @@ def check_files(tasks: Iterable[Task], tell: Tell, encoding: str | None = None, 
         reports.append(msgspec.structs.replace(found, machine=task.settings.name, verdict=verdict))
         if found.findings:
             lines[found.path] = _lines(text, found)
-    return Checked(reports, lines)
+        asked |= {number for number, tool in task.settings.job.tools.items() if isinstance(tool, AskedTool)}
+        called |= offsets
+    return Checked(reports, lines, sorted(asked - called))
 
 
-def _check(task: Task, data: bytes, encoding: str | None) -> tuple[FileReport, Source]:
+def _check(task: Task, data: bytes, encoding: str | None) -> tuple[FileReport, Source, set[int]]:
+    """The report, the text, and the offset numbers that are called, where the job has any."""
     path, settings = files.shown(task.path), task.settings
     try:
         found = check.read(data, settings.machine, settings.job, path, encoding)
         text: Text = found[0][1]["text"]
-        return check.check_runs(found, settings.rules, settings.severities), text.source
+        report = check.check_runs(found, settings.rules, settings.severities)
+        return report, text.source, _offsets(found) if settings.job.tools else set()
     except PolarcheckError:
         raise
     except Exception as error:
         error.add_note(f"while checking {path}")
         raise
+
+
+def _offsets(found: Sequence[tuple[str, Tables]]) -> set[int]:
+    return {number for _, tables in found for number in tables["trace"].called_offsets}
 
 
 def _lines(text: Source, found: FileReport) -> dict[int, str]:

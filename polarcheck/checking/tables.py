@@ -44,6 +44,7 @@ SPANS = {
     "loop": "ramps.loop",
     "pause": "ramps.pause",
     "way": "ramps.way",
+    "wall": "overcuts.wall",
     "feed": "trace.feed_word",
 }
 #: Tables that hang on the text and the machine alone: what is found in them is the same however the program runs.

@@ -20,7 +20,7 @@ _FOR_PEOPLE = ("text", "concise", "short")
 #: Of more files than this the report is short, if no format is asked for.
 _LONG = 3
 #: Options that change how a report looks or where it goes, but not what it says.
-_OF_OUTPUT = ("form", "outputs", "color", "quiet")
+_OF_OUTPUT = ("form", "outputs", "color", "quiet", "following")
 _FORMATS = formats()
 
 
@@ -89,6 +89,7 @@ def _outputs(ctx: click.Context, parameter: click.Parameter, values: tuple[str, 
 @many("--extensions", metavar="EXT", help="Of the programs in a folder, instead of .nc, .tap, .eia and others.")
 @options.encoding("programs")
 @option("--color", type=click.Choice(["auto", "always", "never"]), default="auto", show_default=True)
+@option("--show-following", "following", is_flag=True, help="In text, what follows from a finding, too.")
 @option("-q", "--quiet", is_flag=True, help="Findings only.")
 @options.debug
 @click.pass_context
@@ -147,6 +148,7 @@ def _check(
     encoding: str | None,
     color: str,
     quiet: bool,
+    following: bool,
     **asked: Any,
 ) -> int:
     from polarcheck import reports
@@ -164,9 +166,11 @@ def _check(
     report = batch.report(checked.files, name)
     for failure in failures:
         say(failure)
+    for number in checked.not_called:
+        warn(f"--tool {number}: no program of this run calls offset {number}")
     status = COULD_NOT_RUN if failures else batch.status(report, strict)
     form = form or ("text" if len(report.files) <= _LONG else "short")
-    plain = reports.Background(checked.lines, rule.load_all(), COLUMNS, color=False, quiet=quiet, command=command)
+    plain = reports.Background(checked.lines, rule.load_all(), COLUMNS, False, quiet, command, following)
     for kind, path in outputs:
         try:
             files.write(path, reports.render(kind, report, plain))

@@ -31,7 +31,8 @@ class Background(NamedTuple):
     What a report may show beside its findings.
 
     lines: by path and line number, those that findings stand in. rules: by name. columns: the width of the terminal.
-    quiet: findings only. command: what checks a file behind it as these were checked.
+    quiet: findings only. command: what checks a file behind it as these were checked. following: whether what follows
+    from a finding is shown, too.
     """
 
     lines: Mapping[str, Mapping[int, str]] = MappingProxyType({})
@@ -40,6 +41,7 @@ class Background(NamedTuple):
     color: bool = False
     quiet: bool = False
     command: str = "polarcheck check"
+    following: bool = False
 
 
 def formats() -> list[str]:

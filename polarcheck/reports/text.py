@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from polarcheck.reading.excerpt import excerpt, visible
 from polarcheck.reports import SEVERITIES, Background, counted, painted
+from polarcheck.reports.pages.resting import resting
 
 if TYPE_CHECKING:
     from polarcheck.checking.finding import FileReport, Finding, Fix, NotEvaluated, Report
@@ -20,6 +21,8 @@ _GUTTER = 6
 _NARROWEST = 60
 #: Of more files than this, those that pass are counted, not listed, and what was not evaluated is told for all at once.
 _LISTED = 10
+#: Of more files than this it is not told what their verdicts rest on.
+_RESTING = 3
 #: Places that are listed where many files lack the same.
 _PLACES = 3
 _SENTENCE_END = re.compile(r"(?<!\be\.g\.)(?<!\bi\.e\.)(?<!\bp\.)(?<=[.?!])\s+(?=[A-Z0-9(])")
@@ -46,6 +49,10 @@ class _Page(NamedTuple):
         yield f"{self.paint('aside', label.rjust(_GUTTER))}   {first}"
         yield from (" " * indent + line for line in more)
 
+    def indented(self, text: str) -> Iterator[str]:
+        for index, line in enumerate(_wrapped(visible(text), self.columns - _GUTTER - 2)):
+            yield self.paint("aside", " " * (_GUTTER + 2 * (index > 0)) + line)
+
 
 def text(report: Report, background: Background) -> str:
     """Findings with excerpts, then what was not evaluated, then the verdict of each file and one line over all."""
@@ -58,8 +65,8 @@ def _report(report: Report, background: Background, page: _Page) -> Iterator[str
     for file in report.files:
         lines = background.lines.get(file.path, {})
         for found in file.findings:
-            rule = background.rules.get(found.rule)
-            yield from _finding(found, file, lines, None if found.rule in explained else rule, page)
+            yield from _finding(found, file, lines, background.rules.get(found.rule), found.rule not in explained, page)
+            yield from _following(found, background.following, page)
             yield ""
             explained.add(found.rule)
         if not background.quiet and len(report.files) <= _LISTED:
@@ -76,19 +83,29 @@ def _report(report: Report, background: Background, page: _Page) -> Iterator[str
         yield page.paint("aside", f"More about a rule: polarcheck explain {known[0]}")
 
 
+def _following(found: Finding, is_shown: bool, page: _Page) -> Iterator[str]:
+    """What follows from a finding, or how much that is."""
+    if not found.follows:
+        return
+    if not is_shown:
+        yield from page.labelled("", f"{counted(len(found.follows), 'finding')} more from this one: --show-following")
+    for one in found.follows if is_shown else ():
+        yield from page.labelled("so", f"line {one.line}: {one.severity}: {one.message} [{one.rule}]")
+
+
 def _finding(
-    found: Finding, file: FileReport, lines: Mapping[int, str], rule: Rule | None, page: _Page
+    found: Finding, file: FileReport, lines: Mapping[int, str], rule: Rule | None, is_first: bool, page: _Page
 ) -> Iterator[str]:
     yield from page.heading(found.severity, found.message)
     place = f"{file.path}:{found.line}:{found.column}"
     if found.program and len(file.programs) > 1:
         place += f", program {found.program}"
-    if found.count > 1:
+    if found.count > 1 and not (rule and rule.once):
         place += f", in {found.count} runs of the block"
     yield from page.labelled("at", place)
     yield from _excerpt(found, lines, page)
     yield from page.labelled("rule", f"{found.rule}, alarm {found.alarm}" if found.alarm else found.rule)
-    why = first_sentence(rule.page) if rule else ""
+    why = first_sentence(rule.page) if rule and is_first else ""
     if why:
         yield from page.labelled("why", why)
     if found.fix is not None:
@@ -129,7 +146,7 @@ def _not_evaluated(files: Sequence[FileReport], page: _Page) -> Iterator[str]:
     """One paragraph for each reason, whatever the number of rules that it silences."""
     reasons: dict[str, list[tuple[str, NotEvaluated]]] = {}
     for file in files:
-        for missing in file.not_evaluated:
+        for missing in (one for one in file.not_evaluated if one.matters):
             reasons.setdefault(missing.reason, []).append((file.path, missing))
     for reason, group in reasons.items():
         yield from page.heading("not evaluated", reason)
@@ -159,6 +176,9 @@ def _verdicts(report: Report, page: _Page) -> Iterator[str]:
         machine = f", for {visible(file.machine)}" if report.machine is None else ""
         space = " " * (width - len(word))
         yield f"{page.paint(file.verdict, word)}{space}  {visible(file.path)}: {', '.join(facts)}{machine}"
+        if file.verdict != "fail" and len(shown) <= _RESTING:
+            for line in resting(file):
+                yield from page.indented(line)
 
 
 def verdict(file: FileReport) -> str:

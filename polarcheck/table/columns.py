@@ -272,6 +272,12 @@ class Columns:
         """Offset number in force, 0 for none."""
         return np.asarray(self.tool_called % 10**self.machine.control.offset_digits)
 
+    @property
+    def called_offsets(self) -> list[int]:
+        """The offset numbers that T calls anywhere."""
+        # As NumPy's unique, which would load its masked arrays.
+        return np.flatnonzero(np.bincount(np.abs(self.offset_number[self.has("T")]), minlength=1)).tolist()
+
     @cached_property
     def changes_tool(self) -> Mask:
         """A T word that names another tool than the one in force."""
@@ -299,15 +305,18 @@ class Columns:
         return self._offset_column({n: tool.radius for n, tool in self.job.tools.items()}) * self.job_scale
 
     @cached_property
-    def radius_comments(self) -> dict[int, Found]:
-        """What the comments say of R by offset number, if that is asked for."""
-        if not self.job.radius_from_comments:
-            return {}
+    def radius_told(self) -> dict[int, Found]:
+        """What the comments say of R by offset number."""
         from polarcheck.table.radius_comments import Called, radii
 
         rows = np.flatnonzero(self.has("T"))
         called = Called(self.run.block[rows], self.offset_number[rows], self.tool[rows], self.scale[rows] != 1.0)
         return radii(self.text, called)
+
+    @cached_property
+    def radius_comments(self) -> dict[int, Found]:
+        """What the comments say of R by offset number, if that is asked for."""
+        return self.radius_told if self.job.radius_from_comments else {}
 
     @cached_property
     def _radius_of_comments(self) -> Floats:

@@ -157,6 +157,25 @@ class Entry:
 
     # ---- stock and tool ----
 
+    @cached_property
+    def radius_told(self) -> Floats:
+        """
+        R that a comment tells of an offset whose R the job gives [mm], at the first T word that calls it; else NaN.
+
+        Only of offsets that are in force in a polar section: of a turning tool comments tell the nose.
+        """
+        trace = self.trace
+        told = np.full(len(trace), np.nan)
+        if not trace.job.tools or not len(trace.sections):
+            return told
+        in_mode = trace.offset_number[trace.in_polar | trace.enters]
+        called = np.flatnonzero(trace.has("T") & ~trace.radius_is_from_comment & ~np.isnan(trace.radius_of_offset))
+        called = called[np.isin(trace.offset_number[called], in_mode)]
+        for number, first in zip(*np.unique(trace.offset_number[called], return_index=True), strict=True):
+            if int(number) in trace.radius_told:
+                told[called[first]] = trace.radius_told[int(number)].radius
+        return told
+
     @property
     def stock_diameter(self) -> Floats:
         """Of the stock [mm]; NaN where the job gives none."""

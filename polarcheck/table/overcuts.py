@@ -126,6 +126,29 @@ class Overcuts:
         return self._depth_of(self.cuts)
 
     @cached_property
+    def wall(self) -> Rows:
+        """
+        The same number for all blocks that are cut into one another, as the two walls of a groove; -1 for other rows.
+
+        It is the first of these blocks.
+        """
+        first: dict[int, int] = {}
+
+        def found(block: int) -> int:
+            while first.setdefault(block, block) != block:
+                block = first[block]
+            return block
+
+        block = self.trace.run.block
+        for cutting, cut_into in zip(block[self.cuts.row].tolist(), block[self.cuts.into].tolist(), strict=True):
+            one, other = found(cutting), found(cut_into)
+            first[max(one, other)] = min(one, other)
+        column = np.full(len(self.trace), -1)
+        for one in first:
+            column[block == one] = found(one)
+        return column
+
+    @cached_property
     def sweep_depth(self) -> Floats:
         """Of the cut into the contour by a ramp [mm], in loops that are not overcut anyway."""
         loop = self._loop_of_ramps

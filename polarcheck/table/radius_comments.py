@@ -6,6 +6,7 @@ import re
 from typing import NamedTuple
 
 import msgspec
+import numpy as np
 
 from polarcheck.arrays import Mask, Rows
 from polarcheck.machines.modal import MM_PER_INCH
@@ -57,6 +58,17 @@ class Called(NamedTuple):
     inch: Mask
 
 
+def _candidates(text: Text, called: Called) -> Mask:
+    """The comments beside a T word, and those that begin as an entry of a list of tools may."""
+    comments, code = text.comments, text.source.code
+    first = code[np.minimum(comments.start + 1, len(code) - 1)]
+    is_word = ((first >= ord("A")) & (first <= ord("Z"))) | ((first >= ord("a")) & (first <= ord("z")))
+    is_digit = (first >= ord("0")) & (first <= ord("9"))
+    near = np.concatenate((called.block - 1, called.block, called.block + 1))
+    is_of_tool = np.isin(first, list(b"Tt")) | ~(is_word | is_digit)
+    return np.asarray(np.isin(comments.block, near) | is_of_tool)
+
+
 def radii(text: Text, called: Called) -> dict[int, Found]:
     """
     What the comments say of each offset number: in the block of its T word, in a comment alone on the line before or
@@ -66,13 +78,15 @@ def radii(text: Text, called: Called) -> dict[int, Found]:
         return {}
     of_block: dict[int, list[str]] = {}
     of_tool: dict[int, str] = {}
-    for start, end, block in zip(text.comments.start, text.comments.end, text.comments.block, strict=True):
+    comments, chosen = text.comments, _candidates(text, called)
+    for start, end, block in zip(comments.start[chosen], comments.end[chosen], comments.block[chosen], strict=True):
         comment = text.source.excerpt(int(start), int(end)).strip("();% ")
         of_block.setdefault(int(block), []).append(comment)
         listed = _OF_TOOL.match(comment.upper())
         if listed:
             of_tool.setdefault(int(listed[1]), comment)
-    filled = set(text.words.block.tolist()) if len(of_block) else set()
+    beside = np.concatenate((called.block - 1, called.block + 1))
+    filled = set(beside[np.isin(beside, text.words.block)].tolist())
     found: dict[int, Found] = {}
     rows = zip(*(column.tolist() for column in called), strict=True)
     for block, offset, tool, inch in rows:

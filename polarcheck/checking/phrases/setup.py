@@ -47,6 +47,11 @@ def origin(trace: Trace, row: int) -> str:
     return f"from the comment {comment}, but 0 in the polar mode of {sections}: {shorter}; {remedy}"
 
 
+def comment(trace: Trace, row: int) -> str:
+    """The comment that tells R of the offset that is called."""
+    return short(trace.radius_told[int(trace.offset_number[row])].comment)
+
+
 def to_clear(trace: Trace, entry: Entry, row: int) -> str:
     """What X has to clear: stock and cutter, and the clearance where the job wants one."""
     stock, cutter, clearance = (

@@ -10,6 +10,7 @@ from polarcheck.checking.rule import ERROR, Mask, Overcuts, rule
     needs=("trace.radius",),
     where="trace.offset_mode",
     worst="overcuts.depth",
+    once="wall",
     follows={
         "block": ("inside-arc-smaller-than-radius", "interference", "no-offset-intersection"),
         "loop": (

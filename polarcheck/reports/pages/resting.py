@@ -1,0 +1,66 @@
+"""What the verdict of a file rests on, in a few lines: the lathe, what was looked at, and each polar section."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from polarcheck.reports import counted
+
+if TYPE_CHECKING:
+    from polarcheck.checking.finding import FileReport, PolarSection
+
+#: More sections than this are counted; the JSON report has them all.
+_LISTED = 5
+_MM_PER_INCH = 25.4
+_INSIDE = "polar sections"
+
+
+def resting(file: FileReport) -> Iterator[str]:
+    """Lines of text; the first says for which lathe the file was judged and at what was looked."""
+    outside = [part for part in file.looked_at if part != _INSIDE]
+    named = f"{', '.join(outside[:-1])} and {outside[-1]} only" if len(outside) > 1 else "".join(outside)
+    looked_at = f"{_INSIDE}; outside them {named}" if _INSIDE in file.looked_at else named
+    yield f"rests on {file.machine}; looked at: {looked_at}"
+    for section in file.polar_sections[:_LISTED]:
+        yield _section(section)
+    more = len(file.polar_sections) - _LISTED
+    if more > 0:
+        yield f"and {counted(more, 'more section')}: --format json lists them"
+    light = dict.fromkeys(missing.reason for missing in file.not_evaluated if not missing.matters)
+    for reason in light:
+        yield f"without weight: {reason}"
+
+
+def _section(section: PolarSection) -> str:
+    facts = [section.units, _radius(section)]
+    if section.nearest is not None:
+        facts.append(f"nearest {_length(section.nearest, section)}")
+    facts.append(_rate(section))
+    if section.ramp_used is not None:
+        facts.append(f"ramps used up to {100 * section.ramp_used:.0f} %")
+    if section.time is not None:
+        facts.append(f"{section.time:.0f} s")
+    return f"section of line {section.line}: {', '.join(fact for fact in facts if fact)}"
+
+
+def _radius(section: PolarSection) -> str:
+    if section.offset is None:
+        return "no offset"
+    if section.radius is None:
+        return f"offset {section.offset}, R not known"
+    return f"offset {section.offset} with R {_length(section.radius, section)} ({section.radius_source})"
+
+
+def _rate(section: PolarSection) -> str:
+    limit = "no limit given" if section.c_feed_limit is None else f"limit {section.c_feed_limit:.0f}"
+    if section.c_feed is None:
+        return f"rate of C not known ({limit})"
+    return f"C at most {section.c_feed:.0f} deg/min in line {section.c_feed_line} ({limit})"
+
+
+def _length(value: float, section: PolarSection) -> str:
+    """A length [mm] in the units of the program."""
+    inch = section.units == "inch"
+    text = f"{value / _MM_PER_INCH:.4f}" if inch else f"{value:.3f}"
+    return f"{text.rstrip('0').rstrip('.')} {section.units}"

@@ -1,0 +1,66 @@
+from __future__ import annotations
+
+from polarcheck.checking.rule import NOTE, Entry, Hits, Trace, rule
+
+#: So far wear and a path of the tool center may take R from what a comment tells, or from 0 [mm].
+_WEAR = 0.25
+
+
+@rule(
+    NOTE,
+    "R {trace.radius_of_offset:length} is given for offset {trace.offset_number}, the comment tells {told:length}: "
+    "{comment}",
+    at=("T",),
+)
+def radius_contradicts_comment(trace: Trace, entry: Entry) -> Hits:
+    """
+    Given radius that is not that of the program's own comment.
+
+    With the wrong radius a bad program passes and a good one fails. Measure the cutter, and look up the offset number:
+    the last digits of T. A radius near that of the comment is wear, one near 0 the adjustment of a program that gives
+    the path of the tool center; of these nothing is said.
+
+    Source: builder's guide to G12.1, T0808 (3/4" DIA. CUTTER).
+
+    Bad, tool 8:radius=.6:
+
+        O1
+        G20 G98
+        T0808 (3/4 DIA. CUTTER)    (expect: radius-contradicts-comment)
+        G0 X3. C0
+        G12.1
+        G1 G42 X1. F5.
+        C.1
+        G40 X3.
+        G13.1
+        M30
+
+    Good, tool 8:radius=.37:
+
+        O1
+        G20 G98
+        T0808 (3/4 DIA. CUTTER)
+        G0 X3. C0
+        G12.1
+        G1 G42 X1. F5.
+        C.1
+        G40 X3.
+        G13.1
+        M30
+
+    Good, tool 8:radius=-.005:
+
+        O1
+        G20 G98
+        T0808 (3/4 DIA. CUTTER)
+        G0 X3. C0
+        G12.1
+        G1 G42 X1. F5.
+        C.1
+        G40 X3.
+        G13.1
+        M30
+    """
+    given = abs(trace.radius_of_offset)
+    contradicts = (abs(given - entry.radius_told) > _WEAR) & (given > _WEAR)
+    return Hits(contradicts, values={"told": entry.radius_told})
