@@ -292,6 +292,12 @@ def test_what_means_nothing_is_named_in_one_line(arguments: list[str], told: str
         ("[work_offsets.G54]\nx = inf\n", "work_offsets.G54.x: expected a number from -20000 to 20000, found inf"),
         ("[run]\nsubprograms = ['gone']\n", "polarcheck.toml: run.subprograms: there is no folder 'gone'"),
         ("[run]\nsubprograms = 'gone'\n", "run.subprograms: expected a list of texts, found 'gone'"),
+        ("[run]\nmax_blocks = 0\n", "run.max_blocks: expected a whole number from 1 to 1e+12, found 0"),
+        (f"[tools.8]\nradius = {'9' * 400}\n", "tools.8.radius: expected a number from -1000 to 1000, found 9999"),
+        (
+            "[stock]\ndiameter = 1979-05-27\n",
+            "stock.diameter: expected a number above 0, 20000 at most, found 1979-05-27",
+        ),
         ("[run]\nmax_seconds = inf\n", "run.max_seconds: expected a number above 0, found inf"),
         ("[run.variables]\n'#100' = 1\n", "run.variables.#100: expected the number of a variable, 100 for #100"),
         ("[run.variables]\n100 = nan\n", "run.variables.100: expected a number, found nan"),

@@ -82,8 +82,8 @@ def _outputs(ctx: click.Context, parameter: click.Parameter, values: tuple[str, 
 @options.no_config
 @option("--block-skip", type=click.Choice(["off", "on", "both"]), help="Of blocks with /; both is the default.")
 @options.subprograms
-@option("--max-blocks", type=click.IntRange(1), help="Executed blocks after which a program counts as endless.")
-@option("--max-statements", type=click.IntRange(1), help="The same for macro statements and calls.")
+@option("--max-blocks", type=click.IntRange(1, 10**12), help="Executed blocks after which a program counts as endless.")
+@option("--max-statements", type=click.IntRange(1, 10**12), help="The same for macro statements and calls.")
 @option("--max-seconds", type=Seconds(0, min_open=True), help="The same for seconds.")
 @options.radius_from_comments
 @many("--extensions", metavar="EXT", help="Of the programs in a folder, instead of .nc, .tap, .eia and others.")

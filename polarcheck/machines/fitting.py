@@ -179,7 +179,7 @@ def shown(value: Any) -> str:
         return "a table"
     if isinstance(value, bool):
         return str(value).lower()
-    text = f"{value:.12g}" if isinstance(value, float) else repr(value)
+    text = f"{value:.12g}" if isinstance(value, float) else repr(value) if isinstance(value, str | list) else str(value)
     return text if len(text) <= _LONGEST else f"{text[:_LONGEST]}..."
 
 

@@ -16,6 +16,9 @@ from polarcheck.machines.machine import Machine, Variable
 #: Lengths in the units of the file, mm or inch: no lathe and no cutter is larger.
 _LARGEST_CUTTER, _LARGEST_LATHE = 1000, 20_000
 
+#: Blocks and statements that anybody waits for.
+_MOST = 10**12
+
 #: T has eight digits at most.
 OffsetNumber = Annotated[
     int, msgspec.Meta(ge=1, le=99_999_999, extra={EXPECTED: "the number of a tool offset, 8 for T0808"})
@@ -72,8 +75,10 @@ class Running(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     subprograms: Annotated[
         list[str], msgspec.Meta(description="folders in which called programs are looked for, and nowhere else")
     ] = []
-    max_blocks: Annotated[int, msgspec.Meta(ge=1, description="executed blocks")] = 200_000
-    max_statements: Annotated[int, msgspec.Meta(ge=1, description="macro statements, calls and returns")] = 50_000
+    max_blocks: Annotated[int, msgspec.Meta(ge=1, le=_MOST, description="executed blocks")] = 200_000
+    max_statements: Annotated[int, msgspec.Meta(ge=1, le=_MOST, description="macro statements, calls and returns")] = (
+        50_000
+    )
     max_seconds: Annotated[float, msgspec.Meta(gt=0)] = 20.0
     variables: Annotated[dict[Variable, float], msgspec.Meta(description="values of #-variables, by number")] = {}
 
