@@ -64,7 +64,7 @@ _OTHERS: dict[str, tuple[str, str, list[int]]] = {
 }
 FAULTS = {kind: (statement, "", [3]) for kind, statement in _ONE_STATEMENT.items()} | _OTHERS
 #: Kinds that no rule reports.
-UNREPORTED = {"word-format": "G0 X[20] Z--5.", "stray-character": "G0 X[20] ?"}
+UNREPORTED = {"word-format": "G0 X[20] Z--5.", "stray-character": "G0 X[20] ? Y5."}
 #: Bounds that some of them reach, and limits of the control.
 RUNNING: dict[str, dict[str, Any]] = {
     "too-many-repeats": {"max_blocks": 100},

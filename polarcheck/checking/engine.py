@@ -15,6 +15,7 @@ from polarcheck.checking.finding import SEVERITIES, Finding, NotEvaluated, Sever
 from polarcheck.checking.places import PLACES, Place
 from polarcheck.checking.rule import Hits, Rule
 from polarcheck.checking.tables import Tables
+from polarcheck.execution.run import begins_program
 from polarcheck.table.trace import Trace
 
 #: More findings of one rule in one file are counted, not listed: nobody reads them, and hostile files stay bounded.
@@ -197,7 +198,7 @@ def _unlisted(rule: Rule, count: int) -> NotEvaluated:
 def program_heads(trace: Trace) -> list[tuple[int, str]]:
     """The block and the name of each program that has an O number or <name>, in order."""
     text, table = trace.text, trace.text.words
-    is_head = table.begins_program
+    is_head = begins_program(table)
     numbered = is_head & ~np.isnan(table.value)
     heads = list(zip(table.block[numbered], table.start[numbered], table.end[numbered], strict=True))
     bare = set(table.block[is_head & np.isnan(table.value)].tolist())

@@ -16,7 +16,7 @@ import msgspec
 import numpy as np
 
 from polarcheck.arrays import Mask
-from polarcheck.execution.run import is_code
+from polarcheck.execution.run import begins_program, is_code
 from polarcheck.machines.machine import Machine
 from polarcheck.reading.source import Source
 from polarcheck.reading.translation import translated
@@ -128,7 +128,7 @@ def find_programs(text: Text) -> Programs:
     """The programs of a text, in order; a file without any O number is one program."""
     heads: dict[int, tuple[int | None, str | None]] = {}
     words = text.words
-    numbered = np.flatnonzero(words.begins_program & ~np.isnan(words.value))
+    numbered = np.flatnonzero(begins_program(words) & ~np.isnan(words.value))
     for index in numbered.tolist():
         value = float(words.value[index])
         heads.setdefault(int(words.block[index]), (int(value) if value < _NUMBER_LIMIT else None, None))

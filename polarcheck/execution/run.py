@@ -12,6 +12,9 @@ from polarcheck.execution.kinds import FaultKind, RemarkKind
 from polarcheck.machines.codes import code_numbers, code_set
 from polarcheck.reading.words import Text, Words
 
+#: M2, M30, M99: the end of a program.
+_ENDS = (2, 30, 99)
+
 
 class FlowFault(msgspec.Struct, frozen=True):
     """
@@ -75,7 +78,7 @@ def straight(text: Text, ends: Iterable[str]) -> Run:
     starts = np.zeros(len(block), bool)
     if len(block):
         starts[0] = True
-        starts[row[text.words.begins_program]] = True
+        starts[row[begins_program(text.words)]] = True
         after = row[is_code(text.words, ends)] + 1
         starts[after[after < len(block)]] = True
     return Run(text, text.words, row, block, starts, text.blocks.is_macro[block], np.zeros(len(block), np.int64))
@@ -89,3 +92,20 @@ def is_code(words: Words, codes: Iterable[str]) -> Mask:
         table = code_set([code for code in codes if code[0] == letter])
         found[index] = table[code_numbers(words.value[index])]
     return found
+
+
+def begins_program(words: Words) -> Mask:
+    """
+    Per word: an O at the head of its block, be it behind a / or an N word; elsewhere it is no program number.
+
+    But behind the M code that ends a program: what a control puts out may lack the line end there, as in M99O0810.
+    """
+    found = words.address == ord("O")
+    at = np.flatnonzero(found)
+    first = np.searchsorted(words.block, words.block[at])
+    inside = at > first
+    if np.any(inside):
+        before = np.append(0, np.cumsum(np.isin(words.address, list(b"N/"))))
+        is_end = (words.address[at - 1] == ord("M")) & np.isin(words.value[at - 1], _ENDS)
+        found[at] = (before[at] - before[first] == at - first) | (inside & is_end)
+    return np.asarray(found)

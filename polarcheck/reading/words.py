@@ -59,9 +59,6 @@ _STATEMENTS = {b"GOTO": False, b"GO": True, b"DO": True, b"END": True, b"EN": Tr
 )
 _BEGINS_STATEMENT = np.isin(np.arange(256), [letters[0] for letters in _STATEMENTS])
 
-#: M2, M30, M99: the end of a program.
-_ENDS = (2, 30, 99)
-
 
 class Words(msgspec.Struct, frozen=True):
     """
@@ -93,23 +90,6 @@ class Words(msgspec.Struct, frozen=True):
         follows = np.zeros(len(self), bool)
         follows[1:] = empty[:-1] & empty[1:] & (self.block[1:] == self.block[:-1])
         return np.asarray(bad & ~follows)
-
-    @property
-    def begins_program(self) -> Mask:
-        """
-        An O at the head of its block, be it behind a / or an N word; elsewhere it is no program number.
-
-        But behind the M code that ends a program: what a control puts out may lack the line end there, as in M99O0810.
-        """
-        found = self.address == ord("O")
-        at = np.flatnonzero(found)
-        first = np.searchsorted(self.block, self.block[at])
-        inside = at > first
-        if np.any(inside):
-            before = np.append(0, np.cumsum(np.isin(self.address, list(b"N/"))))
-            is_end = (self.address[at - 1] == ord("M")) & np.isin(self.value[at - 1], _ENDS)
-            found[at] = (before[at] - before[first] == at - first) | (inside & is_end)
-        return np.asarray(found)
 
     @property
     def has_wrong_dash(self) -> Mask:
@@ -223,15 +203,9 @@ def _block_of(at: Positions, starts: Positions) -> Positions:
 
 
 def _is_told(table: _Table, code: Bytes, is_macro: Mask, starts: Positions) -> Mask:
-    """
-    Which stray characters are none of a macro statement: those of other blocks, and at the end of any block.
-
-    A * at the end of a statement lacks its second number, unless other blocks end with a * as well.
-    """
-    in_statement = is_macro[_block_of(table.strays, starts)]
-    is_star = code[table.strays] == _STAR
-    ends_any_block = bool(np.any(is_star & ~in_statement))
-    return np.asarray(~in_statement | (table.is_last_stray & (ends_any_block | ~is_star)))
+    """Those outside macro statements and at the end of any; a * there means times, unless other blocks end with it."""
+    in_statement, is_star = is_macro[_block_of(table.strays, starts)], code[table.strays] == _STAR
+    return np.asarray(~in_statement | (table.is_last_stray & (~is_star | np.any(is_star & ~in_statement))))
 
 
 #: A text is read in pieces of about so many characters: faster, since they fit into the cache, and in less memory.
@@ -242,10 +216,9 @@ _CUT = re.compile(rb"[\nBD-QS-Zbd-qs-z]")
 
 class _Table(msgspec.Struct, frozen=True):
     """
-    What is read of a text or of a piece of it.
+    What is read of a text or of a piece of it; breaks: the ends of its blocks; macro: signs of macro statements.
 
-    breaks: the ends of its blocks. strays, is_last_stray: characters of no word, and whether they stand at the end of
-    a block, where they are no part of a macro statement, either. macro: signs of macro statements.
+    strays, is_last_stray: characters of no word, and whether they stand at the end of a block.
     """
 
     words: Words

@@ -32,5 +32,4 @@ def wrong_dash(written: Written) -> Hits:
         X60. C0
         G13.1
     """
-    # Compares nothing: the reader says so of each word.
     return Hits(written.wrong_dash_count > 0, values={"count": written.wrong_dash_count})
