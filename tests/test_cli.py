@@ -108,7 +108,7 @@ def test_the_least_severity_that_fails_can_be_chosen(severity: str, fail_on: str
     make(a__nc=RAPID)
     result = check("a.nc", *RAPID_ONLY, "--severity", f"rapid-in-polar={severity}", "--fail-on", fail_on)
     assert result.exit_code == code
-    assert result.stdout.splitlines()[-4 if severity != "off" else -3].split()[0] == ("fail" if code else "pass")
+    assert re.search(rf"^{'fail' if code else 'pass'}  ", result.stdout, re.MULTILINE)
 
 
 def test_what_is_not_evaluated_fails_only_where_that_is_asked_for() -> None:
@@ -235,7 +235,7 @@ def test_a_reader_who_goes_away_changes_no_exit_code() -> None:
         (["--set", "limits.z_maximum=inf"], "--set: limits.z_maximum: expected a number, found inf"),
         (
             ["--set", "severities.rapid=off"],
-            "--set: severities.rapid: unknown rule 'rapid'; did you mean rapid-in-polar?",
+            "--set: severities.rapid: unknown rule 'rapid'; did you mean rapid-through-center or rapid-in-polar?",
         ),
         (["--machine", "haas"], "unknown machine 'haas'; did you mean haas-lathe?"),
         (["--subprograms", "gone"], "'gone' does not exist"),
@@ -273,7 +273,10 @@ def test_what_means_nothing_is_named_in_one_line(arguments: list[str], told: str
         ("severities = { poler = 'off' }\n", "polarcheck.toml: severities: unknown rule 'poler'"),
         ("[limits]\nc_fed = 3\n", "unknown key limits.c_fed"),
         ("offsets = 'gone.txt'\n", "gone.txt: No such file"),
-        ("select = ['rapid']\n", "polarcheck.toml: select: unknown rule 'rapid'; did you mean rapid-in-polar?"),
+        (
+            "select = ['rapid']\n",
+            "polarcheck.toml: select: unknown rule 'rapid'; did you mean rapid-through-center or rapid-in-polar?",
+        ),
         ("tools = 3\n", "polarcheck.toml: tools: expected a table, found 3"),
         ("[tools.-1]\nradius = 4\n", "tools.-1: expected the number of a tool offset, 8 for T0808, found -1"),
         ("[tools.T1]\nradius = 4\n", "tools.T1: expected the number of a tool offset, 8 for T0808, found T1"),
@@ -706,7 +709,10 @@ def test_explain_says_how_the_mode_is_programmed_on_the_machine(machine: str, wo
 
 
 def test_explain_suggests_what_begins_with_the_word() -> None:
-    assert call("explain", "rapid").stderr == "polarcheck: unknown rule 'rapid'; did you mean rapid-in-polar?\n"
+    assert (
+        call("explain", "rapid").stderr
+        == "polarcheck: unknown rule 'rapid'; did you mean rapid-through-center or rapid-in-polar?\n"
+    )
     assert call("explain", "start-up").stderr.endswith(
         "did you mean start-up-on-arc, start-up-shorter-than-radius or start-up-sweeps-contour?\n"
     )

@@ -265,7 +265,9 @@ ASSIGNED = "G0 X50. Z2. C0/G12.1/G1 X40. F200./{}/C10./C-10./X50./G13.1"
 def test_an_offset_assigned_in_the_mode(block: str, rule: str, machine: str) -> None:
     blocks = ASSIGNED.format(block)
     if machine == "haas-lathe":
-        blocks = "G17/M154/M133 P500/" + blocks.replace("C", "Y").replace("12.1", "112").replace("13.1", "113")
+        blocks = "G17/M154/M133 P500/" + blocks.replace("C", "Y").replace("Y0", "C0", 1).replace("12.1", "112").replace(
+            "13.1", "113"
+        )
     assert said(blocks, machine, head=MM if machine != "haas-lathe" else MM.replace(" G18", "")) == [(block, rule)]
 
 

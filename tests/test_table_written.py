@@ -148,7 +148,12 @@ HABITS = [
     ("X5.-", "bad-number", "X5.-: a sign behind the digits"),
     ("X", "bad-number", "X: no digits after the address"),
     ("Z\u20131.", "wrong-dash", "Z\u20131. is written with a dash of print; write a minus sign"),
-    ("X1. X2.", "word-repeated", "a word of this address stands before it in the block; the control takes one of them"),
+    (
+        "X1. X2.",
+        "word-repeated",
+        "X is written twice in this block: X1. and X2.; the control takes the last: "
+        "write one of them, or a block for each",
+    ),
     (
         "X1. (A (B)",
         "comment-nested",

@@ -24,9 +24,8 @@ _NAMED = 3
 
 
 class Fit(msgspec.Struct, frozen=True):
-    """Machines that read a program well, and why: at the row that first makes one doubt."""
+    """Machines that read a program well, and why."""
 
-    row: int
     profiles: tuple[Profile, ...]
     reasons: tuple[str, ...]
 
@@ -37,7 +36,7 @@ class Fit(msgspec.Struct, frozen=True):
 
 
 class OtherMachine:
-    """Which other machines read the program of some tables well: at which row it shows, and why."""
+    """Which other machines read the program of some tables well, and why."""
 
     def __init__(self, tables: Tables) -> None:
         self.tables = tables
@@ -47,18 +46,10 @@ class OtherMachine:
     def _fit(self) -> Fit | None:
         return _find(self.tables)
 
-    @cached_property
-    def fits(self) -> Mask:
-        """The row at which it shows that the program is for another machine."""
-        rows = np.zeros(len(self.trace), bool)
-        if self._fit:
-            rows[self._fit.row] = True
-        return rows
-
     @property
     def text(self) -> str:
-        """Which machines, and why."""
-        return self._fit.text() if self._fit else ""
+        """`; it reads well on ...`: which machines, and why; empty where none does."""
+        return f"; it reads well on {self._fit.text()}" if self._fit else ""
 
 
 def _find(tables: Tables) -> Fit | None:
@@ -69,8 +60,7 @@ def _find(tables: Tables) -> Fit | None:
     other way, make it look at other machines.
     """
     trace: Trace = tables["trace"]
-    row = _doubt(tables)
-    if row < 0:
+    if not len(trace.sections) or not np.any(_names_other_axis(tables) | tables["arcs"].x_is_misread):
         return None
     fitting: dict[tuple[str, ...], list[Profile]] = {}
     told = [_reads(trace.machine)]
@@ -84,22 +74,13 @@ def _find(tables: Tables) -> Fit | None:
     if not fitting:
         return None
     reasons = max(fitting, key=len)
-    return Fit(row, tuple(fitting[reasons]), reasons)
+    return Fit(tuple(fitting[reasons]), reasons)
 
 
 def _reads(machine: Machine) -> tuple[object, ...]:
     """What of a machine makes it read a program otherwise than another."""
     control, mode = machine.control, machine.polar
     return mode.on, mode.virtual_axis, mode.x, machine.arcs.radius_word, control.native_words, control.motion_codes
-
-
-def _doubt(tables: Tables) -> int:
-    """The row at which the program does not look like one for this machine; -1 for none."""
-    trace: Trace = tables["trace"]
-    if not len(trace.sections):
-        return -1
-    rows = np.flatnonzero(_names_other_axis(tables) | tables["arcs"].x_is_misread)
-    return int(trace.sections.enter[trace.section[rows[0]]]) if len(rows) else -1
 
 
 def _reasons(tables: Tables, machine: Machine) -> tuple[str, ...]:

@@ -11,7 +11,8 @@ import msgspec
 
 from polarcheck.errors import JobError, UsageError, suggestion
 from polarcheck.machines.fitting import EXPECTED, MisfitError, fitted
-from polarcheck.machines.machine import Machine, Variable
+from polarcheck.machines.machine import Machine
+from polarcheck.machines.values import Variable
 
 #: Lengths in the units of the file, mm or inch: no lathe and no cutter is larger.
 _LARGEST_CUTTER, _LARGEST_LATHE = 1000, 20_000

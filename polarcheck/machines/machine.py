@@ -6,31 +6,25 @@ What a key means stands in the docstring of its class and, in the same words, at
 
 import math
 import re
-from typing import Annotated, Literal, TypeAlias
+from typing import Annotated, Literal
 
 import msgspec
 
 from polarcheck.errors import RuleError
 from polarcheck.machines.code_lists import GCodes, GCodeSystem, expanded, is_code
-from polarcheck.machines.fitting import EXPECTED
 from polarcheck.machines.parameters import Meaning
-
-#: First and last number of each range.
-Ranges: TypeAlias = list[tuple[int, int]]
-
-Positive: TypeAlias = Annotated[float, msgspec.Meta(gt=0)]
-NotNegative: TypeAlias = Annotated[float, msgspec.Meta(ge=0)]
-Count: TypeAlias = Annotated[int, msgspec.Meta(ge=1)]
-Codes: TypeAlias = Annotated[list[str], msgspec.Meta(min_length=1, extra={EXPECTED: "a list of codes, at least one"})]
-Address: TypeAlias = Annotated[str, msgspec.Meta(pattern="^[A-Z]$", extra={EXPECTED: "an address, one letter"})]
-AddressOrNone: TypeAlias = Annotated[
-    str, msgspec.Meta(pattern="^[A-Z]?$", extra={EXPECTED: "an address, one letter, or none"})
-]
-Variable: TypeAlias = Annotated[int, msgspec.Meta(ge=1, extra={EXPECTED: "the number of a variable, 100 for #100"})]
-#: Controls number their axes with two digits.
-AxisNumber: TypeAlias = Annotated[
-    int, msgspec.Meta(ge=1, le=99, extra={EXPECTED: "the number of an axis from 1 to 99"})
-]
+from polarcheck.machines.values import (
+    Address,
+    AddressOrNone,
+    AxisNumber,
+    Codes,
+    Count,
+    NotNegative,
+    Positive,
+    Ranges,
+    Variable,
+    ascend,
+)
 
 _FLOW_CODE = re.compile(r"[GM](?:0|[1-9]\d*)(?:\.[1-9])?")
 
@@ -38,14 +32,6 @@ _FLOW_CODE = re.compile(r"[GM](?:0|[1-9]\d*)(?:\.[1-9])?")
 def meanings(table: type) -> dict[str, str]:
     """What each key of a table of the profile means, in the words of its docstring."""
     return dict(re.findall(r"^ {4}(\w+): (.+)$", table.__doc__ or "", re.MULTILINE))
-
-
-def _ascend(table: msgspec.Struct, *pairs: tuple[str, str]) -> None:
-    """Raises ValueError for a pair of keys of which the first is above the second; NaN is above nothing."""
-    for low, high in pairs:
-        least, most = getattr(table, low), getattr(table, high)
-        if least > most:
-            raise ValueError(f"{low} is {least:g}, above {high}, {most:g}")
 
 
 class Control(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -223,7 +209,7 @@ class Limits(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     z_maximum: float = math.nan
 
     def __post_init__(self) -> None:
-        _ascend(self, ("x_minimum", "x_maximum"), ("z_minimum", "z_maximum"))
+        ascend(self, ("x_minimum", "x_maximum"), ("z_minimum", "z_maximum"))
 
 
 class Feed(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -244,7 +230,7 @@ class Feed(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     carried_into_polar: Literal["modal", "per-minute-only"] = "modal"
 
     def __post_init__(self) -> None:
-        _ascend(self, ("cutting_minimum", "cutting_maximum"), ("positioning_minimum", "positioning_maximum"))
+        ascend(self, ("cutting_minimum", "cutting_maximum"), ("positioning_minimum", "positioning_maximum"))
 
 
 class MCodes(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from polarcheck.checking.other_machine import OtherMachine
 from polarcheck.checking.phrases.common import codes, executed_word, outside, switch_off
 from polarcheck.machines.codes import spelled
 from polarcheck.machines.machine import Machine
@@ -110,10 +111,10 @@ def meaning(trace: Trace, at: list[int]) -> str:
     return f"{name} is no incremental word of G-code system {system}, where G91 makes X and C incremental"
 
 
-def other_controls(machine: Machine) -> str:
-    """Which controls take the address."""
+def taken_by(machine: Machine, other_machine: OtherMachine) -> str:
+    """Which machines read the whole program well; where none does, which controls take the address."""
     controls = machine.polar.other_controls
-    return f"; {controls} would take it" if controls else ""
+    return other_machine.text or (f"; {controls} would take it" if controls else "")
 
 
 def begun_by(other_mode: OtherMode, row: int) -> str:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from polarcheck.checking.other_machine import OtherMachine
 from polarcheck.checking.phrases.common import executed_word, short
 from polarcheck.checking.quantity import in_row
 from polarcheck.table.entry import Entry
@@ -74,8 +73,3 @@ def unknown_since(trace: Trace, entry: Entry, row: int) -> str:
     low, high = np.searchsorted(trace.run.row, (at, at + 1))
     words = [index for index in range(low, high) if chr(int(trace.run.words.address[index])) in named]
     return f"is not known since {' '.join(executed_word(trace, word) for word in words)} in line {int(trace.line[at])}"
-
-
-def fit(other_machine: OtherMachine) -> str:
-    """Which machines read the program well, and why."""
-    return other_machine.text

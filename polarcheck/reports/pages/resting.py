@@ -17,7 +17,9 @@ _INSIDE = "polar sections"
 
 
 def resting(file: FileReport) -> Iterator[str]:
-    """Lines of text; the first says for which lathe the file was judged and at what was looked."""
+    """Lines of text; the first says for which lathe the file was judged and at what was looked. None for nothing."""
+    if not file.looked_at:
+        return
     outside = [part for part in file.looked_at if part != _INSIDE]
     named = f"{', '.join(outside[:-1])} and {outside[-1]} only" if len(outside) > 1 else "".join(outside)
     looked_at = f"{_INSIDE}; outside them {named}" if _INSIDE in file.looked_at else named

@@ -48,7 +48,7 @@ def overcut(overcuts: Overcuts) -> Mask:
         C-20.
         X30.
         C-3.
-        X60.              (expect: overcut)
+        X60.
         G40 X100.
         G13.1
 

@@ -40,7 +40,7 @@ def feed_mode_unknown(trace: Trace, feeds: Feeds) -> Mask:
         M154
         M133 P1500
         G17
-        G0 X2.5 Y0
+        G0 X2.5 C0
         G112
         G1 X1. F10.       (expect: feed-mode-unknown)
         Y.4

@@ -5,7 +5,7 @@ from polarcheck.checking.rule import WARNING, Arcs, Mask, rule
 
 @rule(
     WARNING,
-    "no arc of this section fits with X read as a {reading}, all fit with X as a {other}",
+    "no arc of this section fits with X read as a {reading}, all fit with X as a {other}{fits}",
     at=("on",),
     once="section",
 )
