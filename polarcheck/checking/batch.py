@@ -137,7 +137,7 @@ def report(reports: list[FileReport], machine: str) -> Report:
     )
 
 
-def status(report: Report, strict: bool) -> int:
-    """The exit code: 1 if a file fails or, where that is asked for, is not verified."""
-    failing = {"fail", "unverified"} if strict else {"fail"}
-    return int(any(file.verdict in failing for file in report.files))
+def status(report: Report, strict: bool, fail_on: str = "warning") -> int:
+    """The exit code: 1 for a finding at or above a severity and, where that is asked for, for an unverified file."""
+    told = any(check.is_told(found, fail_on) for file in report.files for found in file.findings)
+    return int(told or (strict and any(file.verdict == "unverified" for file in report.files)))

@@ -12,7 +12,7 @@ from polarcheck.checking.finding import ERROR, SEVERITIES, FileReport, Finding, 
 from polarcheck.checking.not_evaluated import unevaluated, unexecuted
 from polarcheck.checking.other_machine import OtherMachine
 from polarcheck.checking.polar_sections import polar_sections
-from polarcheck.checking.rule import Hits, Rule
+from polarcheck.checking.rule import Hits, Rule, load_all
 from polarcheck.checking.tables import Tables
 from polarcheck.execution.runs import runs
 from polarcheck.machines.job import Job
@@ -153,8 +153,19 @@ def _all(findings: Sequence[Finding]) -> Iterator[Finding]:
 
 
 def verdict(findings: Sequence[Finding], not_evaluated: Sequence[NotEvaluated], fail_on: str = "warning") -> str:
-    """pass, fail, or unverified where something that matters was not evaluated."""
-    limit = SEVERITIES.get(fail_on, ERROR + 1)
-    if any(SEVERITIES[finding.severity] >= limit for finding in findings):
+    """pass, fail, or unverified where something that matters was not evaluated, or nobody can say what it is."""
+    rules = load_all()
+    told = [found for found in findings if is_told(found, fail_on)]
+    undecided = [
+        found
+        for found in told
+        if rules[found.rule].undecided and SEVERITIES[found.severity] < rules[found.rule].severity
+    ]
+    if len(undecided) < len(told):
         return "fail"
-    return "unverified" if any(missing.matters for missing in not_evaluated) else "pass"
+    return "unverified" if undecided or any(missing.matters for missing in not_evaluated) else "pass"
+
+
+def is_told(finding: Finding, fail_on: str) -> bool:
+    """Whether a finding is at or above the severity that fails."""
+    return SEVERITIES[finding.severity] >= SEVERITIES.get(fail_on, ERROR + 1)

@@ -118,6 +118,8 @@ class Rule(msgspec.Struct, frozen=True):
     once: what is one cause, so that one finding stands for all of it (SPANS): a section, a program, an F word.
     follows: what it follows from: by how far that reaches (SPANS) the rules that report the cause. Where one of them
     fires within the same block, section or the like, the finding is listed under that one.
+    undecided: whether a finding below the rule's own severity leaves open if something is wrong: the file is unverified
+    then, and does not fail.
     worst: of those that one finding stands for, the one with the highest value of this column is reported.
     """
 
@@ -133,6 +135,7 @@ class Rule(msgspec.Struct, frozen=True):
     once: str
     follows: Mapping[str, tuple[str, ...]]
     worst: str
+    undecided: bool
     parameters: tuple[str, ...]
 
     @property
@@ -175,6 +178,7 @@ def rule(
     once: str = "",
     follows: Mapping[str, tuple[str, ...]] = MappingProxyType({}),
     worst: str = "",
+    undecided: bool = False,
 ) -> Callable[[Callable[..., Any]], Rule]:
     """Make a rule of a function; see Rule. Its parameters name the tables that it compares."""
 
@@ -186,7 +190,22 @@ def rule(
         if unknown := {*follows, *([once] if once else [])} - set(SPANS):
             raise RuleError(f"rule {name}: {unknown.pop()!r}: expected one of {', '.join(SPANS)}")
         parameters = parameters_of(function)
-        return Rule(name, group, severity, message, function, over, at, needs, where, once, follows, worst, parameters)
+        return Rule(
+            name,
+            group,
+            severity,
+            message,
+            function,
+            over,
+            at,
+            needs,
+            where,
+            once,
+            follows,
+            worst,
+            undecided,
+            parameters,
+        )
 
     return make
 

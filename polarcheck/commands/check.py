@@ -168,7 +168,7 @@ def _check(
         say(failure)
     for number in checked.not_called:
         warn(f"--tool {number}: no program of this run calls offset {number}")
-    status = COULD_NOT_RUN if failures else batch.status(report, strict)
+    status = COULD_NOT_RUN if failures else batch.status(report, strict, fail_on)
     form = form or ("text" if len(report.files) <= _LONG else "short")
     plain = reports.Background(checked.lines, rule.load_all(), COLUMNS, False, quiet, command, following)
     for kind, path in outputs:

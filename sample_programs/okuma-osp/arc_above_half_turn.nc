@@ -7,7 +7,7 @@ M13
 G137 C0
 G17
 G101 X20. Y0 F200
-G103 X0 Y-20. L-20. (expect: arc-sweep-above-limit, negative-arc-radius)
+G103 X0 Y-20. L-20. (expect: arc-sweep-above-limit)
 G101 X40.
 G136
 G0 Z100.

@@ -40,7 +40,8 @@ def verdict(trace: Trace, tool_center: ToolCenter, row: int) -> str:
     """What the machine allows of C, as far as the profile knows."""
     limits = trace.machine.limits
     if np.isnan(limits.c_feed):
-        return f"{float(tool_center.c_feed[row]) / 360:.0f} turns a minute and more than a C axis cuts with"
+        turns, most = float(tool_center.c_feed[row]) / 360, limits.c_feed_suspicious / 360
+        return f"which is {turns:.0f} turns a minute, and no C axis is known to cut with more than {most:.0f}"
     rate, limit = (in_row(float(value), trace, row) for value in (tool_center.c_feed[row], limits.c_feed))
     allows = f"{trace.machine.title} allows {limit.beside(rate, 'whole')}"
     if not limits.automatic_override:

@@ -31,7 +31,7 @@ def resting(file: FileReport) -> Iterator[str]:
         yield f"and {counted(more, 'more section')}: --format json lists them"
     light = dict.fromkeys(missing.reason for missing in file.not_evaluated if not missing.matters)
     for reason in light:
-        yield f"without weight: {reason}"
+        yield f"not judged, but without weight: {reason}"
 
 
 def _section(section: PolarSection) -> str:

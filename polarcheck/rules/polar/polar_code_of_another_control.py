@@ -8,6 +8,7 @@ from polarcheck.checking.rule import ERROR, Hits, OtherMode, graded, rule
     "{begun_by} begins no polar mode on {machine.title}, where {on_of_this} does; check it with {with_machines}"
     "{else_a_macro}",
     once="program",
+    undecided=True,
 )
 def polar_code_of_another_control(other_mode: OtherMode) -> Hits:
     """
