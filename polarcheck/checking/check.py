@@ -70,9 +70,10 @@ def engine_of(
     levels = {**machine.severities, **(severities or {})}
     tables.give("other_machine", OtherMachine(tables))
     asked = [rule for rule in rules if levels.get(rule.name) != "off"]
-    if tables["dialect"].recognised is not None:
-        # Nothing that the words of another language seem to say is worth telling.
-        asked = [rule for rule in asked if "dialect" in rule.parameters]
+    of_dialect = [rule for rule in asked if "dialect" in rule.parameters]
+    if of_dialect and tables["dialect"].recognised is not None:
+        # Where that is told, nothing that the words of another language seem to say is worth telling.
+        asked = of_dialect
     return Engine(tables, levels, asked, known)
 
 

@@ -114,6 +114,8 @@ class Engine:
         Only a cause that is itself reported counts: that of a rule which is not asked explains nothing to the reader.
         """
         cause, element = np.full(len(index), -1), np.full(len(index), -1)
+        follows = self.hits(rule).follows
+        may_follow = np.ones(len(index), bool) if follows is None else follows[index]
         for span, names in rule.follows.items():
             for name in names:
                 if name not in self.rules:
@@ -126,7 +128,7 @@ class Engine:
                 order = np.argsort(theirs, kind="stable")
                 own = places.span_of(span, rule.over, self.tables)[index]
                 at = order[np.minimum(np.searchsorted(theirs[order], own), len(hit) - 1)]
-                found = (theirs[at] == own) & (own >= 0) & (cause < 0)
+                found = (theirs[at] == own) & (own >= 0) & (cause < 0) & may_follow
                 cause[found], element[found] = self._names.index(name), hit[at[found]]
         return cause, element
 

@@ -71,7 +71,8 @@ def span_of(name: str, over: str, tables: Tables) -> Rows:
         return blocks(over, tables)
     column: Rows = tables.column(SPANS[name])
     at = rows(over, tables)
-    return np.where(at >= 0, column[at], -1) if len(column) else np.full(len(at), -1)
+    none = 0 if name == "file" else -1
+    return np.where(at >= 0, column[at], none) if len(column) else np.full(len(at), none)
 
 
 def of_row(tables: Tables, index: int) -> Place:

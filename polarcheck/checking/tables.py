@@ -41,6 +41,7 @@ SPANS = {
     "block": "run.block",
     "section": "trace.whole_section",
     "program": "trace.program",
+    "file": "trace.file",
     "loop": "ramps.loop",
     "pause": "ramps.pause",
     "way": "ramps.way",

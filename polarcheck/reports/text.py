@@ -88,7 +88,9 @@ def _following(found: Finding, is_shown: bool, page: _Page) -> Iterator[str]:
     if not found.follows:
         return
     if not is_shown:
-        yield from page.labelled("", f"{counted(len(found.follows), 'finding')} more from this one: --show-following")
+        count = len(found.follows)
+        follow = "follows" if count == 1 else "follow"
+        yield from page.labelled("also", f"{counted(count, 'finding')} {follow} from this one (--show-following)")
     for one in found.follows if is_shown else ():
         yield from page.labelled("so", f"line {one.line}: {one.severity}: {one.message} [{one.rule}]")
 

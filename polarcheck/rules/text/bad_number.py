@@ -3,7 +3,12 @@ from __future__ import annotations
 from polarcheck.checking.rule import ERROR, Hits, OtherMode, Written, rule
 
 
-@rule(ERROR, "{text}: {number_fault}{count:blocks}", over="words")
+@rule(
+    ERROR,
+    "{text}: {number_fault}{count:blocks}",
+    over="words",
+    follows={"file": ("polar-code-of-another-control",)},
+)
 def bad_number(written: Written, other_mode: OtherMode) -> Hits:
     """
     A number that a control cannot read.
@@ -31,4 +36,5 @@ def bad_number(written: Written, other_mode: OtherMode) -> Hits:
         C-5.
         G13.1
     """
-    return Hits((written.unreadable_count > 0) & ~other_mode.explained, values={"count": written.unreadable_count})
+    count = written.unreadable_count
+    return Hits(count > 0, values={"count": count}, follows=other_mode.explained)

@@ -3,7 +3,12 @@ from __future__ import annotations
 from polarcheck.checking.rule import ERROR, Hits, OtherMode, Written, rule
 
 
-@rule(ERROR, "{stray}{count:blocks}", over="strays")
+@rule(
+    ERROR,
+    "{stray}{count:blocks}",
+    over="strays",
+    follows={"file": ("polar-code-of-another-control",)},
+)
 def stray_character(written: Written, other_mode: OtherMode) -> Hits:
     """
     Character that is no part of a word.
@@ -43,4 +48,5 @@ def stray_character(written: Written, other_mode: OtherMode) -> Hits:
         G13.1
         M30 %
     """
-    return Hits((written.stray_count > 0) & ~other_mode.explained_strays, values={"count": written.stray_count})
+    count = written.stray_count
+    return Hits(count > 0, values={"count": count}, follows=other_mode.explained_strays)

@@ -6,7 +6,12 @@ from polarcheck.checking.rule import ERROR, NOTE, Hits, Machine, OtherMode, Word
 OWN_CODES_END = 100
 
 
-@rule(ERROR, "{code} is no code of this control{times}", over="words")
+@rule(
+    ERROR,
+    "{code} is no code of this control{times}",
+    over="words",
+    follows={"file": ("polar-code-of-another-control",)},
+)
 def unknown_code(words: Words, written: Written, machine: Machine, other_mode: OtherMode) -> Hits:
     """
     G code that the control does not have.
@@ -40,8 +45,8 @@ def unknown_code(words: Words, written: Written, machine: Machine, other_mode: O
         X60.
         G13.10
     """
-    unknown = (written.unknown_code_count > 0) & ~other_mode.explained
+    unknown = written.unknown_code_count > 0
     if not machine.control.unknown_codes_are_errors:
-        return Hits(unknown, NOTE)
+        return Hits(unknown, NOTE, follows=other_mode.explained)
     may_call_macro = (words.value >= OWN_CODES_END) & (words.decimals == 0)
-    return graded(error=unknown & ~may_call_macro, warning=unknown & may_call_macro)
+    return graded(error=unknown & ~may_call_macro, warning=unknown & may_call_macro, follows=other_mode.explained)
