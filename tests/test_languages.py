@@ -60,7 +60,7 @@ def test_a_file_of_another_world_is_named_once(title: str, file: str, ends: str)
         assert [(found.line, found.rule, found.severity) for found in report.findings] == [(1, "other-dialect", "note")]
         assert f"written for {title}, as `" in report.findings[0].message
         assert [(missing.rule, missing.reason) for missing in report.not_evaluated] == [
-            ("all", f"the file is written for {title}")
+            ("all", f"the file is written for {title}: convert it for this lathe")
         ]
         assert report.verdict == "unverified"
 

@@ -110,17 +110,20 @@ def test_a_rule_reports_a_place_once() -> None:
     assert list(zip(faults.kind, faults.rule, strict=True)) == [("zero-divide", "arithmetic-error"), ("overflow", "")]
 
 
+GIVE = "; [run.variables] in polarcheck.toml gives variables, as in 500 = 1.5"
+
+
 @pytest.mark.parametrize(
     ("statement", "reason"),
     [
-        ("#3000=1(RADIUS)", "the program stops itself with #3000"),
-        ("#3006=1(TURN)", "the program stops itself with #3006"),
+        ("#3000=1(RADIUS)", f"the program stops itself with #3000{GIVE}"),
+        ("#3006=1(TURN)", f"the program stops itself with #3006{GIVE}"),
         (
             "IF[#500 EQ 1]GOTO 20",
-            "the condition depends on a value that is not known, and is taken as not fulfilled",
+            f"the condition depends on a value that is not known, and is taken as not fulfilled{GIVE}",
         ),
-        ("M98 P#500", "which program is called depends on a value that is not known"),
-        ("M99 P20", "M99 P in the main program jumps; what follows it is taken as the end"),
+        ("M98 P#500", f"which program is called depends on a value that is not known{GIVE}"),
+        ("M99 P20", "M99 P in the main program jumps and is taken as the end: check what follows it yourself"),
     ],
 )
 def test_what_a_run_does_not_know_is_said(statement: str, reason: str) -> None:

@@ -96,8 +96,14 @@ def report_of(engine: Engine) -> FileReport:
         polar_sections=polar_sections(tables),
         findings=findings,
         not_evaluated=not_evaluated,
-        looked_at=["polar sections", *LOOKED_AT] if len(trace.sections) else [*LOOKED_AT],
+        looked_at=_looked_at(tables),
     )
+
+
+def _looked_at(tables: Tables) -> list[str]:
+    if tables["dialect"].recognised is not None:
+        return []
+    return ["polar sections", *LOOKED_AT] if len(tables["sections"]) else [*LOOKED_AT]
 
 
 #: What tells a finding from others of the same file.

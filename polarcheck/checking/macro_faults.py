@@ -112,12 +112,16 @@ _REASONS: Final[Mapping[FaultKind, str]] = {
     ),
 }
 
+#: What is to be given where it hangs on a variable.
+_VARIABLES = "; [run.variables] in polarcheck.toml gives variables, as in 500 = 1.5"
 #: Why something was not executed or not known.
 _REMARKS: Final[Mapping[RemarkKind, str]] = {
-    "stops-itself": "the program stops itself with #{number}",
-    "condition-unknown": "the condition depends on a value that is not known, and is taken as not fulfilled",
-    "program-unknown": "which program is called depends on a value that is not known",
-    "return-jumps": "{code} P in the main program jumps; what follows it is taken as the end",
+    "stops-itself": "the program stops itself with #{number}{variables}",
+    "condition-unknown": (
+        "the condition depends on a value that is not known, and is taken as not fulfilled{variables}"
+    ),
+    "program-unknown": "which program is called depends on a value that is not known{variables}",
+    "return-jumps": "{code} P in the main program jumps and is taken as the end: check what follows it yourself",
 }
 
 
@@ -162,4 +166,4 @@ class Faults:
 
 def reason_of(remark: Remark) -> str:
     """Why something was not executed, in words."""
-    return _REMARKS[remark.kind].format_map(remark.values)
+    return _REMARKS[remark.kind].format_map({"variables": _VARIABLES, **remark.values})

@@ -29,7 +29,9 @@ def unexecuted(tables: Tables) -> Iterator[NotEvaluated]:
     trace: Trace = tables["trace"]
     language = tables["dialect"].recognised
     if language is not None:
-        yield NotEvaluated(rule="all", reason=f"the file is written for {language.title}", blocks=len(trace))
+        yield NotEvaluated(
+            rule="all", reason=f"the file is written for {language.title}: convert it for this lathe", blocks=len(trace)
+        )
         return
     reasons: dict[str, list[int]] = {}
     for remark in trace.run.remarks:

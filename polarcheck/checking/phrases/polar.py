@@ -145,12 +145,21 @@ def not_simulated(trace: Trace, infeed: Infeed) -> Iterator[tuple[str, int]]:
         if word in mode.words_beside_switch:
             value = trace.word(word)
             other = trace.enters & ((value < number) | (value > number))
-            yield f"{word} names another {axis} axis than {number}, which is not simulated", int(other.sum())
+            yield (
+                f"{word} names another {axis} axis than {number}, which is not simulated: look at it on the control",
+                int(other.sum()),
+            )
     for word in sorted({"X", mode.virtual_axis} & set(mode.words_beside_switch)):
         shifts = trace.enters & (abs(trace.word(word)) > 0)
-        yield f"the center of the C axis shifted by {word} is not simulated", int(shifts.sum())
+        yield (
+            f"the center of the C axis shifted by {word} is not simulated: look at it on the control",
+            int(shifts.sum()),
+        )
     partly = int(infeed.is_simulated_in_part.sum())
-    yield "of an infeed cycle only the passes next to the contour are simulated", partly
+    yield (
+        "of an infeed cycle only the passes next to the contour are simulated: look at the others on the control",
+        partly,
+    )
 
 
 def what(trace: Trace, arcs: Arcs, index: int) -> str:
