@@ -79,6 +79,15 @@ class Feeds:
         mask[rows[new]] = True
         return mask
 
+    def first_at_each(self, mask: Mask) -> Mask:
+        """Of the rows of a mask the first in each section at its F."""
+        rows = np.flatnonzero(mask)
+        kinds = np.stack((self.trace.section[rows].astype(float), self.trace.feed_number[rows]))
+        first = np.zeros(len(mask), bool)
+        if len(rows):
+            first[rows[np.unique(kinds, axis=1, return_index=True)[1]]] = True
+        return first
+
     # ---- the C axis ----
 
     @cached_property

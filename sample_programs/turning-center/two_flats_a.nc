@@ -13,7 +13,7 @@ G1 G98 C0.4153 F20. (expect: feed-outside-recommended-range)
 G1 G41 X1.0 F5.
 Z-.375 (DEPTH OF CUT)
 C-0.4153
-G40 X1.8 F20. (expect: feed-outside-recommended-range)
+G40 X1.8 F20.
 G13.1
 G0 Z0.1
 G0 C180.
@@ -22,7 +22,7 @@ G1 G98 C0.4153 F20. (expect: feed-outside-recommended-range)
 G1 G41 X1.0 F5.
 Z-.375 (DEPTH OF CUT)
 C-0.4153
-G40 X1.8 F20. (expect: feed-outside-recommended-range)
+G40 X1.8 F20.
 G13.1
 G0 Z0.1
 G0 X5. Z5. M35

@@ -9,8 +9,8 @@ def feed_outside_recommended_range(trace: Trace, feeds: Feeds, machine: Machine)
     Feed outside what the builder recommends for the polar mode.
 
     Builders recommend one range of F for cutting and a higher one for positioning in the mode. Too high an F costs
-    accuracy of the shape, as X and C do not follow. This F lies in neither range; it is reported where it comes into
-    force.
+    accuracy of the shape, as X and C do not follow. This F lies in neither range; it is told once in
+    each section.
 
     Source: builder's guide to G12.1, feed and positioning command.
 
@@ -47,4 +47,4 @@ def feed_outside_recommended_range(trace: Trace, feeds: Feeds, machine: Machine)
     feed, recommended = trace.feed, machine.feed
     not_cutting = (feed < recommended.cutting_minimum) | (feed > recommended.cutting_maximum)
     not_positioning = (feed < recommended.positioning_minimum) | (feed > recommended.positioning_maximum)
-    return feeds.begins & not_cutting & not_positioning
+    return feeds.first_at_each(feeds.begins & not_cutting & not_positioning)
