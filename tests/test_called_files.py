@@ -97,7 +97,8 @@ def test_what_is_not_there_is_looked_for_once(
     find = Library.find
     monkeypatch.setattr(Library, "find", lambda self, called: looked.append(called) or find(self, called))
     report = report_of("O1\n/G0 Z5.\nM98 P7\nM98 P7\n#1=7\nM98 P#1\nM30\n", job=with_folder(folder))
-    assert said(report) == [(line, "subprogram-missing") for line in (3, 4, 6)]
+    assert said(report) == [(3, "subprogram-missing")]
+    assert "O0007 in 3 blocks" in report.findings[0].message
     assert looked == [ProgramName(7, None)]
     assert counts == {"texts": 1, "executions": 2}
 

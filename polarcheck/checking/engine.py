@@ -11,7 +11,7 @@ import numpy as np
 
 from polarcheck.arrays import Rows
 from polarcheck.checking import places
-from polarcheck.checking.finding import SEVERITIES, Finding, NotEvaluated, Severity
+from polarcheck.checking.finding import NOTE, SEVERITIES, Finding, NotEvaluated, Severity
 from polarcheck.checking.places import PLACES, Place
 from polarcheck.checking.rule import Hits, Rule
 from polarcheck.checking.tables import Tables
@@ -166,12 +166,14 @@ class Engine:
         start, end = places.span(self.tables, place, at)
         source = trace.text.source
         line, end_line = source.line_of(start), source.line_of(max(end - 1, start))
+        own = _severity(rule, hits, place).name.lower()
+        is_note = trace.machine.severities.get(rule.name, own) == NOTE.name.lower()
         text, values = fill(rule, hits, self.tables, place, at, count)
         block = _block_text(trace, place.block)
         section = int(trace.section[place.row]) if place.row >= 0 else -1
         return Finding(
             rule=rule.name,
-            severity=self.severities.get(rule.name, _severity(rule, hits, place).name.lower()),
+            severity=self.severities.get(rule.name, own),
             message=text,
             line=line,
             column=start - int(source.line_starts[line - 1]) + 1,
@@ -180,7 +182,7 @@ class Engine:
             block=block,
             program=self._program_name(place.block),
             section_line=int(trace.line[trace.sections.enter[section]]) if section >= 0 else None,
-            alarm=trace.machine.alarms.get(rule.name) or None,
+            alarm=None if is_note else trace.machine.alarms.get(rule.name) or None,
             values=values,
             count=count,
             source=rule.source,

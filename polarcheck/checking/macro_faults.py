@@ -92,7 +92,8 @@ _REASONS: Final[Mapping[FaultKind, str]] = {
     "argument-sets": "begins an eleventh set of I J K: a macro call takes ten",
     "program-number": "names no program: P takes a number from 1 to 99999999",
     "program-not-found": (
-        "calls {program}, which is not in this file and in no folder of the job; positions after it are not known"
+        "calls {program}{times}, which is not in this file and in no folder of the job (--subprograms FOLDER); "
+        "positions after it are not known"
     ),
     "sequence-number-not-found": "there is no N{number:.15g} in this program",
     "sequence-number-vacant": "the number to go to is a vacant variable",
@@ -139,12 +140,15 @@ class Faults:
 
     @cached_property
     def rule(self) -> NDArray[np.str_]:
-        """The rule that reports each fault; "" where it has reported another kind at the same place before."""
-        said = set()
+        """
+        The rule that reports each fault; "" where it has reported another kind at the same place before, or the same
+        program that is missing.
+        """
+        said: set[tuple[str, object]] = set()
         rules = []
         for fault in self.run.faults:
             rule = RULES[fault.kind]
-            key = rule, fault.start
+            key = rule, fault.values.get("program", fault.start)
             rules.append("" if key in said else rule)
             said.add(key)
         return np.array(rules, np.str_)
@@ -157,7 +161,18 @@ class Faults:
             "loop_numbers": macro.loop_numbers,
             "largest_number": macro.largest_number,
         }
-        return {**limits, **self.run.faults[index].values}
+        values = self.run.faults[index].values
+        blocks = self._calling_blocks.get(values.get("program"), ())
+        return {**limits, "times": f" in {len(blocks)} blocks" if len(blocks) > 1 else "", **values}
+
+    @cached_property
+    def _calling_blocks(self) -> dict[object, set[int]]:
+        """The blocks that call each program that is missing."""
+        found: dict[object, set[int]] = {}
+        for fault in self.run.faults:
+            if "program" in fault.values:
+                found.setdefault(fault.values["program"], set()).add(fault.start)
+        return found
 
     def reason(self, index: int) -> str:
         """What is wrong, in words."""

@@ -101,13 +101,16 @@ def _nothing(tables: Tables, rule: Rule) -> Iterator[NotEvaluated]:
 def _c_axis_without_limit(tables: Tables, rule: Rule) -> Iterator[NotEvaluated]:
     """
     The highest rate of C, for the setter to compare, where the profile has nothing to compare it with; not where every
-    C axis manages it.
+    C axis manages it, nor where none does, which is a finding.
     """
     trace: Trace = tables["trace"]
     c_feed: Floats = tables["tool_center"].c_feed
     rows = np.flatnonzero(tables["center"].cuts_off_center & np.isfinite(c_feed))
     limits = trace.machine.limits
-    if not np.isnan(limits.c_feed) or not np.any(c_feed[rows] > limits.c_feed_harmless):
+    if (
+        not np.isnan(limits.c_feed)
+        or not limits.c_feed_harmless < np.max(c_feed[rows], initial=0) <= limits.c_feed_suspicious
+    ):
         return
     at = int(rows[np.argmax(c_feed[rows])])
     line, rate = int(trace.line[at]), float(c_feed[at])

@@ -91,6 +91,8 @@ def _reasons(tables: Tables, machine: Machine) -> tuple[str, ...]:
     own, mode, arcs = trace.machine.polar, machine.polar, there["arcs"]
     if not len(other.sections) or not other.sections.left.all() or _names_other_axis(there).any():
         return ()
+    if there["words"].is_unreadable.any():
+        return ()
     if arcs.is_no_circle.any() or arcs.x_is_misread.any() or _switch_is_not_alone(there):
         return ()
     reasons = []

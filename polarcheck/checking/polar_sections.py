@@ -28,9 +28,11 @@ def polar_sections(tables: Tables) -> list[PolarSection]:
         return []
     tool_center: ToolCenter = tables["tool_center"]
     center: Center = tables["center"]
-    fastest = _fastest(trace, np.where(center.cuts_off_center, tool_center.c_feed, np.nan))
+    c_feed = np.where(center.cuts_off_center, tool_center.c_feed, 0.0)
+    highest = _of_sections(trace, c_feed, np.maximum.at, -np.inf)
+    fastest = _fastest(trace, c_feed, highest)
     at_entry = _offset_rows(trace)
-    nearest = _least(trace, np.where(trace.cuts, tool_center.nearest, np.nan))
+    nearest = _least(trace, np.where(trace.cuts, tool_center.nearest, np.inf))
     ramp = _ramp_used(trace, tables["ramps"])
     time = _time(tool_center.moves, len(sections))
     limit = _number(trace.machine.limits.c_feed)
@@ -48,7 +50,7 @@ def polar_sections(tables: Tables) -> list[PolarSection]:
                 radius=_number(trace.radius[row]),
                 radius_source=_radius_source(trace, row),
                 nearest=_number(nearest[index]),
-                c_feed=_number(tool_center.c_feed[fast]) if fast >= 0 else None,
+                c_feed=_number(highest[index]),
                 c_feed_line=int(trace.line[fast]) if fast >= 0 else None,
                 c_feed_limit=limit,
                 ramp_used=_number(ramp[index]),
@@ -81,10 +83,11 @@ def _radius_source(trace: Trace, row: int) -> str:
 
 
 def _of_sections(trace: Trace, values: Floats, fold: Callable[..., None], none: float) -> Floats:
-    """Per section the least or the largest of the values of its rows that are known; NaN where there is none."""
+    """Per section the least or the largest of the values of its rows; NaN where there is none, or one is not known."""
     found = np.full(len(trace.sections), none)
-    rows = np.flatnonzero(np.isfinite(values) & (trace.section >= 0))
-    fold(found, trace.section[rows], values[rows])
+    rows = np.flatnonzero(trace.section >= 0)
+    with np.errstate(invalid="ignore"):  # NaN is meant
+        fold(found, trace.section[rows], values[rows])
     found[np.isinf(found)] = np.nan
     return found
 
@@ -93,10 +96,9 @@ def _least(trace: Trace, values: Floats) -> Floats:
     return _of_sections(trace, values, np.minimum.at, np.inf)
 
 
-def _fastest(trace: Trace, c_feed: Floats) -> Rows:
-    """Per section the first row with its highest rate of C, -1 where none is known."""
-    highest = _of_sections(trace, c_feed, np.maximum.at, -np.inf)
-    is_highest: Mask = (trace.section >= 0) & (c_feed == np.append(highest, np.nan)[trace.section])
+def _fastest(trace: Trace, c_feed: Floats, highest: Floats) -> Rows:
+    """Per section the first row with its highest rate of C; -1 where that is not known, or C does not turn."""
+    is_highest: Mask = (trace.section >= 0) & (c_feed > 0) & (c_feed == np.append(highest, np.nan)[trace.section])
     rows = np.full(len(trace.sections), -1)
     found = np.flatnonzero(is_highest)[::-1]
     rows[trace.section[found]] = found
@@ -105,7 +107,8 @@ def _fastest(trace: Trace, c_feed: Floats) -> Rows:
 
 def _ramp_used(trace: Trace, ramps: Ramps) -> Floats:
     """Per section how much of a start-up or offset cancel its R needs, the highest."""
-    return _of_sections(trace, ramps.used, np.maximum.at, -np.inf)
+    is_ramp = (trace.starts_up | trace.cancels) & (trace.length != 0)
+    return _of_sections(trace, np.where(is_ramp, ramps.used, -np.inf), np.maximum.at, -np.inf)
 
 
 def _time(moves: Moves, count: int) -> Floats:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from polarcheck.checking.other_machine import OtherMachine
 from polarcheck.checking.places import Place, squeezed
 from polarcheck.machines.codes import code_numbers, spelled
 from polarcheck.machines.machine import Machine
@@ -84,8 +83,3 @@ def outside(trace: Trace, row: int) -> str:
     """Where it belongs, with the codes of this section: before G112 or after G113."""
     enter = int(trace.sections.enter[trace.section[row]])
     return f"before {switch(trace, enter)} or after {switch_off(trace, enter)}"
-
-
-def fits(other_machine: OtherMachine) -> str:
-    """Which machines read the program well, and why; empty where none does."""
-    return other_machine.text

@@ -49,7 +49,8 @@ def fault(trace: Trace, row: int) -> str:
     """What is wrong with a ramp that is shorter than R, or never comes."""
     if not trace.travels[row]:
         code = trace.machine.codes("compensation_off")[0] if trace.writes_cancel[row] else side(trace, row)
-        return f"is missing: no move on the plane follows {code}"
+        present = " that leads from the present position" if trace.moves_plane[row] else ""
+        return f"is missing: no move on the plane{present} follows {code}"
     radius = abs(float(trace.radius[row]))
     shown = in_row(radius, trace, row)
     length = float(trace.length[row])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from polarcheck.checking.other_machine import OtherMachine
 from polarcheck.checking.quantity import in_row
 from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.machines.machine import Machine
@@ -34,6 +35,11 @@ def center(machine: Machine) -> str:
 def reading(trace: Trace, row: int) -> str:
     """What X is in a row."""
     return "diameter" if trace.x_factor[row] < 1 else "radius"
+
+
+def written_for(trace: Trace, other_machine: OtherMachine, row: int) -> str:
+    """The machines that the program may be for; where there is none, what to write."""
+    return other_machine.text or f"; write X as a {reading(trace, row)}"
 
 
 def other(trace: Trace, row: int) -> str:

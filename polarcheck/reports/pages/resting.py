@@ -58,6 +58,8 @@ def _rate(section: PolarSection) -> str:
     limit = "no limit given" if section.c_feed_limit is None else f"limit {section.c_feed_limit:.0f}"
     if section.c_feed is None:
         return f"rate of C not known ({limit})"
+    if section.c_feed_line is None:
+        return f"C does not turn ({limit})"
     return f"C at most {section.c_feed:.0f} deg/min in line {section.c_feed_line} ({limit})"
 
 

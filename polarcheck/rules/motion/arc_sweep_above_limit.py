@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from polarcheck.checking.causes import NO_SUCH_ARC, SECTION_READ_OTHERWISE
 from polarcheck.checking.rule import WARNING, Arcs, Machine, Mask, rule
 
 #: What the last digit of the coordinates may turn an arc by [deg].
@@ -9,9 +10,9 @@ LAST_DIGIT = 0.1
 @rule(
     WARNING,
     "arc of {arcs.sweep:whole/machine.arcs.sweep_limit} deg; {machine.title} takes "
-    "{machine.arcs.sweep_limit:whole/arcs.sweep} in one block",
+    "{machine.arcs.sweep_limit:whole/arcs.sweep} deg in one block; write it as several arcs",
     at=("X", "U", "C", "H", "I", "J", "R"),
-    follows={"block": ("arc-off-polar-plane",)},
+    follows={"block": NO_SUCH_ARC, "section": SECTION_READ_OTHERWISE},
 )
 def arc_sweep_above_limit(arcs: Arcs, machine: Machine) -> Mask:
     """

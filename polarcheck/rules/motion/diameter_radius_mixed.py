@@ -5,9 +5,10 @@ from polarcheck.checking.rule import WARNING, Arcs, Mask, rule
 
 @rule(
     WARNING,
-    "no arc of this section fits with X read as a {reading}, all fit with X as a {other}{fits}",
+    "no arc of this section fits with X read as a {reading}, all fit with X as a {other}{written_for}",
     at=("on",),
     once="section",
+    follows={"section": ("wrong-axis-address-in-polar",)},
 )
 def diameter_radius_mixed(arcs: Arcs) -> Mask:
     """
