@@ -94,7 +94,7 @@ def test_every_name_of_a_rule_stands_for_something(one: Rule, made: Tables) -> N
         assert len(made.column(path)) == len(made["trace"]), path
     assert {name for names in one.follows.values() for name in names} <= set(RULES)
     for span in (*one.follows, one.once or "block"):
-        assert len(made.column(SPANS[span])) == len(made["trace"])
+        assert not SPANS[span] or len(made.column(SPANS[span])) == len(made["trace"])
     assert all(made["machine"].codes(name) for name in one.at if name.islower() and name not in ("on", "off"))
     hits = one.hits(made)
     for _, name, _, _ in string.Formatter().parse(one.message):
@@ -280,6 +280,31 @@ def test_the_cause_is_as_severe_as_the_worst_that_follows() -> None:
     alone, raised = Engine(made, {}, [effect, cause]).findings()
     assert (alone.rule, alone.line, alone.severity) == ("x-words", 2, "error")
     assert (raised.rule, raised.severity, [one.severity for one in raised.follows]) == ("has-y", "error", ["error"])
+
+
+def test_a_severity_that_is_given_is_raised_by_nothing() -> None:
+    program = "O1\nG98 G0 X60. C0\nG137 C0\nG1 X40. F200\nY5.\nG136\nM30\n"
+    given = {"severities": {"polar-code-of-another-control": "note"}}
+    (found,) = report_of(program, job=given).findings
+    assert (found.severity, {one.severity for one in found.follows}) == ("note", {"warning"})
+
+
+def test_what_nobody_can_decide_fails_no_file_whatever_its_severity() -> None:
+    alone = "O1\nG98 G0 X60. C0\nG112\nG0 X70.\nM30\n"
+    followed = alone.replace("G0 X70.", "G1 X40. F200\nY5.\nG113")
+    for level in ("warning", "error"):
+        given = {"severities": {"polar-code-of-another-control": level}}
+        assert report_of(alone, "okuma-osp", job=given).verdict == "unverified"
+        assert report_of(followed, "okuma-osp", job=given).verdict == "fail"
+
+
+def test_a_section_of_both_runs_is_one_with_the_worst_of_each() -> None:
+    program = "O1\nG21 G98 T0101\nG0 X60. C0\nG12.1\nG1 X40. C5. F300\n{}\nX60. C0\nG13.1\nM30\n"
+    run, skipped = (report_of(program.format(text)).polar_sections[0] for text in ("X-40.", "N1"))
+    (both,) = report_of(program.format("/X-40.")).polar_sections
+    assert both.nearest == min(run.nearest or 0, skipped.nearest or 0) < max(run.nearest or 0, skipped.nearest or 0)
+    assert (both.c_feed, both.c_feed_line) == (run.c_feed, 7)
+    assert both.time == max(run.time or 0, skipped.time or 0)
 
 
 def test_a_chain_of_causes_ends_at_its_first() -> None:

@@ -14,7 +14,6 @@ from polarcheck.checking.finding import FileReport, Producer, Report, Summary
 from polarcheck.checking.settings import Settings
 from polarcheck.checking.tables import Tables
 from polarcheck.errors import PolarcheckError, SourceError
-from polarcheck.machines.job import AskedTool
 from polarcheck.reading import files
 from polarcheck.reading.source import Source
 from polarcheck.reading.words import Text
@@ -35,12 +34,12 @@ class Checked(msgspec.Struct, frozen=True):
     """
     The reports of the files that could be read, and by path and number the lines that their findings stand in.
 
-    not_called: offset numbers that the command line gives and no program calls.
+    called: offset numbers that any of the programs calls, where it has a job with tools.
     """
 
     files: list[FileReport]
     lines: dict[str, dict[int, str]]
-    not_called: list[int]
+    called: set[int]
 
 
 def plan(
@@ -71,7 +70,6 @@ def check_files(tasks: Iterable[Task], tell: Tell, encoding: str | None = None, 
     """Check one file after the other; tell is told, in one line, of those that cannot be read."""
     reports: list[FileReport] = []
     lines: dict[str, dict[int, str]] = {}
-    asked: set[int] = set()
     called: set[int] = set()
     for task in tasks:
         try:
@@ -84,9 +82,8 @@ def check_files(tasks: Iterable[Task], tell: Tell, encoding: str | None = None, 
         reports.append(msgspec.structs.replace(found, machine=task.settings.name, verdict=verdict))
         if found.findings:
             lines[found.path] = _lines(text, found)
-        asked |= {number for number, tool in task.settings.job.tools.items() if isinstance(tool, AskedTool)}
         called |= offsets
-    return Checked(reports, lines, sorted(asked - called))
+    return Checked(reports, lines, called)
 
 
 def _check(task: Task, data: bytes, encoding: str | None) -> tuple[FileReport, Source, set[int]]:

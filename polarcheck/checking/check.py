@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+import math
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 
 import msgspec
 
 from polarcheck.checking.called_files import in_the_file
 from polarcheck.checking.engine import Engine, in_order, program_heads, with_following
-from polarcheck.checking.finding import ERROR, SEVERITIES, FileReport, Finding, NotEvaluated
+from polarcheck.checking.finding import ERROR, SEVERITIES, FileReport, Finding, NotEvaluated, PolarSection, Undecided
 from polarcheck.checking.not_evaluated import unevaluated, unexecuted
 from polarcheck.checking.other_machine import OtherMachine
 from polarcheck.checking.polar_sections import polar_sections
-from polarcheck.checking.rule import Hits, Rule, load_all
+from polarcheck.checking.rule import Hits, Rule
 from polarcheck.checking.tables import Tables
 from polarcheck.execution.runs import runs
 from polarcheck.machines.job import Job
@@ -56,7 +57,7 @@ def check_runs(
     ((other, tables),) = more
     of_text = {rule.name: engine.hits(rule) for rule in engine.rules.values() if rule.of_text}
     second = report_of(engine_of(tables, rules, severities, of_text))
-    return _merged((state, first), (other, second), of_text)
+    return _merged((state, first), (other, second), of_text, severities or {})
 
 
 def engine_of(
@@ -74,7 +75,7 @@ def engine_of(
     if of_dialect and tables["dialect"].recognised is not None:
         # Where that is told, nothing that the words of another language seem to say is worth telling.
         asked = of_dialect
-    return Engine(tables, levels, asked, known)
+    return Engine(tables, levels, asked, known, frozenset(severities or ()))
 
 
 def report_of(engine: Engine) -> FileReport:
@@ -110,11 +111,14 @@ def _looked_at(tables: Tables) -> list[str]:
 _Place = tuple[str, int, int]
 
 
-def _merged(first: tuple[str, FileReport], second: tuple[str, FileReport], of_text: Collection[str]) -> FileReport:
+def _merged(
+    first: tuple[str, FileReport], second: tuple[str, FileReport], of_text: Collection[str], given: Collection[str]
+) -> FileReport:
     """
     One report of the runs with block skip off and on; what only one of them shows says which.
 
-    of_text: the rules that hang on the text alone, so that both runs show the same of them.
+    of_text: the rules that hang on the text alone, so that both runs show the same of them. given: the rules whose
+    severity is given.
     """
     (skip_off, off), (skip_on, on) = first, second
     shown_off, shown_on = ({_place(found) for found in _all(report.findings)} for report in (off, on))
@@ -132,7 +136,7 @@ def _merged(first: tuple[str, FileReport], second: tuple[str, FileReport], of_te
             told(one, shown_off, skip_on) for one in following.get(_place(found), ()) if _place(one) not in shown_off
         ]
         shown = told(found, shown_on, skip_off)
-        findings.append(with_following(shown, [*shown.follows, *more]))
+        findings.append(with_following(shown, [*shown.follows, *more], shown.rule in given))
     findings += [told(found, shown_off, skip_on) for found in on.findings if _place(found) not in shown_off]
     not_evaluated = list(dict.fromkeys((*off.not_evaluated, *on.not_evaluated)))
     findings = in_order(findings)
@@ -140,12 +144,35 @@ def _merged(first: tuple[str, FileReport], second: tuple[str, FileReport], of_te
         off,
         blocks=max(off.blocks, on.blocks),
         sections=max(off.sections, on.sections),
-        polar_sections=list(dict.fromkeys((*off.polar_sections, *on.polar_sections))),
+        polar_sections=_worst([*off.polar_sections, *on.polar_sections]),
         findings=findings,
         not_evaluated=not_evaluated,
         looked_at=max(off.looked_at, on.looked_at, key=len),
         verdict=verdict(findings, not_evaluated),
     )
+
+
+def _worst(sections: Sequence[PolarSection]) -> list[PolarSection]:
+    """The sections of both runs, those of the same G12.1 as one with the worst of each."""
+    of_line: dict[int, PolarSection] = {}
+    for section in sections:
+        of_line[section.line] = _worse(of_line[section.line], section) if section.line in of_line else section
+    return sorted(of_line.values(), key=lambda section: section.line)
+
+
+def _worse(one: PolarSection, other: PolarSection) -> PolarSection:
+    fastest = max(one, other, key=lambda section: math.inf if section.c_feed is None else section.c_feed)
+    return msgspec.structs.replace(
+        fastest,
+        nearest=_fold(min, one.nearest, other.nearest),
+        ramp_used=max((used for used in (one.ramp_used, other.ramp_used) if used is not None), default=None),
+        time=_fold(max, one.time, other.time),
+    )
+
+
+def _fold(worst: Callable[..., float], one: float | None, other: float | None) -> float | None:
+    """What one run does not know is not known."""
+    return None if one is None or other is None else worst(one, other)
 
 
 def _place(found: Finding) -> _Place:
@@ -161,16 +188,10 @@ def _all(findings: Sequence[Finding]) -> Iterator[Finding]:
 
 def verdict(findings: Sequence[Finding], not_evaluated: Sequence[NotEvaluated], fail_on: str = "warning") -> str:
     """pass, fail, or unverified where something that matters was not evaluated, or nobody can say what it is."""
-    rules = load_all()
     told = [found for found in findings if is_told(found, fail_on)]
-    undecided = [
-        found
-        for found in told
-        if rules[found.rule].undecided and SEVERITIES[found.severity] < rules[found.rule].severity
-    ]
-    if len(undecided) < len(told):
+    if not all(isinstance(found, Undecided) for found in told):
         return "fail"
-    return "unverified" if undecided or any(missing.matters for missing in not_evaluated) else "pass"
+    return "unverified" if told or any(missing.matters for missing in not_evaluated) else "pass"
 
 
 def is_told(finding: Finding, fail_on: str) -> bool:

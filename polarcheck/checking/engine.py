@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import bisect
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from functools import cached_property
 
 import msgspec
@@ -11,7 +11,7 @@ import numpy as np
 
 from polarcheck.arrays import Rows
 from polarcheck.checking import places
-from polarcheck.checking.finding import NOTE, SEVERITIES, Finding, NotEvaluated, Severity
+from polarcheck.checking.finding import NOTE, SEVERITIES, Finding, NotEvaluated, Severity, Undecided
 from polarcheck.checking.places import PLACES, Place
 from polarcheck.checking.rule import Hits, Rule
 from polarcheck.checking.tables import Tables
@@ -40,7 +40,7 @@ class Engine:
     The hits of one run, each rule run once.
 
     severities: by rule, where it is not the rule's own. rules: those that are asked; none that is off. known: the hits
-    of some of them.
+    of some of them. given: the rules whose severity the user gives, which nothing raises.
     """
 
     def __init__(
@@ -49,11 +49,13 @@ class Engine:
         severities: Mapping[str, str],
         rules: Iterable[Rule],
         known: Mapping[str, Hits] | None = None,
+        given: Collection[str] = (),
     ) -> None:
         self.tables = tables
         self.trace: Trace = tables["trace"]
         self.severities = severities
         self.rules = {rule.name: rule for rule in rules}
+        self.given = given
         self.unlisted: list[NotEvaluated] = []
         self._hits: dict[str, Hits] = dict(known or {})
         self._heads = program_heads(self.trace)
@@ -73,7 +75,7 @@ class Engine:
                 if cause is not None:
                     following.setdefault(_root(listed, cause), []).append(finding)
         return [
-            with_following(finding, following.get((name, number), []))
+            with_following(finding, following.get((name, number), []), name in self.given)
             for name, found in listed.items()
             for number, finding in enumerate(found.findings)
             if found.cause[number] is None
@@ -171,7 +173,8 @@ class Engine:
         text, values = fill(rule, hits, self.tables, place, at, count)
         block = _block_text(trace, place.block)
         section = int(trace.section[place.row]) if place.row >= 0 else -1
-        return Finding(
+        kind = Undecided if hits.undecided is not None and hits.undecided[place.index] else Finding
+        return kind(
             rule=rule.name,
             severity=self.severities.get(rule.name, own),
             message=text,
@@ -226,10 +229,12 @@ def _root(listed: Mapping[str, _Listed], cause: tuple[str, int]) -> tuple[str, i
         cause = above
 
 
-def with_following(finding: Finding, following: list[Finding]) -> Finding:
-    """The finding with what follows from it, as severe as the worst of that."""
+def with_following(finding: Finding, following: list[Finding], is_given: bool = False) -> Finding:
+    """The finding with what follows from it, as severe as the worst of that; not where its severity is given."""
     if not following:
         return finding
+    if is_given:
+        return msgspec.structs.replace(finding, follows=in_order(following))
     severity = max((finding.severity, *(found.severity for found in following)), key=SEVERITIES.__getitem__)
     return msgspec.structs.replace(finding, severity=severity, follows=in_order(following))
 

@@ -66,6 +66,10 @@ class Finding(msgspec.Struct, frozen=True, kw_only=True):
     follows: list[Finding] = []
 
 
+class Undecided(Finding, frozen=True, kw_only=True):
+    """A finding of which nobody can say that something is wrong: it fails no file, and leaves it unverified."""
+
+
 class NotEvaluated(msgspec.Struct, frozen=True, kw_only=True):
     """
     What was not looked at, why, in how many blocks.
@@ -107,8 +111,7 @@ class PolarSection(msgspec.Struct, frozen=True, kw_only=True):
 class FileReport(msgspec.Struct, frozen=True, kw_only=True):
     """
     All about one file. machine: its name, as it was asked for. Verdict: pass, fail or unverified. polar_sections: what
-    it rests on. looked_at: at what of it
-    was looked; outside polar sections text, flow and position only.
+    it rests on. looked_at: at what of the file was looked; outside polar sections text, flow and position only.
     """
 
     path: str

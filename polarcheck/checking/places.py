@@ -69,10 +69,11 @@ def span_of(name: str, over: str, tables: Tables) -> Rows:
     """For each element of what a rule is over which block, section or the like (SPANS) it belongs to, -1 for none."""
     if name == "block":
         return blocks(over, tables)
+    if name == "file":
+        return np.zeros(len(rows(over, tables)), np.int64)
     column: Rows = tables.column(SPANS[name])
     at = rows(over, tables)
-    none = 0 if name == "file" else -1
-    return np.where(at >= 0, column[at], none) if len(column) else np.full(len(at), none)
+    return np.where(at >= 0, column[at], -1) if len(column) else np.full(len(at), -1)
 
 
 def of_row(tables: Tables, index: int) -> Place:

@@ -82,6 +82,7 @@ class Hits(msgspec.Struct, frozen=True):
     not the rule's own. at: bool per executed word, the words at fault, where the rule's own `at` cannot name them.
     values: for the message, by name: a column with a value per element, or one value for all. follows: bool per
     element, those to which the rule's own `follows` applies, where it does not to all.
+    undecided: bool per element, those of which nobody can say that something is wrong: they leave the file unverified.
     """
 
     mask: Mask
@@ -89,6 +90,7 @@ class Hits(msgspec.Struct, frozen=True):
     at: Mask | None = None
     values: Mapping[str, Any] = {}
     follows: Mask | None = None
+    undecided: Mask | None = None
 
 
 def graded(
@@ -99,6 +101,7 @@ def graded(
     at: Mask | None = None,
     values: Mapping[str, Any] | None = None,
     follows: Mask | None = None,
+    undecided: Mask | None = None,
 ) -> Hits:
     """Hits of several severities: of an element that stands in more than one mask the highest counts."""
     import numpy as np
@@ -107,7 +110,7 @@ def graded(
     severity = np.zeros(len(given[0][1]), np.int16)
     for level, mask in given:
         severity[mask] = level
-    return Hits(severity > 0, severity, at, values or {}, follows)
+    return Hits(severity > 0, severity, at, values or {}, follows, undecided)
 
 
 class Rule(msgspec.Struct, frozen=True):
@@ -121,8 +124,6 @@ class Rule(msgspec.Struct, frozen=True):
     once: what is one cause, so that one finding stands for all of it (SPANS): a section, a program, an F word.
     follows: what it follows from: by how far that reaches (SPANS) the rules that report the cause. Where one of them
     fires within the same block, section or the like, the finding is listed under that one.
-    undecided: whether a finding below the rule's own severity leaves open if something is wrong: the file is unverified
-    then, and does not fail.
     worst: of those that one finding stands for, the one with the highest value of this column is reported.
     """
 
@@ -138,7 +139,6 @@ class Rule(msgspec.Struct, frozen=True):
     once: str
     follows: Mapping[str, tuple[str, ...]]
     worst: str
-    undecided: bool
     parameters: tuple[str, ...]
 
     @property
@@ -181,7 +181,6 @@ def rule(
     once: str = "",
     follows: Mapping[str, tuple[str, ...]] = MappingProxyType({}),
     worst: str = "",
-    undecided: bool = False,
 ) -> Callable[[Callable[..., Any]], Rule]:
     """Make a rule of a function; see Rule. Its parameters name the tables that it compares."""
 
@@ -206,7 +205,6 @@ def rule(
             once,
             follows,
             worst,
-            undecided,
             parameters,
         )
 

@@ -38,10 +38,10 @@ MAKERS = {
 PARTS = {"sections": "trace.sections", "moves": "tool_center.moves"}
 #: How far a cause reaches, or what one finding stands for: the column whose value its rows have in common.
 SPANS = {
+    "file": "",
     "block": "run.block",
     "section": "trace.whole_section",
     "program": "trace.program",
-    "file": "trace.file",
     "loop": "ramps.loop",
     "pause": "ramps.pause",
     "way": "ramps.way",

@@ -156,6 +156,7 @@ def _check(
     from polarcheck.commands import settings
     from polarcheck.commands.progress import watched
     from polarcheck.machines import profiles
+    from polarcheck.machines.job import offset_number
     from polarcheck.reading import files
 
     failures: list[str] = []
@@ -166,7 +167,7 @@ def _check(
     report = batch.report(checked.files, name)
     for failure in failures:
         say(failure)
-    for number in checked.not_called:
+    for number in sorted({offset_number(tool) for tool in applies.tools} - checked.called):
         warn(f"--tool {number}: no program of this run calls offset {number}")
     status = COULD_NOT_RUN if failures else batch.status(report, strict, fail_on)
     form = form or ("text" if len(report.files) <= _LONG else "short")

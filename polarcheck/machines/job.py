@@ -128,10 +128,7 @@ def with_tool(job: Job, option: str) -> Job:
 
     Raises UsageError that says what was meant.
     """
-    written, colon, pairs = option.partition(":")
-    number = _offset_number(written.strip(), option) if colon else None
-    if number is None:
-        raise UsageError(f"--tool {option}: expected NUMBER:KEY=VALUE as in 8:radius=0.375")
+    number, (_, _, pairs) = offset_number(option), option.partition(":")
     values: dict[str, Any] = {}
     for pair in pairs.split(","):
         key, equals, value = (part.strip() for part in pair.partition("="))
@@ -156,8 +153,20 @@ def with_tool(job: Job, option: str) -> Job:
 _KEYS_OF_TOOL = ", ".join(Tool.__struct_fields__)
 
 
-def _offset_number(written: str, option: str) -> int | None:
-    """The number before the colon, or that of T8; of T0808 it hangs on the control which digits are the offset."""
+def offset_number(option: str) -> int:
+    """
+    The 8 of `--tool 8:radius=0.375` or T8; of T0808 it hangs on the control which digits are the offset.
+
+    Raises UsageError that says what was meant.
+    """
+    written, colon, _ = option.partition(":")
+    number = _number_in(written.strip(), option) if colon else None
+    if number is None:
+        raise UsageError(f"--tool {option}: expected NUMBER:KEY=VALUE as in 8:radius=0.375")
+    return number
+
+
+def _number_in(written: str, option: str) -> int | None:
     digits = written[1:] if written[:1] in ("T", "t") else written
     if not digits.isascii() or not digits.isdecimal():
         return None

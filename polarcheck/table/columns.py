@@ -205,11 +205,6 @@ class Columns:
         """Number of the program in the file, from 0."""
         return np.cumsum(self.starts) - 1
 
-    @property
-    def file(self) -> Rows:
-        """Number of the file: there is one."""
-        return np.zeros(len(self), np.int64)
-
     def anywhere_in_program(self, mask: Mask) -> Mask:
         """Rows of programs in which any row is in the mask."""
         found = np.zeros(int(np.count_nonzero(self.starts)) + 1, bool)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from polarcheck.machines.modal import MM_PER_INCH
 from polarcheck.reports import counted
 
 if TYPE_CHECKING:
@@ -12,7 +13,6 @@ if TYPE_CHECKING:
 
 #: More sections than this are counted; the JSON report has them all.
 _LISTED = 5
-_MM_PER_INCH = 25.4
 _INSIDE = "polar sections"
 
 
@@ -66,5 +66,5 @@ def _rate(section: PolarSection) -> str:
 def _length(value: float, section: PolarSection) -> str:
     """A length [mm] in the units of the program."""
     inch = section.units == "inch"
-    text = f"{value / _MM_PER_INCH:.4f}" if inch else f"{value:.3f}"
+    text = f"{value / MM_PER_INCH:.4f}" if inch else f"{value:.3f}"
     return f"{text.rstrip('0').rstrip('.')} {section.units}"

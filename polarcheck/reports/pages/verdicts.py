@@ -39,9 +39,9 @@ only you know. The report lists under "not evaluated" what was not judged, for w
 many blocks, and what to give.
 
 Each entry says whether it matters ("matters" in the JSON report). Only those that do make a file
-unverified. Two are listed and do not: a nose type that is not given, and a limit of the C axis that
-is not given while the highest rate found is one that every C axis manages. The report tells that
-rate in any case: compare it with the lathe's manual.
+unverified. A nose type that is not given is listed and does not. A limit of the C axis that is not
+given is listed only where the highest rate found is more than every C axis manages; the report
+tells that rate in any case: compare it with the lathe's manual.
 
 What to give:
 
@@ -74,7 +74,10 @@ An example, with a sample of polarcheck and without the job file beside it:
     polarcheck check --no-config --tool 1:radius=4 --set limits.c_feed=3600 sample_programs/hexagon.nc
         pass
 
-The exit code is 0; with --strict it is 1.
+A code that begins the polar mode on another control and stands alone may be a macro of the builder.
+It is a warning, and the file is unverified.
+
+The exit code is 0, and 1 with --strict or where a finding of --fail-on stands in the report.
 """,
         "fail": """\
 fail: something is wrong, or probably not what was meant.

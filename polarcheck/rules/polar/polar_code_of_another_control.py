@@ -8,7 +8,6 @@ from polarcheck.checking.rule import ERROR, Hits, OtherMode, graded, rule
     "{begun_by} begins no polar mode on {machine.title}, where {on_of_this} does; check it with {with_machines}"
     "{else_a_macro}",
     once="program",
-    undecided=True,
 )
 def polar_code_of_another_control(other_mode: OtherMode) -> Hits:
     """
@@ -77,4 +76,5 @@ def polar_code_of_another_control(other_mode: OtherMode) -> Hits:
         M30
     """
     # Compares nothing: what the code is for shows in the blocks behind it, which the table looks at.
-    return graded(error=other_mode.is_followed, warning=other_mode.may_be_macro, at=other_mode.words)
+    may_be_macro = other_mode.may_be_macro
+    return graded(error=other_mode.is_followed, warning=may_be_macro, at=other_mode.words, undecided=may_be_macro)
