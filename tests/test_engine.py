@@ -373,9 +373,9 @@ def test_what_hangs_on_the_text_alone_is_looked_for_once(monkeypatch: pytest.Mon
     report = report_of(program)
     assert {seen.count(name) for name, one in RULES.items() if one.of_text} == {1}
     assert seen.count("rapid-in-polar") == 2
-    assert said(report)[:2] == [(3, "word-repeated"), (4, "c-angle-unknown-at-entry")]
+    assert said(report)[:2] == [(3, "word-repeated"), (4, "x-unknown-at-entry")]
     told = {found.rule: "(with block skip on)" in found.message for found in report.findings}
-    assert told["c-angle-unknown-at-entry"]
+    assert told["x-unknown-at-entry"]
     assert not told["word-repeated"]
     assert not told["rapid-in-polar"]
 

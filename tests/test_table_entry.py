@@ -42,7 +42,6 @@ def test_of_an_excerpt_nothing_is_asked() -> None:
 
 def test_of_a_whole_program_all_is_asked() -> None:
     assert asked("O1\n" + SECTION + "M30") == [
-        "c-angle-unknown-at-entry",
         "no-tool-offset-at-entry",
         "x-unknown-at-entry",
     ]

@@ -24,6 +24,7 @@ OUT_OF_PLACE = (
     "spindle-code-in-polar",
     "tool-length-offset-in-polar",
     "polar-entered-twice",
+    "incremental-word-of-other-code-system",
     "unknown-code",
     "rapid-in-polar",
 )

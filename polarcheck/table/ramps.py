@@ -31,7 +31,7 @@ class Ramps:
     @cached_property
     def pause(self) -> Rows:
         """The same number for a move on the plane and the rows after it that do not move there; -1 outside sections."""
-        moves = self.trace.in_polar & self.trace.moves_plane
+        moves = self.trace.in_polar & self.trace.travels
         return np.where(self.trace.whole_section >= 0, np.cumsum(moves), -1)
 
     @cached_property

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from polarcheck.checking.causes import NO_SUCH_ARC
 from polarcheck.checking.rule import ERROR, Mask, Trace, rule
 
 
@@ -7,6 +8,7 @@ from polarcheck.checking.rule import ERROR, Mask, Trace, rule
     ERROR,
     "G40 takes effect on an arc; cancel in a G1 block after the arc",
     at=("compensation_off", "arc_clockwise", "arc_counterclockwise"),
+    follows={"block": NO_SUCH_ARC},
 )
 def cancel_on_arc(trace: Trace) -> Mask:
     """

@@ -15,6 +15,7 @@ from polarcheck.checking.rule import ERROR, Mask, Overcuts, rule
         "block": ("inside-arc-smaller-than-radius", "interference", "no-offset-intersection"),
         "loop": (
             *NO_SUCH_ARC,
+            "number-without-point",
             "start-up-shorter-than-radius",
             "side-changed-in-offset-mode",
             "side-repeated-in-offset-mode",

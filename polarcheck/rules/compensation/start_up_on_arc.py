@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from polarcheck.checking.causes import NO_SUCH_ARC
 from polarcheck.checking.rule import ERROR, Mask, Trace, rule
 
 
@@ -7,6 +8,7 @@ from polarcheck.checking.rule import ERROR, Mask, Trace, rule
     ERROR,
     "{side} begins on an arc; begin it in a G1 block before the arc",
     at=("compensation_left", "compensation_right", "arc_clockwise", "arc_counterclockwise"),
+    follows={"block": NO_SUCH_ARC},
 )
 def start_up_on_arc(trace: Trace) -> Mask:
     """

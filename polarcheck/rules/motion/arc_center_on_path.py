@@ -9,7 +9,11 @@ from polarcheck.geometry.tolerances import ROUNDING
     ERROR,
     "the center of the arc is its start or its end: a radius of 0",
     at=("I", "J"),
-    follows={"block": ("arc-off-polar-plane",), "section": SECTION_READ_OTHERWISE},
+    follows={
+        "block": ("arc-off-polar-plane", "arc-word-of-other-plane"),
+        "loop": ("number-without-point",),
+        "section": SECTION_READ_OTHERWISE,
+    },
 )
 def arc_center_on_path(arcs: Arcs) -> Mask:
     """

@@ -12,7 +12,11 @@ from polarcheck.checking.rule import ERROR, Arcs, Hits, Machine, rule
     at=("X", "U", "C", "H", "I", "J"),
     needs=("arcs.end_radius",),
     where="arcs.by_center",
-    follows={"block": ("arc-center-on-path", "arc-off-polar-plane"), "section": SECTION_READ_OTHERWISE},
+    follows={
+        "block": ("arc-center-on-path", "arc-off-polar-plane", "arc-word-of-other-plane"),
+        "loop": ("number-without-point",),
+        "section": SECTION_READ_OTHERWISE,
+    },
 )
 def arc_end_off_circle(arcs: Arcs, machine: Machine) -> Hits:
     """

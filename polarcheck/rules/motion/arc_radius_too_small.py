@@ -11,7 +11,7 @@ from polarcheck.checking.rule import ERROR, Arcs, Machine, Mask, rule
     at=("X", "U", "C", "H", "R"),
     needs=("arcs.chord",),
     where="arcs.by_radius",
-    follows={"block": ("arc-off-polar-plane",), "section": SECTION_READ_OTHERWISE},
+    follows={"block": ("arc-off-polar-plane",), "loop": ("number-without-point",), "section": SECTION_READ_OTHERWISE},
 )
 def arc_radius_too_small(arcs: Arcs, machine: Machine) -> Mask:
     """

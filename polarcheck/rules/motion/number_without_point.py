@@ -7,7 +7,7 @@ from polarcheck.checking.rule import WARNING, Hits, Unpointed, graded, rule
     WARNING,
     "{text} has no decimal point: the control takes it as {taken_as}",
     over="words",
-    follows={"block": ("too-many-digits",)},
+    follows={"block": ("too-many-digits", "stray-character", "bad-number")},
 )
 def number_without_point(unpointed: Unpointed) -> Hits:
     """

@@ -11,6 +11,7 @@ _FAR = 2.0
     "{word} {begins} a length of {angles.farthest:length} in the polar mode and looks like an angle: the rest of the "
     "section lies within {angles.reach:length} of the center",
     once="section",
+    follows={"block": ("rapid-in-polar",)},
 )
 def degrees_in_polar(trace: Trace, angles: Angles, machine: Machine, job: Job) -> Hits:
     """

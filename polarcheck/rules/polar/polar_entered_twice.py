@@ -3,7 +3,12 @@ from __future__ import annotations
 from polarcheck.checking.rule import WARNING, Mask, Trace, rule
 
 
-@rule(WARNING, "{switch} again: the polar mode is on since line {since}", at=("on",))
+@rule(
+    WARNING,
+    "{switch} again: the polar mode is on since line {since}",
+    at=("on",),
+    follows={"section": ("polar-never-left",)},
+)
 def polar_entered_twice(trace: Trace) -> Mask:
     """
     Polar mode switched on while it is on.

@@ -3,7 +3,13 @@ from __future__ import annotations
 from polarcheck.checking.rule import ERROR, Mask, Sections, rule
 
 
-@rule(ERROR, "polar mode is never left: {missing_before}", over="sections", at=("on",))
+@rule(
+    ERROR,
+    "polar mode is never left: {missing_before}",
+    over="sections",
+    at=("on",),
+    follows={"program": ("endless-loop", "nesting-too-deep")},
+)
 def polar_never_left(sections: Sections) -> Mask:
     """
     Polar mode still on at the tool change or the end of the program.

@@ -4,7 +4,12 @@ from polarcheck.checking.rule import ERROR, Mask, Trace, rule
 from polarcheck.machines.modal import Motion
 
 
-@rule(ERROR, "G0 cannot be used in the polar mode; write G1 with a high F", at=("rapid",))
+@rule(
+    ERROR,
+    "G0 cannot be used in the polar mode; write G1 with a high F",
+    at=("rapid",),
+    follows={"block": ("code-not-allowed-in-polar", "polar-entered-twice")},
+)
 def rapid_in_polar(trace: Trace) -> Mask:
     """
     Rapid traverse in the polar mode.
@@ -44,5 +49,6 @@ def rapid_in_polar(trace: Trace) -> Mask:
     # What G0 means beside a code that can only stand outside is no question of its own.
     outside = trace.listed("reference_check", "reference_return", "machine_coordinates")
     in_rapid = trace.in_polar & (trace.state("motion") == Motion.RAPID) & ~outside
-    first_move = trace.first_in_section(in_rapid & (trace.motion == Motion.RAPID))
-    return in_rapid & (trace.listed("rapid") | first_move)
+    written = trace.listed("rapid")
+    first_move = trace.first_in_section(in_rapid & (trace.motion == Motion.RAPID)) & ~trace.given_in_section(written)
+    return in_rapid & (written | first_move)

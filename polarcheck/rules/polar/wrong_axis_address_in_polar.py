@@ -7,6 +7,7 @@ from polarcheck.checking.rule import ERROR, Hits, ModeWords, Trace, rule
     ERROR,
     "{word} is no coordinate of the polar plane: its second axis is {machine.polar.virtual_axis} here{taken_by}",
     once="section",
+    follows={"block": ("polar-entered-twice",)},
 )
 def wrong_axis_address_in_polar(trace: Trace, mode_words: ModeWords) -> Hits:
     """

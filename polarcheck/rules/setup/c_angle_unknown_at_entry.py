@@ -7,7 +7,7 @@ from polarcheck.checking.rule import WARNING, Entry, Mask, Trace, rule
     WARNING,
     "C has not been positioned before {switch}; the shape stands wherever the spindle stopped",
     at=("on",),
-    follows={"block": ("c-axis-not-engaged", "c-axis-not-referenced")},
+    follows={"block": ("c-axis-not-engaged", "c-axis-not-referenced", "x-unknown-at-entry")},
 )
 def c_angle_unknown_at_entry(trace: Trace, entry: Entry) -> Mask:
     """

@@ -3,7 +3,11 @@ from __future__ import annotations
 from polarcheck.checking.rule import WARNING, Entry, Hits, Machine, Trace, graded, rule
 
 
-@rule(WARNING, "{codes} in the polar mode; the spindle is the C axis here")
+@rule(
+    WARNING,
+    "{codes} in the polar mode; the spindle is the C axis here",
+    follows={"section": ("polar-never-left",)},
+)
 def spindle_code_in_polar(trace: Trace, entry: Entry, machine: Machine) -> Hits:
     """
     Main spindle started or stopped, or the C axis released, in the polar mode.

@@ -3,7 +3,12 @@ from __future__ import annotations
 from polarcheck.checking.rule import WARNING, Entry, Mask, Trace, rule
 
 
-@rule(WARNING, "X {unknown_since}; position it outside the part before {switch}", at=("on",))
+@rule(
+    WARNING,
+    "X {unknown_since}; position it outside the part before {switch}",
+    at=("on",),
+    follows={"way": ("rapid-in-polar",)},
+)
 def x_unknown_at_entry(trace: Trace, entry: Entry) -> Mask:
     """
     X not positioned before the polar mode.
