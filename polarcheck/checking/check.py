@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 
 import msgspec
@@ -57,7 +58,7 @@ def check_runs(
     ((other, tables),) = more
     of_text = {rule.name: engine.hits(rule) for rule in engine.rules.values() if rule.of_text}
     second = report_of(engine_of(tables, rules, severities, of_text))
-    return _merged((state, first), (other, second), of_text, severities or {})
+    return _merged((state, first), (other, second), of_text)
 
 
 def engine_of(
@@ -75,7 +76,7 @@ def engine_of(
     if of_dialect and tables["dialect"].recognised is not None:
         # Where that is told, nothing that the words of another language seem to say is worth telling.
         asked = of_dialect
-    return Engine(tables, levels, asked, known, frozenset(severities or ()))
+    return Engine(tables, levels, asked, known)
 
 
 def report_of(engine: Engine) -> FileReport:
@@ -111,14 +112,11 @@ def _looked_at(tables: Tables) -> list[str]:
 _Place = tuple[str, int, int]
 
 
-def _merged(
-    first: tuple[str, FileReport], second: tuple[str, FileReport], of_text: Collection[str], given: Collection[str]
-) -> FileReport:
+def _merged(first: tuple[str, FileReport], second: tuple[str, FileReport], of_text: Collection[str]) -> FileReport:
     """
     One report of the runs with block skip off and on; what only one of them shows says which.
 
-    of_text: the rules that hang on the text alone, so that both runs show the same of them. given: the rules whose
-    severity is given.
+    of_text: the rules that hang on the text alone, so that both runs show the same of them.
     """
     (skip_off, off), (skip_on, on) = first, second
     shown_off, shown_on = ({_place(found) for found in _all(report.findings)} for report in (off, on))
@@ -136,7 +134,7 @@ def _merged(
             told(one, shown_off, skip_on) for one in following.get(_place(found), ()) if _place(one) not in shown_off
         ]
         shown = told(found, shown_on, skip_off)
-        findings.append(with_following(shown, [*shown.follows, *more], shown.rule in given))
+        findings.append(with_following(shown, [*shown.follows, *more]))
     findings += [told(found, shown_off, skip_on) for found in on.findings if _place(found) not in shown_off]
     not_evaluated = list(dict.fromkeys((*off.not_evaluated, *on.not_evaluated)))
     findings = in_order(findings)
@@ -144,7 +142,7 @@ def _merged(
         off,
         blocks=max(off.blocks, on.blocks),
         sections=max(off.sections, on.sections),
-        polar_sections=_worst([*off.polar_sections, *on.polar_sections]),
+        polar_sections=_worst(off.polar_sections, on.polar_sections),
         findings=findings,
         not_evaluated=not_evaluated,
         looked_at=max(off.looked_at, on.looked_at, key=len),
@@ -152,12 +150,16 @@ def _merged(
     )
 
 
-def _worst(sections: Sequence[PolarSection]) -> list[PolarSection]:
+def _worst(off: Sequence[PolarSection], on: Sequence[PolarSection]) -> list[PolarSection]:
     """The sections of both runs, those of the same G12.1 as one with the worst of each."""
-    of_line: dict[int, PolarSection] = {}
-    for section in sections:
-        of_line[section.line] = _worse(of_line[section.line], section) if section.line in of_line else section
-    return sorted(of_line.values(), key=lambda section: section.line)
+    of_run: dict[tuple[int, int], PolarSection] = {}
+    for sections in (off, on):
+        begun = Counter[int]()
+        for section in sections:
+            key = section.line, begun[section.line]  # a program that is called twice begins a section each time
+            begun[section.line] += 1
+            of_run[key] = _worse(of_run[key], section) if key in of_run else section
+    return [of_run[key] for key in sorted(of_run)]
 
 
 def _worse(one: PolarSection, other: PolarSection) -> PolarSection:

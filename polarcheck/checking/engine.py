@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import bisect
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from functools import cached_property
 
 import msgspec
@@ -14,7 +14,7 @@ from polarcheck.checking import places
 from polarcheck.checking.finding import NOTE, SEVERITIES, Finding, NotEvaluated, Severity, Undecided
 from polarcheck.checking.places import PLACES, Place
 from polarcheck.checking.rule import Hits, Rule
-from polarcheck.checking.tables import Tables
+from polarcheck.checking.tables import OF_CAUSE, Tables
 from polarcheck.execution.run import begins_program
 from polarcheck.table.trace import Trace
 
@@ -40,7 +40,7 @@ class Engine:
     The hits of one run, each rule run once.
 
     severities: by rule, where it is not the rule's own. rules: those that are asked; none that is off. known: the hits
-    of some of them. given: the rules whose severity the user gives, which nothing raises.
+    of some of them.
     """
 
     def __init__(
@@ -49,13 +49,11 @@ class Engine:
         severities: Mapping[str, str],
         rules: Iterable[Rule],
         known: Mapping[str, Hits] | None = None,
-        given: Collection[str] = (),
     ) -> None:
         self.tables = tables
         self.trace: Trace = tables["trace"]
         self.severities = severities
         self.rules = {rule.name: rule for rule in rules}
-        self.given = given
         self.unlisted: list[NotEvaluated] = []
         self._hits: dict[str, Hits] = dict(known or {})
         self._heads = program_heads(self.trace)
@@ -75,7 +73,7 @@ class Engine:
                 if cause is not None:
                     following.setdefault(_root(listed, cause), []).append(finding)
         return [
-            with_following(finding, following.get((name, number), []), name in self.given)
+            with_following(finding, following.get((name, number), []))
             for name, found in listed.items()
             for number, finding in enumerate(found.findings)
             if found.cause[number] is None
@@ -126,7 +124,7 @@ class Engine:
                 hit = np.flatnonzero(self.hits(other).mask)
                 if not len(hit):
                     continue
-                theirs = places.span_of(span, other.over, self.tables)[hit]
+                theirs = places.span_of(OF_CAUSE.get(span, span), other.over, self.tables)[hit]
                 order = np.argsort(theirs, kind="stable")
                 own = places.span_of(span, rule.over, self.tables)[index]
                 at = order[np.minimum(np.searchsorted(theirs[order], own), len(hit) - 1)]
@@ -141,22 +139,27 @@ class Engine:
 
         It is one for each block, which counts its runs, or for each section, program or the like, which counts blocks.
         """
-        if rule.over != "rows" and not rule.once:
+        if rule.over not in ("rows", "sections") and not rule.once:
             every = np.arange(len(index))
             return every, every, np.ones(len(index), np.int64)
-        key = places.span_of(rule.once or "block", rule.over, self.tables)[index]
-        key = np.where(key < 0, -1 - np.arange(len(index)), key)  # outside of all, each is by itself
-        _, first, group, count = np.unique(key, return_index=True, return_inverse=True, return_counts=True)
-        runs = count
+        block = places.blocks(rule.over, self.tables)[index]
+        group = block
         if rule.once:
-            block = places.blocks(rule.over, self.tables)[index]
-            runs = np.bincount(np.unique(np.stack((group, block)), axis=1)[0], minlength=len(first))
+            key = places.span_of(rule.once, rule.over, self.tables)[index]
+            key = np.where(key < 0, -1 - np.arange(len(index)), key)  # outside of all, each is by itself
+            _, first, group = np.unique(key, return_index=True, return_inverse=True)
+            group = block[first][
+                group
+            ]  # what begins in the same block runs again, as in a program that is called twice
+        _, first, group, count = np.unique(group, return_index=True, return_inverse=True, return_counts=True)
         if rule.worst and len(first) < len(index):
             value = self.tables.column(rule.worst)[index]
             order = np.lexsort((-np.arange(len(index)), value, group))
             first = order[np.cumsum(count) - 1]
+        if rule.once:
+            count = np.bincount(np.unique(np.stack((group, block)), axis=1)[0], minlength=len(first))
         order = np.argsort(first, kind="stable")
-        return first[order], np.argsort(order)[group], runs[order]
+        return first[order], np.argsort(order)[group], count[order]
 
     def _finding(self, rule: Rule, place: Place, hits: Hits, count: int) -> Finding:
         from polarcheck.checking.message import fill
@@ -229,12 +232,10 @@ def _root(listed: Mapping[str, _Listed], cause: tuple[str, int]) -> tuple[str, i
         cause = above
 
 
-def with_following(finding: Finding, following: list[Finding], is_given: bool = False) -> Finding:
-    """The finding with what follows from it, as severe as the worst of that; not where its severity is given."""
+def with_following(finding: Finding, following: list[Finding]) -> Finding:
+    """The finding with what follows from it, as severe as the worst of that."""
     if not following:
         return finding
-    if is_given:
-        return msgspec.structs.replace(finding, follows=in_order(following))
     severity = max((finding.severity, *(found.severity for found in following)), key=SEVERITIES.__getitem__)
     return msgspec.structs.replace(finding, severity=severity, follows=in_order(following))
 

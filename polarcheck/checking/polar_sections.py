@@ -28,7 +28,7 @@ def polar_sections(tables: Tables) -> list[PolarSection]:
         return []
     tool_center: ToolCenter = tables["tool_center"]
     center: Center = tables["center"]
-    c_feed = np.where(center.cuts_off_center, tool_center.c_feed, 0.0)
+    c_feed = np.where(center.cuts_off_center, tool_center.c_feed, -np.inf)
     highest = _of_sections(trace, c_feed, np.maximum.at, -np.inf)
     fastest = _fastest(trace, c_feed, highest)
     at_entry = _offset_rows(trace)

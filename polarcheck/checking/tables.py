@@ -23,6 +23,7 @@ MAKERS = {
     "other_mode": "polarcheck.table.other_mode:OtherMode",
     "angles": "polarcheck.table.angles:Angles",
     "entry": "polarcheck.table.entry:Entry",
+    "since": "polarcheck.table.since:Since",
     "ramps": "polarcheck.table.ramps:Ramps",
     "overcuts": "polarcheck.table.overcuts:Overcuts",
     "arcs": "polarcheck.table.arcs:Arcs",
@@ -46,8 +47,22 @@ SPANS = {
     "pause": "ramps.pause",
     "way": "ramps.way",
     "wall": "overcuts.wall",
+    "tool call": "since.tool_call",
+    "modal state": "since.modal_state",
+    "plane": "since.plane",
+    "origin": "since.origin",
+    "spindle code": "since.spindle_code",
+    "c axis code": "since.c_axis_code",
+    "live tool code": "since.live_tool_code",
     "feed": "trace.feed_word",
+    "motion": "trace.motion_word",
+    "row": "since.row",
+    "X before": "since.linear_word_before",
+    "C before": "since.virtual_word_before",
 }
+#: Where the rows of the cause are counted otherwise than those of what follows: a coordinate that was written before
+#: is that of the row of the cause.
+OF_CAUSE = {"X before": "row", "C before": "row"}
 #: Tables that hang on the text and the machine alone: what is found in them is the same however the program runs.
 OF_TEXT = frozenset({"text", "words", "machine", "job", "written", "dialect"})
 

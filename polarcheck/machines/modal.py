@@ -95,6 +95,9 @@ NO_MOVE = (
     "modal_macro_calls_each_block",
     "repetitive_cycle",
     "coordinate_setting",
+    "scaling",
+    "rotation",
+    "mirror_image",
     "axis_words_no_move",
 )
 #: The lists of codes beside which F is no feed: a time, an argument, the lead of a thread.

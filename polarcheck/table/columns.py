@@ -14,7 +14,7 @@ from polarcheck.execution.run import Run
 from polarcheck.machines.codes import code, code_numbers, code_set, modal_tables, renumbered
 from polarcheck.machines.job import Job
 from polarcheck.machines.machine import Machine
-from polarcheck.machines.modal import MM_PER_INCH, NO_FEED, NO_MOVE, Distance, FeedMode, Motion, Side, Units
+from polarcheck.machines.modal import MM_PER_INCH, NO_FEED, NO_MOVE, STATES, Distance, FeedMode, Motion, Side, Units
 from polarcheck.table.filling import before, fill_down
 
 if TYPE_CHECKING:
@@ -249,6 +249,14 @@ class Columns:
         at = np.full(len(self), -1, np.int64)
         at[self.run.row[words]] = self.run.words.start[words]
         return fill_down(at, (self.has("F") & self._takes_feed) | self.starts, -1)
+
+    @cached_property
+    def motion_word(self) -> Rows:
+        """Where in the file the code of motion in force is written, its first character; -1 before the first."""
+        words = self.code_indices(*(code for key in STATES["motion"] for code in self.machine.codes(key)))
+        at = np.full(len(self), -1, np.int64)
+        at[self.run.row[words]] = self.run.words.start[words]
+        return fill_down(at, self.sets("motion") | self.starts, -1)
 
     @cached_property
     def _takes_feed(self) -> Mask:

@@ -94,7 +94,7 @@ class Positions(Lengths):
             rapid=self.listed("rapid"),
             cuts=cutting & self.programs_virtual_axis,
             moves=cutting & self.moves_plane,
-            returns=self.codes(*self.machine.macro.program_returns),
+            returns=self.codes(*self.machine.macro.program_returns) & (self.run.depth == 0),
         )
         return find_sections(marks)
 

@@ -62,6 +62,11 @@ def to_clear(trace: Trace, entry: Entry, row: int) -> str:
     return f"stock {stock} and cutter {cutter} need"
 
 
+def axes(trace: Trace, row: int) -> str:
+    """What is to be positioned: X, and C where that is not known either."""
+    return "X and C" if np.isnan(trace.c_angle[row]) else "it"
+
+
 def unknown_since(trace: Trace, entry: Entry, row: int) -> str:
     """`is not known since T0404 in line 7`, or that X was never positioned."""
     first = int(np.flatnonzero(trace.starts[: row + 1])[-1]) if trace.starts[: row + 1].any() else 0

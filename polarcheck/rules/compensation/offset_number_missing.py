@@ -7,7 +7,7 @@ from polarcheck.checking.rule import ERROR, Mask, Trace, rule
     ERROR,
     "{side} begins and no tool offset is in force, so that R is 0",
     at=("compensation_left", "compensation_right"),
-    once="section",
+    once="tool call",
     follows={"section": ("offset-changed-in-polar",)},
 )
 def offset_number_missing(trace: Trace) -> Mask:

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.causes import SECTION_READ_OTHERWISE
+from polarcheck.checking.causes import NO_SUCH_ARC, SECTION_READ_OTHERWISE
 from polarcheck.checking.rule import ERROR, Arcs, Machine, Mask, rule
 
 
@@ -11,7 +11,13 @@ from polarcheck.checking.rule import ERROR, Arcs, Machine, Mask, rule
     at=("X", "U", "C", "H", "R"),
     needs=("arcs.chord",),
     where="arcs.by_radius",
-    follows={"block": ("arc-off-polar-plane",), "loop": ("number-without-point",), "section": SECTION_READ_OTHERWISE},
+    follows={
+        "block": ("arc-off-polar-plane",),
+        "loop": ("number-without-point",),
+        "X before": NO_SUCH_ARC,
+        "C before": NO_SUCH_ARC,
+        "section": SECTION_READ_OTHERWISE,
+    },
 )
 def arc_radius_too_small(arcs: Arcs, machine: Machine) -> Mask:
     """

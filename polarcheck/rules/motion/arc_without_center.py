@@ -7,6 +7,7 @@ from polarcheck.checking.rule import ERROR, Arcs, Mask, Trace, rule
     ERROR,
     "arc without {machine.arcs.radius_word}, {centers}",
     at=("arc_clockwise", "arc_counterclockwise", "X", "U", "C", "H"),
+    once="motion",
     follows={"block": ("arc-off-polar-plane", "arc-word-of-other-plane")},
 )
 def arc_without_center(trace: Trace, arcs: Arcs) -> Mask:

@@ -3,7 +3,13 @@ from __future__ import annotations
 from polarcheck.checking.rule import ERROR, Hits, Trace, graded, rule
 
 
-@rule(ERROR, "{in_force} still in force at {switch}; write {ends} before it", at=("on",))
+@rule(
+    ERROR,
+    "{in_force} still in force at {switch}; write {ends} before it",
+    at=("on",),
+    once="modal state",
+    follows={"modal state": ("code-not-allowed-in-polar",)},
+)
 def modal_state_wrong_at_entry(trace: Trace) -> Hits:
     """
     Cycle, scaling, rotation, mirror image or constant surface speed in force on entry.

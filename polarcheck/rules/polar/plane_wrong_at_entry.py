@@ -3,7 +3,12 @@ from __future__ import annotations
 from polarcheck.checking.rule import ERROR, Entry, Mask, Trace, rule
 
 
-@rule(ERROR, "{plane} is in force at {switch}; {wanted} must be, write it before or right behind", at=("on",))
+@rule(
+    ERROR,
+    "{plane} is in force at {switch}; {wanted} must be, write it before or right behind",
+    at=("on",),
+    once="plane",
+)
 def plane_wrong_at_entry(trace: Trace, entry: Entry) -> Mask:
     """
     Polar mode entered in another plane than the lathe wants.

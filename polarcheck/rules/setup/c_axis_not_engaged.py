@@ -3,7 +3,7 @@ from __future__ import annotations
 from polarcheck.checking.rule import WARNING, Entry, Hits, Machine, Trace, rule
 
 
-@rule(WARNING, "the C axis is not engaged; {codes} is missing before {switch}", at=("on",))
+@rule(WARNING, "the C axis is not engaged; {codes} is missing before {switch}", at=("on",), once="c axis code")
 def c_axis_not_engaged(trace: Trace, entry: Entry, machine: Machine) -> Hits:
     """
     Polar mode without the spindle as C axis.

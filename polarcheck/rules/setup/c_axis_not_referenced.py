@@ -3,7 +3,12 @@ from __future__ import annotations
 from polarcheck.checking.rule import WARNING, Entry, Mask, Trace, rule
 
 
-@rule(WARNING, "C has not gone to its reference point since it was engaged; write G28 H0 before {switch}", at=("on",))
+@rule(
+    WARNING,
+    "C has not gone to its reference point since it was engaged; write G28 H0 before {switch}",
+    at=("on",),
+    once="c axis code",
+)
 def c_axis_not_referenced(trace: Trace, entry: Entry) -> Mask:
     """
     C axis engaged but not referenced.

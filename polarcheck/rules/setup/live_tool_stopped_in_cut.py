@@ -7,6 +7,7 @@ from polarcheck.checking.rule import ERROR, Entry, Hits, Machine, Trace, rule
     ERROR,
     "the live tool is not running in this cutting move; {codes} is missing",
     at=("line", "arc_clockwise", "arc_counterclockwise"),
+    once="live tool code",
 )
 def live_tool_stopped_in_cut(trace: Trace, entry: Entry, machine: Machine) -> Hits:
     """

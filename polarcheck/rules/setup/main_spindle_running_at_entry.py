@@ -3,7 +3,7 @@ from __future__ import annotations
 from polarcheck.checking.rule import ERROR, NOTE, Hits, Machine, Trace, rule
 
 
-@rule(ERROR, "M3 or M4 is in force at {switch}{what}", at=("on",))
+@rule(ERROR, "M3 or M4 is in force at {switch}{what}", at=("on",), once="spindle code")
 def main_spindle_running_at_entry(trace: Trace, machine: Machine) -> Hits:
     """
     Main spindle not stopped before the polar mode.

@@ -4,7 +4,13 @@ from polarcheck.checking.rule import WARNING, Entry, Mask, Trace, rule
 from polarcheck.machines.modal import Side
 
 
-@rule(WARNING, "no tool offset is in force at {switch}", at=("on",), follows={"section": ("offset-changed-in-polar",)})
+@rule(
+    WARNING,
+    "no tool offset is in force at {switch}",
+    at=("on",),
+    follows={"section": ("offset-changed-in-polar",)},
+    once="tool call",
+)
 def no_tool_offset_at_entry(trace: Trace, entry: Entry) -> Mask:
     """
     Polar mode without a tool offset.

@@ -4,7 +4,13 @@ from polarcheck.checking.rule import ERROR, Entry, Hits, Trace, rule
 from polarcheck.geometry.tolerances import ROUNDING
 
 
-@rule(ERROR, "{name} puts X0 {shift:length} off the spindle axis at {switch}", at=("on",))
+@rule(
+    ERROR,
+    "{name} puts X0 {shift:length} off the spindle axis at {switch}",
+    at=("on",),
+    once="origin",
+    follows={"origin": ("origin-shifted-in-polar",)},
+)
 def origin_off_center(trace: Trace, entry: Entry) -> Hits:
     """
     Origin of the polar plane off the spindle axis.

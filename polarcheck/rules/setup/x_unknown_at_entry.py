@@ -5,7 +5,7 @@ from polarcheck.checking.rule import WARNING, Entry, Mask, Trace, rule
 
 @rule(
     WARNING,
-    "X {unknown_since}; position it outside the part before {switch}",
+    "X {unknown_since}; position {axes} outside the part before {switch}",
     at=("on",),
     follows={"way": ("rapid-in-polar",)},
 )

@@ -1,0 +1,86 @@
+"""Since which block a state is in force, a coordinate holds: what it makes wrong is one mistake, in that block."""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+
+from polarcheck.arrays import Mask, Rows
+from polarcheck.table.filling import before, fill_down
+from polarcheck.table.trace import Trace
+
+
+class Since:
+    """Columns of one trace; of a state the same number in all rows from one block that sets it to the next."""
+
+    def __init__(self, trace: Trace) -> None:
+        self.trace = trace
+
+    # ---- which row has written a coordinate ----
+
+    @property
+    def row(self) -> Rows:
+        """The row itself."""
+        return np.arange(len(self.trace))
+
+    @cached_property
+    def linear_word_before(self) -> Rows:
+        """The row above that wrote X last; -1 for none."""
+        return self._written_before(self.trace.has("X", "U"))
+
+    @cached_property
+    def virtual_word_before(self) -> Rows:
+        """The row above that wrote the virtual axis last; -1 for none."""
+        return self._written_before(self.trace.programs_virtual_axis)
+
+    def _written_before(self, written: Mask) -> Rows:
+        starts = self.trace.starts
+        return before(fill_down(self.row, written | starts, -1), starts, -1)
+
+    # ---- since when a state is in force ----
+
+    def _last(self, sets: Mask) -> Rows:
+        return np.cumsum(sets | self.trace.starts)
+
+    @cached_property
+    def tool_call(self) -> Rows:
+        """From T to T."""
+        return self._last(self.trace.has("T"))
+
+    @cached_property
+    def modal_state(self) -> Rows:
+        """Of scaling, rotation, mirror image, drilling cycles and constant surface speed."""
+        groups = ("scaling", "rotation", "mirror", "drilling", "speed")
+        return self._last(np.logical_or.reduce([self.trace.sets(group) for group in groups]))
+
+    @cached_property
+    def plane(self) -> Rows:
+        """From one G17, G18 or G19 to the next."""
+        return self._last(self.trace.sets("plane"))
+
+    @cached_property
+    def origin(self) -> Rows:
+        """From one block to the next that sets or selects a coordinate system."""
+        trace = self.trace
+        written = trace.listed("local_shift", "data_input") | trace.sets("work_offset") | trace.sets_coordinates
+        written[list(trace.run.assigned)] = True
+        return self._last(written)
+
+    @cached_property
+    def spindle_code(self) -> Rows:
+        """Of the main spindle."""
+        codes = self.trace.machine.m_codes
+        return self._last(self.trace.codes(*codes.spindle_on, *codes.spindle_off))
+
+    @cached_property
+    def c_axis_code(self) -> Rows:
+        """Of the C axis."""
+        codes = self.trace.machine.m_codes
+        return self._last(self.trace.codes(*codes.c_axis_on, *codes.c_axis_off))
+
+    @cached_property
+    def live_tool_code(self) -> Rows:
+        """Of the live tool."""
+        codes = self.trace.machine.m_codes
+        return self._last(self.trace.codes(*codes.live_tool_on, *codes.live_tool_off))
