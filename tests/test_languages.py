@@ -53,7 +53,7 @@ OWN = [
 
 
 @pytest.mark.parametrize(("title", "file"), PAIRS)
-@pytest.mark.parametrize("ends", ["\n", "\r\n"])
+@pytest.mark.parametrize("ends", ["\n", "\r\n", "\r"])
 def test_a_file_of_another_world_is_named_once(title: str, file: str, ends: str) -> None:
     for machine in ("fanuc", "haas-lathe", "okuma-osp"):
         report = report_of(file.replace("\n", ends).encode(), machine)
@@ -82,6 +82,6 @@ def test_a_sound_program_is_not_searched() -> None:
     assert Dialect(read_words(read(b""))).recognised is None
 
 
-@pytest.mark.parametrize("part", [b"#<a", b"O<", b"N1 ", b"L X1", b"G1 E ", b"0", b";", b"X", b"J2,"])
+@pytest.mark.parametrize("part", [b"#<a", b"O<", b"N1 ", b"L X1", b"G1 E ", b"0", b";", b"X", b"J2,", b"(", b"(\n"])
 def test_hostile_files_take_no_time(part: bytes) -> None:
     assert recognised(part * (200_000 // len(part))) is None

@@ -14,7 +14,7 @@ import msgspec
 
 #: A file of another world shows it near its head; pictures that slicers put there are shorter.
 _LOOKED_AT = 100_000
-_COMMENT = re.compile(rb"\([^)\n]*+\)")
+_COMMENT = re.compile(rb"\([^)\n]*+\)?")
 _REMARK = re.compile(rb";[^\n]*+")
 _LINE = rb"^[ \t]*+(?:/?[ \t]*+N?\d++[ \t]++)?"
 
@@ -35,12 +35,14 @@ class Language(msgspec.Struct, frozen=True):
     One language: what is said of a file in it, and its signs.
 
     needed: the sum of weights of signs that name it. never: what stands in no file of it, outside its comments.
+    reads_as_macros: all that is odd in a file of it may be what reads as macro statements.
     """
 
     title: str
     signs: tuple[Sign, ...]
     needed: int = 2
     never: bytes = b""
+    reads_as_macros: bool = False
 
 
 class Recognised(msgspec.Struct, frozen=True):
@@ -67,6 +69,7 @@ LANGUAGES = (
             Sign(_O_WORD + rb"\d++[ \t]*+" + _CLOSES + _ENDS),
             Sign(rb"#<_?[a-z][^<>\n]{0,60}>", 2),
         ),
+        reads_as_macros=True,
     ),
     # marlinfw.org/meta/gcode; E is the filament. A lathe may have an E word, and M104, but then codes of a lathe, too.
     Language(
@@ -150,20 +153,41 @@ LANGUAGES = (
 )
 
 
-def recognised(text: bytes) -> Recognised | None:
-    """The language of a text that is no program in ISO code, and its first sign; None where nothing says so."""
-    text = _COMMENT.sub(lambda comment: b" " * len(comment[0]), text[:_LOOKED_AT].replace(b"\r\n", b" \n"))
+def recognised(text: bytes, only_macros_are_odd: bool = False) -> Recognised | None:
+    """
+    The language of a text that is no program in ISO code, and its first sign; None where nothing says so.
+
+    only_macros_are_odd: languages of which more would be odd are not looked for.
+    """
+    head = text[:_LOOKED_AT]
+    head = head.replace(b"\r\n", b" \n") if b"\n" in text else head.replace(b"\r", b"\n")
+    text = _COMMENT.sub(lambda comment: b" " * len(comment[0]), head)
     for language in LANGUAGES:
-        found = [(match, sign) for sign in language.signs if (match := _compiled(sign.pattern).search(text))]
-        if sum(sign.weight for _, sign in found) < language.needed:
+        if only_macros_are_odd and not language.reads_as_macros:
             continue
-        if language.never and _compiled(language.never).search(_REMARK.sub(b"", text)):
+        found = _signs(language, text)
+        if not found or (language.never and _compiled(language.never).search(_REMARK.sub(b"", text))):
             continue
-        first = min((match for match, _ in found), key=lambda match: match.start())
+        first = min(found, key=lambda match: match.start())
         begin = text.rfind(b"\n", 0, first.start()) + 1
         line = text[begin:].partition(b"\n")[0]
         return Recognised(language.title, line.decode("latin-1").strip(), text.count(b"\n", 0, begin) + 1)
     return None
+
+
+def _signs(language: Language, text: bytes) -> list[re.Match[bytes]]:
+    """The first place of each of its signs; nothing once those that are left cannot name the language."""
+    found = []
+    possible = sum(sign.weight for sign in language.signs)
+    for sign in language.signs:
+        match = _compiled(sign.pattern).search(text)
+        if match:
+            found.append(match)
+            continue
+        possible -= sign.weight
+        if possible < language.needed:
+            return []
+    return found
 
 
 @functools.cache

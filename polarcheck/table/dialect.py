@@ -20,7 +20,10 @@ class Dialect:
     @cached_property
     def recognised(self) -> Recognised | None:
         """The language of another machine, and the first place that shows it; None for a program in ISO code."""
-        return recognised(self._own_characters()) if self._looks_odd() else None
+        looks_odd = self._looks_odd()
+        if not looks_odd and not self.text.blocks.is_macro.any():
+            return None
+        return recognised(self._own_characters(), only_macros_are_odd=not looks_odd)
 
     @property
     def is_other(self) -> Mask:
@@ -28,13 +31,12 @@ class Dialect:
         return np.array([self.recognised is not None])
 
     def _looks_odd(self) -> bool:
-        """Something stands in the file that sound programs seldom have: most files need no closer look."""
+        """Something other than macros stands in the file that sound programs seldom have: most need no closer look."""
         text = self.text
         behind_marks = text.source.code[np.minimum(text.tape_marks + 1, len(text.source.code) - 1)]
         return bool(
             np.any(text.words.is_unreadable)
             or np.any(text.words.address == ord("E"))
-            or np.any(text.blocks.is_macro)
             or len(text.strays)
             or len(text.outside)
             or np.any(behind_marks >= ord("A"))
