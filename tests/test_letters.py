@@ -49,6 +49,12 @@ READ = [
     ("G0I X5.", "G01 X5."),
     ("SI000 M3", "S1000 M3"),
     ("X4I.", "X41."),
+    ("ZIO.", "Z10."),
+    ("X-IO.", "X-10."),
+    ("XIO", "X10"),
+    ("GO X6O. ZIO.", "G0 X60. Z10."),
+    ("G1 XIO.Z5.", "G1 X10.Z5."),
+    ("G1 Z5.XIO.F20.", "G1 Z5.X10.F20."),
     ("G2 X1O.I5.K-O.5", "G2 X10.I5.K-0.5"),
 ]
 LEFT = [
@@ -57,6 +63,7 @@ LEFT = [
     *("G1 X#1 FOO", "GO X[#1]", "IF[#1 EQ 0]THEN #2=O1", "X1 MOD 2"),
     *("TOOL 5", "TOOL5", "COOL 1", "LOOP1", "FROM 0", "STOP", "NO. 5", "NO 5", "POS1", "G54 POS1", "LOT5"),
     *("G54 TO G59", "PROGRAM NO 5", "GO TO START", "NOEX G0 X5", "GOTOF N5", "STOPRE", "X1.2.O", "XOO O"),
+    *("RADIO.", "RATIO", "G0 X5. RIO.", "X5. ZIOO.", "X5. ZOI."),
     *("G2X1.I.5K0", "X5.I0", "X5. I-2.", "X4I.5", "G3 X1. I 5.", "F.I5", "X5.\nI-2.", "IO. KO"),
 ]
 
@@ -105,6 +112,7 @@ def messages(program: str, machine: str = "fanuc") -> list[tuple[int, str, str]]
         ("Z1O.", "Z10."),
         ("M3O", "M30"),
         ("XI0.", "X10."),
+        ("ZIO.", "Z10."),
     ],
 )
 def test_a_letter_is_the_only_finding(written: str, meant: str, machine: str, head: str) -> None:

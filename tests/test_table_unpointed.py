@@ -35,6 +35,8 @@ def counts(program: str, column: str, **changes: Any) -> dict[str, int]:
         # blocks that position X and C for the section, and no others
         ("G98 G0 X70 Z50\nX60 Z5.\nC5\nM8\nG12.1\nG1 X40. C3. F200\nC8.\nG13.1\nG0 X70\n", {"2 X60": 1, "3 C5": 1}),
         ("G12.1\nG1 X40. C3. F200\nC8.\nG13.1\nG0 X70\n", {}),
+        # beside a number that cannot be read nothing is
+        (HEAD + "G1 X40. F200\nX3O.5.O C5\nC8 X--5.\nC6\nG13.1\n", {"7 C6": 1}),
         # 0 is 0
         (HEAD + "G1 X0 C10. F200\nC-10.\nX60.\nG13.1\n", {}),
         # a large one is reported wherever it stands, and beside a habit

@@ -49,6 +49,8 @@ _OTHER_O = re.compile(rb"M0*+(?:2|30|99)O\d{4,8}|T\d++O\d++", re.IGNORECASE)
 #: Addresses of which a word may be letters alone, as XO; the second where another word of the block has digits; the
 #: third with a letter right behind, as in G1 XOZ5., which POS1 and LOT5 are not.
 _OF_ZERO, _OF_ZERO_BESIDE, _OF_ZERO_BEFORE_LETTER = b"MXYZCUW", b"MXYZABCUVWIJKRFSHDPQE", b"XYZCUW"
+#: Addresses of which IO is 10, as in ZIO.; I0 behind a letter without a number would mean nothing.
+_OF_TEN = b"XYZCUVW"
 
 
 def read_as_digits(code: Bytes) -> Positions:
@@ -114,7 +116,8 @@ def _may_be_number(block: bytes, word: re.Match[bytes], first_numbered: int) -> 
         return address != b"N" or b"." not in number
     if address == b"G":
         return len(number) < 3
-    if len(number.rstrip(b".")) > 2 or b"I" in number:
+    digits = number.rstrip(b".")
+    if len(digits) > 2 or (b"I" in digits and not (digits == b"IO" and address in _OF_TEN)):
         return False
     if word.end() < len(block) and _IS_LETTER[block[word.end()]]:
         return address in _OF_ZERO_BEFORE_LETTER and first_numbered < word.start()

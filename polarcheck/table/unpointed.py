@@ -34,14 +34,15 @@ class Unpointed:
 
         It is the coordinates of polar sections and of the blocks that position X and C for them, elsewhere only those
         that are large, and in inch the F of the mode. Where more than half of the coordinates of a section are without,
-        that is one habit, reported at the first of them, and at the first large one, which is read otherwise.
+        that is one habit, reported at the first of them, and at the first large one, which is read otherwise. Beside a
+        number that cannot be read nothing is: what the others mean is open, too.
         """
         trace, words = self.trace, self.trace.run.words
         reported = np.zeros(len(trace.text.words), np.int64)
         count, section = len(trace.sections), self._sections
         if not count or trace.machine.control.number_without_point == "whole-unit":
             return reported
-        slips = ~trace.in_increments[trace.run.row]
+        slips = ~(trace.in_increments | trace.with_words(words.is_unreadable))[trace.run.row]
         inch_feed = (words.address == ord("F")) & ~words.has_point & (words.value > 0) & slips
         inch_feed &= ((trace.units == Units.INCH) & (trace.feed_mode == FeedMode.PER_MINUTE))[trace.run.row]
         self._add(reported, inch_feed, section, np.zeros(count, bool))
