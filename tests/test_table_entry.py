@@ -8,6 +8,7 @@ import pytest
 from programs import report_of, tables_of, trace_of
 
 from polarcheck.checking.phrases import setup
+from polarcheck.table.origin import Origin
 
 SECTION = "G12.1\nG1 X40. F200\nC10.\nX60.\nG13.1\n"
 
@@ -112,6 +113,24 @@ def test_origin(before: str, name: str) -> None:
 def test_without_a_work_offset_g54_is_in_force(before: str, expected: bool) -> None:
     tables = tables_of(f"{before}\nG0 X60. C0\n{SECTION}", job={"work_offsets": {"G54": {"x": 1.0}}})
     assert bool(tables["entry"].origin_shift[tables["sections"].enter[0]]) == expected
+
+
+def test_of_many_work_offsets_those_in_force_at_a_section_count(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked_for: list[float] = []
+    x_of = Origin._x_of
+    monkeypatch.setattr(Origin, "_x_of", lambda own, number: asked_for.append(number) or x_of(own, number))
+    many = "".join(f"G10 L20 P{number} X{number}.\n" for number in range(1, 40))
+    tables = tables_of(f"{many}G54.1 P7\nG0 X60. C0\n{SECTION}G54.1 P8\nG0 X60. C0\n{SECTION}G54.1 P9\n")
+    enter = tables["sections"].enter
+    assert tables["entry"].origin_shift[enter].tolist() == [7, 8]
+    assert setup.name(tables["entry"], int(enter[1])) == "G10 on G54.1 P8"
+    assert asked_for == [1007, 1008, 0]
+
+
+def test_a_spindle_speed_is_no_shift_of_the_origin(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Origin, "work_offset", None)
+    tables = tables_of(f"G50 S2000\nG0 X60. C0\n{SECTION}")
+    assert not tables["entry"].origin_shift.any()
 
 
 INSIDE = ["approach-inside-stock"]

@@ -86,11 +86,16 @@ class Origin:
 
     @cached_property
     def work_offset(self) -> tuple[Floats, NDArray[np.object_]]:
-        """X0 of the work offset in force; 0 where neither the job nor the program says it. And its name."""
+        """
+        X0 of the work offset in force, and its name; 0 where neither the job nor the program says it.
+
+        Only of those that are in force at a G12.1: a program may set many more.
+        """
         trace = self.trace
+        asked = set(self._number[trace.sections.enter].tolist()) - {_EXTERNAL}
         x, name = np.zeros(len(trace)), np.full(len(trace), "", object)
         sets, set_numbers = self._set_by_program
-        for number in sorted({*self._of_job, *set_numbers[sets].tolist()} - {_EXTERNAL}):
+        for number in sorted({*self._of_job, *set_numbers[sets].tolist()} & asked):
             in_force = self._number == number
             given, is_set = self._x_of(number)
             x[in_force], name[in_force] = given[in_force], self._name(number)
@@ -146,7 +151,9 @@ class Origin:
     def shift(self) -> Floats:
         """How far X0 is known to lie off the spindle axis."""
         trace = self.trace
-        if not trace.job.work_offsets and not trace.listed("data_input", "local_shift", "coordinate_setting").any():
+        shifts = trace.listed("data_input", "local_shift", "coordinate_setting")
+        # G50 S2000 is a speed.
+        if not trace.job.work_offsets and not (shifts.any() and (shifts & trace.has("X", "U")).any()):
             return np.zeros(len(trace))
         return self.work_offset[0] + self.external + self.local + self.coordinate_setting
 
