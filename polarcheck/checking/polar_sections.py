@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Rows
@@ -13,6 +11,7 @@ from polarcheck.machines.modal import Units
 from polarcheck.table.center import Center
 from polarcheck.table.moves import Moves
 from polarcheck.table.ramps import Ramps
+from polarcheck.table.sections import Sections
 from polarcheck.table.tool_center import ToolCenter
 from polarcheck.table.trace import Trace
 
@@ -29,10 +28,10 @@ def polar_sections(tables: Tables) -> list[PolarSection]:
     tool_center: ToolCenter = tables["tool_center"]
     center: Center = tables["center"]
     c_feed = np.where(center.cuts_off_center, tool_center.c_feed, -np.inf)
-    highest = _of_sections(trace, c_feed, np.maximum.at, -np.inf)
+    highest = _of_sections(sections, c_feed, np.maximum, -np.inf)
     fastest = _fastest(trace, c_feed, highest)
     at_entry = _offset_rows(trace)
-    nearest = _least(trace, np.where(trace.cuts, tool_center.nearest, np.inf))
+    nearest = _of_sections(sections, np.where(trace.cuts, tool_center.nearest, np.inf), np.minimum, np.inf)
     ramp = _ramp_used(trace, tables["ramps"])
     time = _time(tool_center.moves, len(sections))
     limit = _number(trace.machine.limits.c_feed)
@@ -82,18 +81,13 @@ def _radius_source(trace: Trace, row: int) -> str:
     return tool.source
 
 
-def _of_sections(trace: Trace, values: Floats, fold: Callable[..., None], none: float) -> Floats:
+def _of_sections(sections: Sections, values: Floats, fold: np.ufunc, none: float) -> Floats:
     """Per section the least or the largest of the values of its rows; NaN where there is none, or one is not known."""
-    found = np.full(len(trace.sections), none)
-    rows = np.flatnonzero(trace.section >= 0)
-    with np.errstate(invalid="ignore"):  # NaN is meant
-        fold(found, trace.section[rows], values[rows])
+    # From each G12.1 to its end, and from there to the next, which is left out.
+    bounds = np.column_stack((sections.enter, sections.leave)).ravel()
+    found: Floats = fold.reduceat(np.append(values, none), bounds)[::2]
     found[np.isinf(found)] = np.nan
     return found
-
-
-def _least(trace: Trace, values: Floats) -> Floats:
-    return _of_sections(trace, values, np.minimum.at, np.inf)
 
 
 def _fastest(trace: Trace, c_feed: Floats, highest: Floats) -> Rows:
@@ -108,11 +102,9 @@ def _fastest(trace: Trace, c_feed: Floats, highest: Floats) -> Rows:
 def _ramp_used(trace: Trace, ramps: Ramps) -> Floats:
     """Per section how much of a start-up or offset cancel its R needs, the highest."""
     is_ramp = (trace.starts_up | trace.cancels) & (trace.length != 0)
-    return _of_sections(trace, np.where(is_ramp, ramps.used, -np.inf), np.maximum.at, -np.inf)
+    return _of_sections(trace.sections, np.where(is_ramp, ramps.used, -np.inf), np.maximum, -np.inf)
 
 
 def _time(moves: Moves, count: int) -> Floats:
     """Per section how long its moves on the plane take [s]; NaN where that of one of them is not known."""
-    total = np.zeros(count)
-    np.add.at(total, moves.section, moves.time)
-    return total
+    return np.asarray(np.bincount(moves.section, moves.time, minlength=count), np.float64)
