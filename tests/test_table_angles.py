@@ -62,12 +62,13 @@ def test_virtual_length_is_in_mm_and_has_no_sign() -> None:
 
 def test_reach_leaves_out_what_may_be_an_angle() -> None:
     """X is a diameter: 80 reaches 40 mm, and 48 back from C-48; C180 and C-90 are left out."""
-    program = "G0 X70. C0\nG12.1\nG1 X-80. F1\nC180.\nC-90.\nG13.1\nG0 X500.\nG12.1\nX20.\nC-48.\nG13.1\n"
+    program = "G0 X70. C0\nG12.1\nG1 X-80. F1\nC180.\nC-90.\nG13.1\nG0 X500.\nG12.1\nX20.\nC-48.\nC45.\nG13.1\n"
+    program += "G12.1\nC48.\nG13.1\n"
     angles = table(program)
     first, second = angles.trace.section == 0, angles.trace.section == 1
     assert np.unique(angles.reach[first]).tolist() == [40.0]
     assert np.unique(angles.reach[second]).tolist() == [250.0], "X stands at 250 when the second section begins"
-    assert np.isnan(angles.reach[~first & ~second]).all()
+    assert np.isnan(angles.reach[~first & ~second]).all(), "in the third section nothing looks like an angle"
     by_c = table("G0 X20. C0\nG12.1\nG1 C-48. F1\nC-360.\nG13.1\n")
     assert np.nanmax(by_c.reach) == 48.0
 
@@ -79,7 +80,7 @@ def test_reach_by_a_plain_loop() -> None:
         program += ["G0 X40. C0", "G12.1"]
         for _ in range(int(generator.integers(1, 9))):
             program.append(f"G1 X{generator.integers(-99, 99)}. C{generator.choice([*USUAL, 7, -13, 77])}. F100")
-        program.append("G13.1")
+        program += ["C-90.", "G13.1"]
     angles = table("\n".join(program) + "\n")
     trace = angles.trace
     farthest = [0.0] * len(trace.sections)

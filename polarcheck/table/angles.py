@@ -31,8 +31,11 @@ class Angles:
     def is_usual(self) -> Mask:
         """The virtual axis has the number of a usual angle in the mode, of either sign."""
         size = np.abs(self._written)
+        whole = np.flatnonzero(size == np.rint(size))
+        found = np.zeros(len(size), bool)
         # NumPy's isin would load its masked arrays for doubles.
-        return np.asarray(_USUAL[np.searchsorted(_USUAL, size) % len(_USUAL)] == size)
+        found[whole] = _USUAL[np.searchsorted(_USUAL, size[whole]) % len(_USUAL)] == size[whole]
+        return found
 
     @cached_property
     def has_both_signs(self) -> Mask:
@@ -54,6 +57,8 @@ class Angles:
     @cached_property
     def in_series(self) -> Mask:
         """In a series that goes steadily to a turn, or to half of one, while X stays where it is."""
+        if not self.series.is_angle.any():
+            return np.zeros(len(self.trace), bool)
         return np.asarray(self.series.in_rows(self.series.is_angle.astype(np.float64), len(self.trace)) == 1.0)
 
     @cached_property
@@ -64,18 +69,31 @@ class Angles:
     @cached_property
     def farthest(self) -> Floats:
         """How far the row goes, or the series that it belongs to, as a length of the virtual axis [mm]."""
+        if not self.in_series.any():
+            return self.virtual_length
         ends = np.abs(self.series.in_rows(self.series.end, len(self.trace))) * self.trace.scale
         return np.where(self.in_series, ends, self.virtual_length)
 
     @cached_property
     def reach(self) -> Floats:
-        """How far the section lies from the center without what may be angles [mm]; NaN outside sections."""
+        """
+        How far the section lies from the center without what may be angles [mm].
+
+        NaN outside sections, and in those in which nothing may be an angle.
+        """
         trace = self.trace
+        may_be_angle = self.is_usual | self.in_series
+        if not may_be_angle.any():
+            return np.full(len(trace), np.nan)
+        rows = np.flatnonzero(trace.anywhere_in_section(may_be_angle))
+        section, virtual = trace.section[rows], np.where(may_be_angle[rows], np.nan, self.virtual_length[rows])
         farthest = np.zeros(len(trace.sections))
-        for column in (np.abs(trace.x), np.where(self.is_usual | self.in_series, np.nan, self.virtual_length)):
-            known = (trace.section >= 0) & np.isfinite(column)
-            np.maximum.at(farthest, trace.section[known], column[known])
-        return np.append(farthest, np.nan)[trace.section]
+        for column in (np.abs(trace.x[rows]), virtual):
+            known = np.isfinite(column)
+            np.maximum.at(farthest, section[known], column[known])
+        reach = np.full(len(trace), np.nan)
+        reach[rows] = farthest[section]
+        return reach
 
     @cached_property
     def in_misplaced_cycle(self) -> Mask:

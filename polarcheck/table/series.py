@@ -16,6 +16,8 @@ _BAND = 0.1
 #: What lies as far on the other side of the center, as a share of the end of a series, makes a contour of it.
 _OTHER_SIDE = 0.5
 _FULL_TURN, _PARTS_OF_TURN = 360.0, (180.0, 270.0)
+#: A series that ends nearer is no turn: three equal steps to a full turn but for one reach beyond half of it.
+_LEAST_END = 180.0
 _SAME = 1e-6
 
 
@@ -43,15 +45,23 @@ class Series(msgspec.Struct, frozen=True):
         return column
 
 
+_NOTHING = np.zeros(0, np.int64)
+_NO_SERIES = Series(_NOTHING, _NOTHING, _NOTHING, np.zeros(0), np.zeros(0, bool))
+
+
 def find_series(trace: Trace) -> Series:
     """
     The series of a trace.
 
     A turn begins where the mode does, at 0, and goes to 360 or beyond, to one of its equal steps before 360, to 180 or
-    270. X stays where it is. A contour that goes so far has another side across the center.
+    270. X stays where it is. A contour that goes so far has another side across the center. Where nothing goes so far,
+    no series is looked for.
     """
     written = trace.scale * (0.5 if trace.machine.polar.virtual_axis_programming == "diameter" else 1.0)
-    start, end = trace.start.imag / written, trace.end.imag / written
+    end = trace.end.imag / written
+    if not np.any(trace.on_plane & (np.abs(end) > _LEAST_END - _SAME)):
+        return _NO_SERIES
+    start = trace.start.imag / written
     rows = np.flatnonzero(trace.on_plane & (np.abs(end - start) > _SAME))
     start, end, x, section = start[rows], end[rows], trace.x[rows] / written[rows], trace.section[rows]
     is_arc = np.isin(trace.motion[rows], (Motion.CW, Motion.CCW))
@@ -61,7 +71,7 @@ def find_series(trace: Trace) -> Series:
     first = np.flatnonzero(begins)
     count = np.diff(first, append=len(rows))
     if not len(rows):
-        return Series(rows, first, count, end, begins)
+        return _NO_SERIES
     last = first + count - 1
     size, step = np.abs(end[last]), np.abs(end - start)
     most, least = np.maximum.reduceat(step, first), np.minimum.reduceat(step, first)
