@@ -58,7 +58,15 @@ class Entry:
         return trace.has_called_tool | (trace.whole_program & self._is_known)
 
     @cached_property
-    def is_before_mode(self) -> Mask:
+    def calls_d_before_mode(self) -> Mask:
+        """A D word alone, or beside T alone, outside the mode; the program enters it before the tool changes."""
+        trace = self.trace
+        if not trace.has("D").any():
+            return np.zeros(len(trace), bool)
+        return self._is_before_mode & trace.has("D") & trace.consists_of("D", "T")
+
+    @property
+    def _is_before_mode(self) -> Mask:
         """Outside the mode, and its program enters the mode before the tool changes."""
         trace = self.trace
         ahead = np.flatnonzero(trace.enters | trace.changes_tool | trace.ends_program)
@@ -80,10 +88,12 @@ class Entry:
         """
         The first row above in which C moves at feed with G41 or G42, outside the mode and known to be so; -1 for none.
 
-        Looked for back to the last tool change, G12.1 or G13.1. Beside G7.1 C is the radius of a cylinder, on which
-        offset mode may move C.
+        Looked for back to the last tool change, G12.1 or G13.1, and only if a G13.1 stands outside sections. Beside
+        G7.1 C is the radius of a cylinder, on which offset mode may move C.
         """
         trace, mode = self.trace, self.trace.machine.polar
+        if not np.any(trace.switches_off & ~trace.leaves):
+            return np.full(len(trace), -1)
         foreign = [code for code in mode.on_of_other_controls if code[1:2].isdigit()]
         begun = trace.switches_on | trace.codes(*foreign) | trace.run.unknown
         begun |= trace.listed("cylindrical_interpolation")

@@ -42,7 +42,9 @@ class Unpointed:
         count, section = len(trace.sections), self._sections
         if not count or trace.machine.control.number_without_point == "whole-unit":
             return reported
-        slips = ~(trace.in_increments | trace.with_words(words.is_unreadable))[trace.run.row]
+        slips = ~trace.in_increments[trace.run.row]
+        if words.fault.any():
+            slips &= ~trace.with_words(words.is_unreadable)[trace.run.row]
         inch_feed = (words.address == ord("F")) & ~words.has_point & (words.value > 0) & slips
         inch_feed &= ((trace.units == Units.INCH) & (trace.feed_mode == FeedMode.PER_MINUTE))[trace.run.row]
         self._add(reported, inch_feed, section, np.zeros(count, bool))

@@ -51,6 +51,4 @@ def d_word_on_lathe(trace: Trace, entry: Entry) -> Mask:
         G40 X60.
         G13.1
     """
-    in_mode = trace.in_polar & trace.uses_axes & trace.has("D")
-    before_mode = entry.is_before_mode & trace.has("D") & trace.consists_of("D", "T")
-    return in_mode | before_mode
+    return (trace.in_polar & trace.uses_axes & trace.has("D")) | entry.calls_d_before_mode
