@@ -12,7 +12,7 @@ import numpy as np
 from polarcheck.arrays import Mask, Rows
 from polarcheck.machines import profiles
 from polarcheck.machines.code_lists import is_code
-from polarcheck.machines.codes import code_numbers, code_set
+from polarcheck.machines.codes import CODE_LIMIT, code, code_numbers, code_set
 from polarcheck.machines.modal import Motion
 from polarcheck.machines.profiles import Profile
 from polarcheck.reading.translation import spans
@@ -58,11 +58,29 @@ class OtherMode:
     @cached_property
     def _in_text(self) -> list[str]:
         """The codes that begin the mode on other controls, of those that stand in the file, executed or not."""
-        polar, tables = self.trace.machine.polar, (self.trace.text.words, self.trace.run.words)
+        polar = self.trace.machine.polar
         own = {*polar.on, *self.trace.machine.control.native_words}
-        names = [name for name in polar.on_of_other_controls if name not in own]
-        names = [name for name in names if any(self._of_name(name, words).any() for words in tables)]
+        names = [name for name in polar.on_of_other_controls if name not in own and self._stands_in_text(name)]
         return [name for name in names if known_by(name)]
+
+    def _stands_in_text(self, name: str) -> bool:
+        if is_code(name):
+            return bool(self._codes_in_text[code(name)])
+        return any(self._of_word(name, words).any() for words in self._tables)
+
+    @cached_property
+    def _codes_in_text(self) -> Mask:
+        """Over code numbers: the G code stands in the file, executed or not."""
+        found = np.zeros(CODE_LIMIT + 1, bool)
+        for words in self._tables:
+            found[code_numbers(words.value[words.address == ord("G")])] = True
+        return found
+
+    @cached_property
+    def _tables(self) -> tuple[Words, ...]:
+        """The words of the file and those executed, which are the same where nothing is computed, skipped or called."""
+        written, executed = self.trace.text.words, self.trace.run.words
+        return (written,) if executed is written else (written, executed)
 
     @cached_property
     def begins(self) -> Mask:
