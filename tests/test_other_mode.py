@@ -117,6 +117,15 @@ def test_a_code_that_stands_alone_may_be_a_macro(code: str, name: str) -> None:
     assert "--machine" in entry.reason
 
 
+@pytest.mark.parametrize("name", ["fanuc", "okuma-osp", "mazak-eia"])
+def test_a_word_that_stands_alone_is_no_macro(name: str) -> None:
+    report = report_of(TURNING.format("TRANSMIT\n"), name)
+    assert report.verdict == "fail"
+    assert the_one(report).severity == "error"
+    assert the_one(report).message.endswith("check it with --machine siemens-transmit")
+    assert report.not_evaluated == []
+
+
 def test_what_follows_behind_the_next_tool_or_in_a_section_of_this_control_tells_nothing() -> None:
     section = "G0 X60. C0\nG12.1\nG1 X40. F200\nC10.\nX60.\nG13.1\nG0 Z50.\n"
     found = [one for one in report_of(TURNING.format(f"G137\n{section}")).findings if one.rule == RULE]

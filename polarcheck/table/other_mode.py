@@ -93,17 +93,22 @@ class OtherMode:
         return found[0]
 
     @cached_property
-    def is_followed(self) -> Mask:
-        """Of the rows that begin it those behind which the code that ends it follows, or a move in the mode."""
+    def is_meant(self) -> Mask:
+        """
+        Of the rows that begin it those that can be nothing else: behind them the code that ends it follows, or a move
+        in the mode, or a word begins it, while macros are called by codes.
+        """
         found = np.zeros(len(self.trace), bool)
         for switch in self.switches:
-            found[switch.rows] = self._is_followed(switch)[switch.rows]
+            found[switch.rows] = self._is_followed(switch)[switch.rows] if is_code(switch.name) else True
         return found
 
     @cached_property
     def may_be_macro(self) -> Mask:
         """The row begins it, and nothing in its program tells whether it is no macro of the builder."""
-        return self.begins & ~self.trace.anywhere_in_program(self.is_followed)
+        if not self.switches:
+            return self.begins
+        return self.begins & ~self.trace.anywhere_in_program(self.is_meant)
 
     def _is_followed(self, switch: Switch) -> Mask:
         """Rows from a beginning on to the next one, or to the next program, in which something belongs to the mode."""

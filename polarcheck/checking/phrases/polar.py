@@ -135,7 +135,7 @@ def with_machines(other_mode: OtherMode, row: int) -> str:
 
 def else_a_macro(other_mode: OtherMode, row: int) -> str:
     """What else it may be, where nothing behind it tells."""
-    return "" if other_mode.is_followed[row] else ", unless it is a macro of the builder"
+    return "" if other_mode.is_meant[row] else ", unless it is a macro of the builder"
 
 
 def not_simulated(trace: Trace, infeed: Infeed) -> Iterator[tuple[str, int]]:

@@ -17,7 +17,8 @@ def polar_code_of_another_control(other_mode: OtherMode) -> Hits:
     does not know the code stops at it or, worse, takes it for something else, and turns C by degrees where a length is
     meant. Nothing of such a section is looked at here. Check the program with the machine that it is for, or have it
     written for this one. Standing alone, without the code that ends the mode and without a move of the second axis at
-    feed behind it, the code may be a macro of the builder and is a warning. One finding stands for the program.
+    feed behind it, a G code may be a macro of the builder and is a warning; a word as TRANSMIT is none. One finding
+    stands for the program.
 
     Source: FANUC B-62764EN/01, p. 51; Haas codes, G112; Okuma OSP-P300 post, G137; Siemens manual, TRANSMIT.
 
@@ -49,6 +50,13 @@ def polar_code_of_another_control(other_mode: OtherMode) -> Hits:
         G0 Z5.
         M30
 
+    Bad:
+
+        O1
+        TRANSMIT          (expect: polar-code-of-another-control)
+        G0 Z5.
+        M30
+
     Good, machine haas-lathe:
 
         O1
@@ -77,4 +85,4 @@ def polar_code_of_another_control(other_mode: OtherMode) -> Hits:
     """
     # Compares nothing: what the code is for shows in the blocks behind it, which the table looks at.
     may_be_macro = other_mode.may_be_macro
-    return graded(error=other_mode.is_followed, warning=may_be_macro, at=other_mode.words, undecided=may_be_macro)
+    return graded(error=other_mode.is_meant, warning=may_be_macro, at=other_mode.words, undecided=may_be_macro)
