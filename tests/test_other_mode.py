@@ -105,6 +105,14 @@ def test_the_one_finding_names_the_machines_that_know_the_code(program: str, nam
     assert f"--machine {machines}" in found.message
 
 
+def test_no_machine_is_named_for_a_code_that_its_own_files_do_not_have() -> None:
+    """On siemens-transmit G12.1 is what TRANSMIT is read as; no more than three machines are named."""
+    alone = the_one(report_of(TURNING.format("G12.1\n"), "haas-lathe")).message
+    assert "--machine fanuc, gsk-988 or mazak-eia, unless" in alone
+    turned = the_one(report_of("O1\nG98 G0 X50. C0\nG12.1\nG1 X40. Y5. F200\nG13.1\nM30\n", "haas-lathe")).message
+    assert "siemens" not in turned
+
+
 @pytest.mark.parametrize(
     ("code", "name"), [("G137", "fanuc"), ("G112", "okuma-osp"), ("G12.1", "haas-lathe"), ("G112", "mazak-eia")]
 )

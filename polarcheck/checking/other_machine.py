@@ -20,7 +20,7 @@ from polarcheck.table.mode_words import ModeWords
 from polarcheck.table.trace import Trace
 
 #: More titles than this in one message help nobody.
-_NAMED = 3
+NAMED = 3
 
 
 class Fit(msgspec.Struct, frozen=True):
@@ -31,7 +31,7 @@ class Fit(msgspec.Struct, frozen=True):
 
     def text(self) -> str:
         """`Haas lathe (--machine haas-lathe): Y is the second axis there`."""
-        named = [f"{profile.machine.title} (--machine {profile.name})" for profile in self.profiles[:_NAMED]]
+        named = [f"{profile.machine.title} (--machine {profile.name})" for profile in self.profiles[:NAMED]]
         return f"{' or '.join(named)}: {', '.join(self.reasons)}"
 
 

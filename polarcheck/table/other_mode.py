@@ -113,7 +113,7 @@ class OtherMode:
     def _is_followed(self, switch: Switch) -> Mask:
         """Rows from a beginning on to the next one, or to the next program, in which something belongs to the mode."""
         begins = _mask(self.trace, switch.rows)
-        ends = self._has(off for profile in switch.known_by for off in ends_of(profile, switch.name))
+        ends = self._ends(switch)
         axes = {profile.machine.polar.virtual_axis for profile in switch.known_by}
         at_feed = np.isin(self.trace.motion, (Motion.LINE, Motion.CW, Motion.CCW))
         at_feed |= self._has(code for profile in switch.known_by for code in profile.machine.control.motion_codes)
@@ -122,6 +122,10 @@ class OtherMode:
         found = np.zeros(len(self.trace) + 1, bool)
         found[stretch[ends | cuts]] = True
         return found[stretch]
+
+    def _ends(self, switch: Switch) -> Mask:
+        """Rows with what ends the mode on any of the machines that know the switch."""
+        return self._has(off for profile in switch.known_by for off in ends_of(profile, switch.name))
 
     def _within(self, begins: Mask, ends: Mask) -> Mask:
         """Rows in the mode of the other control: until its end, the next tool, or a section of this control."""
@@ -135,7 +139,7 @@ class OtherMode:
         axes of the moves behind it. One speaks for all that read it alike.
         """
         switch = self.switch(row)
-        within = self._within(_mask(self.trace, np.array([row])), self._has(ends_of(switch.known_by[0], switch.name)))
+        within = self._within(_mask(self.trace, np.array([row])), self._ends(switch))
         beside = {chr(self.trace.run.words.address[at]) for at in np.flatnonzero(self.trace.run.row == row)}
 
         def reads(profile: Profile) -> bool:
@@ -217,8 +221,13 @@ class OtherMode:
 
 @functools.cache
 def known_by(name: str) -> tuple[Profile, ...]:
-    """The machines that begin the mode by a code or word."""
-    return tuple(profile for profile in profiles.built_in() if _meant(profile, name) in profile.machine.polar.on)
+    """The machines that begin the mode by a code or word; a code that only stands for such a word is none of theirs."""
+    return tuple(
+        profile
+        for profile in profiles.built_in()
+        if _meant(profile, name) in profile.machine.polar.on
+        and name not in profile.written.control.native_words.values()
+    )
 
 
 def ends_of(profile: Profile, name: str) -> list[str]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from polarcheck.checking.other_machine import OtherMachine
+from polarcheck.checking.other_machine import NAMED, OtherMachine
 from polarcheck.checking.phrases.common import codes, executed_word, outside, switch_off
 from polarcheck.machines.codes import spelled
 from polarcheck.machines.machine import Machine
@@ -128,8 +128,8 @@ def on_of_this(machine: Machine) -> str:
 
 
 def with_machines(other_mode: OtherMode, row: int) -> str:
-    """The machines that know the code, as in `--machine fanuc or gsk-988`."""
-    *others, last = [profile.name for profile in other_mode.machines(row)]
+    """The machines that know the code, or the first of them, as in `--machine fanuc or gsk-988`."""
+    *others, last = [profile.name for profile in other_mode.machines(row)[:NAMED]]
     return f"--machine {', '.join(others)} or {last}" if others else f"--machine {last}"
 
 
