@@ -135,18 +135,19 @@ class Overcuts:
         first: dict[int, int] = {}
 
         def found(block: int) -> int:
-            while first.setdefault(block, block) != block:
-                block = first[block]
+            while (one := first.setdefault(block, block)) != block:
+                first[block] = first[one]  # a shorter way for the next
+                block = one
             return block
 
         block = self.trace.run.block
         for cutting, cut_into in zip(block[self.cuts.row].tolist(), block[self.cuts.into].tolist(), strict=True):
             one, other = found(cutting), found(cut_into)
             first[max(one, other)] = min(one, other)
-        column = np.full(len(self.trace), -1)
-        for one in first:
-            column[block == one] = found(one)
-        return column
+        label = np.full(len(self.trace.text.blocks), -1)
+        for one in list(first):
+            label[one] = found(one)
+        return np.asarray(label[block])
 
     @cached_property
     def sweep_depth(self) -> Floats:
