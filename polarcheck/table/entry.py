@@ -187,6 +187,11 @@ class Entry:
         return told
 
     @property
+    def radius_off_comment(self) -> Floats:
+        """How far a given R is from what a comment tells of its offset [mm]; NaN where none does."""
+        return np.abs(np.abs(self.trace.radius_of_offset) - self.radius_told)
+
+    @property
     def stock_diameter(self) -> Floats:
         """Of the stock [mm]; NaN where the job gives none."""
         return np.broadcast_to(self.trace.job.stock.diameter * self.trace.job_scale, len(self.trace))

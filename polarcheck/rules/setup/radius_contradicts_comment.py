@@ -61,6 +61,5 @@ def radius_contradicts_comment(trace: Trace, entry: Entry) -> Hits:
         G13.1
         M30
     """
-    given = abs(trace.radius_of_offset)
-    contradicts = (abs(given - entry.radius_told) > _WEAR) & (given > _WEAR)
+    contradicts = (entry.radius_off_comment > _WEAR) & (abs(trace.radius_of_offset) > _WEAR)
     return Hits(contradicts, values={"told": entry.radius_told})
