@@ -154,7 +154,6 @@ def test_without_a_radius_the_path_of_the_tool_is_not_known() -> None:
     assert (found.nearest, found.c_feed, found.c_feed_line, found.ramp_used) == (None, None, None, None)
 
 
-@pytest.mark.xfail(strict=True, reason="the time is that of the programmed path")
 def test_without_a_radius_the_time_of_its_path_is_not_known() -> None:
     assert sections(PROGRAM)[0].time is None
 

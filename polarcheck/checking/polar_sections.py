@@ -107,4 +107,6 @@ def _ramp_used(trace: Trace, ramps: Ramps) -> Floats:
 
 def _time(moves: Moves, count: int) -> Floats:
     """Per section how long its moves on the plane take [s]; NaN where that of one of them is not known."""
-    return np.asarray(np.bincount(moves.section, moves.time, minlength=count), np.float64)
+    return np.asarray(
+        np.bincount(moves.section, np.where(moves.known, moves.time, np.nan), minlength=count), np.float64
+    )

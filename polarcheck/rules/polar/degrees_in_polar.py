@@ -9,7 +9,7 @@ _FAR = 2.0
 @rule(
     WARNING,
     "{word} {begins} a length of {angles.farthest:length} in the polar mode and looks like an angle: the rest of the "
-    "section lies within {angles.reach:length} of the center",
+    "section lies within {angles.reach:length} of the center; write the point of the contour",
     once="section",
     follows={"block": ("rapid-in-polar",)},
 )

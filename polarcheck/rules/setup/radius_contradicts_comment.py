@@ -9,7 +9,7 @@ _WEAR = 0.25
 @rule(
     NOTE,
     "R {trace.radius_of_offset:length} is given for offset {trace.offset_number}, the comment tells {told:length}: "
-    "{comment}",
+    "{comment}; measure the cutter",
     at=("T",),
 )
 def radius_contradicts_comment(trace: Trace, entry: Entry) -> Hits:
