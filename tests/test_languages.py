@@ -85,3 +85,27 @@ def test_a_sound_program_is_not_searched() -> None:
 @pytest.mark.parametrize("part", [b"#<a", b"O<", b"N1 ", b"L X1", b"G1 E ", b"0", b";", b"X", b"J2,", b"(", b"(\n"])
 def test_hostile_files_take_no_time(part: bytes) -> None:
     assert recognised(part * (200_000 // len(part))) is None
+
+
+@pytest.mark.parametrize("machine", ["fanuc", "haas-lathe", "gsk-988"])
+@pytest.mark.parametrize(
+    ("program", "reason", "blocks"),
+    [
+        ("G28\nG1 X10 Y10 E1.5 F1200\nG1 X20 Y10 E2.5\nX20 Y20 E3.5\n", "E1.5 in line 2", 3),
+        ("%\nO1000\nG20\nG28 U0\nG0 X1.\nG1 Z-1. E.05 F.01\nM30\n%\n", "E.05 in line 6", 1),
+    ],
+)
+def test_a_move_with_e_is_of_no_lathe(program: str, reason: str, blocks: int, machine: str) -> None:
+    """A file with too few signs of a printer to be named as one passed."""
+    report = report_of(program, machine)
+    told = [(entry.reason.partition(" is no word")[0], entry.blocks, entry.matters) for entry in report.not_evaluated]
+    assert (reason, blocks, True) in told
+    assert report.verdict != "pass"
+
+
+@pytest.mark.parametrize(
+    "block", ["G32 Z-10. E.05", "G92 X20. Z-10. E.05", "G4 E5.", "(E1.5) G1 X10. F.1", "G1 X#1 F.1"]
+)
+def test_e_elsewhere_says_nothing(block: str) -> None:
+    report = report_of(f"O1\nG21 G28 U0 W0\nT0101\nG0 X50. Z2.\n{block}\nM30\n")
+    assert not [entry for entry in report.not_evaluated if entry.reason.startswith("E")]

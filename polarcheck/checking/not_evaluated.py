@@ -10,7 +10,7 @@ import numpy as np
 from polarcheck.arrays import Floats, Mask, Rows
 from polarcheck.checking.finding import NotEvaluated
 from polarcheck.checking.macro_faults import reason_of
-from polarcheck.checking.phrases.polar import not_simulated, not_understood, on_cylinder
+from polarcheck.checking.phrases.polar import extrudes, not_simulated, not_understood, on_cylinder
 from polarcheck.checking.rule import Rule
 from polarcheck.checking.tables import Tables
 from polarcheck.table.trace import Trace
@@ -42,6 +42,7 @@ def unexecuted(tables: Tables) -> Iterator[NotEvaluated]:
         *not_simulated(trace, tables["infeed"]),
         not_understood(trace, tables["other_mode"]),
         on_cylinder(trace),
+        extrudes(trace),
     ):
         if count:
             yield NotEvaluated(rule="all", reason=reason, blocks=count)

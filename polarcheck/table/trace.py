@@ -14,6 +14,7 @@ from polarcheck.arrays import Floats, Mask, Rows, States
 from polarcheck.execution.programs import find_programs
 from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.machines.modal import FeedMode, Motion, Side
+from polarcheck.reading.words import NumberFault
 from polarcheck.table.filling import before, fill_down
 from polarcheck.table.positions import Positions
 
@@ -57,6 +58,20 @@ class Trace(Positions):
         radius = np.array([self.has(address) & ~(self.word(address) == 0) for address in _CYLINDER_WORDS])
         ends = self.changes_tool | self.ends_program | self.starts
         return fill_down(written & radius.any(axis=0), written | ends, False).astype(bool)
+
+    @cached_property
+    def extrudes(self) -> Mask:
+        """
+        G0 or G1 with a number in E, as printers feed their filament.
+
+        On a lathe E is a word beside threads and beside the switch of the mode, and of no move.
+        """
+        e = self.word_indices("E")
+        e = e[self.run.words.fault[e] == NumberFault.NONE]
+        if not len(e):
+            return np.zeros(len(self), bool)
+        moves = np.isin(self.state("motion"), (Motion.RAPID, Motion.LINE)) & self.uses_axes & ~self.in_cycle
+        return np.asarray(self.with_words(e) & moves & ~self.switches_on)
 
     # ---- tool offset ----
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from polarcheck.checking.other_machine import NAMED, OtherMachine
-from polarcheck.checking.phrases.common import codes, executed_word, outside, switch_off
+from polarcheck.checking.phrases.common import codes, executed_word, outside, switch_off, written
 from polarcheck.machines.codes import spelled
 from polarcheck.machines.machine import Machine
 from polarcheck.machines.own_language import shown
@@ -178,6 +178,15 @@ def not_understood(trace: Trace, other_mode: OtherMode) -> tuple[str, int]:
         f"{code} in line {line} begins the polar mode on another control, or is a macro of the builder: give --machine"
     )
     return f"{reason}, or take it out of polar.on_of_other_controls", len(rows)
+
+
+def extrudes(trace: Trace) -> tuple[str, int]:
+    """Where a move has an E, which no control of a lathe takes there, and in how many blocks."""
+    rows = trace.extrudes.nonzero()[0]
+    if not len(rows):
+        return "", 0
+    where = f"{written(trace, int(rows[0]), 'E')} in line {int(trace.line[rows[0]])}"
+    return f"{where} is no word of a move on a lathe: convert the file, or delete E", len(rows)
 
 
 def on_cylinder(trace: Trace) -> tuple[str, int]:
