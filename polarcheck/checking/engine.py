@@ -114,8 +114,7 @@ class Engine:
         Only a cause that is itself reported counts: that of a rule which is not asked explains nothing to the reader.
         """
         cause, element = np.full(len(index), -1), np.full(len(index), -1)
-        follows = self.hits(rule).follows
-        may_follow = np.ones(len(index), bool) if follows is None else follows[index]
+        may_follow = self.hits(rule).follows
         for span, names in rule.follows.items():
             for name in names:
                 if name not in self.rules:
@@ -128,7 +127,9 @@ class Engine:
                 order = np.argsort(theirs, kind="stable")
                 own = places.span_of(span, rule.over, self.tables)[index]
                 at = order[np.minimum(np.searchsorted(theirs[order], own), len(hit) - 1)]
-                found = (theirs[at] == own) & (own >= 0) & (cause < 0) & may_follow
+                found = (theirs[at] == own) & (own >= 0) & (cause < 0)
+                if span in may_follow:
+                    found &= may_follow[span][index]
                 cause[found], element[found] = self._names.index(name), hit[at[found]]
         return cause, element
 

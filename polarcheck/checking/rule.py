@@ -80,8 +80,8 @@ class Hits(msgspec.Struct, frozen=True):
 
     mask: bool per element of what the rule is `over`. severity: one for all of them, or one per element, where it is
     not the rule's own. at: bool per executed word, the words at fault, where the rule's own `at` cannot name them.
-    values: for the message, by name: a column with a value per element, or one value for all. follows: bool per
-    element, those to which the rule's own `follows` applies, where it does not to all.
+    values: for the message, by name: a column with a value per element, or one value for all. follows: by
+    span of the rule's own `follows`, bool per element, those to which it applies, where it does not to all.
     undecided: bool per element, those of which nobody can say that something is wrong: they leave the file unverified.
     """
 
@@ -89,7 +89,7 @@ class Hits(msgspec.Struct, frozen=True):
     severity: Severity | States | None = None
     at: Mask | None = None
     values: Mapping[str, Any] = {}
-    follows: Mask | None = None
+    follows: Mapping[str, Mask] = {}
     undecided: Mask | None = None
 
 
@@ -100,7 +100,7 @@ def graded(
     note: Mask | None = None,
     at: Mask | None = None,
     values: Mapping[str, Any] | None = None,
-    follows: Mask | None = None,
+    follows: Mapping[str, Mask] | None = None,
     undecided: Mask | None = None,
 ) -> Hits:
     """Hits of several severities: of an element that stands in more than one mask the highest counts."""
@@ -110,7 +110,7 @@ def graded(
     severity = np.zeros(len(given[0][1]), np.int16)
     for level, mask in given:
         severity[mask] = level
-    return Hits(severity > 0, severity, at, values or {}, follows, undecided)
+    return Hits(severity > 0, severity, at, values or {}, follows or {}, undecided)
 
 
 class Rule(msgspec.Struct, frozen=True):

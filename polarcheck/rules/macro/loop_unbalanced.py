@@ -7,6 +7,7 @@ from polarcheck.checking.rule import ERROR, Faults, Mask, rule
     ERROR,
     "{reason}; the control stops here: close each loop with an END of its own number, the inner loop first",
     over="faults",
+    follows={"block": ("loop-number-out-of-range",)},
 )
 def loop_unbalanced(faults: Faults) -> Mask:
     """
@@ -23,7 +24,7 @@ def loop_unbalanced(faults: Faults) -> Mask:
         #1=0
         WHILE[#1 LT 3]DO1   (expect: loop-unbalanced)
         #1=#1+1
-        DO4              (expect: loop-number-out-of-range, loop-unbalanced)
+        DO4              (expect: loop-number-out-of-range)
         M30
 
     Bad:

@@ -3,7 +3,7 @@ from __future__ import annotations
 from polarcheck.checking.rule import WARNING, Faults, Mask, rule
 
 
-@rule(WARNING, "{shown} {reason}", over="faults")
+@rule(WARNING, "{shown} {reason}", over="faults", follows={"block": ("too-many-digits",)})
 def subprogram_missing(faults: Faults) -> Mask:
     """
     Called program that is not found.
@@ -30,7 +30,7 @@ def subprogram_missing(faults: Faults) -> Mask:
 
         O0001
         M98              (expect: subprogram-missing)
-        M98 P10000000000000000000   (expect: subprogram-missing, too-many-digits)
+        M98 P10000000000000000000   (expect: too-many-digits)
         M30
 
     Good:

@@ -7,7 +7,7 @@ from polarcheck.checking.rule import ERROR, Hits, OtherMode, Written, rule
     ERROR,
     "{text}: {number_fault}{count:blocks}",
     over="words",
-    follows={"file": ("polar-code-of-another-control",)},
+    follows={"file": ("polar-code-of-another-control",), "block": ("comment-nested", "comment-not-closed")},
 )
 def bad_number(written: Written, other_mode: OtherMode) -> Hits:
     """
@@ -37,4 +37,4 @@ def bad_number(written: Written, other_mode: OtherMode) -> Hits:
         G13.1
     """
     count = written.unreadable_count
-    return Hits(count > 0, values={"count": count}, follows=other_mode.explained)
+    return Hits(count > 0, values={"count": count}, follows={"file": other_mode.explained})

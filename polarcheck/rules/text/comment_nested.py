@@ -19,7 +19,8 @@ def comment_nested(written: Written) -> Hits:
 
     Bad:
 
-        O0001 (FLATS (2 X) 180 DEG)   (expect: comment-nested, bad-number, program-end-missing)
+        O0001 (FLATS (2 X) 180 DEG)   (expect: comment-nested)
+        M30
 
     Bad:
 

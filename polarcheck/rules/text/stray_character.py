@@ -7,7 +7,7 @@ from polarcheck.checking.rule import ERROR, Hits, OtherMode, Written, rule
     ERROR,
     "{stray}{count:blocks}",
     over="strays",
-    follows={"file": ("polar-code-of-another-control",)},
+    follows={"file": ("polar-code-of-another-control",), "block": ("comment-nested", "comment-not-closed")},
 )
 def stray_character(written: Written, other_mode: OtherMode) -> Hits:
     """
@@ -49,4 +49,4 @@ def stray_character(written: Written, other_mode: OtherMode) -> Hits:
         M30 %
     """
     count = written.stray_count
-    return Hits(count > 0, values={"count": count}, follows=other_mode.explained_strays)
+    return Hits(count > 0, values={"count": count}, follows={"file": other_mode.explained_strays})

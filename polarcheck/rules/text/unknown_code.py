@@ -47,6 +47,8 @@ def unknown_code(words: Words, written: Written, machine: Machine, other_mode: O
     """
     unknown = written.unknown_code_count > 0
     if not machine.control.unknown_codes_are_errors:
-        return Hits(unknown, NOTE, follows=other_mode.explained)
+        return Hits(unknown, NOTE, follows={"file": other_mode.explained})
     may_call_macro = (words.value >= OWN_CODES_END) & (words.decimals == 0)
-    return graded(error=unknown & ~may_call_macro, warning=unknown & may_call_macro, follows=other_mode.explained)
+    return graded(
+        error=unknown & ~may_call_macro, warning=unknown & may_call_macro, follows={"file": other_mode.explained}
+    )
