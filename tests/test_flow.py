@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from programs import report_of, tables_of, trace_of
+from programs import report_of, said, tables_of, trace_of
 
 CUTTER = "1:radius=4"
 HEAD = """O0001
@@ -191,3 +191,27 @@ def test_modal_call_runs_after_each_move() -> None:
 def test_return_with_p_goes_to_the_caller() -> None:
     trace = trace_of("O1\nM98 P2\nG0 X1.\nN10 G0 X2.\nM30\nO2\nG0 X5.\nM99 P10\n")
     np.testing.assert_array_equal(trace.word("X")[trace.has("X")], [5.0, 2.0])
+
+
+def test_an_endless_program_is_no_fault_of_those_behind_it() -> None:
+    """The statements of the whole file were counted: every program behind a run-in cycle was endless, too."""
+    endless = "O{0}\nN10 G0 X50.\nX60.\n#1=#1+1\nGOTO10\nM30\n"
+    sound = "O{0}\n#1=0\nWHILE[#1LT9]DO1\n#1=#1+1\nEND1\nG0 X50.\nM30\n"
+    report = report_of(endless.format(1) + sound.format(2) + sound.format(3))
+    assert [(found.line, found.rule) for found in report.findings] == [(4, "endless-loop")]
+    many = "".join(endless.format(number) for number in range(1, 9)) + sound.format(9)
+    lines = [found.line for found in report_of(many).findings if found.rule == "endless-loop"]
+    assert len(lines) == 8
+    assert max(lines) <= 48
+
+
+def test_a_loop_that_waits_for_what_is_not_known_is_not_evaluated() -> None:
+    waits = "O1\nN10 G0 X50.\nIF[#1005EQ1]GOTO20\nX60.\nGOTO10\nN20 M30\n"
+    report = report_of(waits)
+    assert (said(report), report.verdict) == ([], "unverified")
+    assert [entry.reason.partition(" and is")[0] for entry in report.not_evaluated] == [
+        "the condition depends on a value that is not known,"
+    ]
+    assert said(report_of(waits.replace("IF[#1005EQ1]GOTO20\n", ""))) != []
+    other = report_of(waits + "O2\nN10 G0 X50.\nGOTO10\nM30\n")
+    assert [found.rule for found in other.findings if found.severity == "error"] == ["endless-loop"]

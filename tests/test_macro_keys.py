@@ -156,4 +156,5 @@ def test_a_number_of_any_length_is_a_finding_and_no_warning(block: str, digits: 
 
 def test_a_call_of_twenty_digits_names_no_program() -> None:
     report = report_of("O1\nM98P10000000000000000000\nM30\n")
-    assert said(report) == [(2, "subprogram-missing"), (2, "too-many-digits")]
+    assert said(report) == [(2, "too-many-digits")]
+    assert [one.rule for one in report.findings[0].follows] == ["subprogram-missing"]

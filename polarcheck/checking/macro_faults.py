@@ -6,6 +6,7 @@ One table maps each kind of fault to its rule; two more have the reasons, of fau
 
 from __future__ import annotations
 
+import bisect
 from collections.abc import Mapping
 from functools import cached_property
 from typing import Final
@@ -14,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from polarcheck.execution.kinds import FaultKind, RemarkKind
+from polarcheck.execution.programs import find_programs
 from polarcheck.execution.run import Remark, Run
 from polarcheck.machines.machine import Machine
 
@@ -66,6 +68,8 @@ RULES: Final[Mapping[FaultKind, str]] = {
     "sequence-number-twice": "duplicate-sequence-number",
     "never-run": "unreachable-block",
 }
+
+_ENDLESS = "endless-loop"
 
 #: Where a rule reports several kinds: what is wrong, to follow the words at fault or to stand for itself.
 _REASONS: Final[Mapping[FaultKind, str]] = {
@@ -148,10 +152,26 @@ class Faults:
         rules = []
         for fault in self.run.faults:
             rule = RULES[fault.kind]
+            if rule == _ENDLESS and self._program(fault.block) in self._undecided:
+                rules.append("")  # what is not known may end it: that is told as not evaluated
+                continue
             key = rule, fault.values.get("program", fault.start)
             rules.append("" if key in said else rule)
             said.add(key)
         return np.array(rules, np.str_)
+
+    @cached_property
+    def _first_blocks(self) -> list[int]:
+        return [program.first for program in find_programs(self.run.text).programs]
+
+    def _program(self, block: int) -> int:
+        """The number of the program that a block belongs to."""
+        return bisect.bisect_right(self._first_blocks, block)
+
+    @cached_property
+    def _undecided(self) -> set[int]:
+        """The programs in which a condition hangs on a value that is not known."""
+        return {self._program(one.block) for one in self.run.remarks if one.kind == "condition-unknown"}
 
     def values(self, index: int) -> dict[str, str | int | float]:
         """What is known of a fault, by name, the limits of the control among it."""

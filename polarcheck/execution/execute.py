@@ -21,6 +21,10 @@ from polarcheck.execution.statement import Kind, Statement, Word
 from polarcheck.machines.codes import code_numbers, code_set
 from polarcheck.machines.job import Running
 
+#: So many endless programs of a file get all the statements that are asked for, those behind them so many each.
+_ENDLESS = 4
+_LEAST = 1000
+
 
 class Execution(Calls):
     """
@@ -46,7 +50,8 @@ class Execution(Calls):
         self.variables = Variables(listing.macro)
         self.stack: list[Level] = []
         self.changes = 0
-        self._count = 0
+        self._count = self._total = 0
+        self._allowed = asked.max_statements
         self._last_change: dict[tuple[int, int], int] = {}
         self._began = time.monotonic()
 
@@ -85,6 +90,10 @@ class Execution(Calls):
         if self._returns(program):
             self.variables.forget()
         self.modal = None
+        # An endless program must not be the fault of those behind it; of many, the later ones get less.
+        most = self.asked.max_statements
+        self._total += self._count
+        self._count, self._allowed = 0, most if self._total <= _ENDLESS * most else min(_LEAST, most)
         self.stack = [Level(program)]
         self.rows.start_program()
         block = program.first
@@ -133,8 +142,8 @@ class Execution(Calls):
         asked = self.asked
         if len(self.rows) > asked.max_blocks:
             self.endless("too-many-blocks", block, limit=asked.max_blocks)
-        elif self._count > asked.max_statements:
-            self.endless("too-many-statements", block, limit=asked.max_statements)
+        elif self._count > self._allowed:
+            self.endless("too-many-statements", block, limit=self._allowed)
         elif self._count % 256 == 0 and time.monotonic() - self._began > asked.max_seconds:
             self.endless("runs-too-long", block, limit=asked.max_seconds)
 
