@@ -775,3 +775,13 @@ def test_what_follows_is_shown_where_it_is_asked_for(near: str) -> None:
     assert NEXT_OF_NEAR not in call("check", near, "--tool", "1:radius=4").stdout
     assert "1 error" in asked
     assert "2 errors" not in asked
+
+
+def test_angles_under_the_address_of_another_control_are_named_as_written() -> None:
+    """No word was at fault where the virtual axis has another address, and the message could not be made."""
+    steps = "\n".join(f"C{angle}." for angle in range(72, 361, 72))
+    program = f"O1\nG21 G98 T0101\nG0 X60. C0\nG12.1\nG1 X40. F200\n{steps}\nX60.\nG13.1\nM30\n"
+    for machine in ("fanuc", *OTHERS, "citizen", "siemens-transmit"):
+        found = [one for one in report_of(program, machine).findings if one.rule == "degrees-in-polar"]
+        assert not found or found[0].message.startswith("C72. is one of 5 steps"), machine
+    assert found

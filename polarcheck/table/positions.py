@@ -50,10 +50,15 @@ class Positions(Lengths):
         elsewhere = mode.virtual_axis_of_other_controls
         return (mode.virtual_axis, mode.virtual_axis_incremental), *zip(elsewhere[::2], elsewhere[1::2], strict=False)
 
+    @property
+    def virtual_words(self) -> Rows:
+        """The words of the virtual axis, be it under the address of another control."""
+        return self.word_indices(*(address for pair in self._virtual for address in pair))
+
     @cached_property
     def programs_virtual_axis(self) -> Mask:
         """Has a word of the virtual axis, be it under the address of another control."""
-        return self.has(*(address for pair in self._virtual for address in pair))
+        return self.with_words(self.virtual_words)
 
     @cached_property
     def motion(self) -> States:
