@@ -1,6 +1,6 @@
 """Rules that report a cause from which findings of many other rules follow, by what is wrong."""
 
-#: The control, or X, or the second axis is another than the one that the section was written for.
+#: X or the second axis is another than the one that the section was written for, or there is none.
 SECTION_READ_OTHERWISE = (
     "wrong-axis-address-in-polar",
     "diameter-radius-mixed",

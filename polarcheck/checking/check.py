@@ -9,7 +9,7 @@ from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 import msgspec
 
 from polarcheck.checking.called_files import in_the_file
-from polarcheck.checking.engine import Engine, in_order, program_heads, with_following
+from polarcheck.checking.engine import Engine, in_order, with_following
 from polarcheck.checking.finding import ERROR, SEVERITIES, FileReport, Finding, NotEvaluated, PolarSection, Undecided
 from polarcheck.checking.not_evaluated import unevaluated, unexecuted
 from polarcheck.checking.other_machine import OtherMachine
@@ -88,7 +88,7 @@ def report_of(engine: Engine) -> FileReport:
         not_evaluated += unevaluated(tables, rule)
     not_evaluated += engine.unlisted
     text = trace.text
-    own = [name for block, name in program_heads(trace) if not text.source.part_of(int(text.blocks.line[block]))]
+    own = [name for block, name in engine.heads if not text.source.part_of(int(text.blocks.line[block]))]
     return FileReport(
         path=text.source.path,
         programs=own,

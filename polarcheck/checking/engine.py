@@ -20,7 +20,6 @@ from polarcheck.table.trace import Trace
 
 #: More findings of one rule in one file are counted, not listed: nobody reads them, and hostile files stay bounded.
 LISTED = 1000
-_BLOCK_LENGTH = 200
 
 
 class _Listed(msgspec.Struct, frozen=True):
@@ -40,7 +39,7 @@ class Engine:
     The hits of one run, each rule run once.
 
     severities: by rule, where it is not the rule's own. rules: those that are asked; none that is off. known: the hits
-    of some of them.
+    of some of them. heads: the block and the name of each program.
     """
 
     def __init__(
@@ -56,7 +55,7 @@ class Engine:
         self.rules = {rule.name: rule for rule in rules}
         self.unlisted: list[NotEvaluated] = []
         self._hits: dict[str, Hits] = dict(known or {})
-        self._heads = program_heads(self.trace)
+        self.heads = program_heads(self.trace)
 
     def hits(self, rule: Rule) -> Hits:
         """What the rule finds."""
@@ -149,9 +148,8 @@ class Engine:
             key = places.span_of(rule.once, rule.over, self.tables)[index]
             key = np.where(key < 0, -1 - np.arange(len(index)), key)  # outside of all, each is by itself
             _, first, group = np.unique(key, return_index=True, return_inverse=True)
-            group = block[first][
-                group
-            ]  # what begins in the same block runs again, as in a program that is called twice
+            # What begins in the same block runs again, as in a program that is called twice.
+            group = block[first][group]
         _, first, group, count = np.unique(group, return_index=True, return_inverse=True, return_counts=True)
         if rule.worst and len(first) < len(index):
             value = self.tables.column(rule.worst)[index]
@@ -175,7 +173,7 @@ class Engine:
         own = _severity(rule, hits, place).name.lower()
         is_note = trace.machine.severities.get(rule.name, own) == NOTE.name.lower()
         text, values = fill(rule, hits, self.tables, place, at, count)
-        block = _block_text(trace, place.block)
+        block = places.block_text(trace, place.block)
         section = int(trace.section[place.row]) if place.row >= 0 else -1
         kind = Undecided if hits.undecided is not None and hits.undecided[place.index] else Finding
         return kind(
@@ -197,8 +195,8 @@ class Engine:
         )
 
     def _program_name(self, block: int) -> str | None:
-        at = bisect.bisect_right(self._heads, block, key=lambda head: head[0])
-        return self._heads[at - 1][1] if at else None
+        at = bisect.bisect_right(self.heads, block, key=lambda head: head[0])
+        return self.heads[at - 1][1] if at else None
 
 
 def _unlisted(rule: Rule, count: int) -> NotEvaluated:
@@ -256,8 +254,3 @@ def _fingerprint(rule: str, block: str) -> str:
     import hashlib  # late: a program without findings does not need it
 
     return hashlib.sha256(f"{rule}\0{places.squeezed(block)}".encode("utf-8", "replace")).hexdigest()[:16]
-
-
-def _block_text(trace: Trace, block: int) -> str:
-    start, end = int(trace.text.blocks.start[block]), int(trace.text.blocks.end[block])
-    return trace.text.source.excerpt(start, min(end, start + _BLOCK_LENGTH)).strip()

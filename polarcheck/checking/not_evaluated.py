@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -11,6 +12,7 @@ from polarcheck.arrays import Floats, Mask, Rows
 from polarcheck.checking.finding import NotEvaluated
 from polarcheck.checking.macro_faults import reason_of
 from polarcheck.checking.phrases.polar import extrudes, not_simulated, not_understood, on_cylinder
+from polarcheck.checking.places import block_in_line
 from polarcheck.checking.rule import Rule
 from polarcheck.checking.tables import Tables
 from polarcheck.table.trace import Trace
@@ -22,6 +24,8 @@ _OF_MOVES = ("tool_center.c_feed", "tool_center.c_acceleration")
 _WITHOUT_WEIGHT = ("trace.nose",)
 #: Causes, beside the offset numbers, for which a move is not known.
 _POSITION, _NO_FEED, _FEED_OF_SPINDLE = -3, -2, -1
+#: Of a block that is named; more is cut off [characters].
+_BLOCK_LENGTH = 40
 
 
 def unexecuted(tables: Tables) -> Iterator[NotEvaluated]:
@@ -33,12 +37,8 @@ def unexecuted(tables: Tables) -> Iterator[NotEvaluated]:
             rule="all", reason=f"the file is written for {language.title}: convert it for this lathe", blocks=len(trace)
         )
         return
-    reasons: dict[str, list[int]] = {}
-    for remark in trace.run.remarks:
-        reasons.setdefault(reason_of(remark), []).append(int(trace.text.blocks.line[remark.block]))
-    for reason, lines in reasons.items():
-        yield NotEvaluated(rule="all", reason=reason, blocks=len(lines))
     for reason, count in (
+        *Counter(map(reason_of, trace.run.remarks)).items(),
         *not_simulated(trace, tables["infeed"]),
         not_understood(trace, tables["other_mode"]),
         on_cylinder(trace),
@@ -146,21 +146,13 @@ def _no_offset(what: str, key: str) -> Callable[[Trace, int], str]:
 
 
 def _position(trace: Trace, row: int) -> str:
-    starts = np.flatnonzero(trace.starts[: row + 1])
-    lost = np.flatnonzero(trace.run.unknown[starts[-1] if len(starts) else 0 : row + 1])
+    lost = np.flatnonzero((trace.run.unknown & (trace.program == trace.program[row]))[: row + 1])
     if not len(lost):
         return "the position is not known: X was not programmed before the polar mode; write G0 X... before it"
-    at = int(lost[-1] + (starts[-1] if len(starts) else 0))
-    block = int(trace.run.block[at])
-    text = trace.text.source.excerpt(int(trace.text.blocks.start[block]), int(trace.text.blocks.end[block]))
-    written = " ".join(text.split())[:_BLOCK_LENGTH]
-    remedy = f"{_REMEDY}, or program X and C after it"
-    return f"the position is not known after line {int(trace.line[at])}, {written}, which is not executed{remedy}"
-
-
-#: What is given for a called program.
-_REMEDY = "; --subprograms FOLDER says where called programs lie"
-_BLOCK_LENGTH = 40
+    at = int(lost[-1])
+    written = f"line {int(trace.line[at])}, {block_in_line(trace, at, _BLOCK_LENGTH)}"
+    remedy = "--subprograms FOLDER says where called programs lie, or program X and C after it"
+    return f"the position is not known after {written}, which is not executed; {remedy}"
 
 
 def _feed(trace: Trace, row: int) -> str:

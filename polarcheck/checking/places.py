@@ -18,6 +18,10 @@ from polarcheck.table.trace import Trace
 _MARK = re.compile(r"(?:%[^\r\n]*)?[\0-\x20\x7f\xa0]*")
 
 
+#: Of a block that is shown [characters].
+_BLOCK_LENGTH = 200
+
+
 class Place(msgspec.Struct, frozen=True):
     """
     One element of a mask: its characters in the file, from start to end (exclusive), and its block.
@@ -180,6 +184,17 @@ def span(tables: Tables, place: Place, at: list[int]) -> tuple[int, int]:
     if not at:
         return place.start, place.end
     return int(table.start[at].min()), int(table.end[at].max())
+
+
+def block_text(trace: Trace, block: int) -> str:
+    """A block as it is written, comments included, without the blanks around it; of a very long one its beginning."""
+    start, end = int(trace.text.blocks.start[block]), int(trace.text.blocks.end[block])
+    return trace.text.source.excerpt(start, min(end, start + _BLOCK_LENGTH)).strip()
+
+
+def block_in_line(trace: Trace, row: int, length: int) -> str:
+    """The block of a row in one line, as messages name it; more than `length` characters are cut off."""
+    return " ".join(block_text(trace, int(trace.run.block[row])).split())[:length]
 
 
 def squeezed(text: str) -> str:

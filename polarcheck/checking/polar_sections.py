@@ -6,6 +6,7 @@ import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Rows
 from polarcheck.checking.finding import PolarSection
+from polarcheck.checking.quantity import rounded
 from polarcheck.checking.tables import Tables
 from polarcheck.machines.modal import Units
 from polarcheck.table.center import Center
@@ -14,9 +15,6 @@ from polarcheck.table.ramps import Ramps
 from polarcheck.table.sections import Sections
 from polarcheck.table.tool_center import ToolCenter
 from polarcheck.table.trace import Trace
-
-#: Digits behind the point: a nanometer, and as much of a degree.
-_DIGITS = 6
 
 
 def polar_sections(tables: Tables) -> list[PolarSection]:
@@ -34,7 +32,7 @@ def polar_sections(tables: Tables) -> list[PolarSection]:
     nearest = _of_sections(sections, np.where(trace.cuts, tool_center.nearest, np.inf), np.minimum, np.inf)
     ramp = _ramp_used(trace, tables["ramps"])
     time = _time(tool_center.moves, len(sections))
-    limit = _number(trace.machine.limits.c_feed)
+    limit = rounded(trace.machine.limits.c_feed)
     last = np.where(sections.left & ~sections.returned, sections.leave, sections.leave - 1)
     found = []
     for index, (enter, end, row, fast) in enumerate(
@@ -46,22 +44,17 @@ def polar_sections(tables: Tables) -> list[PolarSection]:
                 end_line=int(trace.line[min(end, len(trace) - 1)]),
                 units="inch" if trace.units[enter] == Units.INCH else "mm",
                 offset=int(trace.offset_number[row]) or None,
-                radius=_number(trace.radius[row]),
+                radius=rounded(trace.radius[row]),
                 radius_source=_radius_source(trace, row),
-                nearest=_number(nearest[index]),
-                c_feed=_number(highest[index]),
+                nearest=rounded(nearest[index]),
+                c_feed=rounded(highest[index]),
                 c_feed_line=int(trace.line[fast]) if fast >= 0 else None,
                 c_feed_limit=limit,
-                ramp_used=_number(ramp[index]),
-                time=_number(time[index]),
+                ramp_used=rounded(ramp[index]),
+                time=rounded(time[index]),
             )
         )
     return found
-
-
-def _number(value: float) -> float | None:
-    """A value as JSON can hold it, without the dust of the last bits; None for one that is not known or not there."""
-    return round(float(value), _DIGITS) + 0.0 if np.isfinite(value) else None
 
 
 def _offset_rows(trace: Trace) -> Rows:

@@ -11,6 +11,8 @@ from polarcheck.table.trace import Trace
 
 #: Digits behind the point that a program writes, in mm and in inch.
 _DIGITS = {"length": (3, 4), "diameter": (3, 4), "feed": (3, 4), "whole": (0, 0)}
+#: A nanometer, and as much of a degree.
+_CONTRACT_DIGITS = 6
 #: Values that agree in so many digits more are the same.
 _MOST_DIGITS = 9
 
@@ -75,6 +77,11 @@ class Quantity:
         if isinstance(value, float):
             return _finite(value)
         return value
+
+
+def rounded(value: float) -> float | None:
+    """A number of a contract as JSON can hold it, without the dust of the last bits; None where it is not known."""
+    return round(float(value), _CONTRACT_DIGITS) + 0.0 if np.isfinite(value) else None
 
 
 def _finite(value: float) -> float | None:

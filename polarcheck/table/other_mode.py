@@ -85,7 +85,7 @@ class OtherMode:
     @cached_property
     def begins(self) -> Mask:
         """The row begins the mode of another control."""
-        return _mask(self.trace, np.concatenate([np.zeros(0, np.int64), *(switch.rows for switch in self.switches)]))
+        return self.trace.mask_of(np.concatenate([np.zeros(0, np.int64), *(switch.rows for switch in self.switches)]))
 
     def switch(self, row: int) -> Switch:
         """The code or word in a row that begins the mode elsewhere. Raises IndexError for a row without one."""
@@ -112,7 +112,7 @@ class OtherMode:
 
     def _is_followed(self, switch: Switch) -> Mask:
         """Rows from a beginning on to the next one, or to the next program, in which something belongs to the mode."""
-        begins = _mask(self.trace, switch.rows)
+        begins = self.trace.mask_of(switch.rows)
         ends = self._ends(switch)
         axes = {profile.machine.polar.virtual_axis for profile in switch.known_by}
         at_feed = np.isin(self.trace.motion, (Motion.LINE, Motion.CW, Motion.CCW))
@@ -139,7 +139,7 @@ class OtherMode:
         axes of the moves behind it. One speaks for all that read it alike.
         """
         switch = self.switch(row)
-        within = self._within(_mask(self.trace, np.array([row])), self._ends(switch))
+        within = self._within(self.trace.mask_of(np.array([row])), self._ends(switch))
         beside = {chr(self.trace.run.words.address[at]) for at in np.flatnonzero(self.trace.run.row == row)}
 
         def reads(profile: Profile) -> bool:
@@ -240,12 +240,6 @@ def ends_of(profile: Profile, name: str) -> list[str]:
 def _meant(profile: Profile, name: str) -> str:
     """The code that a word of the machine's own language stands for; a code stands for itself."""
     return profile.machine.control.native_words.get(name, name)
-
-
-def _mask(trace: Trace, rows: Rows) -> Mask:
-    found = np.zeros(len(trace), bool)
-    found[rows] = True
-    return found
 
 
 def _reading(profile: Profile) -> tuple[object, ...]:

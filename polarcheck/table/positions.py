@@ -126,19 +126,20 @@ class Positions(Lengths):
     @cached_property
     def enters(self) -> Mask:
         """The G12.1 that begins a section."""
-        return self._rows(self.sections.enter)
+        return self.mask_of(self.sections.enter)
 
     @cached_property
     def leaves(self) -> Mask:
         """The G13.1 that ends a section."""
-        return self._rows(self.sections.leave[self.sections.left & ~self.sections.returned])
+        return self.mask_of(self.sections.leave[self.sections.left & ~self.sections.returned])
 
     @cached_property
     def enters_again(self) -> Mask:
         """A G12.1 inside a section."""
-        return self._rows(self.sections.again)
+        return self.mask_of(self.sections.again)
 
-    def _rows(self, rows: Rows) -> Mask:
+    def mask_of(self, rows: Rows) -> Mask:
+        """Per row: whether it is one of these; those beyond the last are left out."""
         mask = np.zeros(len(self), bool)
         mask[rows[rows < len(self)]] = True
         return mask
@@ -148,7 +149,7 @@ class Positions(Lengths):
         rows = np.flatnonzero(mask & (self.section >= 0))
         first = np.ones(len(rows), bool)
         first[1:] = np.diff(self.section[rows]) > 0
-        return self._rows(rows[first])
+        return self.mask_of(rows[first])
 
     @cached_property
     def in_polar(self) -> Mask:
@@ -256,7 +257,7 @@ class Positions(Lengths):
         leave = self.sections.leave[self.sections.leave < len(self)]
         c = positions(*c_words, self.enters, np.zeros(len(self)))
         c = np.where(self.section >= 0, c, np.nan)
-        resets = self._forgets("X", "U") | self._rows(leave)
+        resets = self._forgets("X", "U") | self.mask_of(leave)
         values = self._set_by("X") * self.x_factor
         for _ in range(_PASSES):
             x = positions(*x_words, resets, values)

@@ -108,7 +108,7 @@ class Trace(Positions):
         """Cutter compensation in force (Side); after a section it is off, be it that its G40 was forgotten."""
         written = self.sets("side")
         state = np.where(written, self.state("side"), Side.OFF)
-        return fill_down(state, written | self._rows(self.sections.leave) | self.starts, Side.OFF).astype(np.int16)
+        return fill_down(state, written | self.mask_of(self.sections.leave) | self.starts, Side.OFF).astype(np.int16)
 
     @cached_property
     def side_before(self) -> States:

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from polarcheck.checking.other_machine import NAMED, OtherMachine
 from polarcheck.checking.phrases.common import codes, executed_word, outside, switch_off, written
+from polarcheck.checking.places import block_in_line
 from polarcheck.machines.codes import spelled
 from polarcheck.machines.machine import Machine
 from polarcheck.machines.own_language import shown
@@ -31,6 +32,8 @@ _OF_Z = {
 }
 #: More words of a block are counted, not listed.
 _LISTED = 6
+#: Of a block that is named; more is cut off [characters].
+_BLOCK_LENGTH = 60
 #: Modal groups that must have ended at G12.1, by the list of the codes that begin them.
 _ENDED = {"scaling": "scaling", "rotation": "rotation", "mirror_image": "mirror", "constant_surface_speed": "speed"}
 
@@ -42,9 +45,7 @@ def missing_before(trace: Trace, index: int) -> str:
     off = switch_off(trace, int(sections.enter[index]))
     if row >= len(trace) or trace.starts[row]:
         return f"{off} is missing at the end of the program"
-    block = int(trace.run.block[row])
-    text = trace.text.source.excerpt(int(trace.text.blocks.start[block]), int(trace.text.blocks.end[block]))
-    return f"{off} is missing before line {int(trace.line[row])}, {' '.join(text.split())[:60]}"
+    return f"{off} is missing before line {int(trace.line[row])}, {block_in_line(trace, row, _BLOCK_LENGTH)}"
 
 
 def others(trace: Trace, at: list[int]) -> str:

@@ -10,13 +10,12 @@ from typing import Any
 import msgspec
 import numpy as np
 
+from polarcheck.checking.quantity import rounded
 from polarcheck.machines.modal import FeedMode, Motion, Side
 from polarcheck.table.moves import Moves, programmed_moves, z_along
 from polarcheck.table.tool_center import ToolCenter
 from polarcheck.table.trace import Trace
 
-#: Digits behind the point: a nanometer, and as much of a degree.
-_DIGITS = 6
 _KINDS = {Motion.CW: "cw", Motion.CCW: "ccw"}
 
 
@@ -55,13 +54,8 @@ class Move(msgspec.Struct, frozen=True):
     time: float | None
 
 
-def _number(value: float) -> float | None:
-    """A value as JSON can hold it, without the dust of the last bits."""
-    return round(float(value), _DIGITS) + 0.0 if np.isfinite(value) else None
-
-
 def _point(value: complex) -> list[float | None]:
-    return [_number(value.real), _number(value.imag)]
+    return [rounded(value.real), rounded(value.imag)]
 
 
 def moves(trace: Trace, tool_center: ToolCenter, path: str) -> Iterator[Move]:
@@ -78,18 +72,18 @@ def moves(trace: Trace, tool_center: ToolCenter, path: str) -> Iterator[Move]:
             start=_point(table.start[index]),
             end=_point(table.end[index]),
             center=None if np.isnan(center) else _point(center),
-            z=[_number(z_from[index]), _number(z_to[index])],
+            z=[rounded(z_from[index]), rounded(z_to[index])],
             path=path if table.is_of_tool[index] else "programmed",
-            radius=_number(trace.radius_of_move[row]),
-            feed=_number(table.feed[index]),
-            x_axis=[_number(abs(table.start[index])), _number(abs(table.end[index]))],
-            c_axis=[_number(c_from[index]), _number(c_to[index])],
-            nearest=_number(table.nearest[index]),
-            c_feed=_number(table.c_feed[index]),
-            x_feed=_number(table.x_feed[index]),
-            c_acceleration=_number(table.c_acceleration[index]),
-            x_acceleration=_number(table.x_acceleration[index]),
-            time=_number(table.time[index]),
+            radius=rounded(trace.radius_of_move[row]),
+            feed=rounded(table.feed[index]),
+            x_axis=[rounded(abs(table.start[index])), rounded(abs(table.end[index]))],
+            c_axis=[rounded(c_from[index]), rounded(c_to[index])],
+            nearest=rounded(table.nearest[index]),
+            c_feed=rounded(table.c_feed[index]),
+            x_feed=rounded(table.x_feed[index]),
+            c_acceleration=rounded(table.c_acceleration[index]),
+            x_acceleration=rounded(table.x_acceleration[index]),
+            time=rounded(table.time[index]),
         )
 
 
@@ -136,16 +130,16 @@ def rows(trace: Trace, tool_center: ToolCenter) -> Iterator[dict[str, Any]]:
             "side": _SIDES[Side(int(trace.side[row]))],
             "tool": int(trace.tool[row]),
             "offset_number": int(trace.offset_number[row]),
-            "radius": _number(trace.radius[row]),
+            "radius": rounded(trace.radius[row]),
             "feed_mode": _FEED_MODES[FeedMode(int(trace.feed_mode[row]))],
-            "feed": _number(trace.feed[row]),
-            "x": _number(trace.x[row]),
-            "z": _number(trace.z[row]),
-            "c": _number(trace.c_angle[row]),
-            "plane_x": _number(trace.end[row].real),
-            "plane_c": _number(trace.end[row].imag),
-            "nearest": _number(tool_center.nearest[row]) if moving else None,
-            "c_feed": _number(tool_center.c_feed[row]) if moving else None,
+            "feed": rounded(trace.feed[row]),
+            "x": rounded(trace.x[row]),
+            "z": rounded(trace.z[row]),
+            "c": rounded(trace.c_angle[row]),
+            "plane_x": rounded(trace.end[row].real),
+            "plane_c": rounded(trace.end[row].imag),
+            "nearest": rounded(tool_center.nearest[row]) if moving else None,
+            "c_feed": rounded(tool_center.c_feed[row]) if moving else None,
         }
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from polarcheck.machines.modal import MM_PER_INCH
+from polarcheck.checking.quantity import Quantity
 from polarcheck.reports import counted
 
 if TYPE_CHECKING:
@@ -65,6 +65,4 @@ def _rate(section: PolarSection) -> str:
 
 def _length(value: float, section: PolarSection) -> str:
     """A length [mm] in the units of the program."""
-    inch = section.units == "inch"
-    text = f"{value / MM_PER_INCH:.4f}" if inch else f"{value:.3f}"
-    return f"{text.rstrip('0').rstrip('.')} {section.units}"
+    return f"{Quantity(value, section.units == 'inch', diameter=False):length}"
