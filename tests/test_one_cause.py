@@ -785,3 +785,16 @@ def test_angles_under_the_address_of_another_control_are_named_as_written() -> N
         found = [one for one in report_of(program, machine).findings if one.rule == "degrees-in-polar"]
         assert not found or found[0].message.startswith("C72. is one of 5 steps"), machine
     assert found
+
+
+@pytest.mark.parametrize("scale", [1, 25.4])
+def test_a_wrong_word_in_an_arc_that_ends_right_explains_no_other_arc(scale: float) -> None:
+    """The end of an arc with K is where it is meant: what is wrong behind it is wrong itself."""
+    x40, x25, x20 = (f"{number / scale:.4f}" for number in (40, 25, 20))
+    program = (
+        f"O1\n{'G21' if scale == 1 else 'G20'} G98 T0101\nG0 X{120 / scale:.4f} C0\nG12.1\n"
+        f"G1 X-{x25} C{x40} F{100 / scale:.3f}\nG3 X-{x40} C{x25} K-{15 / scale:.4f}\nG1 C0\nG3 X{x20} I{x20}\n"
+        f"G1 X{120 / scale:.4f}\nG13.1\nM30\n"
+    )
+    found = [(one.line, one.rule) for one in report_of(program).findings if one.severity == "error"]
+    assert found == [(6, "arc-word-of-other-plane"), (8, "arc-end-off-circle")]

@@ -6,12 +6,16 @@ SECTION_READ_OTHERWISE = (
     "diameter-radius-mixed",
     "second-axis-never-programmed",
 )
-#: An arc that there is not, so that nobody knows the way to its end.
-NO_SUCH_ARC = (
+#: An arc whose end may be what is wrong, and then what begins there is, too.
+END_IN_DOUBT = (
     "arc-center-on-path",
     "arc-end-off-circle",
     "arc-radius-too-small",
     "arc-without-center",
+)
+#: An arc that there is not, so that nobody knows the way to its end.
+NO_SUCH_ARC = (
+    *END_IN_DOUBT,
     "arc-word-of-other-plane",
     "arc-off-polar-plane",
 )

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.causes import NO_SUCH_ARC, SECTION_READ_OTHERWISE
+from polarcheck.checking.causes import END_IN_DOUBT, SECTION_READ_OTHERWISE
 from polarcheck.checking.rule import ERROR, Arcs, Mask, rule
 from polarcheck.geometry.tolerances import ROUNDING
 
@@ -12,8 +12,8 @@ from polarcheck.geometry.tolerances import ROUNDING
     follows={
         "block": ("arc-off-polar-plane", "arc-word-of-other-plane"),
         "loop": ("number-without-point",),
-        "X before": NO_SUCH_ARC,
-        "C before": NO_SUCH_ARC,
+        "X before": END_IN_DOUBT,
+        "C before": END_IN_DOUBT,
         "section": SECTION_READ_OTHERWISE,
     },
 )
