@@ -147,7 +147,7 @@ MISTAKES = [
     # ---- arcs ----
     Mistake("wrong I", ROUND, {"I-10.": "I-12."}, "G3 X20. C20. I-12. J0", "arc-end-off-circle", ("overcut",)),
     Mistake("wrong J", ROUND, {"J-10.": "J-13."}, "G3 X-40. C10. I0 J-13.", "arc-end-off-circle", ("overcut",)),
-    Mistake("sign of I", ROUND, {"I-10.": "I10."}, "G3 X20. C20. I10. J0", "arc-end-off-circle", ("overcut",)),
+    Mistake("sign of I", ROUND, {"I-10.": "I10."}, "G3 X20. C20. I10. J0", "arc-end-off-circle", ("interference",)),
     Mistake("J for I", ROUND, {"I-10. J0": "I0 J-10."}, "G3 X20. C20. I0 J-10.", "arc-end-off-circle", ("overcut",)),
     Mistake("wrong X of an arc", ROUND, {"X20. C20.": "X24. C20."}, "G3 X24. C20. I-10. J0", "arc-end-off-circle"),
     Mistake("K for I", ROUND, {"I-10.": "K-10."}, "G3 X20. C20. K-10. J0", "arc-word-of-other-plane"),

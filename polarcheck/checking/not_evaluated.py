@@ -15,6 +15,7 @@ from polarcheck.checking.phrases.polar import extrudes, not_simulated, not_under
 from polarcheck.checking.places import block_in_line
 from polarcheck.checking.rule import Rule
 from polarcheck.checking.tables import Tables
+from polarcheck.geometry.tolerances import CROSSINGS
 from polarcheck.table.trace import Trace
 
 #: Columns that hang on the offset in force, and those that hang on the whole move.
@@ -134,6 +135,18 @@ def _ramps_of_center(tables: Tables, rule: Rule) -> Iterator[NotEvaluated]:
         yield NotEvaluated(rule=rule.name, reason=reason, blocks=count)
 
 
+def _tangled_contours(tables: Tables, rule: Rule) -> Iterator[NotEvaluated]:
+    """Loops that are no contours, so that nobody can say what they leave standing."""
+    trace, tangled = tables["trace"], tables["overcuts"].tangled & tables["ramps"].compensated
+    for row in np.flatnonzero(tangled)[_groups(tables["ramps"].loop[tangled])[0]].tolist():
+        own = tangled & (tables["ramps"].loop == tables["ramps"].loop[row])
+        reason = (
+            f"the contour at line {int(trace.line[row])} crosses itself more than {CROSSINGS} times a block: no "
+            "part can be told from it; program each contour by itself, between its own G41 or G42 and G40"
+        )
+        yield NotEvaluated(rule=rule.name, reason=reason, blocks=int(np.count_nonzero(own)))
+
+
 def _no_offset(what: str, key: str) -> Callable[[Trace, int], str]:
     def reason(trace: Trace, row: int) -> str:
         number = int(trace.offset_number[row])
@@ -184,4 +197,5 @@ _REASONS: dict[str, Callable[[Trace, int], str]] = {
 _SAID_OF: dict[str, Callable[[Tables, Rule], Iterator[NotEvaluated]]] = {
     "c-feed-above-limit": _c_axis_without_limit,
     "start-up-shorter-than-radius": _ramps_of_center,
+    "overcut": _tangled_contours,
 }

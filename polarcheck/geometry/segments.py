@@ -13,6 +13,8 @@ from polarcheck.machines.modal import Motion
 
 #: A length [mm] below this is none.
 ZERO = 1e-9
+#: A chord shorter than this share of the others is left to its neighbour.
+_STUB = 1e-3
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,6 +33,12 @@ class Curves:
     loop: Rows
     row: Rows
 
+    def __len__(self) -> int:
+        return len(self.row)
+
+    def __getitem__(self, rows: Rows | Mask) -> Curves:
+        return Curves(*(getattr(self, name)[rows] for name in Curves.__slots__))
+
 
 @dataclass(frozen=True, slots=True)
 class Segments:
@@ -41,15 +49,24 @@ class Segments:
     move: Rows
     loop: Rows
 
+    def __len__(self) -> int:
+        return len(self.move)
+
     def __getitem__(self, rows: Rows | Mask) -> Segments:
         return Segments(self.start[rows], self.end[rows], self.move[rows], self.loop[rows])
 
     def shifted(self, by: NDArray[np.floating]) -> Segments:
+        """The same ones, each moved along X [mm]."""
         return Segments(self.start + by, self.end + by, self.move, self.loop)
 
 
 def segments(moves: Curves, tolerance: float) -> Segments:
-    """All moves that are known and have a length; arcs with a sagitta of a quarter of the tolerance."""
+    """
+    All moves that are known and have a length; arcs with a sagitta of a quarter of the tolerance at most.
+
+    Two arcs of one circle have the same chords where they run over each other: their ends stand at whole multiples of
+    one angle.
+    """
     start, end, center = moves.start, moves.end, moves.center
     arcs = (moves.kind == Motion.CW) | (moves.kind == Motion.CCW)
     known = ~(np.isnan(start) | np.isnan(end) | (arcs & np.isnan(center)))
@@ -57,18 +74,23 @@ def segments(moves: Curves, tolerance: float) -> Segments:
     round_ = np.flatnonzero(arcs & known)
     spoke, last = start[round_] - center[round_], end[round_] - center[round_]
     sweep = arc_sweep(start[round_], end[round_], center[round_], moves.kind[round_])
-    flat = np.clip(tolerance / 4 / np.maximum(np.maximum(np.abs(spoke), np.abs(last)), ZERO), 0, 0.25)
-    count[round_] = np.maximum(np.ceil(np.abs(sweep) / (2 * np.arccos(1 - flat))), 1)
+    flat = np.clip(tolerance / 4 / np.maximum(np.maximum(np.abs(spoke), np.abs(last)), ZERO), 1e-9, 0.25)
+    unit = 2 * np.pi / np.ceil(np.pi / np.arccos(1 - flat)) * np.where(sweep < 0, -1, 1)
+    begins = np.angle(spoke) / unit
+    first, until_ = np.floor(begins + _STUB) + 1, np.ceil(begins + sweep / unit - _STUB)
+    count[round_] = np.maximum(until_ - first, 0).astype(np.int64) + 1
 
     move = np.repeat(np.arange(len(start)), count)
     begin, until = start[move], end[move]
     on_arc = np.flatnonzero(arcs[move])
     which = np.searchsorted(round_, move[on_arc])
-    share = (on_arc - (np.cumsum(count) - count)[move[on_arc]]) / count[move[on_arc]]
+    place = on_arc - (np.cumsum(count) - count)[move[on_arc]]
+    turned = (first[which] + place - 1) * unit[which] - np.angle(spoke)[which]
+    share = np.where(place == 0, 0.0, np.divide(turned, sweep[which], out=np.zeros(len(which)), where=place > 0))
     # An end that is not quite on the circle is reached in a spiral, at the same angles as by the tool center.
     growth = np.where(spoke == 0, 0, np.abs(last) / np.maximum(np.abs(spoke), ZERO) - 1)
-    turned = spoke[which] * (1 + growth[which] * share) * np.exp(1j * sweep[which] * share)
-    begin[on_arc] = np.where(share == 0, begin[on_arc], center[move[on_arc]] + turned)
+    on = spoke[which] * (1 + growth[which] * share) * np.exp(1j * sweep[which] * share)
+    begin[on_arc] = np.where(place == 0, begin[on_arc], center[move[on_arc]] + on)
     inner = np.flatnonzero(move[1:] == move[:-1])
     until[inner] = begin[inner + 1]
     result = Segments(begin, until, move, moves.loop[move].astype(np.int64))[np.abs(until - begin) > ZERO]

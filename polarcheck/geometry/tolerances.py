@@ -8,3 +8,5 @@ ROUNDING = 1e-6
 ADJUSTMENT = 0.254
 #: A length below this [mm] is no movement.
 ZERO = 1e-9
+#: Crossings that a contour may have for each of its walls, and beyond that.
+CROSSINGS, FREE_CROSSINGS = 4, 1000

@@ -194,7 +194,7 @@ class Entry:
     @property
     def stock_diameter(self) -> Floats:
         """Of the stock [mm]; NaN where the job gives none."""
-        return np.broadcast_to(self.trace.job.stock.diameter * self.trace.job_scale, len(self.trace))
+        return self.trace.stock_diameter
 
     @property
     def clearance(self) -> Floats:

@@ -12,6 +12,7 @@ from polarcheck.arrays import Floats, Mask, Points, Rows
 from polarcheck.geometry.compensation import Phase
 from polarcheck.geometry.tolerances import ADJUSTMENT, ROUNDING
 from polarcheck.machines.modal import Side
+from polarcheck.table.filling import before
 from polarcheck.table.moves import Moves, programmed_moves
 from polarcheck.table.tool_center import ToolCenter
 from polarcheck.table.trace import Trace
@@ -74,10 +75,23 @@ class Overcuts:
 
     @cached_property
     def _loop_of_ramps(self) -> Rows:
-        """As loop_of_row; an offset cancel belongs to the loop above it."""
-        loop = self._loop
-        last = np.maximum.accumulate(np.where(loop >= 0, np.arange(len(loop)), 0))
-        return np.where(self.trace.cancels, loop[last], loop)
+        """As loop_of_row; a ramp belongs to the loop of the wall that it leads to or comes from, whatever Z does."""
+        trace, wall = self.trace, np.append(self._wall_beside, 0)
+        loop, ramp = self._loop.copy(), np.flatnonzero(trace.starts_up | trace.cancels)
+        loop[ramp] = np.where(wall[ramp] >= 0, self._loop[wall[ramp]], -1)
+        return loop
+
+    @cached_property
+    def _wall_beside(self) -> Rows:
+        """For each start-up the next wall, for each offset cancel the one before, -1 for none and for other rows."""
+        trace = self.trace
+        beside = np.full(len(trace), -1)
+        moving = np.flatnonzero(trace.in_polar & trace.travels)
+        is_wall = (trace.compensates & ~trace.starts_up)[moving]
+        beside[moving[:-1]] = np.where(trace.starts_up[moving[:-1]] & is_wall[1:], moving[1:], -1)
+        cancels = trace.cancels[moving[1:]]
+        beside[moving[1:][cancels]] = np.where(is_wall[:-1], moving[:-1], -1)[cancels]
+        return beside
 
     @cached_property
     def _objected(self) -> Mask:
@@ -111,14 +125,52 @@ class Overcuts:
 
         tool = self.tool_center.moves
         is_ramp = ((tool.phase == Phase.START_UP) | (tool.phase == Phase.CANCEL)) & tool.known
-        return self._found(contour.sweeps, self._loop_of_ramps, is_ramp & _at_depth(self.trace, tool.row))
+        return self._found(contour.sweeps, self._loop_of_ramps, is_ramp & self._at_depth[tool.row])
+
+    @cached_property
+    def _at_depth(self) -> Mask:
+        """
+        Ramps on whose way there would be material above the contour: not above its Z, or yet below the face.
+
+        The face is at Z0, as is the custom on lathes. Where Z is not known, a ramp without a Z block beside it.
+        """
+        trace, wall = self.trace, self._wall_beside
+        ramp = np.flatnonzero(wall >= 0)
+        own = np.fmax(trace.z[ramp], before(trace.z, trace.starts, np.nan)[ramp])
+        of_wall = trace.z[wall[ramp]]
+        moves_z = np.cumsum(trace.moves_z & ~trace.travels)
+        deep = np.where(
+            np.isnan(own - of_wall),
+            moves_z[ramp] == moves_z[wall[ramp]],
+            (own <= of_wall + ROUNDING) | ((own < -ROUNDING) & (of_wall < -ROUNDING)),
+        )
+        result = np.zeros(len(trace), bool)
+        result[ramp] = deep
+        return result
 
     def _found(self, search: Callable[..., Overcut], loop: Rows, chosen: Mask) -> Cuts:
         """What a search of `contour` finds along the chosen moves of the tool center."""
         path = _curves(self.tool_center.moves, loop, chosen & self._has_walls[self.tool_center.moves.row])
         radius, tolerance = np.abs(self.trace.radius[path.row]), self.trace.machine.compensation.overcut_tolerance
-        found = search(*self._walls, path, radius, tolerance)
+        found = search(*self._walls, path, radius, tolerance, self._bar)
+        self._tangled[np.isin(loop, found.tangled)] = True
         return Cuts(path.row[found.move], found.row, found.depth, found.place)
+
+    @cached_property
+    def _bar(self) -> float:
+        """Diameter of the stock [mm]; NaN if not known."""
+        diameter = self.trace.stock_diameter[self.trace.compensates]
+        return float(diameter[0]) if len(diameter) else np.nan
+
+    @cached_property
+    def _tangled(self) -> Mask:
+        return np.zeros(len(self.trace), bool)
+
+    @cached_property
+    def tangled(self) -> Mask:
+        """Rows of loops that cross themselves so often that they are no contour: nothing is said of cuts into them."""
+        _ = self.cuts, self.sweeps
+        return self._tangled
 
     @cached_property
     def depth(self) -> Floats:
@@ -170,16 +222,6 @@ def _curves(moves: Moves, loop: Rows, chosen: Mask) -> Curves:
 
     row = moves.row[chosen]
     return Curves(moves.start[chosen], moves.end[chosen], moves.center[chosen], moves.kind[chosen], loop[row], row)
-
-
-def _at_depth(trace: Trace, row: Rows) -> Mask:
-    """Whether a ramp is at the depth of the contour: the block of the contour beside it is no Z move."""
-    moves_z = trace.moves_z & ~trace.travels
-    moving = np.flatnonzero(trace.in_polar & (trace.travels | moves_z))
-    at = np.searchsorted(moving, row)
-    above = moving[np.maximum(at - 1, 0)]
-    below = moving[np.minimum(at + 1, len(moving) - 1)] if len(moving) else row
-    return np.asarray(np.where(trace.cancels[row], ~moves_z[above], ~moves_z[below]))
 
 
 def objected(trace: Trace, tool_center: ToolCenter) -> Mask:

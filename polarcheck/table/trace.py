@@ -188,6 +188,11 @@ class Trace(Positions):
         """R with which the rows are compensated [mm]; NaN where it is not known."""
         return np.where(self.is_path_of_center, 0.0, self.radius_of_offset)
 
+    @property
+    def stock_diameter(self) -> Floats:
+        """Of the stock [mm]; NaN where the job gives none."""
+        return np.broadcast_to(self.job.stock.diameter * self.job_scale, len(self))
+
     # ---- feed ----
 
     def given_in_section(self, rows: Mask) -> Mask:

@@ -12,9 +12,11 @@ from polarcheck.checking.rule import ERROR, Mask, Overcuts, rule
     worst="overcuts.depth",
     once="wall",
     follows={
-        "block": ("inside-arc-smaller-than-radius", "interference", "no-offset-intersection"),
         "loop": (
             *NO_SUCH_ARC,
+            "inside-arc-smaller-than-radius",
+            "interference",
+            "no-offset-intersection",
             "number-without-point",
             "start-up-shorter-than-radius",
             "side-changed-in-offset-mode",

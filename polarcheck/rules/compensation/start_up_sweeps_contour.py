@@ -11,14 +11,20 @@ from polarcheck.checking.rule import ERROR, Hits, Overcuts, rule
     once="loop",
     follows={
         "block": (
-            "overcut",
             "start-up-shorter-than-radius",
             "cancel-shorter-than-radius",
             "start-up-on-arc",
             "cancel-on-arc",
             "path-through-center",
         ),
-        "loop": (*NO_SUCH_ARC, "number-without-point"),
+        "loop": (
+            *NO_SUCH_ARC,
+            "inside-arc-smaller-than-radius",
+            "interference",
+            "no-offset-intersection",
+            "number-without-point",
+            "overcut",
+        ),
         "pause": ("movement-missing-in-offset-mode",),
         "way": ("x-not-positive-at-entry",),
         "section": (*SECTION_READ_OTHERWISE, "polar-switched-in-offset-mode"),

@@ -1,0 +1,280 @@
+"""
+The faces into which walls cut the plane, and which of them are left standing.
+
+A wall has a tool side and a back. A face stands if every wall round it shows it the back, and no other does. A wall
+with the same face on both sides bounds nothing and is not asked: the end of a lead that another one crosses, and one
+that ends in the middle of the part.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields, replace
+from typing import Any, Self
+
+import numpy as np
+import shapely  # type: ignore[import-untyped]
+from numpy.typing import NDArray
+
+from polarcheck.arrays import Floats, Mask, Points, Rows
+from polarcheck.geometry.noding import Edges, noded
+
+Geometries = NDArray[Any]
+
+
+@dataclass(frozen=True, slots=True)
+class Walls:
+    """
+    Straight walls, n of them, those of one group together and in the order in which they run.
+
+    start, end: complex128[n] [mm]. left, right: bool[n], the tool is on that side; neither for a line that only bounds
+    faces. joins: bool[n], a line that bounds nothing and only holds its group together. group: int[n], from 0, rising.
+    Each group must be in one piece, and away from all others.
+    """
+
+    start: Points
+    end: Points
+    left: Mask
+    right: Mask
+    joins: Mask
+    group: Rows
+
+
+@dataclass(frozen=True, slots=True)
+class Standing:
+    """
+    What the walls of each group leave standing.
+
+    polygon: shapely geometry[groups] [mm], empty where nothing is. start, end: complex128[k] [mm], what bounds it, with
+    it on the left; wall: int[k], the wall that each is part of. tangled: bool[groups], walls that cross too often.
+    """
+
+    polygon: Geometries
+    start: Points
+    end: Points
+    wall: Rows
+    tangled: Mask
+
+
+def standing(walls: Walls, groups: int, thinnest: float) -> Standing:
+    """What the walls of each group leave standing; a face thinner than the thinnest [mm] on the average is none."""
+    edges = noded(walls.start, walls.end, walls.group)
+    tangled = np.zeros(groups, bool)
+    tangled[: len(edges.tangled)] = edges.tangled
+    if not len(edges.wall):
+        nowhere = np.zeros(0, complex)
+        return Standing(np.full(groups, shapely.Polygon(), object), nowhere, nowhere, np.zeros(0, np.int64), tangled)
+    edges, sides = _distinct(edges, walls)
+    lines = _lines(edges, sides, walls)
+    face = _faces(lines)
+    stands = _stands(lines, face, thinnest)[face]
+    bounds = stands[0] != stands[1]
+    lines, inside = lines.some(bounds), stands[:, bounds].T.ravel()
+    ring, line, forward = _rings(lines, inside)
+    edge, forward, of = _along(lines, line, forward)
+    start = edges.nodes[np.where(forward, edges.start[edge], edges.end[edge])]
+    end = edges.nodes[np.where(forward, edges.end[edge], edges.start[edge])]
+    polygon = _polygons(start, end, ring[of], lines.group[line[of]], groups)
+    return Standing(polygon, start, end, edges.wall[edge], tangled)
+
+
+@dataclass(frozen=True, slots=True)
+class _Sides:
+    """For each edge: the tool is left of it, right of it; it only joins."""
+
+    left: Mask
+    right: Mask
+    joins: Mask
+
+
+@dataclass(frozen=True, slots=True)
+class _Lines:
+    """
+    Edges in a row between branchings, from `first` on, `count` of them.
+
+    start, end: their nodes. out, back: the directions in which they leave their start and, backwards, their end.
+    area: the signed area between them and a point of their group [mm2]. length [mm]. The rest as for walls.
+    """
+
+    first: Rows
+    count: Rows
+    start: Rows
+    end: Rows
+    out: Points
+    back: Points
+    area: Floats
+    length: Floats
+    left: Mask
+    right: Mask
+    joins: Mask
+    group: Rows
+
+    def __len__(self) -> int:
+        return len(self.first)
+
+    def some(self, chosen: Mask) -> Self:
+        """Some of the lines."""
+        return replace(self, **{field.name: getattr(self, field.name)[chosen] for field in fields(self)})
+
+
+# ---- edges to lines ----
+
+
+def _distinct(edges: Edges, walls: Walls) -> tuple[Edges, _Sides]:
+    """Each edge once, with all that its walls show to either side."""
+    low, high = np.minimum(edges.start, edges.end), np.maximum(edges.start, edges.end)
+    _, first, which = np.unique(low * len(edges.nodes) + high, return_index=True, return_inverse=True)
+    turned = edges.start > edges.end
+    left, right = walls.left[edges.wall], walls.right[edges.wall]
+    low_side = np.bincount(which, np.where(turned, right, left)) > 0
+    high_side = np.bincount(which, np.where(turned, left, right)) > 0
+    joins = np.bincount(which, ~walls.joins[edges.wall]) == 0
+    order = np.argsort(first)
+    first = first[order]
+    low_side, high_side, joins, turned = low_side[order], high_side[order], joins[order], turned[first]
+    sides = _Sides(np.where(turned, high_side, low_side), np.where(turned, low_side, high_side), joins)
+    return replace(edges, start=edges.start[first], end=edges.end[first], wall=edges.wall[first]), sides
+
+
+def _lines(edges: Edges, sides: _Sides, walls: Walls) -> _Lines:
+    start, end = edges.start, edges.end
+    degree = np.bincount(start, minlength=len(edges.nodes)) + np.bincount(end, minlength=len(edges.nodes))
+    begins = np.ones(len(start), bool)
+    begins[1:] = (end[:-1] != start[1:]) | (degree[start[1:]] != 2)
+    for side in (sides.left, sides.right, sides.joins):
+        begins[1:] |= side[1:] != side[:-1]
+    first = np.flatnonzero(begins)
+    count = np.diff(np.append(first, len(start)))
+    last = first + count - 1
+
+    group = walls.group[edges.wall]
+    origin = edges.nodes[start[np.searchsorted(group, np.arange(group[-1] + 1))]][group]
+    a, b = edges.nodes[start] - origin, edges.nodes[end] - origin
+    return _Lines(
+        first,
+        count,
+        start[first],
+        end[last],
+        (b - a)[first],
+        (a - b)[last],
+        np.add.reduceat((a.conj() * b).imag / 2, first),
+        np.add.reduceat(np.abs(b - a), first),
+        sides.left[first],
+        sides.right[first],
+        sides.joins[first],
+        group[first],
+    )
+
+
+# ---- lines to faces ----
+# Half lines: 2 k is line k as it runs, 2 k + 1 the same backwards; the face of a half line is the one on its left.
+
+
+def _next(lines: _Lines) -> Rows:
+    """The half line that goes on along the same face, for each half line."""
+    origin = np.stack([lines.start, lines.end], axis=1).ravel()
+    angle = np.angle(np.stack([lines.out, lines.back], axis=1).ravel())
+    order = np.lexsort((angle, origin))
+    place = np.empty(len(order), np.int64)
+    place[order] = np.arange(len(order))
+    first = np.searchsorted(origin[order], origin)
+    last = np.searchsorted(origin[order], origin, side="right") - 1
+    clockwise = order[np.where(place == first, last, place - 1)]
+    return np.asarray(clockwise[np.arange(len(order)) ^ 1])
+
+
+def _cycles(following: Rows) -> tuple[Rows, Rows]:
+    """Of each half line the least one of its cycle, and how many steps it is from there."""
+    least, jump = np.arange(len(following)), following
+    reach = 1
+    while reach < len(following):
+        least = np.minimum(least, least[jump])
+        jump = jump[jump]
+        reach *= 2
+    # Steps to the least one, counted by doubling as well; from there on none.
+    steps = (least != np.arange(len(following))).astype(np.int64)
+    jump = np.where(steps > 0, following, np.arange(len(following)))
+    reach = 1
+    while reach < len(following):
+        steps = steps + steps[jump]
+        jump = jump[jump]
+        reach *= 2
+    return least, steps
+
+
+def _faces(lines: _Lines) -> Rows:
+    """The face to the left and to the right of each line: int[2, lines], from 0."""
+    cycle, _ = _cycles(_next(lines))
+    face = cycle.reshape(-1, 2).T
+    one = np.arange(len(cycle))
+    across = face[:, lines.joins]
+    while (one[across[0]] != one[across[1]]).any():
+        least = np.minimum(one[across[0]], one[across[1]])
+        np.minimum.at(one, one[across[0]], least)
+        np.minimum.at(one, one[across[1]], least)
+        one = one[one]
+    _, number = np.unique(one[face], return_inverse=True)
+    return number.reshape(face.shape)
+
+
+def _stands(lines: _Lines, face: Rows, thinnest: float) -> Mask:
+    """Which faces stand."""
+    count = int(face.max()) + 1
+    bounds = face[0] != face[1]
+    tool = np.zeros(count, bool)
+    back = np.zeros(count, bool)
+    for side, here, there in ((face[0], lines.left, lines.right), (face[1], lines.right, lines.left)):
+        tool[side[bounds & here]] = True
+        back[side[bounds & there & ~here]] = True
+    area = np.bincount(face[0], lines.area, count) - np.bincount(face[1], lines.area, count)
+    around = sum(np.bincount(side[bounds], lines.length[bounds], count) for side in face)
+    return np.asarray(back & ~tool & (2 * area > thinnest * around))
+
+
+# ---- faces to polygons ----
+
+
+def _rings(lines: _Lines, inside: Mask) -> tuple[Rows, Rows, Mask]:
+    """
+    The rings that lines make round what stands, of which these half lines have it on the left.
+
+    Per half line, in the order of the rings: its ring, its line, and whether it runs as that does.
+    """
+    cycle, steps = _cycles(_next(lines))
+    chosen = np.flatnonzero(inside)
+    order = chosen[np.lexsort((-steps[chosen], cycle[chosen]))]
+    _, ring = np.unique(cycle[order], return_inverse=True)
+    return ring, order // 2, order % 2 == 0
+
+
+def _along(lines: _Lines, line: Rows, forward: Mask) -> tuple[Rows, Mask, Rows]:
+    """The edges of these lines in order, whether each runs as it does itself, and which of the lines it is of."""
+    count = lines.count[line]
+    of = np.repeat(np.arange(len(line)), count)
+    place = np.arange(len(of)) - np.repeat(np.cumsum(count) - count, count)
+    place = np.where(forward[of], place, count[of] - 1 - place)
+    return lines.first[line[of]] + place, forward[of], of
+
+
+def _polygons(start: Points, end: Points, ring: Rows, group: Rows, groups: int) -> Geometries:
+    """For each group what its rings enclose: those that run counterclockwise less the others."""
+    result = np.full(groups, shapely.Polygon(), dtype=object)
+    if not len(ring):
+        return result
+    first = np.searchsorted(ring, np.arange(ring[-1] + 1))
+    origin = start[first][ring]
+    area = np.bincount(ring, ((start - origin).conj() * (end - origin)).imag)
+    solid = shapely.polygons(shapely.linearrings(coordinates(start), indices=ring))
+    solid = np.where(shapely.is_valid(solid), solid, shapely.make_valid(solid))
+    of, hole = group[first], area < 0
+    result[of[~hole][::-1]] = solid[~hole][::-1]
+    for several in np.unique(of[hole | (np.diff(of, prepend=-1) == 0)]):
+        here = of == several
+        result[several] = shapely.difference(
+            shapely.union_all(solid[here & ~hole]), shapely.union_all(solid[here & hole])
+        )
+    return result
+
+
+def coordinates(points: Points) -> Floats:
+    """Plane points as shapely takes them: float64[..., 2]."""
+    return np.ascontiguousarray(points).view(np.float64).reshape(*points.shape, 2)

@@ -1,0 +1,285 @@
+"""
+Straight walls cut where they cross or touch, so that they meet at common nodes only; groups of walls by themselves.
+
+Points that are nearer than TOUCH are one node. Nothing is said of a group whose walls cross again and again: a path
+that does is no contour, and its faces would grow with the square of its blocks.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+import shapely  # type: ignore[import-untyped]
+
+from polarcheck.arrays import Floats, Mask, Points, Rows
+from polarcheck.geometry.tolerances import CROSSINGS, FREE_CROSSINGS
+
+#: Points nearer than this [mm] are one.
+TOUCH = 2e-6
+#: Pairs of walls to compare for each wall of a group, and beyond that, before it is taken to cross too often.
+_PAIRS, _FREE_PAIRS = 64, 4_000_000
+#: Walls of a run at most, and how far it may turn [rad]; a run or two neighbours below half a turn cross nowhere.
+_RUN, _BEND, _HALF_TURN = 16, np.pi / 4, 3.0
+#: Runs and pairs worked on at a time, for the sake of memory.
+_RUNS_AT_A_TIME, _PAIRS_AT_A_TIME = 256, 100_000
+
+
+@dataclass(frozen=True, slots=True)
+class Edges:
+    """
+    Parts of walls between nodes, in the order of the walls.
+
+    nodes: complex128[m] [mm]. start, end: int[n], nodes. wall: int[n], the wall that each is part of.
+    tangled: bool[groups], groups that cross too often; they have no edges.
+    """
+
+    nodes: Points
+    start: Rows
+    end: Rows
+    wall: Rows
+    tangled: Mask
+
+
+def noded(start: Points, end: Points, group: Rows) -> Edges:
+    """
+    The walls from start to end [mm], cut at every point that they have in common with others of their group.
+
+    group: int[n], from 0, rising. Walls of different groups must not come near each other, and each has a length.
+    """
+    nodes, ends = _vertices(np.concatenate([start, end]))
+    a, b = ends[: len(start)], ends[len(start) :]
+    walls = _Walls(nodes, a, b, group)
+    tangled = np.zeros(int(group[-1]) + 1 if len(group) else 0, bool)
+    left = CROSSINGS * np.bincount(group, minlength=len(tangled)) + FREE_CROSSINGS
+    found = []
+    for one, other in _pairs(walls, tangled):
+        found.append(_meetings(walls, one, other))
+        left -= np.bincount(group[found[-1].crossing], minlength=len(tangled))
+        tangled |= left < 0
+    return _cut(walls, _joined(found), tangled)
+
+
+def _vertices(points: Points) -> tuple[Points, Rows]:
+    """The different ones of these points, to a tenth of TOUCH, and which of them each is."""
+    unit = TOUCH / 10
+    across, up = np.rint(points.real / unit).astype(np.int64), np.rint(points.imag / unit).astype(np.int64)
+    # Two odd numbers without a common pattern: different points have different sums but for a chance of 2 ** -64.
+    key = across.view(np.uint64) * np.uint64(0x9E3779B97F4A7C15) + up.view(np.uint64) * np.uint64(0xC2B2AE3D27D4EB4F)
+    _, first, which = np.unique(key, return_index=True, return_inverse=True)
+    return points[first], which
+
+
+@dataclass(frozen=True, slots=True)
+class _Walls:
+    """nodes: points [mm]; a, b: the nodes of both ends of each wall; group."""
+
+    nodes: Points
+    a: Rows
+    b: Rows
+    group: Rows
+
+
+# ---- which walls may meet ----
+
+
+def _runs(walls: _Walls) -> tuple[Rows, Floats, Mask]:
+    """
+    First walls of runs that bend little, how far each bends [rad], and whether it goes on from the one before.
+
+    The bend at the joint counts for the run that it leads into.
+    """
+    way = walls.nodes[walls.b] - walls.nodes[walls.a]
+    joined = np.zeros(len(way), bool)
+    joined[1:] = (walls.b[:-1] == walls.a[1:]) & (walls.group[1:] == walls.group[:-1])
+    bend = np.zeros(len(way))
+    bend[1:] = np.abs(np.angle(way[1:] * way[:-1].conj()))
+    total = np.cumsum(bend)
+    begins = ~joined | (np.arange(len(way)) % _RUN == 0)
+    begins[1:] |= np.floor(total[1:] / _BEND) != np.floor(total[:-1] / _BEND)
+    first = np.flatnonzero(begins)
+    return first, np.add.reduceat(bend, first), joined[first]
+
+
+def _pairs(walls: _Walls, tangled: Mask) -> Iterator[tuple[Rows, Rows]]:
+    """Pairs of walls that may have more in common than a joint; groups with too many of them become tangled."""
+    if not len(walls.a):
+        return
+    first, bend, joined = _runs(walls)
+    size = np.diff(np.append(first, len(walls.a)))
+    group = walls.group[first]
+    box = _boxes(walls, first)
+    tree = shapely.STRtree(shapely.box(*box))
+    left = _PAIRS * np.bincount(walls.group, minlength=len(tangled)) + _FREE_PAIRS
+    for begin in range(0, len(first), _RUNS_AT_A_TIME):
+        asked = np.arange(begin, min(begin + _RUNS_AT_A_TIME, len(first)))
+        asked = asked[~tangled[group[asked]]]
+        which, other = tree.query(shapely.box(*(side[asked] for side in box)))
+        one = asked[which]
+        kept = (one < other) & (group[one] == group[other])
+        one, other = one[kept], other[kept]
+        bent = bend[one] + bend[other] - np.where(joined[one], _joint(walls, first[one]), 0)
+        kept = ~((other == one + 1) & joined[other] & (bent < _HALF_TURN))
+        one, other = one[kept], other[kept]
+        left -= np.bincount(group[one], size[one] * size[other], len(tangled)).astype(np.int64)
+        tangled |= left < 0
+        for part in _shares(size[one] * size[other]):
+            kept = part[~tangled[group[one[part]]]]
+            yield _each_wall(walls, (first, size), one[kept], other[kept])
+
+
+def _joint(walls: _Walls, first: Rows) -> Floats:
+    """How far these walls turn from the ones before them [rad]."""
+    way = walls.nodes[walls.b] - walls.nodes[walls.a]
+    return np.asarray(np.abs(np.angle(way[first] * way[np.maximum(first - 1, 0)].conj())))
+
+
+def _boxes(walls: _Walls, first: Rows) -> tuple[Floats, Floats, Floats, Floats]:
+    """Of runs of walls: least x and c, greatest x and c, with what is taken for a touch [mm]."""
+    a, b = walls.nodes[walls.a], walls.nodes[walls.b]
+    return (
+        np.minimum.reduceat(np.minimum(a.real, b.real), first) - TOUCH,
+        np.minimum.reduceat(np.minimum(a.imag, b.imag), first) - TOUCH,
+        np.maximum.reduceat(np.maximum(a.real, b.real), first) + TOUCH,
+        np.maximum.reduceat(np.maximum(a.imag, b.imag), first) + TOUCH,
+    )
+
+
+def _shares(count: Rows) -> list[Rows]:
+    """The pairs of runs in shares of about as many pairs of walls as are worked on at a time."""
+    share = np.cumsum(count) // _PAIRS_AT_A_TIME
+    return np.split(np.arange(len(count)), np.flatnonzero(np.diff(share)) + 1)
+
+
+def _each_wall(walls: _Walls, runs: tuple[Rows, Rows], one: Rows, other: Rows) -> tuple[Rows, Rows]:
+    """Every wall of one run with every wall of the other that it may meet."""
+    first, size = runs
+    count = size[one] * size[other]
+    pair = np.repeat(np.arange(len(one)), count)
+    place = np.arange(len(pair)) - np.repeat(np.cumsum(count) - count, count)
+    i = first[one[pair]] + place // size[other[pair]]
+    j = first[other[pair]] + place % size[other[pair]]
+    kept = ~_beside(walls, i, j)
+    i, j = i[kept], j[kept]
+    kept = ~_beside(walls, j, i)
+    return i[kept], j[kept]
+
+
+def _beside(walls: _Walls, i: Rows, j: Rows) -> Mask:
+    """Whether walls j lie wholly on one side of the lines through walls i."""
+    begin, c, d = walls.nodes[walls.a[i]], walls.nodes[walls.a[j]], walls.nodes[walls.b[j]]
+    way = walls.nodes[walls.b[i]] - begin
+    far = TOUCH * np.abs(way)
+    first, last = ((c - begin) * way.conj()).imag, ((d - begin) * way.conj()).imag
+    return np.asarray(((first > far) & (last > far)) | ((first < -far) & (last < -far)))
+
+
+# ---- where they meet ----
+
+
+@dataclass(frozen=True, slots=True)
+class _Meetings:
+    """
+    What walls have in common.
+
+    touching, touched: nodes inside walls, int[k] each, and share: float64[k], where on the wall. crossing, crossed:
+    pairs of walls, int[j] each, and the shares of both. same: pairs of nodes that are one, int[2, i].
+    """
+
+    touching: Rows
+    touched: Rows
+    share: Floats
+    crossing: Rows
+    crossed: Rows
+    shares: Floats
+    same: Rows
+
+
+def _joined(parts: list[_Meetings]) -> _Meetings:
+    none = np.zeros(0, np.int64)
+    parts = [_Meetings(none, none, np.zeros(0), none, none, np.zeros((2, 0)), np.zeros((2, 0), np.int64)), *parts]
+    return _Meetings(*(np.concatenate([getattr(p, name) for p in parts], axis=-1) for name in _Meetings.__slots__))
+
+
+def _meetings(walls: _Walls, i: Rows, j: Rows) -> _Meetings:
+    """What walls i have in common with walls j."""
+    nodes, ends = walls.nodes, (walls.a[i], walls.b[i], walls.a[j], walls.b[j])
+    a, b, c, d = (nodes[end] for end in ends)
+    way, other = b - a, d - c
+    touching: list[Rows] = []
+    touched: list[Rows] = []
+    share: list[Floats] = []
+    same: list[Rows] = []
+    touches = np.zeros(len(i), bool)
+    for wall, own, begin, along, of_other in ((i, ends[:2], a, way, ends[2:]), (j, ends[2:], c, other, ends[:2])):
+        length = np.abs(along)
+        for node in of_other:
+            beside = (nodes[node] - begin) * along.conj() / length
+            place = np.clip(beside.real, 0, length)
+            near = np.abs(beside - place) <= TOUCH
+            at_start, at_end = place <= TOUCH, place >= length - TOUCH
+            inside = np.flatnonzero(near & ~at_start & ~at_end)
+            touching.append(node[inside])
+            touched.append(wall[inside])
+            share.append(place[inside] / length[inside])
+            for at, end in ((at_start, own[0]), (at_end, own[1])):
+                one = np.flatnonzero(near & at & (node != end))
+                same.append(np.stack([node[one], end[one]]))
+            touches |= near
+    across = (way.conj() * other).imag
+    with np.errstate(all="ignore"):  # walls along each other cross nowhere
+        t, s = ((c - a).conj() * other).imag / across, ((c - a).conj() * way).imag / across
+    crosses = np.flatnonzero(~touches & (t > 0) & (t < 1) & (s > 0) & (s < 1))
+    return _Meetings(
+        np.concatenate(touching),
+        np.concatenate(touched),
+        np.concatenate(share),
+        i[crosses],
+        j[crosses],
+        np.stack([t[crosses], s[crosses]]),
+        np.concatenate(same, axis=1),
+    )
+
+
+# ---- the walls cut there ----
+
+
+def _cut(walls: _Walls, found: _Meetings, tangled: Mask) -> Edges:
+    """The walls in parts, those of tangled groups left out."""
+    first, second = walls.nodes[walls.a[found.crossing]], walls.nodes[walls.b[found.crossing]]
+    nodes = np.concatenate([walls.nodes, first + (second - first) * found.shares[0]])
+    new = np.arange(len(walls.nodes), len(nodes))
+    wall = np.concatenate([found.touched, found.crossing, found.crossed])
+    share = np.concatenate([found.share, *found.shares])
+    node = np.concatenate([found.touching, new, new])
+    order = np.lexsort((share, wall))
+    wall, node = wall[order], node[order]
+
+    parts = np.bincount(wall, minlength=len(walls.a)) + 1
+    of = np.repeat(np.arange(len(walls.a)), parts)
+    first_part = np.cumsum(parts) - parts
+    start, end = walls.a[of], walls.b[of]
+    inner = np.ones(len(of), bool)
+    inner[first_part] = False
+    start[inner] = node
+    end[np.flatnonzero(inner) - 1] = node
+    one = np.arange(len(nodes))
+    if len(new) or len(found.same[0]):
+        # Where three walls meet in a point, each pair of them has found it.
+        nodes, which = _vertices(nodes)
+        one = _merged(len(nodes), which[found.same])[which]
+    start, end = one[start], one[end]
+    kept = (start != end) & ~tangled[walls.group[of]]
+    return Edges(nodes, start[kept], end[kept], of[kept], tangled)
+
+
+def _merged(count: int, same: Rows) -> Rows:
+    """Which node each is, where the pairs in `same` are one and the same."""
+    one = np.arange(count)
+    while len(same[0]) and (one[same[0]] != one[same[1]]).any():
+        least = np.minimum(one[same[0]], one[same[1]])
+        np.minimum.at(one, same[0], least)
+        np.minimum.at(one, same[1], least)
+        one = one[one]
+    return one
