@@ -152,7 +152,7 @@ def _rules() -> Any:
 def _depth_differs(errors: list[Finding], verdict: Verdict) -> bool:
     """A sweep is not told beside an overcut of its loop, so it is compared where it is told alone."""
     names = {finding.rule for finding in errors}
-    if not names <= {"overcut", "start-up-sweeps-contour"}:
+    if not names & (GOUGES | ALARMS) <= {"overcut", "start-up-sweeps-contour"}:
         return False
     told = {
         name: max((float(str(one.values["depth"])) for one in errors if one.rule == name), default=0.0)

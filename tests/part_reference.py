@@ -92,13 +92,13 @@ def judge(text: str, radius: float, part: Any) -> Verdict:
 
 def cut_of(move: Move, radius: float, part: Any) -> tuple[float, complex]:
     """How deep a move of the tool center cuts, below 0 if it stays clear, and where the tool center is then."""
-    way = shapely.LineString([_pair(point) for point in _along(move)])
+    way = shapely.LineString([_pair(point) for point in along(move)])
     shapely.prepare(way)
     nearest = shapely.get_coordinates(shapely.shortest_line(way, part))[0]
     return radius - float(shapely.distance(part, way)), complex(*nearest)
 
 
-def _along(move: Move | Element) -> list[complex]:
+def along(move: Move | Element) -> list[complex]:
     """Both ends of a line, and points on an arc so near to each other that a chord leaves it by 0.0002 mm at most."""
     if move.center is None:
         return [move.start, move.end]
@@ -144,13 +144,13 @@ def _short_ramp(run: Run, radius: float) -> float:
 
 def _cuts_another_loop(run: Run, move: Move, at: complex, part: Any, walls: list[Element]) -> bool:
     """Whether the wall of the part next to a place was programmed in another loop than the move's own."""
-    wall = part.boundary.interpolate(part.boundary.project(shapely.Point(_pair(at))))
+    wall = shapely.Point(shapely.get_coordinates(shapely.shortest_line(shapely.Point(_pair(at)), part.boundary))[-1])
     apart: dict[bool, float] = {True: math.inf, False: math.inf}
     for element in walls:
         own = _loop_number(run, element.row) == _loop_number(run, move.row)
-        way = shapely.LineString([_pair(point) for point in _along(element)])
+        way = shapely.LineString([_pair(point) for point in along(element)])
         apart[own] = min(apart[own], shapely.distance(way, wall))
-    return apart[False] < _CLEAR < apart[True]
+    return bool(apart[False] < _CLEAR < apart[True])
 
 
 def _loop_number(run: Run, row: int) -> int:
