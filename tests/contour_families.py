@@ -19,47 +19,36 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import shapely  # type: ignore[import-untyped]
+from contour_loops import (
+    Outline,
+    Shape,
+    begun_anywhere,
+    circle,
+    closed_loop,
+    corners_of,
+    cutter,
+    cutter_within,
+    direct_loop,
+    heights,
+    open_loop,
+    placed,
+    point_of,
+    room_in,
+    rounded,
+)
 from contour_pieces import (
-    LEADS,
     Depths,
-    Lead,
     Piece,
     Step,
     Style,
     Way,
-    begun_at,
-    first_of,
-    lead_in,
-    lead_out,
-    log_uniform,
-    loop_of,
     polygon,
     polygon_of,
-    reversed_way,
     text_of,
     turned,
 )
 
 PLATE = 5000.0  # [mm] half the side of what is taken as endless
-
-
-class Outline(NamedTuple):
-    """A closed way; what is within is part, or is not; later ones override."""
-
-    way: Way
-    is_part: bool
-
-
-class Shape(NamedTuple):
-    """A program before it is written. bar: diameter of the stock, where the part is cut out of it and not closed."""
-
-    steps: list[Step]
-    outlines: list[Outline]
-    radius: float
-    bar: float | None = None
-    endless: bool = False  # all that no outline names is part: pockets
-    safe: float = 2.0
-    may_stay: bool = True  # at one depth from before G12.1 on
 
 
 class Twin(NamedTuple):
@@ -139,167 +128,15 @@ def _part(shape: Shape, style: Style, bar: float | None) -> Any:
     return left
 
 
-# --- what families have in common --------------------------------------------------------------------------------
-
-
-def _radius(rng: random.Random, size: float) -> float:
-    """A cutter, from very small to twice the part."""
-    return round(log_uniform(rng, 0.02, 0.6 * size) if rng.random() < 0.7 else rng.uniform(0.1, 2) * size, 3)
-
-
-def _radius_within(rng: random.Random, room: float) -> float:
-    """A cutter that fits into a room, mostly."""
-    share = rng.uniform(0.05, 0.6) if rng.random() < 0.8 else rng.uniform(0.6, 1.5)
-    return round(max(share * room, 0.02), 3)
-
-
-def _depths(rng: random.Random, safe: float, several: bool = False) -> Depths:
-    deep = -round(rng.uniform(0.5, 8), 2)
-    kind = rng.random()
-    contour = tuple(round(deep * number / 3, 2) for number in (1, 2, 3)) if several else (deep,)
-    if kind < (0.4 if several else 0.7):
-        return Depths(safe, contour[0], contour)
-    if kind < 0.9:
-        return Depths(safe, safe, contour)
-    return Depths(safe, round(contour[0] / 2, 2), contour)
-
-
-def _start(rng: random.Random, way: Way) -> Way:
-    """A closed way from a corner or from anywhere."""
-    number = rng.randrange(len(way))
-    return begun_at(way, number, 0 if rng.random() < 0.35 else rng.uniform(0.1, 0.9))
-
-
-def _closed(
-    rng: random.Random,
-    way: Way,
-    inside: bool,
-    radius: float,
-    depths: Depths,
-    passes: list[Way] | None = None,
-    repeat: bool = False,
-) -> list[Step]:
-    """
-    A loop round a closed way that runs counterclockwise, with leads; inside: the tool is within it.
-
-    passes: ways before it, in one loop with it. repeat: the way at each depth, so that it ends where it starts.
-    """
-    left = inside
-    before = [piece for one in passes or [] for piece in _linked(one, None)]
-    style_in, style_out = rng.choice(LEADS), rng.choice(LEADS)
-    if rng.random() < 0.6:
-        style_out = style_in
-    overlap = 0.0
-    if not repeat and rng.random() < 0.35:
-        overlap = rng.uniform(0.1, 4) * radius
-        overlap = min(overlap, 0.9 * sum(piece.length for piece in way))
-    whole = [*way, *first_of(way, overlap)]
-    if before:
-        whole = [*_joined(before, whole[0].start), *whole]
-    room = polygon_of(passes[0] if passes else way).buffer(-radius) if inside else None
-    careless = rng.random() < 0.1
-    ins = out = Lead(0j, [])
-    for _ in range(40):
-        ins = lead_in(rng, style_in, whole[0].start, whole[0].tangent(0), left, radius)
-        out = lead_out(rng, style_out, whole[-1].end, whole[-1].tangent(1), left, radius)
-        ends = [ins.ramp, out.ramp] + [piece.start for piece in ins.way] + [piece.end for piece in out.way]
-        if careless or room is None or all(room.contains(_point(end)) for end in ends):
-            break
-        style_in, style_out = rng.choice(LEADS), rng.choice(LEADS)
-    if rng.random() < 0.05:  # from the other side of the part
-        size = max(abs(piece.start - whole[0].start) for piece in way)
-        ins = ins._replace(ramp=whole[0].start + (whole[0].start - ins.ramp) / radius * size)
-    return loop_of(ins, whole, out, left, depths)
-
-
-def _linked(way: Way, to: complex | None) -> Way:
-    return [*way, Piece("line", way[-1].end, to)] if to is not None else list(way)
-
-
-def _joined(before: Way, to: complex) -> Way:
-    """Ways one after the other, with lines from the end of each to the start of the next."""
-    found: Way = []
-    for piece, follows in zip(before, [*before[1:], None], strict=True):
-        found.append(piece)
-        goal = to if follows is None else follows.start
-        if abs(goal - piece.end) > 1e-6:
-            found.append(Piece("line", piece.end, goal))
-    return found
-
-
-def _point(point: complex) -> Any:
-    return shapely.Point(point.real, point.imag)
-
-
-def _corners(rng: random.Random, size: float) -> list[complex]:
-    """Corners of a regular, an uneven or a star-shaped polygon, counterclockwise; some with a notch or a wrong one."""
-    count = rng.randint(3, 12)
-    kind = rng.random()
-    spread = 0 if kind < 0.45 else 0.15 if kind < 0.8 else 0.5
-    angles = [math.tau * (number + rng.uniform(-0.3, 0.3) * (spread > 0)) / count for number in range(count)]
-    corners = [cmath.rect(size * (1 - rng.uniform(0, spread)), angle) for angle in angles]
-    fault = rng.random()
-    if fault < 0.1:  # a notch, perhaps wider at its bottom
-        at = rng.randrange(count)
-        one, other = corners[at], corners[(at + 1) % count]
-        along, inward = (other - one) / abs(other - one), (other - one) / abs(other - one) * 1j
-        middle, half, deep = (one + other) / 2, abs(other - one) * rng.uniform(0.05, 0.3), size * rng.uniform(0.05, 0.4)
-        bottom = half * rng.uniform(0.2, 1.6)
-        notch = [middle - along * half, middle - along * bottom + inward * deep]
-        notch += [middle + along * bottom + inward * deep, middle + along * half]
-        corners[at + 1 : at + 1] = notch
-    elif fault < 0.18:  # a wrong coordinate
-        at = rng.randrange(count)
-        wrong = size * rng.choice((0.02, 0.1, 0.5, 1.0)) * rng.uniform(-1, 1)
-        corners[at] += wrong if rng.random() < 0.5 else 1j * wrong
-    area = polygon_of(polygon(corners))
-    if not area.is_valid or shapely.minimum_clearance(area) < 0.05 or not area.exterior.is_ccw:
-        return _corners(rng, size)
-    return corners
-
-
-def _placed(rng: random.Random, corners: list[complex], size: float) -> list[complex]:
-    """Turned, and perhaps off the center."""
-    direction = turned(rng) if rng.random() < 0.7 else 1 + 0j
-    center = size * rng.uniform(0, 0.8) * turned(rng) if rng.random() < 0.4 else 0j
-    return [center + corner * direction for corner in corners]
-
-
-def _circle(center: complex, radius: float, begin: complex = 1 + 0j) -> Way:
-    start = center + radius * begin
-    return [Piece("ccw", start, start, center)]
-
-
-def _room(way: Way) -> float:
-    """About the largest radius that fits into a closed way."""
-    area = polygon_of(way)
-    return float(shapely.maximum_inscribed_circle(area, 0.05).length)
-
-
-def _rounded(corners: list[complex], radius: float) -> Way:
-    """A convex polygon with round corners."""
-    found: Way = []
-    for before, at, behind in zip([corners[-1], *corners[:-1]], corners, [*corners[1:], corners[0]], strict=True):
-        one, other = (before - at) / abs(before - at), (behind - at) / abs(behind - at)
-        half = abs(cmath.phase(one / other)) / 2
-        cut = radius / math.tan(half)
-        begin, end = at + one * cut, at + other * cut
-        center = at + (one + other) / abs(one + other) * radius / math.sin(half)
-        if found:
-            found.append(Piece("line", found[-1].end, begin))
-        found.append(Piece("ccw", begin, end, center))
-    return [*found, Piece("line", found[-1].end, found[0].start)]
-
-
 # --- the families ------------------------------------------------------------------------------------------------
 
 
 def polygons(rng: random.Random) -> Shape:
     """A boss with 3 to 12 sides."""
     size = rng.uniform(4, 60)
-    way = polygon(_placed(rng, _corners(rng, size), size))
-    radius = _radius(rng, size)
-    steps = _closed(rng, _start(rng, way), False, radius, _depths(rng, 2.0))
+    way = polygon(placed(rng, corners_of(rng, size), size))
+    radius = cutter(rng, size)
+    steps = closed_loop(rng, begun_anywhere(rng, way), False, radius, heights(rng, 2.0))
     return Shape(steps, [Outline(way, True)], radius, may_stay=_one_height(steps))
 
 
@@ -310,9 +147,9 @@ def crosses(rng: random.Random) -> Shape:
     quarter = [complex(size, -half), complex(size, half), complex(half, half)]
     corners = [corner * 1j**number for number in range(4) for corner in quarter]
     corners = [complex(corner.real, min(max(corner.imag, -arm), arm)) for corner in corners]
-    way = polygon(_placed(rng, corners, size))
-    radius = _radius(rng, size - half)
-    steps = _closed(rng, _start(rng, way), False, radius, _depths(rng, 2.0))
+    way = polygon(placed(rng, corners, size))
+    radius = cutter(rng, size - half)
+    steps = closed_loop(rng, begun_anywhere(rng, way), False, radius, heights(rng, 2.0))
     return Shape(steps, [Outline(way, True)], radius, may_stay=_one_height(steps))
 
 
@@ -326,8 +163,8 @@ def d_shafts(rng: random.Random) -> Shape:
         ends += [-end for end in ends]
         way = [Piece("line", *ends[:2]), Piece("ccw", ends[1], ends[2], 0j)]
         way += [Piece("line", *ends[2:]), Piece("ccw", ends[3], ends[0], 0j)]
-    radius = _radius(rng, size)
-    steps = _closed(rng, _start(rng, way), False, radius, _depths(rng, 2.0))
+    radius = cutter(rng, size)
+    steps = closed_loop(rng, begun_anywhere(rng, way), False, radius, heights(rng, 2.0))
     return Shape(steps, [Outline(way, True)], radius, may_stay=_one_height(steps))
 
 
@@ -335,17 +172,17 @@ def pockets(rng: random.Random) -> Shape:
     """A pocket, square, with round corners or any polygon; the tool comes in from above."""
     size = rng.uniform(8, 60)
     if rng.random() < 0.5:
-        corners = _corners(rng, size)
-        way = polygon(_placed(rng, corners, size))
+        corners = corners_of(rng, size)
+        way = polygon(placed(rng, corners, size))
     else:
         count = rng.randint(3, 8)
         corners = [cmath.rect(size, math.tau * number / count) for number in range(count)]
-        way = _rounded(_placed(rng, corners, size), size * rng.uniform(0.05, 0.4))
+        way = rounded(placed(rng, corners, size), size * rng.uniform(0.05, 0.4))
     if rng.random() < 0.15:
-        way = _circle(size * rng.uniform(0, 1) * turned(rng), size, turned(rng))
+        way = circle(size * rng.uniform(0, 1) * turned(rng), size, turned(rng))
     arcs = [abs(piece.center - piece.start) for piece in way if piece.center is not None]
-    radius = _radius_within(rng, min([_room(way), *([arc / 0.65 for arc in arcs] if rng.random() < 0.9 else [])]))
-    steps = _closed(rng, _start(rng, way), True, radius, _depths(rng, 2.0))
+    radius = cutter_within(rng, min([room_in(way), *([arc / 0.65 for arc in arcs] if rng.random() < 0.9 else [])]))
+    steps = closed_loop(rng, begun_anywhere(rng, way), True, radius, heights(rng, 2.0))
     return Shape(steps, [Outline(way, False)], radius, endless=True, may_stay=_one_height(steps))
 
 
@@ -359,8 +196,8 @@ def cams(rng: random.Random) -> Shape:
     way = [Piece("ccw", points[0], points[1], center), Piece("line", points[1], points[2])]
     way += [Piece("ccw", points[2], points[3], center + direction * apart), Piece("line", points[3], points[0])]
     inside = rng.random() < 0.3
-    radius = _radius_within(rng, small) if inside else _radius(rng, large)
-    steps = _closed(rng, _start(rng, way), inside, radius, _depths(rng, 2.0))
+    radius = cutter_within(rng, small) if inside else cutter(rng, large)
+    steps = closed_loop(rng, begun_anywhere(rng, way), inside, radius, heights(rng, 2.0))
     return Shape(steps, [Outline(way, not inside)], radius, endless=inside, may_stay=_one_height(steps))
 
 
@@ -372,10 +209,10 @@ def _tangents(large: float, small: float, apart: float, spoke: complex) -> list[
 def eccentrics(rng: random.Random) -> Shape:
     """A circle off the center, as a boss or a pocket."""
     size = rng.uniform(3, 50)
-    way = _circle(size * rng.uniform(0, 1.5) * turned(rng), size, turned(rng))
+    way = circle(size * rng.uniform(0, 1.5) * turned(rng), size, turned(rng))
     inside = rng.random() < 0.35
-    radius = _radius_within(rng, size) if inside else _radius(rng, size)
-    steps = _closed(rng, _start(rng, way), inside, radius, _depths(rng, 2.0))
+    radius = cutter_within(rng, size) if inside else cutter(rng, size)
+    steps = closed_loop(rng, begun_anywhere(rng, way), inside, radius, heights(rng, 2.0))
     return Shape(steps, [Outline(way, not inside)], radius, endless=inside, may_stay=_one_height(steps))
 
 
@@ -383,7 +220,7 @@ def spirals(rng: random.Random) -> Shape:
     """A spiral of half circles or short lines to a boss or the wall of a pocket, closed by a last full turn."""
     inside = rng.random() < 0.4
     final, turns = rng.uniform(5, 40), rng.randint(1, 6)
-    radius = _radius_within(rng, final * 0.5) if inside else _radius(rng, final)
+    radius = cutter_within(rng, final * 0.5) if inside else cutter(rng, final)
     begin = final * rng.uniform(0.4, 0.8) if inside else final * rng.uniform(1.1, 3)
     direction = turned(rng)
     way: Way = []
@@ -399,18 +236,18 @@ def spirals(rng: random.Random) -> Shape:
         points = [cmath.rect(size, math.tau * number / 40) * direction for number, size in enumerate(sizes)]
         way = [Piece("line", one, other) for one, other in itertools.pairwise(points)]
     last = Piece("ccw", way[-1].end, way[-1].end, 0j)
-    steps = _closed(rng, [last], inside, radius, _depths(rng, 2.0), passes=[way])
+    steps = closed_loop(rng, [last], inside, radius, heights(rng, 2.0), passes=[way])
     return Shape(steps, [Outline([last], not inside)], radius, endless=inside, may_stay=_one_height(steps))
 
 
 def passes(rng: random.Random) -> Shape:
     """One contour in several sizes, all in one loop."""
     size, inside = rng.uniform(6, 40), rng.random() < 0.35
-    corners = _corners(rng, size) if rng.random() < 0.7 else []
+    corners = corners_of(rng, size) if rng.random() < 0.7 else []
     center = size * rng.uniform(0, 0.5) * turned(rng)
-    way = polygon([center + corner for corner in corners]) if corners else _circle(center, size, turned(rng))
-    way = _start(rng, way)
-    radius = _radius_within(rng, _room(way) * 0.5) if inside else _radius(rng, size)
+    way = polygon([center + corner for corner in corners]) if corners else circle(center, size, turned(rng))
+    way = begun_anywhere(rng, way)
+    radius = cutter_within(rng, room_in(way) * 0.5) if inside else cutter(rng, size)
     step = rng.uniform(0.05, 0.3)
     if (
         not polygon_of([piece.mapped(lambda p: center + (p - center) * (1 + step)) for piece in way])
@@ -422,33 +259,33 @@ def passes(rng: random.Random) -> Shape:
     ways = [[piece.mapped(lambda p, by=by: center + (p - center) * by) for piece in way] for by in sizes]
     if rng.random() < 0.7:
         ways.reverse()
-    steps = _closed(rng, ways[-1], inside, radius, _depths(rng, 2.0), passes=ways[:-1])
+    steps = closed_loop(rng, ways[-1], inside, radius, heights(rng, 2.0), passes=ways[:-1])
     return Shape(steps, [Outline(way, not inside)], radius, endless=inside, may_stay=_one_height(steps))
 
 
 def depths(rng: random.Random) -> Shape:
     """One contour at several heights, in one loop or in a loop for each."""
     size, inside = rng.uniform(6, 40), rng.random() < 0.35
-    corners = _placed(rng, _corners(rng, size), size)
-    way = _start(rng, polygon(corners) if rng.random() < 0.7 else _circle(0j, size, turned(rng)))
-    radius = _radius_within(rng, _room(way)) if inside else _radius(rng, size)
+    corners = placed(rng, corners_of(rng, size), size)
+    way = begun_anywhere(rng, polygon(corners) if rng.random() < 0.7 else circle(0j, size, turned(rng)))
+    radius = cutter_within(rng, room_in(way)) if inside else cutter(rng, size)
     steps: list[Step] = []
     if rng.random() < 0.5:
-        steps = _closed(rng, way, inside, radius, _depths(rng, 2.0, several=True), repeat=True)
+        steps = closed_loop(rng, way, inside, radius, heights(rng, 2.0, several=True), repeat=True)
     else:
         for depth in (-1.0, -2.0, -3.5):
-            steps += _closed(rng, way, inside, radius, Depths(2.0, rng.choice((depth, 2.0)), (depth,)))
+            steps += closed_loop(rng, way, inside, radius, Depths(2.0, rng.choice((depth, 2.0)), (depth,)))
     return Shape(steps, [Outline(way, not inside)], radius, endless=inside, may_stay=False)
 
 
 def flats(rng: random.Random) -> Shape:
     """Flats on a bar, that end beyond it; in a loop each or in one."""
     bar = rng.uniform(10, 100)
-    radius = _radius(rng, bar / 2)
+    radius = cutter(rng, bar / 2)
     count, direction = rng.choice((1, 2, 4)), turned(rng) if rng.random() < 0.6 else 1 + 0j
     apart = bar / 2 * rng.uniform(0.4, 0.95)
     half = math.sqrt(bar**2 / 4 - apart**2)
-    height = _depths(rng, 2.0)
+    height = heights(rng, 2.0)
     normals = [direction * cmath.exp(math.tau * 1j * number / count) for number in range(count)]
     outlines, steps = [], []
     for normal in normals:
@@ -457,35 +294,17 @@ def flats(rng: random.Random) -> Shape:
         outlines.append(Outline(polygon(corners), False))
     if count == 4 and apart * math.sqrt(2) > bar / 2 + 0.3 and rng.random() < 0.5:
         way = polygon([normal * complex(apart, -apart) for normal in normals])
-        steps = _closed(rng, _start(rng, way), False, radius, height)
+        steps = closed_loop(rng, begun_anywhere(rng, way), False, radius, height)
     elif count == 2 and rng.random() < 0.4:
         beyond = half + rng.uniform(0.3, 3) + radius * rng.choice((0, 1, 2.5))
         ends = [normal * complex(apart, side * beyond) for normal in normals for side in (-1, 1)]
-        steps = _closed(rng, polygon(ends), False, radius, height)
+        steps = closed_loop(rng, polygon(ends), False, radius, height)
     else:
         for normal in normals:
             ends = [half + rng.uniform(0.3, 3) + radius * rng.choice((0, 0, 1, 2)) for _ in range(2)]
             way = [Piece("line", normal * complex(apart, -ends[0]), normal * complex(apart, ends[1]))]
-            steps += _open(rng, way, False, radius, height)
+            steps += open_loop(rng, way, False, radius, height)
     return Shape(steps, outlines, radius, bar, may_stay=False)
-
-
-def _open(rng: random.Random, way: Way, left: bool, radius: float, height: Depths) -> list[Step]:
-    """A loop along an open way, in the direction in which it is given or the other."""
-    if rng.random() < 0.5:
-        way, left = reversed_way(way), not left
-    ins = lead_in(rng, rng.choice(LEADS), way[0].start, way[0].tangent(0), left, radius)
-    out = lead_out(rng, rng.choice(LEADS), way[-1].end, way[-1].tangent(1), left, radius)
-    return loop_of(ins, way, out, left, height)
-
-
-def _direct(way: Way, left: bool, radius: float, room: float, height: Depths) -> list[Step]:
-    """A loop whose ramps lie ahead of the first block and behind the last, in the middle of the room."""
-    inward = 1j if left else -1j
-    first, last = way[0], way[-1]
-    begin = first.start - first.tangent(0) * (radius * 1.3 + 1) + inward * first.tangent(0) * room
-    end = last.end + last.tangent(1) * (radius * 1.3 + 1) + inward * last.tangent(1) * room
-    return loop_of(Lead(begin, []), way, Lead(end, []), left, height)
 
 
 def slots(rng: random.Random) -> Shape:
@@ -495,17 +314,17 @@ def slots(rng: random.Random) -> Shape:
     radius = round(half * (rng.uniform(0.2, 0.97) if rng.random() < 0.75 else rng.uniform(1.03, 2)), 3)
     direction, aside = turned(rng) if rng.random() < 0.6 else 1 + 0j, bar * rng.uniform(-0.15, 0.15)
     reach = bar / 2 + rng.uniform(0.5, 3) + radius * rng.choice((0, 1, 2.5))
-    height = _depths(rng, 2.0)
+    height = heights(rng, 2.0)
 
     def at(x: float, c: float) -> complex:
         return direction * complex(x, c + aside)
 
     upper, lower = Piece("line", at(reach, half), at(-reach, half)), Piece("line", at(-reach, -half), at(reach, -half))
     if rng.random() < 0.5:
-        steps = _direct([upper], True, radius, half, height) + _direct([lower], True, radius, half, height)
+        steps = direct_loop([upper], True, radius, half, height) + direct_loop([lower], True, radius, half, height)
     else:
         link = Piece("line", upper.end, lower.start)
-        steps = _direct([upper, link, lower], True, radius, half, height)
+        steps = direct_loop([upper, link, lower], True, radius, half, height)
     outline = polygon([at(9 * bar, half), at(-9 * bar, half), at(-9 * bar, -half), at(9 * bar, -half)])
     return Shape(steps, [Outline(outline, False)], radius, bar, may_stay=False)
 
@@ -525,7 +344,7 @@ def keyways(rng: random.Random) -> Shape:
         way[1] = Piece("ccw", ends[1], ends[2], direction * bottom)
     outline = [Piece("line", beyond[1], ends[1]), way[1], Piece("line", ends[2], beyond[0])]
     outline.append(Piece("line", beyond[0], beyond[1]))
-    steps = _direct(way, True, radius, half, _depths(rng, 2.0))
+    steps = direct_loop(way, True, radius, half, heights(rng, 2.0))
     return Shape(steps, [Outline(outline, False)], radius, bar, may_stay=_one_height(steps))
 
 
@@ -534,23 +353,23 @@ def islands(rng: random.Random) -> Shape:
     size = rng.uniform(15, 60)
     inner, count = size * rng.uniform(0.15, 0.6), rng.randint(3, 8)
     island = polygon([cmath.rect(inner, math.tau * number / count) for number in range(count)])
-    island = island if rng.random() < 0.6 else _circle(0j, inner, turned(rng))
-    wall = _rounded([cmath.rect(size * math.sqrt(2), math.pi / 4 + math.pi / 2 * n) for n in range(4)], size * 0.3)
-    wall = wall if rng.random() < 0.6 else _circle(0j, size, turned(rng))
+    island = island if rng.random() < 0.6 else circle(0j, inner, turned(rng))
+    wall = rounded([cmath.rect(size * math.sqrt(2), math.pi / 4 + math.pi / 2 * n) for n in range(4)], size * 0.3)
+    wall = wall if rng.random() < 0.6 else circle(0j, size, turned(rng))
     center, direction = size * rng.uniform(0, 0.4) * turned(rng), turned(rng)
     wall = [piece.mapped(lambda point: center + point * direction) for piece in wall]
     island = [piece.mapped(lambda point: center + point * direction) for piece in island]
     radius = round((size - inner) / 2 * (rng.uniform(0.05, 0.5) if rng.random() < 0.8 else rng.uniform(0.5, 1.3)), 3)
-    height = _depths(rng, 2.0)
+    height = heights(rng, 2.0)
     radius = min(radius, round(size * 0.28, 3))
     steps: list[Step] = []
     ring = polygon_of(wall).difference(polygon_of(island)).buffer(-radius)
     for way, inside in rng.sample([(wall, True), (island, False)], 2):
         careless = rng.random() < 0.1
         for _ in range(60):
-            loop = _closed(rng, _start(rng, way), inside, radius, height)
+            loop = closed_loop(rng, begun_anywhere(rng, way), inside, radius, height)
             ends = [loop[0].end, [step for step in loop if step.kind != "z"][-1].end]
-            if careless or all(ring.contains(_point(end)) for end in ends):
+            if careless or all(ring.contains(point_of(end)) for end in ends):
                 break
         steps += loop
     outlines = [Outline(wall, False), Outline(island, True)]

@@ -68,26 +68,28 @@ def judge(text: str, radius: float, part: Any) -> Verdict:
     section = read_section(text, radius)
     run = simulate(section.start, section.blocks)
     alarms = {name: [section.lines[row] for row in sorted(run.alarms[name])] for name in ALARMS if name in run.alarms}
-    in_mode = [element for row, element in run.elements.items() if element.side and not _starts_up(run, row)]
+    loops = loops_of(run)
+    in_mode = [element for row, element in run.elements.items() if element.side and not loops[row].ramp]
     top = 0.0 if min((section.heights[element.row] for element in in_mode), default=0.0) < 0 else math.inf
     shapely.prepare(part)
-    contour, ramps, worst, place, other_loop = 0.0, 0.0, 0, 0j, False
+    contour, ramps, place, worst = 0.0, 0.0, 0j, None
     for move in run.moves:
         if move.phase == "CANCELLED" or section.heights[move.row] >= top:
             continue
         deepest, at = cut_of(move, radius, part)
         if deepest > max(contour, ramps):
-            worst, place = section.lines[move.row], at
-            other_loop = _cuts_another_loop(run, move, at, part, in_mode)
+            worst, place = move, at
         if move.phase == "OFFSET":
             contour = max(contour, deepest)
         else:
             ramps = max(ramps, deepest)
+    line = 0 if worst is None else section.lines[worst.row]
+    other_loop = worst is not None and _cuts_another_loop(loops, worst, place, part, in_mode)
     boundary = part.boundary
     shapely.prepare(boundary)
     through = any(_runs_inside(element, part, boundary) for element in in_mode)
     wrong = any(_on_wrong_side(element, part, boundary) for element in in_mode)
-    return Verdict(alarms, _short_ramp(run, radius), contour, ramps, worst, place, through, wrong, other_loop)
+    return Verdict(alarms, _short_ramp(run, loops, radius), contour, ramps, line, place, through, wrong, other_loop)
 
 
 def cut_of(move: Move, radius: float, part: Any) -> tuple[float, complex]:
@@ -126,36 +128,39 @@ def _points(move: Move | Element, shares: Any) -> Any:
     return move.center + spoke * (first + (last - first) * shares) * np.exp(1j * _sweep(move) * shares)
 
 
-def _starts_up(run: Run, row: int) -> bool:
-    before = [other for other in run.elements if other < row]
-    return bool(run.elements[row].side) and (not before or not run.elements[max(before)].side)
+class InLoop(NamedTuple):
+    """Which start-up a block is behind, an offset cancel included, and whether it is a ramp."""
+
+    number: int
+    ramp: bool
 
 
-def _short_ramp(run: Run, radius: float) -> float:
+def loops_of(run: Run) -> dict[int, InLoop]:
+    """For each block that moves."""
+    found, number, before = {}, 0, 0
+    for row in sorted(run.elements):
+        side = run.elements[row].side
+        number += bool(side and not before)
+        found[row] = InLoop(number, bool(side) != bool(before))
+        before = side
+    return found
+
+
+def _short_ramp(run: Run, loops: dict[int, InLoop], radius: float) -> float:
     """How much of R the shortest ramp lacks, as a share."""
-    lacks = -math.inf
-    rows = sorted(run.elements)
-    for before, row in zip([None, *rows], rows, strict=False):
-        cancels = before is not None and run.elements[before].side and not run.elements[row].side
-        if cancels or _starts_up(run, row):
-            lacks = max(lacks, 1 - abs(run.elements[row].end - run.elements[row].start) / radius)
-    return lacks
+    ramps = [element for row, element in run.elements.items() if loops[row].ramp]
+    return max((1 - abs(ramp.end - ramp.start) / radius for ramp in ramps), default=-math.inf)
 
 
-def _cuts_another_loop(run: Run, move: Move, at: complex, part: Any, walls: list[Element]) -> bool:
+def _cuts_another_loop(loops: dict[int, InLoop], move: Move, at: complex, part: Any, walls: list[Element]) -> bool:
     """Whether the wall of the part next to a place was programmed in another loop than the move's own."""
     wall = shapely.Point(shapely.get_coordinates(shapely.shortest_line(shapely.Point(_pair(at)), part.boundary))[-1])
     apart: dict[bool, float] = {True: math.inf, False: math.inf}
     for element in walls:
-        own = _loop_number(run, element.row) == _loop_number(run, move.row)
+        own = loops[element.row].number == loops[move.row].number
         way = shapely.LineString([_pair(point) for point in along(element)])
         apart[own] = min(apart[own], shapely.distance(way, wall))
     return bool(apart[False] < _CLEAR < apart[True])
-
-
-def _loop_number(run: Run, row: int) -> int:
-    """Which start-up a block belongs to; an offset cancel to the one before it."""
-    return sum(_starts_up(run, other) for other in run.elements if other <= row)
 
 
 def _inner_points(element: Element) -> Any:
