@@ -47,6 +47,7 @@ SPANS = {
     "pause": "ramps.pause",
     "way": "ramps.way",
     "wall": "overcuts.wall",
+    "mesh": "ramps.mesh",
     "tool call": "since.tool_call",
     "modal state": "since.modal_state",
     "plane": "since.plane",

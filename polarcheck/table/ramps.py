@@ -40,6 +40,11 @@ class Ramps:
         moves = self.trace.in_polar & self.trace.moves_plane
         return np.where(self.trace.whole_section >= 0, np.cumsum(moves) - moves, -1)
 
+    @cached_property
+    def mesh(self) -> Rows:
+        """The section of moves that do not fit because of the rounding of their ends; -1 for other rows."""
+        return np.where(self.tool_center.interferes_by_rounding, self.trace.whole_section, -1)
+
     # ---- start-up and offset cancel ----
 
     @cached_property
@@ -122,18 +127,23 @@ class Ramps:
         """
         Moves whose interference or missing intersection, if there is one, is the consequence of another fault.
 
-        Of neighbouring moves that do not fit the first counts: what follows hangs on it. An arc that is too small, a
+        Of neighbouring moves that do not fit the first counts: what follows hangs on it, unless rounding is all that is
+        wrong with the first. An arc that is too small, a
         ramp on an arc, and another G41 or G42 have rules of their own, and explain what does not fit beside them.
         """
         trace, tool_center = self.trace, self.tool_center
         moving = np.flatnonzero(trace.travels)
         on_arc = trace.is_arc & (trace.starts_up | trace.cancels)
         cause = (tool_center.inside_arc_too_small | on_arc | self.writes_side_again)[moving]
-        faulty = (tool_center.no_intersection | tool_center.interferes)[moving]
-        joined = np.diff(trace.section[moving]) == 0
+        interferes = tool_center.interferes & ~tool_center.interferes_by_rounding
+        first = np.flatnonzero(cause | (tool_center.no_intersection | interferes)[moving])
         hangs = cause.copy()
-        hangs[1:] |= joined & (cause | faulty)[:-1]
-        hangs[:-1] |= joined & cause[1:]
+        if len(first):
+            rows = np.arange(len(moving))
+            above = first[np.maximum(np.searchsorted(first, rows) - 1, 0)]
+            near = np.diff((tool_center.stretch[moving][above], tool_center.stretch[moving]), axis=0)[0] <= 1
+            hangs |= near & (above < rows) & (trace.section[moving[above]] == trace.section[moving])
+        hangs[:-1] |= (np.diff(trace.section[moving]) == 0) & cause[1:]
         consequence = np.zeros(len(trace), bool)
         consequence[moving[hangs]] = True
         return consequence

@@ -10,10 +10,16 @@ from functools import cached_property
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Rows
-from polarcheck.geometry.compensation import ToolPath
+from polarcheck.geometry.compensation import Path, ToolPath
+from polarcheck.geometry.rounding import kept_ends
+from polarcheck.machines.modal import Motion, Side
 from polarcheck.table.infeed import Infeed
+from polarcheck.table.last_digit import half_of_last_digit
 from polarcheck.table.moves import Moves, compensation_path, of_tool, per_row, tool_center_path
 from polarcheck.table.trace import Trace
+
+#: The share of R that must fit beside a stretch of many blocks for their rounding to be what is wrong.
+_SURELY = 7 / 8
 
 
 class ToolCenter:
@@ -29,8 +35,12 @@ class ToolCenter:
         return np.flatnonzero(self.trace.in_polar)
 
     @cached_property
+    def _programmed(self) -> Path:
+        return compensation_path(self.trace, self._rows)
+
+    @cached_property
     def _path(self) -> ToolPath:
-        return tool_center_path(self.trace, compensation_path(self.trace, self._rows))
+        return tool_center_path(self.trace, self._programmed)
 
     @cached_property
     def moves(self) -> Moves:
@@ -54,6 +64,41 @@ class ToolCenter:
     def interferes(self) -> Mask:
         """The tool center would run against the program."""
         return self._found(self._path.interferes)
+
+    @cached_property
+    def _kept(self) -> Mask:
+        """The rows of the path at whose ends the contour bends by more than the rounding of its points."""
+        path = self._programmed
+        return kept_ends(path.start, path.end, _goes_on(path), half_of_last_digit(self.trace)[self._rows])
+
+    @cached_property
+    def stretch(self) -> Rows:
+        """The number of the straight stretch of each row; blocks that rounding alone parts lie in one."""
+        ends = np.ones(len(self.trace), np.int64)
+        if self.interferes.any():
+            ends[self._rows] = self._kept
+        return np.cumsum(ends) - ends
+
+    @cached_property
+    def interferes_by_rounding(self) -> Mask:
+        """
+        Of those the ones that would not, were the contour as straight as the last digit of its points leaves it open.
+
+        Where blocks are so short that this digit turns them by more than the contour does, a part that is convex has
+        inside corners, too tight for the cutter.
+        """
+        if not self.interferes.any():
+            return self.interferes
+        path, kept = self._programmed, self._kept
+        rows = np.flatnonzero(kept)
+        columns = {name: getattr(path, name)[rows] for name in path.__struct_fields__}
+        first = np.append(0, rows[:-1] + 1)
+        columns["start"] = path.start[first]
+        # What rounding still turns the stretches by is a share of what the contour turns them by.
+        columns["radius"] = path.radius[rows] * np.where(rows > first, _SURELY, 1.0)
+        straight = tool_center_path(self.trace, Path(**columns))
+        faulty = straight.interferes | straight.no_intersection | straight.inside_arc_too_small
+        return self._found(self._path.interferes & ~faulty[np.searchsorted(rows, np.arange(len(kept)))])
 
     @cached_property
     def no_intersection(self) -> Mask:
@@ -125,3 +170,11 @@ class ToolCenter:
     def true_feed(self) -> Floats:
         """F that automatic override leaves [mm/min]."""
         return np.asarray(self.trace.feed * self.override / 100)
+
+
+def _goes_on(path: Path) -> Mask:
+    """Straight moves in offset mode that nothing parts from such a move before them."""
+    plain = path.moves & (path.motion == Motion.LINE) & (path.side != Side.OFF) & ~path.side_written
+    plain &= ~np.isnan(path.start + path.end) & ~path.stops_reading
+    joins = plain[1:] & plain[:-1] & (path.section[1:] == path.section[:-1]) & (path.side[1:] == path.side[:-1])
+    return np.append(np.zeros(min(len(plain), 1), bool), joins & (path.radius[1:] == path.radius[:-1]))

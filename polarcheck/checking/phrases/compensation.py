@@ -5,6 +5,7 @@ from __future__ import annotations
 from polarcheck.checking.quantity import in_row
 from polarcheck.machines.machine import Machine
 from polarcheck.table.overcuts import Overcuts
+from polarcheck.table.tool_center import ToolCenter
 from polarcheck.table.trace import Trace
 
 
@@ -30,6 +31,18 @@ def changed_by(trace: Trace, row: int) -> str:
 def allowed(machine: Machine) -> str:
     """The nose types that a mill may have."""
     return " or ".join(str(number) for number in machine.compensation.nose_types)
+
+
+def misfit(trace: Trace, tool_center: ToolCenter, row: int, count: int) -> str:
+    """Why the tool center runs backwards in a row, or in several for the same reason."""
+    radius = f"{in_row(abs(float(trace.radius[row])), trace, row):length}"
+    if not tool_center.interferes_by_rounding[row]:
+        return f"the contour is too narrow or too short for R {radius}"
+    others = f" and {count - 1} more" if count > 1 else ""
+    return (
+        f"blocks shorter than their rounding allows with R {radius}, this one{others}; "
+        "write longer blocks or arcs, as with a coarser chord tolerance of the post, or more digits"
+    )
 
 
 def _along(trace: Trace, row: int, length: float, other: float) -> str:

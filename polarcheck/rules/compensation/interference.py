@@ -6,9 +6,10 @@ from polarcheck.checking.rule import ERROR, Mask, Ramps, ToolCenter, rule
 
 @rule(
     ERROR,
-    "tool center would run backwards here: the contour is too narrow or too short for R {trace.radius:length}",
+    "tool center would run backwards here: {misfit}",
     needs=("trace.radius",),
     where="ramps.compensated",
+    once="mesh",
     follows={"loop": NO_SUCH_ARC, "section": SECTION_READ_OTHERWISE},
 )
 def interference(tool_center: ToolCenter, ramps: Ramps) -> Mask:
@@ -19,6 +20,10 @@ def interference(tool_center: ToolCenter, ramps: Ramps) -> Mask:
     itself: it would run against the direction of the program, and cut into what is left standing before and behind.
     The control finds this by its interference check and stops with an alarm. Take a smaller cutter, or leave the
     narrow place out. Of neighbouring blocks the first is reported.
+
+    Posts that write curves as lines can make blocks so short that the last digit of their ends turns them by more than
+    the curve does. Then the contour is full of inside corners that it does not mean, each too tight for the cutter, and
+    the control stops at the first. That is one finding for all of them: write longer blocks, arcs, or more digits.
 
     Source: FANUC 30i B-63944EN-2, interference check; B-63664EN, p. 184; alarm 041.
 
