@@ -40,6 +40,13 @@ HEXAGON = (
 )
 TWO_LOOPS = SQUARE.replace("G40 X80./Z2.", "G40 X80./Z-8./G42 X40./C20./X-40./C-20./X40./C0/G40 X80./Z2.")
 
+#: Narrower than the cutter: a keyway, and a pocket of two rooms.
+KEYWAY = "G0 X80. Z2. C0/G12.1/G1 Z-5. F300/G41 X60. C3. F200/X20./C-3./X60./G40 X80. C0/Z2./G13.1"
+NECK = (
+    "G0 X80. Z2. C0/G12.1/G1 X40. F300/Z-5./G41 X60. F200/C20./X20./C3./X-20./C20./X-60./C-20./X-20./C-3./X20./C-20./"
+    "X60./C1./G40 X40. C0/Z2./G13.1"
+)
+
 #: Controls that run these sections as they are.
 OTHERS = ("fanuc-16i", "fanuc-30i", "doosan", "gsk-988", "siemens-iso")
 LIMIT = {"limits": {"c_feed": 3600}}
@@ -233,6 +240,65 @@ MISTAKES = [
         "G40 X80.",
         "arc-without-center",
         ("cancel-on-arc",),
+    ),
+    Mistake(
+        "G41 before the mode, G42 in it",
+        SQUARE,
+        {"G12.1": "G41/G12.1", "F300/G42": "F300/X70. C1./X76. C0/X60. C0/G42"},
+        "G12.1",
+        "polar-switched-in-offset-mode",
+    ),
+    Mistake(
+        "G42 before the mode, G42 in it",
+        SQUARE,
+        {"G12.1": "G42/G12.1", "F300/G42": "F300/X90./X60. C3./X61./X60. C0/G42"},
+        "G12.1",
+        "polar-switched-in-offset-mode",
+    ),
+    Mistake(
+        "G40 forgotten, and a section of the tool center",
+        f"{SQUARE}/{SQUARE}",
+        {
+            "G40 ": "",
+            "G13.1/G0 X80. Z2. C0/G12.1/G1 Z-5. F300/G42 X40.": "G13.1/G0 X80. Z2. C0/G12.1/G1 Z-5. F300/X48.",
+        },
+        "G13.1",
+        "polar-switched-in-offset-mode",
+        inch=False,
+    ),
+    # ---- a place that is too narrow has several walls ----
+    *(
+        Mistake(title, KEYWAY, changed, block, rule, ("start-up-sweeps-contour",))
+        for title, changed, block, rule in (
+            ("keyway", {}, "C-3.", "interference"),
+            ("keyway almost wide enough", {"C3.": "C3.9", "C-3./X60": "C-3.9/X60"}, "C-3.9", "interference"),
+            (
+                "keyway on the other side",
+                {"G41 X60. C3.": "G42 X60. C-3.", "C-3./X60": "C3./X60"},
+                "C3.",
+                "interference",
+            ),
+            (
+                "keyway with a round end",
+                {"C-3./": "G3 X20. C-3. R3./G1 "},
+                "G3 X20. C-3. R3.",
+                "inside-arc-smaller-than-radius",
+            ),
+            (
+                "keyway off the center",
+                {"C3.": "C13.", "C-3./X60": "C7./X60", "G40 X80. C0": "G40 X80. C10."},
+                "C7.",
+                "interference",
+            ),
+        )
+    ),
+    Mistake("neck", NECK, {}, "X-20.", "overcut"),
+    Mistake(
+        "waist",
+        NECK,
+        {"X20./C3./X-20./C20./X-60.": "X0 C3./X-60. C20.", "X-20./C-3./X20./C-20./X60.": "X0 C-3./X60. C-20."},
+        "X-60. C20.",
+        "overcut",
     ),
     Mistake("D", SQUARE, {"G42": "G42 D1"}, "G42 D1 X40. F200", "d-word-on-lathe", inch=False),
     Mistake(

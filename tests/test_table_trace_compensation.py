@@ -33,7 +33,7 @@ def read_by_hand(blocks: list[str]) -> dict[str, list[object]]:
     for block in blocks:
         before = side
         side = next((SIDES[word] for word in block.split() if word in SIDES), side)
-        if block == "G13.1":
+        if block in ("G12.1", "G13.1"):
             side, in_mode = OFF, False
         moves = in_mode and "U" in block
         row = (side, before, moved, in_mode and side != OFF, moves and side != OFF and moved == OFF)

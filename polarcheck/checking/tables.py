@@ -48,6 +48,7 @@ SPANS = {
     "way": "ramps.way",
     "wall": "overcuts.wall",
     "mesh": "ramps.mesh",
+    "narrow loop": "ramps.narrow_loop",
     "tool call": "since.tool_call",
     "modal state": "since.modal_state",
     "plane": "since.plane",

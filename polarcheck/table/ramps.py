@@ -45,6 +45,11 @@ class Ramps:
         """The section of moves that do not fit because of the rounding of their ends; -1 for other rows."""
         return np.where(self.tool_center.interferes_by_rounding, self.trace.whole_section, -1)
 
+    @cached_property
+    def narrow_loop(self) -> Rows:
+        """As loop, for what does not fit there; -1 for moves that do not fit because of their rounding alone."""
+        return np.where(self.tool_center.interferes_by_rounding, -1, self.loop)
+
     # ---- start-up and offset cancel ----
 
     @cached_property

@@ -105,10 +105,16 @@ class Trace(Positions):
 
     @cached_property
     def side(self) -> States:
-        """Cutter compensation in force (Side); after a section it is off, be it that its G40 was forgotten."""
+        """
+        Cutter compensation in force (Side).
+
+        It is off when the mode is switched, be it that a G40 was forgotten: that has a finding, and what would be
+        compensated wrongly up to the next G41 or G42 is no second mistake.
+        """
         written = self.sets("side")
         state = np.where(written, self.state("side"), Side.OFF)
-        return fill_down(state, written | self.mask_of(self.sections.leave) | self.starts, Side.OFF).astype(np.int16)
+        switched = self.mask_of(self.sections.leave) | self.enters
+        return fill_down(state, written | switched | self.starts, Side.OFF).astype(np.int16)
 
     @cached_property
     def side_before(self) -> States:

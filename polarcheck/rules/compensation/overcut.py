@@ -14,14 +14,12 @@ from polarcheck.checking.rule import ERROR, Mask, Overcuts, rule
     follows={
         "loop": (
             *NO_SUCH_ARC,
-            "inside-arc-smaller-than-radius",
-            "interference",
-            "no-offset-intersection",
             "number-without-point",
             "start-up-shorter-than-radius",
             "side-changed-in-offset-mode",
             "side-repeated-in-offset-mode",
         ),
+        "narrow loop": ("inside-arc-smaller-than-radius", "interference", "no-offset-intersection"),
         "pause": ("movement-missing-in-offset-mode",),
         "section": SECTION_READ_OTHERWISE,
     },
