@@ -27,6 +27,7 @@ MAKERS = {
     "ramps": "polarcheck.table.ramps:Ramps",
     "overcuts": "polarcheck.table.overcuts:Overcuts",
     "arcs": "polarcheck.table.arcs:Arcs",
+    "senses": "polarcheck.table.senses:Senses",
     "travel": "polarcheck.table.travel:Travel",
     "center": "polarcheck.table.center:Center",
     "feeds": "polarcheck.table.feeds:Feeds",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from polarcheck.checking.quantity import in_row
 from polarcheck.machines.machine import Machine
+from polarcheck.machines.modal import Motion
 from polarcheck.table.overcuts import Overcuts
 from polarcheck.table.tool_center import ToolCenter
 from polarcheck.table.trace import Trace
@@ -43,6 +44,16 @@ def misfit(trace: Trace, tool_center: ToolCenter, row: int, count: int) -> str:
         f"blocks shorter than their rounding allows with R {radius}, this one{others}; "
         "write longer blocks or arcs, as with a coarser chord tolerance of the post, or more digits"
     )
+
+
+def written_sense(trace: Trace, row: int) -> str:
+    """G2 or G3, whichever is in force."""
+    return trace.machine.codes("arc_clockwise" if trace.motion[row] == Motion.CW else "arc_counterclockwise")[0]
+
+
+def other_sense(trace: Trace, row: int) -> str:
+    """The other one."""
+    return trace.machine.codes("arc_counterclockwise" if trace.motion[row] == Motion.CW else "arc_clockwise")[0]
 
 
 def _along(trace: Trace, row: int, length: float, other: float) -> str:

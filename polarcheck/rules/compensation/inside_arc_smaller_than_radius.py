@@ -11,7 +11,7 @@ from polarcheck.checking.rule import ERROR, Mask, ToolCenter, Trace, rule
     at=("arc_clockwise", "arc_counterclockwise", "R", "I", "J"),
     needs=("trace.radius",),
     where="ramps.compensated",
-    follows={"loop": NO_SUCH_ARC, "section": SECTION_READ_OTHERWISE},
+    follows={"loop": (*NO_SUCH_ARC, "arc-sense-reversed"), "section": SECTION_READ_OTHERWISE},
 )
 def inside_arc_smaller_than_radius(trace: Trace, tool_center: ToolCenter) -> Mask:
     """

@@ -14,6 +14,7 @@ from polarcheck.checking.rule import ERROR, Mask, Overcuts, rule
     follows={
         "loop": (
             *NO_SUCH_ARC,
+            "arc-sense-reversed",
             "number-without-point",
             "start-up-shorter-than-radius",
             "side-changed-in-offset-mode",

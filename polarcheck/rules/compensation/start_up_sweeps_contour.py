@@ -17,7 +17,7 @@ from polarcheck.checking.rule import ERROR, Hits, Overcuts, rule
             "cancel-on-arc",
             "path-through-center",
         ),
-        "loop": (*NO_SUCH_ARC, "number-without-point", "overcut"),
+        "loop": (*NO_SUCH_ARC, "arc-sense-reversed", "number-without-point", "overcut"),
         "narrow loop": ("inside-arc-smaller-than-radius", "interference", "no-offset-intersection"),
         "pause": ("movement-missing-in-offset-mode",),
         "way": ("x-not-positive-at-entry",),

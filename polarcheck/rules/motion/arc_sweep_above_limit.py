@@ -12,7 +12,7 @@ LAST_DIGIT = 0.1
     "arc of {arcs.sweep:whole/machine.arcs.sweep_limit} deg; {machine.title} takes "
     "{machine.arcs.sweep_limit:whole/arcs.sweep} deg in one block; write it as several arcs",
     at=("X", "U", "C", "H", "I", "J", "R"),
-    follows={"block": NO_SUCH_ARC, "section": SECTION_READ_OTHERWISE},
+    follows={"block": (*NO_SUCH_ARC, "arc-sense-reversed"), "section": SECTION_READ_OTHERWISE},
 )
 def arc_sweep_above_limit(arcs: Arcs, machine: Machine) -> Mask:
     """

@@ -1,0 +1,75 @@
+from __future__ import annotations
+
+from polarcheck.checking.causes import NO_SUCH_ARC, SECTION_READ_OTHERWISE
+from polarcheck.checking.rule import WARNING, Mask, Senses, rule
+
+
+@rule(
+    WARNING,
+    "{written_sense} turns a corner of {senses.corner:whole} deg at both ends; {other_sense} is tangent to the blocks "
+    "before and after it: write {other_sense}",
+    at=("arc_clockwise", "arc_counterclockwise"),
+    follows={"loop": NO_SUCH_ARC, "section": SECTION_READ_OTHERWISE},
+)
+def arc_sense_reversed(senses: Senses) -> Mask:
+    """
+    G2 where G3 is meant at a corner, or the reverse.
+
+    A corner is rounded by an arc that is tangent to the blocks on both sides. With the other code the arc by R bends
+    the other way, and the corner becomes a notch; by I and J it goes round the rest of the circle. Where the cutter
+    fits into the notch no control objects, and the part is scrap. It is reported where the rest of the contour shows
+    what is meant: another of its arcs is tangent, and this one alone would be the other way round. Several such notches
+    are a pattern that is meant.
+
+    Source: FANUC B-62754EN/01, p. 67 (G02 clockwise, G03 counterclockwise).
+
+    Bad, tool 1:radius=4:
+
+        T0101
+        G98 G0 X100. C0
+        G12.1
+        G1 G42 X40. F200
+        C10.
+        G3 X20. C20. R10.
+        G1 X-20.
+        G2 X-40. C10. R10.   (expect: arc-sense-reversed)
+        G1 C-20.
+        X40.
+        C0
+        G40 X100.
+        G13.1
+
+    Good, tool 1:radius=4:
+
+        T0101
+        G98 G0 X100. C0
+        G12.1
+        G1 G42 X40. F200
+        C10.
+        G3 X20. C20. R10.
+        G1 X-20.
+        G3 X-40. C10. R10.
+        G1 C-20.
+        X40.
+        C0
+        G40 X100.
+        G13.1
+
+    Good, tool 1:radius=4:
+
+        T0101
+        G98 G0 X100. C0
+        G12.1
+        G1 G42 X40. F200
+        C10.
+        G2 X20. C20. R10.
+        G1 X-20.
+        G2 X-40. C10. R10.
+        G1 C-20.
+        X40.
+        C0
+        G40 X100.
+        G13.1
+    """
+    shown = (senses.tangent_in_loop > 0) & (senses.fitting_reversed_in_loop == 1)
+    return senses.fits_reversed & (shown | senses.turns_back)
