@@ -1,5 +1,5 @@
 """
-What a cutter radius costs: time and peak memory of contours that are hard to judge, beside the same without a radius.
+What a cutter radius costs: processor time and peak memory of contours that are hard to judge, beside the same without a radius.
 
     python benchmarks/contour_costs.py [--only NAME] [--rounds 3] [--time-limit 120] [--memory-limit 8]
 
@@ -178,9 +178,9 @@ def measure(path: Path, radius: float) -> Cost:
     data = path.read_bytes()
     lathe, rules = profiles.load(MACHINE).machine, list(load_all().values())
     job = Job(tools={number: Tool(radius=radius) for number in TOOLS} if radius else {})
-    began = time.perf_counter()
+    began = time.process_time()
     result = check.check_file(data, lathe, job, rules)
-    taken = time.perf_counter() - began
+    taken = time.process_time() - began
     status = Path("/proc/self/status").read_text().splitlines()  # ru_maxrss would begin with that of the parent
     peak = next(int(line.split()[1]) for line in status if line.startswith("VmHWM"))
     return Cost(taken, peak * 1024, len(result.findings))

@@ -81,19 +81,22 @@ def segments(moves: Curves, tolerance: float) -> Segments:
     count[round_] = np.maximum(until_ - first, 0).astype(np.int64) + 1
 
     move = np.repeat(np.arange(len(start)), count)
-    begin, until = start[move], end[move]
+    begin, until, loop = start[move], end[move], moves.loop[move].astype(np.int64, copy=False)
     on_arc = np.flatnonzero(arcs[move])
-    which = np.searchsorted(round_, move[on_arc])
-    place = on_arc - (np.cumsum(count) - count)[move[on_arc]]
+    which = np.repeat(np.arange(len(round_)), count[round_])
+    of_arc = round_[which]
+    place = on_arc - (np.cumsum(count) - count)[of_arc]
     turned = (first[which] + place - 1) * unit[which] - np.angle(spoke)[which]
-    share = np.where(place == 0, 0.0, np.divide(turned, sweep[which], out=np.zeros(len(which)), where=place > 0))
+    share = np.divide(turned, sweep[which], out=np.zeros(len(which)), where=place > 0)
     # An end that is not quite on the circle is reached in a spiral, at the same angles as by the tool center.
     growth = np.where(spoke == 0, 0, np.abs(last) / np.maximum(np.abs(spoke), ZERO) - 1)
     on = spoke[which] * (1 + growth[which] * share) * np.exp(1j * sweep[which] * share)
-    begin[on_arc] = np.where(place == 0, begin[on_arc], center[move[on_arc]] + on)
-    inner = np.flatnonzero(move[1:] == move[:-1])
-    until[inner] = begin[inner + 1]
-    result = Segments(begin, until, move, moves.loop[move].astype(np.int64))[np.abs(until - begin) > ZERO]
+    begin[on_arc] = np.where(place == 0, begin[on_arc], center[of_arc] + on)
+    inner = on_arc[1:][of_arc[1:] == of_arc[:-1]]
+    until[inner - 1] = begin[inner]
+    result = Segments(begin, until, move, loop)
+    has_length = np.abs(until - begin) > ZERO
+    result = result if has_length.all() else result[has_length]
     in_order = np.all(result.loop[1:] >= result.loop[:-1])
     return result if in_order else result[np.argsort(result.loop, kind="stable")]
 
