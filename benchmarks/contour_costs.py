@@ -1,5 +1,5 @@
 """
-What a cutter radius costs: processor time and peak memory of contours that are hard to judge, beside the same without a radius.
+What a cutter radius costs: processor time and peak memory of contours that are hard to judge, beside those without it.
 
     python benchmarks/contour_costs.py [--only NAME] [--rounds 3] [--time-limit 120] [--memory-limit 8]
 

@@ -142,8 +142,8 @@ def moving_rows(path: Path, method: Method) -> tuple[Programmed, Mask]:
         # A negative R exchanges G41 and G42 (FANUC 16/18-C mill manual p. 302).
         side=np.where((path.side[row] == Side.LEFT) ^ (radius < 0), 1.0, -1.0),
         radius=np.abs(radius),
-        cancel_vector=_direction(path.cancel_vector[row]),
-        **_ways(path, row, on, still, method),
+        cancel_vector=_directions_given(path.cancel_vector[row]),
+        **_ways(path, row, on, method),
     )
     return programmed, center_on_path & path.moves
 
@@ -169,17 +169,32 @@ def _direction(vector: Points) -> Points:
     return vector / np.where(length > 0, length, np.nan)
 
 
-def _ways(path: Path, row: Rows, on: Mask, still: Mask, method: Method) -> dict[str, Any]:
+def _directions_given(vector: Points) -> Points:
+    """The same where few are given."""
+    result = np.full_like(vector, complex(np.nan, np.nan))
+    given = np.flatnonzero(~np.isnan(vector))
+    result[given] = _direction(vector[given])
+    return result
+
+
+def _ways(path: Path, row: Rows, on: Mask, method: Method) -> dict[str, Any]:
     """The columns of Programmed that speak of the way from one moving row to the next."""
     off = path.side == Side.OFF
-    # A block without movement counts one, a move of no length two (FANUC 16i-LB B-63664EN p. 170).
-    idle = np.where(path.moves, 2 * still, 1)
-    idle[row] = 0
+    writes_side = path.side_written & ~off
+    between, gap = _between(row, len(off))
+
+    def in_gap(values: NDArray[Any]) -> NDArray[Any]:
+        """Sum over the rows between each moving row and the next."""
+        return np.bincount(gap, values, minlength=len(row))
+
     has_next = np.zeros(len(row), dtype=np.bool_)
     has_next[:-1] = path.section[row[1:]] == path.section[row[:-1]]
-    tolerated = _sum_to_next(idle, row) <= max(method.read_ahead, 3) - 2
-    stopped = _sum_to_next(path.stops_reading, row) + path.stops_reading[row] > 0
-    cancelled = has_next & (_sum_to_next(off, row) > 0)
+    # A block without movement counts one, a move of no length two (FANUC 16i-LB B-63664EN p. 170).
+    tolerated = in_gap(np.where(path.moves[between], 2, 1)) <= max(method.read_ahead, 3) - 2
+    stopped = path.stops_reading[row] | (in_gap(path.stops_reading[between]) > 0)
+    cancelled = has_next & (in_gap(off[between]) > 0)
+    written = in_gap(writes_side[between]) > 0
+    written[:-1] |= writes_side[row[1:]]
     before_on, left_over = np.zeros_like(has_next), np.zeros_like(has_next)
     before_on[1:] = (on & has_next & ~cancelled)[:-1]
     left_over[1:] = (on & has_next & cancelled)[:-1] & (not method.shifts_at_once)
@@ -192,7 +207,7 @@ def _ways(path: Path, row: Rows, on: Mask, still: Mask, method: Method) -> dict[
         "has_next": has_next,
         "cancelled": cancelled,
         "read": tolerated & ~stopped,
-        "written": _sum_to_next(path.side_written & ~off, row, with_next=True) > 0,
+        "written": written,
         "before_on": before_on | (shifts_at >= 0),
         "left_over": left_over,
         "shifts_at": shifts_at,
@@ -200,13 +215,12 @@ def _ways(path: Path, row: Rows, on: Mask, still: Mask, method: Method) -> dict[
     }
 
 
-def _sum_to_next(column: NDArray[Any], row: Rows, with_next: bool = False) -> Rows:
-    """Sum of a column over the rows between one moving row and the next, the next one included if asked for."""
-    total = np.cumsum(column, dtype=np.int64)
-    before_next = total[row] if with_next else total[row] - column[row]
-    result = np.zeros(len(row), dtype=np.int64)
-    result[:-1] = before_next[1:] - total[row[:-1]]
-    return result
+def _between(row: Rows, count: int) -> tuple[Rows, Rows]:
+    """The rows between two moving ones, few in most programs, and for each the number of the one before it."""
+    between = np.delete(np.arange(count), row)
+    gap = np.searchsorted(row, between) - 1
+    inside = (gap >= 0) & (gap < len(row) - 1)
+    return between[inside], gap[inside]
 
 
 def _switched_at(section: Rows, off: Mask) -> Rows:

@@ -90,9 +90,10 @@ class _Joints(msgspec.Struct, frozen=True):
 
 def _join(vectors: Vectors, programmed: Programmed, method: Method) -> None:
     """Fill in the vectors where a move goes on into the next one (FANUC 16/18-C lathe manual p. 224-232)."""
-    corners = _corners(programmed)
+    slanted = _is_slanted(programmed)
+    corners = _corners(programmed, slanted)
     turned = turn(corners)
-    joints = _joints(programmed, corners, turned, method)
+    joints = _joints(programmed, corners, turned, slanted, method)
 
     point = meeting(corners, turned, joints.meets)
     meets = joints.meets & np.isfinite(point)
@@ -121,7 +122,7 @@ def _join(vectors: Vectors, programmed: Programmed, method: Method) -> None:
     vectors.point[AFTER, rows] = _after(programmed, rows)
 
 
-def _joints(programmed: Programmed, corners: Corners, turned: Points, method: Method) -> _Joints:
+def _joints(programmed: Programmed, corners: Corners, turned: Points, slanted: Mask, method: Method) -> _Joints:
     """Sort the junctions; a radius of zero leaves the one perpendicular vector, of no length."""
     on, is_arc = programmed.on, programmed.is_arc
     joins = (on & programmed.has_next & ~programmed.cancelled & programmed.known)[:-1] & programmed.known[1:]
@@ -133,7 +134,7 @@ def _joints(programmed: Programmed, corners: Corners, turned: Points, method: Me
 
     ramps_on = (~programmed.before_on & ~is_arc)[:-1]
     ramps_off = (~on & ~is_arc)[1:]
-    slanted = joins & _is_slanted(programmed)
+    slanted = joins & slanted
     inner = is_inner(corners, turned)
     # Type A, and inside also type B, has one vector at the contour's end of a ramp (M700V manual p. 177, 183).
     one_vector = inner | method.ramps_by_next
@@ -153,14 +154,14 @@ def _is_slanted(programmed: Programmed) -> Mask:
     return np.asarray(given[1:] & (programmed.before_on | programmed.is_arc)[:-1])
 
 
-def _corners(programmed: Programmed) -> Corners:
+def _corners(programmed: Programmed, slanted: Mask) -> Corners:
     """The junctions of each move but the last with the next one."""
     side, radius = programmed.side[:-1], programmed.radius[:-1]
     rows = np.arange(len(side))
     return Corners(
         point=programmed.end[:-1],
         arriving=programmed.arriving[:-1],
-        leaving=np.where(_is_slanted(programmed), programmed.cancel_vector[1:], programmed.leaving[1:]),
+        leaving=np.where(slanted, programmed.cancel_vector[1:], programmed.leaving[1:]),
         center_before=programmed.center[:-1],
         center_after=programmed.center[1:],
         turning_before=programmed.turning[:-1],
