@@ -162,7 +162,7 @@ def programmed_moves(trace: Trace) -> Moves:
         end=end,
         center=center,
         feed=trace.feed[row],
-        known=~np.isnan(polar.length(start, end, center, kind)),
+        known=~np.isnan(end - start),
         phase=np.zeros(len(row), np.int16),
         corner=np.zeros(len(row), bool),
         entry=trace.section_entry,
@@ -227,6 +227,9 @@ def of_tool(trace: Trace, tool: compensation.ToolPath, row: Rows) -> Moves:
 
 def _cancel_vector(trace: Trace, row: Rows) -> Points:
     """I and J beside G40 say where the tool leaves (B-63324EN/03 p. 402)."""
-    i, j = (trace.length_of(word)[row] for word in trace.machine.polar.center_words)
-    written = trace.writes_cancel[row] & (~np.isnan(i) | ~np.isnan(j))
-    return np.where(written, np.nan_to_num(i) + 1j * np.nan_to_num(j), complex("nan+nanj"))
+    vector = np.full(len(row), complex("nan+nanj"))
+    cancels = np.flatnonzero(trace.writes_cancel[row])
+    i, j = (trace.length_of(word)[row[cancels]] for word in trace.machine.polar.center_words)
+    written = ~np.isnan(i) | ~np.isnan(j)
+    vector[cancels[written]] = (np.nan_to_num(i) + 1j * np.nan_to_num(j))[written]
+    return vector
