@@ -15,7 +15,7 @@ from compensation_oracle import Move, simulate
 from contour_families import FAMILIES, Program, Twin, program_of
 from contour_pieces import Piece, polygon_of
 from contour_verdicts import KINDS, TOLD, class_of, compare, compare_seed, twins_of
-from part_reference import Verdict, along, cut_of, judge, read_section
+from part_reference import Verdict, along, cut_of, judge, loops_of, read_section
 
 GENERATOR = Path(__file__).parent.parent / "benchmarks" / "geometry_generator.py"
 #: How the names of programs begin that are kept and count for no disagreement.
@@ -156,6 +156,21 @@ def test_samples_along_the_path_say_the_same(seed: int) -> None:
                 deepest = max(deepest, one.radius - apart)
     assert verdict.depth == pytest.approx(deepest, abs=0.051)
     assert verdict.depth >= deepest - 1e-9
+
+
+@pytest.mark.parametrize("seed", range(26))
+def test_every_wall_of_the_part_is_programmed(seed: int) -> None:
+    """So that the part by construction is the one of the program; round the bar nothing is milled."""
+    one = program_of(seed)
+    section = read_section(one.text, one.radius)
+    run = simulate(section.start, section.blocks)
+    loops = loops_of(run)
+    ways = [along(element) for row, element in run.elements.items() if element.side and not loops[row].ramp]
+    written = shapely.union_all([shapely.LineString([(point.real, point.imag) for point in way]) for way in ways])
+    walls = one.part.boundary.intersection(shapely.box(-4000, -4000, 4000, 4000))
+    if one.bar is not None:
+        walls = walls.difference(shapely.Point(0, 0).buffer(one.bar / 2, quad_segs=360).boundary.buffer(0.01))
+    assert walls.difference(written.buffer(0.01)).length < 0.01
 
 
 # --- the generator ------------------------------------------------------------------------------------------------
