@@ -116,7 +116,7 @@ def closed_loop(
             break
         style_in, style_out = rng.choice(LEADS), rng.choice(LEADS)
     if rng.random() < 0.05:  # from the other side of the part
-        size = max(abs(piece.start - whole[0].start) for piece in way)
+        size = max(abs(piece.at(0.5) - whole[0].start) for piece in way)
         ins = ins._replace(ramp=whole[0].start + (whole[0].start - ins.ramp) / radius * size)
     return loop_of(ins, whole, out, left, depths)
 

@@ -40,6 +40,8 @@ ALARMS = frozenset(
         "arc-center-on-path",
         "start-up-shorter-than-radius",
         "cancel-shorter-than-radius",
+        "start-up-on-arc",
+        "cancel-on-arc",
     }
 )
 #: Depths [mm]: up to the first nothing is cut, from the second on it has to be said; how exact it has to be.

@@ -69,6 +69,10 @@ def judge(text: str, radius: float, part: Any) -> Verdict:
     run = simulate(section.start, section.blocks)
     alarms = {name: [section.lines[row] for row in sorted(run.alarms[name])] for name in ALARMS if name in run.alarms}
     loops = loops_of(run)
+    on_arc = [
+        section.lines[row] for row, element in run.elements.items() if loops[row].ramp and element.center is not None
+    ]
+    alarms |= {"ramp_on_arc": on_arc} if on_arc else {}
     in_mode = [element for row, element in run.elements.items() if element.side and not loops[row].ramp]
     top = 0.0 if min((section.heights[element.row] for element in in_mode), default=0.0) < 0 else math.inf
     shapely.prepare(part)

@@ -129,6 +129,8 @@ def test_leads_that_cross_at_a_corner_cut_nothing() -> None:
 def test_what_the_control_objects_to_is_an_alarm() -> None:
     step = "G1 X-40. C0. F200/G41 X0./X40./C-4./X52./C0./X92./G40 X120. C20."
     assert "interferes" in judge(program(step), 5, shapely.box(-60, -60, 60, -10)).alarms
+    arc = "G1 X40. C-30. F200/G42 G3 X60. C-20. I0. J10./G1 C20./G40 X90."
+    assert "ramp_on_arc" in judge(program(arc), 5, shapely.box(-20, -20, 20, 20)).alarms
     short = judge(program("G1 X46. C0. F200/G42 X40./C20./X-40./C-20./X40./C0./G40 X80."), 5, SQUARE)
     assert short.short_ramp == pytest.approx(0.4)
 
