@@ -88,8 +88,10 @@ def sweeps(
     contour, left, bar: as for overcuts. ramps: the tool center's moves of start-up and cancel, `row` theirs; `move` of
     the result counts them. radius: float64[ramps] [mm], |R|.
     A ramp touches the contour at one end and comes there at a slant, whereby it nicks the corner of a contour that ends
-    in the open, where nobody knows what the part is like. There, within R of that end along the contour, only what the
-    tool center cuts from behind counts, and only where it is more than the slant makes unavoidable.
+    in the open, where nobody knows what the part is like. There, within R of that end along the contour, only what lies
+    behind the contour counts, and only where that cuts more than the slant makes unavoidable; and no single ramp that
+    comes from farther from the center than that end itself, as through the air. If both do, the cutter is on the wrong
+    side.
     """
     ways = segments(ramps, tolerance)
     walls = segments(contour[_distinct(contour)], tolerance)
@@ -102,10 +104,13 @@ def sweeps(
     group = np.searchsorted(loops, ways.loop)
     ways = ways.shifted(part.pitch * group)
     in_open = part.open[group]
-    begins = ramps.row[ways.move] < contour.row[_first_of(contour.loop, ways.loop)]
+    first, last = _ends_of(contour.loop, ways.loop)
+    begins = ramps.row[ways.move] < contour.row[first]
+    far = np.abs(np.where(begins, ramps.start[ways.move], ramps.end[ways.move]))
+    within = far < np.abs(np.where(begins, contour.start[first], contour.end[last]))
     cuts = _joined(
         _cuts(_outline(part), ways[~in_open], group[~in_open], smallest, tolerance),
-        _cuts_in_the_open(part, ways[in_open], group[in_open], begins[in_open], smallest, tolerance),
+        _cuts_in_the_open(part, ways[in_open], group[in_open], begins[in_open], within[in_open], smallest, tolerance),
     )
     return _overcut(contour, part, _worst(cuts), np.arange(len(ramps)), loops)
 
@@ -151,10 +156,11 @@ def _smallest(ways: Segments, radius: Floats) -> tuple[Rows, Floats]:
     return loops, np.minimum.reduceat(radius[ways.move], first) if len(first) else np.zeros(0)
 
 
-def _first_of(loop: Rows, wanted: Rows) -> Rows:
-    """The first curve of each wanted loop."""
+def _ends_of(loop: Rows, wanted: Rows) -> tuple[Rows, Rows]:
+    """The first and the last curve of each wanted loop."""
     order = np.argsort(loop, kind="stable")
-    return np.asarray(order[np.searchsorted(loop[order], wanted)])
+    first, after = (np.searchsorted(loop[order], wanted, side) for side in ("left", "right"))
+    return order[first], order[after - 1]
 
 
 def _close(walls: Segments, loops: Rows, paths: Geometries, limit: Floats) -> Rows:
@@ -273,9 +279,13 @@ _NO_CUTS = _Cuts(np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0), _NOW
 
 
 def _cuts_in_the_open(
-    part: FinishedParts, ways: Segments, group: Rows, begins: Mask, radius: Floats, tolerance: float
+    part: FinishedParts, ways: Segments, group: Rows, begins: Mask, within: Mask, radius: Floats, tolerance: float
 ) -> _Cuts:
-    """Where these straight ramps, start-ups and others, cut walls of which one ends where they touch it."""
+    """
+    Where these straight ramps cut walls of which one ends where they touch it.
+
+    begins: start-ups. within: ramps that come from nearer to the center of C than that end is.
+    """
     if not len(ways):
         return _NO_CUTS
     radius = radius[group]
@@ -294,7 +304,11 @@ def _cuts_in_the_open(
             has, number = np.unique(way[chosen], return_inverse=True)
             walls[has] = shapely.multilinestrings(_lines(start, end), indices=number)
         depth = radius - shapely.distance(walls, path)
-        cut = np.flatnonzero(depth > tolerance + allowed)  # NaN without walls, or with nothing behind them
+        cuts = depth > tolerance + allowed  # NaN without walls, or with nothing behind them
+        if path is behind:
+            both = np.isin(group, group[cuts & begins]) & np.isin(group, group[cuts & ~begins])
+            cuts &= within | both
+        cut = np.flatnonzero(cuts)
         found.append(
             _Cuts(ways.move[cut], group[cut], depth[cut], *_ends(shapely.shortest_line(walls[cut], path[cut])))
         )
