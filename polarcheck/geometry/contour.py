@@ -89,9 +89,9 @@ def sweeps(
     the result counts them. radius: float64[ramps] [mm], |R|.
     A ramp touches the contour at one end and comes there at a slant, whereby it nicks the corner of a contour that ends
     in the open, where nobody knows what the part is like. There, within R of that end along the contour, only what lies
-    behind the contour counts, and only where that cuts more than the slant makes unavoidable; and no single ramp that
-    comes from farther from the center than that end itself, as through the air. If both do, the cutter is on the wrong
-    side.
+    behind the contour counts, and only where that cuts more than the slant makes unavoidable; and no single ramp of a
+    part round the center that comes from farther from there than that end itself, as through the air. If both do, the
+    cutter is on the wrong side.
     """
     ways = segments(ramps, tolerance)
     walls = segments(contour[_distinct(contour)], tolerance)
@@ -307,12 +307,18 @@ def _cuts_in_the_open(
         cuts = depth > tolerance + allowed  # NaN without walls, or with nothing behind them
         if path is behind:
             both = np.isin(group, group[cuts & begins]) & np.isin(group, group[cuts & ~begins])
-            cuts &= within | both
+            cuts &= within | both | ~_is_round_center(part)[group]
         cut = np.flatnonzero(cuts)
         found.append(
             _Cuts(ways.move[cut], group[cut], depth[cut], *_ends(shapely.shortest_line(walls[cut], path[cut])))
         )
     return _joined(*found)
+
+
+def _is_round_center(part: FinishedParts) -> Mask:
+    """Whether the center of C is in the part."""
+    center = shapely.points(part.pitch * np.arange(len(part.polygon)), 0.0)
+    return np.asarray(shapely.intersects(part.polygon, center))
 
 
 def _between(part: FinishedParts, wall: Rows, length: Floats, low: Floats, high: Floats) -> tuple[Points, Points, Rows]:
