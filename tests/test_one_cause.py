@@ -40,8 +40,12 @@ HEXAGON = (
 )
 TWO_LOOPS = SQUARE.replace("G40 X80./Z2.", "G40 X80./Z-8./G42 X40./C20./X-40./C-20./X40./C0/G40 X80./Z2.")
 
-#: Narrower than the cutter: a keyway, and a pocket of two rooms.
+#: Narrower than the cutter: a keyway, the corners of a pocket, the neck between two rooms of another.
 KEYWAY = "G0 X80. Z2. C0/G12.1/G1 Z-5. F300/G41 X60. C3. F200/X20./C-3./X60./G40 X80. C0/Z2./G13.1"
+POCKET = (
+    "G0 X10. Z2. C0/G12.1/G1 Z-5. F300/G41 X40. F200/C16.5/G3 X33. C20. R3.5/G1 X-33./G3 X-40. C16.5 R3.5/G1 C-16.5/"
+    "G3 X-33. C-20. R3.5/G1 X33./G3 X40. C-16.5 R3.5/G1 C1./G40 X10./Z2./G13.1"
+)
 NECK = (
     "G0 X80. Z2. C0/G12.1/G1 X40. F300/Z-5./G41 X60. F200/C20./X20./C3./X-20./C20./X-60./C-20./X-20./C-3./X20./C-20./"
     "X60./C1./G40 X40. C0/Z2./G13.1"
@@ -292,6 +296,7 @@ MISTAKES = [
             ),
         )
     ),
+    Mistake("corners of a pocket", POCKET, {}, "G3 X33. C20. R3.5", "inside-arc-smaller-than-radius"),
     Mistake("neck", NECK, {}, "X-20.", "overcut"),
     Mistake(
         "waist",

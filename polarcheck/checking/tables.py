@@ -49,6 +49,7 @@ SPANS = {
     "way": "ramps.way",
     "wall": "overcuts.wall",
     "mesh": "ramps.mesh",
+    "tight arc": "ramps.tight_arc",
     "narrow loop": "ramps.narrow_loop",
     "tool call": "since.tool_call",
     "modal state": "since.modal_state",

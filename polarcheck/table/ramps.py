@@ -128,6 +128,16 @@ class Ramps:
         return np.minimum(np.abs(trace.start - trace.center), np.abs(trace.end - trace.center))
 
     @cached_property
+    def tight_arc(self) -> Rows:
+        """The same number for arcs of one radius in a section, too small for the same R; -1 for other rows."""
+        trace, number = self.trace, np.full(len(self.trace), -1)
+        rows = np.flatnonzero(self.tool_center.inside_arc_too_small)
+        if len(rows):
+            sizes = np.stack((trace.section[rows], self.arc_radius[rows].round(2), trace.radius[rows]))
+            number[rows] = np.unique(sizes, axis=1, return_inverse=True)[1].reshape(-1)
+        return number
+
+    @cached_property
     def is_consequence(self) -> Mask:
         """
         Moves whose interference or missing intersection, if there is one, is the consequence of another fault.

@@ -11,6 +11,7 @@ from polarcheck.checking.rule import ERROR, Mask, ToolCenter, Trace, rule
     at=("arc_clockwise", "arc_counterclockwise", "R", "I", "J"),
     needs=("trace.radius",),
     where="ramps.compensated",
+    once="tight arc",
     follows={"loop": (*NO_SUCH_ARC, "arc-sense-reversed"), "section": SECTION_READ_OTHERWISE},
 )
 def inside_arc_smaller_than_radius(trace: Trace, tool_center: ToolCenter) -> Mask:
@@ -19,7 +20,8 @@ def inside_arc_smaller_than_radius(trace: Trace, tool_center: ToolCenter) -> Mas
 
     With the tool on the inner side of an arc the tool center runs on a radius smaller by R. Where the radius of the
     arc is not above R nothing is left of it, and the control stops with an alarm before this block. Take a smaller
-    cutter, or make the radius of the contour larger. Often G41 stands where G42 is meant.
+    cutter, or make the radius of the contour larger. Often G41 stands where G42 is meant. Arcs of the same radius in a
+    section are one finding.
 
     Source: FANUC B-63664EN, p. 184; alarm 041.
 
