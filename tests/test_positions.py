@@ -83,7 +83,7 @@ def test_side_and_ramps_of_a_section() -> None:
         "G98 T0101\nG0 X60. C0\nG12.1\nG42 G1 X40. F100\nC10.\nX20.\nG40 X60.\nG13.1\nG41\nG12.1\nG1 X10.\nG13.1\n"
     )
     trace = trace_of(program)
-    assert np.flatnonzero(trace.starts_up).tolist() == [3, 10]
+    assert np.flatnonzero(trace.starts_up).tolist() == [3]  # G41 before G12.1 has a finding, and does nothing in it
     assert np.flatnonzero(trace.cancels).tolist() == [6]
     assert np.flatnonzero(trace.offset_mode).tolist() == [4, 5, 6]
     assert np.flatnonzero(trace.cuts).tolist() == [3, 4, 5, 6, 10]
