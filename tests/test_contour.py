@@ -15,7 +15,8 @@ from hypothesis import strategies as st
 from plane_moves import path_of_rows, points_along, turn_of
 
 from polarcheck.geometry.compensation import Method, Path, Phase, tool_center_path
-from polarcheck.geometry.contour import TOLERANCE, Curves, Overcut, overcuts, sweeps
+from polarcheck.geometry.contour import TOLERANCE, Curves, Overcut
+from polarcheck.geometry.contour import overcuts as cuts
 from polarcheck.machines.modal import Motion, Side
 
 NAN = complex(math.nan, math.nan)
@@ -47,11 +48,12 @@ class Loop(NamedTuple):
     def overcuts(self, radius: float | None = None, tolerance: float = TOLERANCE) -> Overcut:
         sizes = np.full(len(self.path.row), self.radius if radius is None else radius)
         with np.errstate(all="raise", under="ignore"):
-            return overcuts(self.contour, self.left, self.path, sizes, tolerance)
+            return cuts(self.contour, self.left, self.path, sizes, np.zeros(len(sizes), bool), tolerance)
 
     def sweeps(self) -> Overcut:
         with np.errstate(all="raise", under="ignore"):
-            return sweeps(self.contour, self.left, self.ramps, np.full(len(self.ramps.row), self.radius))
+            sizes = np.full(len(self.ramps.row), self.radius)
+            return cuts(self.contour, self.left, self.ramps, sizes, np.ones(len(sizes), bool))
 
 
 def loop(
@@ -256,6 +258,16 @@ def test_the_side_and_the_direction_do_not_matter() -> None:
 # ---- loops ----
 
 
+def along(contour: Curves, left: np.ndarray, path: Curves, radius: np.ndarray) -> Overcut:
+    """Cuts by moves in offset mode."""
+    return cuts(contour, left, path, radius, np.zeros(len(radius), bool))
+
+
+def swept(contour: Curves, left: np.ndarray, ramps: Curves, radius: np.ndarray) -> Overcut:
+    """Cuts by start-ups and offset cancels."""
+    return cuts(contour, left, ramps, radius, np.ones(len(radius), bool))
+
+
 def together(*loops: Loop) -> tuple[Curves, np.ndarray, Curves, np.ndarray]:
     """Several loops in one call, rows counted through."""
 
@@ -282,7 +294,7 @@ def numbered(of: Loop, number: int) -> Loop:
 def test_the_same_contour_at_three_depths(numbers: tuple[int, ...]) -> None:
     sizes = [polygon(15, 6), polygon(14.5, 6), polygon(14.5, 6)]
     depths = [numbered(loop(45, *size, 45), number) for size, number in zip(sizes, numbers, strict=True)]
-    assert list(overcuts(*together(*depths)).row) == []
+    assert list(along(*together(*depths)).row) == []
 
 
 @pytest.mark.parametrize("numbers", [(0, 1, 2), (7, 3, 5)])
@@ -291,7 +303,7 @@ def test_only_the_loop_at_fault_is_found(numbers: tuple[int, ...]) -> None:
     loops = [
         numbered(each, number) for each, number in zip((LEGAL["square"], slot, LEGAL["hexagon"]), numbers, strict=True)
     ]
-    found, alone = overcuts(*together(*loops)), slot.overcuts()
+    found, alone = along(*together(*loops)), slot.overcuts()
     assert list(found.row) == [100 + row for row in alone.row]
     assert list(found.move) == [len(LEGAL["square"].path.row) + move for move in alone.move]
     assert found.depth == pytest.approx(alone.depth)
@@ -306,7 +318,7 @@ def test_loops_above_each_other_do_not_see_each_other(numbers: tuple[int, ...]) 
         loop(-20, 0.5j, 20 + 0.5j, 20 - 4.5j, 29 - 4.5j, 29 + 0.5j, 46, 60 + 20j, side=LEFT),
     ]
     alone = [each.overcuts() for each in slots]
-    found = overcuts(*together(*(numbered(each, number) for each, number in zip(slots, numbers, strict=True))))
+    found = along(*together(*(numbered(each, number) for each, number in zip(slots, numbers, strict=True))))
     assert list(found.row) == [100 * k + row for k, each in enumerate(alone) for row in each.row]
     assert found.depth == pytest.approx(np.concatenate([each.depth for each in alone]))
     assert found.place == pytest.approx(np.concatenate([each.place for each in alone]))
@@ -315,7 +327,7 @@ def test_loops_above_each_other_do_not_see_each_other(numbers: tuple[int, ...]) 
 def test_a_loop_is_judged_by_its_own_radius() -> None:
     contour, left, path, radius = together(numbered(LEGAL["square"], 0), numbered(LEGAL["hexagon"], 1))
     radius[path.loop == 1] += 0.01
-    found = overcuts(contour, left, path, radius)
+    found = along(contour, left, path, radius)
     assert set(path.row[found.move]) == {101, 102, 103, 104, 105, 106, 107}
     assert (path.loop[found.move] == 1).all()
 
@@ -327,11 +339,11 @@ def test_without_moves() -> None:
     none = loop(45, *SQUARE, 45)
     empty = Curves(*(getattr(none.path, name)[:0] for name in Curves.__slots__))
     nothing = np.zeros(0)
-    assert len(overcuts(none.contour, none.left, empty, nothing).row) == 0
-    assert len(overcuts(empty, none.left[:0], none.path, np.full(len(none.path.row), 5.0)).row) == 0
-    assert len(overcuts(empty, none.left[:0], empty, nothing).row) == 0
-    assert len(sweeps(none.contour, none.left, empty, nothing).row) == 0
-    assert len(sweeps(empty, none.left[:0], none.ramps, np.full(2, 5.0)).row) == 0
+    assert len(along(none.contour, none.left, empty, nothing).row) == 0
+    assert len(along(empty, none.left[:0], none.path, np.full(len(none.path.row), 5.0)).row) == 0
+    assert len(along(empty, none.left[:0], empty, nothing).row) == 0
+    assert len(swept(none.contour, none.left, empty, nothing).row) == 0
+    assert len(swept(empty, none.left[:0], none.ramps, np.full(2, 5.0)).row) == 0
 
 
 def test_what_is_unknown_is_left_out() -> None:
@@ -340,11 +352,11 @@ def test_what_is_unknown_is_left_out() -> None:
     assert len(slot.overcuts(0.0).row) == 0
     gone = slot.contour.row == 2
     hidden = replace(slot.contour, end=np.where(gone, NAN, slot.contour.end))
-    found = overcuts(hidden, slot.left, slot.path, np.full(len(slot.path.row), 5.0))
+    found = along(hidden, slot.left, slot.path, np.full(len(slot.path.row), 5.0))
     assert not len(found.row)  # what lies behind the hole is not known
     arcs = LEGAL["full circle"]
     unknown = replace(arcs.contour, center=np.full(1, NAN))
-    assert len(overcuts(unknown, arcs.left, arcs.path, np.full(1, 9.0)).row) == 0
+    assert len(along(unknown, arcs.left, arcs.path, np.full(1, 9.0)).row) == 0
 
 
 def test_a_gap_in_the_path_cuts_nothing() -> None:
@@ -353,7 +365,7 @@ def test_a_gap_in_the_path_cuts_nothing() -> None:
     kept = np.isin(square.path.row, [1, 3])
     path = Curves(*(getattr(square.path, name)[kept] for name in ("start", "end", "center", "kind", "loop", "row")))
     shortened = replace(path, end=np.where(path.row == 1, path.start + 1j, path.end))
-    assert list(overcuts(square.contour, square.left, shortened, np.full(2, 5.0)).row) == []
+    assert list(along(square.contour, square.left, shortened, np.full(2, 5.0)).row) == []
 
 
 def test_an_arc_that_misses_its_end_is_followed_to_it() -> None:
@@ -363,8 +375,8 @@ def test_an_arc_that_misses_its_end_is_followed_to_it() -> None:
     )
     path = Curves(*columns([(25, 0 + 25.02j, 0)]), np.array([Motion.CCW], np.int16), np.zeros(1, int), np.zeros(1, int))
     left = np.array([False])
-    assert len(overcuts(contour, left, path, np.full(1, 5.0)).row) == 0
-    assert overcuts(contour, left, path, np.full(1, 5.01)).depth == pytest.approx([0.01], abs=0.001)
+    assert len(along(contour, left, path, np.full(1, 5.0)).row) == 0
+    assert along(contour, left, path, np.full(1, 5.01)).depth == pytest.approx([0.01], abs=0.001)
 
 
 def columns(moves: list[tuple[complex, complex, complex]]) -> list[np.ndarray]:

@@ -22,14 +22,14 @@ from polarcheck.geometry.faces import Geometries, coordinates
 from polarcheck.geometry.finished_part import Contours, FinishedParts, finished_parts, first_of_its_kind
 from polarcheck.geometry.segments import ZERO, Curves, Segments, members, segments
 
-__all__ = ["TOLERANCE", "Curves", "Overcut", "overcuts", "sweeps"]
+__all__ = ["TOLERANCE", "Curves", "Overcut", "overcuts"]
 
 #: Depth [mm] up to which nothing is said; two roundings to the least increment.
 TOLERANCE = 0.002
 #: Moves of a loop from which on it is worth while to look for passes that are written once more.
 _MANY = 2000
-#: Straight pieces of path worked on at a time, for the sake of memory.
-_BATCH = 16384
+#: Straight pieces of path that are looked at as one first; and worked on at a time, for the sake of memory.
+_RUN, _BATCH = 64, 16384
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,84 +50,59 @@ class Overcut:
 
 
 def overcuts(
-    contour: Curves, left: Mask, path: Curves, radius: Floats, tolerance: float = TOLERANCE, bar: float = np.nan
+    contour: Curves,
+    left: Mask,
+    path: Curves,
+    radius: Floats,
+    is_ramp: Mask,
+    tolerance: float = TOLERANCE,
+    bar: float = np.nan,
 ) -> Overcut:
     """
     Where the tool center comes nearer than R to the finished part of its loop; the worst place of each of its moves.
 
     contour: the programmed blocks in offset mode. left: bool[moves of contour], the tool runs left of the block: G41
-    with R above 0, G42 with R below. path: the tool center's moves in offset mode, corners included, each with the row
-    of its block. radius: float64[moves of path] [mm], |R|; the smallest of a loop is taken. bar: its diameter [mm], NaN
-    if not known. Curves with anything unknown are left out.
-    """
-    rows = _distinct(path)
-    ways = segments(path[rows], tolerance)
-    walls = segments(contour[_distinct(contour)], tolerance)
-    radius = radius[rows]
-    ways = ways[(radius[ways.move] > tolerance) & np.isin(ways.loop, walls.loop)]
-    loops, smallest = _smallest(ways, radius)
-    close = _close(walls, loops, _polylines(ways), smallest - tolerance)
-    if not len(close):
-        return _nothing()
-    loops, smallest = loops[close], smallest[close]
-    part = finished_parts(Contours(contour, left, loops, np.arange(len(loops)), smallest, bar, tolerance))
-    here, group = members(ways.loop, loops)
-    ways = ways[here].shifted(part.pitch * group)
-    outline = _outline(part)
-    near = shapely.dwithin(outline.whole, _polylines(ways), smallest - tolerance)[group]
-    cuts = _cuts(outline, ways[near], group[near], smallest, tolerance)
-    return _overcut(contour, part, _worst(cuts), rows, loops)
+    with R above 0, G42 with R below. path: the tool center's moves in offset mode, corners included, and start-ups and
+    offset cancels, which is_ramp says; each with the row of its block. radius: float64[moves of path] [mm], |R|; the
+    smallest of a loop is taken. bar: its diameter [mm], NaN if not known. Curves with anything unknown are left out.
 
-
-def sweeps(
-    contour: Curves, left: Mask, ramps: Curves, radius: Floats, tolerance: float = TOLERANCE, bar: float = np.nan
-) -> Overcut:
-    """
-    Start-ups and offset cancels that cut the finished part of their loop on their way; the worst place of each ramp.
-
-    contour, left, bar: as for overcuts. ramps: the tool center's moves of start-up and cancel, `row` theirs; `move` of
-    the result counts them. radius: float64[ramps] [mm], |R|.
     A ramp touches the contour at one end and comes there at a slant, whereby it nicks the corner of a contour that ends
     in the open, where nobody knows what the part is like. There, within R of that end along the contour, only what lies
     behind the contour counts, and only where that cuts more than the slant makes unavoidable; and no single ramp of a
     part round the center that comes from farther from there than that end itself, as through the air. If both do, the
     cutter is on the wrong side.
     """
-    ways = segments(ramps, tolerance)
-    walls = segments(contour[_distinct(contour)], tolerance)
+    rows = np.flatnonzero(is_ramp | first_of_its_kind(path)) if _is_long(path) else np.arange(len(path))
+    ways = segments(path[rows], tolerance)
+    walls = segments(contour[first_of_its_kind(contour)] if _is_long(contour) else contour, tolerance)
+    ways = Segments(ways.start, ways.end, rows[ways.move], ways.loop)
     ways = ways[(radius[ways.move] > tolerance) & np.isin(ways.loop, walls.loop)]
-    ways = ways[_close(walls, ways.loop, _lines(ways.start, ways.end), radius[ways.move] - tolerance)]
+    ways = ways[_comes_close(walls, ways, is_ramp[ways.move], radius[ways.move] - tolerance)]
     if not len(ways):
-        return _nothing()
-    loops, smallest = _smallest(ways, radius)
+        none = np.zeros(0, dtype=np.int64)
+        return Overcut(none, none, np.zeros(0), np.zeros(0, dtype=np.complex128), none)
+    loops, group = np.unique(ways.loop, return_inverse=True)
+    smallest = np.full(len(loops), np.inf)
+    np.minimum.at(smallest, group, radius[ways.move])
     part = finished_parts(Contours(contour, left, loops, np.arange(len(loops)), smallest, bar, tolerance))
-    group = np.searchsorted(loops, ways.loop)
     ways = ways.shifted(part.pitch * group)
-    in_open = part.open[group]
-    first, last = _ends_of(contour.loop, ways.loop)
-    begins = ramps.row[ways.move] < contour.row[first]
-    far = np.abs(np.where(begins, ramps.start[ways.move], ramps.end[ways.move]))
-    within = far < np.abs(np.where(begins, contour.start[first], contour.end[last]))
+    in_open = part.open[group] & is_ramp[ways.move]
+    ramps = _Ramps.of(contour, path, ways[in_open], group[in_open])
     cuts = _joined(
         _cuts(_outline(part), ways[~in_open], group[~in_open], smallest, tolerance),
-        _cuts_in_the_open(part, ways[in_open], group[in_open], begins[in_open], within[in_open], smallest, tolerance),
+        _cuts_in_the_open(part, ramps, smallest, tolerance),
     )
-    return _overcut(contour, part, _worst(cuts), np.arange(len(ramps)), loops)
+    return _overcut(contour, part, _worst(cuts), loops)
 
 
-def _nothing() -> Overcut:
-    none = np.zeros(0, dtype=np.int64)
-    return Overcut(none, none, np.zeros(0), np.zeros(0, dtype=np.complex128), none)
-
-
-def _overcut(contour: Curves, part: FinishedParts, cuts: _Cuts, moves: Rows, loops: Rows) -> Overcut:
-    """Cuts with the wall that each goes into; moves: what their moves were called before."""
+def _overcut(contour: Curves, part: FinishedParts, cuts: _Cuts, loops: Rows) -> Overcut:
+    """Cuts with the wall that each goes into."""
     tangled = loops[part.tangled]
     if not len(cuts.move):
         return Overcut(cuts.move, cuts.move, cuts.depth, cuts.place, tangled)
     wall = part.move[_wall(part, cuts)]
     place = cuts.place - part.pitch * cuts.group
-    return Overcut(contour.row[wall].astype(np.int64), moves[cuts.move], cuts.depth, place, tangled)
+    return Overcut(contour.row[wall].astype(np.int64), cuts.move, cuts.depth, place, tangled)
 
 
 def _wall(part: FinishedParts, cuts: _Cuts) -> Rows:
@@ -143,32 +118,26 @@ def _wall(part: FinishedParts, cuts: _Cuts) -> Rows:
 # ---- which loops to look at ----
 
 
-def _distinct(curves: Curves) -> Rows:
-    """The curves without those that are there before, where a loop is long enough to be worth it."""
-    if len(curves) < _MANY or np.bincount(curves.loop - curves.loop.min()).max() < _MANY:
-        return np.arange(len(curves))
-    return np.flatnonzero(first_of_its_kind(curves))
+def _is_long(curves: Curves) -> bool:
+    """Whether a loop is so long that it may well hold passes that are written once more."""
+    return len(curves) >= _MANY and bool(np.bincount(curves.loop - curves.loop.min()).max() >= _MANY)
 
 
-def _smallest(ways: Segments, radius: Floats) -> tuple[Rows, Floats]:
-    """The loops of these ways, and the smallest R of each."""
-    loops, first = np.unique(ways.loop, return_index=True)
-    return loops, np.minimum.reduceat(radius[ways.move], first) if len(first) else np.zeros(0)
-
-
-def _ends_of(loop: Rows, wanted: Rows) -> tuple[Rows, Rows]:
-    """The first and the last curve of each wanted loop."""
-    order = np.argsort(loop, kind="stable")
-    first, after = (np.searchsorted(loop[order], wanted, side) for side in ("left", "right"))
-    return order[first], order[after - 1]
-
-
-def _close(walls: Segments, loops: Rows, paths: Geometries, limit: Floats) -> Rows:
-    """Which paths come nearer than the limit to a wall of their loop."""
+def _comes_close(walls: Segments, ways: Segments, is_ramp: Mask, limit: Floats) -> Mask:
+    """Which ways are ramps that come nearer than the limit to a wall of their loop, or of a path that does."""
     contours = _polylines(walls)
     shapely.prepare(contours)
-    of_path = contours[np.searchsorted(np.unique(walls.loop), loops)]
-    return np.flatnonzero(shapely.dwithin(of_path, paths, limit))
+    loops = np.unique(walls.loop)
+    result = np.zeros(len(ways), bool)
+    ramps, path = np.flatnonzero(is_ramp), ways[~is_ramp]
+    lines = _lines(ways.start[ramps], ways.end[ramps])
+    result[ramps] = shapely.dwithin(contours[np.searchsorted(loops, ways.loop[ramps])], lines, limit[ramps])
+    own, first, number = np.unique(path.loop, return_index=True, return_inverse=True)
+    if len(own):
+        smallest = np.minimum.reduceat(limit[~is_ramp], first)
+        near = shapely.dwithin(contours[np.searchsorted(loops, own)], _polylines(path), smallest)
+        result[~is_ramp] = near[number]
+    return result
 
 
 # ---- segments to lines ----
@@ -251,12 +220,19 @@ def _outline(part: FinishedParts) -> _Outline:
 
 def _cuts(outline: _Outline, ways: Segments, group: Rows, radius: Floats, tolerance: float) -> _Cuts:
     """Where these ways come nearer than R to the part of their group."""
-    found = [_NO_CUTS]
+    # First of all the runs of ways that do; the ways in them are what is left of most.
+    run = np.cumsum((np.diff(group, prepend=-1) != 0) | (np.arange(len(group)) % _RUN == 0))
+    runs = _polylines(Segments(ways.start, ways.end, ways.move, run))
+    of_run = group[np.diff(run, prepend=0) != 0]
+    near = shapely.dwithin(outline.whole[of_run], runs, radius[of_run] - tolerance)[run - 1]
+    ways, group = ways[near], group[near]
     tree = shapely.STRtree(_lines(outline.start, outline.end))
+    found = [_NO_CUTS]
     for first in range(0, len(ways) if len(tree) else 0, _BATCH):
         rows = np.arange(first, min(first + _BATCH, len(ways)))
         lines = _lines(ways.start[rows], ways.end[rows])
-        near = shapely.dwithin(outline.whole[group[rows]], lines, radius[group[rows]] - tolerance)
+        limit = radius[group[rows]] - tolerance
+        near = shapely.dwithin(outline.whole[group[rows]], lines, limit)
         rows, lines = rows[near], lines[near]
         (line, edge), distance = tree.query_nearest(lines, all_matches=False, return_distance=True)
         place, tool = _ends(shapely.shortest_line(tree.geometries[edge], lines[line]))
@@ -278,14 +254,33 @@ _NO_CUTS = _Cuts(np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0), _NOW
 # ---- ramps of contours that end in the open ----
 
 
-def _cuts_in_the_open(
-    part: FinishedParts, ways: Segments, group: Rows, begins: Mask, within: Mask, radius: Floats, tolerance: float
-) -> _Cuts:
+@dataclass(frozen=True, slots=True)
+class _Ramps:
     """
-    Where these straight ramps cut walls of which one ends where they touch it.
+    Straight ramps and their groups. begins: start-ups. within: those that come from nearer to the center of C than the
+    end of the contour is that they lead to, or from.
+    """
 
-    begins: start-ups. within: ramps that come from nearer to the center of C than that end is.
-    """
+    ways: Segments
+    group: Rows
+    begins: Mask
+    within: Mask
+
+    @classmethod
+    def of(cls, contour: Curves, path: Curves, ways: Segments, group: Rows) -> _Ramps:
+        """Of shifted ways."""
+        order = np.argsort(contour.loop, kind="stable")
+        first, after = (np.searchsorted(contour.loop[order], ways.loop, side) for side in ("left", "right"))
+        first, last = order[first], order[after - 1]
+        begins = path.row[ways.move] < contour.row[first]
+        far = np.abs(np.where(begins, path.start[ways.move], path.end[ways.move]))
+        within = far < np.abs(np.where(begins, contour.start[first], contour.end[last]))
+        return cls(ways, group, begins, within)
+
+
+def _cuts_in_the_open(part: FinishedParts, ramps: _Ramps, radius: Floats, tolerance: float) -> _Cuts:
+    """Where ramps cut walls of which one ends where they touch it."""
+    ways, group, begins = ramps.ways, ramps.group, ramps.begins
     if not len(ways):
         return _NO_CUTS
     radius = radius[group]
@@ -307,7 +302,7 @@ def _cuts_in_the_open(
         cuts = depth > tolerance + allowed  # NaN without walls, or with nothing behind them
         if path is behind:
             both = np.isin(group, group[cuts & begins]) & np.isin(group, group[cuts & ~begins])
-            cuts &= within | both | ~_is_round_center(part)[group]
+            cuts &= ramps.within | both | ~_is_round_center(part)[group]
         cut = np.flatnonzero(cuts)
         found.append(
             _Cuts(ways.move[cut], group[cut], depth[cut], *_ends(shapely.shortest_line(walls[cut], path[cut])))

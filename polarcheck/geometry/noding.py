@@ -84,11 +84,10 @@ class _Walls:
 # ---- which walls may meet ----
 
 
-def _runs(walls: _Walls) -> tuple[Rows, Floats, Mask]:
+def _runs(walls: _Walls) -> tuple[Rows, Floats, Floats, Mask]:
     """
-    First walls of runs that bend little, how far each bends [rad], and whether it goes on from the one before.
-
-    The bend at the joint counts for the run that it leads into.
+    First walls of runs that bend little; how far each bends [rad]; how far it turns away from the one before, which
+    counts for it as well; and whether it goes on from that at all.
     """
     way = walls.nodes[walls.b] - walls.nodes[walls.a]
     joined = np.zeros(len(way), bool)
@@ -99,14 +98,14 @@ def _runs(walls: _Walls) -> tuple[Rows, Floats, Mask]:
     begins = ~joined | (np.arange(len(way)) % _RUN == 0)
     begins[1:] |= np.floor(total[1:] / _BEND) != np.floor(total[:-1] / _BEND)
     first = np.flatnonzero(begins)
-    return first, np.add.reduceat(bend, first), joined[first]
+    return first, np.add.reduceat(bend, first), bend[first], joined[first]
 
 
 def _pairs(walls: _Walls, tangled: Mask) -> Iterator[tuple[Rows, Rows]]:
     """Pairs of walls that may have more in common than a joint; groups with too many of them become tangled."""
     if not len(walls.a):
         return
-    first, bend, joined = _runs(walls)
+    first, bend, joint, joined = _runs(walls)
     size = np.diff(np.append(first, len(walls.a)))
     group = walls.group[first]
     box = _boxes(walls, first)
@@ -119,7 +118,7 @@ def _pairs(walls: _Walls, tangled: Mask) -> Iterator[tuple[Rows, Rows]]:
         one = asked[which]
         kept = (one < other) & (group[one] == group[other])
         one, other = one[kept], other[kept]
-        bent = bend[one] + bend[other] - np.where(joined[one], _joint(walls, first[one]), 0)
+        bent = bend[one] + bend[other] - joint[one]
         kept = ~((other == one + 1) & joined[other] & (bent < _HALF_TURN))
         one, other = one[kept], other[kept]
         left -= np.bincount(group[one], size[one] * size[other], len(tangled)).astype(np.int64)
@@ -127,12 +126,6 @@ def _pairs(walls: _Walls, tangled: Mask) -> Iterator[tuple[Rows, Rows]]:
         for part in _shares(size[one] * size[other]):
             kept = part[~tangled[group[one[part]]]]
             yield _each_wall(walls, (first, size), one[kept], other[kept])
-
-
-def _joint(walls: _Walls, first: Rows) -> Floats:
-    """How far these walls turn from the ones before them [rad]."""
-    way = walls.nodes[walls.b] - walls.nodes[walls.a]
-    return np.asarray(np.abs(np.angle(way[first] * way[np.maximum(first - 1, 0)].conj())))
 
 
 def _boxes(walls: _Walls, first: Rows) -> tuple[Floats, Floats, Floats, Floats]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -18,7 +17,6 @@ from polarcheck.table.tool_center import ToolCenter
 from polarcheck.table.trace import Trace
 
 if TYPE_CHECKING:
-    from polarcheck.geometry.contour import Overcut
     from polarcheck.geometry.segments import Curves
 
 
@@ -40,6 +38,10 @@ class Cuts(NamedTuple):
     into: Rows
     depth: Floats
     place: Points
+
+    def some(self, chosen: Mask) -> Cuts:
+        """Some of the cuts."""
+        return Cuts(*(column[chosen] for column in self))
 
     def deepest(self, row: int) -> tuple[int, complex]:
         """Of the cuts of a row the deepest: the row cut into, and where."""
@@ -103,29 +105,43 @@ class Overcuts:
         trace = self.trace
         programmed, loop = programmed_moves(trace), self._loop
         rows = programmed.row
-        walls = _curves(programmed, loop, (loop[rows] >= 0) & ~trace.starts_up[rows] & programmed.known)
+        walls = _curves(programmed, loop[rows], (loop[rows] >= 0) & ~trace.starts_up[rows] & programmed.known)
         return walls, (trace.side[walls.row] == Side.LEFT) ^ (trace.radius[walls.row] < 0)
+
+    @cached_property
+    def _found(self) -> tuple[Cuts, Mask, Mask]:
+        """The cuts of all moves of the tool center, which of them are by ramps, and the rows of tangled loops."""
+        if not self._compensates:
+            return _NOTHING, np.zeros(0, bool), np.zeros(len(self.trace), bool)
+        from polarcheck.geometry import contour
+
+        trace, tool = self.trace, self.tool_center.moves
+        is_ramp = (tool.phase == Phase.START_UP) | (tool.phase == Phase.CANCEL)
+        chosen = np.where(is_ramp, self._at_depth[tool.row], tool.phase == Phase.OFFSET)
+        chosen &= tool.known & self._has_walls[tool.row]
+        loop = np.where(is_ramp, self._loop_of_ramps[tool.row], self._loop[tool.row])
+        path = _curves(tool, loop, chosen)
+        radius, tolerance = np.abs(trace.radius[path.row]), trace.machine.compensation.overcut_tolerance
+        found = contour.overcuts(*self._walls, path, radius, is_ramp[chosen], tolerance, self._bar)
+        cuts = Cuts(path.row[found.move], found.row, found.depth, found.place)
+        return cuts, is_ramp[chosen][found.move], np.isin(self._loop, found.tangled)
 
     @cached_property
     def cuts(self) -> Cuts:
         """Row that cuts, row that is cut into, depth and place of each overcut."""
-        if not self._compensates:
-            return _NOTHING
-        from polarcheck.geometry import contour
-
-        tool = self.tool_center.moves
-        return self._found(contour.overcuts, self._loop, (tool.phase == Phase.OFFSET) & tool.known)
+        cuts, by_ramp, _ = self._found
+        return cuts.some(~by_ramp)
 
     @cached_property
     def sweeps(self) -> Cuts:
         """The same for start-ups and offset cancels that lie at the depth of their contour."""
-        if not self._compensates:
-            return _NOTHING
-        from polarcheck.geometry import contour
+        cuts, by_ramp, _ = self._found
+        return cuts.some(by_ramp)
 
-        tool = self.tool_center.moves
-        is_ramp = ((tool.phase == Phase.START_UP) | (tool.phase == Phase.CANCEL)) & tool.known
-        return self._found(contour.sweeps, self._loop_of_ramps, is_ramp & self._at_depth[tool.row])
+    @property
+    def tangled(self) -> Mask:
+        """Rows of loops that cross themselves so often that they are no contour: nothing is said of cuts into them."""
+        return self._found[2]
 
     @cached_property
     def _at_depth(self) -> Mask:
@@ -148,29 +164,11 @@ class Overcuts:
         result[ramp] = deep
         return result
 
-    def _found(self, search: Callable[..., Overcut], loop: Rows, chosen: Mask) -> Cuts:
-        """What a search of `contour` finds along the chosen moves of the tool center."""
-        path = _curves(self.tool_center.moves, loop, chosen & self._has_walls[self.tool_center.moves.row])
-        radius, tolerance = np.abs(self.trace.radius[path.row]), self.trace.machine.compensation.overcut_tolerance
-        found = search(*self._walls, path, radius, tolerance, self._bar)
-        self._tangled[np.isin(loop, found.tangled)] = True
-        return Cuts(path.row[found.move], found.row, found.depth, found.place)
-
     @cached_property
     def _bar(self) -> float:
         """Diameter of the stock [mm]; NaN if not known."""
         diameter = self.trace.stock_diameter[self.trace.compensates]
         return float(diameter[0]) if len(diameter) else np.nan
-
-    @cached_property
-    def _tangled(self) -> Mask:
-        return np.zeros(len(self.trace), bool)
-
-    @cached_property
-    def tangled(self) -> Mask:
-        """Rows of loops that cross themselves so often that they are no contour: nothing is said of cuts into them."""
-        _ = self.cuts, self.sweeps
-        return self._tangled
 
     @cached_property
     def depth(self) -> Floats:
@@ -221,7 +219,7 @@ def _curves(moves: Moves, loop: Rows, chosen: Mask) -> Curves:
     from polarcheck.geometry.segments import Curves
 
     row = moves.row[chosen]
-    return Curves(moves.start[chosen], moves.end[chosen], moves.center[chosen], moves.kind[chosen], loop[row], row)
+    return Curves(moves.start[chosen], moves.end[chosen], moves.center[chosen], moves.kind[chosen], loop[chosen], row)
 
 
 def objected(trace: Trace, tool_center: ToolCenter) -> Mask:
