@@ -302,7 +302,7 @@ MISTAKES = [
         "waist",
         NECK,
         {"X20./C3./X-20./C20./X-60.": "X0 C3./X-60. C20.", "X-20./C-3./X20./C-20./X60.": "X0 C-3./X60. C-20."},
-        "X-60. C20.",
+        "X0 C3.",
         "overcut",
     ),
     Mistake("D", SQUARE, {"G42": "G42 D1"}, "G42 D1 X40. F200", "d-word-on-lathe", inch=False),
