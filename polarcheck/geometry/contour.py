@@ -89,7 +89,7 @@ def overcuts(
     in_open = part.open[group] & is_ramp[ways.move]
     ramps = _Ramps.of(contour, path, ways[in_open], group[in_open])
     cuts = _joined(
-        _cuts(_outline(part), ways[~in_open], group[~in_open], smallest, tolerance),
+        _cuts(part, ways[~in_open], group[~in_open], smallest, tolerance),
         _cuts_in_the_open(part, ramps, smallest, tolerance),
     )
     return _overcut(contour, part, _worst(cuts), loops)
@@ -204,22 +204,28 @@ class _Outline:
     end: Points
 
 
-def _outline(part: FinishedParts) -> _Outline:
-    whole, in_open = part.polygon.copy(), part.open[part.group]
+def _outline(part: FinishedParts, asked: Mask) -> _Outline:
+    """Of the groups asked for."""
+    whole = part.polygon.copy()
+    whole[~asked] = None
+    in_open = (part.open & asked)[part.group]
     start, end = part.start[in_open], part.end[in_open]
     if len(start):
         _, number = np.unique(part.group[in_open], return_inverse=True)
-        whole[part.open] = shapely.multilinestrings(_lines(start, end), indices=number)
+        whole[part.open & asked] = shapely.multilinestrings(_lines(start, end), indices=number)
     shapely.prepare(whole)
-    rings = shapely.get_rings(shapely.get_parts(part.polygon[~part.open]))
+    rings = shapely.get_rings(shapely.get_parts(part.polygon[~part.open & asked]))
     points, ring = shapely.get_coordinates(rings, return_index=True)
     corner = points.view(np.complex128).ravel()
     inner = ring[1:] == ring[:-1]
     return _Outline(whole, np.append(start, corner[:-1][inner]), np.append(end, corner[1:][inner]))
 
 
-def _cuts(outline: _Outline, ways: Segments, group: Rows, radius: Floats, tolerance: float) -> _Cuts:
+def _cuts(part: FinishedParts, ways: Segments, group: Rows, radius: Floats, tolerance: float) -> _Cuts:
     """Where these ways come nearer than R to the part of their group."""
+    if not len(ways):
+        return _NO_CUTS
+    outline = _outline(part, np.isin(np.arange(len(radius)), group))
     # First of all the runs of ways that do; the ways in them are what is left of most.
     run = np.cumsum((np.diff(group, prepend=-1) != 0) | (np.arange(len(group)) % _RUN == 0))
     runs = _polylines(Segments(ways.start, ways.end, ways.move, run))
@@ -287,6 +293,8 @@ def _cuts_in_the_open(part: FinishedParts, ramps: _Ramps, radius: Floats, tolera
     lines = _lines(ways.start, ways.end)
     behind = shapely.intersection(lines, part.polygon[group])
     wall, way = members(part.group, group)
+    near = _within_reach(part, wall, ways, way, radius)
+    wall, way = wall[near], way[near]
     length = np.where(begins[way][:, None], part.along[wall], part.ahead[wall])
     found = [_NO_CUTS]
     for low, high, path, allowed in (
@@ -308,6 +316,18 @@ def _cuts_in_the_open(part: FinishedParts, ramps: _Ramps, radius: Floats, tolera
             _Cuts(ways.move[cut], group[cut], depth[cut], *_ends(shapely.shortest_line(walls[cut], path[cut])))
         )
     return _joined(*found)
+
+
+def _within_reach(part: FinishedParts, wall: Rows, ways: Segments, way: Rows, reach: Floats) -> Mask:
+    """Which of these walls could be within reach of the ways given with them, judged from their boxes."""
+    result = np.ones(len(wall), bool)
+    for a, b, c, d in (
+        (part.start.real, part.end.real, ways.start.real, ways.end.real),
+        (part.start.imag, part.end.imag, ways.start.imag, ways.end.imag),
+    ):
+        low, high = np.minimum(c, d) - reach, np.maximum(c, d) + reach
+        result &= (np.minimum(a, b)[wall] <= high[way]) & (low[way] <= np.maximum(a, b)[wall])
+    return result
 
 
 def _is_round_center(part: FinishedParts) -> Mask:

@@ -87,6 +87,8 @@ def finished_parts(contours: Contours) -> FinishedParts:
             break
         lines, length = closing(plane, contours)
         asked &= length > 0
+        if not asked.any():
+            continue
         found, outline = _standing(plane, lines, asked, contours.tolerance)
         closed = asked & ~shapely.is_empty(found.polygon)
         polygon[closed] = found.polygon[closed]

@@ -22,8 +22,8 @@ TOUCH = 2e-6
 _PAIRS, _FREE_PAIRS = 64, 4_000_000
 #: Walls of a run at most, and how far it may turn [rad]; a run or two neighbours below half a turn cross nowhere.
 _RUN, _BEND, _HALF_TURN = 16, np.pi / 4, 3.0
-#: Runs and pairs worked on at a time, for the sake of memory.
-_RUNS_AT_A_TIME, _PAIRS_AT_A_TIME = 256, 100_000
+#: Runs and about how many pairs to work on at a time, for the sake of memory.
+_LEAST_AT_A_TIME, _PAIRS_AT_A_TIME = 16, 100_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,10 +111,13 @@ def _pairs(walls: _Walls, tangled: Mask) -> Iterator[tuple[Rows, Rows]]:
     box = _boxes(walls, first)
     tree = shapely.STRtree(shapely.box(*box))
     left = _PAIRS * np.bincount(walls.group, minlength=len(tangled)) + _FREE_PAIRS
-    for begin in range(0, len(first), _RUNS_AT_A_TIME):
-        asked = np.arange(begin, min(begin + _RUNS_AT_A_TIME, len(first)))
+    begin, step = 0, _LEAST_AT_A_TIME
+    while begin < len(first):
+        asked = np.arange(begin, min(begin + step, len(first)))
         asked = asked[~tangled[group[asked]]]
         which, other = tree.query(shapely.box(*(side[asked] for side in box)))
+        begin += step
+        step = int(np.clip(step * _PAIRS_AT_A_TIME // (len(which) + 1), _LEAST_AT_A_TIME, 2 * step))
         one = asked[which]
         kept = (one < other) & (group[one] == group[other])
         one, other = one[kept], other[kept]

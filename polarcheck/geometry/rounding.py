@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from polarcheck.arrays import Mask, Points, Rows
+from polarcheck.arrays import Floats, Mask, Points, Rows
 
 #: How wide a strip passes for straight, in roundings to either side: so wide that, where the contour bends, its chords
 #: turn clearly more than the rounding of their ends turns them.
@@ -31,6 +31,16 @@ def kept_ends(start: Points, end: Points, joins: Mask, half: Points) -> Mask:
             return kept
     kept[rows] = True
     return kept
+
+
+def may_turn_back(start: Points, end: Points, half: Points, radius: Floats) -> Mask:
+    """
+    Which straight blocks rounding may shorten to less than nothing along the path of a tool center with R [mm].
+
+    The ends of two blocks of length l turn the corner between them by up to 4 half / l, which takes R times that off
+    the way of the tool center. start, end, half: as above.
+    """
+    return np.asarray(np.abs(end - start) ** 2 < 4 * np.abs(half) * np.abs(radius))
 
 
 def _halved(start: Points, end: Points, half: Points, kept: Mask, rows: Rows) -> Rows:

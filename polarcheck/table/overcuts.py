@@ -41,7 +41,7 @@ class Cuts(NamedTuple):
 
     def some(self, chosen: Mask) -> Cuts:
         """Some of the cuts."""
-        return Cuts(*(column[chosen] for column in self))
+        return Cuts(self.row[chosen], self.into[chosen], self.depth[chosen], self.place[chosen])
 
     def deepest(self, row: int) -> tuple[int, complex]:
         """Of the cuts of a row the deepest: the row cut into, and where."""

@@ -38,6 +38,8 @@ class Senses:
     def _arc(self) -> Rows:
         """The rows that are judged: arcs that are circles, with a block of their contour on either side."""
         rows = self._moving
+        if not self.trace.is_arc[rows].any():
+            return np.zeros(0, np.int64)
         loop = self._loop[rows]
         joined = (loop[1:] == loop[:-1]) & (loop[1:] >= 0)
         between = np.append(False, joined) & np.append(joined, False) if len(rows) else np.zeros(0, bool)
@@ -48,32 +50,33 @@ class Senses:
     def _moving(self) -> Rows:
         return np.flatnonzero(self.trace.on_plane)
 
-    @cached_property
-    def _tangents(self) -> tuple[Points, Points]:
-        """Directions in which each of the moving rows begins and ends."""
-        trace, rows = self.trace, self._moving
+    def _tangents(self, place: Rows) -> tuple[Points, Points]:
+        """Directions in which some of the moving rows begin and end."""
+        trace, rows = self.trace, self._moving[place]
         return _tangents(trace.start[rows], trace.end[rows], trace.center[rows], trace.motion[rows])
 
     @cached_property
     def _turns(self) -> tuple[Floats, Floats, Floats]:
         """Of the judged arcs the larger turn at their ends in the other sense, the smaller and larger as written."""
         trace, arc = self.trace, self._arc
-        leaving, arriving = self._tangents
         row = self._moving[arc]
         start, end, center, motion = trace.start[row], trace.end[row], trace.center[row], trace.motion[row]
         by_radius = self.arcs.by_radius[row]
         # By R it is the other circle through both ends, by I and J the same circle the other way round.
         other = np.where(by_radius, start + end - center, center)
         begins, ends = _tangents(start, end, other, np.where(motion == Motion.CW, Motion.CCW, Motion.CW))
-        into, out = arriving[arc - 1], leaving[arc + 1]
+        into, out = self._tangents(arc - 1)[1], self._tangents(arc + 1)[0]
         reversed_ = np.maximum(_angle(into, begins), _angle(ends, out))
-        written = _angle(into, leaving[arc]), _angle(arriving[arc], out)
+        leaving, arriving = self._tangents(arc)
+        written = _angle(into, leaving), _angle(arriving, out)
         return reversed_, np.minimum(*written), np.maximum(*written)
 
     @cached_property
     def _tolerance(self) -> Floats:
         """What rounding may turn a judged arc and its neighbours by, one against the other [rad]."""
         trace, arc = self.trace, self._arc
+        if not len(arc):
+            return np.zeros(0)
         row = self._moving[arc]
         digit = 2 * np.abs(half_of_last_digit(trace)[row])
         shortest = np.minimum(trace.length[self._moving[arc - 1]], trace.length[self._moving[arc + 1]])

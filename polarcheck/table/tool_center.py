@@ -9,9 +9,9 @@ from functools import cached_property
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Rows
+from polarcheck.arrays import Floats, Mask, Points, Rows
 from polarcheck.geometry.compensation import Path, ToolPath
-from polarcheck.geometry.rounding import kept_ends
+from polarcheck.geometry.rounding import kept_ends, may_turn_back
 from polarcheck.machines.modal import Motion, Side
 from polarcheck.table.infeed import Infeed
 from polarcheck.table.last_digit import half_of_last_digit
@@ -69,7 +69,11 @@ class ToolCenter:
     def _kept(self) -> Mask:
         """The rows of the path at whose ends the contour bends by more than the rounding of its points."""
         path = self._programmed
-        return kept_ends(path.start, path.end, _goes_on(path), half_of_last_digit(self.trace)[self._rows])
+        return kept_ends(path.start, path.end, _goes_on(path), self._half_of_last_digit)
+
+    @cached_property
+    def _half_of_last_digit(self) -> Points:
+        return half_of_last_digit(self.trace)[self._rows]
 
     @cached_property
     def stretch(self) -> Rows:
@@ -98,7 +102,12 @@ class ToolCenter:
         columns["radius"] = path.radius[rows] * np.where(rows > first, _SURELY, 1.0)
         straight = tool_center_path(self.trace, Path(**columns))
         faulty = straight.interferes | straight.no_intersection | straight.inside_arc_too_small
-        return self._found(self._path.interferes & ~faulty[np.searchsorted(rows, np.arange(len(kept)))])
+        found = self._found(self._path.interferes & ~faulty[np.searchsorted(rows, np.arange(len(kept)))])
+        # Among many such blocks a few that rounding may well turn round tell nothing, whatever is left of them.
+        short = self._found(may_turn_back(path.start, path.end, self._half_of_last_digit, path.radius))
+        others = self.interferes & short & ~found
+        most = self.trace.count_in_section(found) > self.trace.count_in_section(others)
+        return np.asarray(found | (others & np.append(most, False)[self.trace.section]))
 
     @cached_property
     def no_intersection(self) -> Mask:
