@@ -62,9 +62,17 @@ class Overcuts:
         """
         Rows whose R is known as that of a cutter, so that what is programmed is the wall of the part.
 
-        Of a path of the tool center, which a small R of either sign adjusts, neither side is one.
+        Of a path of the tool center, which a small R adjusts, neither side is one. A negative R that small is taken
+        for an adjustment, and so is a positive one beside a comment that tells a larger cutter.
         """
-        return np.asarray(np.abs(self.trace.radius) > ADJUSTMENT + ROUNDING)
+        trace = self.trace
+        radius = trace.radius
+        small = np.abs(radius) <= ADJUSTMENT + ROUNDING
+        cutter = small & (radius > ROUNDING) & trace.compensates
+        if cutter.any():
+            larger = [number for number, found in trace.radius_told.items() if found.radius > ADJUSTMENT + ROUNDING]
+            cutter &= ~np.isin(trace.offset_number, larger)
+        return np.asarray(~np.isnan(radius) & (~small | cutter))
 
     @cached_property
     def _compensates(self) -> bool:
