@@ -48,12 +48,12 @@ class Loop(NamedTuple):
     def overcuts(self, radius: float | None = None, tolerance: float = TOLERANCE) -> Overcut:
         sizes = np.full(len(self.path.row), self.radius if radius is None else radius)
         with np.errstate(all="raise", under="ignore"):
-            return cuts(self.contour, self.left, self.path, sizes, np.zeros(len(sizes), bool), tolerance)
+            return along(self.contour, self.left, self.path, sizes, tolerance)
 
     def sweeps(self) -> Overcut:
         with np.errstate(all="raise", under="ignore"):
             sizes = np.full(len(self.ramps.row), self.radius)
-            return cuts(self.contour, self.left, self.ramps, sizes, np.ones(len(sizes), bool))
+            return swept(self.contour, self.left, self.ramps, sizes)
 
 
 def loop(
@@ -258,14 +258,20 @@ def test_the_side_and_the_direction_do_not_matter() -> None:
 # ---- loops ----
 
 
-def along(contour: Curves, left: np.ndarray, path: Curves, radius: np.ndarray) -> Overcut:
+def air(contour: Curves) -> np.ndarray:
+    """As far out as the nearer end of the contour."""
+    ends = [abs(contour.start[0]), abs(contour.end[-1])] if len(contour) else [0.0]
+    return np.full(len(contour), min(ends))
+
+
+def along(contour: Curves, left: np.ndarray, path: Curves, radius: np.ndarray, tolerance: float = TOLERANCE) -> Overcut:
     """Cuts by moves in offset mode."""
-    return cuts(contour, left, path, radius, np.zeros(len(radius), bool))
+    return cuts(contour, left, air(contour), path, radius, np.zeros(len(radius), bool), tolerance)
 
 
 def swept(contour: Curves, left: np.ndarray, ramps: Curves, radius: np.ndarray) -> Overcut:
     """Cuts by start-ups and offset cancels."""
-    return cuts(contour, left, ramps, radius, np.ones(len(radius), bool))
+    return cuts(contour, left, air(contour), ramps, radius, np.ones(len(radius), bool))
 
 
 def together(*loops: Loop) -> tuple[Curves, np.ndarray, Curves, np.ndarray]:

@@ -52,6 +52,7 @@ class Overcut:
 def overcuts(
     contour: Curves,
     left: Mask,
+    air: Floats,
     path: Curves,
     radius: Floats,
     is_ramp: Mask,
@@ -62,15 +63,16 @@ def overcuts(
     Where the tool center comes nearer than R to the finished part of its loop; the worst place of each of its moves.
 
     contour: the programmed blocks in offset mode. left: bool[moves of contour], the tool runs left of the block: G41
-    with R above 0, G42 with R below. path: the tool center's moves in offset mode, corners included, and start-ups and
-    offset cancels, which is_ramp says; each with the row of its block. radius: float64[moves of path] [mm], |R|; the
-    smallest of a loop is taken. bar: its diameter [mm], NaN if not known. Curves with anything unknown are left out.
+    with R above 0, G42 with R below. air: float64[moves of contour] [mm], radius about the center of C from which on
+    there is nothing to cut for all that is known. path: the tool center's moves in offset mode, corners included, and
+    start-ups and offset cancels, which is_ramp says; each with the row of its block. radius: float64[moves of path]
+    [mm], |R|; the smallest of a loop is taken. bar: its diameter [mm], NaN if not known. Curves with anything unknown
+    are left out.
 
     A ramp touches the contour at one end and comes there at a slant, whereby it nicks the corner of a contour that ends
     in the open, where nobody knows what the part is like. There, within R of that end along the contour, only what lies
-    behind the contour counts, and only where that cuts more than the slant makes unavoidable; and no single ramp of a
-    part round the center that comes from farther from there than that end itself, as through the air. If both do, the
-    cutter is on the wrong side.
+    behind the contour counts, and only where that cuts more than the slant makes unavoidable. Of a part round the
+    center a ramp from the air cuts nothing out there.
     """
     rows = np.flatnonzero(is_ramp | first_of_its_kind(path)) if _is_long(path) else np.arange(len(path))
     ways = segments(path[rows], tolerance)
@@ -87,7 +89,7 @@ def overcuts(
     part = finished_parts(Contours(contour, left, loops, np.arange(len(loops)), smallest, bar, tolerance))
     ways = ways.shifted(part.pitch * group)
     in_open = part.open[group] & is_ramp[ways.move]
-    ramps = _Ramps.of(contour, path, ways[in_open], group[in_open])
+    ramps = _Ramps.of(contour, air, path, ways[in_open], group[in_open])
     cuts = _joined(
         _cuts(part, ways[~in_open], group[~in_open], smallest, tolerance),
         _cuts_in_the_open(part, ramps, smallest, tolerance),
@@ -263,25 +265,26 @@ _NO_CUTS = _Cuts(np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0), _NOW
 @dataclass(frozen=True, slots=True)
 class _Ramps:
     """
-    Straight ramps and their groups. begins: start-ups. within: those that come from nearer to the center of C than the
-    end of the contour is that they lead to, or from.
+    Straight ramps and their groups.
+
+    begins: start-ups. air: radius about the center of C [mm] from which on there is nothing but air. in_air: those
+    whose far end is that far out.
     """
 
     ways: Segments
     group: Rows
     begins: Mask
-    within: Mask
+    air: Floats
+    in_air: Mask
 
     @classmethod
-    def of(cls, contour: Curves, path: Curves, ways: Segments, group: Rows) -> _Ramps:
+    def of(cls, contour: Curves, air: Floats, path: Curves, ways: Segments, group: Rows) -> _Ramps:
         """Of shifted ways."""
         order = np.argsort(contour.loop, kind="stable")
-        first, after = (np.searchsorted(contour.loop[order], ways.loop, side) for side in ("left", "right"))
-        first, last = order[first], order[after - 1]
+        first = order[np.searchsorted(contour.loop[order], ways.loop)]
         begins = path.row[ways.move] < contour.row[first]
         far = np.abs(np.where(begins, path.start[ways.move], path.end[ways.move]))
-        within = far < np.abs(np.where(begins, contour.start[first], contour.end[last]))
-        return cls(ways, group, begins, within)
+        return cls(ways, group, begins, air[first], far >= air[first])
 
 
 def _cuts_in_the_open(part: FinishedParts, ramps: _Ramps, radius: Floats, tolerance: float) -> _Cuts:
@@ -290,6 +293,7 @@ def _cuts_in_the_open(part: FinishedParts, ramps: _Ramps, radius: Floats, tolera
     if not len(ways):
         return _NO_CUTS
     radius = radius[group]
+    in_air = ramps.in_air & _is_round_center(part)[group]
     lines = _lines(ways.start, ways.end)
     behind = shapely.intersection(lines, part.polygon[group])
     wall, way = members(part.group, group)
@@ -306,11 +310,13 @@ def _cuts_in_the_open(part: FinishedParts, ramps: _Ramps, radius: Floats, tolera
         if len(chosen):
             has, number = np.unique(way[chosen], return_inverse=True)
             walls[has] = shapely.multilinestrings(_lines(start, end), indices=number)
+        if path is lines:
+            center = shapely.points(part.pitch * group[in_air], 0.0)
+            walls[in_air] = shapely.intersection(walls[in_air], shapely.buffer(center, ramps.air[in_air], quad_segs=64))
         depth = radius - shapely.distance(walls, path)
         cuts = depth > tolerance + allowed  # NaN without walls, or with nothing behind them
         if path is behind:
-            both = np.isin(group, group[cuts & begins]) & np.isin(group, group[cuts & ~begins])
-            cuts &= ramps.within | both | ~_is_round_center(part)[group]
+            cuts &= ~in_air
         cut = np.flatnonzero(cuts)
         found.append(
             _Cuts(ways.move[cut], group[cut], depth[cut], *_ends(shapely.shortest_line(walls[cut], path[cut])))

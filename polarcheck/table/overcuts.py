@@ -130,9 +130,27 @@ class Overcuts:
         loop = np.where(is_ramp, self._loop_of_ramps[tool.row], self._loop[tool.row])
         path = _curves(tool, loop, chosen)
         radius, tolerance = np.abs(trace.radius[path.row]), trace.machine.compensation.overcut_tolerance
-        found = contour.overcuts(*self._walls, path, radius, is_ramp[chosen], tolerance, self._bar)
+        walls, left = self._walls
+        found = contour.overcuts(walls, left, self._air(walls), path, radius, is_ramp[chosen], tolerance, self._bar)
         cuts = Cuts(path.row[found.move], found.row, found.depth, found.place)
         return cuts, is_ramp[chosen][found.move], np.isin(self._loop, found.tangled)
+
+    def _air(self, walls: Curves) -> Floats:
+        """
+        For each wall the radius about the center of C from which on there is air [mm]: the bar does not reach beyond
+        the ends of contours, in its section, that end apart from where they begin.
+        """
+        if not len(walls):
+            return np.zeros(0)
+        first = np.flatnonzero(np.diff(walls.loop, prepend=-1))
+        last = np.append(first[1:], len(walls)) - 1
+        start, end = walls.start[first], walls.end[last]
+        apart = np.abs(end - start) > 2 * np.abs(self.trace.radius[walls.row[first]])
+        ends = np.where(apart, np.minimum(np.abs(start), np.abs(end)), np.inf)
+        section = self.trace.section[walls.row]
+        least = np.full(len(self.trace.sections) + 1, np.inf)
+        np.fmin.at(least, section[first], ends)
+        return least[section]
 
     @cached_property
     def cuts(self) -> Cuts:
