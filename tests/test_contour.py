@@ -266,12 +266,12 @@ def air(contour: Curves) -> np.ndarray:
 
 def along(contour: Curves, left: np.ndarray, path: Curves, radius: np.ndarray, tolerance: float = TOLERANCE) -> Overcut:
     """Cuts by moves in offset mode."""
-    return cuts(contour, left, air(contour), path, radius, np.zeros(len(radius), bool), tolerance)
+    return cuts(contour, left, air(contour), contour.loop, path, radius, np.zeros(len(radius), bool), tolerance)
 
 
 def swept(contour: Curves, left: np.ndarray, ramps: Curves, radius: np.ndarray) -> Overcut:
     """Cuts by start-ups and offset cancels."""
-    return cuts(contour, left, air(contour), ramps, radius, np.ones(len(radius), bool))
+    return cuts(contour, left, air(contour), contour.loop, ramps, radius, np.ones(len(radius), bool))
 
 
 def together(*loops: Loop) -> tuple[Curves, np.ndarray, Curves, np.ndarray]:

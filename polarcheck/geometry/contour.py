@@ -12,7 +12,7 @@ Most loops are let off without a part: where the tool center stays at R from eve
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely  # type: ignore[import-untyped]
@@ -53,6 +53,7 @@ def overcuts(
     contour: Curves,
     left: Mask,
     air: Floats,
+    level: Rows,
     path: Curves,
     radius: Floats,
     is_ramp: Mask,
@@ -64,10 +65,10 @@ def overcuts(
 
     contour: the programmed blocks in offset mode. left: bool[moves of contour], the tool runs left of the block: G41
     with R above 0, G42 with R below. air: float64[moves of contour] [mm], radius about the center of C from which on
-    there is nothing to cut for all that is known. path: the tool center's moves in offset mode, corners included, and
-    start-ups and offset cancels, which is_ramp says; each with the row of its block. radius: float64[moves of path]
-    [mm], |R|; the smallest of a loop is taken. bar: its diameter [mm], NaN if not known. Curves with anything unknown
-    are left out.
+    there is nothing to cut for all that is known. level: int[moves of contour], the same for loops of which each takes
+    away what another one leaves standing. path: the tool center's moves in offset mode, corners included, and start-ups
+    and offset cancels, which is_ramp says; each with the row of its block. radius: float64[moves of path] [mm], |R|,
+    the smallest of a loop is taken. bar: its diameter [mm], NaN if not known. What is unknown is left out.
 
     A ramp touches the contour at one end and comes there at a slant, whereby it nicks the corner of a contour that ends
     in the open, where nobody knows what the part is like. There, within R of that end along the contour, only what lies
@@ -90,21 +91,63 @@ def overcuts(
     ways = ways.shifted(part.pitch * group)
     in_open = part.open[group] & is_ramp[ways.move]
     ramps = _Ramps.of(contour, air, path, ways[in_open], group[in_open])
-    cuts = _joined(
-        _cuts(part, ways[~in_open], group[~in_open], smallest, tolerance),
-        _cuts_in_the_open(part, ramps, smallest, tolerance),
+    cuts = _worst(
+        _joined(
+            _cuts(part, ways[~in_open], group[~in_open], smallest, tolerance),
+            _cuts_in_the_open(part, ramps, smallest, tolerance),
+        )
     )
-    return _overcut(contour, part, _worst(cuts), loops)
+    loop, first = np.unique(contour.loop, return_index=True)
+    own = level[first][np.searchsorted(loop, loops[cuts.group])]
+    shared = np.bincount(level[first])[own] > 1
+    levels = _levels(contour, left, level, np.unique(own[shared]), smallest.max(), bar, tolerance)
+    kept, again = _left_at_level(levels, path, cuts, np.where(shared, own, -1), radius, tolerance)
+    return _overcut(contour, loops[part.tangled], (part, cuts[kept]), (levels, again))
 
 
-def _overcut(contour: Curves, part: FinishedParts, cuts: _Cuts, loops: Rows) -> Overcut:
-    """Cuts with the wall that each goes into."""
-    tangled = loops[part.tangled]
-    if not len(cuts.move):
-        return Overcut(cuts.move, cuts.move, cuts.depth, cuts.place, tangled)
-    wall = part.move[_wall(part, cuts)]
-    place = cuts.place - part.pitch * cuts.group
-    return Overcut(contour.row[wall].astype(np.int64), cuts.move, cuts.depth, place, tangled)
+def _levels(
+    contour: Curves, left: Mask, level: Rows, wanted: Rows, radius: float, bar: float, tolerance: float
+) -> FinishedParts:
+    """What all loops of each of these levels together leave standing."""
+    loop, first = np.unique(contour.loop, return_index=True)
+    chosen = np.flatnonzero(np.isin(level[first], wanted))
+    chosen = chosen[np.argsort(level[first][chosen], kind="stable")]
+    group = np.searchsorted(wanted, level[first][chosen])
+    return finished_parts(Contours(contour, left, loop[chosen], group, np.full(len(wanted), radius), bar, tolerance))
+
+
+def _left_at_level(
+    levels: FinishedParts, path: Curves, cuts: _Cuts, level: Rows, radius: Floats, tolerance: float
+) -> tuple[Mask, _Cuts]:
+    """
+    Cuts into what their loop alone leaves standing, those of a level, -1 for none, compared with all that stands there.
+
+    Which of them stay as they are, and the others with what is left of them.
+    """
+    wanted, group = np.unique(level, return_inverse=True)
+    group = group - np.count_nonzero(wanted < 0)
+    told = ~np.append(levels.tangled | shapely.is_empty(levels.polygon), True)[group]
+    moves = cuts.move[told]
+    ways = segments(path[moves], tolerance)
+    group = group[told][ways.move]
+    smallest = np.full(len(levels.polygon), np.inf)
+    np.minimum.at(smallest, group, radius[moves[ways.move]])
+    ways = Segments(ways.start, ways.end, moves[ways.move], ways.loop).shifted(levels.pitch * group)
+    again = _worst(_cuts(levels, ways, group, smallest, tolerance))
+    before = cuts.depth[np.searchsorted(cuts.move, again.move)]
+    return ~told, replace(again, depth=np.minimum(again.depth, before))
+
+
+def _overcut(contour: Curves, tangled: Rows, *found: tuple[FinishedParts, _Cuts]) -> Overcut:
+    """Cuts into parts with the wall that each goes into."""
+    some = [(part, cuts) for part, cuts in found if len(cuts.move)]
+    if not some:
+        return Overcut(_NO_CUTS.move, _NO_CUTS.move, _NO_CUTS.depth, _NO_CUTS.place, tangled)
+    row = np.concatenate([contour.row[part.move[_wall(part, cuts)]] for part, cuts in some])
+    place = np.concatenate([cuts.place - part.pitch * cuts.group for part, cuts in some])
+    cuts = _joined(*(cuts for _, cuts in some))
+    order = np.argsort(cuts.move)
+    return Overcut(row[order].astype(np.int64), cuts.move[order], cuts.depth[order], place[order], tangled)
 
 
 def _wall(part: FinishedParts, cuts: _Cuts) -> Rows:
@@ -296,6 +339,9 @@ def _cuts_in_the_open(part: FinishedParts, ramps: _Ramps, radius: Floats, tolera
     in_air = ramps.in_air & _is_round_center(part)[group]
     lines = _lines(ways.start, ways.end)
     behind = shapely.intersection(lines, part.polygon[group])
+    center = shapely.points(part.pitch * group[in_air], 0.0)
+    within = shapely.buffer(center, ramps.air[in_air], quad_segs=64)
+    behind[in_air] = shapely.intersection(behind[in_air], within)
     wall, way = members(part.group, group)
     near = _within_reach(part, wall, ways, way, radius)
     wall, way = wall[near], way[near]
@@ -311,13 +357,9 @@ def _cuts_in_the_open(part: FinishedParts, ramps: _Ramps, radius: Floats, tolera
             has, number = np.unique(way[chosen], return_inverse=True)
             walls[has] = shapely.multilinestrings(_lines(start, end), indices=number)
         if path is lines:
-            center = shapely.points(part.pitch * group[in_air], 0.0)
-            walls[in_air] = shapely.intersection(walls[in_air], shapely.buffer(center, ramps.air[in_air], quad_segs=64))
+            walls[in_air] = shapely.intersection(walls[in_air], within)
         depth = radius - shapely.distance(walls, path)
-        cuts = depth > tolerance + allowed  # NaN without walls, or with nothing behind them
-        if path is behind:
-            cuts &= ~in_air
-        cut = np.flatnonzero(cuts)
+        cut = np.flatnonzero(depth > tolerance + allowed)  # NaN without walls, or with nothing behind them
         found.append(
             _Cuts(ways.move[cut], group[cut], depth[cut], *_ends(shapely.shortest_line(walls[cut], path[cut])))
         )

@@ -131,7 +131,8 @@ class Overcuts:
         path = _curves(tool, loop, chosen)
         radius, tolerance = np.abs(trace.radius[path.row]), trace.machine.compensation.overcut_tolerance
         walls, left = self._walls
-        found = contour.overcuts(walls, left, self._air(walls), path, radius, is_ramp[chosen], tolerance, self._bar)
+        around = self._air(walls), self._level(walls)
+        found = contour.overcuts(walls, left, *around, path, radius, is_ramp[chosen], tolerance, self._bar)
         cuts = Cuts(path.row[found.move], found.row, found.depth, found.place)
         return cuts, is_ramp[chosen][found.move], np.isin(self._loop, found.tangled)
 
@@ -151,6 +152,17 @@ class Overcuts:
         least = np.full(len(self.trace.sections) + 1, np.inf)
         np.fmin.at(least, section[first], ends)
         return least[section]
+
+    def _level(self, walls: Curves) -> Rows:
+        """For each wall the number of the section and the Z that its loop begins at."""
+        first = np.flatnonzero(np.diff(walls.loop, prepend=-1))
+        row = walls.row[first]
+        z = np.round(self.trace.z[row] / ROUNDING)
+        # Where Z is not known, what lies between two Z moves is at one level.
+        moved = np.where(np.isnan(z), np.cumsum(self.trace.moves_z & ~self.trace.travels)[row], 0)
+        keys = np.stack([self.trace.section[row], np.nan_to_num(z), moved], axis=1)
+        _, number = np.unique(keys, axis=0, return_inverse=True)
+        return np.asarray(number[np.cumsum(np.diff(walls.loop, prepend=-1) != 0) - 1])
 
     @cached_property
     def cuts(self) -> Cuts:
