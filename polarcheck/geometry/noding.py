@@ -84,12 +84,30 @@ class _Walls:
 # ---- which walls may meet ----
 
 
-def _runs(walls: _Walls) -> tuple[Rows, Floats, Floats, Mask]:
+@dataclass(frozen=True, slots=True)
+class _Runs:
     """
-    First walls of runs that bend little; how far each bends [rad]; how far it turns away from the one before, which
-    counts for it as well; and whether it goes on from that at all.
+    Walls that go on from each other and bend little, from `first` on, `size` of them.
+
+    bend: how far each run bends [rad]; joint: how far it turns away from the one before, which counts for its bend as
+    well; joined: it goes on from that at all. begin, end: complex128 [mm]; along: unit vector between; low, high: how
+    far it lies to the right, below 0, and to the left of the line between [mm].
     """
-    way = walls.nodes[walls.b] - walls.nodes[walls.a]
+
+    first: Rows
+    size: Rows
+    bend: Floats
+    joint: Floats
+    joined: Mask
+    begin: Points
+    end: Points
+    along: Points
+    low: Floats
+    high: Floats
+
+
+def _runs(walls: _Walls) -> _Runs:
+    start, way = walls.nodes[walls.a], walls.nodes[walls.b] - walls.nodes[walls.a]
     joined = np.zeros(len(way), bool)
     joined[1:] = (walls.b[:-1] == walls.a[1:]) & (walls.group[1:] == walls.group[:-1])
     bend = np.zeros(len(way))
@@ -98,37 +116,54 @@ def _runs(walls: _Walls) -> tuple[Rows, Floats, Floats, Mask]:
     begins = ~joined | (np.arange(len(way)) % _RUN == 0)
     begins[1:] |= np.floor(total[1:] / _BEND) != np.floor(total[:-1] / _BEND)
     first = np.flatnonzero(begins)
-    return first, np.add.reduceat(bend, first), bend[first], joined[first]
+    size = np.diff(np.append(first, len(way)))
+    begin, end = start[first], walls.nodes[walls.b[first + size - 1]]
+    along = (end - begin) / np.abs(end - begin)
+    aside = ((start - np.repeat(begin, size)) * np.repeat(along.conj(), size)).imag
+    low, high = np.minimum.reduceat(aside, first), np.maximum.reduceat(aside, first)
+    return _Runs(first, size, np.add.reduceat(bend, first), bend[first], joined[first], begin, end, along, low, high)
+
+
+def _apart(runs: _Runs, one: Rows, other: Rows) -> Mask:
+    """Whether the other run lies wholly to one side of the strip along the line of the one."""
+    begin, across = runs.begin[one], runs.along[one].conj()
+    first, last = (((point[other] - begin) * across).imag for point in (runs.begin, runs.end))
+    wide = np.maximum(runs.high, -runs.low)[other] + TOUCH
+    return np.asarray(
+        (np.minimum(first, last) - wide > runs.high[one]) | (np.maximum(first, last) + wide < runs.low[one])
+    )
 
 
 def _pairs(walls: _Walls, tangled: Mask) -> Iterator[tuple[Rows, Rows]]:
     """Pairs of walls that may have more in common than a joint; groups with too many of them become tangled."""
     if not len(walls.a):
         return
-    first, bend, joint, joined = _runs(walls)
-    size = np.diff(np.append(first, len(walls.a)))
-    group = walls.group[first]
-    box = _boxes(walls, first)
+    runs = _runs(walls)
+    group, size = walls.group[runs.first], runs.size
+    box = _boxes(walls, runs.first)
     tree = shapely.STRtree(shapely.box(*box))
     left = _PAIRS * np.bincount(walls.group, minlength=len(tangled)) + _FREE_PAIRS
     begin, step = 0, _LEAST_AT_A_TIME
-    while begin < len(first):
-        asked = np.arange(begin, min(begin + step, len(first)))
+    while begin < len(group):
+        asked = np.arange(begin, min(begin + step, len(group)))
         asked = asked[~tangled[group[asked]]]
         which, other = tree.query(shapely.box(*(side[asked] for side in box)))
         begin += step
         step = int(np.clip(step * _PAIRS_AT_A_TIME // (len(which) + 1), _LEAST_AT_A_TIME, 2 * step))
         one = asked[which]
-        kept = (one < other) & (group[one] == group[other])
+        bent = runs.bend[one] + runs.bend[other] - runs.joint[one]
+        follows = (other == one + 1) & runs.joined[other] & (bent < _HALF_TURN)
+        kept = (one < other) & (group[one] == group[other]) & ~follows
         one, other = one[kept], other[kept]
-        bent = bend[one] + bend[other] - joint[one]
-        kept = ~((other == one + 1) & joined[other] & (bent < _HALF_TURN))
+        kept = ~_apart(runs, one, other)
+        one, other = one[kept], other[kept]
+        kept = ~_apart(runs, other, one)
         one, other = one[kept], other[kept]
         left -= np.bincount(group[one], size[one] * size[other], len(tangled)).astype(np.int64)
         tangled |= left < 0
         for part in _shares(size[one] * size[other]):
             kept = part[~tangled[group[one[part]]]]
-            yield _each_wall(walls, (first, size), one[kept], other[kept])
+            yield _each_wall(walls, runs, one[kept], other[kept])
 
 
 def _boxes(walls: _Walls, first: Rows) -> tuple[Floats, Floats, Floats, Floats]:
@@ -148,9 +183,9 @@ def _shares(count: Rows) -> list[Rows]:
     return np.split(np.arange(len(count)), np.flatnonzero(np.diff(share)) + 1)
 
 
-def _each_wall(walls: _Walls, runs: tuple[Rows, Rows], one: Rows, other: Rows) -> tuple[Rows, Rows]:
+def _each_wall(walls: _Walls, runs: _Runs, one: Rows, other: Rows) -> tuple[Rows, Rows]:
     """Every wall of one run with every wall of the other that it may meet."""
-    first, size = runs
+    first, size = runs.first, runs.size
     count = size[one] * size[other]
     pair = np.repeat(np.arange(len(one)), count)
     place = np.arange(len(pair)) - np.repeat(np.cumsum(count) - count, count)
