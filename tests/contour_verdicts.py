@@ -48,8 +48,6 @@ ALARMS = frozenset(
 SOUND, UNSOUND, EXACT = 0.004, 0.02, 0.01
 #: Share of R within which a ramp is neither long enough nor too short.
 SHORT = 0.002
-#: [mm] A smaller R adjusts a path of the tool center, and what is programmed is no wall.
-ADJUSTING = 0.254
 
 
 class Comparison(NamedTuple):
@@ -66,9 +64,9 @@ class Comparison(NamedTuple):
     says: str
 
 
-#: Disagreements, and those that are only told: no wall by its R, or a program that asks for another part.
+#: Disagreements, and those that are only told, of programs that ask for another part.
 KINDS = ("false error", "missed", "missed, other loop", "missed alarm", "wrong depth")
-TOLD = ("missed, small R", "missed, block through part", "missed, wrong side")
+TOLD = ("missed, block through part", "missed, wrong side")
 
 
 def compare(program: Program, stock: bool = True) -> Comparison:
@@ -90,9 +88,7 @@ def compare(program: Program, stock: bool = True) -> Comparison:
         disagreement = "missed alarm"
     elif judged == "unsound" and not names & GOUGES:
         disagreement = "missed"
-        if program.radius <= ADJUSTING:
-            disagreement = "missed, small R"
-        elif verdict.through:
+        if verdict.through:
             disagreement = "missed, block through part"
         elif verdict.wrong_side:
             disagreement = "missed, wrong side"

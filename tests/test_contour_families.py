@@ -24,8 +24,6 @@ HEAD = "O1/G21 G40 G97 G98 G18/T0101/G0 X150. Z2. C0/G12.1/"
 SQUARE = shapely.box(-20, -20, 20, 20)
 #: Of each family, so many seeds are compared.
 SHARE = 5
-#: Families in which leads in offset mode, the walls of another loop or ramps at another height are misjudged today.
-KNOWN = {"flats", "crosses", "pockets", "cams", "spirals", "passes", "islands"}
 
 
 def program(blocks: str) -> str:
@@ -37,13 +35,7 @@ def disc(radius: float, center: complex = 0j) -> shapely.Polygon:
     return polygon_of([Piece("ccw", center + radius, center + radius, center)])
 
 
-@pytest.mark.parametrize(
-    "family",
-    [
-        pytest.param(name, marks=pytest.mark.xfail(strict=False, reason="leads are walls")) if name in KNOWN else name
-        for name in FAMILIES
-    ],
-)
+@pytest.mark.parametrize("family", FAMILIES)
 def test_polarcheck_agrees_with_the_reference(family: str) -> None:
     found = [comparison for seed in range(SHARE) for comparison in compare_seed(seed, family)]
     assert [(one.program.seed, one.disagreement, one.says) for one in found if one.disagreement in KINDS] == []

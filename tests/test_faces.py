@@ -76,6 +76,12 @@ def test_groups_do_not_see_each_other() -> None:
     assert shapely.area(found.polygon).tolist() == pytest.approx([1600, 50, 0])
 
 
+def test_an_island_stands_in_its_pocket() -> None:
+    pocket, island = chain(*SQUARE, left=True), chain(5, 5j, -5, -5j, 5)
+    both = Walls(*(np.concatenate([getattr(pocket, name), getattr(island, name)[:5]]) for name in Walls.__slots__))
+    assert shapely.area(left_standing(both).polygon[0]) == pytest.approx(4 * BOX**2 - 1600 + 50)
+
+
 def test_a_sliver_between_two_passes_is_nothing() -> None:
     points = [0, 10, 10 + 0.001j, 0.001j, 0]
     assert shapely.area(left_standing(chain(*points)).polygon[0]) == 0

@@ -256,7 +256,7 @@ def _along(lines: _Lines, line: Rows, forward: Mask) -> tuple[Rows, Mask, Rows]:
 
 
 def _polygons(start: Points, end: Points, ring: Rows, group: Rows, groups: int) -> Geometries:
-    """For each group what its rings enclose: those that run counterclockwise less the others."""
+    """For each group what its rings enclose: those that run counterclockwise, the others less."""
     result = np.full(groups, shapely.Polygon(), dtype=object)
     if not len(ring):
         return result
@@ -267,11 +267,13 @@ def _polygons(start: Points, end: Points, ring: Rows, group: Rows, groups: int) 
     solid = np.where(shapely.is_valid(solid), solid, shapely.make_valid(solid))
     of, hole = group[first], area < 0
     result[of[~hole][::-1]] = solid[~hole][::-1]
+    # What lies in a hole is smaller than it: from the largest ring on each is put on what was there, or taken away.
     for several in np.unique(of[hole | (np.diff(of, prepend=-1) == 0)]):
-        here = of == several
-        result[several] = shapely.difference(
-            shapely.union_all(solid[here & ~hole]), shapely.union_all(solid[here & hole])
-        )
+        rings = np.flatnonzero(of == several)
+        whole = shapely.Polygon()
+        for one in rings[np.argsort(-np.abs(area[rings]), kind="stable")]:
+            whole = (shapely.difference if hole[one] else shapely.union)(whole, solid[one])
+        result[several] = whole
     return result
 
 

@@ -68,7 +68,7 @@ class Overcuts:
         trace = self.trace
         radius = trace.radius
         small = np.abs(radius) <= ADJUSTMENT + ROUNDING
-        cutter = small & (radius > ROUNDING) & trace.compensates
+        cutter = small & (radius > ROUNDING) & trace.in_polar
         if cutter.any():
             larger = [number for number, found in trace.radius_told.items() if found.radius > ADJUSTMENT + ROUNDING]
             cutter &= ~np.isin(trace.offset_number, larger)
