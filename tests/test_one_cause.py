@@ -82,6 +82,7 @@ def beside_depth(code: str) -> dict[str, str]:
     return {"/C20./": f"/C20./{code}/Z-6./"}
 
 
+MIRRORED = "side-of-compensation-mirrored"
 MOVEMENT = ("movement-missing-in-offset-mode",)
 MISTAKES = [
     # ---- F, of which one word governs many blocks ----
@@ -185,10 +186,38 @@ MISTAKES = [
         "inside-arc-smaller-than-radius",
     ),
     # ---- compensation ----
-    Mistake("wrong side", SQUARE, {"G42": "G41"}, "G41 X40. F200", "start-up-sweeps-contour"),
-    Mistake("wrong side of a hexagon", HEXAGON, {"G42": "G41"}, "G41 X30. F200", "start-up-sweeps-contour"),
-    Mistake("wrong side of arcs", ROUND, {"G42": "G41"}, "G41 X40. F200", "start-up-sweeps-contour"),
-    Mistake("wrong side of a loop", TWO_LOOPS, {"Z-8./G42": "Z-8./G41"}, "G41 X40.", "start-up-sweeps-contour"),
+    Mistake(
+        "wrong side",
+        SQUARE,
+        {"G42": "G41"},
+        "G41 X40. F200",
+        "side-of-compensation-mirrored",
+        ("start-up-sweeps-contour",),
+    ),
+    Mistake(
+        "wrong side of a hexagon",
+        HEXAGON,
+        {"G42": "G41"},
+        "G41 X30. F200",
+        "side-of-compensation-mirrored",
+        ("start-up-sweeps-contour",),
+    ),
+    Mistake(
+        "wrong side of arcs",
+        ROUND,
+        {"G42": "G41"},
+        "G41 X40. F200",
+        "side-of-compensation-mirrored",
+        ("start-up-sweeps-contour",),
+    ),
+    Mistake(
+        "wrong side of a loop",
+        TWO_LOOPS,
+        {"Z-8./G42": "Z-8./G41"},
+        "G41 X40.",
+        "side-of-compensation-mirrored",
+        ("start-up-sweeps-contour",),
+    ),
     Mistake(
         "approach too near",
         SQUARE,
@@ -642,7 +671,7 @@ def called_three_times(section: str) -> str:
                 None,
             ),
             ("M3", TURNING_CENTER + f"/M3/{THREE}/M30", "turning-center", "main-spindle-running-at-entry", None),
-            ("side", called_three_times(SQUARE.replace("G42", "G41")), "fanuc", "start-up-sweeps-contour", None),
+            ("side", called_three_times(SQUARE.replace("G42", "G41")), "fanuc", MIRRORED, None),
             ("Y", called_three_times(SQUARE.replace("C20.", "Y20.", 1)), "fanuc", "wrong-axis-address-in-polar", None),
             ("open", called_three_times(SQUARE.replace("/G13.1", "")), "fanuc", "polar-never-left", None),
             (

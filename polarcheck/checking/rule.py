@@ -37,6 +37,7 @@ if TYPE_CHECKING:
     from polarcheck.table.entry import Entry as Entry
     from polarcheck.table.feeds import Feeds as Feeds
     from polarcheck.table.infeed import Infeed as Infeed
+    from polarcheck.table.mirrored import Mirrored as Mirrored
     from polarcheck.table.mode_words import ModeWords as ModeWords
     from polarcheck.table.other_mode import OtherMode as OtherMode
     from polarcheck.table.overcuts import Overcuts as Overcuts

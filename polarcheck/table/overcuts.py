@@ -57,6 +57,11 @@ class Overcuts:
         self.trace = trace
         self.tool_center = tool_center
 
+    @property
+    def radius(self) -> Floats:
+        """R with its sign [mm], NaN where it is not known."""
+        return self.trace.radius
+
     @cached_property
     def _has_walls(self) -> Mask:
         """
@@ -114,7 +119,7 @@ class Overcuts:
         programmed, loop = programmed_moves(trace), self._loop
         rows = programmed.row
         walls = _curves(programmed, loop[rows], (loop[rows] >= 0) & ~trace.starts_up[rows] & programmed.known)
-        return walls, (trace.side[walls.row] == Side.LEFT) ^ (trace.radius[walls.row] < 0)
+        return walls, (trace.side[walls.row] == Side.LEFT) ^ (self.radius[walls.row] < 0)
 
     @cached_property
     def _found(self) -> tuple[Cuts, Mask, Mask]:
@@ -129,7 +134,7 @@ class Overcuts:
         chosen &= tool.known & self._has_walls[tool.row]
         loop = np.where(is_ramp, self._loop_of_ramps[tool.row], self._loop[tool.row])
         path = _curves(tool, loop, chosen)
-        radius, tolerance = np.abs(trace.radius[path.row]), trace.machine.compensation.overcut_tolerance
+        radius, tolerance = np.abs(self.radius[path.row]), trace.machine.compensation.overcut_tolerance
         walls, left = self._walls
         around = self._air(walls), self._level(walls)
         found = contour.overcuts(walls, left, *around, path, radius, is_ramp[chosen], tolerance, self._bar)

@@ -68,6 +68,11 @@ class Since:
         return self._last(written)
 
     @cached_property
+    def compensation(self) -> Rows:
+        """From one G41 or G42 to the next."""
+        return self._last(self.trace.writes_side)
+
+    @cached_property
     def spindle_code(self) -> Rows:
         """Of the main spindle."""
         codes = self.trace.machine.m_codes

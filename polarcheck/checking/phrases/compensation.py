@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from polarcheck.checking.quantity import in_row
 from polarcheck.machines.machine import Machine
-from polarcheck.machines.modal import Motion
+from polarcheck.machines.modal import Motion, Side
 from polarcheck.table.overcuts import Overcuts
 from polarcheck.table.tool_center import ToolCenter
 from polarcheck.table.trace import Trace
@@ -13,6 +13,24 @@ from polarcheck.table.trace import Trace
 def side(trace: Trace, row: int) -> str:
     """G41 or G42, whichever is in force."""
     return f"G{trace.side[row]}"
+
+
+def side_in_force(trace: Trace, row: int) -> str:
+    """G41 or G42, and a negative R, by which it is the other one."""
+    radius = float(trace.radius[row])
+    return (
+        f"{side(trace, row)} with the negative R {in_row(radius, trace, row):length}"
+        if radius < 0
+        else side(trace, row)
+    )
+
+
+def remedy(trace: Trace, row: int) -> str:
+    """What to write for the cutter to be on the other side."""
+    other = "compensation_left" if trace.side[row] == Side.RIGHT else "compensation_right"
+    radius = float(trace.radius[row])
+    shown = f", or R {in_row(-radius, trace, row):length} in the tool offset" if radius < 0 else ""
+    return f"write {trace.machine.codes(other)[0]}{shown}"
 
 
 def before(trace: Trace, row: int) -> str:

@@ -12,7 +12,11 @@ from polarcheck.checking.rule import ERROR, Mask, ToolCenter, Trace, rule
     needs=("trace.radius",),
     where="ramps.compensated",
     once="tight arc",
-    follows={"loop": (*NO_SUCH_ARC, "arc-sense-reversed"), "section": SECTION_READ_OTHERWISE},
+    follows={
+        "loop": (*NO_SUCH_ARC, "arc-sense-reversed"),
+        "compensation": ("side-of-compensation-mirrored",),
+        "section": SECTION_READ_OTHERWISE,
+    },
 )
 def inside_arc_smaller_than_radius(trace: Trace, tool_center: ToolCenter) -> Mask:
     """

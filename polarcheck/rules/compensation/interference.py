@@ -10,7 +10,11 @@ from polarcheck.checking.rule import ERROR, Mask, Ramps, ToolCenter, rule
     needs=("trace.radius",),
     where="ramps.compensated",
     once="mesh",
-    follows={"loop": (*NO_SUCH_ARC, "arc-sense-reversed"), "section": SECTION_READ_OTHERWISE},
+    follows={
+        "loop": (*NO_SUCH_ARC, "arc-sense-reversed"),
+        "compensation": ("side-of-compensation-mirrored",),
+        "section": SECTION_READ_OTHERWISE,
+    },
 )
 def interference(tool_center: ToolCenter, ramps: Ramps) -> Mask:
     """

@@ -9,7 +9,11 @@ from polarcheck.checking.rule import ERROR, Mask, Ramps, ToolCenter, rule
     "paths of the tool center in this block and the next do not meet with R {trace.radius:length}",
     needs=("trace.radius",),
     where="ramps.compensated",
-    follows={"loop": (*NO_SUCH_ARC, "arc-sense-reversed"), "section": SECTION_READ_OTHERWISE},
+    follows={
+        "loop": (*NO_SUCH_ARC, "arc-sense-reversed"),
+        "compensation": ("side-of-compensation-mirrored",),
+        "section": SECTION_READ_OTHERWISE,
+    },
 )
 def no_offset_intersection(tool_center: ToolCenter, ramps: Ramps) -> Mask:
     """

@@ -22,6 +22,7 @@ from polarcheck.checking.rule import ERROR, Mask, Overcuts, rule
         ),
         "narrow loop": ("inside-arc-smaller-than-radius", "interference", "no-offset-intersection"),
         "pause": ("movement-missing-in-offset-mode",),
+        "compensation": ("side-of-compensation-mirrored",),
         "section": SECTION_READ_OTHERWISE,
     },
 )

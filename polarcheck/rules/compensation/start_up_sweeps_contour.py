@@ -21,6 +21,7 @@ from polarcheck.checking.rule import ERROR, Hits, Overcuts, rule
         "narrow loop": ("inside-arc-smaller-than-radius", "interference", "no-offset-intersection"),
         "pause": ("movement-missing-in-offset-mode",),
         "way": ("x-not-positive-at-entry",),
+        "compensation": ("side-of-compensation-mirrored",),
         "section": (*SECTION_READ_OTHERWISE, "polar-switched-in-offset-mode"),
     },
     worst="overcuts.sweep_depth",

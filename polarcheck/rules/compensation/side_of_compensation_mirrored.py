@@ -1,0 +1,70 @@
+from __future__ import annotations
+
+from polarcheck.checking.causes import NO_SUCH_ARC, SECTION_READ_OTHERWISE
+from polarcheck.checking.rule import WARNING, Mask, Mirrored, rule
+
+
+@rule(
+    WARNING,
+    "{side_in_force} has the cutter on the wrong side: both ramps come through the part, on the other side the whole "
+    "contour is free; {remedy}",
+    at=("compensation_left", "compensation_right"),
+    follows={"compensation": NO_SUCH_ARC, "section": SECTION_READ_OTHERWISE},
+)
+def side_of_compensation_mirrored(mirrored: Mirrored) -> Mask:
+    """
+    G41 where G42 is meant, or the reverse.
+
+    The cutter runs on the side of the contour where the part is: it comes to the contour through the part, does not fit
+    into the corners, and leaves through the part. With the other code, or with the contour the other way round, nothing
+    is cut that should stay. It is reported where both ramps run through the part and the other side is free of faults
+    from the start-up to the offset cancel; all faults of that loop follow from it. A negative R in the tool offset
+    exchanges G41 and G42, too: then either of them is wrong. Where a slot is milled beside its own walls, with ramps in
+    the open, nobody can tell that no rib is meant.
+
+    Source: FANUC B-63944EN-2, cutter compensation, G41 and G42; 16/18-C mill manual p. 302 (negative R).
+
+    Bad, tool 1:radius=4:
+
+        T0101
+        G98 G0 X100. C0
+        G12.1
+        G1 G41 X40. F200     (expect: side-of-compensation-mirrored)
+        C20.
+        X-40.
+        C-20.
+        X40.
+        C0
+        G40 X100.
+        G13.1
+
+    Good, tool 1:radius=4:
+
+        T0101
+        G98 G0 X100. C0
+        G12.1
+        G1 G42 X40. F200
+        C20.
+        X-40.
+        C-20.
+        X40.
+        C0
+        G40 X100.
+        G13.1
+
+    Good, tool 1:radius=4:
+
+        T0101
+        G98 G0 X10. C0
+        G12.1
+        G1 G41 X40. F200
+        C20.
+        X-40.
+        C-20.
+        X40.
+        C0
+        G40 X10.
+        G13.1
+    """
+    # Compares nothing: the loop has to be run on its other side.
+    return mirrored.is_mirrored

@@ -1,0 +1,73 @@
+"""Loops with the cutter on the wrong side: both ramps run through the part, and on the other side all is well."""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+
+from polarcheck.arrays import Mask, Rows
+from polarcheck.table.overcuts import Overcuts
+from polarcheck.table.ramps import Ramps
+from polarcheck.table.since import Since
+from polarcheck.table.tool_center import ToolCenter
+from polarcheck.table.trace import Trace
+from polarcheck.table.trial import Trial
+
+#: Share of R that is taken for a cutter that goes in everywhere.
+_SMALL = 1 / 16
+
+
+class Mirrored:
+    """
+    Columns of one trace, one value per row.
+
+    A cutter that is too large for its contour comes from the right side, and one wrong point or ramp leaves the rest of
+    the contour as it is: only a loop that is wholly legal on the other side, and of which both ramps come out of the
+    part that it leaves as it is written, is taken for the reverse of what is meant. And a smaller cutter is no help.
+    """
+
+    def __init__(self, trace: Trace, tool_center: ToolCenter, ramps: Ramps, overcuts: Overcuts, since: Since) -> None:
+        self.trace = trace
+        self.tool_center = tool_center
+        self.ramps = ramps
+        self.overcuts = overcuts
+        self.since = since
+
+    @cached_property
+    def _loop(self) -> Rows:
+        """From one G41 or G42 to the next, which is one loop where compensation begins but once."""
+        return self.since.compensation
+
+    def _any(self, rows: Mask) -> Mask:
+        """All rows of the loops that any of these rows is of."""
+        found = np.zeros(int(self._loop[-1]) + 1, bool)
+        found[self._loop[rows]] = True
+        return found[self._loop]
+
+    @cached_property
+    def _fails(self) -> Mask:
+        """Rows that the control objects to, or that cut into the contour."""
+        tool, overcuts = self.tool_center, self.overcuts
+        fails = tool.inside_arc_too_small | tool.interferes | tool.no_intersection
+        fails[overcuts.cuts.row] = True
+        fails[overcuts.sweeps.row] = True
+        return fails
+
+    @cached_property
+    def is_mirrored(self) -> Mask:
+        """Rows with the G41 or G42 of a loop that is meant for the other one."""
+        trace, asked = self.trace, self._fails
+        if not asked.any():
+            return asked
+        asked = self._any(asked) & ~self._any(self.ramps.writes_side_again)
+        for share in (1.0, -1.0, _SMALL):
+            trial = Trial(trace, asked, self._loop, share * trace.radius)
+            if share == 1:
+                ramp = trial.comes_out_of_part
+                asked &= self._any(ramp & trace.starts_up) & self._any(ramp & trace.cancels)
+            else:
+                asked &= self._any(trial.faulty) ^ (share < 0)
+            if not asked.any():
+                break
+        return np.asarray(asked & trace.writes_side)
