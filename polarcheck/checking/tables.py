@@ -26,6 +26,7 @@ MAKERS = {
     "since": "polarcheck.table.since:Since",
     "ramps": "polarcheck.table.ramps:Ramps",
     "overcuts": "polarcheck.table.overcuts:Overcuts",
+    "fitting": "polarcheck.table.fitting:Fitting",
     "mirrored": "polarcheck.table.mirrored:Mirrored",
     "arcs": "polarcheck.table.arcs:Arcs",
     "senses": "polarcheck.table.senses:Senses",

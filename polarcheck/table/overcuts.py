@@ -221,7 +221,8 @@ class Overcuts:
     @cached_property
     def wall(self) -> Rows:
         """
-        The same number for all blocks that are cut into one another, as the two walls of a groove; -1 for other rows.
+        The same number for all blocks that cut into one another, as the two walls of a groove, and for the next ones of
+        the loop that cut or are cut, as round a point that is wrong; -1 for other rows.
 
         It is the first of these blocks.
         """
@@ -233,13 +234,17 @@ class Overcuts:
                 block = one
             return block
 
-        block = self.trace.run.block
-        for cutting, cut_into in zip(block[self.cuts.row].tolist(), block[self.cuts.into].tolist(), strict=True):
-            one, other = found(cutting), found(cut_into)
-            first[max(one, other)] = min(one, other)
+        block, one, other = self.trace.run.block, self.cuts.row, self.cuts.into
+        moving = np.flatnonzero(self.trace.on_plane)
+        involved = np.isin(moving, np.concatenate([one, other])) & (self._loop[moving] >= 0)
+        beside = np.flatnonzero(involved[1:] & involved[:-1] & (np.diff(self._loop[moving]) == 0))
+        one, other = np.append(one, moving[beside]), np.append(other, moving[beside + 1])
+        for pair in zip(block[one].tolist(), block[other].tolist(), strict=True):
+            here, there = found(pair[0]), found(pair[1])
+            first[max(here, there)] = min(here, there)
         label = np.full(len(self.trace.text.blocks), -1)
-        for one in list(first):
-            label[one] = found(one)
+        for number in list(first):
+            label[number] = found(number)
         return np.asarray(label[block])
 
     @cached_property

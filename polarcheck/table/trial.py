@@ -67,8 +67,15 @@ class Trial(Overcuts):
     @cached_property
     def faulty(self) -> Mask:
         """Rows to which the control would object, or that would cut into the part; and those of which nobody knows."""
+        faulty = np.zeros(len(self.trace), bool)
+        faulty[self.sweeps.row] = True
+        return faulty | self.fails
+
+    @cached_property
+    def fails(self) -> Mask:
+        """The same without the ramps."""
         tool, faulty = self.tool_center, np.zeros(len(self.trace), bool)
-        faulty[np.concatenate([self.cuts.row, self.sweeps.row])] = True
+        faulty[self.cuts.row] = True
         faulty |= tool.inside_arc_too_small | tool.interferes | tool.no_intersection
         faulty |= tool.movement_missing | tool.arc_center_on_path | self.tangled
         faulty[tool.moves.row[~tool.moves.known]] = True

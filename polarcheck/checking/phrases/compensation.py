@@ -5,6 +5,7 @@ from __future__ import annotations
 from polarcheck.checking.quantity import in_row
 from polarcheck.machines.machine import Machine
 from polarcheck.machines.modal import Motion, Side
+from polarcheck.table.fitting import Fitting
 from polarcheck.table.overcuts import Overcuts
 from polarcheck.table.tool_center import ToolCenter
 from polarcheck.table.trace import Trace
@@ -121,3 +122,14 @@ def place(trace: Trace, overcuts: Overcuts, row: int) -> str:
     into, place = cuts.deepest(row)
     shown = f"{in_row(place, trace, row):point}".replace("C", trace.machine.polar.virtual_axis)
     return f"the contour of line {int(trace.line[into])} at {shown}"
+
+
+def way_out(trace: Trace, fitting: Fitting, row: int) -> str:
+    """What to write where the contour is cut into."""
+    if fitting.never[row]:
+        return "; a smaller one does, too: look for a wrong point of the contour"
+    largest = float(fitting.radius[row])
+    if largest != largest:  # NaN
+        return ""
+    shown = in_row(int(largest * 1000) / 1000, trace, row)
+    return f"; the contour has room for R {shown:length} at most"

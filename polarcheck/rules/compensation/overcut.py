@@ -6,7 +6,7 @@ from polarcheck.checking.rule import ERROR, Mask, Overcuts, rule
 
 @rule(
     ERROR,
-    "the cutter goes {overcuts.depth:length} deep into {place}",
+    "the cutter goes {overcuts.depth:length} deep into {place}{way_out}",
     needs=("trace.radius",),
     where="trace.offset_mode",
     worst="overcuts.depth",
