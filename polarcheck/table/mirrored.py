@@ -61,13 +61,14 @@ class Mirrored:
         if not asked.any():
             return asked
         asked = self._any(asked) & ~self._any(self.ramps.writes_side_again)
-        for share in (1.0, -1.0, _SMALL):
-            trial = Trial(trace, asked, self._loop, share * trace.radius)
-            if share == 1:
-                ramp = trial.comes_out_of_part
-                asked &= self._any(ramp & trace.starts_up) & self._any(ramp & trace.cancels)
-            else:
-                asked &= self._any(trial.faulty) ^ (share < 0)
-            if not asked.any():
-                break
+        # From what costs little to what costs much.
+        ramp = self._trial(asked, 1).comes_out_of_part
+        asked &= self._any(ramp & trace.starts_up) & self._any(ramp & trace.cancels)
+        asked &= ~self._any(self._trial(asked, -1).objects)
+        asked &= ~self._any(self._trial(asked, -1).faulty)
+        asked &= self._any(self._trial(asked, _SMALL).faulty)
         return np.asarray(asked & trace.writes_side)
+
+    def _trial(self, rows: Mask, share: float) -> Trial:
+        """These rows with a share of their R; below 0 it is the other side."""
+        return Trial(self.trace, rows.copy(), self._loop, share * self.trace.radius)

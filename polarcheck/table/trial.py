@@ -74,10 +74,16 @@ class Trial(Overcuts):
     @cached_property
     def fails(self) -> Mask:
         """The same without the ramps."""
-        tool, faulty = self.tool_center, np.zeros(len(self.trace), bool)
+        faulty = self.tangled | self.objects
         faulty[self.cuts.row] = True
-        faulty |= tool.inside_arc_too_small | tool.interferes | tool.no_intersection
-        faulty |= tool.movement_missing | tool.arc_center_on_path | self.tangled
+        return faulty
+
+    @cached_property
+    def objects(self) -> Mask:
+        """Rows to which the control would object, and those of which nobody knows, without what is cut."""
+        tool = self.tool_center
+        faulty = tool.inside_arc_too_small | tool.interferes | tool.no_intersection
+        faulty |= tool.movement_missing | tool.arc_center_on_path
         faulty[tool.moves.row[~tool.moves.known]] = True
         return faulty
 
