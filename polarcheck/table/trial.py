@@ -44,7 +44,7 @@ class _OtherRadius(ToolCenter):
 
 class Trial(Overcuts):
     """
-    Overcuts of some rows with another R, as columns of the whole trace.
+    Overcuts of some rows with another R, as columns of the whole trace; the walls of the other rows stay as they are.
 
     rows: those that are tried, each loop with its G41 or G42. run: int[rows of the trace], the same for those that are
     compensated together. radius: with its sign [mm]; of the other sign it is the other side.
@@ -53,16 +53,12 @@ class Trial(Overcuts):
     def __init__(self, trace: Trace, rows: Mask, run: Rows, radius: Floats) -> None:
         super().__init__(trace, _OtherRadius(trace, rows, run, radius))
         self.tried = rows
-        self._given = radius
+        self._given = np.where(rows, radius, trace.radius)
 
     @property
     def radius(self) -> Floats:
         """R that is tried, with its sign [mm]."""
         return self._given
-
-    @cached_property
-    def _loop(self) -> Rows:
-        return np.where(self.tried, super()._loop, -1)
 
     @cached_property
     def faulty(self) -> Mask:
@@ -98,7 +94,9 @@ class Trial(Overcuts):
         from polarcheck.geometry.inside import depth_inside
 
         trace, tolerance = self.trace, self.trace.machine.compensation.overcut_tolerance
-        ramp = np.flatnonzero((self._loop_of_ramps >= 0) & (trace.starts_up | trace.cancels) & ~trace.is_arc)
+        ramp = np.flatnonzero(
+            (self._loop_of_ramps >= 0) & self.tried & (trace.starts_up | trace.cancels) & ~trace.is_arc
+        )
         contour_at = np.where(trace.starts_up, trace.end, trace.start)[ramp]
         far = np.where(trace.starts_up, trace.start, trace.end)[ramp]
         way = np.where(self._at_depth[ramp], far, contour_at), contour_at
