@@ -259,6 +259,39 @@ class Overcuts:
         np.maximum.at(column, cuts.row, cuts.depth)
         return np.where(self._objected, 0.0, column)
 
+    # ---- for tables that look at several loops ----
+
+    @property
+    def compensates(self) -> bool:
+        """Whether any section is compensated, and has walls."""
+        return self._compensates
+
+    @property
+    def walls(self) -> tuple[Curves, Mask]:
+        """The contour with the loop of each block, where R is that of a cutter; whether the tool runs on the left."""
+        walls, left = self._walls
+        chosen = self._has_walls[walls.row]
+        return (walls, left) if chosen.all() else (walls[chosen], left[chosen])
+
+    @property
+    def loop(self) -> Rows:
+        """Number of the loop of each row in offset mode, -1 elsewhere."""
+        return self._loop
+
+    @property
+    def bar(self) -> float:
+        """Diameter of the stock [mm]; NaN if not known."""
+        return self._bar
+
+    def path(self, loops: Rows) -> tuple[Curves, Mask]:
+        """The moves of the tool center along these loops, and their ramps at depth; and which are ramps."""
+        tool = self.tool_center.moves
+        is_ramp = (tool.phase == Phase.START_UP) | (tool.phase == Phase.CANCEL)
+        chosen = np.where(is_ramp, self._at_depth[tool.row], tool.phase == Phase.OFFSET)
+        loop = np.where(is_ramp, self._loop_of_ramps[tool.row], self._loop[tool.row])
+        chosen &= tool.known & self._has_walls[tool.row] & ~self._objected[tool.row] & np.isin(loop, loops)
+        return _curves(tool, loop, chosen), is_ramp[chosen]
+
 
 _NOTHING = Cuts(np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0), np.zeros(0, np.complex128))
 

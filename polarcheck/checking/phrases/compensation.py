@@ -7,6 +7,7 @@ from polarcheck.machines.machine import Machine
 from polarcheck.machines.modal import Motion, Side
 from polarcheck.table.fitting import Fitting
 from polarcheck.table.overcuts import Overcuts
+from polarcheck.table.slots import Slots
 from polarcheck.table.tool_center import ToolCenter
 from polarcheck.table.trace import Trace
 
@@ -117,9 +118,18 @@ def why(trace: Trace, row: int) -> str:
 
 
 def place(trace: Trace, overcuts: Overcuts, row: int) -> str:
-    """Where the row, or the ramp in it, cuts deepest, and into which line."""
-    cuts = overcuts.cuts if overcuts.depth[row] > 0 else overcuts.sweeps
-    into, place = cuts.deepest(row)
+    """Where the row cuts deepest, and into which line."""
+    return _contour_at(trace, row, *overcuts.cuts.deepest(row))
+
+
+def swept(trace: Trace, overcuts: Overcuts, slots: Slots, row: int) -> str:
+    """The same for the ramp in the row."""
+    own = overcuts.sweep_depth[row] >= slots.sweep_depth[row]
+    return _contour_at(trace, row, *(overcuts if own else slots).sweeps.deepest(row))
+
+
+def _contour_at(trace: Trace, row: int, into: int, place: complex) -> str:
+    """A place on the contour, as the program would write it, and the line of the contour."""
     shown = f"{in_row(place, trace, row):point}".replace("C", trace.machine.polar.virtual_axis)
     return f"the contour of line {int(trace.line[into])} at {shown}"
 
@@ -133,3 +143,26 @@ def way_out(trace: Trace, fitting: Fitting, row: int) -> str:
         return ""
     shown = in_row(int(largest * 1000) / 1000, trace, row)
     return f"; the contour has room for R {shown:length} at most"
+
+
+def opposite(trace: Trace, slots: Slots, row: int) -> str:
+    """Where the row cuts deepest into the contour of another loop."""
+    return _contour_at(trace, row, *slots.cuts.deepest(row))
+
+
+def room(trace: Trace, slots: Slots, row: int) -> str:
+    """How much room the contour of another loop leaves beside the row."""
+    into, _ = slots.cuts.deepest(row)
+    width, across = slots.width(row), float(slots.diameter[row])
+    if width >= across:
+        return f"line {int(trace.line[into])} leaves no room to go round the corner of line {int(trace.line[row])}"
+    shown = in_row(width, trace, row).beside(in_row(across, trace, row), "length")
+    return f"lines {int(trace.line[row])} and {int(trace.line[into])} leave {shown}"
+
+
+def smaller(trace: Trace, slots: Slots, row: int) -> str:
+    """The cutter to take instead."""
+    width, across = slots.width(row), float(slots.diameter[row])
+    if width >= across:
+        return "a smaller cutter"
+    return f"a cutter of {in_row(width, trace, row).beside(in_row(across, trace, row), 'length')} at most"

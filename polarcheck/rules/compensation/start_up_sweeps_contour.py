@@ -1,12 +1,12 @@
 from __future__ import annotations
 
 from polarcheck.checking.causes import NO_SUCH_ARC, SECTION_READ_OTHERWISE
-from polarcheck.checking.rule import ERROR, Hits, Overcuts, rule
+from polarcheck.checking.rule import ERROR, Hits, Slots, rule
 
 
 @rule(
     ERROR,
-    "the ramp goes {depth:length} deep into {place}",
+    "the ramp goes {depth:length} deep into {swept}",
     at=("compensation_off", "compensation_left", "compensation_right"),
     once="loop",
     follows={
@@ -17,22 +17,23 @@ from polarcheck.checking.rule import ERROR, Hits, Overcuts, rule
             "cancel-on-arc",
             "path-through-center",
         ),
-        "loop": (*NO_SUCH_ARC, "arc-sense-reversed", "number-without-point", "overcut"),
+        "loop": (*NO_SUCH_ARC, "arc-sense-reversed", "number-without-point", "overcut", "slot-narrower-than-cutter"),
         "narrow loop": ("inside-arc-smaller-than-radius", "interference", "no-offset-intersection"),
         "pause": ("movement-missing-in-offset-mode",),
         "way": ("x-not-positive-at-entry",),
         "compensation": ("side-of-compensation-mirrored",),
         "section": (*SECTION_READ_OTHERWISE, "polar-switched-in-offset-mode"),
     },
-    worst="overcuts.sweep_depth",
+    worst="slots.ramp_depth",
 )
-def start_up_sweeps_contour(overcuts: Overcuts) -> Hits:
+def start_up_sweeps_contour(slots: Slots) -> Hits:
     """
     Start-up or offset cancel that cuts the contour.
 
     With start-up type A the ramp ends perpendicular to the first block of the contour. Where it comes from the other
     side of a corner, the straight way there leads over the corner and takes it off; the offset cancel likewise. Start
-    from the side that the contour runs to, or let the ramp end where the contour goes straight on.
+    from the side that the contour runs to, or let the ramp end where the contour goes straight on. A ramp that cuts the
+    contour of another loop of the section, at the same Z, is found as well.
 
     Source: FANUC B-63944EN-2, start-up and cancel of cutter compensation; parameter 5003#0, #1.
 
@@ -58,4 +59,4 @@ def start_up_sweeps_contour(overcuts: Overcuts) -> Hits:
         G40 C-50.
         G13.1
     """
-    return Hits(overcuts.sweep_depth > 0, values={"depth": overcuts.sweep_depth})
+    return Hits(slots.ramp_depth > 0, values={"depth": slots.ramp_depth})

@@ -1,0 +1,158 @@
+"""Walls of different loops of one section at one depth: which blocks of one of them cut into another, as in a slot."""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+
+from polarcheck.arrays import Floats, Mask, Rows
+from polarcheck.table.overcuts import Cuts, Overcuts
+from polarcheck.table.trace import Trace
+
+#: Depths and places that agree in these [mm] are one.
+_SAME = 1e-3
+_NOTHING = Cuts(np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0), np.zeros(0, np.complex128))
+
+
+class Slots:
+    """Columns of one trace, one value per row: how deep it cuts into what another loop keeps, 0 for none."""
+
+    def __init__(self, trace: Trace, overcuts: Overcuts) -> None:
+        self.trace = trace
+        self.overcuts = overcuts
+
+    @cached_property
+    def _found(self) -> tuple[Cuts, Mask]:
+        """The cuts of all moves of the tool center into other loops, and which of them are by ramps."""
+        nothing = _NOTHING, np.zeros(0, bool)
+        if not self.overcuts.compensates:
+            return nothing
+        level, several = self._levels
+        if not several.any():
+            return nothing
+        from polarcheck.geometry import neighbours
+        from polarcheck.geometry.finished_part import Contours
+
+        walls, left = self.overcuts.walls
+        chosen = several[walls.row]
+        walls, left = walls[chosen], left[chosen]
+        path, is_ramp = self.overcuts.path(np.unique(walls.loop))
+        radius = np.abs(self.trace.radius[path.row])
+        nowhere = np.zeros(0, np.int64)
+        tolerance = self.trace.machine.compensation.overcut_tolerance
+        contours = Contours(walls, left, nowhere, nowhere, np.zeros(0), self.overcuts.bar, tolerance)
+        found = neighbours.cuts_into_others(contours, level[walls.row], path, radius, is_ramp)
+        cuts = Cuts(path.row[found.move], walls.row[found.wall], found.depth, found.place)
+        return cuts, is_ramp[found.move]
+
+    @cached_property
+    def _levels(self) -> tuple[Rows, Mask]:
+        """
+        Per row in offset mode the same number for loops of one section at one depth, and whether there are several.
+
+        Where Z is not known, what no Z block parts is at one depth. A loop that changes its depth is by itself.
+        """
+        trace = self.trace
+        level, several = np.full(len(trace), -1), np.zeros(len(trace), bool)
+        rows = np.flatnonzero(trace.compensates & trace.travels & ~trace.starts_up)
+        loop = self.overcuts.loop[rows]
+        begins = np.diff(loop, prepend=-1) != 0
+        first, number = np.flatnonzero(begins), np.cumsum(begins) - 1
+        if len(first) < 2:
+            return level, several
+        z = np.rint(trace.z[rows] / _SAME)
+        low, high = np.minimum.reduceat(z, first), np.maximum.reduceat(z, first)
+        parted = np.cumsum(trace.moves_z)[rows][first]
+        unknown, slopes = np.isnan(low), low != high
+        depth = np.where(unknown, parted, np.where(slopes, np.arange(len(first)), low))
+        kind = np.where(unknown, 0, np.where(slopes, 1, 2))
+        key = np.stack([trace.section[rows][first], kind, depth], axis=1)
+        _, of_loop, count = np.unique(key, axis=0, return_inverse=True, return_counts=True)
+        of_loop = of_loop.ravel()
+        level[rows], several[rows] = of_loop[number], (count[of_loop] > 1)[number]
+        return level, several
+
+    @property
+    def compared(self) -> Mask:
+        """Rows in offset mode beside whose loop there is another one at the same depth."""
+        return self._levels[1]
+
+    @cached_property
+    def cuts(self) -> Cuts:
+        """Of moves in offset mode: row that cuts, row that is cut into, depth and place."""
+        cuts, by_ramp = self._found
+        return cuts.some(~by_ramp)
+
+    @cached_property
+    def sweeps(self) -> Cuts:
+        """The same for ramps at the depth of their contour."""
+        cuts, by_ramp = self._found
+        return cuts.some(by_ramp)
+
+    @cached_property
+    def depth(self) -> Floats:
+        """Of the cut of a block in offset mode into a wall of another loop [mm]; none in loops that are overcut."""
+        return self._depth_of(self.cuts)
+
+    @property
+    def diameter(self) -> Floats:
+        """Twice R [mm]."""
+        return np.asarray(2 * np.abs(self.trace.radius))
+
+    @cached_property
+    def sweep_depth(self) -> Floats:
+        """The same for ramps."""
+        return self._depth_of(self.sweeps)
+
+    @cached_property
+    def ramp_depth(self) -> Floats:
+        """Of the cut of a ramp into its own contour, or that of another loop [mm]."""
+        return np.maximum(self.overcuts.sweep_depth, self.sweep_depth)
+
+    def _depth_of(self, cuts: Cuts) -> Floats:
+        column = np.zeros(len(self.trace))
+        np.maximum.at(column, cuts.row, cuts.depth)
+        return column
+
+    @cached_property
+    def slot(self) -> Rows:
+        """
+        The same number for all blocks that cut from one loop into another one and back, at whatever depth they are
+        written again; -1 for other rows.
+        """
+        cuts, trace = self.cuts, self.trace
+        label = np.full(len(trace), -1)
+        if not len(cuts.row):
+            return label
+        loop = self.overcuts.loop
+        one, other = loop[cuts.row], loop[cuts.into]
+        first = np.arange(int(loop.max()) + 1)
+        while (first[one] != first[other]).any():
+            least = np.minimum(first[one], first[other])
+            np.minimum.at(first, one, least)
+            np.minimum.at(first, other, least)
+            first = first[first]
+        pair, number = np.unique(first[one], return_inverse=True)
+        # Walls that are written once more at another depth have the same box.
+        ends = np.stack([trace.start[cuts.row], trace.end[cuts.row], trace.start[cuts.into], trace.end[cuts.into]])
+        key = np.full((len(pair), 5), np.inf)
+        key[number, 4] = trace.section[cuts.row]
+        for side, values in enumerate((ends.real, ends.imag, -ends.real, -ends.imag)):
+            np.minimum.at(key[:, side], number, np.rint(values.min(axis=0) / _SAME))
+        _, same = np.unique(key, axis=0, return_inverse=True)
+        label[cuts.row] = same.ravel()[number]
+        return label
+
+    def width(self, row: int) -> float:
+        """How far the place where a row cuts deepest is from the contour of its own loop [mm]."""
+        import shapely  # type: ignore[import-untyped]
+
+        from polarcheck.geometry.faces import coordinates
+        from polarcheck.geometry.reach import lines
+        from polarcheck.geometry.segments import segments
+
+        walls, _ = self.overcuts.walls
+        own = segments(walls[walls.loop == self.overcuts.loop[row]], self.trace.machine.compensation.overcut_tolerance)
+        _, place = self.cuts.deepest(row)
+        return float(shapely.distance(lines(own.start, own.end), shapely.points(coordinates(np.array(place)))).min())
