@@ -457,10 +457,10 @@ def depths(of: Loop) -> np.ndarray:
 
 
 def depths_of_moves(of: Loop) -> np.ndarray:
-    """How deep each move cuts the part that a contour of one turn, counterclockwise, encloses or surrounds."""
+    """How deep each move cuts the part that a contour of one turn encloses or surrounds."""
     points = [shapely.get_coordinates(line_of(of.contour, k))[:-1] for k in range(len(of.contour.row))]
     ring = shapely.Polygon(np.concatenate(points))
-    part = shapely.difference(shapely.box(-200, -200, 200, 200), ring) if of.left[0] else ring
+    part = shapely.difference(shapely.box(-200, -200, 200, 200), ring) if of.left[0] == ring.exterior.is_ccw else ring
     return of.radius - np.array([shapely.distance(part, line_of(of.path, k)) for k in range(len(of.path.row))])
 
 

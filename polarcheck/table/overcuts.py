@@ -63,7 +63,7 @@ class Overcuts:
         return self.trace.radius
 
     @cached_property
-    def _has_walls(self) -> Mask:
+    def has_walls(self) -> Mask:
         """
         Rows whose R is known as that of a cutter, so that what is programmed is the wall of the part.
 
@@ -80,20 +80,20 @@ class Overcuts:
         return np.asarray(~np.isnan(radius) & (~small | cutter))
 
     @cached_property
-    def _compensates(self) -> bool:
+    def compensates(self) -> bool:
         """Whether any section is compensated, and has walls."""
-        return bool(np.any(self.trace.compensates & self._has_walls))
+        return bool(np.any(self.trace.compensates & self.has_walls))
 
     @cached_property
-    def _loop(self) -> Rows:
+    def loop(self) -> Rows:
         return loop_of_row(self.trace)
 
     @cached_property
     def _loop_of_ramps(self) -> Rows:
         """As loop_of_row; a ramp belongs to the loop of the wall that it leads to or comes from, whatever Z does."""
         trace, wall = self.trace, np.append(self._wall_beside, 0)
-        loop, ramp = self._loop.copy(), np.flatnonzero(trace.starts_up | trace.cancels)
-        loop[ramp] = np.where(wall[ramp] >= 0, self._loop[wall[ramp]], -1)
+        loop, ramp = self.loop.copy(), np.flatnonzero(trace.starts_up | trace.cancels)
+        loop[ramp] = np.where(wall[ramp] >= 0, self.loop[wall[ramp]], -1)
         return loop
 
     @cached_property
@@ -109,37 +109,46 @@ class Overcuts:
         return beside
 
     @cached_property
-    def _objected(self) -> Mask:
+    def objected(self) -> Mask:
         return objected(self.trace, self.tool_center)
 
     @cached_property
-    def _walls(self) -> tuple[Curves, Mask]:
-        """The contour that is programmed in offset mode, and on which side of each block the tool is."""
+    def walls(self) -> tuple[Curves, Mask]:
+        """The contour that is programmed in offset mode, and whether the tool is on the left of each block."""
         trace = self.trace
-        programmed, loop = programmed_moves(trace), self._loop
+        programmed = programmed_moves(trace)
         rows = programmed.row
-        walls = _curves(programmed, loop[rows], (loop[rows] >= 0) & ~trace.starts_up[rows] & programmed.known)
+        chosen = (self.loop[rows] >= 0) & ~trace.starts_up[rows] & programmed.known & self.has_walls[rows]
+        walls = curves_of(programmed, self.loop[rows], chosen)
         return walls, (trace.side[walls.row] == Side.LEFT) ^ (self.radius[walls.row] < 0)
+
+    @cached_property
+    def path(self) -> tuple[Curves, Mask]:
+        """
+        The moves of the tool center in offset mode, and the ramps at the depth of their contour, each with the loop
+        that it is of; and which are ramps.
+        """
+        tool = self.tool_center.moves
+        is_ramp = (tool.phase == Phase.START_UP) | (tool.phase == Phase.CANCEL)
+        chosen = np.where(is_ramp, self._at_depth[tool.row], tool.phase == Phase.OFFSET)
+        chosen &= tool.known & self.has_walls[tool.row]
+        loop = np.where(is_ramp, self._loop_of_ramps[tool.row], self.loop[tool.row])
+        return curves_of(tool, loop, chosen), is_ramp[chosen]
 
     @cached_property
     def _found(self) -> tuple[Cuts, Mask, Mask]:
         """The cuts of all moves of the tool center, which of them are by ramps, and the rows of tangled loops."""
-        if not self._compensates:
+        if not self.compensates:
             return _NOTHING, np.zeros(0, bool), np.zeros(len(self.trace), bool)
         from polarcheck.geometry import contour
 
-        trace, tool = self.trace, self.tool_center.moves
-        is_ramp = (tool.phase == Phase.START_UP) | (tool.phase == Phase.CANCEL)
-        chosen = np.where(is_ramp, self._at_depth[tool.row], tool.phase == Phase.OFFSET)
-        chosen &= tool.known & self._has_walls[tool.row]
-        loop = np.where(is_ramp, self._loop_of_ramps[tool.row], self._loop[tool.row])
-        path = _curves(tool, loop, chosen)
-        radius, tolerance = np.abs(self.radius[path.row]), trace.machine.compensation.overcut_tolerance
-        walls, left = self._walls
+        path, is_ramp = self.path
+        radius, tolerance = np.abs(self.radius[path.row]), self.trace.machine.compensation.overcut_tolerance
+        walls, left = self.walls
         around = self._air(walls), self._level(walls)
-        found = contour.overcuts(walls, left, *around, path, radius, is_ramp[chosen], tolerance, self._bar)
+        found = contour.overcuts(walls, left, *around, path, radius, is_ramp, tolerance, self.bar)
         cuts = Cuts(path.row[found.move], found.row, found.depth, found.place)
-        return cuts, is_ramp[chosen][found.move], np.isin(self._loop, found.tangled)
+        return cuts, is_ramp[found.move], np.isin(self.loop, found.tangled)
 
     def _air(self, walls: Curves) -> Floats:
         """
@@ -208,7 +217,7 @@ class Overcuts:
         return result
 
     @cached_property
-    def _bar(self) -> float:
+    def bar(self) -> float:
         """Diameter of the stock [mm]; NaN if not known."""
         diameter = self.trace.stock_diameter[self.trace.compensates]
         return float(diameter[0]) if len(diameter) else np.nan
@@ -236,8 +245,8 @@ class Overcuts:
 
         block, one, other = self.trace.run.block, self.cuts.row, self.cuts.into
         moving = np.flatnonzero(self.trace.on_plane)
-        involved = np.isin(moving, np.concatenate([one, other])) & (self._loop[moving] >= 0)
-        beside = np.flatnonzero(involved[1:] & involved[:-1] & (np.diff(self._loop[moving]) == 0))
+        involved = np.isin(moving, np.concatenate([one, other])) & (self.loop[moving] >= 0)
+        beside = np.flatnonzero(involved[1:] & involved[:-1] & (np.diff(self.loop[moving]) == 0))
         one, other = np.append(one, moving[beside]), np.append(other, moving[beside + 1])
         for pair in zip(block[one].tolist(), block[other].tolist(), strict=True):
             here, there = found(pair[0]), found(pair[1])
@@ -257,46 +266,13 @@ class Overcuts:
         """Per row the depth of its worst cut [mm]; 0 for none, and where the control objects anyway."""
         column = np.zeros(len(self.trace))
         np.maximum.at(column, cuts.row, cuts.depth)
-        return np.where(self._objected, 0.0, column)
-
-    # ---- for tables that look at several loops ----
-
-    @property
-    def compensates(self) -> bool:
-        """Whether any section is compensated, and has walls."""
-        return self._compensates
-
-    @property
-    def walls(self) -> tuple[Curves, Mask]:
-        """The contour with the loop of each block, where R is that of a cutter; whether the tool runs on the left."""
-        walls, left = self._walls
-        chosen = self._has_walls[walls.row]
-        return (walls, left) if chosen.all() else (walls[chosen], left[chosen])
-
-    @property
-    def loop(self) -> Rows:
-        """Number of the loop of each row in offset mode, -1 elsewhere."""
-        return self._loop
-
-    @property
-    def bar(self) -> float:
-        """Diameter of the stock [mm]; NaN if not known."""
-        return self._bar
-
-    def path(self, loops: Rows) -> tuple[Curves, Mask]:
-        """The moves of the tool center along these loops, and their ramps at depth; and which are ramps."""
-        tool = self.tool_center.moves
-        is_ramp = (tool.phase == Phase.START_UP) | (tool.phase == Phase.CANCEL)
-        chosen = np.where(is_ramp, self._at_depth[tool.row], tool.phase == Phase.OFFSET)
-        loop = np.where(is_ramp, self._loop_of_ramps[tool.row], self._loop[tool.row])
-        chosen &= tool.known & self._has_walls[tool.row] & ~self._objected[tool.row] & np.isin(loop, loops)
-        return _curves(tool, loop, chosen), is_ramp[chosen]
+        return np.where(self.objected, 0.0, column)
 
 
 _NOTHING = Cuts(np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0), np.zeros(0, np.complex128))
 
 
-def _curves(moves: Moves, loop: Rows, chosen: Mask) -> Curves:
+def curves_of(moves: Moves, loop: Rows, chosen: Mask) -> Curves:
     from polarcheck.geometry.segments import Curves
 
     row = moves.row[chosen]

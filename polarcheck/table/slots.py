@@ -37,7 +37,9 @@ class Slots:
         walls, left = self.overcuts.walls
         chosen = several[walls.row]
         walls, left = walls[chosen], left[chosen]
-        path, is_ramp = self.overcuts.path(np.unique(walls.loop))
+        path, is_ramp = self.overcuts.path
+        beside = np.isin(path.loop, walls.loop) & ~self.overcuts.objected[path.row]
+        path, is_ramp = path[beside], is_ramp[beside]
         radius = np.abs(self.trace.radius[path.row])
         nowhere = np.zeros(0, np.int64)
         tolerance = self.trace.machine.compensation.overcut_tolerance

@@ -100,7 +100,7 @@ class Trial(Overcuts):
         contour_at = np.where(trace.starts_up, trace.end, trace.start)[ramp]
         far = np.where(trace.starts_up, trace.start, trace.end)[ramp]
         way = np.where(self._at_depth[ramp], far, contour_at), contour_at
-        depth = depth_inside(*self._walls, way, self._loop_of_ramps[ramp], tolerance, _ROUNDINGS * tolerance)
+        depth = depth_inside(*self.walls, way, self._loop_of_ramps[ramp], tolerance, _ROUNDINGS * tolerance)
         result = np.zeros(len(trace), bool)
         result[ramp[depth > _ROUNDINGS * tolerance]] = True
         return result
