@@ -48,6 +48,7 @@ if TYPE_CHECKING:
     from polarcheck.table.tool_center import ToolCenter as ToolCenter
     from polarcheck.table.trace import Trace as Trace
     from polarcheck.table.travel import Travel as Travel
+    from polarcheck.table.uncompensated_cuts import UncompensatedCuts as UncompensatedCuts
     from polarcheck.table.unpointed import Unpointed as Unpointed
     from polarcheck.table.written import Written as Written
 else:

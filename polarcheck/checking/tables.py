@@ -29,6 +29,7 @@ MAKERS = {
     "fitting": "polarcheck.table.fitting:Fitting",
     "mirrored": "polarcheck.table.mirrored:Mirrored",
     "slots": "polarcheck.table.slots:Slots",
+    "uncompensated_cuts": "polarcheck.table.uncompensated_cuts:UncompensatedCuts",
     "arcs": "polarcheck.table.arcs:Arcs",
     "senses": "polarcheck.table.senses:Senses",
     "travel": "polarcheck.table.travel:Travel",

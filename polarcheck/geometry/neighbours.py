@@ -97,12 +97,14 @@ def _joined_boxes(box: Floats, path: Curves, loops: Rows) -> Floats:
 
 def boxes(curves: Curves, first: Rows) -> Floats:
     """Of curves from each of these on to the next: least x and c, greatest x and c [mm]."""
-    arcs = ((curves.kind == Motion.CW) | (curves.kind == Motion.CCW)) & ~np.isnan(curves.center)
-    reach = np.where(arcs, np.maximum(np.abs(curves.start - curves.center), np.abs(curves.end - curves.center)), 0)
-    middle = np.where(arcs, curves.center, curves.start)
-    sides = [
-        extreme.reduceat(extreme(extreme(at(curves.start), at(curves.end)), at(middle) + sign * reach), first)
-        for extreme, sign in ((np.minimum, -1), (np.maximum, 1))
-        for at in (np.real, np.imag)
-    ]
+    low, high = (
+        [extreme(at(curves.start), at(curves.end)) for at in (np.real, np.imag)] for extreme in (np.minimum, np.maximum)
+    )
+    arcs = np.flatnonzero(((curves.kind == Motion.CW) | (curves.kind == Motion.CCW)) & ~np.isnan(curves.center))
+    if len(arcs):
+        middle = curves.center[arcs]
+        reach = np.maximum(np.abs(curves.start[arcs] - middle), np.abs(curves.end[arcs] - middle))
+        for side, at in enumerate((middle.real, middle.imag)):
+            low[side][arcs], high[side][arcs] = at - reach, at + reach
+    sides = [np.minimum.reduceat(side, first) for side in low] + [np.maximum.reduceat(side, first) for side in high]
     return np.array(sides)

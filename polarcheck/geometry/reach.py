@@ -61,7 +61,10 @@ def reached(part: FinishedParts, ways: Segments, group: Rows, radius: Floats, to
     number, ways, group = _beside(whole, ways, group, radius, part.pitch)
     if not len(number) or not len(start):
         return NOTHING
+    # Within R of a wall there is no doubt what is behind it, but at the ends of a contour in the open.
+    solid = np.where(part.open, whole, part.polygon)
     shapely.prepare(whole)
+    shapely.prepare(solid)
     tree = shapely.STRtree(lines(start, end))
     found = [NOTHING]
     for first in range(0, len(number), _BATCH):
@@ -71,7 +74,7 @@ def reached(part: FinishedParts, ways: Segments, group: Rows, radius: Floats, to
         rows, line = rows[near], line[near]
         (_, edge), aside = tree.query_nearest(line, all_matches=False, return_distance=True)
         place = _first_points(shapely.shortest_line(tree.geometries[edge], line))
-        depth = radius[group[rows]] - np.where(shapely.intersects(whole[group[rows]], line), 0, aside)
+        depth = radius[group[rows]] - np.where(shapely.intersects(solid[group[rows]], line), 0, aside)
         none = np.full(len(rows), -1)
         found.append(Reached(number[rows], ways.move[rows], group[rows], none, depth, aside, place))
     cuts = Reached(*(np.concatenate([getattr(one, name) for one in found]) for name in Reached.__slots__))
@@ -94,8 +97,11 @@ def shortened(part: FinishedParts, radius: Floats) -> FinishedParts:
 
 
 def lines(start: Points, end: Points) -> Geometries:
-    """Straight lines."""
-    return np.asarray(shapely.linestrings(coordinates(np.stack([start, end], axis=1))))
+    """Straight lines; a point where one has no length, since near that as a line there is nothing."""
+    found = np.asarray(shapely.linestrings(coordinates(np.stack([start, end], axis=1))))
+    still = start == end
+    found[still] = shapely.points(coordinates(start[still]))
+    return found
 
 
 def _outline(part: FinishedParts) -> tuple[Geometries, Points, Points]:

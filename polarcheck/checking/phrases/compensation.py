@@ -10,6 +10,7 @@ from polarcheck.table.overcuts import Overcuts
 from polarcheck.table.slots import Slots
 from polarcheck.table.tool_center import ToolCenter
 from polarcheck.table.trace import Trace
+from polarcheck.table.uncompensated_cuts import UncompensatedCuts
 
 
 def side(trace: Trace, row: int) -> str:
@@ -166,3 +167,25 @@ def smaller(trace: Trace, slots: Slots, row: int) -> str:
     if width >= across:
         return "a smaller cutter"
     return f"a cutter of {in_row(width, trace, row).beside(in_row(across, trace, row), 'length')} at most"
+
+
+def bare(trace: Trace, row: int) -> str:
+    """The code of a move without compensation."""
+    key = {Motion.RAPID: "rapid", Motion.LINE: "line", Motion.CW: "arc_clockwise", Motion.CCW: "arc_counterclockwise"}
+    return f"{trace.machine.codes(key[Motion(int(trace.motion[row]))])[0]} without compensation"
+
+
+def goes(trace: Trace, uncompensated_cuts: UncompensatedCuts, row: int) -> str:
+    """How far a move without compensation goes into the part."""
+    depth, radius = float(uncompensated_cuts.depth[row]), abs(float(trace.radius_of_offset[row]))
+    if depth >= radius:
+        return "leads through" if trace.travels[row] or not trace.in_polar[row] else "goes down into"
+    return f"goes {in_row(depth, trace, row):length} deep into"
+
+
+def cut_part(trace: Trace, uncompensated_cuts: UncompensatedCuts, row: int) -> str:
+    """The part that a move without compensation cuts, and where."""
+    into, place = uncompensated_cuts.cuts.deepest(row)
+    at = f"{in_row(place, trace, row):point}".replace("C", trace.machine.polar.virtual_axis)
+    z = f"{in_row(float(trace.z[row]), trace, row):length}".split()[0]
+    return f"the part that the contour of line {int(trace.line[into])} leaves, at {at} Z{z}"

@@ -1,0 +1,117 @@
+"""Moves without compensation that cut the part which the contours of their section leave, taken back to rows."""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+
+from polarcheck.arrays import Floats, Mask, Points, Rows
+from polarcheck.geometry.compensation import Phase
+from polarcheck.geometry.segments import Curves
+from polarcheck.machines.modal import Motion
+from polarcheck.table.filling import before, fill_down
+from polarcheck.table.overcuts import Cuts, Overcuts
+from polarcheck.table.tool_center import ToolCenter
+from polarcheck.table.trace import Trace
+
+_NOTHING = Cuts(np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0), np.zeros(0, np.complex128))
+
+
+class UncompensatedCuts:
+    """Columns of one trace, one value per row: how deep a move without compensation cuts the part, 0 for not at all."""
+
+    def __init__(self, trace: Trace, tool_center: ToolCenter, overcuts: Overcuts) -> None:
+        self.trace = trace
+        self.tool_center = tool_center
+        self.overcuts = overcuts
+
+    @cached_property
+    def _has_contour(self) -> Mask:
+        """Rows of sections with compensation, and those behind their G13.1 up to the next G12.1."""
+        trace = self.trace
+        section = fill_down(trace.section, (trace.section >= 0) | trace.starts, -1)
+        has = np.zeros(len(trace.sections) + 1, bool)
+        has[trace.section[trace.compensates]] = True
+        return has[section]
+
+    @cached_property
+    def cuts(self) -> Cuts:
+        """Row that cuts, row of the contour whose part it cuts, depth and place, of each move the worst."""
+        if not self.overcuts.compensates:
+            return _NOTHING
+        row, start, end, center, z, section = (
+            np.concatenate(column)
+            for column in zip(self._on_plane, self._of_z_alone, self._behind_the_mode, strict=True)
+        )
+        trace, (walls, left) = self.trace, self.overcuts.walls
+        radius = np.abs(trace.radius_of_offset[row])
+        known = np.flatnonzero(~np.isnan(z + radius + np.abs(start) + np.abs(end)))
+        if not len(known) or not len(walls):
+            return _NOTHING
+        from polarcheck.geometry import uncompensated
+        from polarcheck.geometry.finished_part import Contours
+
+        kind = np.where(np.isnan(center), Motion.LINE, trace.motion[row]).astype(np.int16)
+        plunges = np.abs(end - start) == 0
+        plunges &= np.isnan(center)
+        bare = uncompensated.Bare(Curves(start, end, center, kind, section, row), z, radius, plunges)[known]
+        none, tolerance = np.zeros(0, np.int64), trace.machine.compensation.overcut_tolerance
+        contours = Contours(walls, left, none, none, np.zeros(0), self.overcuts.bar, tolerance)
+        found = uncompensated.cuts_into_part(contours, trace.section[walls.row], trace.z[walls.row], bare)
+        return Cuts(bare.curves.row[found.move], walls.row[found.wall], found.depth, found.place)
+
+    @property
+    def _on_plane(self) -> tuple[Rows, Points, Points, Points, Floats, Rows]:
+        """Moves on the plane: row, start, end, center, the highest Z, section."""
+        moves = self.tool_center.moves
+        moves = moves.chosen((moves.phase == Phase.CANCELLED) & self._has_contour[moves.row])
+        z = np.maximum(self.trace.z, before(self.trace.z, self.trace.starts, np.nan))[moves.row]
+        return moves.row, moves.start, moves.end, moves.center, z, moves.section
+
+    @property
+    def _of_z_alone(self) -> tuple[Rows, Points, Points, Points, Floats, Rows]:
+        """Moves of Z alone down into the material: as points, with the Z where they end."""
+        trace = self.trace
+        down = trace.in_polar & trace.moves_z & ~trace.travels & ~trace.compensates & ~trace.offset_mode
+        down &= ~trace.in_cycle & self._has_contour & ~(trace.z >= before(trace.z, trace.starts, np.nan))
+        row = np.flatnonzero(down)
+        place = trace.end[row]
+        return row, place, place, np.full(len(row), np.nan + 0j), trace.z[row], trace.section[row]
+
+    @property
+    def _behind_the_mode(self) -> tuple[Rows, Points, Points, Points, Floats, Rows]:
+        """
+        The first rapid move behind a G13.1 if it is one of X alone, while Z has not moved.
+
+        C stands still, so that the tool runs towards the center or away from it, from where the section has ended.
+        """
+        trace = self.trace
+        last = np.flatnonzero(trace.leaves) - 1
+        moves = np.flatnonzero(trace.moves | trace.enters | trace.starts | trace.listed("reference_return"))
+        row = np.append(moves, -1)[np.searchsorted(moves, last, side="right")]
+        last, row = last[row >= 0], row[row >= 0]
+        alone = (trace.motion == Motion.RAPID) & trace.has("X", "U") & ~trace.has("Z", "W", "C", "H", "Y", "V", "B")
+        alone &= self._has_contour & (trace.section < 0) & (trace.side == trace.side_before)
+        last, row = last[alone[row]], row[alone[row]]
+        place = trace.end[last]
+        with np.errstate(invalid="ignore"):  # at the center nobody knows where to
+            way = place / np.abs(place)
+        return row, place, way * trace.x[row], np.full(len(row), np.nan + 0j), trace.z[row], trace.section[last]
+
+    @cached_property
+    def depth(self) -> Floats:
+        """Of the cut of a move without compensation into the part of a contour [mm], R at most."""
+        column = np.zeros(len(self.trace))
+        np.maximum.at(column, self.cuts.row, self.cuts.depth)
+        return column
+
+    @cached_property
+    def is_rapid(self) -> Mask:
+        """The cut is made in rapid traverse."""
+        return np.asarray((self.depth > 0) & (self.trace.motion == Motion.RAPID))
+
+    @cached_property
+    def graveness(self) -> Floats:
+        """The depth; above all of these for rapid traverse."""
+        return np.where(self.is_rapid, self.depth + self.depth.max(initial=0.0), self.depth)
