@@ -32,3 +32,5 @@ OUT_OF_PLACE = (
     "unknown-code",
     "rapid-in-polar",
 )
+#: G41 or G42 in offset mode: another side of the contour, or another ramp.
+SIDE_WRITTEN_AGAIN = ("side-changed-in-offset-mode", "side-repeated-in-offset-mode")

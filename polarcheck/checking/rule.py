@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from polarcheck.table.angles import Angles as Angles
     from polarcheck.table.arcs import Arcs as Arcs
     from polarcheck.table.center import Center as Center
+    from polarcheck.table.coverage import Coverage as Coverage
     from polarcheck.table.dialect import Dialect as Dialect
     from polarcheck.table.entry import Entry as Entry
     from polarcheck.table.feeds import Feeds as Feeds

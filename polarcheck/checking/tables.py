@@ -30,6 +30,7 @@ MAKERS = {
     "mirrored": "polarcheck.table.mirrored:Mirrored",
     "slots": "polarcheck.table.slots:Slots",
     "uncompensated_cuts": "polarcheck.table.uncompensated_cuts:UncompensatedCuts",
+    "coverage": "polarcheck.table.coverage:Coverage",
     "arcs": "polarcheck.table.arcs:Arcs",
     "senses": "polarcheck.table.senses:Senses",
     "travel": "polarcheck.table.travel:Travel",

@@ -5,6 +5,7 @@ from __future__ import annotations
 from polarcheck.checking.quantity import in_row
 from polarcheck.machines.machine import Machine
 from polarcheck.machines.modal import Motion, Side
+from polarcheck.table.coverage import Coverage
 from polarcheck.table.fitting import Fitting
 from polarcheck.table.overcuts import Overcuts
 from polarcheck.table.slots import Slots
@@ -131,8 +132,7 @@ def swept(trace: Trace, overcuts: Overcuts, slots: Slots, row: int) -> str:
 
 def _contour_at(trace: Trace, row: int, into: int, place: complex) -> str:
     """A place on the contour, as the program would write it, and the line of the contour."""
-    shown = f"{in_row(place, trace, row):point}".replace("C", trace.machine.polar.virtual_axis)
-    return f"the contour of line {int(trace.line[into])} at {shown}"
+    return f"the contour of line {int(trace.line[into])} at {_point(trace, place, row)}"
 
 
 def way_out(trace: Trace, fitting: Fitting, row: int) -> str:
@@ -186,6 +186,40 @@ def goes(trace: Trace, uncompensated_cuts: UncompensatedCuts, row: int) -> str:
 def cut_part(trace: Trace, uncompensated_cuts: UncompensatedCuts, row: int) -> str:
     """The part that a move without compensation cuts, and where."""
     into, place = uncompensated_cuts.cuts.deepest(row)
-    at = f"{in_row(place, trace, row):point}".replace("C", trace.machine.polar.virtual_axis)
+    at = _point(trace, place, row)
     z = f"{in_row(float(trace.z[row]), trace, row):length}".split()[0]
     return f"the part that the contour of line {int(trace.line[into])} leaves, at {at} Z{z}"
+
+
+def contour_end(trace: Trace, row: int) -> str:
+    """The point to which the row leads."""
+    return _point(trace, complex(trace.end[row]), row)
+
+
+def contour_start(trace: Trace, coverage: Coverage, row: int) -> str:
+    """The point at which the contour that ends in the row began."""
+    return _point(trace, complex(coverage.begins[row]), row)
+
+
+def left(trace: Trace, coverage: Coverage, row: int) -> str:
+    """What is left standing beside the row, and what to write."""
+    ribs, strips = coverage.ribs, coverage.strips
+    radius = abs(float(trace.radius_of_move[row]))
+    if strips.height[row] > ribs.height[row]:
+        thickness, place = float(strips.height[row]), _point(trace, complex(strips.place[row]), row)
+        apart, most = (in_row(length, trace, row) for length in (2 * radius + thickness, 2 * radius))
+        return (
+            f"a strip {in_row(thickness, trace, row):length} thick stays at {place} between passes {apart:length} "
+            f"apart: with R {in_row(radius, trace, row):length} write passes that are {most:length} apart at most"
+        )
+    height, width = (in_row(float(column[row]), trace, row) for column in (ribs.height, ribs.width))
+    more = "more than " if ribs.height[row] >= 2 * radius else ""
+    return (
+        f"a rib {more}{height:length} high stays on the contour at {_point(trace, complex(ribs.place[row]), row)}, "
+        f"where no tool touches it: let the contour go on {width:length} farther beyond its start before the tool "
+        "leaves it"
+    )
+
+
+def _point(trace: Trace, point: complex, row: int) -> str:
+    return f"{in_row(point, trace, row):point}".replace("C", trace.machine.polar.virtual_axis)

@@ -16,6 +16,7 @@ from polarcheck.checking.rule import ERROR, Mask, Overcuts, rule
             *NO_SUCH_ARC,
             "arc-sense-reversed",
             "number-without-point",
+            "contour-not-closed",
             "start-up-shorter-than-radius",
             "side-changed-in-offset-mode",
             "side-repeated-in-offset-mode",

@@ -1,0 +1,309 @@
+"""
+Ribs: what stays on the outline of a finished part, since no tool touches it there.
+
+Floats in mm, plane points complex, x + 1j*c. Import late: shapely takes its time.
+
+A tool that turns into a contour from a lead, or out of it, stops short of the corner between them. What it leaves there
+is cut as well only if the contour goes on far enough beyond its start. At an inside corner of the part no tool of that
+R reaches more, so that nothing is missing there.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import shapely  # type: ignore[import-untyped]
+
+from polarcheck.arrays import Floats, Mask, Points, Rows
+from polarcheck.geometry.closing import WITNESS, Corners
+from polarcheck.geometry.faces import Geometries, coordinates
+from polarcheck.geometry.finished_part import FinishedParts
+from polarcheck.geometry.segments import ZERO, Segments
+
+#: The tool touches what it comes this near to [mm]; more than arcs in chords and two roundings shift it.
+_TOUCH = 0.003
+#: Points nearer than this [mm] are one.
+_ONE = 2e-5
+#: Corners of the outline that turn as much as this share of the corner between two blocks are that corner.
+_SAME_TURN = 0.8
+#: Farther than any lathe reaches [mm].
+_FAR = 1e6
+#: A ray that goes on farther than this share of R, if tools are larger by a touch, goes through a slit.
+_SLIT = 0.25
+#: Directions of an outline that goes on without a corner differ by less.
+_STRAIGHT_ON = 0.1
+#: Samples for the least gap that is looked for; points for the top of a rib.
+_SAMPLES, _POINTS = 8, 33
+
+
+@dataclass(frozen=True, slots=True)
+class Swept:
+    """
+    Where tools run, as straight pieces: start, end [mm], of which row of the program, and R of the cutter there [mm].
+
+    z: the deepest that each comes to [mm], NaN unknown. program: of each.
+    """
+
+    start: Points
+    end: Points
+    row: Rows
+    radius: Floats
+    z: Floats
+    program: Rows
+
+    def __len__(self) -> int:
+        return len(self.row)
+
+    def __getitem__(self, rows: Rows | Mask) -> Swept:
+        return Swept(*(getattr(self, name)[rows] for name in Swept.__slots__))
+
+    def lines(self) -> Geometries:
+        """A line for each."""
+        return np.asarray(shapely.linestrings(coordinates(np.stack([self.start, self.end], axis=1))))
+
+    def at_depth(self, z: Floats, program: Rows) -> Mask:
+        """Whether each runs in that program at that Z or deeper; where one of the two is not known, it does."""
+        return np.asarray((self.program == program) & ~(self.z > z + _ONE))
+
+
+@dataclass(frozen=True, slots=True)
+class Ribs:
+    """
+    Ribs, k of them: the group, where it stands on the outline, how high it is, how wide at its foot [mm], and the row
+    of the program with which the tool leaves it.
+    """
+
+    group: Rows
+    place: Points
+    height: Floats
+    width: Floats
+    row: Rows
+
+
+@dataclass(frozen=True, slots=True)
+class _Samples:
+    """Points of an outline with the direction there, the part on its left; the corner that each is near, its group."""
+
+    point: Points
+    along: Points
+    corner: Rows
+    group: Rows
+
+    def __len__(self) -> int:
+        return len(self.corner)
+
+    def __getitem__(self, rows: Rows | Mask) -> _Samples:
+        return _Samples(*(getattr(self, name)[rows] for name in _Samples.__slots__))
+
+
+def ribs(
+    part: FinishedParts, corners: Corners, radius: Floats, own: Segments, z: Floats, program: Rows, swept: Swept
+) -> Ribs:
+    """
+    What stands on the outline of these parts near their corners.
+
+    corners: their loop is the group of the part. radius, z, program: of each group. own: the path of the tool center of
+    each group. swept: all that tools run through.
+    """
+    part = _without_fins(part, radius)
+    shift = np.asarray(part.pitch * corners.loop, np.float64)
+    samples = _along_outline(part, corners, shift, radius)
+    samples = samples[_reachable(part, samples, radius)]
+    samples = samples[~_touched(own.shifted(part.pitch * own.loop), samples, radius)]
+    samples = _Samples(samples.point - part.pitch * samples.group, samples.along, samples.corner, samples.group)
+    if not len(samples):
+        return _none()
+    tree = shapely.STRtree(swept.lines())
+    samples = samples[~_touched_by_any(swept, tree, samples, z, program)]
+    found = []
+    for corner in np.unique(samples.corner):
+        here = samples[samples.corner == corner]
+        group = int(here.group[0])
+        rib = _measured(swept, tree, here, radius[group], z[group], program[group])
+        if rib is not None:
+            found.append((group, *rib))
+    return _one_each(found, radius)
+
+
+def _without_fins(part: FinishedParts, radius: Floats) -> FinishedParts:
+    """
+    The parts without what hangs on them at a point and is thinner than R.
+
+    Leads and passes that cross may see nothing but backs between them, and nobody means that as a part.
+    """
+    polygon = part.polygon.copy()
+    for group in np.flatnonzero(shapely.get_num_geometries(polygon) > 1):
+        pieces = shapely.get_parts(polygon[group])
+        main = pieces[np.argmax(shapely.area(pieces))]
+        thin = 2 * shapely.length(shapely.maximum_inscribed_circle(pieces)) < radius[group]
+        fins = pieces[thin & (shapely.distance(pieces, main) < _ONE) & (pieces != main)]
+        polygon[group] = shapely.difference(polygon[group], shapely.union_all(fins))
+    return replace(part, polygon=polygon)
+
+
+def _none() -> Ribs:
+    none = np.zeros(0, np.int64)
+    return Ribs(none, np.zeros(0, np.complex128), np.zeros(0), np.zeros(0), none)
+
+
+def _along_outline(part: FinishedParts, corners: Corners, shift: Floats, radius: Floats) -> _Samples:
+    """Samples of the outline within reach of the corners, but for those that are corners of the part itself."""
+    tree = shapely.STRtree(_lines(part.start, part.end))
+    points = corners.point + shift
+    # Where the path before or behind comes to the contour at a slant, more is left than at the corner itself.
+    reach = np.maximum(corners.reach, 2 * radius[corners.loop])
+    which, wall = tree.query(shapely.points(coordinates(points)), "dwithin", reach)
+    own = part.group[wall] == corners.loop[which]
+    which, wall = which[own], wall[own]
+    kept = ~_of_part(part, corners, points, which, wall)[which]
+    which, wall = which[kept], wall[kept]
+
+    start, way = part.start[wall], part.end[wall] - part.start[wall]
+    length = np.maximum(np.abs(way), ZERO)
+    along = way / length
+    foot = ((points[which] - start) * along.conj()).real
+    low, high = (np.clip(foot + sign * reach[which], 0, length) for sign in (-1, 1))
+    step = np.sqrt(8 * WITNESS * radius[corners.loop[which]]) / _SAMPLES
+    count = np.ceil((high - low) / step).astype(np.int64)
+    of = np.repeat(np.arange(len(wall)), count)
+    place = np.arange(len(of)) - np.repeat(np.cumsum(count) - count, count)
+    at = low[of] + (place + 0.5) * ((high - low) / np.maximum(count, 1))[of]
+    return _Samples(start[of] + at * along[of], along[of], which[of], corners.loop[which[of]])
+
+
+def _of_part(part: FinishedParts, corners: Corners, points: Points, which: Rows, wall: Rows) -> Mask:
+    """The corners at which the outline itself turns as the blocks do."""
+    way = part.end[wall] - part.start[wall]
+    arrives = np.abs(part.end[wall] - points[which]) < _ONE
+    leaves = np.abs(part.start[wall] - points[which]) < _ONE
+    into, out = np.zeros((2, len(points)), np.complex128)
+    into[which[arrives]], out[which[leaves]] = way[arrives], way[leaves]
+    return np.asarray(np.angle(into * out.conj()) >= _SAME_TURN * corners.turn)
+
+
+def _reachable(part: FinishedParts, samples: _Samples, radius: Floats) -> Mask:
+    """Whether each sample is on the part, and within the bar, and a cutter could touch it without cutting the part."""
+    center = samples.point - 1j * samples.along * radius[samples.group]
+    solid = part.polygon.copy()
+    shapely.prepare(solid)
+    limit = radius[samples.group] - _TOUCH
+    of_sample, point = solid[samples.group], shapely.points(coordinates(samples.point))
+    is_clear = ~shapely.dwithin(of_sample, shapely.points(coordinates(center)), limit)
+    return np.asarray(is_clear & shapely.dwithin(of_sample, point, _TOUCH))
+
+
+def _touched(path: Segments, samples: _Samples, radius: Floats) -> Mask:
+    """Whether the path of its own group touches each sample."""
+    groups, number = np.unique(path.loop, return_inverse=True)
+    lines = np.full(len(radius), shapely.MultiLineString(), dtype=object)
+    if len(groups):
+        lines[groups] = shapely.multilinestrings(_lines(path.start, path.end), indices=number)
+    shapely.prepare(lines)
+    limit = radius[samples.group] + _TOUCH
+    return np.asarray(shapely.dwithin(lines[samples.group], shapely.points(coordinates(samples.point)), limit))
+
+
+def _touched_by_any(swept: Swept, tree: shapely.STRtree, samples: _Samples, z: Floats, program: Rows) -> Mask:
+    limit = float(swept.radius.max(initial=0.0)) + _TOUCH
+    which, piece = tree.query(shapely.points(coordinates(samples.point)), "dwithin", limit)
+    group = samples.group[which]
+    near = swept[piece]
+    distance = np.abs(_to_way(near, samples.point[which]))
+    touches = near.at_depth(z[group], program[group]) & (distance <= near.radius + _TOUCH)
+    result = np.zeros(len(samples), bool)
+    result[which[touches]] = True
+    return result
+
+
+def _to_way(pieces: Swept, point: Points) -> Points:
+    """From points to the nearest point of pieces, one for each or all for all."""
+    way = pieces.end - pieces.start
+    share = ((point - pieces.start) * way.conj()).real / np.maximum(np.abs(way) ** 2, ZERO**2)
+    nearest: Points = pieces.start + np.clip(share, 0, 1) * way - point
+    return nearest
+
+
+def _measured(
+    swept: Swept, tree: shapely.STRtree, samples: _Samples, radius: float, z: float, program: int
+) -> tuple[complex, float, float, int] | None:
+    """Place, height, width and row of the rib on these samples of one outline; None if it is no witness."""
+    around = shapely.MultiPoint(coordinates(samples.point))
+    pieces = swept[np.sort(tree.query(around, "dwithin", 3 * radius + float(swept.radius.max())))]
+    pieces = pieces[pieces.at_depth(np.array(z), np.array(program))]
+    order = np.argsort((samples.point * samples.along[len(samples) // 2].conj()).real, kind="stable")
+    point, along = samples.point[order], samples.along[order]
+    if not len(pieces):
+        return None
+    feet, rows = zip(*(_foot(pieces, point[end], along[end]) for end in (0, -1)), strict=True)
+    place, height = point[0], 0.0
+    for _ in range(3):
+        heights = _heights(pieces, point, along, radius)
+        top = int(np.argmax(heights))
+        place, height = point[top], float(heights[top])
+        beside = max(top - 1, 0), min(top + 1, len(point) - 1)
+        # Round a corner of the outline the straight line to the next sample would run through the part.
+        ends = [end if abs(along[end] - along[top]) < _STRAIGHT_ON else top for end in beside]
+        share = np.linspace(0, 1, _POINTS)
+        point, along = point[ends[0]] + share * (point[ends[1]] - point[ends[0]]), np.full(_POINTS, along[top])
+    return (complex(place), height, float(abs(feet[1] - feet[0])), max(rows)) if height > WITNESS else None
+
+
+def _foot(pieces: Swept, point: complex, along: complex) -> tuple[complex, int]:
+    """Where the tool that comes nearest to the end of a rib touches the outline, and in which row it does."""
+    way = _to_way(pieces, np.asarray(point))
+    beyond = np.abs(way) - pieces.radius
+    nearest = np.flatnonzero(beyond <= beyond.min() + _TOUCH)
+    runs = np.abs(((pieces.end - pieces.start)[nearest] * np.conj(along)).real)
+    best = nearest[np.argmax(runs / np.maximum(np.abs(pieces.end - pieces.start)[nearest], ZERO))]
+    beside = (way[best] * np.conj(along)).real
+    # Farther off than a touch is seen, the tool does not stand on this wall but on one round a corner.
+    limit = 2 * np.sqrt(2 * pieces.radius[best] * _TOUCH)
+    return point + np.clip(beside, -limit, limit) * along, int(pieces.row[best])
+
+
+def _heights(pieces: Swept, point: Points, along: Points, radius: float) -> Floats:
+    """
+    How far from each point of the outline the first tool is, straight away from the part; twice R at most.
+
+    Where a ray goes through between two tools that touch each other, the slit is rounding.
+    """
+    exact, wider = (first_tool(pieces, pieces.radius + more, point, -1j * along) for more in (0, _TOUCH))
+    return np.asarray(np.clip(np.where(exact - wider < _SLIT * radius, exact, wider), 0, 2 * radius))
+
+
+def first_tool(pieces: Swept, radius: Floats, point: Points, away: Points) -> Floats:
+    """How far it is from each point to the first piece that a tool of this radius sweeps; _FAR where there is none."""
+    away = away[:, None]
+    way = pieces.end - pieces.start
+    length = np.maximum(np.abs(way), ZERO)
+    found = []
+    with np.errstate(all="ignore"):  # a ray that misses a tool meets it nowhere
+        for middle in (pieces.start, pieces.end):
+            to = (middle - point[:, None]) * away.conj()
+            half = np.sqrt(radius**2 - to.imag**2)
+            found.append(np.where(to.real + half > 0, to.real - half, np.inf))
+        beside = (point[:, None] - pieces.start) * (way / length).conj()
+        slope = away * (way / length).conj()
+        for side in (-1, 1):
+            until = (side * radius - beside.imag) / slope.imag
+            share = beside.real + until * slope.real
+            found.append(np.where((until > 0) & (share > 0) & (share < length), until, np.inf))
+    nearest = np.nan_to_num(np.concatenate(found, axis=1), nan=np.inf).min(axis=1)
+    return np.asarray(np.minimum(nearest, _FAR))
+
+
+def _one_each(found: list[tuple[int, complex, float, float, int]], radius: Floats) -> Ribs:
+    """Each rib once, at its highest: two corners are beside most of them, and several loops may leave the same."""
+    kept: list[tuple[int, complex, float, float, int]] = []
+    for one in sorted(found, key=lambda rib: (round(rib[2], 3), rib[-1]), reverse=True):
+        if all(abs(one[1] - other[1]) > max(radius[one[0]], other[3]) for other in kept):
+            kept.append(one)
+    if not kept:
+        return _none()
+    group, place, height, width, row = zip(*kept, strict=True)
+    return Ribs(np.array(group), np.array(place), np.array(height), np.array(width), np.array(row))
+
+
+def _lines(start: Points, end: Points) -> Geometries:
+    return np.asarray(shapely.linestrings(coordinates(np.stack([start, end], axis=1))))

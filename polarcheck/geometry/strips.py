@@ -1,0 +1,114 @@
+"""
+Strips: what stays between passes that are farther apart than the cutter is wide.
+
+Floats in mm, plane points complex, x + 1j*c. Import late: shapely takes its time.
+
+What no tool sweeps and is no part is left. It is a strip where it is thinner than R, and lies behind a block of a pass
+or goes round a pass. What is thicker is a groove's wall or an island, which is meant. What only a single pass goes
+round, as the middle of a pocket, has been drilled, or falls out.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import shapely  # type: ignore[import-untyped]
+
+from polarcheck.arrays import Mask, Rows
+from polarcheck.geometry.closing import WITNESS
+from polarcheck.geometry.faces import coordinates
+from polarcheck.geometry.ribs import Swept, first_tool
+from polarcheck.geometry.segments import ZERO, Segments
+
+#: How near two outlines are one [mm]; more than arcs in chords.
+_BESIDE = 0.01
+#: Corners of a quarter of the end of a swept way.
+_CORNERS = 32
+#: What a path may be straightened by [mm], and how many pieces of it are looked at.
+_STRAIGHT, _MOST_PIECES = 0.002, 20_000
+#: A strip that runs out into what lies round all passes is so many R long, and as thick everywhere as this share.
+_LONG, _EVEN = 6, 0.75
+
+
+@dataclass(frozen=True, slots=True)
+class Strip:
+    """A strip: how thick it is, the row of the pass behind which it stands, and where."""
+
+    thickness: float
+    row: int
+    place: complex
+
+
+def strips(part: Any, walls: Segments, row: Rows, left: Mask, swept: Swept, radius: float, bar: float) -> list[Strip]:
+    """
+    The strips of one level.
+
+    part: what its loops leave, a polygon. walls: their blocks as straight pieces, `row` and `left` those of each.
+    swept: all that tools run through there. radius: R of the passes. bar: diameter [mm], NaN if not known.
+    """
+    gone = _gone(swept)
+    if gone is None:
+        return []
+    around = shapely.box(*shapely.bounds(gone)).buffer(radius)
+    left_over = shapely.difference(around, shapely.union(gone, part))
+    if not np.isnan(bar):
+        left_over = shapely.intersection(left_over, shapely.Point(0, 0).buffer(bar / 2, quad_segs=4 * _CORNERS))
+    found = []
+    for piece in shapely.get_parts(left_over):
+        if shapely.distance(piece, around.exterior) > _BESIDE:
+            found.append((piece, False))
+        else:
+            thick = piece.buffer(-radius / 2).buffer(radius / 2 + _BESIDE)
+            found += [(thin, True) for thin in shapely.get_parts(shapely.difference(piece, thick))]
+    result = []
+    for piece, runs_out in found:
+        strip = _strip(piece, part, walls, row, left, swept, radius, runs_out)
+        if strip is not None:
+            result.append(strip)
+    return result
+
+
+def _gone(swept: Swept) -> Any:
+    """What the tools sweep; None where their paths are too long to be looked at."""
+    start, end = swept.start, swept.end
+    goes_on = (end[:-1] == start[1:]) & (swept.radius[1:] == swept.radius[:-1])
+    last = np.flatnonzero(np.append(~goes_on, True))
+    line = np.cumsum(np.append(0, ~goes_on))
+    points, of = np.insert(start, last + 1, end[last]), np.insert(line, last + 1, line[last])
+    lines = shapely.simplify(shapely.linestrings(coordinates(points), indices=of), _STRAIGHT)
+    if shapely.get_num_coordinates(lines).sum() > _MOST_PIECES:
+        return None
+    return shapely.union_all(shapely.buffer(lines, swept.radius[last], quad_segs=_CORNERS))
+
+
+def _strip(
+    piece: Any, part: Any, walls: Segments, row: Rows, left: Mask, swept: Swept, radius: float, runs_out: bool
+) -> Strip | None:
+    """This piece of what is left, if it is a strip."""
+    length = max(piece.length / 2, ZERO)
+    thickness = piece.area / length
+    if not WITNESS < thickness < radius or shapely.distance(piece, part) < _BESIDE:
+        return None
+    middle = (walls.start + walls.end) / 2
+    behind = np.flatnonzero(shapely.dwithin(piece, shapely.points(coordinates(middle)), _BESIDE))
+    on = np.abs(walls.end - walls.start)[behind]
+    if runs_out:
+        widest = 2 * shapely.maximum_inscribed_circle(piece).length
+        if length < _LONG * radius or thickness < _EVEN * widest or on.sum() < length / 2:
+            return None
+    if on.sum() < radius:
+        if not shapely.get_num_interior_rings(piece):
+            return None
+        point = complex(*shapely.get_coordinates(piece.representative_point())[0])
+        nearest = int(np.argmin(np.abs((swept.start + swept.end) / 2 - point)))
+        return Strip(thickness, int(swept.row[nearest]), point)
+    way = (walls.end - walls.start)[behind]
+    back = np.where(left[behind], -1j, 1j) * way / np.abs(way)
+    begin = middle[behind] + _BESIDE * back
+    across = first_tool(swept, swept.radius, begin, back) + _BESIDE
+    order = np.argsort(across)
+    at = order[np.searchsorted(np.cumsum(on[order]), on.sum() / 2)]
+    place = complex(middle[behind][at] + back[at] * across[at] / 2)
+    return Strip(float(across[at]), int(row[behind][at]), place) if across[at] < radius else None

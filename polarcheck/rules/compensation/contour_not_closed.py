@@ -1,0 +1,61 @@
+from __future__ import annotations
+
+from polarcheck.checking.causes import NO_SUCH_ARC, SECTION_READ_OTHERWISE, SIDE_WRITTEN_AGAIN
+from polarcheck.checking.rule import WARNING, Coverage, Mask, rule
+
+
+@rule(
+    WARNING,
+    "the contour ends at {contour_end}, {coverage.gap:length} before it is closed: write {contour_start} there",
+    once="loop",
+    worst="coverage.gap",
+    follows={
+        "loop": (*NO_SUCH_ARC, "arc-sense-reversed", "number-without-point", *SIDE_WRITTEN_AGAIN),
+        "section": (*SECTION_READ_OTHERWISE, "polar-switched-in-offset-mode", "polar-switch-not-alone"),
+    },
+)
+def contour_not_closed(coverage: Coverage) -> Mask:
+    """
+    Contour that comes back to its start but for a gap.
+
+    The contour goes all round and ends before the point at which it began, nearer than the diameter of the cutter. No
+    tool goes through such a gap on purpose: a coordinate is wrong, or the last block is missing. What stays there hangs
+    on the leads. End the contour where it began, or beyond.
+
+    Source: B-62764EN/01, p. 53 (a contour that ends where it begins).
+
+    Bad, tool 1:radius=3:
+
+        T0101
+        G98 G0 X100. C0
+        G12.1
+        G1 C-4. F500
+        G42 X60. C0 F200
+        X40.
+        C20.
+        X-40.
+        C-20.
+        X40.
+        C-1.              (expect: contour-not-closed)
+        X60.
+        G40 X80. C5.
+        G13.1
+
+    Good, tool 1:radius=3:
+
+        T0101
+        G98 G0 X100. C0
+        G12.1
+        G1 C-4. F500
+        G42 X60. C0 F200
+        X40.
+        C20.
+        X-40.
+        C-20.
+        X40.
+        C6.
+        X60.
+        G40 X80. C10.
+        G13.1
+    """
+    return coverage.gap > 0

@@ -1,0 +1,269 @@
+"""What compensated contours leave undone: gaps in them, ribs where they begin and end, strips between passes."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from polarcheck.arrays import Floats, Mask, Points, Rows
+from polarcheck.table.filling import before
+from polarcheck.table.overcuts import Overcuts, curves_of, loop_of_row
+from polarcheck.table.tool_center import ToolCenter
+from polarcheck.table.trace import Trace
+
+if TYPE_CHECKING:
+    from polarcheck.geometry.closing import Corners, Loops
+    from polarcheck.geometry.finished_part import FinishedParts
+    from polarcheck.geometry.ribs import Swept
+    from polarcheck.geometry.segments import Curves, Segments
+    from polarcheck.geometry.strips import Strip
+
+
+class Left(NamedTuple):
+    """Columns, one value per row, 0 or NaN where nothing is left: how high or thick, how wide it is, and where."""
+
+    height: Floats
+    width: Floats
+    place: Points
+
+
+class _Judged(NamedTuple):
+    """Loops that are looked at, in the order of their parts: their numbers, the program and the Z of each."""
+
+    loops: Loops
+    number: Rows
+    program: Rows
+    z: Floats
+
+
+class Coverage:
+    """Columns of one trace, one value per row."""
+
+    def __init__(self, trace: Trace, tool_center: ToolCenter, overcuts: Overcuts) -> None:
+        self.trace = trace
+        self.tool_center = tool_center
+        self.overcuts = overcuts
+
+    # ---- the loops ----
+
+    @cached_property
+    def _judged(self) -> _Judged | None:
+        """The loops of cutters, those that are the same once; but not those to which the control objects."""
+        trace = self.trace
+        walls, left = self.overcuts.walls
+        if not len(walls):
+            return None
+        from polarcheck.geometry.closing import Loops, distinct
+
+        first = np.flatnonzero(np.diff(walls.loop, prepend=-1))
+        last = np.append(first[1:], len(walls)) - 1
+        loops = Loops(walls, left, first, last, np.abs(trace.radius[walls.row[first]]))
+        faulty = np.unique(walls.loop[self.overcuts.objected[walls.row]])
+        sound = np.flatnonzero(~np.isin(walls.loop[first], faulty))
+        if not len(sound):
+            return None
+        loops = loops.some(sound)
+        program = trace.program[walls.row[loops.first]]
+        z = np.maximum.reduceat(trace.z[walls.row], first)[sound]
+        kept = distinct(loops, program, z)
+        return _Judged(loops.some(kept), walls.loop[loops.first[kept]], program[kept], z[kept])
+
+    @cached_property
+    def _parts(self) -> tuple[_Judged, FinishedParts, Corners] | None:
+        """The loops that may leave something where they begin and end, with their parts and corners."""
+        judged = self._judged
+        if judged is None:
+            return None
+        from polarcheck.geometry.closing import lead_corners, may_be_open
+
+        corners = lead_corners(judged.loops, self._winds)
+        # A path that winds inwards passes its start on the way, and leaves no gap there.
+        asked = may_be_open(judged.loops) & ~self._winds
+        asked[corners.loop] = True
+        if not asked.any():
+            return None
+        from polarcheck.geometry.closing import Corners
+        from polarcheck.geometry.finished_part import Contours, finished_parts
+
+        loops, number = judged.loops.some(asked), judged.number[asked]
+        tolerance, bar = self.trace.machine.compensation.overcut_tolerance, self.overcuts.bar
+        part = finished_parts(
+            Contours(loops.curves, loops.left, number, np.arange(len(loops)), loops.radius, bar, tolerance)
+        )
+        group = (np.cumsum(asked) - 1)[corners.loop]
+        return (
+            _Judged(loops, number, judged.program[asked], judged.z[asked]),
+            part,
+            Corners(corners.point, corners.reach, corners.turn, group),
+        )
+
+    # ---- gaps ----
+
+    @cached_property
+    def gap(self) -> Floats:
+        """Of contours that come back to their start but for a gap, behind the last block of them [mm]; else 0."""
+        return self._gaps[0]
+
+    @cached_property
+    def begins(self) -> Points:
+        """Where the contour began that is open behind the row; NaN for other rows."""
+        return self._gaps[1]
+
+    @cached_property
+    def _gaps(self) -> tuple[Floats, Points]:
+        length, begins = np.zeros(len(self.trace)), np.full(len(self.trace), complex(np.nan, np.nan))
+        if self._parts is None:
+            return length, begins
+        from polarcheck.geometry.closing import CLOSED, gaps_of
+
+        judged, part, _ = self._parts
+        is_open = np.flatnonzero(part.gap > CLOSED)
+        to, of = gaps_of(judged.loops.some(is_open), part.gap[is_open])
+        row = judged.loops.curves.row[of]
+        length[row], begins[row] = part.gap[is_open], judged.loops.curves.start[to]
+        return length, begins
+
+    # ---- ribs ----
+
+    @cached_property
+    def ribs(self) -> Left:
+        """Where a tool leaves a contour and no tool has touched what lies beside: the rib that stands there."""
+        count = len(self.trace)
+        left = Left(np.zeros(count), np.zeros(count), np.full(count, complex(np.nan, np.nan)))
+        if self._parts is None:
+            return left
+        from polarcheck.geometry.closing import CLOSED
+        from polarcheck.geometry.ribs import ribs
+
+        judged, part, corners = self._parts
+        corners = corners[~(part.open | part.tangled | (part.gap > CLOSED) | self._unsure(judged))[corners.loop]]
+        if not len(corners.loop):
+            return left
+        found = ribs(
+            part, corners, judged.loops.radius, self._own(judged.number), judged.z, judged.program, self._swept
+        )
+        left.height[found.row], left.width[found.row], left.place[found.row] = found.height, found.width, found.place
+        return left
+
+    def _unsure(self, judged: _Judged) -> Mask:
+        """Loops in whose program a tool of unknown R, or on an unknown way, may take off what they leave."""
+        moves, trace = self.tool_center.moves, self.trace
+        unknown = ~moves.is_of_tool | np.isnan(moves.start + moves.end) | np.isnan(self._radius[moves.row])
+        return np.isin(judged.program, trace.program[moves.row[unknown]])
+
+    def _own(self, number: Rows) -> Segments:
+        """The path of the tool center of these loops, which have a part of that index each."""
+        from polarcheck.geometry.segments import segments
+
+        moves, loop = self.tool_center.moves, loop_of_row(self.trace)
+        path = curves_of(moves, loop[moves.row], moves.known & np.isin(loop[moves.row], number))
+        parts = segments(path, self.trace.machine.compensation.overcut_tolerance)
+        return type(parts)(parts.start, parts.end, parts.move, np.searchsorted(number, parts.loop))
+
+    @cached_property
+    def _radius(self) -> Floats:
+        """R of the cutter in each row [mm]; of the offset in force also where nothing is compensated."""
+        trace = self.trace
+        return np.fmax(np.abs(trace.radius_of_move), trace.cutter_diameter / 2)
+
+    @cached_property
+    def _swept(self) -> Swept:
+        """All moves in the mode, ramps and those without compensation included."""
+        from polarcheck.geometry.ribs import Swept
+        from polarcheck.geometry.segments import segments
+
+        trace, moves = self.trace, self.tool_center.moves
+        path: Curves = curves_of(moves, np.zeros(len(moves), np.int64), np.ones(len(moves), bool))
+        parts = segments(path, trace.machine.compensation.overcut_tolerance)
+        row = path.row[parts.move]
+        z = np.fmin(trace.z, before(trace.z, trace.starts, np.nan))
+        known = ~np.isnan(self._radius[row])
+        row = row[known]
+        return Swept(parts.start[known], parts.end[known], row, self._radius[row], z[row], trace.program[row])
+
+    # ---- strips ----
+
+    @cached_property
+    def _winds(self) -> Mask:
+        """Of the judged loops those that go round more than once."""
+        from polarcheck.geometry.closing import winds
+
+        return winds(self._judged.loops) if self._judged else np.zeros(0, bool)
+
+    @cached_property
+    def strips(self) -> Left:
+        """Behind a block of a pass, what stays between it and the next one: of each section the thickest strip."""
+        count = len(self.trace)
+        left = Left(np.zeros(count), np.zeros(count), np.full(count, complex(np.nan, np.nan)))
+        for level in self._levels:
+            for strip in self._strips_of(level):
+                if strip.thickness > left.height[strip.row]:
+                    left.height[strip.row], left.place[strip.row] = strip.thickness, strip.place
+        section = self.trace.whole_section
+        for number in np.unique(section[left.height > 0]):
+            rows = np.flatnonzero((section == number) & (left.height > 0))
+            left.height[rows[rows != rows[np.argmax(left.height[rows])]]] = 0
+        return left
+
+    @cached_property
+    def _levels(self) -> list[Rows]:
+        """
+        Which of the judged loops are of one section and Z, where passes may be too far apart.
+
+        Those of two sections need not be passes of one contour.
+        """
+        judged = self._judged
+        if judged is None:
+            return []
+        z = np.where(np.isnan(judged.z), np.inf, np.round(judged.z, 4))
+        section = self.trace.section[judged.loops.curves.row[judged.loops.first]]
+        _, level, members = np.unique(np.stack([section, z], axis=1), axis=0, return_inverse=True, return_counts=True)
+        level = level.ravel()
+        sure = ~self._unsure(judged)
+        asked = np.flatnonzero(((members[level] > 1) | np.isin(level, level[self._winds])) & sure)
+        if not len(asked):
+            return []
+        from dataclasses import replace
+
+        from polarcheck.geometry.closing import chords, may_leave_strips
+
+        moves, loop = self.tool_center.moves, loop_of_row(self.trace)
+        path = curves_of(moves, loop[moves.row], moves.known & np.isin(loop[moves.row], judged.number[asked]))
+        path = path[np.argsort(level[asked][np.searchsorted(judged.number[asked], path.loop)], kind="stable")]
+        path = replace(path, loop=level[asked][np.searchsorted(judged.number[asked], path.loop)])
+        radius = np.zeros(len(members))
+        np.maximum.at(radius, level, judged.loops.radius)
+        found = may_leave_strips(*chords(path, float(judged.loops.radius.min()) / 16), radius)
+        return [asked[level[asked] == number] for number in np.flatnonzero(found)]
+
+    def _strips_of(self, level: Rows) -> list[Strip]:
+        from dataclasses import replace
+
+        from polarcheck.geometry.finished_part import Contours, finished_parts
+        from polarcheck.geometry.segments import segments
+        from polarcheck.geometry.strips import strips
+
+        judged = self._judged
+        assert judged is not None
+        loops, number = judged.loops.some(level), judged.number[level]
+        tolerance, bar = self.trace.machine.compensation.overcut_tolerance, self.overcuts.bar
+        together = np.zeros(len(level), np.int64)
+        radius = np.array([loops.radius.max()])
+        part = finished_parts(Contours(loops.curves, loops.left, number, together, radius, bar, tolerance))
+        if part.open[0] or part.tangled[0]:
+            return []
+        rows, _ = loops.rows()
+        curves = loops.curves[rows]
+        walls = segments(replace(curves, loop=np.zeros(len(curves), np.int64)), tolerance)
+        swept = self._swept[self._swept.at_depth(judged.z[level[:1]], judged.program[level[:1]])]
+        row, left = curves.row[walls.move], loops.left[rows][walls.move]
+        return strips(part.polygon[0], walls, row, left, swept, float(radius[0]), bar)
+
+    # ---- both ----
+
+    @cached_property
+    def height(self) -> Floats:
+        """Of what is left [mm], ribs and strips; 0 where nothing is."""
+        return np.maximum(self.ribs.height, self.strips.height)
