@@ -18,7 +18,7 @@ import numpy as np
 import shapely  # type: ignore[import-untyped]
 
 from polarcheck.arrays import Floats, Mask, Points, Rows
-from polarcheck.geometry.faces import Geometries, coordinates
+from polarcheck.geometry.faces import Geometries, coordinates, lines_of
 from polarcheck.geometry.finished_part import Contours, FinishedParts, finished_parts, first_of_its_kind
 from polarcheck.geometry.segments import ZERO, Curves, Segments, members, segments
 
@@ -152,7 +152,7 @@ def _overcut(contour: Curves, tangled: Rows, *found: tuple[FinishedParts, _Cuts]
 
 def _wall(part: FinishedParts, cuts: _Cuts) -> Rows:
     """The nearest wall at each place; at a corner the one that faces the tool."""
-    tree = shapely.STRtree(_lines(part.start, part.end))
+    tree = shapely.STRtree(lines_of(part.start, part.end))
     which, wall = tree.query_nearest(shapely.points(coordinates(cuts.place)), all_matches=True)
     way = part.end[wall] - part.start[wall]
     facing = ((cuts.tool - cuts.place)[which] * (-1j * way).conj()).real / np.maximum(np.abs(way), ZERO)
@@ -175,7 +175,7 @@ def _comes_close(walls: Segments, ways: Segments, is_ramp: Mask, limit: Floats) 
     loops = np.unique(walls.loop)
     result = np.zeros(len(ways), bool)
     ramps, path = np.flatnonzero(is_ramp), ways[~is_ramp]
-    lines = _lines(ways.start[ramps], ways.end[ramps])
+    lines = lines_of(ways.start[ramps], ways.end[ramps])
     result[ramps] = shapely.dwithin(contours[np.searchsorted(loops, ways.loop[ramps])], lines, limit[ramps])
     own, first, number = np.unique(path.loop, return_index=True, return_inverse=True)
     if len(own):
@@ -200,10 +200,6 @@ def _polylines(parts: Segments) -> Geometries:
     lines = shapely.linestrings(coordinates(points), indices=of)
     _, number = np.unique(parts.loop[ends], return_inverse=True)
     return np.asarray(shapely.multilinestrings(lines, indices=number))
-
-
-def _lines(start: Points, end: Points) -> Geometries:
-    return np.asarray(shapely.linestrings(coordinates(np.stack([start, end], axis=1))))
 
 
 # ---- cuts ----
@@ -257,7 +253,7 @@ def _outline(part: FinishedParts, asked: Mask) -> _Outline:
     start, end = part.start[in_open], part.end[in_open]
     if len(start):
         _, number = np.unique(part.group[in_open], return_inverse=True)
-        whole[part.open & asked] = shapely.multilinestrings(_lines(start, end), indices=number)
+        whole[part.open & asked] = shapely.multilinestrings(lines_of(start, end), indices=number)
     shapely.prepare(whole)
     rings = shapely.get_rings(shapely.get_parts(part.polygon[~part.open & asked]))
     points, ring = shapely.get_coordinates(rings, return_index=True)
@@ -277,11 +273,11 @@ def _cuts(part: FinishedParts, ways: Segments, group: Rows, radius: Floats, tole
     of_run = group[np.diff(run, prepend=0) != 0]
     near = shapely.dwithin(outline.whole[of_run], runs, radius[of_run] - tolerance)[run - 1]
     ways, group = ways[near], group[near]
-    tree = shapely.STRtree(_lines(outline.start, outline.end))
+    tree = shapely.STRtree(lines_of(outline.start, outline.end))
     found = [_NO_CUTS]
     for first in range(0, len(ways) if len(tree) else 0, _BATCH):
         rows = np.arange(first, min(first + _BATCH, len(ways)))
-        lines = _lines(ways.start[rows], ways.end[rows])
+        lines = lines_of(ways.start[rows], ways.end[rows])
         limit = radius[group[rows]] - tolerance
         near = shapely.dwithin(outline.whole[group[rows]], lines, limit)
         rows, lines = rows[near], lines[near]
@@ -337,7 +333,7 @@ def _cuts_in_the_open(part: FinishedParts, ramps: _Ramps, radius: Floats, tolera
         return _NO_CUTS
     radius = radius[group]
     in_air = ramps.in_air & _is_round_center(part)[group]
-    lines = _lines(ways.start, ways.end)
+    lines = lines_of(ways.start, ways.end)
     behind = shapely.intersection(lines, part.polygon[group])
     center = shapely.points(part.pitch * group[in_air], 0.0)
     within = shapely.buffer(center, ramps.air[in_air], quad_segs=64)
@@ -355,7 +351,7 @@ def _cuts_in_the_open(part: FinishedParts, ramps: _Ramps, radius: Floats, tolera
         walls = np.full(len(ways), shapely.MultiLineString(), dtype=object)
         if len(chosen):
             has, number = np.unique(way[chosen], return_inverse=True)
-            walls[has] = shapely.multilinestrings(_lines(start, end), indices=number)
+            walls[has] = shapely.multilinestrings(lines_of(start, end), indices=number)
         if path is lines:
             walls[in_air] = shapely.intersection(walls[in_air], within)
         depth = radius - shapely.distance(walls, path)

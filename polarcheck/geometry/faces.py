@@ -16,7 +16,7 @@ import shapely  # type: ignore[import-untyped]
 from numpy.typing import NDArray
 
 from polarcheck.arrays import Floats, Mask, Points, Rows
-from polarcheck.geometry.noding import Edges, noded
+from polarcheck.geometry.noding import Edges, merged, noded
 
 Geometries = NDArray[Any]
 
@@ -205,13 +205,7 @@ def _faces(lines: _Lines) -> Rows:
     """The face to the left and to the right of each line: int[2, lines], from 0."""
     cycle, _ = _cycles(_next(lines))
     face = cycle.reshape(-1, 2).T
-    one = np.arange(len(cycle))
-    across = face[:, lines.joins]
-    while (one[across[0]] != one[across[1]]).any():
-        least = np.minimum(one[across[0]], one[across[1]])
-        np.minimum.at(one, one[across[0]], least)
-        np.minimum.at(one, one[across[1]], least)
-        one = one[one]
+    one = merged(len(cycle), *face[:, lines.joins])
     _, number = np.unique(one[face], return_inverse=True)
     return number.reshape(face.shape)
 
@@ -280,3 +274,12 @@ def _polygons(start: Points, end: Points, ring: Rows, group: Rows, groups: int) 
 def coordinates(points: Points) -> Floats:
     """Plane points as shapely takes them: float64[..., 2]."""
     return np.ascontiguousarray(points).view(np.float64).reshape(*points.shape, 2)
+
+
+def lines_of(start: Points, end: Points) -> Geometries:
+    """Straight lines of shapely; a point where one has no length, since near that as a line there is nothing."""
+    found = np.asarray(shapely.linestrings(coordinates(np.stack([start, end], axis=-1))))
+    still = start == end
+    if still.any():
+        found[still] = shapely.points(coordinates(start[still]))
+    return found

@@ -14,8 +14,9 @@ import numpy as np
 import shapely  # type: ignore[import-untyped]
 
 from polarcheck.arrays import Floats, Mask, Rows
+from polarcheck.geometry.faces import lines_of
 from polarcheck.geometry.finished_part import Contours, finished_parts, first_of_its_kind
-from polarcheck.geometry.reach import NOTHING, Reached, lines, reached, shortened
+from polarcheck.geometry.reach import NOTHING, Reached, reached, shortened
 from polarcheck.geometry.segments import Curves, segments
 from polarcheck.machines.modal import Motion
 
@@ -69,7 +70,7 @@ def _together(curves: Curves, level: Rows, path: Curves, reach: float) -> tuple[
     shift = 2 * far * number
     area = shapely.box(box[0] + shift - reach, box[1] - reach, box[2] + shift + reach, box[3] + reach)
     piece = shapely.get_parts(shapely.union_all(area[several & distinct]))
-    middle = lines(
+    middle = lines_of(
         box[0][several] + shift[several] + 1j * box[1][several], box[2][several] + shift[several] + 1j * box[3][several]
     )
     of_loop, group = shapely.STRtree(piece).query(middle, predicate="intersects")

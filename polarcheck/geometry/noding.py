@@ -299,18 +299,18 @@ def _cut(walls: _Walls, found: _Meetings, tangled: Mask) -> Edges:
     if len(new) or len(found.same[0]):
         # Where three walls meet in a point, each pair of them has found it.
         nodes, which = _vertices(nodes)
-        one = _merged(len(nodes), which[found.same])[which]
+        one = merged(len(nodes), *which[found.same])[which]
     start, end = one[start], one[end]
     kept = (start != end) & ~tangled[walls.group[of]]
     return Edges(nodes, start[kept], end[kept], of[kept], tangled)
 
 
-def _merged(count: int, same: Rows) -> Rows:
-    """Which node each is, where the pairs in `same` are one and the same."""
-    one = np.arange(count)
-    while len(same[0]) and (one[same[0]] != one[same[1]]).any():
-        least = np.minimum(one[same[0]], one[same[1]])
-        np.minimum.at(one, same[0], least)
-        np.minimum.at(one, same[1], least)
-        one = one[one]
-    return one
+def merged(count: int, one: Rows, other: Rows) -> Rows:
+    """Which of so many things each is, where those of each pair are one and the same: the least of them."""
+    least = np.arange(count)
+    while (least[one] != least[other]).any():
+        lower = np.minimum(least[one], least[other])
+        np.minimum.at(least, one, lower)
+        np.minimum.at(least, other, lower)
+        least = least[least]
+    return least

@@ -14,7 +14,7 @@ import numpy as np
 import shapely  # type: ignore[import-untyped]
 
 from polarcheck.arrays import Floats, Mask, Points, Rows
-from polarcheck.geometry.faces import Geometries, coordinates
+from polarcheck.geometry.faces import Geometries, coordinates, lines_of
 from polarcheck.geometry.finished_part import FinishedParts
 from polarcheck.geometry.segments import ZERO, Segments
 
@@ -65,11 +65,11 @@ def reached(part: FinishedParts, ways: Segments, group: Rows, radius: Floats, to
     solid = np.where(part.open, whole, part.polygon)
     shapely.prepare(whole)
     shapely.prepare(solid)
-    tree = shapely.STRtree(lines(start, end))
+    tree = shapely.STRtree(lines_of(start, end))
     found = [NOTHING]
     for first in range(0, len(number), _BATCH):
         rows = np.arange(first, min(first + _BATCH, len(number)))
-        line = lines(ways.start[rows], ways.end[rows])
+        line = lines_of(ways.start[rows], ways.end[rows])
         near = shapely.dwithin(whole[group[rows]], line, radius[group[rows]] - tolerance)
         rows, line = rows[near], line[near]
         (_, edge), aside = tree.query_nearest(line, all_matches=False, return_distance=True)
@@ -96,26 +96,22 @@ def shortened(part: FinishedParts, radius: Floats) -> FinishedParts:
     return replace(part, start=(part.start + low * way)[kept], end=(part.start + high * way)[kept], **columns)
 
 
-def lines(start: Points, end: Points) -> Geometries:
-    """Straight lines; a point where one has no length, since near that as a line there is nothing."""
-    found = np.asarray(shapely.linestrings(coordinates(np.stack([start, end], axis=1))))
-    still = start == end
-    found[still] = shapely.points(coordinates(start[still]))
-    return found
+def endless(part: FinishedParts) -> Mask:
+    """The parts that go on to the end of the plane."""
+    right = part.pitch * (np.arange(len(part.polygon)) + 1 / 3)
+    return np.asarray(shapely.bounds(part.polygon)[:, 2] > right - ZERO * part.pitch)
 
 
 def _outline(part: FinishedParts) -> tuple[Geometries, Points, Points]:
     """What is not to be cut of each group, and the edges of it, all groups together."""
-    bounds = shapely.bounds(part.polygon)
-    right = part.pitch * (np.arange(len(bounds)) + 1 / 3)
-    by_walls = part.open | (bounds[:, 2] > right - ZERO * part.pitch)
+    by_walls = part.open | endless(part)
     whole = part.polygon.copy()
     whole[by_walls] = shapely.MultiLineString()
     of_wall = by_walls[part.group]
     start, end = part.start[of_wall], part.end[of_wall]
     if len(start):
         has, number = np.unique(part.group[of_wall], return_inverse=True)
-        whole[has] = shapely.multilinestrings(lines(start, end), indices=number)
+        whole[has] = shapely.multilinestrings(lines_of(start, end), indices=number)
     rings = shapely.get_rings(shapely.get_parts(part.polygon[~by_walls]))
     points, ring = shapely.get_coordinates(rings, return_index=True)
     corner = points.view(np.complex128).ravel()
@@ -157,7 +153,7 @@ def _with_walls(part: FinishedParts, cuts: Reached) -> Reached:
     """The cuts with the walls that they go into; at a corner once for each."""
     if not len(cuts.way):
         return cuts
-    tree = shapely.STRtree(lines(part.start, part.end))
+    tree = shapely.STRtree(lines_of(part.start, part.end))
     points = shapely.points(coordinates(cuts.place))
     (which, _), distance = tree.query_nearest(points, all_matches=False, return_distance=True)
     cut, wall = tree.query(points[which], predicate="dwithin", distance=distance + _CORNER)

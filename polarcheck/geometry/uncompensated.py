@@ -14,10 +14,10 @@ import numpy as np
 import shapely  # type: ignore[import-untyped]
 
 from polarcheck.arrays import Floats, Mask, Rows
-from polarcheck.geometry.faces import coordinates
-from polarcheck.geometry.finished_part import Contours, finished_parts
+from polarcheck.geometry.faces import coordinates, lines_of
+from polarcheck.geometry.finished_part import Contours, FinishedParts, finished_parts
 from polarcheck.geometry.neighbours import boxes
-from polarcheck.geometry.reach import NOTHING, Reached, lines, reached, shortened
+from polarcheck.geometry.reach import NOTHING, Reached, endless, reached, shortened
 from polarcheck.geometry.segments import ZERO, Curves, Segments, members, segments
 from polarcheck.geometry.tolerances import ROUNDING
 
@@ -52,7 +52,7 @@ def cuts_into_part(contour: Contours, section: Rows, z: Floats, bare: Bare) -> R
 
     contour: the programmed blocks in offset mode, its loops, groups and radius are not asked. section: int[curves],
     z: float64[curves], NaN unknown. Of a move of Z alone within the part, away from its walls, nothing is said: it
-    begins a hole.
+    begins a hole; nor of what comes out of surroundings without an end, as to a pocket.
     """
     found = _loops(contour.curves, section, z)
     candidate = np.flatnonzero(_may_reach(found, bare))
@@ -79,7 +79,16 @@ def cuts_into_part(contour: Contours, section: Rows, z: Floats, bare: Bare) -> R
     cuts = reached(shortened(part, radius), ways, group, radius, contour.tolerance)
     deep = ~bare.plunges[cuts.move] | (cuts.aside < radius[cuts.group] - contour.tolerance)
     depth = cuts.depth - radius[cuts.group] + bare.radius[cuts.move]
-    return replace(cuts, depth=depth)[deep & (depth > contour.tolerance)].worst()
+    deep &= (depth > contour.tolerance) & ~(endless(part)[cuts.group] & _begins_in(part, cuts, ways))
+    return replace(cuts, depth=depth)[deep].worst()
+
+
+def _begins_in(part: FinishedParts, cuts: Reached, ways: Segments) -> Mask:
+    """Whether the way of each cut begins in the part: what is far round a pocket may as well be air."""
+    begin = ways.start[cuts.way]
+    beyond = np.maximum(np.abs(begin.real), np.abs(begin.imag)) >= part.pitch / 3
+    points = shapely.points(coordinates(begin + part.pitch * cuts.group))
+    return np.asarray(beyond | shapely.intersects(part.polygon[cuts.group], points))
 
 
 # ---- what may come near what ----
@@ -206,7 +215,7 @@ def _comes_near(contour: Contours, groups: _Groups, ways: Segments, group: Rows,
     inside = np.flatnonzero(inside | (np.abs(ways.start) < contour.bar / 2))
     far = 4 * float(np.abs(box).max() + max(np.abs(ways.start).max(), np.abs(ways.end).max())) + 1
     begin = (ways.start + far * group)[inside]
-    points, line = shapely.points(coordinates(begin)), lines(ways.start + far * group, ways.end + far * group)
+    points, line = shapely.points(coordinates(begin)), lines_of(ways.start + far * group, ways.end + far * group)
     kept = _nearby(curves, ways, group, radius)
     curves, here = curves[kept], here[kept]
     walls = segments(curves, contour.tolerance)
@@ -214,7 +223,7 @@ def _comes_near(contour: Contours, groups: _Groups, ways: Segments, group: Rows,
     near = np.zeros(len(ways), bool)
     if not len(walls):
         return near
-    tree = shapely.STRtree(lines(start, end))
+    tree = shapely.STRtree(lines_of(start, end))
     close, _ = tree.query(line, predicate="dwithin", distance=radius[group])
     near[close] = True
     (asked, _), distance = tree.query_nearest(points, all_matches=False, return_distance=True)

@@ -129,12 +129,9 @@ class Slots:
             return label
         loop = self.overcuts.loop
         one, other = loop[cuts.row], loop[cuts.into]
-        first = np.arange(int(loop.max()) + 1)
-        while (first[one] != first[other]).any():
-            least = np.minimum(first[one], first[other])
-            np.minimum.at(first, one, least)
-            np.minimum.at(first, other, least)
-            first = first[first]
+        from polarcheck.geometry.noding import merged
+
+        first = merged(int(loop.max()) + 1, one, other)
         pair, number = np.unique(first[one], return_inverse=True)
         # Walls that are written once more at another depth have the same box.
         ends = np.stack([trace.start[cuts.row], trace.end[cuts.row], trace.start[cuts.into], trace.end[cuts.into]])
@@ -150,11 +147,10 @@ class Slots:
         """How far the place where a row cuts deepest is from the contour of its own loop [mm]."""
         import shapely  # type: ignore[import-untyped]
 
-        from polarcheck.geometry.faces import coordinates
-        from polarcheck.geometry.reach import lines
+        from polarcheck.geometry.faces import coordinates, lines_of
         from polarcheck.geometry.segments import segments
 
         walls, _ = self.overcuts.walls
         own = segments(walls[walls.loop == self.overcuts.loop[row]], self.trace.machine.compensation.overcut_tolerance)
         _, place = self.cuts.deepest(row)
-        return float(shapely.distance(lines(own.start, own.end), shapely.points(coordinates(np.array(place)))).min())
+        return float(shapely.distance(lines_of(own.start, own.end), shapely.points(coordinates(np.array(place)))).min())

@@ -9,9 +9,11 @@ import numpy as np
 from polarcheck.arrays import Floats, Mask, Points, Rows
 from polarcheck.geometry.compensation import Phase
 from polarcheck.geometry.segments import Curves
+from polarcheck.geometry.tolerances import ADJUSTMENT, ROUNDING
 from polarcheck.machines.modal import Motion
 from polarcheck.table.filling import before, fill_down
 from polarcheck.table.overcuts import Cuts, Overcuts
+from polarcheck.table.slots import Slots
 from polarcheck.table.tool_center import ToolCenter
 from polarcheck.table.trace import Trace
 
@@ -21,10 +23,11 @@ _NOTHING = Cuts(np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0), np.ze
 class UncompensatedCuts:
     """Columns of one trace, one value per row: how deep a move without compensation cuts the part, 0 for not at all."""
 
-    def __init__(self, trace: Trace, tool_center: ToolCenter, overcuts: Overcuts) -> None:
+    def __init__(self, trace: Trace, tool_center: ToolCenter, overcuts: Overcuts, slots: Slots) -> None:
         self.trace = trace
         self.tool_center = tool_center
         self.overcuts = overcuts
+        self.slots = slots
 
     @cached_property
     def _has_contour(self) -> Mask:
@@ -36,6 +39,28 @@ class UncompensatedCuts:
         return has[section]
 
     @cached_property
+    def _is_behind_contour(self) -> Mask:
+        """Rows of sections behind the first ramp, and those behind the section."""
+        trace = self.trace
+        return np.asarray((trace.section < 0) | trace.given_in_section(trace.starts_up))
+
+    @cached_property
+    def _is_beside_bad_ramp(self) -> Mask:
+        """
+        Rows that lead to a start-up that is too short or cuts itself, or away from such an offset cancel: it begins or
+        ends too near to the part, which is no second mistake.
+        """
+        trace = self.trace
+        moving = np.flatnonzero(trace.in_polar & trace.travels)
+        short = trace.length < np.abs(trace.radius) - ROUNDING
+        bad = short | (self.slots.ramp_depth > 0) | self.overcuts.objected
+        rows = np.arange(len(trace))
+        after = np.append(moving, -1)[np.searchsorted(moving, rows, side="right")]
+        ahead = np.append(-1, moving)[np.searchsorted(moving, rows, side="left")]
+        begins = (after >= 0) & (trace.starts_up & bad)[after]
+        return np.asarray(begins | ((ahead >= 0) & (trace.cancels & bad)[ahead]))
+
+    @cached_property
     def cuts(self) -> Cuts:
         """Row that cuts, row of the contour whose part it cuts, depth and place, of each move the worst."""
         if not self.overcuts.compensates:
@@ -45,8 +70,10 @@ class UncompensatedCuts:
             for column in zip(self._on_plane, self._of_z_alone, self._behind_the_mode, strict=True)
         )
         trace, (walls, left) = self.trace, self.overcuts.walls
-        radius = np.abs(trace.radius_of_offset[row])
-        known = np.flatnonzero(~np.isnan(z + radius + np.abs(start) + np.abs(end)))
+        radius = np.abs(trace.radius[row])
+        known = (radius > ADJUSTMENT + ROUNDING) & ~np.isnan(z + np.abs(start) + np.abs(end))
+        # At Z0 or above, the way to the contour leads through air.
+        known = np.flatnonzero(known & ((z < -ROUNDING) | self._is_behind_contour[row]))
         if not len(known) or not len(walls):
             return _NOTHING
         from polarcheck.geometry import uncompensated
@@ -104,6 +131,8 @@ class UncompensatedCuts:
         """Of the cut of a move without compensation into the part of a contour [mm], R at most."""
         column = np.zeros(len(self.trace))
         np.maximum.at(column, self.cuts.row, self.cuts.depth)
+        if column.any():
+            column[self._is_beside_bad_ramp & (column < np.abs(self.trace.radius))] = 0
         return column
 
     @cached_property

@@ -177,7 +177,7 @@ def bare(trace: Trace, row: int) -> str:
 
 def goes(trace: Trace, uncompensated_cuts: UncompensatedCuts, row: int) -> str:
     """How far a move without compensation goes into the part."""
-    depth, radius = float(uncompensated_cuts.depth[row]), abs(float(trace.radius_of_offset[row]))
+    depth, radius = float(uncompensated_cuts.depth[row]), abs(float(trace.radius[row]))
     if depth >= radius:
         return "leads through" if trace.travels[row] or not trace.in_polar[row] else "goes down into"
     return f"goes {in_row(depth, trace, row):length} deep into"

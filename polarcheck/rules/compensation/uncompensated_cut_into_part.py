@@ -11,7 +11,7 @@ from polarcheck.checking.rule import ERROR, Hits, UncompensatedCuts, graded, rul
     once="loop",
     follows={
         "motion": ("rapid-in-polar",),
-        "loop": (*NO_SUCH_ARC, "number-without-point"),
+        "loop": (*NO_SUCH_ARC, "number-without-point", "x-not-positive-at-entry", "approach-inside-stock"),
         "section": (*SECTION_READ_OTHERWISE, "degrees-in-polar", "polar-switched-in-offset-mode"),
     },
 )
