@@ -43,7 +43,8 @@ def depth_inside(
     points = shapely.points(coordinates(place))
     shapely.prepare(part.polygon)
     inside = shapely.contains(part.polygon[group][:, None], points)
-    depth = shapely.distance(shapely.boundary(part.polygon)[group][:, None], points)
+    with np.errstate(invalid="ignore"):  # from what has no outline there is no distance
+        depth = shapely.distance(shapely.boundary(part.polygon)[group][:, None], points)
     return np.asarray(np.where(inside & known[group][:, None], depth, 0.0).max(axis=1, initial=0.0))
 
 
