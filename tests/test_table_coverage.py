@@ -300,3 +300,24 @@ def test_a_ring_that_is_cut_without_compensation_is_none() -> None:
 
 def test_the_middle_of_a_pocket_is_no_strip() -> None:
     assert rules("G1 X12. C0. F300/Z-2./G41 X20./G3 I-10./G1 G40 X12./Z2.", "1:radius=4") == []
+
+
+@pytest.mark.parametrize(("island", "leaves"), [(16.0, True), (17.0, True), (18.5, False), (13.0, False)])
+def test_a_ring_between_a_pocket_and_its_island(island: float, leaves: bool) -> None:
+    """Neither of the two passes lies behind the other; a ramp cuts through what stays between them."""
+    pocket = "G1 X46. C0. F300/Z-2./G41 X60./G3 I-30./G1 G40 X46./Z2."
+    boss = f"X46./Z-2./G42 X{2 * island}/G3 I{-island}/G1 G40 X46./Z2."
+    said = found(f"{pocket}/{boss}")
+    assert [finding.rule for finding in said] == ["material-left"] * leaves
+    if leaves:
+        assert height(said[0]) == pytest.approx(18 - island, abs=0.1)
+
+
+def test_without_a_cutter_nothing_is_left() -> None:
+    assert "material-left" not in [rule for _, rule in rules(square(1), "1:radius=0")]
+    assert "material-left" not in [rule for _, rule in rules(square(1), "2:radius=3")]
+
+
+def test_a_loop_to_which_the_control_objects_is_not_judged() -> None:
+    keyway = "G1 X80. F300/Z-2./G41 X60. C3./X20./C-3./X60./G40 X80. C0/Z2."
+    assert "material-left" not in [rule for _, rule in rules(keyway, "1:radius=4")]

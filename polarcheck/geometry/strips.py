@@ -28,6 +28,8 @@ _BESIDE = 0.01
 _CORNERS = 32
 #: What a path may be straightened by [mm], and how many pieces of it are looked at.
 _STRAIGHT, _MOST_PIECES = 0.002, 20_000
+#: How far from a ring the cut of one way of the tool through it is no more open, as a share of R.
+_CLOSING = 1.1
 #: A strip that runs out into what lies round all passes is so many R long, and as thick everywhere as this share.
 _LONG, _EVEN = 6, 0.75
 
@@ -99,7 +101,8 @@ def _strip(
         if length < _LONG * radius or thickness < _EVEN * widest or on.sum() < length / 2:
             return None
     if on.sum() < radius:
-        if not shapely.get_num_interior_rings(piece):
+        # A ramp or a link cuts through a ring, as wide as the cutter.
+        if not shapely.get_num_interior_rings(piece.buffer(_CLOSING * radius)):
             return None
         point = complex(*shapely.get_coordinates(piece.representative_point())[0])
         nearest = int(np.argmin(np.abs((swept.start + swept.end) / 2 - point)))
