@@ -19,6 +19,8 @@ from polarcheck.arrays import Floats, Mask, Points, Rows
 from polarcheck.geometry.noding import Edges, merged, noded
 
 Geometries = NDArray[Any]
+#: To what points of areas are rounded where these are cut out of each other [mm]; without, GEOS may find no answer.
+GRID = 1e-6
 
 
 @dataclass(frozen=True, slots=True)

@@ -18,7 +18,7 @@ import numpy as np
 import shapely  # type: ignore[import-untyped]
 
 from polarcheck.arrays import Floats, Mask, Points, Rows, States
-from polarcheck.geometry.faces import Geometries, Standing, Walls, standing
+from polarcheck.geometry.faces import GRID, Geometries, Standing, Walls, standing
 from polarcheck.geometry.noding import TOUCH
 from polarcheck.geometry.segments import ZERO, Curves, Segments, members, segments
 from polarcheck.machines.modal import Motion
@@ -311,4 +311,5 @@ def _rays(plane: _Plane, contours: Contours) -> tuple[Walls, Floats]:
 def _within_bar(polygon: Geometries, diameter: float, pitch: float) -> Geometries:
     """What of these lies within the bar."""
     middle = shapely.points(pitch * np.arange(len(polygon)), 0.0)
-    return np.asarray(shapely.intersection(polygon, shapely.buffer(middle, diameter / 2, quad_segs=_BAR_CORNERS)))
+    bar = shapely.buffer(middle, diameter / 2, quad_segs=_BAR_CORNERS)
+    return np.asarray(shapely.intersection(polygon, bar, grid_size=GRID))

@@ -17,7 +17,7 @@ import shapely  # type: ignore[import-untyped]
 
 from polarcheck.arrays import Floats, Mask, Points, Rows
 from polarcheck.geometry.closing import WITNESS, Corners
-from polarcheck.geometry.faces import Geometries, coordinates
+from polarcheck.geometry.faces import GRID, Geometries, coordinates
 from polarcheck.geometry.finished_part import FinishedParts
 from polarcheck.geometry.segments import ZERO, Segments
 
@@ -138,7 +138,7 @@ def _without_fins(part: FinishedParts, radius: Floats) -> FinishedParts:
         main = pieces[np.argmax(shapely.area(pieces))]
         thin = 2 * shapely.length(shapely.maximum_inscribed_circle(pieces)) < radius[group]
         fins = pieces[thin & (shapely.distance(pieces, main) < _ONE) & (pieces != main)]
-        polygon[group] = shapely.difference(polygon[group], shapely.union_all(fins))
+        polygon[group] = shapely.difference(polygon[group], shapely.union_all(fins, grid_size=GRID), grid_size=GRID)
     return replace(part, polygon=polygon)
 
 

@@ -18,7 +18,7 @@ import shapely  # type: ignore[import-untyped]
 
 from polarcheck.arrays import Mask, Rows
 from polarcheck.geometry.closing import WITNESS
-from polarcheck.geometry.faces import coordinates
+from polarcheck.geometry.faces import GRID, coordinates
 from polarcheck.geometry.ribs import Swept, first_tool
 from polarcheck.geometry.segments import ZERO, Segments
 
@@ -54,16 +54,17 @@ def strips(part: Any, walls: Segments, row: Rows, left: Mask, swept: Swept, radi
     if gone is None:
         return []
     around = shapely.box(*shapely.bounds(gone)).buffer(radius)
-    left_over = shapely.difference(around, shapely.union(gone, part))
+    left_over = shapely.difference(around, shapely.union(gone, part, grid_size=GRID), grid_size=GRID)
     if not np.isnan(bar):
-        left_over = shapely.intersection(left_over, shapely.Point(0, 0).buffer(bar / 2, quad_segs=4 * _CORNERS))
+        round_bar = shapely.Point(0, 0).buffer(bar / 2, quad_segs=4 * _CORNERS)
+        left_over = shapely.intersection(left_over, round_bar, grid_size=GRID)
     found = []
     for piece in shapely.get_parts(left_over):
         if shapely.distance(piece, around.exterior) > _BESIDE:
             found.append((piece, False))
         else:
             thick = piece.buffer(-radius / 2).buffer(radius / 2 + _BESIDE)
-            found += [(thin, True) for thin in shapely.get_parts(shapely.difference(piece, thick))]
+            found += [(thin, True) for thin in shapely.get_parts(shapely.difference(piece, thick, grid_size=GRID))]
     result = []
     for piece, runs_out in found:
         strip = _strip(piece, part, walls, row, left, swept, radius, runs_out)
@@ -82,7 +83,7 @@ def _gone(swept: Swept) -> Any:
     lines = shapely.simplify(shapely.linestrings(coordinates(points), indices=of), _STRAIGHT)
     if shapely.get_num_coordinates(lines).sum() > _MOST_PIECES:
         return None
-    return shapely.union_all(shapely.buffer(lines, swept.radius[last], quad_segs=_CORNERS))
+    return shapely.union_all(shapely.buffer(lines, swept.radius[last], quad_segs=_CORNERS), grid_size=GRID)
 
 
 def _strip(
