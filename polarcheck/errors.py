@@ -6,6 +6,7 @@ What can go wrong on our side. What is wrong in a program is a finding, never an
     |-- SourceError       a file that cannot be read
     |-- MachineError      a machine profile: unknown machine, key, type
     |-- JobError          polarcheck.toml, pyproject.toml, an offset table
+    |-- TooHardError      a table that would take more than its bound of time or size
     `-- RuleError         a rule without severity, message, docstring: a bug in a rule file
 """
 
@@ -35,6 +36,14 @@ class MachineError(PolarcheckError):
 
 class JobError(PolarcheckError):
     """A job file or offset table that cannot be used."""
+
+
+class TooHardError(PolarcheckError):
+    """
+    A table that would take more than its bound of time or size; its text is a reason for "not evaluated".
+
+    The rules that compare it are not evaluated; all others are.
+    """
 
 
 class RuleError(PolarcheckError):

@@ -24,6 +24,7 @@ ORDER = (
     ("reading",),
     ("geometry",),
     ("machines",),
+    ("time_limit",),
     ("arrays", "errors"),
 )
 FLOOR = {name: number for number, names in enumerate(reversed(ORDER)) for name in names}

@@ -20,7 +20,8 @@ from polarcheck.checking.finding import ERROR, NOTE, WARNING, Finding
 from polarcheck.checking.other_machine import OtherMachine
 from polarcheck.checking.rule import FOLDER, Hits, Rule, graded, load_all, rule
 from polarcheck.checking.tables import MAKERS, OF_CAUSE, OF_TEXT, PARTS, SPANS, Tables
-from polarcheck.errors import RuleError
+from polarcheck.errors import RuleError, TooHardError
+from polarcheck.time_limit import keep_time, time_limit
 
 RULES = load_all()
 #: Two sections, one begun by G112 and never left; a program of inch words before one in mm.
@@ -402,3 +403,72 @@ def test_phrases_take_what_they_name_and_nothing_else() -> None:
 
     given = {"row": 3, "index": 5, "at": [], "place": None}
     assert message.called(phrase, {"trace": SimpleNamespace(name="t")}, given) == "t 3"
+
+
+# ---- bounds ----
+
+
+class Slow:
+    """A table that nobody can wait for."""
+
+    @property
+    def depth(self) -> Any:
+        """A column that takes too long."""
+        raise TooHardError("the depth takes too long")
+
+
+def test_a_rule_whose_table_takes_too_long_is_not_evaluated_and_all_others_are(made: Tables) -> None:
+    made.give("slow", Slow())
+
+    def hopeless(slow: Slow) -> Any:
+        return slow.depth
+
+    def mode_entered(trace: Any) -> Any:
+        return trace.enters
+
+    engine = Engine(made, {}, [made_rule(hopeless), made_rule(mode_entered)])
+    assert [(found.rule, found.line) for found in engine.findings()] == [("mode-entered", 4), ("mode-entered", 12)]
+    (missing,) = engine.unlisted
+    assert (missing.rule, missing.reason) == ("hopeless", "the depth takes too long")
+    assert missing.matters
+    assert missing.blocks == np.count_nonzero(made["trace"].in_polar)
+
+
+def test_what_a_message_needs_may_take_too_long_too(made: Tables) -> None:
+    """Nothing follows from a rule that was given up only when its message was made."""
+    made.give("slow", Slow())
+
+    def mode_entered(trace: Any) -> Any:
+        return trace.enters
+
+    def mode_left(trace: Any) -> Any:
+        return trace.enters
+
+    told = made_rule(mode_left, follows={"block": ("mode-entered",)})
+    engine = Engine(made, {}, [made_rule(mode_entered, message="{slow.depth}"), told])
+    assert [(found.rule, found.line) for found in engine.findings()] == [("mode-left", 4), ("mode-left", 12)]
+    assert [missing.rule for missing in engine.unlisted] == ["mode-entered"]
+
+
+def test_a_cause_whose_reach_takes_too_long_explains_nothing(made: Tables, monkeypatch: pytest.MonkeyPatch) -> None:
+    made.give("slow", Slow())
+    monkeypatch.setitem(SPANS, "slow", "slow.depth")
+
+    def mode_entered(trace: Any) -> Any:
+        return trace.enters
+
+    def mode_left(trace: Any) -> Any:
+        return trace.enters
+
+    rules = [made_rule(mode_entered), made_rule(mode_left, follows={"slow": ("mode-entered",)})]
+    assert len(Engine(made, {}, rules).findings()) == 4
+
+
+def test_time_is_kept_only_inside_a_limit() -> None:
+    keep_time()
+    with time_limit(1e6):
+        keep_time()
+        with time_limit(-1), pytest.raises(TooHardError, match="longer than -1 s: --max-seconds gives it more"):
+            keep_time()
+        keep_time()
+    keep_time()

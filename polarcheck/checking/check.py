@@ -9,13 +9,14 @@ from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 import msgspec
 
 from polarcheck.checking.called_files import in_the_file
-from polarcheck.checking.engine import Engine, in_order, with_following
+from polarcheck.checking.engine import Engine, in_order, too_hard, with_following
 from polarcheck.checking.finding import ERROR, SEVERITIES, FileReport, Finding, NotEvaluated, PolarSection, Undecided
 from polarcheck.checking.not_evaluated import unevaluated, unexecuted
 from polarcheck.checking.other_machine import OtherMachine
 from polarcheck.checking.polar_sections import polar_sections
 from polarcheck.checking.rule import Hits, Rule
 from polarcheck.checking.tables import Tables
+from polarcheck.errors import TooHardError
 from polarcheck.execution.runs import runs
 from polarcheck.machines.job import Job
 from polarcheck.machines.machine import Machine
@@ -85,8 +86,11 @@ def report_of(engine: Engine) -> FileReport:
     findings = in_order(in_the_file(engine.findings(), trace))
     not_evaluated = [*unexecuted(tables)]
     for rule in engine.rules.values():
-        not_evaluated += unevaluated(tables, rule)
-    not_evaluated += engine.unlisted
+        try:
+            not_evaluated += unevaluated(tables, rule)
+        except TooHardError as error:
+            not_evaluated.append(too_hard(rule, error, trace))
+    not_evaluated = list(dict.fromkeys((*not_evaluated, *engine.unlisted)))
     text = trace.text
     own = [name for block, name in engine.heads if not text.source.part_of(int(text.blocks.line[block]))]
     return FileReport(

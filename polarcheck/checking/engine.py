@@ -15,6 +15,7 @@ from polarcheck.checking.finding import NOTE, SEVERITIES, Finding, NotEvaluated,
 from polarcheck.checking.places import PLACES, Place
 from polarcheck.checking.rule import Hits, Rule
 from polarcheck.checking.tables import OF_CAUSE, Tables
+from polarcheck.errors import TooHardError
 from polarcheck.execution.run import begins_program
 from polarcheck.table.trace import Trace
 
@@ -58,14 +59,23 @@ class Engine:
         self.heads = program_heads(self.trace)
 
     def hits(self, rule: Rule) -> Hits:
-        """What the rule finds."""
+        """What the rule finds; nothing where one of its tables would take more than its bounds."""
         if rule.name not in self._hits:
-            self._hits[rule.name] = rule.hits(self.tables)
+            try:
+                self._hits[rule.name] = rule.hits(self.tables)
+            except TooHardError as error:
+                self._give_up(rule, error)
         return self._hits[rule.name]
+
+    def _give_up(self, rule: Rule, error: TooHardError) -> None:
+        self._hits[rule.name] = Hits(np.zeros(0, np.bool_))
+        self.unlisted.append(too_hard(rule, error, self.trace))
 
     def findings(self) -> list[Finding]:
         """One finding per cause; what follows from it is listed in it, and raises its severity."""
-        listed = {rule.name: found for rule in self.rules.values() if (found := self._listed(rule)) is not None}
+        listed = None
+        while listed is None:
+            listed = self._all_listed()
         following: dict[tuple[str, int], list[Finding]] = {}
         for found in listed.values():
             for finding, cause in zip(found.findings, found.cause, strict=True):
@@ -77,6 +87,19 @@ class Engine:
             for number, finding in enumerate(found.findings)
             if found.cause[number] is None
         ]
+
+    def _all_listed(self) -> dict[str, _Listed] | None:
+        """The findings by rule; None where one was given up only now, so that nothing follows from it any more."""
+        listed = {}
+        for rule in self.rules.values():
+            try:
+                found = self._listed(rule)
+            except TooHardError as error:
+                self._give_up(rule, error)
+                return None
+            if found is not None:
+                listed[rule.name] = found
+        return listed
 
     def _listed(self, rule: Rule) -> _Listed | None:
         hits = self.hits(rule)
@@ -122,9 +145,12 @@ class Engine:
                 hit = np.flatnonzero(self.hits(other).mask)
                 if not len(hit):
                     continue
-                theirs = places.span_of(OF_CAUSE.get(span, span), other.over, self.tables)[hit]
+                try:
+                    theirs = places.span_of(OF_CAUSE.get(span, span), other.over, self.tables)[hit]
+                    own = places.span_of(span, rule.over, self.tables)[index]
+                except TooHardError:
+                    continue  # how far the cause reaches is not known: the finding stands alone
                 order = np.argsort(theirs, kind="stable")
-                own = places.span_of(span, rule.over, self.tables)[index]
                 at = order[np.minimum(np.searchsorted(theirs[order], own), len(hit) - 1)]
                 found = (theirs[at] == own) & (own >= 0) & (cause < 0)
                 if span in may_follow:
@@ -197,6 +223,11 @@ class Engine:
     def _program_name(self, block: int) -> str | None:
         at = bisect.bisect_right(self.heads, block, key=lambda head: head[0])
         return self.heads[at - 1][1] if at else None
+
+
+def too_hard(rule: Rule, error: TooHardError, trace: Trace) -> NotEvaluated:
+    """A rule that was given up; what takes long is the geometry of the polar sections."""
+    return NotEvaluated(rule=rule.name, reason=str(error), blocks=int(np.count_nonzero(trace.in_polar)) or len(trace))
 
 
 def _unlisted(rule: Rule, count: int) -> NotEvaluated:

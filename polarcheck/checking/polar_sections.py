@@ -8,6 +8,7 @@ from polarcheck.arrays import Floats, Mask, Rows
 from polarcheck.checking.finding import PolarSection
 from polarcheck.checking.quantity import rounded
 from polarcheck.checking.tables import Tables
+from polarcheck.errors import TooHardError
 from polarcheck.machines.modal import Units
 from polarcheck.table.center import Center
 from polarcheck.table.moves import Moves
@@ -20,17 +21,22 @@ from polarcheck.table.trace import Trace
 def polar_sections(tables: Tables) -> list[PolarSection]:
     """One element for each polar section, in order."""
     trace: Trace = tables["trace"]
-    sections = trace.sections
-    if not len(sections):
+    if not len(trace.sections):
         return []
-    tool_center: ToolCenter = tables["tool_center"]
-    center: Center = tables["center"]
+    try:
+        return _polar_sections(trace, tables["tool_center"], tables["center"], tables["ramps"])
+    except TooHardError:
+        return []  # what the verdict does not rest on; what was given up stands under "not evaluated"
+
+
+def _polar_sections(trace: Trace, tool_center: ToolCenter, center: Center, ramps: Ramps) -> list[PolarSection]:
+    sections = trace.sections
     c_feed = np.where(center.cuts_off_center, tool_center.c_feed, -np.inf)
     highest = _of_sections(sections, c_feed, np.maximum, -np.inf)
     fastest = _fastest(trace, c_feed, highest)
     at_entry = _offset_rows(trace)
     nearest = _of_sections(sections, np.where(trace.cuts, tool_center.nearest, np.inf), np.minimum, np.inf)
-    ramp = _ramp_used(trace, tables["ramps"])
+    ramp = _ramp_used(trace, ramps)
     time = _time(tool_center.moves, len(sections))
     limit = rounded(trace.machine.limits.c_feed)
     last = np.where(sections.left & ~sections.returned, sections.leave, sections.leave - 1)

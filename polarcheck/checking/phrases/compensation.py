@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from polarcheck.checking.quantity import in_row
+from polarcheck.errors import TooHardError
 from polarcheck.machines.machine import Machine
 from polarcheck.machines.modal import Motion, Side
 from polarcheck.table.coverage import Coverage
@@ -136,10 +137,13 @@ def _contour_at(trace: Trace, row: int, into: int, place: complex) -> str:
 
 
 def way_out(trace: Trace, fitting: Fitting, row: int) -> str:
-    """What to write where the contour is cut into."""
-    if fitting.never[row]:
+    """What to write where the contour is cut into; nothing where finding that out would take too long."""
+    try:
+        never, largest = bool(fitting.never[row]), float(fitting.radius[row])
+    except TooHardError:
+        return ""
+    if never:
         return "; a smaller one does, too: look for a wrong point of the contour"
-    largest = float(fitting.radius[row])
     if largest != largest:  # NaN
         return ""
     shown = in_row(int(largest * 1000) / 1000, trace, row)

@@ -1,0 +1,42 @@
+"""How long the check of one file may take: what could go on without end asks here, and gives up by an exception."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
+from typing import NamedTuple
+
+from polarcheck.errors import TooHardError
+
+
+class _Limit(NamedTuple):
+    """When the time is over, on the clock of time.monotonic [s], and how long it was [s]."""
+
+    end: float
+    seconds: float
+
+
+_LIMIT: ContextVar[_Limit | None] = ContextVar("limit", default=None)
+
+
+@contextmanager
+def time_limit(seconds: float) -> Iterator[None]:
+    """What is done inside has so long [s]; without it, as in most tests, there is no limit."""
+    token = _LIMIT.set(_Limit(time.monotonic() + seconds, seconds))
+    try:
+        yield
+    finally:
+        _LIMIT.reset(token)
+
+
+def keep_time() -> None:
+    """
+    To be asked in each turn of a loop, and before each step whose cost grows faster than the program.
+
+    Raises TooHardError once the time is over.
+    """
+    limit = _LIMIT.get()
+    if limit is not None and time.monotonic() > limit.end:
+        raise TooHardError(f"the check of this file takes longer than {limit.seconds:g} s: --max-seconds gives it more")
