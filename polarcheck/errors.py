@@ -4,6 +4,7 @@ What can go wrong on our side. What is wrong in a program is a finding, never an
     PolarcheckError
     |-- UsageError        an option or argument that means nothing
     |-- SourceError       a file that cannot be read
+    |-- OutputError       a report that cannot be written
     |-- MachineError      a machine profile: unknown machine, key, type
     |-- JobError          polarcheck.toml, pyproject.toml, an offset table
     |-- TooHardError      a table that would take more than its bound of time or size
@@ -28,6 +29,10 @@ class UsageError(PolarcheckError):
 
 class SourceError(PolarcheckError):
     """A program file that cannot be read."""
+
+
+class OutputError(PolarcheckError):
+    """A report that cannot be written, or must not be written where it would go."""
 
 
 class MachineError(PolarcheckError):

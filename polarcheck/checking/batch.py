@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
@@ -13,12 +14,16 @@ from polarcheck.checking import check
 from polarcheck.checking.finding import FileReport, Producer, Report, Summary
 from polarcheck.checking.settings import Settings
 from polarcheck.checking.tables import Tables
-from polarcheck.errors import PolarcheckError, SourceError
+from polarcheck.errors import SourceError, TooHardError
+from polarcheck.machines.job import Job
 from polarcheck.reading import files
 from polarcheck.reading.source import Source
 from polarcheck.reading.words import Text
+from polarcheck.time_limit import time_limit
 
 SCHEMA = 1
+#: A file of this size has max_seconds, a larger one as many times that [bytes]; checked are some 10 MB a second.
+_BYTES_OF_A_TURN = 1_000_000
 
 Tell = Callable[[str], None]
 
@@ -34,12 +39,14 @@ class Checked(msgspec.Struct, frozen=True):
     """
     The reports of the files that could be read, and by path and number the lines that their findings stand in.
 
-    called: offset numbers that any of the programs calls, where it has a job with tools.
+    called: offset numbers that any of the programs calls, where it has a job with tools. stopped: by what the check was
+    interrupted; the files that were finished before that are here.
     """
 
     files: list[FileReport]
     lines: dict[str, dict[int, str]]
     called: set[int]
+    stopped: KeyboardInterrupt | None = None
 
 
 def plan(
@@ -66,39 +73,61 @@ def plan(
     return list(tasks.values())
 
 
-def check_files(tasks: Iterable[Task], tell: Tell, encoding: str | None = None, fail_on: str = "warning") -> Checked:
-    """Check one file after the other; tell is told, in one line, of those that cannot be read."""
+def check_files(
+    tasks: Iterable[Task],
+    tell: Tell,
+    bug: Callable[[Exception], None],
+    encoding: str | None = None,
+    fail_on: str = "warning",
+) -> Checked:
+    """
+    Check one file after the other; what is wrong with one costs that file only.
+
+    tell is told, in one line, of those that cannot be read or are too hard, bug of what polarcheck itself does wrong.
+    """
     reports: list[FileReport] = []
     lines: dict[str, dict[int, str]] = {}
     called: set[int] = set()
-    for task in tasks:
-        try:
-            data = files.read(task.path)
-            found, text, offsets = _check(task, data, encoding)
-        except SourceError as error:
-            tell(str(error))
-            continue
-        verdict = check.verdict(found.findings, found.not_evaluated, fail_on)
-        reports.append(msgspec.structs.replace(found, machine=task.settings.name, verdict=verdict))
-        if found.findings:
-            lines[found.path] = _lines(text, found)
-        called |= offsets
-    return Checked(reports, lines, called)
+    stopped = None
+    try:
+        for number, task in enumerate(tasks):
+            if number:
+                # The command line keeps the collector off. What the last file has left behind is young, then: to
+                # find it costs nothing of what is older, and without it no table of any file would ever be freed.
+                gc.collect(0)
+            try:
+                found, source, offsets = _check(task, files.read(task.path), encoding)
+            except (SourceError, TooHardError) as error:
+                tell(str(error))
+            except MemoryError:
+                tell(f"{files.shown(task.path)}: there is not enough memory to check it")
+            except Exception as error:
+                error.add_note(f"while checking {files.shown(task.path)}")
+                bug(error)
+            else:
+                verdict = check.verdict(found.findings, found.not_evaluated, fail_on)
+                reports.append(msgspec.structs.replace(found, machine=task.settings.name, verdict=verdict))
+                if found.findings:
+                    lines[found.path] = _lines(source, found)
+                called |= offsets
+    except KeyboardInterrupt as stop:
+        stopped = stop
+    return Checked(reports, lines, called, stopped)
 
 
 def _check(task: Task, data: bytes, encoding: str | None) -> tuple[FileReport, Source, set[int]]:
     """The report, the text, and the offset numbers that are called, where the job has any."""
     path, settings = files.shown(task.path), task.settings
-    try:
+    with time_limit(seconds_for(data, settings.job)):
         found = check.read(data, settings.machine, settings.job, path, encoding)
         text: Text = found[0][1]["text"]
         report = check.check_runs(found, settings.rules, settings.severities)
         return report, text.source, _offsets(found) if settings.job.tools else set()
-    except PolarcheckError:
-        raise
-    except Exception as error:
-        error.add_note(f"while checking {path}")
-        raise
+
+
+def seconds_for(data: bytes, job: Job) -> float:
+    """What the check of a file may take, before that is given up which takes so long [s]: a large file takes longer."""
+    return job.run.max_seconds * max(1, len(data) / _BYTES_OF_A_TURN)
 
 
 def _offsets(found: Sequence[tuple[str, Tables]]) -> set[int]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 
 import msgspec
 
@@ -16,7 +17,7 @@ class Settings(msgspec.Struct, frozen=True):
     What applies to a program.
 
     name: of the machine, as it was asked for. rules: those to run. severities: error, warning, note or off by rule,
-    where they differ from the machine's.
+    where they differ from the machine's. read: the files that all this was read from.
     """
 
     name: str
@@ -24,3 +25,4 @@ class Settings(msgspec.Struct, frozen=True):
     job: Job
     rules: Sequence[Rule]
     severities: Mapping[str, str]
+    read: Sequence[Path] = ()

@@ -16,9 +16,9 @@ from typing import Any
 import click
 
 from polarcheck import __version__
-from polarcheck.commands import options
-from polarcheck.commands.exit_codes import BUG, CLEAN, COULD_NOT_RUN, INTERRUPTED
-from polarcheck.commands.output import COLUMNS, say, say_lines
+from polarcheck.commands import options, signals
+from polarcheck.commands.exit_codes import BUG, CLEAN, COULD_NOT_RUN
+from polarcheck.commands.output import COLUMNS, abandon_output, said_of_bug, say, say_lines
 from polarcheck.errors import PolarcheckError, RuleError
 
 NAMES = ("check", "explain", "machines", "rules", "schema", "trace")
@@ -58,13 +58,16 @@ class Commands(click.Group):
             say(error.format_message())
         except PolarcheckError as error:
             say(str(error))
-        except (click.Abort, KeyboardInterrupt):
-            say("interrupted")
-            status = INTERRUPTED
+        except (click.Abort, KeyboardInterrupt) as stop:
+            status, how = signals.told(stop)
+            say(how)
         except SystemExit as end:
             if not isinstance(end.__context__, BrokenPipeError):
                 raise
             status = CLEAN  # nobody read the help to its end
+        except OSError as error:  # of help and version, which click writes
+            abandon_output()
+            say(f"standard output: {error.strerror or error}")
         if standalone_mode:
             sys.exit(status)
         return status
@@ -84,32 +87,27 @@ class Commands(click.Group):
             return super().invoke(ctx)
         except (click.ClickException, click.Abort, click.exceptions.Exit):
             raise
+        except MemoryError:
+            say("there is not enough memory")
+            ctx.exit(COULD_NOT_RUN)
         except Exception as error:
             if isinstance(error, PolarcheckError) and not isinstance(error, RuleError):
                 raise
-            _report_bug(error, with_traceback=options.DEBUG in ctx.meta)
+            say_lines(said_of_bug(error, options.DEBUG in ctx.meta))
             ctx.exit(BUG)
-
-
-def _report_bug(error: Exception, with_traceback: bool) -> None:
-    if with_traceback:
-        import traceback
-
-        say_lines(traceback.format_exception(error))
-        return
-    where = "".join(f", {note}" for note in getattr(error, "__notes__", ()))
-    say(f"internal error: {type(error).__name__}: {error}{where}; run with --debug for the traceback")
 
 
 def run() -> None:
     """The console script: never returns."""
     # Imports make thousands of objects that stay; looking among them for circles costs a tenth of a small check.
+    # Between files it is asked for (batch.check_files).
     gc.disable()
     # There is no linear algebra here, and starting its threads is a fifth of the import of NumPy.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="backslashreplace")
+    signals.listen()
     main(prog_name="polarcheck")
 
 

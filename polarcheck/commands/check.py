@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 from pathlib import Path
 from typing import Any
@@ -9,9 +10,9 @@ from typing import Any
 import click
 
 from polarcheck.commands import options
-from polarcheck.commands.exit_codes import COULD_NOT_RUN
+from polarcheck.commands.exit_codes import BUG, COULD_NOT_RUN
 from polarcheck.commands.options import many, option
-from polarcheck.commands.output import COLUMNS, columns, in_color, say, show, warn
+from polarcheck.commands.output import COLUMNS, columns, in_color, said_of_bug, say, say_lines, show, warn
 from polarcheck.errors import PolarcheckError
 from polarcheck.reports import formats
 
@@ -84,7 +85,11 @@ def _outputs(ctx: click.Context, parameter: click.Parameter, values: tuple[str, 
 @options.subprograms
 @option("--max-blocks", type=click.IntRange(1, 10**12), help="Executed blocks after which a program counts as endless.")
 @option("--max-statements", type=click.IntRange(1, 10**12), help="The same for macro statements and calls.")
-@option("--max-seconds", type=Seconds(0, min_open=True), help="The same for seconds.")
+@option(
+    "--max-seconds",
+    type=Seconds(0, min_open=True),
+    help="The same for seconds, and for the whole check; a file has so long for each MB.",
+)
 @options.radius_from_comments
 @many("--extensions", metavar="EXT", help="Of the programs in a folder, instead of .nc, .tap, .eia and others.")
 @options.encoding("programs")
@@ -105,10 +110,11 @@ def check(ctx: click.Context, /, paths: tuple[str, ...], **asked: Any) -> None:
                 not be judged: the report says what to give
     fail        something is wrong, or probably not what was meant
 
-    Ends with 0 if no file fails (nor is unverified, with --strict), 1 if one does, 2 if something could not be read or
-    understood, 3 for a bug.
+    Ends with 0 if no file fails (nor is unverified, with --strict), 1 if one does, 2 if something could not be read,
+    understood or written, 3 for a bug; 130 or 143 where it was interrupted or terminated: what was finished until then
+    is reported.
     """
-    ctx.exit(_check(paths, _command(ctx), **asked))
+    ctx.exit(_check(paths, _command(ctx), options.DEBUG in ctx.meta, **asked))
 
 
 def _command(ctx: click.Context) -> str:
@@ -138,6 +144,7 @@ def _quoted(value: object) -> str:
 def _check(
     paths: tuple[str, ...],
     command: str,
+    debug: bool,
     *,
     fail_on: str,
     strict: bool,
@@ -153,23 +160,38 @@ def _check(
 ) -> int:
     from polarcheck import reports
     from polarcheck.checking import batch, rule
-    from polarcheck.commands import settings
+    from polarcheck.commands import overwriting, settings, signals
+    from polarcheck.commands.memory import keep_within_memory
     from polarcheck.commands.progress import watched
     from polarcheck.machines import profiles
     from polarcheck.machines.job import offset_number
     from polarcheck.reading import files
 
+    keep_within_memory()
     failures: list[str] = []
+    bugs: list[str] = []
     applies = settings.Options(use_config=not no_config, **asked)
     tasks = batch.plan(paths, settings.in_folders(applies), extensions, failures.append, warn)
-    checked = batch.check_files(watched(tasks, not quiet), failures.append, encoding, fail_on)
+    overwriting.refuse([path for _, path in outputs], tasks)
+    with contextlib.closing(watched(tasks, not quiet)) as awaited:
+        checked = batch.check_files(
+            awaited, failures.append, lambda bug: bugs.extend(said_of_bug(bug, debug)), encoding, fail_on
+        )
     name = applies.machine or (tasks[0].settings.name if tasks else profiles.DEFAULT)
     report = batch.report(checked.files, name)
+    status = batch.status(report, strict, fail_on)
     for failure in failures:
         say(failure)
-    for number in sorted({offset_number(tool) for tool in applies.tools} - checked.called):
-        warn(f"--tool {number}: no program of this run calls offset {number}")
-    status = COULD_NOT_RUN if failures else batch.status(report, strict, fail_on)
+        status = COULD_NOT_RUN
+    if bugs:
+        say_lines(bugs)
+        status = BUG
+    if checked.stopped is not None:
+        status, how = signals.told(checked.stopped)
+        say(f"{how} after {len(checked.files)} of {len(tasks)} files; these are reported")
+    else:
+        for number in sorted({offset_number(tool) for tool in applies.tools} - checked.called):
+            warn(f"--tool {number}: no program of this run calls offset {number}")
     form = form or ("text" if len(report.files) <= _LONG else "short")
     plain = reports.Background(checked.lines, rule.load_all(), COLUMNS, False, quiet, command, following)
     for kind, path in outputs:
@@ -177,7 +199,7 @@ def _check(
             files.write(path, reports.render(kind, report, plain))
         except PolarcheckError as error:
             say(str(error))
-            status = COULD_NOT_RUN
+            status = max(status, COULD_NOT_RUN)
     is_colored = in_color(color)
     shown = plain._replace(columns=columns(), color=is_colored)
     text = reports.render(form, report, shown)

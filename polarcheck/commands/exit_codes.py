@@ -3,8 +3,9 @@
 CLEAN = 0
 #: Findings at or above --fail-on.
 FINDINGS = 1
-#: Usage, an unreadable file, a broken configuration, a report that cannot be written.
+#: Usage, a file that is unreadable or too hard, a broken configuration, a report that cannot be written.
 COULD_NOT_RUN = 2
 #: Of polarcheck itself.
 BUG = 3
-INTERRUPTED = 130
+#: By Ctrl-C, and by the signal with which a system ends a process.
+INTERRUPTED, TERMINATED = 130, 143

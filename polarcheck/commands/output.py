@@ -2,26 +2,46 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import sys
 from collections.abc import Iterable
+from typing import TextIO
 
 import click
 
+from polarcheck.errors import OutputError
+
 #: Width of reports that go anywhere but to a terminal, and the widest that is good to read [characters].
 COLUMNS = 100
+#: Of what an exception says [characters].
+_MOST_SAID = 200
 
 
-def show(text: str | bytes, color: bool | None = None) -> None:
+def show(text: str | bytes, color: bool | None = None) -> bool:
     """
-    Write to standard output; if nobody reads on, the exit code is all that is left to say.
+    Write to standard output; whether anybody still reads. If nobody does, the exit code is all that is left to say.
 
-    color: whether escapes for color stay in the text; None where only a terminal shows them.
+    color: whether escapes for color stay in the text; None where only a terminal shows them. Raises OutputError where
+    it cannot be written: a full disk, a closed output.
     """
+    if sys.stdout is None:
+        raise OutputError("standard output is closed")
     try:
         click.echo(text, nl=False, color=color)
         sys.stdout.flush()
     except BrokenPipeError:
+        abandon_output()
+        return False
+    except OSError as error:
+        abandon_output()
+        raise OutputError(f"standard output: {error.strerror or error}") from None
+    return True
+
+
+def abandon_output() -> None:
+    """What is still to be written to standard output goes nowhere: at its end Python would try once more, and fail."""
+    with contextlib.suppress(OSError, ValueError, AttributeError):
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
@@ -35,11 +55,22 @@ def warn(message: str) -> None:
     say(f"warning: {message}")
 
 
-def say_lines(texts: Iterable[str]) -> None:
-    """The lines of texts on standard error, without a name before them."""
-    for text in texts:
-        for line in text.splitlines():
-            _tell(line)
+def said_of_bug(error: Exception, with_traceback: bool) -> list[str]:
+    """What polarcheck did wrong, as lines for `say_lines`; with a traceback for whoever mends it."""
+    if with_traceback:
+        import traceback
+
+        return [line for text in traceback.format_exception(error) for line in text.splitlines()]
+    where = "".join(f", {note}" for note in getattr(error, "__notes__", ()))
+    said = str(error)
+    said = said if len(said) <= _MOST_SAID else f"{said[:_MOST_SAID]}..."
+    return [f"polarcheck: internal error: {type(error).__name__}: {said}{where}; run with --debug for the traceback"]
+
+
+def say_lines(lines: Iterable[str]) -> None:
+    """Lines on standard error, without a name before them."""
+    for line in lines:
+        _tell(line)
 
 
 def _tell(line: str) -> None:
@@ -47,7 +78,14 @@ def _tell(line: str) -> None:
     # Its tables of characters are a library that most runs do not need.
     from polarcheck.reading.excerpt import visible
 
-    click.echo(visible(line), err=True)
+    # Where nobody can be told, the exit code is left.
+    with contextlib.suppress(OSError, ValueError):
+        click.echo(visible(line), err=True)
+
+
+def is_terminal(stream: TextIO | None) -> bool:
+    """Whether a standard stream is one; a process may be started without."""
+    return stream is not None and stream.isatty()
 
 
 def in_color(choice: str) -> bool:
@@ -56,12 +94,12 @@ def in_color(choice: str) -> bool:
         return choice == "always"
     if os.environ.get("NO_COLOR"):
         return False
-    return bool(os.environ.get("FORCE_COLOR")) or (sys.stdout.isatty() and os.environ.get("TERM") != "dumb")
+    return bool(os.environ.get("FORCE_COLOR")) or (is_terminal(sys.stdout) and os.environ.get("TERM") != "dumb")
 
 
 def columns() -> int:
     """The width of a report on standard output [characters]."""
-    if not sys.stdout.isatty():
+    if not is_terminal(sys.stdout):
         return COLUMNS
     import shutil
 

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Generator, Sequence
 from typing import TypeVar
+
+from polarcheck.commands.output import is_terminal
 
 #: Nobody needs a bar for less than this [s].
 _PATIENCE = 1.0
@@ -13,9 +15,9 @@ _PATIENCE = 1.0
 Element = TypeVar("Element")
 
 
-def watched(elements: Sequence[Element], is_shown: bool) -> Iterator[Element]:
+def watched(elements: Sequence[Element], is_shown: bool) -> Generator[Element, None, None]:
     """The elements one after the other; a bar on stderr, if that is a terminal, appears after the first second."""
-    if not is_shown or not sys.stderr.isatty():
+    if not is_shown or not is_terminal(sys.stderr):
         yield from elements
         return
     begun = time.monotonic()
@@ -26,7 +28,7 @@ def watched(elements: Sequence[Element], is_shown: bool) -> Iterator[Element]:
         yield element
 
 
-def _with_bar(elements: Sequence[Element], done: int) -> Iterator[Element]:
+def _with_bar(elements: Sequence[Element], done: int) -> Generator[Element, None, None]:
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TimeRemainingColumn
 

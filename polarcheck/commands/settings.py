@@ -97,11 +97,22 @@ def _changed(job: Job, options: Options) -> Job:
 def _settings(options: Options, found: JobFile, known: Rules) -> Settings:
     name = machine_name(options.machine, found)
     of_job = {"limits": found.job.limits} if found.job.limits else {}
-    machine = _machine(name, [("--set", changes(options.changes)), (str(found.path), of_job)], known)
+    profile = profiles.load(name, [("--set", changes(options.changes)), (str(found.path), of_job)])
+    selection.check_names(profile, known)
+    machine = profile.machine
     check_work_offsets(found.job, machine, str(found.path))
     levels = selection.severities(options.severities, options.select, found, known, machine)
     rules = selection.chosen(options.select, options.ignore, found, known, machine)
-    return Settings(name, machine, found.job, rules, levels)
+    return Settings(name, machine, found.job, rules, levels, _read(options, found, profile))
+
+
+def _read(options: Options, found: JobFile, profile: profiles.Profile) -> list[Path]:
+    """The job file, the offset tables and the machine files of the user's own."""
+    own = [Path(title) for title in profile.chain if title not in profiles.names()]
+    tables = [options.offsets] if options.offsets else []
+    if found.path is None:
+        return [*own, *tables]
+    return [*own, *tables, found.path, *([found.path.parent / found.job.offsets] if found.job.offsets else [])]
 
 
 def machine_name(asked: str | None, found: JobFile) -> str:

@@ -10,7 +10,7 @@ import sys
 from collections.abc import Callable, Collection, Iterable, Iterator
 from pathlib import Path
 
-from polarcheck.errors import PolarcheckError, SourceError
+from polarcheck.errors import OutputError, SourceError
 
 STANDARD_INPUT = "-"
 EXTENSIONS = (
@@ -75,11 +75,18 @@ def _is_folder(entry: os.DirEntry[str]) -> bool:
 
 def is_program(path: str, wanted: Collection[str]) -> bool:
     """Whether a file of a folder is an NC program, by its extension, its name, or its first lines."""
-    name = Path(path).name
-    suffix = os.path.splitext(name)[1].lower()  # noqa: PTH122  Path.suffix differs for names that end in a point
-    if suffix in wanted or re.fullmatch(_O_NAME, name):
+    if has_name_of_program(path, wanted):
         return not _is_special(path)
-    return suffix in _SNIFFED and not _is_special(path) and _looks_like_program(path)
+    return _suffix(path) in _SNIFFED and not _is_special(path) and _looks_like_program(path)
+
+
+def has_name_of_program(path: str, wanted: Collection[str]) -> bool:
+    """Whether the name alone is that of an NC program: one of these extensions, or an O-number."""
+    return _suffix(path) in wanted or re.fullmatch(_O_NAME, Path(path).name) is not None
+
+
+def _suffix(path: str) -> str:
+    return os.path.splitext(path)[1].lower()  # noqa: PTH122  Path.suffix differs for names that end in a point
 
 
 def _is_special(path: str) -> bool:
@@ -126,17 +133,27 @@ def write(path: Path, text: str) -> None:
     """
     Write a file whole or not at all, whoever reads it at that moment.
 
-    Raises PolarcheckError where it cannot be written.
+    Raises OutputError where it cannot be written.
     """
     data = text.encode("utf-8")
-    target = Path(os.path.realpath(path))
     try:
+        target = Path(os.path.realpath(path))
         if target.exists() and not target.is_file():
-            target.write_bytes(data)
+            _send(target, data)
         else:
             _replace(target, data)
-    except OSError as error:
-        raise PolarcheckError(f"{shown(str(path))}: {error.strerror or error}") from None
+    except (OSError, ValueError) as error:
+        said = getattr(error, "strerror", None) or error
+        raise OutputError(f"{shown(str(path))}: {said}") from None
+
+
+def _send(target: Path, data: bytes) -> None:
+    """To a device, or to a pipe that somebody reads: one that nobody reads would be waited for without end."""
+    handle = os.open(target, os.O_WRONLY | getattr(os, "O_NONBLOCK", 0))
+    if hasattr(os, "set_blocking"):
+        os.set_blocking(handle, True)
+    with os.fdopen(handle, "wb") as file:
+        file.write(data)
 
 
 def _replace(target: Path, data: bytes) -> None:
@@ -147,6 +164,9 @@ def _replace(target: Path, data: bytes) -> None:
     try:
         with os.fdopen(handle, "wb") as file:
             file.write(data)
+            file.flush()
+            # Else a machine that goes down could leave an empty file in the place of the old one.
+            os.fsync(file.fileno())
         beside.chmod(_mode(target))
         beside.replace(target)
     except BaseException:

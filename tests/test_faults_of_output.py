@@ -1,0 +1,297 @@
+"""Whatever happens to a run and to what it writes: no file of the user's is lost, and what is finished is kept."""
+
+from __future__ import annotations
+
+import gc
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import pytest
+
+import polarcheck
+from polarcheck.checking import batch
+from polarcheck.checking.rule import load_all
+from polarcheck.commands import settings
+from polarcheck.table.trace import Trace
+
+GOOD = "G98 G0 X60. C0\nG12.1\nG1 X40. F200\nC5.\nC-5.\nG13.1\n"
+RAPID = GOOD.replace("\nC5.", "\nG0 C5.")
+ONLY = ("--select", "rapid-in-polar")
+
+posix = pytest.mark.skipif(os.name == "nt", reason="there are no such signals, limits and devices")
+
+
+@pytest.fixture(autouse=True)
+def _in_a_folder_of_its_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    for name in list(os.environ):
+        if name.startswith("POLARCHECK_") or name in ("NO_COLOR", "FORCE_COLOR"):
+            monkeypatch.delenv(name)
+    for name, text in (("a.nc", RAPID), ("b.nc", GOOD)):
+        Path(name).write_text(text)
+
+
+def start(*arguments: str, **options: Any) -> subprocess.Popen[str]:
+    """The command as a process."""
+    environment = {**os.environ, "PYTHONPATH": os.fspath(Path(polarcheck.__file__).parent.parent)}
+    given: dict[str, Any] = {"stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
+    words = [sys.executable, "-m", "polarcheck", *arguments]
+    return subprocess.Popen(words, text=True, env=environment, **{**given, **options})
+
+
+def run(*arguments: str, **options: Any) -> tuple[int, str, str]:
+    """Exit code, standard output, standard error of the command."""
+    running = start(*arguments, **options)
+    shown, told = running.communicate(timeout=120)
+    return running.returncode, shown or "", told or ""
+
+
+def bounded(name: str, most: int) -> Callable[[], None]:
+    """What a process has to do at its start to have no more of something than this."""
+    import resource
+
+    return partial(resource.setrlimit, getattr(resource, name), (most, most))
+
+
+# ---- the user's files ----
+
+
+def test_a_report_never_takes_the_place_of_what_is_checked() -> None:
+    Path("link.json").symlink_to("a.nc")
+    os.link("a.nc", "twin.json")
+    for output, said in (
+        ("a.nc", "a.nc: it is read by this run"),
+        ("./a.nc", "a.nc: it is read by this run"),
+        ("link.json", "link.json: it is a.nc, which is read by this run"),
+        ("twin.json", "twin.json: it is a.nc, which is read by this run"),
+    ):
+        told = f"polarcheck: -o {said}; name another file\n"
+        assert run("check", "a.nc", "b.nc", "-o", f"json:{output}") == (2, "", told)
+        assert Path("a.nc").read_text() == RAPID
+
+
+def test_nor_of_what_settles_how_it_is_checked() -> None:
+    Path("own").mkdir()
+    texts = {
+        "polarcheck.toml": 'offsets = "table.txt"\n[run]\nsubprograms = ["own"]\n',
+        "table.txt": "G10 P10001 R4. Q0\n",
+        "lathe.toml": 'inherits = "fanuc"\n',
+        "more.txt": "G10 P10002 R4. Q0\n",
+        "own/1234": "O1234\nM99\n",
+    }
+    for name, text in texts.items():
+        Path(name).write_text(text)
+    for name in texts:
+        status, _, told = run(
+            "check", "b.nc", "--machine", "lathe.toml", "--offsets", "more.txt", "-o", f"concise:{name}"
+        )
+        assert status == 2, name
+        assert name in told
+    assert {name: Path(name).read_text() for name in texts} == texts
+
+
+@pytest.mark.parametrize("name", ["new.nc", "O1234", "O1234.bak", "pyproject.toml", "x.MPF"])
+def test_nor_has_it_the_name_of_a_program(name: str) -> None:
+    status, _, told = run("check", "b.nc", "-o", f"json:{name}")
+    assert (status, told.count("\n")) == (2, 1)
+    assert "this is the name of a program or of a job file" in told
+    assert not Path(name).exists()
+
+
+def test_two_reports_have_two_files() -> None:
+    status, _, told = run("check", "b.nc", *ONLY, "-o", "json:r.json", "-o", "concise:./r.json")
+    assert (status, told) == (2, "polarcheck: -o r.json: two reports would be written to this file\n")
+    assert run("check", "b.nc", *ONLY, "-o", "json:r.json", "-o", "concise:r.txt")[0] == 0
+    assert run("check", "b.nc", *ONLY, "-o", "json:r.json", "-o", "concise:r.txt")[0] == 0
+
+
+# ---- what cannot be written ----
+
+
+@posix
+@pytest.mark.parametrize(
+    "arguments",
+    [("check", "b.nc"), ("check", "b.nc", "--format", "json"), ("explain", "overcut"), ("--help",), ("--version",)],
+)
+def test_a_full_disk_behind_standard_output_is_one_line(arguments: tuple[str, ...]) -> None:
+    with open("/dev/full", "w") as full:  # noqa: PTH123
+        status, _, told = run(*arguments, stdout=full)
+    assert (status, told) == (2, "polarcheck: standard output: No space left on device\n")
+
+
+@posix
+def test_standard_output_may_be_closed() -> None:
+    status, _, told = run("check", "b.nc", *ONLY, "-o", "json:r.json", preexec_fn=partial(os.close, 1))
+    assert (status, told) == (2, "polarcheck: standard output is closed\n")
+    assert json.loads(Path("r.json").read_text())["summary"]["files"] == 1
+    assert run("check", "b.nc", *ONLY, preexec_fn=partial(os.close, 2))[0] == 0
+
+
+@posix
+def test_a_full_disk_keeps_the_report_of_last_time_and_shows_this_one() -> None:
+    Path("r.json").write_text("the last one")
+    Path("many.nc").write_text(RAPID * 3000)
+    most = bounded("RLIMIT_FSIZE", 100_000)
+    outputs = ("-o", "json:r.json", "-o", "short:s.txt")
+    status, shown, told = run("check", "many.nc", *ONLY, *outputs, preexec_fn=most)
+    assert (status, told) == (2, "polarcheck: r.json: File too large\n")
+    assert "1 file" in shown
+    assert Path("s.txt").read_text()
+    assert Path("r.json").read_text() == "the last one"
+    assert {path.name for path in Path().iterdir()} == {"a.nc", "b.nc", "many.nc", "r.json", "s.txt"}
+
+
+@posix
+def test_where_nothing_can_be_written_is_said_and_the_report_is_shown() -> None:
+    os.mkfifo("pipe")
+    Path("folder").mkdir()
+    for output in ("/proc/r.json", "pipe", "folder", "no/such/r.json", "a.nc/r.json", "/dev/full"):
+        status, shown, told = run("check", "b.nc", *ONLY, "-o", f"json:{output}")
+        assert status == 2, output
+        assert told.startswith(f"polarcheck: {output}: ")
+        assert told.count("\n") == 1
+        assert "b.nc" in shown
+
+
+@posix
+def test_a_pipe_that_is_read_gets_the_report() -> None:
+    os.mkfifo("pipe")
+    reader = subprocess.Popen(["cat", "pipe"], stdout=subprocess.PIPE, text=True)
+    handle = os.open("pipe", os.O_WRONLY)  # waits until it reads
+    assert run("check", "b.nc", *ONLY, "-o", "json:pipe")[0] == 0
+    os.close(handle)
+    assert json.loads(reader.communicate(timeout=30)[0])["summary"]["files"] == 1
+
+
+_WRITES = """
+import sys
+from pathlib import Path
+from polarcheck.reading import files
+print("begun", flush=True)
+while True:
+    for letter in "xy":
+        files.write(Path("r.json"), letter * 3_000_000)
+"""
+
+
+@posix
+def test_a_kill_leaves_the_old_report_or_the_new_one() -> None:
+    whole = {"z", "x" * 3_000_000, "y" * 3_000_000}
+    Path("r.json").write_text("z")
+    for number in range(6):
+        environment = {**os.environ, "PYTHONPATH": os.fspath(Path(polarcheck.__file__).parent.parent)}
+        words = [sys.executable, "-c", _WRITES]
+        with subprocess.Popen(words, env=environment, stdout=subprocess.PIPE, text=True) as running:
+            assert running.stdout is not None
+            running.stdout.readline()
+            time.sleep(0.003 * number)
+            running.kill()
+        assert Path("r.json").read_text() in whole
+
+
+def test_two_runs_may_write_one_report() -> None:
+    Path("more.nc").write_text(RAPID * 200)
+    running = [start("check", name, *ONLY, "-o", "json:r.json") for name in ("a.nc", "b.nc", "more.nc", "a.nc")]
+    for one in running:
+        one.communicate(timeout=120)
+    (found,) = json.loads(Path("r.json").read_text())["files"]
+    assert found["path"] in ("a.nc", "b.nc", "more.nc")
+    assert {path.name for path in Path().iterdir()} == {"a.nc", "b.nc", "more.nc", "r.json"}
+
+
+# ---- interrupts ----
+
+
+@posix
+@pytest.mark.parametrize(
+    ("number", "status", "how"), [(signal.SIGINT, 130, "interrupted"), (signal.SIGTERM, 143, "terminated")]
+)
+def test_what_is_finished_is_kept(number: int, status: int, how: str) -> None:
+    """A shell that starts something in the background has it ignore the interrupt, which is inherited."""
+    heed = partial(signal.signal, number, signal.SIG_DFL)
+    arguments = ("check", "a.nc", "b.nc", "-", "--format", "concise", *ONLY, "-o", "json:r.json")
+    running = start(*arguments, stdin=subprocess.PIPE, preexec_fn=heed)
+    assert running.stdin is not None
+    # More than a pipe holds: once it is written, the process is reading it, and without an end it waits for more.
+    running.stdin.write(GOOD + "\n" * 2**20)
+    running.stdin.flush()
+    running.send_signal(number)
+    shown, told = running.communicate(timeout=60)
+    assert running.returncode == status
+    assert told == f"polarcheck: {how} after 2 of 3 files; these are reported\n"
+    assert "a.nc:4:1: error" in shown
+    assert [file["path"] for file in json.loads(Path("r.json").read_text())["files"]] == ["a.nc", "b.nc"]
+
+
+# ---- what goes wrong in one file ----
+
+
+def checked(bad: Exception, monkeypatch: pytest.MonkeyPatch) -> tuple[batch.Checked, list[str], list[Exception]]:
+    """Three files, the second of which makes a rule raise; what is told and what is a bug."""
+
+    def rapid(trace: Trace) -> Any:
+        if trace.text.source.path == "b.nc":
+            raise bad
+        return trace.in_polar & False
+
+    known = load_all()
+    monkeypatch.setitem(known, "rapid-in-polar", msgspec.structs.replace(known["rapid-in-polar"], function=rapid))
+    Path("c.nc").write_text(GOOD)
+    told: list[str] = []
+    bugs: list[Exception] = []
+    tasks = batch.plan(["a.nc", "b.nc", "c.nc"], settings.in_folders(settings.Options()), (), told.append, told.append)
+    return batch.check_files(tasks, told.append, bugs.append), told, bugs
+
+
+def test_a_bug_costs_its_file_only(monkeypatch: pytest.MonkeyPatch) -> None:
+    found, told, bugs = checked(ZeroDivisionError("division by zero"), monkeypatch)
+    assert [file.path for file in found.files] == ["a.nc", "c.nc"]
+    assert told == []
+    assert [(type(bug), bug.__notes__) for bug in bugs] == [(ZeroDivisionError, ["while checking b.nc"])]
+
+
+def test_too_little_memory_costs_its_file_only(monkeypatch: pytest.MonkeyPatch) -> None:
+    found, told, bugs = checked(MemoryError(), monkeypatch)
+    assert [file.path for file in found.files] == ["a.nc", "c.nc"]
+    assert told == ["b.nc: there is not enough memory to check it"]
+    assert bugs == []
+
+
+@posix
+def test_a_file_that_needs_more_memory_than_there_is_costs_itself_only() -> None:
+    Path("huge.nc").write_text(GOOD + "G0 X1.5 Z2.5\n" * 3_000_000)
+    status, shown, told = run(
+        "check", "a.nc", "huge.nc", "b.nc", *ONLY, "--format", "concise", "-o", "json:r.json",
+        preexec_fn=bounded("RLIMIT_DATA", 500_000_000),
+    )  # fmt: skip
+    assert (status, told) == (2, "polarcheck: huge.nc: there is not enough memory to check it\n")
+    assert "a.nc:4:1: error" in shown
+    assert [file["path"] for file in json.loads(Path("r.json").read_text())["files"]] == ["a.nc", "b.nc"]
+
+
+def test_no_table_of_a_file_outlives_the_next() -> None:
+    told: list[str] = []
+    (task,) = batch.plan(["a.nc"], settings.in_folders(settings.Options()), (), told.append, told.append)
+    living = []
+
+    def tasks() -> Iterator[batch.Task]:
+        for _ in range(5):
+            living.append(sum(isinstance(one, Trace) for one in gc.get_objects()))
+            yield task
+
+    gc.collect()
+    gc.disable()
+    try:
+        batch.check_files(tasks(), told.append, print)
+    finally:
+        gc.enable()
+    assert living[2] == living[3] == living[4] <= living[0] + 1
