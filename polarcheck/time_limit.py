@@ -10,6 +10,14 @@ from typing import NamedTuple
 
 from polarcheck.errors import TooHardError
 
+#: A file of this size has the seconds asked for, a larger one as many times that [bytes].
+_BYTES_OF_A_TURN = 1_000_000
+
+
+def seconds_for(size: int, asked: float) -> float:
+    """How long a file of this size [bytes] may take, where one of usual size may take the seconds asked for [s]."""
+    return asked * max(1.0, size / _BYTES_OF_A_TURN)
+
 
 class _Limit(NamedTuple):
     """When the time is over, on the clock of time.monotonic [s], and how long it was [s]."""

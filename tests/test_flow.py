@@ -124,12 +124,12 @@ UNBOUNDED = {"max_blocks": 10**9, "max_statements": 10**9, "max_seconds": 1e9}
 @pytest.mark.parametrize(
     ("bound", "text", "blocks"),
     [
-        ({"max_blocks": 1000}, "1000 executed blocks", 1000),
-        ({"max_statements": 1000}, "1000 macro statements and calls", 333),
+        ({"max_blocks": 1000}, "1000 blocks more than the file has", 1008),
+        ({"max_statements": 1000}, "1000 macro statements and calls more than the file has", 338),
     ],
 )
 def test_bounds_are_kept(bound: dict[str, int], text: str, blocks: int) -> None:
-    """A turn of the loop is one block and three statements."""
+    """A turn of the loop is one block and three statements; what the file has itself is eight and five, each thrice."""
     report = report_of(ENDLESS["while"], job={"run": {**UNBOUNDED, **bound}})
     assert [finding.rule for finding in report.findings] == ["endless-loop"]
     assert f"after {text};" in report.findings[0].message
@@ -144,6 +144,26 @@ def test_time_is_a_bound(monkeypatch: pytest.MonkeyPatch) -> None:
     assert [finding.rule for finding in report.findings] == ["endless-loop"]
     assert "after 5 seconds;" in report.findings[0].message
     assert report.blocks < 1000
+
+
+@pytest.mark.parametrize("lines", ["#100=#100+1.5", "G0 X50.\nM98 P2", "/G0 X50."])
+def test_no_file_is_too_long_by_what_is_written_in_it(lines: str) -> None:
+    program = "O1\n" + f"{lines}\n" * 400 + "M30\nO2\nG1 X40. F100\nM99\n"
+    report = report_of(program, job={"run": {"max_blocks": 1200, "max_statements": 200}}, only=["macro", "polar"])
+    assert said(report) == []
+    assert report.verdict == "pass"
+
+
+def test_who_comes_to_a_bound_is_not_said_to_be_wrong() -> None:
+    """It may end a turn later: the file is unverified, and only what comes back with nothing changed never ends."""
+    counts = "O1\n#1=0\nWHILE[#1LT900]DO1\n#1=#1+1\nG0 X50.\nEND1\nM30\n"
+    assert report_of(counts, only=["macro"]).verdict == "pass"
+    report = report_of(counts, only=["macro"], job={"run": {"max_blocks": 400}})
+    assert [(found.rule, found.severity) for found in report.findings] == [("endless-loop", "warning")]
+    assert report.verdict == "unverified"
+    report = report_of(counts.replace("#1=#1+1\n", ""), only=["macro"])
+    assert [(found.rule, found.severity) for found in report.findings] == [("endless-loop", "error")]
+    assert report.verdict == "fail"
 
 
 def test_block_skip_is_judged_both_ways() -> None:
@@ -198,7 +218,7 @@ def test_an_endless_program_is_no_fault_of_those_behind_it() -> None:
     endless = "O{0}\nN10 G0 X50.\nX60.\n#1=#1+1\nGOTO10\nM30\n"
     sound = "O{0}\n#1=0\nWHILE[#1LT9]DO1\n#1=#1+1\nEND1\nG0 X50.\nM30\n"
     report = report_of(endless.format(1) + sound.format(2) + sound.format(3))
-    assert [(found.line, found.rule) for found in report.findings] == [(4, "endless-loop")]
+    assert [(found.line, found.rule) for found in report.findings] == [(5, "endless-loop")]
     many = "".join(endless.format(number) for number in range(1, 9)) + sound.format(9)
     lines = [found.line for found in report_of(many).findings if found.rule == "endless-loop"]
     assert len(lines) == 8

@@ -15,15 +15,12 @@ from polarcheck.checking.finding import FileReport, Producer, Report, Summary
 from polarcheck.checking.settings import Settings
 from polarcheck.checking.tables import Tables
 from polarcheck.errors import SourceError, TooHardError
-from polarcheck.machines.job import Job
 from polarcheck.reading import files
 from polarcheck.reading.source import Source
 from polarcheck.reading.words import Text
-from polarcheck.time_limit import time_limit
+from polarcheck.time_limit import seconds_for, time_limit
 
 SCHEMA = 1
-#: A file of this size has max_seconds, a larger one as many times that [bytes]; checked are some 10 MB a second.
-_BYTES_OF_A_TURN = 1_000_000
 
 Tell = Callable[[str], None]
 
@@ -118,16 +115,11 @@ def check_files(
 def _check(task: Task, data: bytes, encoding: str | None) -> tuple[FileReport, Source, set[int]]:
     """The report, the text, and the offset numbers that are called, where the job has any."""
     path, settings = files.shown(task.path), task.settings
-    with time_limit(seconds_for(data, settings.job)):
+    with time_limit(seconds_for(len(data), settings.job.run.max_seconds)):
         found = check.read(data, settings.machine, settings.job, path, encoding)
         text: Text = found[0][1]["text"]
         report = check.check_runs(found, settings.rules, settings.severities)
         return report, text.source, _offsets(found) if settings.job.tools else set()
-
-
-def seconds_for(data: bytes, job: Job) -> float:
-    """What the check of a file may take, before that is given up which takes so long [s]: a large file takes longer."""
-    return job.run.max_seconds * max(1, len(data) / _BYTES_OF_A_TURN)
 
 
 def _offsets(found: Sequence[tuple[str, Tables]]) -> set[int]:

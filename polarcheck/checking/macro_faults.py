@@ -14,6 +14,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from polarcheck.arrays import Mask
 from polarcheck.execution.kinds import FaultKind, RemarkKind
 from polarcheck.execution.programs import find_programs
 from polarcheck.execution.run import Remark, Run
@@ -70,6 +71,7 @@ RULES: Final[Mapping[FaultKind, str]] = {
 }
 
 _ENDLESS = "endless-loop"
+_BOUNDS = ("too-many-blocks", "too-many-statements", "runs-too-long", "too-many-repeats")
 
 #: Where a rule reports several kinds: what is wrong, to follow the words at fault or to stand for itself.
 _REASONS: Final[Mapping[FaultKind, str]] = {
@@ -107,9 +109,12 @@ _REASONS: Final[Mapping[FaultKind, str]] = {
     "loops-crossed": "DO{number} begins inside the loop of DO{other} and ends outside it",
     "loop-inside-itself": "DO{number} stands inside the loop of another DO{number}",
     "nothing-changes": "comes back here with no variable changed since the last time: it never ends until it is reset",
-    "too-many-blocks": "is still reached after {limit} executed blocks; the rest is not executed (--max-blocks)",
+    "too-many-blocks": (
+        "is still reached after {limit} blocks more than the file has; the rest is not executed (--max-blocks)"
+    ),
     "too-many-statements": (
-        "is still reached after {limit} macro statements and calls; the rest is not executed (--max-statements)"
+        "is still reached after {limit} macro statements and calls more than the file has; the rest is not executed "
+        "(--max-statements)"
     ),
     "runs-too-long": "is still reached after {limit:g} seconds; the rest is not executed (--max-seconds)",
     "too-many-repeats": (
@@ -159,6 +164,11 @@ class Faults:
             rules.append("" if key in said else rule)
             said.add(key)
         return np.array(rules, np.str_)
+
+    @property
+    def is_bound(self) -> Mask:
+        """Where a run was broken off at a bound of this check, which the control does not have."""
+        return np.isin(self.kind, _BOUNDS)
 
     @cached_property
     def _first_blocks(self) -> list[int]:

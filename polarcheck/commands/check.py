@@ -83,7 +83,11 @@ def _outputs(ctx: click.Context, parameter: click.Parameter, values: tuple[str, 
 @options.no_config
 @option("--block-skip", type=click.Choice(["off", "on", "both"]), help="Of blocks with /; both is the default.")
 @options.subprograms
-@option("--max-blocks", type=click.IntRange(1, 10**12), help="Executed blocks after which a program counts as endless.")
+@option(
+    "--max-blocks",
+    type=click.IntRange(1, 10**12),
+    help="Executed blocks, beyond those of the file, after which a run is given up.",
+)
 @option("--max-statements", type=click.IntRange(1, 10**12), help="The same for macro statements and calls.")
 @option(
     "--max-seconds",

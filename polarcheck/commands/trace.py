@@ -36,15 +36,15 @@ def trace(path: str, which: str | None, form: str, no_config: bool, encoding: st
     with G41 or G42 while the radius is not known is shown as programmed: those moves have "programmed" under path, and
     a line on standard error says what to give.
     """
-    from polarcheck.checking import batch, check
+    from polarcheck.checking import check
     from polarcheck.commands import settings
     from polarcheck.reading import files
     from polarcheck.reports.pages import executed
-    from polarcheck.time_limit import time_limit
+    from polarcheck.time_limit import seconds_for, time_limit
 
     found = settings.in_folders(settings.Options(use_config=not no_config, **asked))(Path(path).parent)
     data = files.read(path)
-    with time_limit(batch.seconds_for(data, found.job)):
+    with time_limit(seconds_for(len(data), found.job.run.max_seconds)):
         tables = check.read(data, found.machine, found.job, files.shown(path), encoding)[0][1]
         of_path = (tables["trace"], tables["tool_center"])
         items = executed.moves(*of_path, which) if which else executed.rows(*of_path)

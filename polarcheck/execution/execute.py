@@ -20,10 +20,13 @@ from polarcheck.execution.run import Remark
 from polarcheck.execution.statement import Kind, Statement, Word
 from polarcheck.machines.codes import code_numbers, code_set
 from polarcheck.machines.job import Running
+from polarcheck.time_limit import seconds_for
 
 #: So many endless programs of a file get all the statements that are asked for, those behind them so many each.
 _ENDLESS = 4
 _LEAST = 1000
+#: A statement that calls counts, and so do the return and the way back.
+_OF_CALL = 3
 
 
 class Execution(Calls):
@@ -51,9 +54,10 @@ class Execution(Calls):
         self.stack: list[Level] = []
         self.changes = 0
         self._count = self._total = 0
-        self._allowed = asked.max_statements
+        self._allowed, self._own = asked.max_statements, _OF_CALL * len(listing.stops)
         self._last_change: dict[tuple[int, int], int] = {}
-        self._began = time.monotonic()
+        self._seconds = seconds_for(len(listing.text.source.code), asked.max_seconds)
+        self._end = time.monotonic() + self._seconds
 
     # ---- the programs of the file ----
 
@@ -93,6 +97,7 @@ class Execution(Calls):
         # An endless program must not be the fault of those behind it; of many, the later ones get less.
         most = self.asked.max_statements
         self._total += self._count
+        self._own = max(_OF_CALL * len(listing.stops) - self._total, 0)
         self._count, self._allowed = 0, most if self._total <= _ENDLESS * most else min(_LEAST, most)
         self.stack = [Level(program)]
         self.rows.start_program()
@@ -137,15 +142,19 @@ class Execution(Calls):
     # ---- bounds, faults, remarks ----
 
     def bound(self, block: int) -> None:
-        """Break off at a bound: a check never hangs."""
+        """
+        Break off at a bound: a check never hangs.
+
+        Beyond the bound a file may run what it has itself, once: none is too long by what is written in it.
+        """
         self._count += 1
-        asked = self.asked
-        if len(self.rows) > asked.max_blocks:
+        asked, listing = self.asked, self.listing
+        if len(self.rows) > asked.max_blocks + len(listing.text.blocks):
             self.endless("too-many-blocks", block, limit=asked.max_blocks)
-        elif self._count > self._allowed:
+        elif self._count > self._allowed + self._own:
             self.endless("too-many-statements", block, limit=self._allowed)
-        elif self._count % 256 == 0 and time.monotonic() - self._began > asked.max_seconds:
-            self.endless("runs-too-long", block, limit=asked.max_seconds)
+        elif self._count % 256 == 0 and time.monotonic() > self._end:
+            self.endless("runs-too-long", block, limit=self._seconds)
 
     def endless(self, kind: FaultKind, block: int, **values: str | int | float) -> None:
         """Say that the run does not end by itself, and end it."""

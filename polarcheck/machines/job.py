@@ -76,10 +76,12 @@ class Running(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     subprograms: Annotated[
         list[str], msgspec.Meta(description="folders in which called programs are looked for, and nowhere else")
     ] = []
-    max_blocks: Annotated[int, msgspec.Meta(ge=1, le=_MOST, description="executed blocks")] = 200_000
-    max_statements: Annotated[int, msgspec.Meta(ge=1, le=_MOST, description="macro statements, calls and returns")] = (
-        50_000
+    max_blocks: Annotated[int, msgspec.Meta(ge=1, le=_MOST, description="executed blocks beyond those of the file")] = (
+        200_000
     )
+    max_statements: Annotated[
+        int, msgspec.Meta(ge=1, le=_MOST, description="macro statements, calls and returns, likewise")
+    ] = 50_000
     max_seconds: Annotated[float, msgspec.Meta(gt=0)] = 20.0
     variables: Annotated[dict[Variable, float], msgspec.Meta(description="values of #-variables, by number")] = {}
 

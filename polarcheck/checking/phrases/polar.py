@@ -50,9 +50,8 @@ def missing_before(trace: Trace, index: int) -> str:
 
 def others(trace: Trace, at: list[int]) -> str:
     """The words at fault as they are written."""
-    words = [executed_word(trace, index) for index in at]
-    more = f" and {len(words) - _LISTED} more" if len(words) > _LISTED else ""
-    return " ".join(words[:_LISTED]) + more
+    more = f" and {len(at) - _LISTED} more" if len(at) > _LISTED else ""
+    return " ".join(executed_word(trace, index) for index in at[:_LISTED]) + more
 
 
 def what_z_does(machine: Machine) -> str:

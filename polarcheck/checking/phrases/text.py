@@ -64,9 +64,11 @@ def repeated(text: Text, index: int) -> str:
     words = text.words
     low, high = np.searchsorted(words.block, (words.block[index], words.block[index] + 1))
     same = low + np.flatnonzero(words.address[low:high] == words.address[index])
-    spans = zip(words.start[same].tolist(), words.end[same].tolist(), strict=True)
+    # A line of 50 MB may be one block: only what is listed is taken out of it.
+    listed = same if len(same) <= _LISTED + 1 else np.append(same[:_LISTED], same[-1])
+    spans = zip(words.start[listed].tolist(), words.end[listed].tolist(), strict=True)
     *others, last = (short(squeezed(text.source.excerpt(start, end))) for start, end in spans)
-    others = others if len(others) <= _LISTED else [*others[:_LISTED], "..."]
+    others = others if len(listed) == len(same) else [*others, "..."]
     letter = chr(int(words.address[index]))
     address = f",{letter.upper()}" if letter.islower() else letter
     often = "twice" if len(same) == 2 else f"{len(same)} times"

@@ -1,16 +1,17 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Faults, Mask, rule
+from polarcheck.checking.rule import ERROR, Faults, Hits, graded, rule
 
 
 @rule(ERROR, "{shown} {reason}", over="faults")
-def endless_loop(faults: Faults) -> Mask:
+def endless_loop(faults: Faults) -> Hits:
     """
     Program that never ends.
 
     A jump or loop that comes back again and again with nothing changed never ends; the machine repeats it until it is
-    reset. Also reported where a program is still running after the blocks, statements or seconds that a check may take
-    (--max-blocks, --max-statements, --max-seconds): what comes after that is not checked.
+    reset. A warning where a program is still running after the blocks or statements that a check may take beyond those
+    of the file itself, or after its seconds (--max-blocks, --max-statements, --max-seconds): it may end later, but what
+    comes after that is not checked, and the file is unverified.
 
     Source: FANUC B-62754EN/01, chapter 16.
 
@@ -50,4 +51,6 @@ def endless_loop(faults: Faults) -> Mask:
         END1
         M30
     """
-    return faults.rule == "endless-loop"
+    found = faults.rule == "endless-loop"
+    bounded = found & faults.is_bound
+    return graded(error=found & ~bounded, warning=bounded, undecided=bounded)
