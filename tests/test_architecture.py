@@ -25,7 +25,7 @@ ORDER = (
     ("geometry",),
     ("machines",),
     ("time_limit",),
-    ("arrays", "errors"),
+    ("arrays", "bounded", "errors"),
 )
 FLOOR = {name: number for number, names in enumerate(reversed(ORDER)) for name in names}
 LINE_LIMIT = 420
