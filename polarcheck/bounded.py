@@ -7,11 +7,11 @@ import errno
 import os
 import stat
 from collections.abc import Callable
-from pathlib import Path
 from typing import BinaryIO
 
 #: Read at once, where the size is not known [bytes].
 _CHUNK = 1 << 20
+_UNITS = ((10**9, "GB"), (10**6, "MB"), (10**3, "kB"))
 #: How long a pipe may be open with nobody at its other end [ms].
 _PATIENCE = 1000
 # Not blocking: a pipe without a writer would keep open() for ever.
@@ -25,10 +25,11 @@ def read(path: str | os.PathLike[str], most: int, remark: str, *, pipes: bool = 
     remark: what is said of a larger file behind `larger than 1 MB; `. pipes: whether a pipe is read, too, as a shell
     hands over `<(...)`; devices and folders never are, nor a pipe that nobody writes to.
 
-    Raises OSError, whose strerror says in plain words what is wrong: also for a name that no file can have.
+    Raises OSError, whose strerror says in plain words what is wrong: also for a name that no file can have, and for a
+    file that is written to meanwhile. One that is replaced is the old one or the new one.
     """
     try:
-        _refuse(Path(path).stat().st_mode, pipes)  # some devices act as soon as they are opened
+        _refuse(os.stat(path).st_mode, pipes)  # noqa: PTH116  some devices act as soon as they are opened; Path("") is "."
         descriptor = os.open(path, _FLAGS)
     except ValueError:
         raise OSError(errno.EINVAL, "no file can have this name") from None
@@ -38,7 +39,10 @@ def read(path: str | os.PathLike[str], most: int, remark: str, *, pipes: bool = 
         if status.st_size > most:
             raise _too_large(most, remark)
         head = _head_of_pipe(descriptor) if stat.S_ISFIFO(status.st_mode) else b""
-        return _whole(lambda count: os.read(descriptor, count), status.st_size + 1, most, remark, head)
+        data = _whole(lambda count: os.read(descriptor, count), status.st_size + 1, most, remark, head)
+        if stat.S_ISREG(status.st_mode) and _version(os.fstat(descriptor)) != _version(status):
+            raise OSError(errno.EAGAIN, "was changed while it was read")
+        return data
     finally:
         os.close(descriptor)
 
@@ -49,12 +53,20 @@ def read_stream(stream: BinaryIO, most: int, remark: str) -> bytes:
 
     Raises OSError as read does.
     """
-    return _whole(stream.read, _CHUNK, most, remark)
+    import select
+
+    def some(count: int) -> bytes:
+        while (found := stream.read(count)) is None:  # nothing yet: whoever opened it does not want to wait
+            select.select([stream], [], [])
+        return found
+
+    return _whole(some, _CHUNK, most, remark)
 
 
 def megabytes(size: int) -> str:
-    """A limit as messages name it: `16 MB`."""
-    return f"{size / 1e6:g} MB"
+    """A limit as messages name it: `16 MB`, `2 GB`, `100 kB`, `64 bytes`."""
+    unit, name = next(((unit, name) for unit, name in _UNITS if size >= unit), (1, "bytes"))
+    return f"{size / unit:.15g} {name}"
 
 
 def _refuse(mode: int, pipes: bool) -> None:
@@ -62,7 +74,12 @@ def _refuse(mode: int, pipes: bool) -> None:
         return
     if stat.S_ISDIR(mode):
         raise OSError(errno.EISDIR, "is a folder, not a file")
-    raise OSError(errno.EINVAL, f"is a {'pipe' if stat.S_ISFIFO(mode) else 'device'}, not a file")
+    kind = "pipe" if stat.S_ISFIFO(mode) else "socket" if stat.S_ISSOCK(mode) else "device"
+    raise OSError(errno.EINVAL, f"is a {kind}, not a file")
+
+
+def _version(status: os.stat_result) -> tuple[int, int]:
+    return status.st_size, status.st_mtime_ns
 
 
 def _head_of_pipe(descriptor: int) -> bytes:

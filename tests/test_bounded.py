@@ -191,3 +191,44 @@ def test_a_stream_that_trickles() -> None:
     with os.fdopen(ours, "rb") as stream:
         assert bounded.read_stream(stream, 5, "") == b"G0X1."
     writer.join()
+
+
+@needs_pipes
+def test_a_stream_that_does_not_want_to_wait_is_waited_for() -> None:
+    ours, theirs = os.pipe()
+    os.set_blocking(ours, False)
+
+    def write() -> None:
+        for part in (b"G0 ", b"X1."):
+            time.sleep(0.1)
+            os.write(theirs, part)
+        os.close(theirs)
+
+    writer = threading.Thread(target=write)
+    writer.start()
+    with os.fdopen(ours, "rb") as stream:
+        assert bounded.read_stream(stream, LIMIT, "") == b"G0 X1."
+    writer.join()
+
+
+@needs_pipes
+def test_a_file_that_is_written_to_while_it_is_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "a.toml"
+    path.write_bytes(b"x" * 10)
+    os.utime(path, (1, 1))
+    read = os.read
+
+    def overwritten(descriptor: int, count: int) -> bytes:
+        path.write_bytes(b"y" * 10)
+        return read(descriptor, count)
+
+    monkeypatch.setattr(os, "read", overwritten)
+    assert objection(path) == "was changed while it was read"
+
+
+@pytest.mark.parametrize(
+    ("size", "name"),
+    [(1, "1 bytes"), (999, "999 bytes"), (1500, "1.5 kB"), (512_000_000, "512 MB"), (2 * 10**9, "2 GB")],
+)
+def test_limits_are_named_in_round_numbers(size: int, name: str) -> None:
+    assert bounded.megabytes(size) == name
