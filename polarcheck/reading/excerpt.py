@@ -5,6 +5,8 @@ from __future__ import annotations
 import unicodedata
 from typing import NamedTuple
 
+from polarcheck.reading.names import code, with_characters
+
 _TAB = 4
 _CUT = "..."
 #: Before the fault this many characters are kept of a line that is too long.
@@ -21,7 +23,7 @@ class Excerpt(NamedTuple):
 
 def visible(text: str) -> str:
     """The text with every control, invisible or direction-changing character spelled out, as in `\\x1b`."""
-    return text if text.isprintable() else "".join(map(_shown, text))
+    return text if text.isprintable() else "".join(map(_shown, with_characters(text)))
 
 
 def cells(text: str) -> int:
@@ -67,10 +69,7 @@ def _expanded(character: str, width: int) -> str:
 
 
 def _shown(character: str) -> str:
-    if character.isprintable():
-        return character
-    number = ord(character)
-    return f"\\x{number:02x}" if number < 256 else f"\\u{number:04x}" if number < 65536 else f"\\U{number:08x}"
+    return character if character.isprintable() else code(character)
 
 
 def _cells(character: str) -> int:

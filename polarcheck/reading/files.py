@@ -11,6 +11,7 @@ from collections.abc import Callable, Collection, Iterable, Iterator
 from pathlib import Path
 
 from polarcheck.errors import OutputError, SourceError
+from polarcheck.reading.names import spelled
 
 STANDARD_INPUT = "-"
 EXTENSIONS = (
@@ -124,9 +125,12 @@ def read(path: str) -> bytes:
 
 
 def shown(path: str) -> str:
-    """A path as reports hold it: with slashes, and with the bytes spelled out that are no characters."""
-    text = path.encode("utf-8", "surrogateescape").decode("utf-8", "backslashreplace")
-    return text.replace(os.sep, "/") if os.sep != "/" else text
+    """
+    A path as reports hold it: with slashes, and with the bytes spelled out that are no characters.
+
+    No two paths are shown as one.
+    """
+    return spelled(path.replace(os.sep, "/"))
 
 
 def write(path: Path, text: str) -> None:

@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 
+from polarcheck.reading.names import with_characters
+
 if TYPE_CHECKING:
     from polarcheck.checking.finding import Report
     from polarcheck.reports import Background
@@ -30,7 +32,7 @@ def json(report: Report, background: Background | None = None) -> str:
 def _encodable(value: Any) -> Any:
     """Half characters, which some encodings can spell but JSON cannot hold, are spelled out."""
     if isinstance(value, str):
-        return value.encode("utf-8", "backslashreplace").decode()
+        return with_characters(value).encode("utf-8", "backslashreplace").decode()
     if isinstance(value, list):
         return [_encodable(element) for element in value]
     return {key: _encodable(element) for key, element in value.items()} if isinstance(value, dict) else value

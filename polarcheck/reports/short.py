@@ -35,5 +35,6 @@ def _lines(report: Report, background: Background) -> Iterator[str]:
     for verdict, told in _FULL.items():
         paths = [file.path for file in report.files if file.verdict == verdict and file.path != STANDARD_INPUT]
         if paths:
-            full = visible(f"{told}: {background.command} {shlex.quote(paths[0])}")
+            name = f"./{paths[0]}" if paths[0].startswith("-") else paths[0]
+            full = visible(f"{told}: {background.command} {shlex.quote(name)}")
             yield painted("aside", full) if background.color else full

@@ -1,0 +1,43 @@
+"""Names of files as text: some hold bytes that are no characters, or what a locale does not know as characters."""
+
+from __future__ import annotations
+
+import re
+
+#: Bytes that the locale has no character for, as Python holds them.
+_BYTES = re.compile("[\udc80-\udcff]+")
+_FIRST_BYTE = 0xDC00
+#: What looks as if it had been spelled out.
+_SPELLED = re.compile(r"\\[xuU]")
+
+
+def spelled(name: str) -> str:
+    """
+    A name of which all are characters: bytes that are none stand as `\\xff`.
+
+    No two names become one, nor do they where they are made visible: in a name with something to spell out, or that
+    looks as if it had been, backslashes double.
+    """
+    text = with_characters(name)
+    return text if text.isprintable() and not _SPELLED.search(text) else "".join(map(_in_text, text))
+
+
+def with_characters(name: str) -> str:
+    """A name with the characters that its bytes mean in UTF-8, where the locale knows of ASCII alone."""
+    return name if name.isascii() else _BYTES.sub(_decoded, name)
+
+
+def code(character: str) -> str:
+    """A character that cannot be shown, or a byte that is none, by its number: `\\x1b`, `\\u202e`."""
+    number = ord(character)
+    if _BYTES.match(character):
+        number -= _FIRST_BYTE
+    return f"\\x{number:02x}" if number < 256 else f"\\u{number:04x}" if number < 65536 else f"\\U{number:08x}"
+
+
+def _in_text(character: str) -> str:
+    return character * 2 if character == "\\" else code(character) if "\ud800" <= character <= "\udfff" else character
+
+
+def _decoded(found: re.Match[str]) -> str:
+    return found[0].encode("utf-8", "surrogateescape").decode("utf-8", "surrogateescape")
