@@ -40,31 +40,37 @@ def walk(folder: str, wanted: Collection[str], failed: Callable[[str], None]) ->
     Hidden files and folders are passed over; a folder that links lead to twice is entered once. failed is told, in one
     line, of folders that cannot be read.
     """
-    yield from _walk(folder, frozenset(wanted), failed, set())
+    wanted = frozenset(wanted)
+    seen: set[tuple[int, int]] = set()
+    # Folders can be nested deeper than functions: the innermost one stands at the end.
+    left = [iter(_entries(folder, seen, failed))]
+    while left:
+        entry = next(left[-1], None)
+        if entry is None:
+            left.pop()
+            continue
+        if entry.name.startswith(".") or entry.name in _SKIPPED_FOLDERS:
+            continue
+        path = entry.path if folder != "." else entry.path.removeprefix(f".{os.sep}")
+        if _is_folder(entry):
+            left.append(iter(_entries(path, seen, failed)))
+        elif is_program(path, wanted):
+            yield path if path != STANDARD_INPUT else entry.path
 
 
-def _walk(
-    folder: str, wanted: frozenset[str], failed: Callable[[str], None], seen: set[tuple[int, int]]
-) -> Iterator[str]:
+def _entries(folder: str, seen: set[tuple[int, int]], failed: Callable[[str], None]) -> list[os.DirEntry[str]]:
+    """What lies in a folder, by name; nothing where it has been seen or cannot be read."""
     try:
         status = Path(folder).stat()
         identity = (status.st_dev, status.st_ino)
         if identity in seen:
-            return
+            return []
         seen.add(identity)
         with os.scandir(folder) as found:
-            entries = sorted(found, key=lambda entry: entry.name)
+            return sorted(found, key=lambda entry: entry.name)
     except OSError as error:
-        failed(f"{folder}: {error.strerror}")
-        return
-    for entry in entries:
-        if entry.name.startswith(".") or entry.name in _SKIPPED_FOLDERS:
-            continue
-        path = entry.name if folder == "." else os.path.join(folder, entry.name)  # noqa: PTH118  pathlib rewrites paths
-        if _is_folder(entry):
-            yield from _walk(path, wanted, failed, seen)
-        elif is_program(path, wanted):
-            yield path
+        failed(f"{shown(folder)}: {error.strerror}")
+        return []
 
 
 def _is_folder(entry: os.DirEntry[str]) -> bool:
