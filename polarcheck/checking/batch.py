@@ -52,21 +52,28 @@ def plan(
     """
     The programs of files, folders and standard input (`-`), each once, in the order asked for.
 
+    Paths that mean the same file are one program, under the first of them; where links lead to it from folders with
+    settings of their own, one for each of these.
+
     tell is told of folders that cannot be read, warn of those without programs. Raises a PolarcheckError for settings
     that cannot be used, before any file is checked.
     """
-    tasks: dict[str, Task] = {}
+    tasks: dict[tuple[str, int], Task] = {}
+    real = files.RealPaths()
     for path in paths:
-        found = [path]
+        found, failures = [path], list[str]()
         if path != files.STANDARD_INPUT and os.path.isdir(path):  # noqa: PTH112  Path.is_dir raises for some names
             own = settings_in(Path(path)).job.extensions
             wanted = files.extensions(extensions or own) or files.EXTENSIONS
-            found = list(files.walk(path, wanted, tell))
-            if not found:
+            found = list(files.walk(path, wanted, failures.append))
+            for failure in failures:
+                tell(failure)
+            if not found and not failures:
                 warn(f"{files.shown(path)}: no NC programs in this folder; --extensions names other endings")
         for program in found:
             # Path("-").parent is the working folder, where standard input belongs.
-            tasks.setdefault(program, Task(program, settings_in(Path(program).parent)))
+            settings = settings_in(Path(program).parent)
+            tasks.setdefault((real.of(program), id(settings)), Task(program, settings))
     return list(tasks.values())
 
 
@@ -76,11 +83,13 @@ def check_files(
     bug: Callable[[Exception], None],
     encoding: str | None = None,
     fail_on: str = "warning",
+    most: int = files.LARGEST,
 ) -> Checked:
     """
     Check one file after the other; what is wrong with one costs that file only.
 
     tell is told, in one line, of those that cannot be read or are too hard, bug of what polarcheck itself does wrong.
+    most: bytes of a file; a larger one is not read.
     """
     reports: list[FileReport] = []
     lines: dict[str, dict[int, str]] = {}
@@ -93,7 +102,7 @@ def check_files(
                 # find it costs nothing of what is older, and without it no table of any file would ever be freed.
                 gc.collect(0)
             try:
-                found, source, offsets = _check(task, files.read(task.path), encoding)
+                found, source, offsets = _check(task, files.read(task.path, most), encoding)
             except (SourceError, TooHardError) as error:
                 tell(str(error))
             except MemoryError:

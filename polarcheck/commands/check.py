@@ -97,6 +97,7 @@ def _outputs(ctx: click.Context, parameter: click.Parameter, values: tuple[str, 
 @options.radius_from_comments
 @many("--extensions", metavar="EXT", help="Of the programs in a folder, instead of .nc, .tap, .eia and others.")
 @options.encoding("programs")
+@options.max_size
 @option("--color", type=click.Choice(["auto", "always", "never"]), default="auto", show_default=True)
 @option("--show-following", "following", is_flag=True, help="In text, what follows from a finding, too.")
 @option("-q", "--quiet", is_flag=True, help="Findings only.")
@@ -157,6 +158,7 @@ def _check(
     no_config: bool,
     extensions: tuple[str, ...],
     encoding: str | None,
+    max_size: int,
     color: str,
     quiet: bool,
     following: bool,
@@ -179,7 +181,7 @@ def _check(
     overwriting.refuse([path for _, path in outputs], tasks)
     with contextlib.closing(watched(tasks, not quiet)) as awaited:
         checked = batch.check_files(
-            awaited, failures.append, lambda bug: bugs.extend(said_of_bug(bug, debug)), encoding, fail_on
+            awaited, failures.append, lambda bug: bugs.extend(said_of_bug(bug, debug)), encoding, fail_on, max_size
         )
     name = applies.machine or (tasks[0].settings.name if tasks else profiles.DEFAULT)
     report = batch.report(checked.files, name)

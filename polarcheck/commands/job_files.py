@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from pathlib import Path
 
 import msgspec
@@ -28,10 +29,11 @@ def find(path: Path) -> Path | None:
     """
     try:
         found = _nearest(path.resolve() if path.is_dir() else path.resolve().parent)
-    except (OSError, RuntimeError):
+    except (OSError, RuntimeError, ValueError):
         return None  # the folder itself cannot be entered; reading the program will say so
-    if found is not None and found.is_relative_to(Path.cwd()):
-        return found.relative_to(Path.cwd())
+    with contextlib.suppress(OSError):  # the working folder may be gone
+        if found is not None and found.is_relative_to(Path.cwd()):
+            return found.relative_to(Path.cwd())
     return found
 
 

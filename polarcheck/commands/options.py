@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -12,6 +13,11 @@ Decorator = Callable[[Any], Any]
 
 #: Stands in the meta of the context, which a group shares with its commands, where tracebacks are asked for.
 DEBUG = "polarcheck.debug"
+
+
+#: 512MB, 2G, 1.5 GiB, 100k, 4096: k is 1000 bytes, Ki 1024.
+_SIZE = re.compile(r"\s*(\d{1,15}|\d{0,15}\.\d{1,15})\s*(?:([KMGT])(I?))?B?\s*", re.IGNORECASE | re.ASCII)
+_PREFIXES = " KMGT"
 
 
 class _Narrower(click.Option):
@@ -57,6 +63,22 @@ def _known_encoding(ctx: click.Context, parameter: click.Parameter, value: str |
     except LookupError:
         raise click.BadParameter(f"unknown encoding {value!r}; for example utf-8, cp1252, shift_jis") from None
     return value
+
+
+def _in_bytes(ctx: click.Context, parameter: click.Parameter, value: str) -> int:
+    found = _SIZE.fullmatch(value)
+    size = 0
+    if found:
+        size = int(float(found[1]) * (1024 if found[3] else 1000) ** _PREFIXES.index((found[2] or " ").upper()))
+    if not size:
+        raise click.BadParameter(f"{value!r}: expected a size above 0, such as 512MB, 2G, 100k or 4096 (bytes)")
+    return size
+
+
+max_size = option(
+    "--max-size", callback=_in_bytes, default="512MB", show_default=True, metavar="SIZE",
+    help="Of a program: a larger one is not read.",
+)  # fmt: skip
 
 
 def _set_debug(ctx: click.Context, parameter: click.Parameter, value: bool) -> None:

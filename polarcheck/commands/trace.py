@@ -27,8 +27,11 @@ from polarcheck.commands.output import show, warn
 @options.config
 @options.no_config
 @options.encoding("program")
+@options.max_size
 @options.debug
-def trace(path: str, which: str | None, form: str, no_config: bool, encoding: str | None, **asked: Any) -> None:
+def trace(
+    path: str, which: str | None, form: str, no_config: bool, encoding: str | None, max_size: int, **asked: Any
+) -> None:
     """
     Show what FILE does, block by block or, with --path, move by move inside polar sections.
 
@@ -43,7 +46,7 @@ def trace(path: str, which: str | None, form: str, no_config: bool, encoding: st
     from polarcheck.time_limit import seconds_for, time_limit
 
     found = settings.in_folders(settings.Options(use_config=not no_config, **asked))(Path(path).parent)
-    data = files.read(path)
+    data = files.read(path, max_size)
     with time_limit(seconds_for(len(data), found.job.run.max_seconds)):
         tables = check.read(data, found.machine, found.job, files.shown(path), encoding)[0][1]
         of_path = (tables["trace"], tables["tool_center"])

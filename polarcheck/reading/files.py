@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import errno
 import os
 import re
 import stat
@@ -10,10 +11,16 @@ import sys
 from collections.abc import Callable, Collection, Iterable, Iterator
 from pathlib import Path
 
+from polarcheck import bounded
 from polarcheck.errors import OutputError, SourceError
 from polarcheck.reading.names import spelled
 
 STANDARD_INPUT = "-"
+#: Opened anew, a pipe or terminal there would be judged as one that lies in a folder.
+_STANDARD_INPUTS = (STANDARD_INPUT, "/dev/stdin", "/dev/fd/0", "/proc/self/fd/0")
+#: A program of more bytes is not read unless that is asked for.
+LARGEST = 512_000_000
+_NO_NAMES = ("", os.curdir, os.pardir)
 EXTENSIONS = (
     *(".nc", ".ncc", ".cnc", ".tap", ".eia", ".min", ".mpf", ".spf", ".ngc", ".prg"),
     *(".ptp", ".dnc", ".fnc", ".iso", ".din", ".pim", ".gcode", ".gco", ".g"),
@@ -106,8 +113,8 @@ def _is_special(path: str) -> bool:
 
 def _looks_like_program(path: str) -> bool:
     try:
-        with Path(path).open("rb") as file:
-            data = file.read(_SNIFFED_BYTES)
+        with open(path, "rb", opener=_not_waiting) as file:
+            data = file.read(_SNIFFED_BYTES) or b""
     except OSError:
         return False
     wide = data.startswith((b"\xff\xfe", b"\xfe\xff"))
@@ -118,16 +125,27 @@ def _looks_like_program(path: str) -> bool:
     return sum(re.fullmatch(_BLOCK, line) is not None for line in lines) >= _BLOCKS_NEEDED
 
 
-def read(path: str) -> bytes:
-    """
-    All bytes of a file, or of standard input for `-`.
+def _not_waiting(path: str, flags: int) -> int:
+    """Open what may have become a pipe since it was looked at."""
+    return os.open(path, flags | getattr(os, "O_NONBLOCK", 0))
 
-    Raises SourceError where it cannot be read.
+
+def read(path: str, most: int = LARGEST) -> bytes:
     """
+    All bytes of a program, at most so many: of a file, of a pipe that somebody writes to, of standard input for `-`.
+
+    A file that is replaced meanwhile is the old one or the new one, never some of both. Raises SourceError where it
+    cannot be read, is larger, or is a device or a folder.
+    """
+    remark = "--max-size takes larger ones"
     try:
-        return sys.stdin.buffer.read() if path == STANDARD_INPUT else Path(path).read_bytes()
+        if path not in _STANDARD_INPUTS:
+            return bounded.read(path, most, remark, pipes=True)
+        if sys.stdin is None:
+            raise OSError(errno.EBADF, "standard input is closed")
+        return bounded.read_stream(sys.stdin.buffer, most, remark)
     except OSError as error:
-        raise SourceError(f"{shown(path)}: {error.strerror or error}") from None
+        raise SourceError(f"{shown(path) or repr(path)}: {error.strerror or error}") from None
 
 
 def shown(path: str) -> str:
@@ -137,6 +155,44 @@ def shown(path: str) -> str:
     No two paths are shown as one.
     """
     return spelled(path.replace(os.sep, "/"))
+
+
+class RealPaths:
+    """Which file a path means, whatever leads to it."""
+
+    def __init__(self) -> None:
+        self._folders: dict[str, str] = {}
+
+    def of(self, path: str) -> str:
+        """
+        One path for all that mean the same file: through links, and with `.` and `..` gone.
+
+        A link that leads nowhere is itself, as is standard input; another name of a file (hard link) is another file.
+        """
+        if path == STANDARD_INPUT:
+            return path
+        folder, name = os.path.split(path)
+        try:
+            if name in _NO_NAMES or (os.path.islink(path) and os.path.exists(path)):  # noqa: PTH110, PTH114  Path raises for some names
+                return os.path.normcase(os.path.realpath(path))
+            return os.path.normcase(os.path.join(self._folder(folder or os.curdir), name))  # noqa: PTH118
+        except (OSError, ValueError):
+            return path  # the working folder is gone, or no file can have this name
+
+    def _folder(self, folder: str) -> str:
+        """The same of a folder; each is looked at once, however deep they are nested."""
+        inside: list[str] = []
+        while folder not in self._folders:
+            outer, name = os.path.split(folder)
+            if not outer or name in _NO_NAMES or os.path.islink(folder):  # noqa: PTH114
+                self._folders[folder] = os.path.realpath(folder)
+                break
+            inside.append(folder)
+            folder = outer
+        for path in reversed(inside):
+            outer, name = os.path.split(path)
+            self._folders[path] = os.path.join(self._folders[outer], name)  # noqa: PTH118
+        return self._folders[inside[0] if inside else folder]
 
 
 def write(path: Path, text: str) -> None:

@@ -101,6 +101,8 @@ def _recognised(data: bytes, path: str, encoding: str | None) -> tuple[bytes, st
             raise UsageError(f"--encoding: unknown encoding {encoding!r}") from None
         except UnicodeDecodeError as error:
             raise SourceError(f"{path}: byte {error.start} is not {encoding}") from None
+        except UnicodeError:
+            raise SourceError(f"{path}: is not {encoding}") from None
         return b"", encoding
     for bom, name in _BOMS:
         if data.startswith(bom) and _decodes(data[len(bom) :], name):
