@@ -20,7 +20,7 @@ from click.testing import CliRunner, Result
 import polarcheck
 from polarcheck import bounded
 from polarcheck.checking import batch
-from polarcheck.commands import main, settings
+from polarcheck.commands import job_files, main, settings
 from polarcheck.errors import SourceError
 from polarcheck.reading import files
 from polarcheck.reading.excerpt import visible
@@ -361,6 +361,18 @@ def test_folders_nested_deeper_than_a_path_can_say_are_told_in_a_line() -> None:
     assert (status, paths) == (2, ["z.nc"])
     assert told.startswith(f"polarcheck: {'n' * 200}/{'n' * 200}/")
     assert told.endswith(": File name too long")
+
+
+def test_a_job_file_is_looked_for_once_in_each_folder(monkeypatch: pytest.MonkeyPatch) -> None:
+    depth = 30
+    make(*("d/" * count + "a.nc" for count in range(depth + 1)))
+    make("d/" * 20 + "polarcheck.toml", text="machine = 'fanuc-16i'\n")
+    own, looked = job_files._own, list[Path]()
+    monkeypatch.setattr(job_files, "_own", lambda folder: looked.append(folder) or own(folder))
+    tasks, told = planned(".")
+    machines = [task.settings.name for task in sorted(tasks, key=lambda task: len(task.path))]
+    assert (machines, told) == (["fanuc"] * 20 + ["fanuc-16i"] * (depth - 19), [])
+    assert len(looked) == len(set(looked)) == depth + len(Path.cwd().parts)
 
 
 def test_a_folder_of_many_files_is_walked_in_order() -> None:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import contextlib
+import os
 from pathlib import Path
 
 import msgspec
 
 from polarcheck.errors import JobError
 from polarcheck.machines.job import Job, from_table
+from polarcheck.reading.files import RealPaths
 
 FILE_NAME = "polarcheck.toml"
 _PROJECT = "pyproject.toml"
@@ -27,23 +29,45 @@ def find(path: Path) -> Path | None:
 
     Raises JobError for a pyproject.toml that cannot be read.
     """
-    try:
-        found = _nearest(path.resolve() if path.is_dir() else path.resolve().parent)
-    except (OSError, RuntimeError, ValueError):
-        return None  # the folder itself cannot be entered; reading the program will say so
-    with contextlib.suppress(OSError):  # the working folder may be gone
-        if found is not None and found.is_relative_to(Path.cwd()):
-            return found.relative_to(Path.cwd())
-    return found
+    return Nearest().of(path)
 
 
-def _nearest(folder: Path) -> Path | None:
-    for candidate in (folder, *folder.parents):
-        if (candidate / FILE_NAME).is_file():
-            return candidate / FILE_NAME
-        if _is_job_file(candidate / _PROJECT):
-            return candidate / _PROJECT
-    return None
+class Nearest:
+    """The job files of many folders, as find gives them; each folder is looked into once, however deep it lies."""
+
+    def __init__(self) -> None:
+        self._real = RealPaths()
+        self._known: dict[str, Path | None] = {}
+
+    def of(self, path: Path) -> Path | None:
+        """The job file of a program or folder. Raises JobError as find does."""
+        try:
+            found = self._from(self._real.folder(str(path if path.is_dir() else path.parent)))
+        except (OSError, RuntimeError, ValueError):
+            return None  # the folder itself cannot be entered; reading the program will say so
+        with contextlib.suppress(OSError):  # the working folder may be gone
+            if found is not None and found.is_relative_to(Path.cwd()):
+                return found.relative_to(Path.cwd())
+        return found
+
+    def _from(self, folder: str) -> Path | None:
+        passed: list[str] = []
+        while folder not in self._known:
+            passed.append(folder)
+            found, outer = _own(Path(folder)), os.path.dirname(folder)  # noqa: PTH120  long paths of pathlib are slow
+            if found is not None or outer == folder:
+                self._known[folder] = found
+            else:
+                folder = outer
+        self._known.update(dict.fromkeys(passed, self._known[folder]))
+        return self._known[folder]
+
+
+def _own(folder: Path) -> Path | None:
+    """The job file that lies in a folder."""
+    if (folder / FILE_NAME).is_file():
+        return folder / FILE_NAME
+    return folder / _PROJECT if _is_job_file(folder / _PROJECT) else None
 
 
 def _is_job_file(project: Path) -> bool:

@@ -69,7 +69,7 @@ def _in_bytes(ctx: click.Context, parameter: click.Parameter, value: str) -> int
     found = _SIZE.fullmatch(value)
     size = 0
     if found:
-        size = int(float(found[1]) * (1024 if found[3] else 1000) ** _PREFIXES.index((found[2] or " ").upper()))
+        size = round(float(found[1]) * (1024 if found[3] else 1000) ** _PREFIXES.index((found[2] or " ").upper()))
     if not size:
         raise click.BadParameter(f"{value!r}: expected a size above 0, such as 512MB, 2G, 100k or 4096 (bytes)")
     return size

@@ -68,10 +68,12 @@ def jobs_in_folders(options: Options) -> Callable[[Path], JobFile]:
     def read(path: Path | None) -> JobFile:
         return JobFile(_changed(job_files.load(path) if path else Job(), options), path)
 
+    nearest = job_files.Nearest()
+
     def in_folder(folder: Path) -> JobFile:
         if not options.use_config:
             return read(None)
-        return read(options.config or job_files.find(folder))
+        return read(options.config or nearest.of(folder))
 
     return in_folder
 

@@ -175,12 +175,12 @@ class RealPaths:
         try:
             if name in _NO_NAMES or (os.path.islink(path) and os.path.exists(path)):  # noqa: PTH110, PTH114  Path raises for some names
                 return os.path.normcase(os.path.realpath(path))
-            return os.path.normcase(os.path.join(self._folder(folder or os.curdir), name))  # noqa: PTH118
+            return os.path.normcase(os.path.join(self.folder(folder or os.curdir), name))  # noqa: PTH118
         except (OSError, ValueError):
             return path  # the working folder is gone, or no file can have this name
 
-    def _folder(self, folder: str) -> str:
-        """The same of a folder; each is looked at once, however deep they are nested."""
+    def folder(self, folder: str) -> str:
+        """The real path of a folder; each is looked at once, however deep they are nested."""
         inside: list[str] = []
         while folder not in self._folders:
             outer, name = os.path.split(folder)
