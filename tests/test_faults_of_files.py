@@ -207,6 +207,7 @@ def planned(*paths: str) -> tuple[list[batch.Task], list[str]]:
     return batch.plan(paths, settings.in_folders(settings.Options()), (), told.append, pytest.fail), told
 
 
+@of_posix
 def test_a_file_that_is_gone_when_its_turn_comes() -> None:
     make("f/a.nc", "f/b.nc", "f/c.nc", "f/d.nc")
     tasks, told = planned("f")
@@ -215,10 +216,10 @@ def test_a_file_that_is_gone_when_its_turn_comes() -> None:
     Path("f/c.nc").mkdir()
     found = batch.check_files(tasks, told.append)
     assert [file.path for file in found.files] == ["f/a.nc", "f/d.nc"]
-    assert told[0] == "f/b.nc: No such file or directory"
-    assert told[1:] == ["f/c.nc: is a folder, not a file"] or sys.platform == "win32"
+    assert told == ["f/b.nc: No such file or directory", "f/c.nc: is a folder, not a file"]
 
 
+@of_posix
 def test_a_folder_that_is_gone_when_its_turn_comes() -> None:
     make("f/a.nc", "f/sub/b.nc", "f/z.nc")
     told: list[str] = []
@@ -257,6 +258,7 @@ def in_pieces(monkeypatch: pytest.MonkeyPatch, meanwhile: Any) -> None:
     monkeypatch.setattr(os, "read", read_some)
 
 
+@of_posix
 def test_a_file_that_is_replaced_is_the_old_one(monkeypatch: pytest.MonkeyPatch) -> None:
     make("a.nc")
     make("new", text=RAPID.lower())
@@ -453,7 +455,7 @@ def test_names_that_no_file_can_have(name: str) -> None:
     assert len(told) == 1
 
 
-@pytest.mark.parametrize("name", ["*.nc", "?.nc", "[a].nc", "~/a.nc", "$HOME/a.nc", "%TEMP%", "a.nc ", "n" * 300, " "])
+@pytest.mark.parametrize("name", ["*.nc", "?.nc", "[a].nc", "~/a.nc", "$HOME/a.nc", "%TEMP%", "n" * 300])
 def test_a_name_is_taken_as_it_is_written(name: str) -> None:
     make("a.nc")
     status, paths, (told,) = check("a.nc", name)
@@ -461,6 +463,7 @@ def test_a_name_is_taken_as_it_is_written(name: str) -> None:
     assert told.startswith(f"polarcheck: {name}: ")
 
 
+@of_posix
 def test_the_empty_name_is_told() -> None:
     make("a.nc")
     assert check("", "a.nc") == (2, ["a.nc"], ["polarcheck: '': No such file or directory"])
