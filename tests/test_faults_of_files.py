@@ -214,7 +214,7 @@ def test_a_file_that_is_gone_when_its_turn_comes() -> None:
     Path("f/b.nc").unlink()
     Path("f/c.nc").unlink()
     Path("f/c.nc").mkdir()
-    found = batch.check_files(tasks, told.append)
+    found = batch.check_files(tasks, told.append, lambda bug: pytest.fail(str(bug)))
     assert [file.path for file in found.files] == ["f/a.nc", "f/d.nc"]
     assert told == ["f/b.nc: No such file or directory", "f/c.nc: is a folder, not a file"]
 
@@ -451,7 +451,9 @@ def test_names_that_no_file_can_have(name: str) -> None:
         files.read(name)
     make("a.nc")
     tasks, told = planned(name, "a.nc", name)
-    assert [file.path for file in batch.check_files(tasks, told.append).files] == ["a.nc"]
+    assert [file.path for file in batch.check_files(tasks, told.append, lambda bug: pytest.fail(str(bug))).files] == [
+        "a.nc"
+    ]
     assert len(told) == 1
 
 
