@@ -18,19 +18,26 @@ _PATIENCE = 1000
 _FLAGS = os.O_RDONLY | sum(getattr(os, name, 0) for name in ("O_BINARY", "O_NOCTTY", "O_NONBLOCK"))
 
 
-def read(path: str | os.PathLike[str], most: int, remark: str, *, pipes: bool = False) -> bytes:
+def read(
+    path: str | os.PathLike[str],
+    most: int,
+    remark: str,
+    *,
+    pipes: bool = False,
+    below: str | os.PathLike[str] | None = None,
+) -> bytes:
     """
     All bytes of a file, which has at most so many.
 
     remark: what is said of a larger file behind `larger than 1 MB; `. pipes: whether a pipe is read, too, as a shell
-    hands over `<(...)`; devices and folders never are, nor a pipe that nobody writes to.
+    hands over `<(...)`; devices and folders never are, nor a pipe that nobody writes to. below: a folder without links
+    to its name, which the path begins in and no link of it leads out of.
 
     Raises OSError, whose strerror says in plain words what is wrong: also for a name that no file can have, and for a
     file that is written to meanwhile. One that is replaced is the old one or the new one.
     """
     try:
-        _refuse(os.stat(path).st_mode, pipes)  # noqa: PTH116  some devices act as soon as they are opened; Path("") is "."
-        descriptor = os.open(path, _FLAGS)
+        descriptor = _opened(path, pipes) if below is None else _opened_below(below, Path(path).parts)
     except ValueError:
         raise OSError(errno.EINVAL, "no file can have this name") from None
     try:
@@ -67,6 +74,30 @@ def megabytes(size: int) -> str:
     """A limit as messages name it: `16 MB`, `2 GB`, `100 kB`, `64 bytes`."""
     unit, name = next(((unit, name) for unit, name in _UNITS if size >= unit), (1, "bytes"))
     return f"{size / unit:.15g} {name}"
+
+
+def _opened(path: str | os.PathLike[str], pipes: bool, folder: int | None = None, flags: int = 0) -> int:
+    # Some devices act as soon as they are opened.
+    _refuse(os.stat(path, dir_fd=folder).st_mode, pipes)
+    return os.open(path, _FLAGS | flags, dir_fd=folder)
+
+
+def _opened_below(folder: str | os.PathLike[str], parts: tuple[str, ...]) -> int:
+    """Step by step, each part in the folder before it and none through a link, whoever exchanges them meanwhile."""
+    if ".." in parts or not parts or parts[0].startswith(("/", "\\")):
+        raise OSError(errno.EACCES, "lies outside the folder")
+    if os.open not in os.supports_dir_fd:
+        return _opened(Path(folder, *parts), False)
+    links = getattr(os, "O_NOFOLLOW", 0)
+    held = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
+    try:
+        for part in parts[:-1]:
+            inner = os.open(part, os.O_RDONLY | os.O_DIRECTORY | links, dir_fd=held)
+            os.close(held)
+            held = inner
+        return _opened(parts[-1], False, held, links)
+    finally:
+        os.close(held)
 
 
 def _refuse(mode: int, pipes: bool) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import os
 import re
 from collections.abc import Sequence
 from functools import cached_property
@@ -10,6 +11,7 @@ from pathlib import Path
 
 import msgspec
 
+from polarcheck import bounded
 from polarcheck.execution.listing import Listing
 from polarcheck.execution.programs import ProgramName, read_text
 from polarcheck.machines.machine import Machine
@@ -26,7 +28,7 @@ class Library:
     """The folders of a job, and what has been looked for in them."""
 
     def __init__(self, folders: Sequence[str], machine: Machine) -> None:
-        self._folders = [Path(folder).resolve() for folder in folders]
+        self._folders = [Path(os.path.realpath(folder)) for folder in folders]
         self._machine = machine
         self._texts: dict[ProgramName, Text | None] = {}
 
@@ -63,27 +65,28 @@ class Library:
             return None
         for folder, paths in self._paths:
             for path in paths:
-                if wanted.fullmatch(path.name) and path.resolve().is_relative_to(folder) and _is_program(path):
-                    return _with_head(path, called)
+                if wanted.fullmatch(path.name) and (data := _read_inside(folder, path)) is not None:
+                    return _with_head(data, path.name, called)
         return None
 
 
-def _is_program(path: Path) -> bool:
-    return path.is_file() and path.stat().st_size < _LARGEST
-
-
-def _with_head(path: Path, called: ProgramName) -> Source | None:
+def _read_inside(folder: Path, path: Path) -> bytes | None:
+    """The bytes of a program; None for what lies outside the folder, is no file, cannot be read, or is too large."""
+    real = Path(os.path.realpath(path))
     try:
-        data = path.read_bytes()
-    except OSError:
+        return bounded.read(real.relative_to(folder), _LARGEST, "", below=folder)
+    except (OSError, ValueError):
         return None
+
+
+def _with_head(data: bytes, file: str, called: ProgramName) -> Source:
     number, name = called
     own = re.search(rb"^\s*%?\s*[O:]\s*(\d{1,15}(?!\d)|<[^>\n]*>)", data, re.MULTILINE | re.IGNORECASE)
     right = own is not None and (own[1].isdigit() and number is not None and int(own[1]) == number)
     if right or (own and name is not None and own[1].strip(b"<>").decode("latin-1").upper() == name.upper()):
-        return read(data, path.name)
+        return read(data, file)
     head = f"O{number:04d}" if number is not None else f"O<{name}>"
-    return msgspec.structs.replace(read(head.encode() + b"\n" + data, path.name), added_lines=1)
+    return msgspec.structs.replace(read(head.encode() + b"\n" + data, file), added_lines=1)
 
 
 class Shelf:
