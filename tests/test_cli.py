@@ -296,7 +296,8 @@ def test_what_means_nothing_is_named_in_one_line(arguments: list[str], told: str
         ("[run]\nsubprograms = ['gone']\n", "polarcheck.toml: run.subprograms: there is no folder 'gone'"),
         ("[run]\nsubprograms = 'gone'\n", "run.subprograms: expected a list of texts, found 'gone'"),
         ("[run]\nmax_blocks = 0\n", "run.max_blocks: expected a whole number from 1 to 1e+12, found 0"),
-        (f"[tools.8]\nradius = {'9' * 400}\n", "tools.8.radius: expected a number from -1000 to 1000, found 9999"),
+        (f"[tools.8]\nradius = {'9' * 18}\n", "tools.8.radius: expected a number from -1000 to 1000, found 9999"),
+        (f"[tools.8]\nradius = {'9' * 400}\n", "tools.8.radius: a whole number has at most 18 digits"),
         (
             "[stock]\ndiameter = 1979-05-27\n",
             "stock.diameter: expected a number above 0, 20000 at most, found 1979-05-27",
@@ -344,7 +345,10 @@ def test_tiny_and_negative_radii_are_sound(radius: str) -> None:
 def test_a_job_that_is_no_table_is_told() -> None:
     make(a__nc=GOOD, pyproject__toml="[tool]\npolarcheck = 3\n# [tool.polarcheck]\n")
     result = check("a.nc")
-    assert (result.exit_code, result.stderr) == (2, "polarcheck: pyproject.toml: expected a table, found 3\n")
+    assert (result.exit_code, result.stderr) == (
+        2,
+        "polarcheck: pyproject.toml: tool.polarcheck: expected a table, found 3\n",
+    )
 
 
 @pytest.mark.parametrize("arguments", [["a.nc"], ["gone.nc", "--machine", "fanuc"], ["."], ["-"], ["O1234"]])

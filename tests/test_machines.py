@@ -176,10 +176,10 @@ def test_tables_of_another_control_can_be_left_behind() -> None:
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("inherits = 'fanuk'", "unknown machine 'fanuk'; did you mean fanuc?"),
+        ("inherits = 'fanuk'", "own.toml: inherits: unknown machine 'fanuk'; did you mean fanuc?"),
         ("inherits = 'own.toml'", "own.toml: inherits from itself"),
         ("inherits = 3", "own.toml: inherits: expected the name of a machine"),
-        ("inherits = 'gone.toml'", "machine gone.toml: no such file"),
+        ("inherits = 'gone.toml'", "own.toml: inherits: machine gone.toml: no such file"),
         ("title = 'x'", "own.toml: control is missing"),
         ("inherits = 'fanuc'\n[limit]\nc_feed = 1", "own.toml: unknown table [limit]; did you mean limits?"),
         ("inherits = 'fanuc'\n[limits]\nc_fed = 1", "own.toml: unknown key limits.c_fed; did you mean c_feed?"),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import click
@@ -54,7 +55,7 @@ def _write(name: str, inherits: str) -> Path:
     from polarcheck.reports.pages import new_machine
 
     path = Path(name if name.endswith(".toml") else f"{name}.toml")
-    if path.exists():
+    if os.path.lexists(path):
         raise UsageError(f"{path} is there already")
     files.write(path, new_machine.text(path.stem, inherits))
     return path

@@ -16,6 +16,8 @@ from polarcheck.errors import OutputError
 COLUMNS = 100
 #: Of what an exception says [characters].
 _MOST_SAID = 200
+#: A longer line on standard error is cut in its middle: what is wrong stands at its end [characters].
+_LONGEST, _HEAD, _TAIL = 1000, 300, 500
 
 
 def show(text: str | bytes, color: bool | None = None) -> bool:
@@ -78,9 +80,12 @@ def _tell(line: str) -> None:
     # Its tables of characters are a library that most runs do not need.
     from polarcheck.reading.excerpt import visible
 
+    shown = visible(line)
+    if len(shown) > _LONGEST:
+        shown = f"{shown[:_HEAD]} ... {shown[-_TAIL:]}"
     # Where nobody can be told, the exit code is left.
     with contextlib.suppress(OSError, ValueError):
-        click.echo(visible(line), err=True)
+        click.echo(shown, err=True)
 
 
 def is_terminal(stream: TextIO | None) -> bool:

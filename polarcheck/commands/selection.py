@@ -14,7 +14,7 @@ from polarcheck.machines.machine import Machine
 from polarcheck.machines.profiles import Profile
 
 LEVELS = ("error", "warning", "note", "off")
-_ALARM = re.compile(r"([A-Za-z]{0,3})\s?(\d+)")
+_ALARM = re.compile(r"([A-Za-z]{0,3})\s?0*(\d{1,9})")
 
 Rules = dict[str, Rule]
 

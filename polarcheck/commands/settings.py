@@ -14,8 +14,8 @@ from polarcheck.checking.settings import Settings
 from polarcheck.commands import job_files, selection
 from polarcheck.commands.job_files import JobFile
 from polarcheck.commands.selection import Rules
-from polarcheck.errors import UsageError
-from polarcheck.machines import profiles
+from polarcheck.errors import MachineError, UsageError
+from polarcheck.machines import profiles, toml_text
 from polarcheck.machines.job import Job, Running, check_work_offsets, with_tool
 from polarcheck.machines.machine import Machine
 
@@ -66,7 +66,8 @@ def jobs_in_folders(options: Options) -> Callable[[Path], JobFile]:
 
     @cache
     def read(path: Path | None) -> JobFile:
-        return JobFile(_changed(job_files.load(path) if path else Job(), options), path)
+        job = job_files.load(path, pipes=path == options.config) if path else Job()
+        return JobFile(_changed(job, options), path)
 
     nearest = job_files.Nearest()
 
@@ -82,7 +83,7 @@ def _changed(job: Job, options: Options) -> Job:
     if options.offsets is not None:
         from polarcheck.machines import offset_table
 
-        listed = offset_table.read(options.offsets, str(options.offsets))
+        listed = offset_table.read(options.offsets, str(options.offsets), pipes=True)
         job = msgspec.structs.replace(job, tools={**job.tools, **listed})
     for tool in options.tools:
         job = with_tool(job, tool)
@@ -99,8 +100,8 @@ def _changed(job: Job, options: Options) -> Job:
 def _settings(options: Options, found: JobFile, known: Rules) -> Settings:
     name = machine_name(options.machine, found)
     of_job = {"limits": found.job.limits} if found.job.limits else {}
-    profile = profiles.load(name, [("--set", changes(options.changes)), (str(found.path), of_job)])
-    selection.check_names(profile, known)
+    over = [("--set", changes(options.changes)), (str(found.path), of_job)]
+    profile = _profile(name, over, known, "" if options.machine else f"{found.path}: machine: ")
     machine = profile.machine
     check_work_offsets(found.job, machine, str(found.path))
     levels = selection.severities(options.severities, options.select, found, known, machine)
@@ -124,7 +125,7 @@ def machine_name(asked: str | None, found: JobFile) -> str:
         return profiles.DEFAULT
     if asked is None and found.path is not None and name not in profiles.names():
         beside = found.path.parent / name
-        return str(beside) if beside.is_file() else name
+        return str(beside) if profiles.is_meant(beside, name) else name
     return name
 
 
@@ -144,19 +145,21 @@ def changes(options: Iterable[str]) -> dict[str, Any]:
     return found
 
 
-def _machine(name: str, over: Sequence[profiles.Change], known: Rules) -> Machine:
-    profile = profiles.load(name, over)
+def _profile(name: str, over: Sequence[profiles.Change], known: Rules, asked_by: str) -> profiles.Profile:
+    """asked_by: the file and key of the name, before what is said of a name that there is not."""
+    try:
+        profile = profiles.load(name, over)
+    except profiles.UnknownMachineError as error:
+        raise MachineError(f"{asked_by}{error}") from None
     selection.check_names(profile, known)
-    return profile.machine
+    return profile
 
 
 def toml_value(text: str) -> Any:
     """A number, true or false, or a list as TOML writes it, or else the text itself: quotes may be left out."""
-    import tomllib
-
     try:
-        table = tomllib.loads(f"value = {text}")
-    except tomllib.TOMLDecodeError:
+        table = toml_text.parsed(f"value = {text}")
+    except ValueError:
         return text
     value = table["value"]
     return value if len(table) == 1 and isinstance(value, bool | int | float | str | list) else text
@@ -166,4 +169,4 @@ def here(machine: str | None) -> tuple[str, Machine]:
     """The machine for a command without programs: the one asked for, else that of the job of the working folder."""
     found = JobFile(Job()) if machine else jobs_in_folders(Options())(Path())
     name = machine_name(machine, found)
-    return name, _machine(name, (), load_all())
+    return name, _profile(name, (), load_all(), "" if machine else f"{found.path}: machine: ").machine

@@ -176,9 +176,11 @@ def _number_in(written: str, option: str) -> int | None:
         raise UsageError(
             f"--tool {option}: expected the offset number alone, as in {int(digits[-_DIGITS_OF_OFFSET:])}:radius=0.375"
         )
-    return int(digits)
+    # Longer numbers are cut: they are too large all the same, and Python reads none of thousands of digits.
+    return int(digits.lstrip("0")[: _DIGITS_OF_T + 1] or "0")
 
 
+_DIGITS_OF_T = 8
 #: T8 and T08 can only be read in one way.
 _DIGITS_OF_OFFSET = 2
 

@@ -6,42 +6,57 @@ import re
 from collections.abc import Mapping
 from pathlib import Path
 
+from polarcheck import bounded
 from polarcheck.errors import JobError
 from polarcheck.machines.fitting import MisfitError, fitted
 from polarcheck.machines.job import PunchedTool, Tool
 
-_OFFSET = re.compile(r"G10\s*P\s*(\d+)((?:\s*[A-Z]\s*[-+]?\d*\.?\d*)*)")
-_VALUE = re.compile(r"([RQ])\s*([-+]?\d*\.?\d+|[-+]?\d+\.)")
+#: A table of 10,000 offsets has half a megabyte [bytes].
+_LARGEST = 16_000_000
+# A block ends with its line, or where the next one begins; CR is a line end, too, where a transfer took the LF.
+_BLANK = r"[^\S\r\n]*+"
+_OFFSET = re.compile(rf"G10{_BLANK}P{_BLANK}(\d++)((?:{_BLANK}[A-FH-OQ-Z]{_BLANK}[-+]?\d*+\.?\d*+)*+)")
+_VALUE = re.compile(rf"([RQ]){_BLANK}([-+]?(?:\d++\.?\d*+|\.\d++))")
 #: P10001 is the geometry of offset 1, P1 its wear (B-63524EN/01 p. 285).
 _GEOMETRY = 10000
+_DIGITS = 8
+_SHOWN = 40
 
 
-def read(path: Path, title: str) -> dict[int, Tool]:
+def read(path: Path, title: str, *, pipes: bool = False) -> dict[int, Tool]:
     """
     The offsets of a table (`G10 P10008 X.. Z.. R.. Q..`) by offset number; R of geometry and wear are added.
 
-    Lengths are in the units of the table. Raises JobError, which names the title, for a file that cannot be read or
-    holds no offset or one that cannot be.
+    Lengths are in the units of the table. pipes: whether it may be a pipe, as a shell hands over `<(...)`. Raises
+    JobError, which names the title, for a file that cannot be read or holds no offset or one that cannot be.
     """
     try:
-        text = path.read_bytes().decode("latin-1").upper()
+        text = bounded.read(path, _LARGEST, "no offset table is", pipes=pipes).decode("latin-1").upper()
     except OSError as error:
         raise JobError(f"{title}: {error.strerror}") from None
     radius: dict[int, float] = {}
-    nose: dict[int, int] = {}
+    nose: dict[int, float] = {}
     for match in _OFFSET.finditer(text):
-        number = int(match[1]) % _GEOMETRY
-        for address, value in _VALUE.findall(match[2]):
-            if address == "R":
-                radius[number] = radius.get(number, 0.0) + float(value)
-            elif int(match[1]) >= _GEOMETRY or number not in nose:
-                nose[number] = int(float(value))
+        written = match[1].lstrip("0")
+        if len(written) > _DIGITS:
+            raise JobError(f"{title}: P{written[:_SHOWN]}... is no number of an offset")
+        is_geometry, number = divmod(int(written or 0), _GEOMETRY)
+        for value in _VALUE.finditer(match[2]):
+            if value[1] == "R":
+                radius[number] = radius.get(number, 0.0) + float(value[2])
+            elif is_geometry or number not in nose:
+                nose[number] = _whole(float(value[2]))
     if not radius and not nose:
         raise JobError(f"{title}: no offsets found; expected blocks such as G10 P10008 R0.375 Q0")
     return {number: _tool(number, radius, nose, title) for number in sorted(radius.keys() | nose.keys())}
 
 
-def _tool(number: int, radius: Mapping[int, float], nose: Mapping[int, int], title: str) -> Tool:
+def _whole(value: float) -> float:
+    """T, which the control punches out with a point; what is too large for it stays as it is, for the message."""
+    return int(value) if value < _GEOMETRY else value
+
+
+def _tool(number: int, radius: Mapping[int, float], nose: Mapping[int, float], title: str) -> Tool:
     given = {key: values[number] for key, values in (("radius", radius), ("nose", nose)) if number in values}
     try:
         return fitted(given, PunchedTool)

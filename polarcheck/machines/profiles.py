@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import math
+import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, get_origin
@@ -11,7 +12,7 @@ from typing import Any, get_origin
 import msgspec
 
 from polarcheck.errors import MachineError, suggestion
-from polarcheck.machines import parameters
+from polarcheck.machines import parameters, toml_text
 from polarcheck.machines.fitting import MisfitError, fitted
 from polarcheck.machines.machine import Machine
 from polarcheck.machines.parameters import Origin
@@ -19,8 +20,14 @@ from polarcheck.machines.renamed import RENAMED, refuse
 
 FOLDER = Path(__file__).parent
 DEFAULT = "fanuc"
+#: Files that may stand behind each other by `inherits`; the built-in ones have four.
+_LONGEST_CHAIN = 10
 #: Tables that a profile can leave behind.
 _REPLACED = ("alarms", "known_parameters", "severities", "notes")
+
+
+class UnknownMachineError(MachineError):
+    """There is no machine and no file of a name."""
 
 
 class Profile(msgspec.Struct, frozen=True):
@@ -63,11 +70,21 @@ def load(name: str, changes: Mapping[str, Any] | Sequence[Change] | None = None)
     tables: list[tuple[str, dict[str, Any]]] = []
     asked: str | None = name
     folder = Path()
+    seen: set[str] = set()
     own = any(group != "limits" for _, table in over for group in table)
     while asked is not None:
-        path, title = _find(asked, folder)
-        if any(title == seen for seen, _ in tables):
+        try:
+            path, title = _find(asked, folder)
+        except UnknownMachineError as error:
+            raise MachineError(f"{tables[-1][0]}: inherits: {error}") if tables else error from None
+        # By the file itself: links and `..` give one file names without end.
+        if (real := os.path.realpath(path)) in seen:
             raise MachineError(f"{title}: inherits from itself")
+        if len(seen) == _LONGEST_CHAIN:
+            raise MachineError(
+                f"{tables[0][0]}: inherits from more than {_LONGEST_CHAIN - 1} files, one behind the other"
+            )
+        seen.add(real)
         table = _read(path, title) if path.parent != FOLDER else dict(_built_in(path))
         tables.append((title, table))
         folder = path.parent
@@ -103,30 +120,39 @@ def load(name: str, changes: Mapping[str, Any] | Sequence[Change] | None = None)
     return Profile(name, machine, written, chain, origins)
 
 
+def is_meant(path: Path, name: str) -> bool:
+    """
+    Whether a name means the file at a path: where one lies there, and where something else does that a name of a
+    machine cannot mean; reading it then says what it is.
+    """
+    is_path = name.endswith(".toml") or "/" in name or os.sep in name
+    return os.path.isfile(path) or (is_path and os.path.lexists(path))  # noqa: PTH113  Path.is_file raises for some names
+
+
 def _find(name: str, folder: Path) -> tuple[Path, str]:
     built_in = FOLDER / f"{name}.toml"
-    if built_in.parent == FOLDER and built_in.is_file():
+    if built_in.parent == FOLDER and os.path.isfile(built_in):  # noqa: PTH113  Path.is_file raises for some names
         return built_in, name
     path = folder / name
-    if path.is_file():
+    if is_meant(path, name):
         return path, str(path)
     if name.endswith(".toml"):
-        raise MachineError(f"machine {name}: no such file")
-    raise MachineError(f"unknown machine {name!r}{suggestion(name, names())}; `polarcheck machines` lists them")
+        raise UnknownMachineError(f"machine {name}: no such file")
+    raise UnknownMachineError(f"unknown machine {name!r}{suggestion(name, names())}; `polarcheck machines` lists them")
 
 
 @functools.cache
 def _built_in(path: Path) -> dict[str, Any]:
     """What stands in a file of ours: most profiles inherit from the same ones."""
-    return _read(path, path.stem)
+    import tomllib
+
+    return tomllib.loads(path.read_text("utf-8"))
 
 
 def _read(path: Path, title: str) -> dict[str, Any]:
-    import tomllib
-
     try:
-        return tomllib.loads(path.read_text("utf-8"))
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        return toml_text.read(path, "machine file")
+    except ValueError as error:
         raise MachineError(f"{title}: {error}") from None
 
 
@@ -155,6 +181,8 @@ def _merge(into: dict[str, Any], table: Mapping[str, Any], profile: str, origins
         if group not in Machine.__struct_fields__:
             raise MachineError(f"{profile}: unknown table [{group}]{suggestion(group, Machine.__struct_fields__)}")
         target = into.setdefault(group, {})
+        if not isinstance(target, dict):
+            raise MachineError(f"{profile}: {group}: expected a text, found a table")
         origin = _origin(values, Origin(profile, ""))
         for key, value in values.items():
             if key not in ("source", "doubtful"):
