@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 
 from polarcheck.errors import MachineError
@@ -19,6 +20,9 @@ _RANGES = {
     "g_code_system_b": GCodeSystem.__struct_fields__,
     "g_code_system_c": GCodeSystem.__struct_fields__,
 }
+#: Lists of addresses and codes, and of words of which some are codes.
+_MIXED = {"polar": ("words_beside_switch",)}
+_WORDS = {"polar": ("on_of_other_controls", "on_of_other_meaning")}
 #: Lists of G and M codes, each written by itself.
 _SINGLE = {"polar": ("on", "off", "plane_before"), "m_codes": MCodes.__struct_fields__}
 
@@ -29,7 +33,7 @@ def check_codes(machine: Machine, origins: Mapping[str, Origin], chain: Sequence
 
     chain: the profiles, the nearest first; of two lists with the same code that of the nearer one is named.
     """
-    for lists, is_one in ((_RANGES, is_code), (_SINGLE, _is_single)):
+    for lists, is_one in ((_RANGES, is_code), (_SINGLE, _is_single), (_MIXED, _is_address_or_code), (_WORDS, _is_word)):
         for table, keys in lists.items():
             for key in keys:
                 for code in getattr(getattr(machine, table), key):
@@ -53,3 +57,12 @@ def check_codes(machine: Machine, origins: Mapping[str, Origin], chain: Sequence
 
 def _is_single(text: str) -> bool:
     return is_code(text, "GM") and "-" not in text
+
+
+def _is_address_or_code(text: str) -> bool:
+    return re.fullmatch("[A-Z]", text) is not None or is_code(text, "GM")
+
+
+def _is_word(text: str) -> bool:
+    """TRANSMIT is one; what looks like a code must be one."""
+    return bool(text) and (_is_single(text) or not re.match("[GM][0-9.-]", text))

@@ -126,7 +126,9 @@ class GCodeSystem(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fiel
 def is_code(text: str, letters: str = "G") -> bool:
     """`G12.1`, or `G54-G59`."""
     first, dash, last = text.partition("-")
-    return _is_one(first, letters) and (not dash or (_is_one(last, letters) and "." not in text))
+    if not dash:
+        return _is_one(first, letters)
+    return all(_is_one(end, letters) for end in (first, last)) and "." not in text and int(first[1:]) <= int(last[1:])
 
 
 def _is_one(text: str, letters: str) -> bool:

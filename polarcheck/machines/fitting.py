@@ -17,6 +17,11 @@ from polarcheck.errors import suggestion
 
 #: Key of `extra` in msgspec.Meta: what is expected, where the type and its bounds do not say it well.
 EXPECTED = "expected"
+#: Between these lies every number of a lathe, and what is computed from some of them is a number, too.
+SMALLEST, LARGEST = 1e-50, 1e50
+#: The most that is counted: columns hold 32 bits.
+MOST = 10**9
+_BEYOND = (LARGEST, MOST)
 #: Characters of a value that are shown.
 _LONGEST = 40
 
@@ -115,7 +120,7 @@ def _misfit(part: _Part, error: Exception | None = None) -> MisfitError:
     if isinstance(part.value, Mapping) and error is not None and isinstance(error.__cause__, ValueError):
         text = _plain(error)  # what the type itself objects to
     else:
-        text = f"expected {_expected(part.kind)}, found {shown(part.value)}{_with_point(part)}"
+        text = f"expected {_expected(part.kind)}{_beyond(part)}, found {shown(part.value)}{_with_point(part)}"
     return MisfitError(part.key, f"{part.key}: {text}" if part.key else text)
 
 
@@ -160,12 +165,27 @@ def _expected(kind: Any) -> str:
 
 
 def _bounds(meta: msgspec.Meta) -> str:
+    """What is expected of a size; bounds that nobody comes near are left out."""
     if meta.min_length:
         return ", at least one"
-    if meta.ge is not None and meta.le is not None:
-        return f" from {meta.ge:g} to {meta.le:g}"
-    least = f" of {meta.ge:g} or more" if meta.ge is not None else f" above {meta.gt:g}" if meta.gt is not None else ""
-    return f"{least}, {meta.le:g} at most" if meta.le is not None else least
+    most = meta.le if meta.le not in _BEYOND else None
+    least = meta.ge if meta.ge != -LARGEST else None
+    if least is not None and most is not None:
+        return f" from {least:g} to {most:g}"
+    text = f" of {least:g} or more" if least is not None else f" above {_named(meta.gt)}" if meta.gt is not None else ""
+    return f"{text}, {most:g} at most" if most is not None else text
+
+
+def _beyond(part: _Part) -> str:
+    """Such a bound, for a value that lies beyond it."""
+    limits = [meta.le for meta in get_args(part.kind)[1:] if isinstance(meta, msgspec.Meta) and meta.le in _BEYOND]
+    is_number = isinstance(part.value, int | float) and math.isfinite(part.value)
+    return f", up to {limits[0]:g}" if limits and is_number and abs(part.value) > limits[0] else ""
+
+
+def _named(limit: float) -> str:
+    """0 for what is as good as that."""
+    return f"{limit:g}" if limit != SMALLEST else "0"
 
 
 def _alternatives(names: Iterable[str]) -> str:

@@ -12,21 +12,26 @@ import msgspec
 
 from polarcheck.errors import RuleError
 from polarcheck.machines.code_lists import GCodes, GCodeSystem, expanded, is_code
+from polarcheck.machines.fitting import MOST
 from polarcheck.machines.parameters import Meaning
 from polarcheck.machines.values import (
     Address,
     AddressOrNone,
     AxisNumber,
+    CharacterOrNone,
     Codes,
     Count,
+    Length,
     NotNegative,
+    Plain,
     Positive,
     Ranges,
+    SwitchWord,
     Variable,
     ascend,
 )
 
-_FLOW_CODE = re.compile(r"[GM](?:0|[1-9]\d*)(?:\.[1-9])?")
+_FLOW_CODE = re.compile(r"[GM](?:0|[1-9]\d{0,2})(?:\.[1-9])?", re.ASCII)
 
 
 def meanings(table: type) -> dict[str, str]:
@@ -65,22 +70,22 @@ class Control(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     digit_limit: Count
     word_limit: Count
     m_code_limit: Count
-    line_comments: str
+    line_comments: CharacterOrNone
     offset_digits: Annotated[int, msgspec.Meta(ge=1, le=4)]
     unknown_codes_are_errors: bool
     x: Literal["diameter", "radius"]
     known_codes: list[str]
     motion_codes: dict[str, str] = {}
-    native_words: dict[str, str] = {}
-    x_radius_words: list[str] = []
-    x_diameter_words: list[str] = []
+    native_words: dict[Plain, Plain] = {}
+    x_radius_words: list[SwitchWord] = []
+    x_diameter_words: list[SwitchWord] = []
 
     def __post_init__(self) -> None:
         for word, text in self.native_words.items():
             if not word or len(text) > len(word):
                 raise ValueError(f"native_words: {text!r} has no room in the place of {word!r}")
         for name, meant in self.motion_codes.items():
-            if not is_code(name) or meant not in ("G0", "G1", "G2", "G3"):
+            if not is_code(name) or "-" in name or meant not in ("G0", "G1", "G2", "G3"):
                 raise ValueError(f"motion_codes: {name} = {meant!r}: expected a G code and one of G0, G1, G2, G3")
 
 
@@ -111,12 +116,12 @@ class Polar(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
 
     on: Codes
     off: Codes
-    on_of_other_controls: list[str] = []
-    on_of_other_meaning: list[str] = []
+    on_of_other_controls: list[Plain] = []
+    on_of_other_meaning: list[Plain] = []
     words_beside_switch: list[str]
     virtual_axis: Address
     virtual_axis_incremental: AddressOrNone
-    virtual_axis_of_other_controls: list[str]
+    virtual_axis_of_other_controls: list[Address]
     other_controls: str = ""
     x: Literal["diameter", "radius"]
     virtual_axis_programming: Literal["radius", "diameter"]
@@ -169,12 +174,13 @@ class Compensation(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fie
 
     start_up: Literal["A", "B", "C"]
     start_up_with_move: Literal["A", "B"]
-    read_ahead: Annotated[int, msgspec.Meta(ge=2)]
+    read_ahead: Annotated[int, msgspec.Meta(ge=2, le=MOST)]
     interference: Literal["alarm", "erase"]
     tangent_tolerance: Annotated[float, msgspec.Meta(ge=0, le=math.pi / 2)]
     leaving_cancels: bool
     nose_types: Annotated[list[Annotated[int, msgspec.Meta(ge=0, le=9)]], msgspec.Meta(min_length=1)]
-    overcut_tolerance: NotNegative
+    # Arcs become chords that differ from them by less: at 0 there is no end of them.
+    overcut_tolerance: Annotated[float, msgspec.Meta(ge=1e-4, le=1000)]
 
 
 class Limits(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -203,10 +209,10 @@ class Limits(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     automatic_override: bool = False
     override_share: Positive
     keep_out: NotNegative = math.nan
-    x_minimum: float = math.nan
+    x_minimum: Length = math.nan
     x_maximum: NotNegative = math.nan
-    z_minimum: float = math.nan
-    z_maximum: float = math.nan
+    z_minimum: Length = math.nan
+    z_maximum: Length = math.nan
 
     def __post_init__(self) -> None:
         ascend(self, ("x_minimum", "x_maximum"), ("z_minimum", "z_maximum"))
@@ -310,7 +316,7 @@ class Macro(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     modal_macro_calls_each_block: list[str]
     modal_macro_cancel: list[str]
     program_returns: list[str]
-    computed_increments: dict[str, float]
+    computed_increments: dict[Address, Positive]
     bracket_levels: Count
     loop_numbers: Count
     loop_levels: Count
@@ -319,16 +325,13 @@ class Macro(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     repeats_in_p: bool
     second_arguments: bool
     signed_angles: bool
-    largest_number: Positive
+    largest_number: Annotated[float, msgspec.Meta(gt=0)]
     given: dict[Variable, float] = {}
 
     def __post_init__(self) -> None:
         for code in self.flow_codes:
             if not _FLOW_CODE.fullmatch(code):
                 raise ValueError(f"{code!r}: expected a G or M code as in G66.1 or M98, without leading zeros")
-        for address, increment in self.computed_increments.items():
-            if not re.fullmatch("[A-Z]", address) or not increment > 0:
-                raise ValueError(f"computed_increments: {address} = {increment}: expected a letter and a value above 0")
         for kind in ("local", "common", "retained", "system", "read_only", "clock"):
             for first, last in getattr(self, f"{kind}_variables"):
                 if first > last:

@@ -67,7 +67,8 @@ def apply(merged: dict[str, Any], table: Mapping[str, Any], profile: str, origin
                 _set(merged, key, value)
     for key, other in copies:
         group, _, last = other.partition(".")
-        _set(merged, key, merged.get(group, {}).get(last))
+        values = merged.get(group)
+        _set(merged, key, values.get(last) if isinstance(values, Mapping) else None)
 
 
 def _known(merged: Mapping[str, Any], profile: str) -> dict[str, Meaning]:

@@ -4,18 +4,34 @@ from typing import Annotated, TypeAlias
 
 import msgspec
 
-from polarcheck.machines.fitting import EXPECTED
+from polarcheck.machines.fitting import EXPECTED, LARGEST, MOST, SMALLEST
 
 #: First and last number of each range.
 Ranges: TypeAlias = list[tuple[int, int]]
 
-Positive: TypeAlias = Annotated[float, msgspec.Meta(gt=0)]
-NotNegative: TypeAlias = Annotated[float, msgspec.Meta(ge=0)]
-Count: TypeAlias = Annotated[int, msgspec.Meta(ge=1)]
+Positive: TypeAlias = Annotated[float, msgspec.Meta(gt=SMALLEST, le=LARGEST)]
+NotNegative: TypeAlias = Annotated[float, msgspec.Meta(ge=0, le=LARGEST)]
+Length: TypeAlias = Annotated[float, msgspec.Meta(ge=-LARGEST, le=LARGEST)]
+Count: TypeAlias = Annotated[int, msgspec.Meta(ge=1, le=MOST)]
 Codes: TypeAlias = Annotated[list[str], msgspec.Meta(min_length=1, extra={EXPECTED: "a list of codes, at least one"})]
-Address: TypeAlias = Annotated[str, msgspec.Meta(pattern="^[A-Z]$", extra={EXPECTED: "an address, one letter"})]
+# `$` alone lets a line end pass.
+#: What a program can hold in any encoding.
+Plain: TypeAlias = Annotated[
+    str, msgspec.Meta(pattern="^[ -~]*$(?!\\n)", extra={EXPECTED: "letters and signs of ASCII"})
+]
+CharacterOrNone: TypeAlias = Annotated[
+    str, msgspec.Meta(pattern="^[!-~]?$(?!\\n)", extra={EXPECTED: "one character or none"})
+]
+SwitchWord: TypeAlias = Annotated[
+    str,
+    msgspec.Meta(
+        pattern=r"^[!-~]+( [A-Z][-+]?[0-9]+([.][0-9]*)?)?$(?!\n)",
+        extra={EXPECTED: "a code, a code with a word as in G10.9 X0, or a native word"},
+    ),
+]
+Address: TypeAlias = Annotated[str, msgspec.Meta(pattern="^[A-Z]$(?!\\n)", extra={EXPECTED: "an address, one letter"})]
 AddressOrNone: TypeAlias = Annotated[
-    str, msgspec.Meta(pattern="^[A-Z]?$", extra={EXPECTED: "an address, one letter, or none"})
+    str, msgspec.Meta(pattern="^[A-Z]?$(?!\\n)", extra={EXPECTED: "an address, one letter, or none"})
 ]
 Variable: TypeAlias = Annotated[int, msgspec.Meta(ge=1, extra={EXPECTED: "the number of a variable, 100 for #100"})]
 #: Controls number their axes with two digits.

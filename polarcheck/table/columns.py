@@ -54,6 +54,8 @@ class Columns:
 
     def _words_of(self, address: str) -> Rows:
         order, ends = self._by_address
+        if not address:  # of a machine that has none for it
+            return order[:0]
         number = ord(address[1].lower()) if address[0] == "," else ord(address)
         found = order[ends[number - 1] : ends[number]]
         # H beside G43 is the number of an offset, and no increment of C.
