@@ -9,6 +9,7 @@ import sys
 import threading
 import time
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -149,10 +150,10 @@ def test_a_file_that_becomes_a_pipe_between_looking_and_opening(
     path.write_bytes(b"x")
     opened = os.open
 
-    def exchanged(*arguments: object) -> int:
+    def exchanged(*arguments: Any, **options: Any) -> int:
         path.unlink()
         os.mkfifo(path)
-        return opened(*arguments)  # type: ignore[arg-type]
+        return opened(*arguments, **options)
 
     monkeypatch.setattr(os, "open", exchanged)
     assert objection(path) == "is a pipe, not a file"

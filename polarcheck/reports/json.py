@@ -12,12 +12,13 @@ if TYPE_CHECKING:
     from polarcheck.checking.finding import Report
     from polarcheck.reports import Background
 
-#: What would act on a terminal or an editor, and JSON allows to stand as it is: escape sequences, changes of direction.
-_ESCAPED = {
-    number: f"\\u{number:04x}"
-    for span in ((0x7F, 0xA0), (0x200E, 0x2010), (0x2028, 0x202F), (0x2066, 0x206A))
-    for number in range(*span)
-}
+#: What would act on a terminal or an editor, or not be seen there, and JSON allows to stand as it is: escape sequences,
+#: changes of direction, characters without width.
+_ACTING = (
+    *(*range(0x7F, 0xA0), 0xAD, 0x61C, 0x180E, *range(0x200B, 0x2010), *range(0x2028, 0x202F)),
+    *(*range(0x2060, 0x2070), 0xFEFF, *range(0xFFF9, 0xFFFC)),
+)
+_ESCAPED = {number: f"\\u{number:04x}" for number in _ACTING}
 
 
 def json(report: Report, background: Background | None = None) -> str:

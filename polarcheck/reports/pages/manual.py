@@ -32,9 +32,9 @@ def pages(rules: Iterable[Rule], machine: Machine) -> str:
 
 
 def _page(rule: Rule, machine: Machine) -> str:
-    alarm = machine.alarms.get(rule.name)
+    alarm = visible(machine.alarms.get(rule.name, ""))
     facts = [rule.group, machine.severities.get(rule.name, rule.severity.name.lower())]
-    facts += [f"alarm {alarm} on {machine.title}"] if alarm else []
+    facts += [f"alarm {alarm} on {visible(machine.title)}"] if alarm else []
     head = f"{rule.name} ({', '.join(facts)})"
     return "\n\n".join([f"{head}\n{'=' * len(head)}", *_other_words(rule, machine), rule.page.strip()])
 
@@ -51,7 +51,8 @@ def _other_words(rule: Rule, machine: Machine) -> Iterator[str]:
     if polar.x != usual.polar.x:
         words.append(f"with X as a {polar.x}")
     if words:
-        text = f"On {machine.title} the mode is programmed {', '.join(words)}. Examples without a machine are those of "
+        programmed = f"On {visible(machine.title)} the mode is programmed {', '.join(words)}."
+        text = f"{programmed} Examples without a machine are those of "
         yield "\n".join(
             textwrap.wrap(f"{text}{usual.title}, with {usual.polar.virtual_axis} as the virtual axis.", _COLUMNS)
         )

@@ -12,6 +12,7 @@ import msgspec
 from polarcheck.machines.machine import meanings
 from polarcheck.machines.parameters import Meaning
 from polarcheck.machines.profiles import Profile, load
+from polarcheck.reading.excerpt import visible
 
 #: What no control's manual can know, each key with an answer as it may look.
 _ASKED: dict[str, dict[str, Any]] = {
@@ -55,7 +56,8 @@ def text(name: str, inherits: str) -> str:
         *_doubtful(profile),
         *_parameters(profile),
     ]
-    return "\n".join(lines) + "\n"
+    # What comes from another file is data here, too: a line end in it would end the comment.
+    return "\n".join(map(visible, lines)) + "\n"
 
 
 def _limits(profile: Profile) -> Iterator[str]:
@@ -109,15 +111,17 @@ def _parameters(profile: Profile) -> Iterator[str]:
     yield from ("", "[parameters]", *_prose("as the control shows them; each sets the values that it stands for"))
     for name, meaning in profile.machine.known_parameters.items():
         example = _present(profile, meaning) or next(iter(meaning.values), "3600")
-        number = example.replace(".", "").isdecimal()
+        number = example.isascii() and example.replace(".", "").isdecimal()
         yield f"#{_toml(name)} = {example if number else _toml(example)}  # {meaning.title}"
 
 
 def _present(profile: Profile, meaning: Meaning) -> str:
     """What a parameter would be on the machine as its profile is; empty where that is not one number."""
     group, _, key = meaning.key.partition(".")
-    value = getattr(getattr(profile.machine, group), key) if key else math.nan
-    return "" if math.isnan(value) else f"{value / meaning.factor:g}"
+    value = getattr(getattr(profile.machine, group, None), key, None) if key else None
+    if isinstance(value, bool) or not isinstance(value, int | float) or not meaning.factor or math.isnan(value):
+        return ""
+    return f"{value / meaning.factor:g}"
 
 
 def _prose(text: str) -> list[str]:
@@ -125,11 +129,15 @@ def _prose(text: str) -> list[str]:
 
 
 def _toml_key(key: str) -> str:
-    return key if key.replace("_", "").replace("-", "").isalnum() else _toml(key)
+    return key if key.isascii() and key.replace("_", "").replace("-", "").isalnum() else _toml(key)
 
 
 def _toml(value: Any) -> str:
     if isinstance(value, dict):
         inside = ", ".join(f"{_toml(key)} = {_toml(element)}" for key, element in value.items())
         return f"{{ {inside} }}" if inside else "{ }"
-    return msgspec.json.encode(value).decode()
+    # JSON lets stand as it is what TOML does not, and what acts on a terminal.
+    return "".join(
+        character if character.isprintable() else f"\\U{ord(character):08x}"
+        for character in msgspec.json.encode(value).decode()
+    )
