@@ -7,6 +7,7 @@ import errno
 import os
 import stat
 from collections.abc import Callable
+from pathlib import Path
 from typing import BinaryIO
 
 #: Read at once, where the size is not known [bytes].

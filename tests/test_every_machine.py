@@ -27,9 +27,9 @@ class Hand:
     """
     How a program for a lathe is written, from its manual and posts, not from our profile.
 
-    head: before the approach. on, off: of the mode, with what belongs there. axis: of the virtual axis. factor, outside:
-    of X in the mode and outside of it, 2 for diameters. steps: addresses of incremental words; empty: by G91. arc:
-    address of the radius. codes: line, G2, G3.
+    head: before the approach. on, off: of the mode, with what belongs there. axis: of the virtual axis. factor,
+    outside: of X in the mode and outside of it, 2 for diameters. steps: addresses of incremental words; empty: by G91.
+    arc: address of the radius. codes: line, G2, G3.
     """
 
     head: str

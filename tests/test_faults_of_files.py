@@ -361,7 +361,7 @@ def test_folders_nested_deeper_than_a_path_can_say_are_told_in_a_line() -> None:
     with nested("n" * 200, 30):
         status, paths, (told,) = check(".")
     assert (status, paths) == (2, ["z.nc"])
-    assert told.startswith(f"polarcheck: {'n' * 200}/{'n' * 200}/")
+    assert told.startswith(f"polarcheck: {'n' * 200}/")
     assert told.endswith(": File name too long")
 
 
