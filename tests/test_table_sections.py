@@ -51,6 +51,12 @@ def sections(program: str) -> list[tuple[int, int, bool]]:
         # A program that begins with a switch begins another program: nothing of the one before reaches into it.
         ("G12.1\nG1 X40. F100\nC5.\nO2 G12.1\nG1 X40.\nG13.1\nM30\n", [(1, 4, False), (4, 6, True)]),
         ("G12.1\nG1 X40. F100\nC5.\nO2 G13.1\nM30\n", [(1, 4, False)]),
+        # A G0 before any cut was meant to stand in the section.
+        ("G12.1\nG0 X1.\nM30\n", [(1, 3, False)]),
+        ("G12.1\nG0 X80.\nC5.\nT0202\nM30\n", [(1, 4, False)]),
+        ("G12.1\nG0 X80.\nG28 U0\nM30\n", [(1, 3, False)]),
+        # But not one behind a G12.1 that was meant to be the G13.1.
+        ("G12.1\nG1 X40. F100\nC5.\nG12.1\nG0 X80.\nM30\n", [(1, 5, False)]),
         # The G13.1 of another tool does not belong to it.
         ("G12.1\nG1 X40. F100\nC5.\nT0202\nG13.1\nM30\n", [(1, 4, False)]),
     ],

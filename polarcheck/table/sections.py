@@ -54,9 +54,11 @@ def find_sections(marks: Marks) -> Sections:
     A section reaches from a G12.1 to its G13.1.
 
     Where that was forgotten, the section ends as it was meant: before the first G0, reference return or tool change
-    after the last cut, so that one missing word is one fault. Whether it was forgotten is seen by what follows the last
-    move of the virtual axis: a tool change, the end of the program, or rapid traverse before another G12.1. M1 says so
-    only behind a reference return: it then stands between two tools, and the G13.1 after it is one for safety.
+    after the last cut, so that one missing word is one fault. But G0 before any cut was meant to stand in the section:
+    nobody leaves what he has just begun. Whether the G13.1 was forgotten is seen by what follows the last move of the
+    virtual axis: a tool change, the end of the program, or rapid traverse before another G12.1. M1 says so only behind
+    a reference return: it then stands between two tools, and the G13.1 after it is one for safety. A caller can leave
+    what M99 returns with, but not before a G0 that stands above it.
     """
     count = len(marks.on)
     enter = np.flatnonzero(marks.on)
@@ -76,15 +78,14 @@ def find_sections(marks: Marks) -> Sections:
     forgotten = (by_off & (np.minimum(tool_end, stop) < end)) | (by_on & (rapid < end)) | by_end
     limit = np.minimum(np.where(by_on, rapid, outside), end)
     last_move = np.maximum(enter, _last_before(np.flatnonzero(marks.moves), limit))
-    meant = np.minimum(
-        _first_after(np.flatnonzero(marks.tool_ends | marks.outside | marks.rapid), last_move, count), limit
-    )
-
     repeated = np.zeros(len(enter), bool)
     repeated[1:] = (by_on & ~forgotten)[:-1]
     final = np.append(np.flatnonzero(~repeated)[1:] - 1, len(enter) - 1)
-    returned = _last_before(np.flatnonzero(marks.returns), end) >= last_cut
-    returned = (by_end & returned)[final]
+    is_empty = (last_move <= enter) & ~repeated & ~by_on
+    rapid_after = _first_after(np.flatnonzero(marks.tool_ends | marks.outside | marks.rapid), last_move, count)
+    meant = np.minimum(np.where(is_empty, outside, rapid_after), limit)
+    last_return = _last_before(np.flatnonzero(marks.returns), end)
+    returned = (by_end & (last_return >= last_cut) & (meant > last_return))[final]
     return Sections(
         enter[~repeated],
         np.where(forgotten, meant, end)[final],
