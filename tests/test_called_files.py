@@ -36,7 +36,7 @@ def counts(monkeypatch: pytest.MonkeyPatch) -> Counter[str]:
         monkeypatch.setattr(owner, name, count)
 
     counted(programs, "read_words", "texts")
-    counted(library, "read", "files")
+    counted(library, "_with_head", "files")
     counted(Execution, "run", "executions")
     return found
 

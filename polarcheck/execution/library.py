@@ -22,6 +22,10 @@ from polarcheck.reading.words import Text
 _LARGEST = 50_000_000
 _MOST_LOOKED_FOR = 100
 _NAME = re.compile(r"[A-Za-z0-9+_.-]{1,64}")
+#: In one line, and nothing of it read again: a file of blank lines is no reason to wait.
+_OWN_NAME = re.compile(r"^[^\S\n]*+[O:][^\S\n]*+(\d{1,15}(?!\d)|<[^>\n]*+>)", re.MULTILINE | re.IGNORECASE | re.ASCII)
+#: The line that begins a tape. Behind a head it would end the program.
+_TAPE_MARK = re.compile(r"[\s\0]*+%[^\n]*+\n")
 
 
 class Library:
@@ -81,12 +85,17 @@ def _read_inside(folder: Path, path: Path) -> bytes | None:
 
 def _with_head(data: bytes, file: str, called: ProgramName) -> Source:
     number, name = called
-    own = re.search(rb"^\s*%?\s*[O:]\s*(\d{1,15}(?!\d)|<[^>\n]*>)", data, re.MULTILINE | re.IGNORECASE)
+    source = read(data, file)
+    text = source.text
+    own = _OWN_NAME.search(text)
     right = own is not None and (own[1].isdigit() and number is not None and int(own[1]) == number)
-    if right or (own and name is not None and own[1].strip(b"<>").decode("latin-1").upper() == name.upper()):
-        return read(data, file)
+    if right or (own and name is not None and own[1].strip("<>").upper() == name.upper()):
+        return source
     head = f"O{number:04d}" if number is not None else f"O<{name}>"
-    return msgspec.structs.replace(read(head.encode() + b"\n" + data, file), added_lines=1)
+    mark = _TAPE_MARK.match(text)
+    at = mark.end() if mark else 0
+    headed = source.encode(f"{text[:at]}{head}\n{text[at:]}")
+    return msgspec.structs.replace(read(headed, file), added_lines=1)
 
 
 class Shelf:
