@@ -151,11 +151,16 @@ def assign(statement: Statement, variables: Variables, arithmetic: Arithmetic = 
     return fault_of_target or fault
 
 
+#: Longer numbers have no exact value here, and no control takes them.
+_LARGEST_WORD: Final = 1e15
+
+
 def word_value(
     word: Word, variables: Variables, increment: float, arithmetic: Arithmetic = DEFAULT
 ) -> tuple[Value, Fault | None]:
     """
-    The value of a word, None where its variable is vacant and the control drops the address; and the first fault.
+    The value of a word, None where its variable is vacant and the control drops the address; and the first fault. One
+    that no word could hold, whatever the control, is unknown.
 
     increment: the least increment of the address, to which a calculated value is rounded, and to which ROUND rounds. A
     written number comes as it is written: what 10 without a point means is not said here.
@@ -168,6 +173,8 @@ def word_value(
         value = None if value is None else 0.0 - value
     else:
         value, fault = evaluate(word.value, variables, arithmetic, increment)
+    if value is not None and abs(value) > _LARGEST_WORD:
+        return UNKNOWN, fault
     if value is None or value != value or word.written is not None:
         return value, fault
     return round_to(value, increment), fault

@@ -13,6 +13,8 @@ from polarcheck.table.filling import fill_down
 
 #: Without a point, a length of this many units can only be meant in least increments: no lathe moves a meter.
 MEANT_IN_INCREMENTS = 1000.0
+#: No lathe goes so far [mm, inch, deg]: where such a word leads is not known, and nothing overflows by it.
+_FARTHEST = 1e7
 
 
 class Lengths(Columns):
@@ -96,7 +98,9 @@ class Lengths(Columns):
     def _meant(self, least: Floats | float) -> Floats:
         """Per word: the value that is meant; least: what an increment is."""
         value, in_increments = self.run.words.value, self._counts_increments
-        return np.where(in_increments, value * least, value) if in_increments.any() else value
+        meant = np.where(in_increments, value * least, value) if in_increments.any() else value
+        too_far = np.abs(meant) > _FARTHEST
+        return np.where(too_far, np.nan, meant) if too_far.any() else meant
 
     def length_of(self, address: str) -> Floats:
         """A word as a length [mm], as written: a diameter stays one."""
