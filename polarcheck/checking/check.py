@@ -126,7 +126,9 @@ def _merged(first: tuple[str, FileReport], second: tuple[str, FileReport], of_te
     shown_off, shown_on = ({_place(found) for found in _all(report.findings)} for report in (off, on))
 
     def told(found: Finding, others: set[_Place], state: str) -> Finding:
-        follows = [told(one, others, state) for one in found.follows]
+        # What stands by itself in the first run is no second time listed under what only the other one shows.
+        own = (one for one in found.follows if others is shown_on or _place(one) not in others)
+        follows = [told(one, others, state) for one in own]
         if found.rule in of_text or _place(found) in others:
             return msgspec.structs.replace(found, follows=follows)
         return msgspec.structs.replace(found, message=f"{found.message} (with block skip {state})", follows=follows)

@@ -17,10 +17,13 @@ from polarcheck.checking.rule import Hits, Rule
 from polarcheck.checking.tables import OF_CAUSE, Tables
 from polarcheck.errors import TooHardError
 from polarcheck.execution.run import begins_program
+from polarcheck.reading.excerpt import shortened
 from polarcheck.table.trace import Trace
 
 #: More findings of one rule in one file are counted, not listed: nobody reads them, and hostile files stay bounded.
 LISTED = 1000
+#: Of the name of a program [characters].
+_NAME_LENGTH = 40
 
 
 class _Listed(msgspec.Struct, frozen=True):
@@ -246,7 +249,8 @@ def program_heads(trace: Trace) -> list[tuple[int, str]]:
         if int(block) in bare:
             heads.append((block, start, end))
     return [
-        (int(block), places.squeezed(text.source.excerpt(int(start), int(end)))) for block, start, end in sorted(heads)
+        (int(block), shortened(places.squeezed(text.source.excerpt(int(start), int(end))), _NAME_LENGTH))
+        for block, start, end in sorted(heads)
     ]
 
 

@@ -19,6 +19,7 @@ from polarcheck.execution.kinds import FaultKind, RemarkKind
 from polarcheck.execution.programs import find_programs
 from polarcheck.execution.run import Remark, Run
 from polarcheck.machines.machine import Machine
+from polarcheck.reading.excerpt import shortened
 
 #: The rule that reports each kind of fault; "" where none does.
 RULES: Final[Mapping[FaultKind, str]] = {
@@ -72,6 +73,8 @@ RULES: Final[Mapping[FaultKind, str]] = {
 
 _ENDLESS = "endless-loop"
 _BOUNDS = ("too-many-blocks", "too-many-statements", "runs-too-long", "too-many-repeats")
+#: Of a name in a reason [characters].
+_LONGEST = 40
 
 #: Where a rule reports several kinds: what is wrong, to follow the words at fault or to stand for itself.
 _REASONS: Final[Mapping[FaultKind, str]] = {
@@ -118,7 +121,7 @@ _REASONS: Final[Mapping[FaultKind, str]] = {
     ),
     "runs-too-long": "is still reached after {limit:g} seconds; the rest is not executed (--max-seconds)",
     "too-many-repeats": (
-        "calls {repeats} times, more than the {limit} blocks that a check executes; it is run once here"
+        "calls {repeats:.15g} times, more than the {limit} blocks that a check executes; it is run once here"
     ),
 }
 
@@ -206,7 +209,9 @@ class Faults:
 
     def reason(self, index: int) -> str:
         """What is wrong, in words."""
-        return _REASONS[self.run.faults[index].kind].format_map(self.values(index))
+        values = self.values(index).items()
+        told = {name: shortened(one, _LONGEST) if isinstance(one, str) else one for name, one in values}
+        return _REASONS[self.run.faults[index].kind].format_map(told)
 
 
 def reason_of(remark: Remark) -> str:

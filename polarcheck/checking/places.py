@@ -12,6 +12,7 @@ from polarcheck.arrays import Mask, Rows
 from polarcheck.checking.tables import SPANS, Tables
 from polarcheck.machines.code_lists import numbers
 from polarcheck.machines.codes import code_numbers
+from polarcheck.reading.excerpt import shortened
 from polarcheck.table.trace import Trace
 
 #: A % with what else stands on its line, and blanks.
@@ -121,8 +122,9 @@ def _last_rows(trace: Trace) -> Rows:
 
 
 def of_file(tables: Tables, index: int) -> Place:
-    """The head of the file."""
-    return Place(0, 0, 0, -1, index)
+    """The first line of the file; of an empty one where it would stand."""
+    trace: Trace = tables["trace"]
+    return Place(0, max(len(trace.text.source.line_text(1).rstrip()), 1), 0, -1, index)
 
 
 def of_fault(tables: Tables, index: int) -> Place:
@@ -189,12 +191,13 @@ def span(tables: Tables, place: Place, at: list[int]) -> tuple[int, int]:
 def block_text(trace: Trace, block: int) -> str:
     """A block as it is written, comments included, without the blanks around it; of a very long one its beginning."""
     start, end = int(trace.text.blocks.start[block]), int(trace.text.blocks.end[block])
-    return trace.text.source.excerpt(start, min(end, start + _BLOCK_LENGTH)).strip()
+    # Beyond the blanks around it only so much is looked at as is shown.
+    return shortened(trace.text.source.excerpt(start, min(end, start + 2 * _BLOCK_LENGTH)).strip(), _BLOCK_LENGTH)
 
 
 def block_in_line(trace: Trace, row: int, length: int) -> str:
-    """The block of a row in one line, as messages name it; more than `length` characters are cut off."""
-    return " ".join(block_text(trace, int(trace.run.block[row])).split())[:length]
+    """The block of a row in one line, as messages name it, shortened to a length."""
+    return shortened(" ".join(block_text(trace, int(trace.run.block[row])).split()), length)
 
 
 def squeezed(text: str) -> str:

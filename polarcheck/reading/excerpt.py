@@ -26,6 +26,11 @@ def visible(text: str) -> str:
     return text if text.isprintable() else "".join(map(_shown, with_characters(text)))
 
 
+def shortened(text: str, length: int) -> str:
+    """The text, or so many characters of it and dots: what stands in a program may be of any length."""
+    return text if len(text) <= length else f"{text[:length]} {_CUT}"
+
+
 def cells(text: str) -> int:
     """The width of visible text in the cells of a terminal."""
     return len(text) if text.isascii() else sum(map(_cells, text))

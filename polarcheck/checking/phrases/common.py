@@ -6,17 +6,17 @@ from polarcheck.checking.places import Place, squeezed
 from polarcheck.machines.codes import code_numbers, spelled
 from polarcheck.machines.machine import Machine
 from polarcheck.machines.own_language import shown
+from polarcheck.reading.excerpt import shortened
 from polarcheck.reading.words import Text
 from polarcheck.table.trace import Trace
 
-#: Of what is written; more is cut off [characters].
+#: Of what is written [characters].
 _LONGEST = 40
 
 
 def short(written: str) -> str:
     """What is written, in one line and not too long."""
-    line = " ".join(written.split())
-    return line if len(line) <= _LONGEST else f"{line[:_LONGEST]} ..."
+    return shortened(" ".join(written.split()), _LONGEST)
 
 
 def text(text: Text, place: Place) -> str:

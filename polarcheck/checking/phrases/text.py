@@ -41,17 +41,18 @@ def letter(text: Text, place: Place) -> str:
 def meant(text: Text, place: Place) -> str:
     """A word with its digits in the place of letters."""
     first, end = np.searchsorted(text.letters, (place.start, place.end))
-    found = text.source.excerpt(place.start, place.end)
+    found = list(text.source.excerpt(place.start, place.end))
     for at in (text.letters[first:end] - place.start).tolist():
-        found = found[:at] + ("0" if found[at] in "oO" else "1") + found[at + 1 :]
-    return found.upper()
+        found[at] = "0" if found[at] in "oO" else "1"
+    return short("".join(found).upper())
 
 
 def code(text: Text, index: int) -> str:
     """A G code, as in G0; as it is written where it is none that a control could know."""
     words = text.words
     number = int(code_numbers(words.value[index : index + 1])[0])
-    return spelled("G", number) if number >= 0 else text.source.excerpt(int(words.start[index]), int(words.end[index]))
+    start, end = int(words.start[index]), int(words.end[index])
+    return spelled("G", number) if number >= 0 else short(text.source.excerpt(start, end))
 
 
 def other(text: Text, written: Written, index: int) -> str:
