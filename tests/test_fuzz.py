@@ -1,0 +1,202 @@
+"""
+A short share of the fuzzing that benchmarks/fuzz.py does for as long as asked: what must hold of any input does
+(fuzz_targets.py), and the loop that chooses inputs finds what is wrong, makes it small and goes on.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+import time
+import warnings
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from random import Random
+
+import fuzz_targets
+import pytest
+import strategies
+from fuzz_loop import Loop, smallest, told_of
+from fuzz_targets import SETUPS, TARGETS, BrokenError, fits_schema, seeds
+from hypothesis import HealthCheck, given, settings
+from mutations import mutated
+from programs import ROOT
+from test_cli import IMPORTED_FROM
+
+not_on_windows = pytest.mark.skipif(sys.platform == "win32", reason="no bound on the time or memory of a process")
+
+#: About a minute in all, on two cores.
+few = settings(max_examples=25, deadline=None, suppress_health_check=list(HealthCheck))
+more = settings(max_examples=100, deadline=None, suppress_health_check=list(HealthCheck))
+
+
+@given(strategies.sound_programs(), strategies.setups)
+@few
+def test_programs_that_look_sound(data: bytes, setup: int) -> None:
+    fuzz_targets.whole(data, setup)
+    fuzz_targets.trace(data, setup)
+
+
+@given(strategies.wild_programs(), strategies.setups)
+@few
+def test_wild_programs(data: bytes, setup: int) -> None:
+    fuzz_targets.whole(data, setup)
+    fuzz_targets.trace(data, setup)
+
+
+@given(strategies.worse_programs(), strategies.setups)
+@few
+def test_mutated_programs(data: bytes, setup: int) -> None:
+    fuzz_targets.whole(data, setup)
+
+
+@given(strategies.programs(), strategies.setups)
+@few
+def test_the_command(data: bytes, setup: int) -> None:
+    fuzz_targets.command(data, setup)
+
+
+@given(strategies.programs(), strategies.setups)
+@settings(few, max_examples=5)
+def test_reports_fit_their_schema(data: bytes, setup: int) -> None:
+    fits_schema(data, setup)
+
+
+@given(strategies.programs(), strategies.setups)
+@more
+def test_the_reader(data: bytes, setup: int) -> None:
+    fuzz_targets.reader(data, setup)
+
+
+@given(strategies.statements(), strategies.setups)
+@more
+def test_macro_statements(data: bytes, setup: int) -> None:
+    fuzz_targets.statement(data, setup)
+
+
+@given(strategies.statements(), strategies.setups)
+@few
+def test_programs_of_macro_statements(data: bytes, setup: int) -> None:
+    fuzz_targets.whole(data, setup)
+
+
+@given(strategies.offset_tables(), strategies.setups)
+@more
+def test_offset_tables(data: bytes, setup: int) -> None:
+    fuzz_targets.offsets(data, setup)
+
+
+@given(strategies.setting_files)
+@few
+def test_machine_files_and_jobs(data: bytes) -> None:
+    fuzz_targets.settings(data, 0)
+
+
+# ---- the loop itself ----
+
+
+def fails_at(wanted: bytes) -> Callable[[bytes, int], Iterable[str]]:
+    def target(data: bytes, setup: int) -> Iterable[str]:
+        if wanted in data:
+            raise BrokenError("planted")
+        return []
+
+    return target
+
+
+def found_by(loop: Loop, seconds: float = 60) -> dict[str, bytes]:
+    """The first failure, within a time that nobody needs."""
+    return {failure.kind: failure.data for failure in [next(loop.run(time.monotonic() + seconds))]}
+
+
+@not_on_windows
+def test_what_fails_is_found_and_made_small(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(TARGETS, "reader", fails_at(b"G13.1"))
+    assert found_by(Loop(1, ["reader"], 10)) == {"planted": b"G13.1"}
+
+
+@not_on_windows
+def test_a_warning_and_a_hang_are_failures(monkeypatch: pytest.MonkeyPatch) -> None:
+    def warns(data: bytes, setup: int) -> Iterable[str]:
+        warnings.warn("planted", RuntimeWarning, stacklevel=1)
+        return []
+
+    def hangs(data: bytes, setup: int) -> Iterable[str]:
+        while True:
+            pass
+
+    monkeypatch.setitem(TARGETS, "reader", warns)
+    assert list(found_by(Loop(1, ["reader"], 10))) == ["RuntimeWarning in test_fuzz.warns"]
+    monkeypatch.setitem(TARGETS, "reader", hangs)
+    assert "HangError" in getattr(told_of("reader", b"G1", 0, 0.2), "kind", "")
+
+
+@not_on_windows
+def test_what_is_written_on_standard_error_is_a_failure() -> None:
+    written = iter(["", "", "a library warns"])
+    loop = Loop(1, ["reader"], 10, lambda: next(written, ""))
+    found = [loop.one("reader", b"G1 X1.", 0) for _ in range(4)]
+    assert [failure.reason if failure else "" for failure in found] == ["", "", "a library warns", ""]
+
+
+@not_on_windows
+def test_an_input_that_reaches_new_lines_is_kept() -> None:
+    loop = Loop(1, ["reader"], 10)
+    kept = []
+    for data in (b"G1 X1.", b"G1 X1.", b"G1 X(A)1.--\n%<>", b"G1 X2."):
+        loop.one("reader", data, 0)
+        kept.append(loop.kept)
+    assert kept[0] == kept[1] < kept[2] == kept[3]
+
+
+def test_the_smallest_input_has_only_what_it_takes() -> None:
+    data = b"".join(b"N%d X%d.\n" % (n, n) for n in range(60))
+    assert smallest(data, lambda found: b"17" in found and b"\n" in found) == b"17\n"
+    assert smallest(b"", lambda found: True) == b""
+
+
+def test_mutation_of_a_seed_is_the_same_every_time() -> None:
+    programs = seeds("whole")
+    ours, theirs = (
+        [mutated(programs[3], rng, programs) for _ in range(50)]
+        for rng in (Random(5), Random(5))  # noqa: S311
+    )
+    assert ours == theirs
+    assert len(set(ours)) > 40
+
+
+@pytest.mark.parametrize("target", TARGETS)
+def test_seeds_hold(target: str) -> None:
+    """A few of the inputs that the loop begins with, so that a failure later is one of a mutation."""
+    for number, data in enumerate(Random(2).sample(seeds(target), 2)):  # noqa: S311
+        TARGETS[target](data, number % len(SETUPS))
+
+
+# ---- the script ----
+
+
+def script(*arguments: str) -> tuple[int, str]:
+    import os
+    import subprocess
+
+    command = [sys.executable, str(ROOT / "benchmarks" / "fuzz.py"), *arguments]
+    environment = {**os.environ, "PYTHONPATH": IMPORTED_FROM}
+    run = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=300)
+    return run.returncode, run.stdout + run.stderr
+
+
+@not_on_windows
+def test_the_script_fuzzes_for_as_long_as_it_is_told() -> None:
+    status, told = script("--minutes", "0.15", "--jobs", "1", "--target", "reader", "--target", "statement")
+    assert (status, "0 distinct failures" in told) == (0, True), told
+    assert " inputs in " in told
+
+
+@not_on_windows
+def test_the_script_bears_the_death_of_its_process(tmp_path: Path) -> None:
+    """So little memory is not enough to begin with."""
+    status, told = script("--minutes", "1", "--memory", "0.03", "--keep", str(tmp_path))
+    assert status == 1, told
+    assert "before any input" in told
+    (about,) = tmp_path.glob("*.txt")
+    assert "before any input" in json.loads(about.read_text())["kind"]
