@@ -82,7 +82,15 @@ def guided(asked: argparse.Namespace, told: Told) -> int:
             return bytes(atheris.Mutate(data, most))
         return data[:2] + mutated(data[2:], random, own)[: most - 2]
 
-    arguments = [sys.argv[0], "-rss_limit_mb=0", "-timeout=0", "-max_len=40000", "-verbosity=0", f"-seed={asked.seed}"]
+    # The bounds are those of told_of and of the process, not libFuzzer's own.
+    arguments = [
+        sys.argv[0],
+        "-rss_limit_mb=0",
+        "-timeout=3600",
+        "-max_len=40000",
+        "-verbosity=0",
+        f"-seed={asked.seed}",
+    ]
     atheris.Setup(arguments, one, custom_mutator=mutate)
     atheris.Fuzz()
     return 0

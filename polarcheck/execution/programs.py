@@ -169,14 +169,19 @@ def needs_flow(text: Text, codes: Iterable[str]) -> bool:
 def block_text(text: Text, block: int) -> str:
     """A block as the control would read it: comments and stray characters blanked, digits for letters."""
     start, end = int(text.blocks.start[block]), int(text.blocks.end[block])
-    found = text.source.excerpt(start, end)
-    for at in text.strays.start[slice(*np.searchsorted(text.strays.block, (block, block + 1)))].tolist():
-        if found[at - start] != "%":  # ends what is read
-            found = found[: at - start] + " " + found[at - start + 1 :]
-    for at in text.letters[slice(*np.searchsorted(text.letters, (start, end)))].tolist():
-        found = found[: at - start] + ("0" if found[at - start] in "oO" else "1") + found[at - start + 1 :]
-    low, high = np.searchsorted(text.comments.block, (block, block + 1))
-    for index in range(low, high):
-        first, last = int(text.comments.start[index]) - start, int(text.comments.end[index]) - start
-        found = found[:first] + " " * (last - first) + found[last:]
-    return found
+    written = text.source.excerpt(start, end)
+    strays = text.strays.start[slice(*np.searchsorted(text.strays.block, (block, block + 1)))].tolist()
+    letters = text.letters[slice(*np.searchsorted(text.letters, (start, end)))].tolist()
+    comments = slice(*np.searchsorted(text.comments.block, (block, block + 1)))
+    spans = list(zip(text.comments.start[comments].tolist(), text.comments.end[comments].tolist(), strict=True))
+    if not (strays or letters or spans):
+        return written
+    found = list(written)  # a text would be copied for each of them
+    for at in strays:
+        if written[at - start] != "%":  # ends what is read
+            found[at - start] = " "
+    for at in letters:
+        found[at - start] = "0" if written[at - start] in "oO" else "1"
+    for first, last in spans:
+        found[first - start : last - start] = " " * (last - first)
+    return "".join(found)
