@@ -15,7 +15,7 @@ from polarcheck.checking.phrases.polar import extrudes, not_simulated, not_under
 from polarcheck.checking.places import block_in_line
 from polarcheck.checking.rule import Rule
 from polarcheck.checking.tables import Tables
-from polarcheck.geometry.tolerances import CROSSINGS
+from polarcheck.geometry.tolerances import CHORDS, CROSSINGS, FARTHEST
 from polarcheck.table.trace import Trace
 
 #: Columns that hang on the offset in force, and those that hang on the whole move.
@@ -25,6 +25,8 @@ _OF_MOVES = ("tool_center.c_feed", "tool_center.c_acceleration")
 _WITHOUT_WEIGHT = ("trace.nose",)
 #: Causes, beside the offset numbers, for which a move is not known.
 _POSITION, _NO_FEED, _FEED_OF_SPINDLE = -3, -2, -1
+#: Contours that are named one by one; a hostile file has any number of them.
+_LISTED = 20
 #: Of a block that is named; more is cut off [characters].
 _BLOCK_LENGTH = 40
 
@@ -135,16 +137,53 @@ def _ramps_of_center(tables: Tables, rule: Rule) -> Iterator[NotEvaluated]:
         yield NotEvaluated(rule=rule.name, reason=reason, blocks=count)
 
 
-def _tangled_contours(tables: Tables, rule: Rule) -> Iterator[NotEvaluated]:
-    """Loops that are no contours, so that nobody can say what they leave standing."""
-    trace, tangled = tables["trace"], tables["overcuts"].tangled & tables["ramps"].compensated
-    for row in np.flatnonzero(tangled)[_groups(tables["ramps"].loop[tangled])[0]].tolist():
-        own = tangled & (tables["ramps"].loop == tables["ramps"].loop[row])
-        reason = (
-            f"the contour at line {int(trace.line[row])} crosses itself more than {CROSSINGS} times a block: no "
-            "part can be told from it; program each contour by itself, between its own G41 or G42 and G40"
-        )
-        yield NotEvaluated(rule=rule.name, reason=reason, blocks=int(np.count_nonzero(own)))
+def _contours_given_up(tables: Tables, rule: Rule) -> Iterator[NotEvaluated]:
+    """Loops of which nobody can say, or not in bounded time, what they leave standing."""
+    overcuts = tables["overcuts"]
+    crosses = f"crosses itself more than {CROSSINGS} times a block: no part can be told from it"
+    far = f"reaches farther than {FARTHEST:.0f} mm from the center of C, or turns round a point far beyond"
+    long = f"has arcs of more than {CHORDS} chords"
+    yield from _loops_given_up(
+        tables, rule, overcuts.tangled, f"{crosses}; program each contour by itself, between its own G41 or G42 and G40"
+    )
+    yield from _loops_given_up(tables, rule, overcuts.too_far, f"{far}: no part can be told from it; mend its words")
+    yield from _loops_given_up(
+        tables, rule, overcuts.too_long, f"{long}: they are too many to look at; are their R, I and J meant?"
+    )
+
+
+def _contours_beside(tables: Tables, rule: Rule) -> Iterator[NotEvaluated]:
+    """The same for loops that only together are too hard."""
+    asked = _TOGETHER[rule.name](tables)
+    reason = f"crosses itself or others beside it more than {CROSSINGS} times a block: no part can be told from them"
+    yield from _loops_given_up(
+        tables, rule, asked & ~tables["overcuts"].tangled, f"{reason}; program fewer contours in a section"
+    )
+
+
+def _strips_beside(tables: Tables, rule: Rule) -> Iterator[NotEvaluated]:
+    """Loops beside paths that are too long to look for what stays there, which is hardly ever amiss."""
+    yield from _contours_beside(tables, rule)
+    reason = "lies beside so many others, or such long paths, that nobody has looked for what stays between them"
+    yield from _loops_given_up(tables, rule, tables["coverage"].too_long, reason, matters=False)
+
+
+def _loops_given_up(
+    tables: Tables, rule: Rule, rows: Mask, reason: str, matters: bool = True
+) -> Iterator[NotEvaluated]:
+    """An entry for each loop of these rows, one for all of them from some number on."""
+    trace: Trace = tables["trace"]
+    at = np.flatnonzero(rows & tables["ramps"].compensated)
+    if not len(at):
+        return
+    first, counts = _groups(tables["ramps"].loop[at])
+    order = np.argsort(first)
+    for number, count in zip(at[first[order]][:_LISTED].tolist(), counts[order].tolist(), strict=False):
+        told = f"the contour at line {int(trace.line[number])} {reason}"
+        yield NotEvaluated(rule=rule.name, reason=told, blocks=count, matters=matters)
+    if len(first) > _LISTED:
+        told = f"each of {len(first) - _LISTED} more contours {reason}"
+        yield NotEvaluated(rule=rule.name, reason=told, blocks=int(counts[order[_LISTED:]].sum()), matters=matters)
 
 
 def _no_offset(what: str, key: str) -> Callable[[Trace, int], str]:
@@ -197,5 +236,14 @@ _REASONS: dict[str, Callable[[Trace, int], str]] = {
 _SAID_OF: dict[str, Callable[[Tables, Rule], Iterator[NotEvaluated]]] = {
     "c-feed-above-limit": _c_axis_without_limit,
     "start-up-shorter-than-radius": _ramps_of_center,
-    "overcut": _tangled_contours,
+    "overcut": _contours_given_up,
+    "slot-narrower-than-cutter": _contours_beside,
+    "uncompensated-cut-into-part": _contours_beside,
+    "material-left": _strips_beside,
+}
+
+_TOGETHER: dict[str, Callable[[Tables], Mask]] = {
+    "slot-narrower-than-cutter": lambda tables: tables["slots"].tangled,
+    "uncompensated-cut-into-part": lambda tables: tables["uncompensated_cuts"].tangled,
+    "material-left": lambda tables: tables["coverage"].tangled,
 }

@@ -18,18 +18,22 @@ import numpy as np
 import shapely  # type: ignore[import-untyped]
 
 from polarcheck.arrays import Floats, Mask, Points, Rows
+from polarcheck.geometry import areas
 from polarcheck.geometry.faces import Geometries, coordinates, lines_of
 from polarcheck.geometry.finished_part import Contours, FinishedParts, finished_parts, first_of_its_kind
 from polarcheck.geometry.segments import ZERO, Curves, Segments, members, segments
+from polarcheck.time_limit import keep_time
 
 __all__ = ["TOLERANCE", "Curves", "Overcut", "overcuts"]
 
 #: Depth [mm] up to which nothing is said; two roundings to the least increment.
 TOLERANCE = 0.002
-#: Moves of a loop from which on it is worth while to look for passes that are written once more.
-_MANY = 2000
+#: Moves of a loop, and pieces of all, from which on it is worth while to look for passes that are written once more.
+_MANY, _MANY_PIECES = 2000, 10_000
 #: Straight pieces of path that are looked at as one first; and worked on at a time, for the sake of memory.
 _RUN, _BATCH = 64, 16384
+#: The same for whole loops: pieces, and how many of these runs between two looks at the clock.
+_LONG_RUN, _RUNS = 1024, 8
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,7 +84,10 @@ def overcuts(
     walls = segments(contour[first_of_its_kind(contour)] if _is_long(contour) else contour, tolerance)
     ways = Segments(ways.start, ways.end, rows[ways.move], ways.loop)
     ways = ways[(radius[ways.move] > tolerance) & np.isin(ways.loop, walls.loop)]
-    ways = ways[_comes_close(walls, ways, is_ramp[ways.move], radius[ways.move] - tolerance)]
+    if len(walls) > _MANY_PIECES:
+        walls = walls[first_of_its_kind(contour)[walls.move]]
+    repeats = np.zeros(len(ways), bool) if len(ways) <= _MANY_PIECES else ~first_of_its_kind(path)[ways.move]
+    ways = ways[_comes_close(walls, ways, repeats, is_ramp[ways.move], radius[ways.move] - tolerance)]
     if not len(ways):
         none = np.zeros(0, dtype=np.int64)
         return Overcut(none, none, np.zeros(0), np.zeros(0, dtype=np.complex128), none)
@@ -168,8 +175,12 @@ def _is_long(curves: Curves) -> bool:
     return len(curves) >= _MANY and bool(np.bincount(curves.loop - curves.loop.min()).max() >= _MANY)
 
 
-def _comes_close(walls: Segments, ways: Segments, is_ramp: Mask, limit: Floats) -> Mask:
-    """Which ways are ramps that come nearer than the limit to a wall of their loop, or of a path that does."""
+def _comes_close(walls: Segments, ways: Segments, again: Mask, is_ramp: Mask, limit: Floats) -> Mask:
+    """
+    Which ways are ramps that come nearer than the limit to a wall of their loop, or of a path that does.
+
+    again: those that are written once more, which need no second look.
+    """
     contours = _polylines(walls)
     shapely.prepare(contours)
     loops = np.unique(walls.loop)
@@ -180,8 +191,18 @@ def _comes_close(walls: Segments, ways: Segments, is_ramp: Mask, limit: Floats) 
     own, first, number = np.unique(path.loop, return_index=True, return_inverse=True)
     if len(own):
         smallest = np.minimum.reduceat(limit[~is_ramp], first)
-        near = shapely.dwithin(contours[np.searchsorted(loops, own)], _polylines(path), smallest)
-        result[~is_ramp] = near[number]
+        near, of_way = np.zeros(len(own), bool), number
+        path, number = path[~again[~is_ramp]], number[~again[~is_ramp]]
+        run = np.cumsum((np.diff(number, prepend=-1) != 0) | (np.arange(len(number)) % _LONG_RUN == 0))
+        lines, of = _polylines(replace(path, loop=run)), number[np.diff(run, prepend=0) != 0]
+        # Of a loop that comes close at one place no other one is asked; a long one takes long where it does not.
+        for begin in range(0, len(of), _RUNS):
+            keep_time()
+            asked = begin + np.flatnonzero(~near[of[begin : begin + _RUNS]])
+            which = of[asked]
+            close = shapely.dwithin(contours[np.searchsorted(loops, own[which])], lines[asked], smallest[which])
+            near[which[close]] = True
+        result[~is_ramp] = near[of_way]
     return result
 
 
@@ -334,10 +355,10 @@ def _cuts_in_the_open(part: FinishedParts, ramps: _Ramps, radius: Floats, tolera
     radius = radius[group]
     in_air = ramps.in_air & _is_round_center(part)[group]
     lines = lines_of(ways.start, ways.end)
-    behind = shapely.intersection(lines, part.polygon[group])
+    behind = areas.intersection(lines, part.polygon[group])
     center = shapely.points(part.pitch * group[in_air], 0.0)
-    within = shapely.buffer(center, ramps.air[in_air], quad_segs=64)
-    behind[in_air] = shapely.intersection(behind[in_air], within)
+    within = areas.buffer(center, ramps.air[in_air], quad_segs=64)
+    behind[in_air] = areas.intersection(behind[in_air], within)
     wall, way = members(part.group, group)
     near = _within_reach(part, wall, ways, way, radius)
     wall, way = wall[near], way[near]
@@ -353,7 +374,7 @@ def _cuts_in_the_open(part: FinishedParts, ramps: _Ramps, radius: Floats, tolera
             has, number = np.unique(way[chosen], return_inverse=True)
             walls[has] = shapely.multilinestrings(lines_of(start, end), indices=number)
         if path is lines:
-            walls[in_air] = shapely.intersection(walls[in_air], within)
+            walls[in_air] = areas.intersection(walls[in_air], within)
         depth = radius - shapely.distance(walls, path)
         cut = np.flatnonzero(depth > tolerance + allowed)  # NaN without walls, or with nothing behind them
         found.append(

@@ -9,6 +9,7 @@ that ends in the middle of the part.
 from __future__ import annotations
 
 from dataclasses import dataclass, fields, replace
+from itertools import pairwise
 from typing import Any, Self
 
 import numpy as np
@@ -16,9 +17,13 @@ import shapely  # type: ignore[import-untyped]
 from numpy.typing import NDArray
 
 from polarcheck.arrays import Floats, Mask, Points, Rows
+from polarcheck.geometry import areas
 from polarcheck.geometry.noding import Edges, merged, noded
+from polarcheck.time_limit import keep_time
 
 Geometries = NDArray[Any]
+#: Rings of a group up to which they are put on or taken away one by one, and how many are compared at a time.
+_FEW, _RINGS = 32, 256
 #: To what points of areas are rounded where these are cut out of each other [mm]; without, GEOS may find no answer.
 GRID = 1e-6
 
@@ -59,7 +64,9 @@ class Standing:
 
 def standing(walls: Walls, groups: int, thinnest: float) -> Standing:
     """What the walls of each group leave standing; a face thinner than the thinnest [mm] on the average is none."""
+    keep_time()
     edges = noded(walls.start, walls.end, walls.group)
+    keep_time()
     tangled = np.zeros(groups, bool)
     tangled[: len(edges.tangled)] = edges.tangled
     if not len(edges.wall):
@@ -260,17 +267,56 @@ def _polygons(start: Points, end: Points, ring: Rows, group: Rows, groups: int) 
     origin = start[first][ring]
     area = np.bincount(ring, ((start - origin).conj() * (end - origin)).imag)
     solid = shapely.polygons(shapely.linearrings(coordinates(start), indices=ring))
-    solid = np.where(shapely.is_valid(solid), solid, shapely.make_valid(solid))
+    broken = ~shapely.is_valid(solid)
+    solid[broken] = areas.make_valid(solid[broken])
     of, hole = group[first], area < 0
     result[of[~hole][::-1]] = solid[~hole][::-1]
     # What lies in a hole is smaller than it: from the largest ring on each is put on what was there, or taken away.
-    for several in np.unique(of[hole | (np.diff(of, prepend=-1) == 0)]):
-        rings = np.flatnonzero(of == several)
-        whole = shapely.Polygon()
-        for one in rings[np.argsort(-np.abs(area[rings]), kind="stable")]:
-            whole = (shapely.difference if hole[one] else shapely.union)(whole, solid[one])
-        result[several] = whole
+    order = np.argsort(of, kind="stable")
+    begins = np.append(np.flatnonzero(np.diff(of[order], prepend=-1)), len(of))
+    for low, high in pairwise(begins.tolist()):
+        rings = order[low:high]
+        if high - low == 1 and not hole[rings[0]]:
+            continue
+        rings = rings[np.argsort(-np.abs(area[rings]), kind="stable")]
+        whole = _nested(solid[rings], hole[rings]) if len(rings) > _FEW else None
+        if whole is None:
+            whole = shapely.Polygon()
+            for one in rings:
+                whole = (areas.difference if hole[one] else areas.union)(whole, solid[one])
+        result[of[rings[0]]] = whole
     return result
+
+
+def _nested(solid: Geometries, hole: Mask) -> Any:
+    """
+    What rings enclose, the largest first, by which of them lies in which: put on and taken away one by one, it would
+    cost the square of their number. None where holes do not lie in what is solid, and that in holes.
+    """
+    point = shapely.STRtree(shapely.point_on_surface(solid))
+    around = np.full(len(solid), -1)
+    for begin in range(0, len(solid), _RINGS):
+        keep_time()
+        outer, inner = point.query(solid[begin : begin + _RINGS], predicate="contains")
+        outer = outer + begin
+        # The least ring of those round one is the last.
+        np.maximum.at(around, inner[outer < inner], outer[outer < inner])
+    if (hole & (around < 0)).any() or (hole[around] == hole)[around >= 0].any():
+        return None
+    holes: dict[int, list[Any]] = {}
+    for one in np.flatnonzero(hole).tolist():
+        holes.setdefault(int(around[one]), []).extend(shapely.get_parts(solid[one]))
+    if any(part.interiors for parts in holes.values() for part in parts):
+        return None
+    pieces = []
+    for one in np.flatnonzero(~hole).tolist():
+        shells = shapely.get_parts(solid[one])
+        own = holes.get(one, [])
+        if own and (len(shells) > 1 or shells[0].interiors):
+            return None
+        pieces += [shapely.Polygon(shells[0].exterior, [part.exterior for part in own])] if own else list(shells)
+    whole = shapely.MultiPolygon(pieces)
+    return whole if shapely.is_valid(whole) else None
 
 
 def coordinates(points: Points) -> Floats:

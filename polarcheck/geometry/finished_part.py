@@ -18,6 +18,7 @@ import numpy as np
 import shapely  # type: ignore[import-untyped]
 
 from polarcheck.arrays import Floats, Mask, Points, Rows, States
+from polarcheck.geometry import areas
 from polarcheck.geometry.faces import GRID, Geometries, Standing, Walls, standing
 from polarcheck.geometry.noding import TOUCH
 from polarcheck.geometry.segments import ZERO, Curves, Segments, members, segments
@@ -161,7 +162,7 @@ def _plane(contours: Contours) -> _Plane:
     walls, origin = _together([walls, *more])
     others = np.full(len(origin) - len(parts), -1)
     move, along, total = (np.append(column, others)[origin] for column in (here[parts.move], along, total))
-    last = np.append(first[1:], len(which)) - 1
+    last = np.append(first[1:], len(which))[: len(first)] - 1
     return _Plane(walls, move, along, total, chosen, contours.left[here], first, last, half, pitch)
 
 
@@ -311,5 +312,5 @@ def _rays(plane: _Plane, contours: Contours) -> tuple[Walls, Floats]:
 def _within_bar(polygon: Geometries, diameter: float, pitch: float) -> Geometries:
     """What of these lies within the bar."""
     middle = shapely.points(pitch * np.arange(len(polygon)), 0.0)
-    bar = shapely.buffer(middle, diameter / 2, quad_segs=_BAR_CORNERS)
-    return np.asarray(shapely.intersection(polygon, bar, grid_size=GRID))
+    bar = areas.buffer(middle, diameter / 2, quad_segs=_BAR_CORNERS)
+    return np.asarray(areas.intersection(polygon, bar, grid_size=GRID))

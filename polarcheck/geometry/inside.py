@@ -8,6 +8,7 @@ import numpy as np
 import shapely  # type: ignore[import-untyped]
 
 from polarcheck.arrays import Floats, Mask, Points, Rows
+from polarcheck.geometry import areas
 from polarcheck.geometry.faces import coordinates
 from polarcheck.geometry.finished_part import Contours, FinishedParts, finished_parts, first_of_its_kind
 from polarcheck.geometry.segments import Curves, members, segments
@@ -71,7 +72,9 @@ def _is_whole(part: FinishedParts, contour: Curves, loops: Rows, tolerance: floa
     here, group = members(contour.loop, loops)
     reach = _reach(np.concatenate([contour.start[here], contour.end[here]]), np.tile(group, 2), count)
     whole = _reach(part.start, part.group, count) >= _LEAST * reach
-    whole &= _retraced(contour, loops, tolerance) <= _RETRACED * length
+    # Of walls that cross again and again there is no part, and what they have in common grows with their square.
+    asked = np.flatnonzero(whole & ~part.open & ~shapely.is_empty(part.polygon))
+    whole[asked] &= _retraced(contour, loops[asked], tolerance) <= _RETRACED * length[asked]
     return np.asarray((4 * np.pi * np.abs(area) >= _SLIVER * length**2) & whole)
 
 
@@ -82,7 +85,7 @@ def _retraced(contour: Curves, loops: Rows, tolerance: float) -> Floats:
     walls = segments(chosen[first_of_its_kind(chosen)], tolerance)
     lines = shapely.linestrings(coordinates(np.stack([walls.start, walls.end], axis=1)))
     every = shapely.multilinestrings(lines, indices=walls.loop)
-    return np.asarray(shapely.length(every) - shapely.length(shapely.unary_union(every[:, None], axis=1)))
+    return np.asarray(shapely.length(every) - shapely.length(areas.with_itself(every)))
 
 
 def _reach(points: Points, group: Rows, count: int) -> Floats:

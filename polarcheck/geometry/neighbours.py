@@ -14,6 +14,7 @@ import numpy as np
 import shapely  # type: ignore[import-untyped]
 
 from polarcheck.arrays import Floats, Mask, Rows
+from polarcheck.geometry import areas
 from polarcheck.geometry.faces import lines_of
 from polarcheck.geometry.finished_part import Contours, finished_parts, first_of_its_kind
 from polarcheck.geometry.reach import NOTHING, Reached, reached, shortened
@@ -21,10 +22,12 @@ from polarcheck.geometry.segments import Curves, segments
 from polarcheck.machines.modal import Motion
 
 
-def cuts_into_others(contour: Contours, level: Rows, path: Curves, radius: Floats, is_ramp: Mask) -> Reached:
+def cuts_into_others(
+    contour: Contours, level: Rows, path: Curves, radius: Floats, is_ramp: Mask
+) -> tuple[Reached, Rows]:
     """
     Where the tool center comes nearer than R to a wall of another loop that bounds the part of both; the worst place of
-    each of its moves.
+    each of its moves; and the loops that cross each other too often to tell.
 
     contour: the programmed blocks in offset mode, its loops, groups and radius are not asked. level: int[curves], the
     same number for loops of one section and depth. path, radius, is_ramp: the tool center's moves and ramps, each with
@@ -32,7 +35,7 @@ def cuts_into_others(contour: Contours, level: Rows, path: Curves, radius: Float
     """
     loops, group = _together(contour.curves, level, path, float(radius.max(initial=0.0)))
     if not len(loops):
-        return NOTHING
+        return NOTHING, loops
     place = np.minimum(np.searchsorted(loops, path.loop), len(loops) - 1)
     chosen = np.flatnonzero(loops[place] == path.loop)
     of_move = np.full(len(path), -1)
@@ -42,6 +45,7 @@ def cuts_into_others(contour: Contours, level: Rows, path: Curves, radius: Float
     order = np.argsort(group, kind="stable")
     smallest = np.where(np.isfinite(smallest), smallest, 0.0)
     part = finished_parts(replace(contour, loop=loops[order], group=group[order], radius=smallest))
+    tangled = loops[part.tangled[group]]
     ways = segments(path, contour.tolerance)
     ways = ways[of_move[ways.move] >= 0]
     found = []
@@ -49,7 +53,7 @@ def cuts_into_others(contour: Contours, level: Rows, path: Curves, radius: Float
         some = ways[is_ramp[ways.move] == of_ramps]
         found.append(reached(outline, some, of_move[some.move], smallest, contour.tolerance))
     cuts = Reached(*(np.concatenate([getattr(one, name) for one in found]) for name in Reached.__slots__))
-    return cuts[contour.curves.loop[cuts.wall] != path.loop[cuts.move]].worst()
+    return cuts[contour.curves.loop[cuts.wall] != path.loop[cuts.move]].worst(), tangled
 
 
 def _together(curves: Curves, level: Rows, path: Curves, reach: float) -> tuple[Rows, Rows]:
@@ -69,7 +73,7 @@ def _together(curves: Curves, level: Rows, path: Curves, reach: float) -> tuple[
     far = 2 * float(np.abs(box).max()) + 4 * reach
     shift = 2 * far * number
     area = shapely.box(box[0] + shift - reach, box[1] - reach, box[2] + shift + reach, box[3] + reach)
-    piece = shapely.get_parts(shapely.union_all(area[several & distinct]))
+    piece = shapely.get_parts(areas.union_all(area[several & distinct]))
     middle = lines_of(
         box[0][several] + shift[several] + 1j * box[1][several], box[2][several] + shift[several] + 1j * box[3][several]
     )

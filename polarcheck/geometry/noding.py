@@ -8,13 +8,14 @@ that does is no contour, and its faces would grow with the square of its blocks.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely  # type: ignore[import-untyped]
 
 from polarcheck.arrays import Floats, Mask, Points, Rows
 from polarcheck.geometry.tolerances import CROSSINGS, FREE_CROSSINGS
+from polarcheck.time_limit import keep_time
 
 #: Points nearer than this [mm] are one.
 TOUCH = 2e-6
@@ -46,19 +47,22 @@ def noded(start: Points, end: Points, group: Rows) -> Edges:
     """
     The walls from start to end [mm], cut at every point that they have in common with others of their group.
 
-    group: int[n], from 0, rising. Walls of different groups must not come near each other, and each has a length.
+    group: int[n], from 0, rising. Walls of different groups must not come near each other.
     """
     nodes, ends = _vertices(np.concatenate([start, end]))
     a, b = ends[: len(start)], ends[len(start) :]
-    walls = _Walls(nodes, a, b, group)
+    long = np.flatnonzero(a != b)
+    walls = _Walls(nodes, a[long], b[long], group[long])
     tangled = np.zeros(int(group[-1]) + 1 if len(group) else 0, bool)
     left = CROSSINGS * np.bincount(group, minlength=len(tangled)) + FREE_CROSSINGS
     found = []
     for one, other in _pairs(walls, tangled):
         found.append(_meetings(walls, one, other))
-        left -= np.bincount(group[found[-1].crossing], minlength=len(tangled))
+        left -= np.bincount(walls.group[found[-1].crossing], minlength=len(tangled))
         tangled |= left < 0
-    return _cut(walls, _joined(found), tangled)
+        keep_time()
+    edges = _cut(walls, _joined(found), tangled)
+    return replace(edges, wall=long[edges.wall])
 
 
 def _vertices(points: Points) -> tuple[Points, Rows]:

@@ -16,10 +16,12 @@ import numpy as np
 import shapely  # type: ignore[import-untyped]
 
 from polarcheck.arrays import Floats, Mask, Points, Rows
+from polarcheck.geometry import areas
 from polarcheck.geometry.closing import WITNESS, Corners
 from polarcheck.geometry.faces import GRID, Geometries, coordinates
 from polarcheck.geometry.finished_part import FinishedParts
 from polarcheck.geometry.segments import ZERO, Segments
+from polarcheck.time_limit import keep_time
 
 #: The tool touches what it comes this near to [mm]; more than arcs in chords and two roundings shift it.
 _TOUCH = 0.003
@@ -33,6 +35,8 @@ _FAR = 1e6
 _SLIT = 0.25
 #: Directions of an outline that goes on without a corner differ by less.
 _STRAIGHT_ON = 0.1
+#: Points and pieces that are compared at a time, for the sake of memory, and in all, for the sake of time.
+_PAIRS_AT_A_TIME, _PAIRS = 500_000, 50_000_000
 #: Samples for the least gap that is looked for; points for the top of a rib.
 _SAMPLES, _POINTS = 8, 33
 
@@ -71,7 +75,8 @@ class Swept:
 class Ribs:
     """
     Ribs, k of them: the group, where it stands on the outline, how high it is, how wide at its foot [mm], and the row
-    of the program with which the tool leaves it.
+    of the program with which the tool leaves it. given_up: groups that were not looked at any more, since so many tools
+    come near so many corners.
     """
 
     group: Rows
@@ -79,6 +84,7 @@ class Ribs:
     height: Floats
     width: Floats
     row: Rows
+    given_up: Rows
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,7 +99,7 @@ class _Samples:
     def __len__(self) -> int:
         return len(self.corner)
 
-    def __getitem__(self, rows: Rows | Mask) -> _Samples:
+    def __getitem__(self, rows: Rows | Mask | slice) -> _Samples:
         return _Samples(*(getattr(self, name)[rows] for name in _Samples.__slots__))
 
 
@@ -115,15 +121,22 @@ def ribs(
     if not len(samples):
         return _none()
     tree = shapely.STRtree(swept.lines())
-    samples = samples[~_touched_by_any(swept, tree, samples, z, program)]
-    found = []
-    for corner in np.unique(samples.corner):
-        here = samples[samples.corner == corner]
-        group = int(here.group[0])
-        rib = _measured(swept, tree, here, radius[group], z[group], program[group])
+    touched, asked = _touched_by_any(swept, tree, samples, z, program)
+    given_up = [samples.group[asked:]]
+    samples = samples[:asked][~touched]
+    samples = samples[np.argsort(samples.corner, kind="stable")]
+    found, pairs = [], 0
+    for here in np.split(np.arange(len(samples)), np.flatnonzero(np.diff(samples.corner)) + 1) if len(samples) else []:
+        keep_time()
+        if pairs > _PAIRS:
+            given_up.append(samples.group[here])
+            continue
+        group = int(samples.group[here[0]])
+        rib, compared = _measured(swept, tree, samples[here], radius[group], z[group], program[group])
+        pairs += compared
         if rib is not None:
             found.append((group, *rib))
-    return _one_each(found, radius)
+    return replace(_one_each(found, radius), given_up=np.unique(np.concatenate(given_up)))
 
 
 def _without_fins(part: FinishedParts, radius: Floats) -> FinishedParts:
@@ -136,15 +149,15 @@ def _without_fins(part: FinishedParts, radius: Floats) -> FinishedParts:
     for group in np.flatnonzero(shapely.get_num_geometries(polygon) > 1):
         pieces = shapely.get_parts(polygon[group])
         main = pieces[np.argmax(shapely.area(pieces))]
-        thin = 2 * shapely.length(shapely.maximum_inscribed_circle(pieces)) < radius[group]
+        thin = 2 * shapely.length(areas.maximum_inscribed_circle(pieces)) < radius[group]
         fins = pieces[thin & (shapely.distance(pieces, main) < _ONE) & (pieces != main)]
-        polygon[group] = shapely.difference(polygon[group], shapely.union_all(fins, grid_size=GRID), grid_size=GRID)
+        polygon[group] = areas.difference(polygon[group], areas.union_all(fins, grid_size=GRID), grid_size=GRID)
     return replace(part, polygon=polygon)
 
 
 def _none() -> Ribs:
     none = np.zeros(0, np.int64)
-    return Ribs(none, np.zeros(0, np.complex128), np.zeros(0), np.zeros(0), none)
+    return Ribs(none, np.zeros(0, np.complex128), np.zeros(0), np.zeros(0), none, none)
 
 
 def _along_outline(part: FinishedParts, corners: Corners, shift: Floats, radius: Floats) -> _Samples:
@@ -204,16 +217,26 @@ def _touched(path: Segments, samples: _Samples, radius: Floats) -> Mask:
     return np.asarray(shapely.dwithin(lines[samples.group], shapely.points(coordinates(samples.point)), limit))
 
 
-def _touched_by_any(swept: Swept, tree: shapely.STRtree, samples: _Samples, z: Floats, program: Rows) -> Mask:
+def _touched_by_any(
+    swept: Swept, tree: shapely.STRtree, samples: _Samples, z: Floats, program: Rows
+) -> tuple[Mask, int]:
+    """Whether any tool touches each sample, of as many as there was time for; and how many these are."""
     limit = float(swept.radius.max(initial=0.0)) + _TOUCH
-    which, piece = tree.query(shapely.points(coordinates(samples.point)), "dwithin", limit)
-    group = samples.group[which]
-    near = swept[piece]
-    distance = np.abs(_to_way(near, samples.point[which]))
-    touches = near.at_depth(z[group], program[group]) & (distance <= near.radius + _TOUCH)
     result = np.zeros(len(samples), bool)
-    result[which[touches]] = True
-    return result
+    begin, step, pairs = 0, 16, 0
+    while begin < len(samples) and pairs <= _PAIRS:
+        keep_time()
+        some = samples[begin : begin + step]
+        which, piece = tree.query(shapely.points(coordinates(some.point)), "dwithin", limit)
+        group = some.group[which]
+        near = swept[piece]
+        distance = np.abs(_to_way(near, some.point[which]))
+        touches = near.at_depth(z[group], program[group]) & (distance <= near.radius + _TOUCH)
+        result[begin + which[touches]] = True
+        begin, pairs = begin + step, pairs + len(which)
+        step = int(np.clip(step * _PAIRS_AT_A_TIME // (len(which) + 1), 16, 2 * step))
+    asked = min(begin, len(samples))
+    return result[:asked], asked
 
 
 def _to_way(pieces: Swept, point: Points) -> Points:
@@ -226,15 +249,19 @@ def _to_way(pieces: Swept, point: Points) -> Points:
 
 def _measured(
     swept: Swept, tree: shapely.STRtree, samples: _Samples, radius: float, z: float, program: int
-) -> tuple[complex, float, float, int] | None:
-    """Place, height, width and row of the rib on these samples of one outline; None if it is no witness."""
+) -> tuple[tuple[complex, float, float, int] | None, int]:
+    """
+    Place, height, width and row of the rib on these samples of one outline, None if it is no witness; and with how many
+    pieces points were compared for that.
+    """
     around = shapely.MultiPoint(coordinates(samples.point))
     pieces = swept[np.sort(tree.query(around, "dwithin", 3 * radius + float(swept.radius.max())))]
     pieces = pieces[pieces.at_depth(np.array(z), np.array(program))]
     order = np.argsort((samples.point * samples.along[len(samples) // 2].conj()).real, kind="stable")
     point, along = samples.point[order], samples.along[order]
     if not len(pieces):
-        return None
+        return None, 0
+    compared = len(pieces) * (len(point) + 2 * _POINTS)
     feet, rows = zip(*(_foot(pieces, point[end], along[end]) for end in (0, -1)), strict=True)
     place, height = point[0], 0.0
     for _ in range(3):
@@ -246,7 +273,9 @@ def _measured(
         ends = [end if abs(along[end] - along[top]) < _STRAIGHT_ON else top for end in beside]
         share = np.linspace(0, 1, _POINTS)
         point, along = point[ends[0]] + share * (point[ends[1]] - point[ends[0]]), np.full(_POINTS, along[top])
-    return (complex(place), height, float(abs(feet[1] - feet[0])), max(rows)) if height > WITNESS else None
+    if height <= WITNESS:
+        return None, compared
+    return (complex(place), height, float(abs(feet[1] - feet[0])), max(rows)), compared
 
 
 def _foot(pieces: Swept, point: complex, along: complex) -> tuple[complex, int]:
@@ -274,6 +303,17 @@ def _heights(pieces: Swept, point: Points, along: Points, radius: float) -> Floa
 
 def first_tool(pieces: Swept, radius: Floats, point: Points, away: Points) -> Floats:
     """How far it is from each point to the first piece that a tool of this radius sweeps; _FAR where there is none."""
+    step = max(1, _PAIRS_AT_A_TIME // max(1, len(pieces)))
+    found = [np.zeros(0)]
+    for begin in range(0, len(point), step):
+        keep_time()
+        chosen = slice(begin, begin + step)
+        found.append(_first_tool(pieces, radius, point[chosen], away[chosen]))
+    return np.concatenate(found)
+
+
+def _first_tool(pieces: Swept, radius: Floats, point: Points, away: Points) -> Floats:
+    """The same, all points with all pieces at once."""
     away = away[:, None]
     way = pieces.end - pieces.start
     length = np.maximum(np.abs(way), ZERO)
@@ -302,7 +342,8 @@ def _one_each(found: list[tuple[int, complex, float, float, int]], radius: Float
     if not kept:
         return _none()
     group, place, height, width, row = zip(*kept, strict=True)
-    return Ribs(np.array(group), np.array(place), np.array(height), np.array(width), np.array(row))
+    none = np.zeros(0, np.int64)
+    return Ribs(np.array(group), np.array(place), np.array(height), np.array(width), np.array(row), none)
 
 
 def _lines(start: Points, end: Points) -> Geometries:

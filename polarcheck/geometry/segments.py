@@ -7,8 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from polarcheck.arrays import Mask, Points, Rows, States
+from polarcheck.arrays import Floats, Mask, Points, Rows, States
+from polarcheck.errors import TooHardError
 from polarcheck.geometry.plane import arc_sweep
+from polarcheck.geometry.tolerances import CHORDS_OF_FILE
 from polarcheck.machines.modal import Motion
 
 #: A length [mm] below this is none.
@@ -65,7 +67,7 @@ def segments(moves: Curves, tolerance: float) -> Segments:
     All moves that are known and have a length; arcs with a sagitta of a quarter of the tolerance at most.
 
     Two arcs of one circle have the same chords where they run over each other: their ends stand at whole multiples of
-    one angle.
+    one angle. Raises TooHardError for more than CHORDS_OF_FILE.
     """
     start, end, center = moves.start, moves.end, moves.center
     arcs = (moves.kind == Motion.CW) | (moves.kind == Motion.CCW)
@@ -74,11 +76,14 @@ def segments(moves: Curves, tolerance: float) -> Segments:
     round_ = np.flatnonzero(arcs & known)
     spoke, last = start[round_] - center[round_], end[round_] - center[round_]
     sweep = arc_sweep(start[round_], end[round_], center[round_], moves.kind[round_])
-    flat = np.clip(tolerance / 4 / np.maximum(np.maximum(np.abs(spoke), np.abs(last)), ZERO), 1e-9, 0.25)
-    unit = 2 * np.pi / np.ceil(np.pi / np.arccos(1 - flat)) * np.where(sweep < 0, -1, 1)
+    unit = _angle_of_chords(np.maximum(np.abs(spoke), np.abs(last)), tolerance) * np.where(sweep < 0, -1, 1)
     begins = np.angle(spoke) / unit
     first, until_ = np.floor(begins + _STUB) + 1, np.ceil(begins + sweep / unit - _STUB)
     count[round_] = np.maximum(until_ - first, 0).astype(np.int64) + 1
+    if len(round_) and count.sum() > CHORDS_OF_FILE + len(count):
+        raise TooHardError(
+            f"arcs of {count.sum()} chords are too many to look at: check its sections in separate files"
+        )
 
     move = np.repeat(np.arange(len(start)), count)
     begin, until, loop = start[move], end[move], moves.loop[move].astype(np.int64, copy=False)
@@ -99,6 +104,22 @@ def segments(moves: Curves, tolerance: float) -> Segments:
     result = result if has_length.all() else result[has_length]
     in_order = np.all(result.loop[1:] >= result.loop[:-1])
     return result if in_order else result[np.argsort(result.loop, kind="stable")]
+
+
+def _angle_of_chords(radius: Floats, tolerance: float) -> Floats:
+    """The angle of the chords of arcs with this R [rad]: a whole part of a circle."""
+    flat = np.clip(tolerance / 4 / np.maximum(radius, ZERO), 1e-9, 0.25)
+    return np.asarray(2 * np.pi / np.ceil(np.pi / np.arccos(1 - flat)))
+
+
+def chord_counts(moves: Curves, tolerance: float) -> Floats:
+    """Of how many chords each move is, about; 0 for lines."""
+    result = np.zeros(len(moves))
+    arcs = ((moves.kind == Motion.CW) | (moves.kind == Motion.CCW)) & ~np.isnan(moves.start + moves.end + moves.center)
+    start, end, center = moves.start[arcs], moves.end[arcs], moves.center[arcs]
+    unit = _angle_of_chords(np.maximum(np.abs(start - center), np.abs(end - center)), tolerance)
+    result[arcs] = np.abs(arc_sweep(start, end, center, moves.kind[arcs])) / unit
+    return result
 
 
 def members(loop: Rows, wanted: Rows) -> tuple[Rows, Rows]:

@@ -17,10 +17,12 @@ import numpy as np
 import shapely  # type: ignore[import-untyped]
 
 from polarcheck.arrays import Mask, Rows
+from polarcheck.geometry import areas
 from polarcheck.geometry.closing import WITNESS
 from polarcheck.geometry.faces import GRID, coordinates
 from polarcheck.geometry.ribs import Swept, first_tool
 from polarcheck.geometry.segments import ZERO, Segments
+from polarcheck.time_limit import keep_time
 
 #: How near two outlines are one [mm]; more than arcs in chords.
 _BESIDE = 0.01
@@ -43,31 +45,35 @@ class Strip:
     place: complex
 
 
-def strips(part: Any, walls: Segments, row: Rows, left: Mask, swept: Swept, radius: float, bar: float) -> list[Strip]:
+def strips(
+    part: Any, walls: Segments, row: Rows, left: Mask, swept: Swept, radius: float, bar: float
+) -> list[Strip] | None:
     """
-    The strips of one level.
+    The strips of one level; None where the paths of its tools are too long to be looked at.
 
     part: what its loops leave, a polygon. walls: their blocks as straight pieces, `row` and `left` those of each.
     swept: all that tools run through there. radius: R of the passes. bar: diameter [mm], NaN if not known.
     """
     gone = _gone(swept)
     if gone is None:
-        return []
+        return None
     around = shapely.box(*shapely.bounds(gone)).buffer(radius)
-    left_over = shapely.difference(around, shapely.union(gone, part, grid_size=GRID), grid_size=GRID)
+    left_over = areas.difference(around, areas.union(gone, part, grid_size=GRID), grid_size=GRID)
     if not np.isnan(bar):
         round_bar = shapely.Point(0, 0).buffer(bar / 2, quad_segs=4 * _CORNERS)
-        left_over = shapely.intersection(left_over, round_bar, grid_size=GRID)
+        left_over = areas.intersection(left_over, round_bar, grid_size=GRID)
     found = []
     for piece in shapely.get_parts(left_over):
         if shapely.distance(piece, around.exterior) > _BESIDE:
             found.append((piece, False))
         else:
-            thick = piece.buffer(-radius / 2).buffer(radius / 2 + _BESIDE)
-            found += [(thin, True) for thin in shapely.get_parts(shapely.difference(piece, thick, grid_size=GRID))]
+            thick = areas.buffer(areas.buffer(piece, -radius / 2), radius / 2 + _BESIDE)
+            found += [(thin, True) for thin in shapely.get_parts(areas.difference(piece, thick, grid_size=GRID))]
     result = []
+    middles = shapely.STRtree(shapely.points(coordinates((walls.start + walls.end) / 2)))
     for piece, runs_out in found:
-        strip = _strip(piece, part, walls, row, left, swept, radius, runs_out)
+        keep_time()
+        strip = _strip(piece, part, walls, middles, row, left, swept, radius, runs_out)
         if strip is not None:
             result.append(strip)
     return result
@@ -76,18 +82,29 @@ def strips(part: Any, walls: Segments, row: Rows, left: Mask, swept: Swept, radi
 def _gone(swept: Swept) -> Any:
     """What the tools sweep; None where their paths are too long to be looked at."""
     start, end = swept.start, swept.end
-    goes_on = (end[:-1] == start[1:]) & (swept.radius[1:] == swept.radius[:-1])
+    goes_on = (end[:-1] == start[1:]) & (swept.radius[1:] == swept.radius[:-1]) & (swept.z[1:] == swept.z[:-1])
     last = np.flatnonzero(np.append(~goes_on, True))
     line = np.cumsum(np.append(0, ~goes_on))
     points, of = np.insert(start, last + 1, end[last]), np.insert(line, last + 1, line[last])
-    lines = shapely.simplify(shapely.linestrings(coordinates(points), indices=of), _STRAIGHT)
+    lines, radius = shapely.linestrings(coordinates(points), indices=of), swept.radius[last]
+    # A pass that is written once more, deeper, sweeps nothing else.
+    fresh = list({key: at for at, key in enumerate(zip(shapely.to_wkb(lines), radius.tolist(), strict=True))}.values())
+    lines, radius = shapely.simplify(lines[fresh], _STRAIGHT), radius[fresh]
     if shapely.get_num_coordinates(lines).sum() > _MOST_PIECES:
         return None
-    return shapely.union_all(shapely.buffer(lines, swept.radius[last], quad_segs=_CORNERS), grid_size=GRID)
+    return areas.union_all(areas.buffer(lines, radius, quad_segs=_CORNERS), grid_size=GRID)
 
 
 def _strip(
-    piece: Any, part: Any, walls: Segments, row: Rows, left: Mask, swept: Swept, radius: float, runs_out: bool
+    piece: Any,
+    part: Any,
+    walls: Segments,
+    middles: shapely.STRtree,
+    row: Rows,
+    left: Mask,
+    swept: Swept,
+    radius: float,
+    runs_out: bool,
 ) -> Strip | None:
     """This piece of what is left, if it is a strip."""
     length = max(piece.length / 2, ZERO)
@@ -95,15 +112,15 @@ def _strip(
     if not WITNESS < thickness < radius or shapely.distance(piece, part) < _BESIDE:
         return None
     middle = (walls.start + walls.end) / 2
-    behind = np.flatnonzero(shapely.dwithin(piece, shapely.points(coordinates(middle)), _BESIDE))
+    behind = np.sort(middles.query(piece, "dwithin", _BESIDE))
     on = np.abs(walls.end - walls.start)[behind]
     if runs_out:
-        widest = 2 * shapely.maximum_inscribed_circle(piece).length
+        widest = 2 * areas.maximum_inscribed_circle(piece).length
         if length < _LONG * radius or thickness < _EVEN * widest or on.sum() < length / 2:
             return None
     if on.sum() < radius:
         # A ramp or a link cuts through a ring, as wide as the cutter.
-        if not shapely.get_num_interior_rings(piece.buffer(_CLOSING * radius)):
+        if not shapely.get_num_interior_rings(areas.buffer(piece, _CLOSING * radius)):
             return None
         point = complex(*shapely.get_coordinates(piece.representative_point())[0])
         nearest = int(np.argmin(np.abs((swept.start + swept.end) / 2 - point)))

@@ -10,3 +10,9 @@ ADJUSTMENT = 0.254
 ZERO = 1e-9
 #: Crossings that a contour may have for each of its walls, and beyond that.
 CROSSINGS, FREE_CROSSINGS = 4, 1000
+#: Farther from the center than this [mm] reaches no lathe; what is there would take the digits of all else.
+FARTHEST = 1e5
+#: The same for the centers of arcs: of 1e9 seven digits are left behind the point.
+FARTHEST_CENTER = 1e9
+#: Chords that the arcs of a loop may have, each once, and those of a file.
+CHORDS, CHORDS_OF_FILE = 400_000, 4_000_000

@@ -45,22 +45,22 @@ class Bare:
         return Bare(self.curves[rows], self.z[rows], self.radius[rows], self.plunges[rows])
 
 
-def cuts_into_part(contour: Contours, section: Rows, z: Floats, bare: Bare) -> Reached:
+def cuts_into_part(contour: Contours, section: Rows, z: Floats, bare: Bare) -> tuple[Reached, Rows]:
     """
     Where moves without compensation come nearer than R to the part of a contour at their Z or above it; the worst place
-    of each.
+    of each. And the loops that cross each other too often to tell.
 
     contour: the programmed blocks in offset mode, its loops, groups and radius are not asked. section: int[curves],
     z: float64[curves], NaN unknown. Of a move of Z alone within the part, away from its walls, nothing is said: it
     begins a hole; nor of what comes out of surroundings without an end, as to a pocket.
     """
-    found = _loops(contour.curves, section, z)
+    found, none = _loops(contour.curves, section, z), np.zeros(0, np.int64)
     candidate = np.flatnonzero(_may_reach(found, bare))
     if not len(candidate):
-        return NOTHING
+        return NOTHING, none
     groups = _groups(contour.curves, found, bare[candidate])
     if not len(groups.top):
-        return NOTHING
+        return NOTHING, none
     move, group = _pairs(groups, bare[candidate])
     move = candidate[move]
     ways, group = _ways(bare, move, group, contour.tolerance)
@@ -69,18 +69,19 @@ def cuts_into_part(contour: Contours, section: Rows, z: Floats, bare: Bare) -> R
     near = _comes_near(contour, groups, ways, group, radius)
     asked = np.unique(group[near])
     if not len(asked):
-        return NOTHING
+        return NOTHING, none
     near &= np.isin(group, asked)
     kept = np.isin(groups.group, asked)
     number = np.searchsorted(asked, groups.group[kept])
     radius = radius[asked]
     part = finished_parts(replace(contour, loop=groups.loop[kept], group=number, radius=radius))
+    tangled = groups.loop[kept][part.tangled[number]]
     ways, group = ways[near], np.searchsorted(asked, group[near])
     cuts = reached(shortened(part, radius), ways, group, radius, contour.tolerance)
     deep = ~bare.plunges[cuts.move] | (cuts.aside < radius[cuts.group] - contour.tolerance)
     depth = cuts.depth - radius[cuts.group] + bare.radius[cuts.move]
     deep &= (depth > contour.tolerance) & ~(endless(part)[cuts.group] & _begins_in(part, cuts, ways))
-    return replace(cuts, depth=depth)[deep].worst()
+    return replace(cuts, depth=depth)[deep].worst(), np.unique(tangled)
 
 
 def _begins_in(part: FinishedParts, cuts: Reached, ways: Segments) -> Mask:

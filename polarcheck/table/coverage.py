@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from enum import Enum
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -12,6 +13,7 @@ from polarcheck.table.filling import before
 from polarcheck.table.overcuts import Overcuts, curves_of, loop_of_row
 from polarcheck.table.tool_center import ToolCenter
 from polarcheck.table.trace import Trace
+from polarcheck.time_limit import keep_time
 
 if TYPE_CHECKING:
     from polarcheck.geometry.closing import Corners, Loops
@@ -27,6 +29,13 @@ class Left(NamedTuple):
     height: Floats
     width: Floats
     place: Points
+
+
+class GivenUp(Enum):
+    """Why nothing is said of the strips of a level: its walls cross too often, its paths are too long."""
+
+    TANGLED = 1
+    LONG = 2
 
 
 class _Judged(NamedTuple):
@@ -127,30 +136,36 @@ class Coverage:
 
     # ---- ribs ----
 
-    @cached_property
+    @property
     def ribs(self) -> Left:
         """Where a tool leaves a contour and no tool has touched what lies beside: the rib that stands there."""
-        count = len(self.trace)
+        return self._ribs[0]
+
+    @cached_property
+    def _ribs(self) -> tuple[Left, Rows]:
+        """The ribs, and the loops that were not looked at any more."""
+        count, none = len(self.trace), np.zeros(0, np.int64)
         left = Left(np.zeros(count), np.zeros(count), np.full(count, complex(np.nan, np.nan)))
         if self._parts is None:
-            return left
+            return left, none
         from polarcheck.geometry.closing import CLOSED
         from polarcheck.geometry.ribs import ribs
 
         judged, part, corners = self._parts
         corners = corners[~(part.open | part.tangled | (part.gap > CLOSED) | self._unsure(judged))[corners.loop]]
         if not len(corners.loop):
-            return left
+            return left, none
         found = ribs(
             part, corners, judged.loops.radius, self._own(judged.number), judged.z, judged.program, self._swept
         )
         left.height[found.row], left.width[found.row], left.place[found.row] = found.height, found.width, found.place
-        return left
+        return left, judged.number[found.given_up]
 
     def _unsure(self, judged: _Judged) -> Mask:
         """Loops in whose program a tool of unknown R, or on an unknown way, may take off what they leave."""
         moves, trace = self.tool_center.moves, self.trace
         unknown = ~moves.is_of_tool | np.isnan(moves.start + moves.end) | np.isnan(self._radius[moves.row])
+        unknown |= (self.overcuts.too_far | self.overcuts.too_long)[moves.row]
         return np.isin(judged.program, trace.program[moves.row[unknown]])
 
     def _own(self, number: Rows) -> Segments:
@@ -175,7 +190,9 @@ class Coverage:
         from polarcheck.geometry.segments import segments
 
         trace, moves = self.trace, self.tool_center.moves
-        path: Curves = curves_of(moves, np.zeros(len(moves), np.int64), np.ones(len(moves), bool))
+        # Where loops that are beyond all bounds come, nobody looks: what is left there is not known either.
+        within = ~(self.overcuts.too_far | self.overcuts.too_long)[moves.row]
+        path: Curves = curves_of(moves, np.zeros(len(moves), np.int64), within)
         parts = segments(path, trace.machine.compensation.overcut_tolerance)
         row = path.row[parts.move]
         z = np.fmin(trace.z, before(trace.z, trace.starts, np.nan))
@@ -192,20 +209,31 @@ class Coverage:
 
         return winds(self._judged.loops) if self._judged else np.zeros(0, bool)
 
-    @cached_property
+    @property
     def strips(self) -> Left:
         """Behind a block of a pass, what stays between it and the next one: of each section the thickest strip."""
+        return self._strips[0]
+
+    @cached_property
+    def _strips(self) -> tuple[Left, Rows, Rows]:
+        """The strips, the loops that cross too often to tell, and those beside paths that are too long for it."""
         count = len(self.trace)
         left = Left(np.zeros(count), np.zeros(count), np.full(count, complex(np.nan, np.nan)))
+        tangled, long = [np.zeros(0, np.int64)], [np.zeros(0, np.int64)]
         for level in self._levels:
-            for strip in self._strips_of(level):
+            keep_time()
+            found = self._strips_of(level)
+            if isinstance(found, GivenUp):
+                (tangled if found is GivenUp.TANGLED else long).append(self._judged_numbers[level])
+                continue
+            for strip in found:
                 if strip.thickness > left.height[strip.row]:
                     left.height[strip.row], left.place[strip.row] = strip.thickness, strip.place
         section = self.trace.whole_section
         for number in np.unique(section[left.height > 0]):
             rows = np.flatnonzero((section == number) & (left.height > 0))
             left.height[rows[rows != rows[np.argmax(left.height[rows])]]] = 0
-        return left
+        return left, np.concatenate(tangled), np.concatenate(long)
 
     @cached_property
     def _levels(self) -> list[Rows]:
@@ -238,7 +266,11 @@ class Coverage:
         found = may_leave_strips(*chords(path, float(judged.loops.radius.min()) / 16), radius)
         return [asked[level[asked] == number] for number in np.flatnonzero(found)]
 
-    def _strips_of(self, level: Rows) -> list[Strip]:
+    @property
+    def _judged_numbers(self) -> Rows:
+        return self._judged.number if self._judged else np.zeros(0, np.int64)
+
+    def _strips_of(self, level: Rows) -> list[Strip] | GivenUp:
         from dataclasses import replace
 
         from polarcheck.geometry.finished_part import Contours, finished_parts
@@ -252,16 +284,33 @@ class Coverage:
         together = np.zeros(len(level), np.int64)
         radius = np.array([loops.radius.max()])
         part = finished_parts(Contours(loops.curves, loops.left, number, together, radius, bar, tolerance))
-        if part.open[0] or part.tangled[0]:
+        if part.tangled[0]:
+            return GivenUp.TANGLED
+        if part.open[0]:
             return []
         rows, _ = loops.rows()
         curves = loops.curves[rows]
         walls = segments(replace(curves, loop=np.zeros(len(curves), np.int64)), tolerance)
         swept = self._swept[self._swept.at_depth(judged.z[level[:1]], judged.program[level[:1]])]
         row, left = curves.row[walls.move], loops.left[rows][walls.move]
-        return strips(part.polygon[0], walls, row, left, swept, float(radius[0]), bar)
+        found = strips(part.polygon[0], walls, row, left, swept, float(radius[0]), bar)
+        return GivenUp.LONG if found is None else found
 
     # ---- both ----
+
+    @cached_property
+    def tangled(self) -> Mask:
+        """Rows of loops that cross themselves or each other so often that nobody can say what they leave."""
+        loops = [self._strips[1]]
+        if self._parts is not None:
+            judged, part, _ = self._parts
+            loops.append(judged.number[part.tangled])
+        return np.isin(self.overcuts.loop, np.concatenate(loops))
+
+    @property
+    def too_long(self) -> Mask:
+        """Rows of loops beside so many moves that ribs, or strips between them, were not looked for any more."""
+        return np.isin(self.overcuts.loop, np.append(self._ribs[1], self._strips[2]))
 
     @cached_property
     def height(self) -> Floats:

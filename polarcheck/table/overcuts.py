@@ -113,21 +113,59 @@ class Overcuts:
         return objected(self.trace, self.tool_center)
 
     @cached_property
+    def _beyond(self) -> tuple[Rows, Rows]:
+        """Loops that reach farther out than any lathe, and those of too many chords."""
+        if not self.compensates:
+            return np.zeros(0, np.int64), np.zeros(0, np.int64)
+        from polarcheck.geometry import bounds
+
+        tolerance = self.trace.machine.compensation.overcut_tolerance
+        walls, path = self._all_walls, self._whole_path[0]
+        far = bounds.far_loops(walls, path)
+        near = [curves[~np.isin(curves.loop, far)] if len(far) else curves for curves in (walls, path)]
+        return far, np.union1d(*(bounds.long_loops(curves, tolerance) for curves in near))
+
+    @property
+    def too_far(self) -> Mask:
+        """Rows of loops that reach farther out than any lathe: nothing is said of what they leave."""
+        return np.isin(self.loop, self._beyond[0])
+
+    @property
+    def too_long(self) -> Mask:
+        """Rows of loops of arcs that are so large that their chords are too many."""
+        return np.isin(self.loop, self._beyond[1])
+
+    @cached_property
     def walls(self) -> tuple[Curves, Mask]:
-        """The contour that is programmed in offset mode, and whether the tool is on the left of each block."""
+        """
+        The contour that is programmed in offset mode, and whether the tool is on the left of each block; without the
+        loops that are beyond all bounds.
+        """
+        walls, beyond = self._all_walls, np.concatenate(self._beyond)
+        walls = walls[~np.isin(walls.loop, beyond)] if len(beyond) else walls
+        return walls, (self.trace.side[walls.row] == Side.LEFT) ^ (self.radius[walls.row] < 0)
+
+    @cached_property
+    def _all_walls(self) -> Curves:
         trace = self.trace
         programmed = programmed_moves(trace)
         rows = programmed.row
         chosen = (self.loop[rows] >= 0) & ~trace.starts_up[rows] & programmed.known & self.has_walls[rows]
-        walls = curves_of(programmed, self.loop[rows], chosen)
-        return walls, (trace.side[walls.row] == Side.LEFT) ^ (self.radius[walls.row] < 0)
+        return curves_of(programmed, self.loop[rows], chosen)
 
     @cached_property
     def path(self) -> tuple[Curves, Mask]:
         """
         The moves of the tool center in offset mode, and the ramps at the depth of their contour, each with the loop
-        that it is of; and which are ramps.
+        that it is of; and which are ramps. Without the loops that are beyond all bounds.
         """
+        path, is_ramp = self._whole_path
+        beyond = np.concatenate(self._beyond)
+        within = ~np.isin(path.loop, beyond)
+        return (path[within], is_ramp[within]) if len(beyond) else (path, is_ramp)
+
+    @cached_property
+    def _whole_path(self) -> tuple[Curves, Mask]:
         tool = self.tool_center.moves
         is_ramp = (tool.phase == Phase.START_UP) | (tool.phase == Phase.CANCEL)
         chosen = np.where(is_ramp, self._at_depth[tool.row], tool.phase == Phase.OFFSET)

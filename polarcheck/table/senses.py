@@ -84,7 +84,8 @@ class Senses:
         half_chord = np.abs(trace.end[row] - trace.start[row]) / 2
         # By R the center hangs on how far the chord is from it: little of that is left of half a circle.
         apart = np.sqrt(np.maximum(radius**2 - half_chord**2, digit * radius))
-        return np.asarray(_SLACK + digit * (1 / shortest + 1 / apart + 1 / half_chord))
+        with np.errstate(divide="ignore", invalid="ignore"):  # of no length, or without a digit, anything turns
+            return np.asarray(_SLACK + digit * (1 / shortest + 1 / apart + 1 / half_chord))
 
     def _column(self, arcs: Mask) -> Mask:
         rows = np.zeros(len(self.trace), bool)

@@ -23,9 +23,12 @@ class Slots:
         self.overcuts = overcuts
 
     @cached_property
-    def _found(self) -> tuple[Cuts, Mask]:
-        """The cuts of all moves of the tool center into other loops, and which of them are by ramps."""
-        nothing = _NOTHING, np.zeros(0, bool)
+    def _found(self) -> tuple[Cuts, Mask, Rows]:
+        """
+        The cuts of all moves of the tool center into other loops, which of them are by ramps, and the loops that cross
+        each other too often.
+        """
+        nothing = _NOTHING, np.zeros(0, bool), np.zeros(0, np.int64)
         if not self.overcuts.compensates:
             return nothing
         level, several = self._levels
@@ -44,9 +47,9 @@ class Slots:
         nowhere = np.zeros(0, np.int64)
         tolerance = self.trace.machine.compensation.overcut_tolerance
         contours = Contours(walls, left, nowhere, nowhere, np.zeros(0), self.overcuts.bar, tolerance)
-        found = neighbours.cuts_into_others(contours, level[walls.row], path, radius, is_ramp)
+        found, tangled = neighbours.cuts_into_others(contours, level[walls.row], path, radius, is_ramp)
         cuts = Cuts(path.row[found.move], walls.row[found.wall], found.depth, found.place)
-        return cuts, is_ramp[found.move]
+        return cuts, is_ramp[found.move], tangled
 
     @cached_property
     def _levels(self) -> tuple[Rows, Mask]:
@@ -80,16 +83,21 @@ class Slots:
         """Rows in offset mode beside whose loop there is another one at the same depth."""
         return self._levels[1]
 
+    @property
+    def tangled(self) -> Mask:
+        """Rows of loops that cross each other so often that nothing is said of cuts from one into another."""
+        return np.isin(self.overcuts.loop, self._found[2])
+
     @cached_property
     def cuts(self) -> Cuts:
         """Of moves in offset mode: row that cuts, row that is cut into, depth and place."""
-        cuts, by_ramp = self._found
+        cuts, by_ramp, _ = self._found
         return cuts.some(~by_ramp)
 
     @cached_property
     def sweeps(self) -> Cuts:
         """The same for ramps at the depth of their contour."""
-        cuts, by_ramp = self._found
+        cuts, by_ramp, _ = self._found
         return cuts.some(by_ramp)
 
     @cached_property

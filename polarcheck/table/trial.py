@@ -94,9 +94,8 @@ class Trial(Overcuts):
         from polarcheck.geometry.inside import depth_inside
 
         trace, tolerance = self.trace, self.trace.machine.compensation.overcut_tolerance
-        ramp = np.flatnonzero(
-            (self._loop_of_ramps >= 0) & self.tried & (trace.starts_up | trace.cancels) & ~trace.is_arc
-        )
+        has_walls = np.isin(self._loop_of_ramps, self.walls[0].loop)
+        ramp = np.flatnonzero(has_walls & self.tried & (trace.starts_up | trace.cancels) & ~trace.is_arc)
         contour_at = np.where(trace.starts_up, trace.end, trace.start)[ramp]
         far = np.where(trace.starts_up, trace.start, trace.end)[ramp]
         way = np.where(self._at_depth[ramp], far, contour_at), contour_at

@@ -60,11 +60,22 @@ class UncompensatedCuts:
         begins = (after >= 0) & (trace.starts_up & bad)[after]
         return np.asarray(begins | ((ahead >= 0) & (trace.cancels & bad)[ahead]))
 
-    @cached_property
+    @property
     def cuts(self) -> Cuts:
         """Row that cuts, row of the contour whose part it cuts, depth and place, of each move the worst."""
+        return self._found[0]
+
+    @property
+    def tangled(self) -> Mask:
+        """Rows of loops that cross each other so often that nothing is said of cuts into their part."""
+        return np.isin(self.overcuts.loop, self._found[1])
+
+    @cached_property
+    def _found(self) -> tuple[Cuts, Rows]:
+        """The cuts, and the loops that cross each other too often."""
+        nothing = _NOTHING, np.zeros(0, np.int64)
         if not self.overcuts.compensates:
-            return _NOTHING
+            return nothing
         row, start, end, center, z, section = (
             np.concatenate(column)
             for column in zip(self._on_plane, self._of_z_alone, self._behind_the_mode, strict=True)
@@ -75,7 +86,7 @@ class UncompensatedCuts:
         # At Z0 or above, the way to the contour leads through air.
         known = np.flatnonzero(known & ((z < -ROUNDING) | self._is_behind_contour[row]))
         if not len(known) or not len(walls):
-            return _NOTHING
+            return nothing
         from polarcheck.geometry import uncompensated
         from polarcheck.geometry.finished_part import Contours
 
@@ -85,8 +96,8 @@ class UncompensatedCuts:
         bare = uncompensated.Bare(Curves(start, end, center, kind, section, row), z, radius, plunges)[known]
         none, tolerance = np.zeros(0, np.int64), trace.machine.compensation.overcut_tolerance
         contours = Contours(walls, left, none, none, np.zeros(0), self.overcuts.bar, tolerance)
-        found = uncompensated.cuts_into_part(contours, trace.section[walls.row], trace.z[walls.row], bare)
-        return Cuts(bare.curves.row[found.move], walls.row[found.wall], found.depth, found.place)
+        found, tangled = uncompensated.cuts_into_part(contours, trace.section[walls.row], trace.z[walls.row], bare)
+        return Cuts(bare.curves.row[found.move], walls.row[found.wall], found.depth, found.place), tangled
 
     @property
     def _on_plane(self) -> tuple[Rows, Points, Points, Points, Floats, Rows]:
