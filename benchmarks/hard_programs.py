@@ -17,7 +17,6 @@ import json
 import math
 import os
 import random
-import resource
 import subprocess
 import sys
 import tempfile
@@ -453,6 +452,7 @@ def run(
     path: Path, seconds: float, megabytes: int, offsets: int = 1, options: Iterable[str] = (), tree: Path = ROOT
 ) -> Outcome:
     """Check one file; `tree` is the checkout whose polarcheck does."""
+    import resource  # late: the programs are written on Windows, too
 
     def limit_memory() -> None:
         resource.setrlimit(resource.RLIMIT_AS, (megabytes * 1_000_000,) * 2)

@@ -20,6 +20,8 @@ from polarcheck.time_limit import keep_time
 
 #: Points that go into one step at most, and of many areas at a time; about a second each.
 _MOST, _AT_A_TIME = 1_000_000, 200_000
+#: Points of lines whose distance to other lines is asked for at a time.
+_PIECES_AT_A_TIME = 4096
 
 
 def _asked(function: Callable[..., Any], points: int, *arguments: Any, **how: Any) -> Any:
@@ -69,3 +71,12 @@ with_itself = _of_each(_with_itself)
 def union_all(areas: Any, grid_size: float | None = None) -> Any:
     """All of them as one area."""
     return _asked(shapely.union_all, int(np.sum(shapely.get_num_coordinates(areas))), areas, grid_size=grid_size)
+
+
+def dwithin(one: Any, other: Any, distance: Any) -> Any:
+    """Whether each of one lies within the distance of the same of the other [mm]; bool[n]."""
+    share = np.cumsum(shapely.get_num_coordinates(other)) // _PIECES_AT_A_TIME
+    result = np.zeros(len(other), bool)
+    for part in np.split(np.arange(len(other)), np.flatnonzero(np.diff(share)) + 1):
+        result[part] = _asked(shapely.dwithin, 0, one[part], other[part], distance=distance[part])
+    return result

@@ -31,9 +31,9 @@ TOLERANCE = 0.002
 #: Moves of a loop, and pieces of all, from which on it is worth while to look for passes that are written once more.
 _MANY, _MANY_PIECES = 2000, 10_000
 #: Straight pieces of path that are looked at as one first; and worked on at a time, for the sake of memory.
-_RUN, _BATCH = 64, 16384
-#: The same for whole loops: pieces, and how many of these runs between two looks at the clock.
-_LONG_RUN, _RUNS = 1024, 8
+_RUN, _BATCH = 64, 4096
+#: The same for whole loops: pieces of a run, and of all runs between two looks at the clock.
+_LONG_RUN, _PIECES = 1024, 2048
 
 
 @dataclass(frozen=True, slots=True)
@@ -196,9 +196,10 @@ def _comes_close(walls: Segments, ways: Segments, again: Mask, is_ramp: Mask, li
         run = np.cumsum((np.diff(number, prepend=-1) != 0) | (np.arange(len(number)) % _LONG_RUN == 0))
         lines, of = _polylines(replace(path, loop=run)), number[np.diff(run, prepend=0) != 0]
         # Of a loop that comes close at one place no other one is asked; a long one takes long where it does not.
-        for begin in range(0, len(of), _RUNS):
+        share = np.cumsum(shapely.get_num_coordinates(lines)) // _PIECES
+        for part in np.split(np.arange(len(of)), np.flatnonzero(np.diff(share)) + 1):
             keep_time()
-            asked = begin + np.flatnonzero(~near[of[begin : begin + _RUNS]])
+            asked = part[~near[of[part]]]
             which = of[asked]
             close = shapely.dwithin(contours[np.searchsorted(loops, own[which])], lines[asked], smallest[which])
             near[which[close]] = True
@@ -292,11 +293,12 @@ def _cuts(part: FinishedParts, ways: Segments, group: Rows, radius: Floats, tole
     run = np.cumsum((np.diff(group, prepend=-1) != 0) | (np.arange(len(group)) % _RUN == 0))
     runs = _polylines(Segments(ways.start, ways.end, ways.move, run))
     of_run = group[np.diff(run, prepend=0) != 0]
-    near = shapely.dwithin(outline.whole[of_run], runs, radius[of_run] - tolerance)[run - 1]
+    near = areas.dwithin(outline.whole[of_run], runs, radius[of_run] - tolerance)[run - 1]
     ways, group = ways[near], group[near]
     tree = shapely.STRtree(lines_of(outline.start, outline.end))
     found = [_NO_CUTS]
     for first in range(0, len(ways) if len(tree) else 0, _BATCH):
+        keep_time()
         rows = np.arange(first, min(first + _BATCH, len(ways)))
         lines = lines_of(ways.start[rows], ways.end[rows])
         limit = radius[group[rows]] - tolerance

@@ -212,10 +212,15 @@ def _joints(curves: Curves, first: Rows, half: float, pitch: float) -> Walls:
     """What holds a group together: across gaps between curves, and from each loop to the square round the group."""
     torn = np.flatnonzero(np.abs(curves.start[1:] - curves.end[:-1]) > TOUCH / 10)
     torn = torn[curves.loop[torn] == curves.loop[torn + 1]]
-    start = np.concatenate([curves.end[torn], curves.start[first]])
-    end = np.concatenate([curves.start[torn + 1], half + 1j * curves.start[first].imag])
-    group = np.concatenate([curves.loop[torn], curves.loop[first]])
-    return _lines(start, end, group, pitch, joins=True)
+    group, begin = curves.loop[first], curves.start[first]
+    out = half + 1j * begin.imag
+    # Of starts in a row each leads to the next: all the way to the square, they would run over each other.
+    order = np.lexsort((begin.real, begin.imag, group))
+    here, after = order[:-1], order[1:]
+    in_row = (group[here] == group[after]) & (begin.imag[here] == begin.imag[after])
+    out[here[in_row]] = begin[after[in_row]]
+    start, end = np.concatenate([curves.end[torn], begin]), np.concatenate([curves.start[torn + 1], out])
+    return _lines(start, end, np.concatenate([curves.loop[torn], group]), pitch, joins=True)
 
 
 def _square(group: Rows, half: float, pitch: float) -> Walls:

@@ -149,6 +149,7 @@ def _pairs(walls: _Walls, tangled: Mask) -> Iterator[tuple[Rows, Rows]]:
     left = _PAIRS * np.bincount(walls.group, minlength=len(tangled)) + _FREE_PAIRS
     begin, step = 0, _LEAST_AT_A_TIME
     while begin < len(group):
+        keep_time()
         asked = np.arange(begin, min(begin + step, len(group)))
         asked = asked[~tangled[group[asked]]]
         which, other = tree.query(shapely.box(*(side[asked] for side in box)))

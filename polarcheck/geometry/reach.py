@@ -17,9 +17,10 @@ from polarcheck.arrays import Floats, Mask, Points, Rows
 from polarcheck.geometry.faces import Geometries, coordinates, lines_of
 from polarcheck.geometry.finished_part import FinishedParts
 from polarcheck.geometry.segments import ZERO, Segments
+from polarcheck.time_limit import keep_time
 
 #: Ways worked on at a time, for the sake of memory.
-_BATCH = 16384
+_BATCH = 4096
 #: Walls so near to a place [mm] beside the nearest one meet there.
 _CORNER = 1e-5
 
@@ -68,6 +69,7 @@ def reached(part: FinishedParts, ways: Segments, group: Rows, radius: Floats, to
     tree = shapely.STRtree(lines_of(start, end))
     found = [NOTHING]
     for first in range(0, len(number), _BATCH):
+        keep_time()
         rows = np.arange(first, min(first + _BATCH, len(number)))
         line = lines_of(ways.start[rows], ways.end[rows])
         near = shapely.dwithin(whole[group[rows]], line, radius[group[rows]] - tolerance)

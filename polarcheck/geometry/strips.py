@@ -26,8 +26,8 @@ from polarcheck.time_limit import keep_time
 
 #: How near two outlines are one [mm]; more than arcs in chords.
 _BESIDE = 0.01
-#: Corners of a quarter of the end of a swept way.
-_CORNERS = 32
+#: Corners of a quarter of the end of a swept way, and of what is only widened to look at it.
+_CORNERS, _COARSE = 32, 16
 #: What a path may be straightened by [mm], and how many pieces of it are looked at.
 _STRAIGHT, _MOST_PIECES = 0.002, 20_000
 #: How far from a ring the cut of one way of the tool through it is no more open, as a share of R.
@@ -67,7 +67,9 @@ def strips(
         if shapely.distance(piece, around.exterior) > _BESIDE:
             found.append((piece, False))
         else:
-            thick = areas.buffer(areas.buffer(piece, -radius / 2), radius / 2 + _BESIDE)
+            thick = areas.buffer(
+                areas.buffer(piece, -radius / 2, quad_segs=_COARSE), radius / 2 + _BESIDE, quad_segs=_COARSE
+            )
             found += [(thin, True) for thin in shapely.get_parts(areas.difference(piece, thick, grid_size=GRID))]
     result = []
     middles = shapely.STRtree(shapely.points(coordinates((walls.start + walls.end) / 2)))
@@ -120,7 +122,7 @@ def _strip(
             return None
     if on.sum() < radius:
         # A ramp or a link cuts through a ring, as wide as the cutter.
-        if not shapely.get_num_interior_rings(areas.buffer(piece, _CLOSING * radius)):
+        if not shapely.get_num_interior_rings(areas.buffer(piece, _CLOSING * radius, quad_segs=_COARSE)):
             return None
         point = complex(*shapely.get_coordinates(piece.representative_point())[0])
         nearest = int(np.argmin(np.abs((swept.start + swept.end) / 2 - point)))

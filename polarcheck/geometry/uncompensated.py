@@ -20,11 +20,14 @@ from polarcheck.geometry.neighbours import boxes
 from polarcheck.geometry.reach import NOTHING, Reached, endless, reached, shortened
 from polarcheck.geometry.segments import ZERO, Curves, Segments, members, segments
 from polarcheck.geometry.tolerances import ROUNDING
+from polarcheck.time_limit import keep_time
 
 #: Sums over a loop that agree in these [mm] are the same.
 _SAME = 1e-3
 #: Pairs of a wall and a way up to which walls are looked through one by one, without a tree.
 _PAIRS = 4_000_000
+#: Ways between two looks at the clock.
+_BATCH = 1024
 #: Depths of the contours of a section that are looked at, the deepest ones.
 _DEPTHS = 8
 
@@ -225,8 +228,14 @@ def _comes_near(contour: Contours, groups: _Groups, ways: Segments, group: Rows,
     if not len(walls):
         return near
     tree = shapely.STRtree(lines_of(start, end))
-    close, _ = tree.query(line, predicate="dwithin", distance=radius[group])
-    near[close] = True
+    most = max(float(radius.max(initial=0.0)), ZERO)
+    for first in range(0, len(line), _BATCH):
+        keep_time()
+        # Whether there is any wall is known from the next one, however many there are.
+        (close, _), apart = tree.query_nearest(
+            line[first : first + _BATCH], max_distance=most, return_distance=True, all_matches=False
+        )
+        near[first + close] = apart <= radius[group[first + close]]
     (asked, _), distance = tree.query_nearest(points, all_matches=False, return_distance=True)
     way, wall = tree.query(points[asked], predicate="dwithin", distance=distance + ROUNDING)
     way = asked[way]

@@ -11,6 +11,7 @@ from polarcheck.table.overcuts import Overcuts
 from polarcheck.table.since import Since
 from polarcheck.table.trace import Trace
 from polarcheck.table.trial import Trial
+from polarcheck.time_limit import keep_time
 
 #: Share of R that is taken for a cutter that goes in everywhere; how near the answer comes; how often it is asked for.
 _SMALL, _NEAR, _TRIALS = 1 / 16, 0.01, 9
@@ -63,6 +64,7 @@ class Fitting:
         depth = self.overcuts.depth
         tried = own - self._worst(depth) / 2  # between parallel walls that is it
         for _ in range(_TRIALS):
+            keep_time()
             trial = self._trial(tried)
             fails = self._any(trial.fails)
             low, high = np.where(fails, low, tried), np.where(fails, tried, high)

@@ -13,6 +13,7 @@ from polarcheck.table.since import Since
 from polarcheck.table.tool_center import ToolCenter
 from polarcheck.table.trace import Trace
 from polarcheck.table.trial import Trial
+from polarcheck.time_limit import keep_time
 
 #: Share of R that is taken for a cutter that goes in everywhere.
 _SMALL = 1 / 16
@@ -71,4 +72,5 @@ class Mirrored:
 
     def _trial(self, rows: Mask, share: float) -> Trial:
         """These rows with a share of their R; below 0 it is the other side."""
+        keep_time()
         return Trial(self.trace, rows.copy(), self._loop, share * self.trace.radius)

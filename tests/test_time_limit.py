@@ -1,0 +1,338 @@
+"""Programs that could take hours: bounds by counting give up loop by loop, the limit of time the rest; both say so."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import shapely  # type: ignore[import-untyped]
+from programs import ROOT, report_of, said, tables_of
+
+from polarcheck.checking.finding import FileReport
+from polarcheck.errors import TooHardError
+from polarcheck.geometry import areas, bounds, noding, segments
+from polarcheck.geometry.segments import Curves
+from polarcheck.machines.modal import Motion
+from polarcheck.table import fitting
+from polarcheck.time_limit import time_limit
+
+sys.path.insert(0, str(ROOT / "benchmarks"))
+
+from hard_programs import FAMILIES, in_mode, loop, run
+from hard_programs import contour as square
+
+MACHINE, TOOL = "fanuc-30i", "1:radius=4"
+#: Every table that rules compare and that is made of contours.
+HARD_RULES = {"overcut", "slot-narrower-than-cutter", "uncompensated-cut-into-part", "material-left"}
+
+
+def given_up(report: FileReport) -> dict[str, str]:
+    """The reasons, by rule, of what matters and was not evaluated; of several the last."""
+    return {missing.rule: missing.reason for missing in report.not_evaluated if missing.matters}
+
+
+def checked(program: str, *tools: str) -> FileReport:
+    return report_of(program, MACHINE, *(tools or (TOOL,)))
+
+
+# ---- without any time ----
+
+
+@pytest.mark.parametrize("family", FAMILIES)
+def test_without_any_time_a_check_ends_and_says_so(family: str) -> None:
+    """What needs no time is judged as ever; a file is never passed whose contours nobody has looked at."""
+    program = FAMILIES[family].make(200)
+    tools = [f"{number}:radius=4" for number in range(1, FAMILIES[family].offsets + 1)]
+    whole = checked(program, *tools)
+    with time_limit(-1):
+        report = checked(program, *tools)
+    reasons = given_up(report)
+    if any("--max-seconds" in reason for reason in reasons.values()):
+        assert report.verdict != "pass"
+    else:
+        assert said(report) == said(whole)
+    late = {rule for rule, reason in reasons.items() if "--max-seconds" in reason}
+    left = {(line, rule) for line, rule in said(whole) if rule not in late}
+    following = {(found.line, found.rule) for each in whole.findings for found in each.follows}
+    assert left <= set(said(report)) | following
+
+
+def test_the_limit_is_kept_wherever_it_runs_out() -> None:
+    """A few milliseconds end anywhere: in a table, in a trial, in a message."""
+    program = FAMILIES["overcut-loops"].make(400)
+    for milliseconds in (1, 5, 20, 60, 150, 400):
+        with time_limit(milliseconds / 1000):
+            report = checked(program)
+        assert report.verdict == "fail" or any("--max-seconds" in reason for reason in given_up(report).values())
+
+
+@pytest.mark.parametrize("family", ["zigzag", "bosses", "overcut-loops", "passes", "slanted-leads", "bare-moves"])
+@pytest.mark.parametrize("seconds", [-1, 0.01])
+def test_every_column_of_contours_is_there_or_given_up(family: str, seconds: float) -> None:
+    tables = tables_of(FAMILIES[family].make(200), MACHINE, TOOL)
+    asked = 0
+    for name in ("overcuts", "slots", "uncompensated_cuts", "coverage", "mirrored", "fitting"):
+        table = tables[name]
+        for column in dir(type(table)):
+            if column.startswith("_") or callable(getattr(type(table), column)):
+                continue
+            asked += 1
+            with time_limit(seconds):
+                try:
+                    getattr(table, column)
+                except TooHardError as error:
+                    assert "--max-seconds" in str(error)  # noqa: PT017 - either is right
+    assert asked > 30
+
+
+# ---- loops that are given up by themselves ----
+
+#: A square of 40 with a groove of 6 mm, which a cutter of R4 cuts into in lines 8 and 14.
+GROOVE = [
+    "G1 C3. F500",
+    "G41 X60. F200",
+    *("X30.", "C20.", "X-20.", "C-20.", "X30.", "C-3.", "X60."),
+    "G40 X100.",
+]
+CIRCLES = [f"G3 X80. C0 I-{100_000_000 + number}. J0" for number in range(10)]
+BEYOND = {
+    "a point too far": (["X300000.", "C10."], "reaches farther than 100000 mm"),
+    "a number of 150 digits": ([f"X{'9' * 150}.", "C10."], "reaches farther than 100000 mm"),
+    "an arc of 150 digits": ([f"G3 X70. C5. I-{'7' * 150}. J{'3' * 150}.", "G1 C10."], "round a point far beyond"),
+    "an R of 150 digits": ([f"G2 X70. C5. R{'7' * 150}.", "G1 C10."], "round a point far beyond"),
+    "circles with too many chords": ([*CIRCLES, "G1 C10."], "arcs of more than 400000 chords"),
+}
+
+
+@pytest.mark.parametrize("case", BEYOND)
+def test_a_loop_beyond_all_bounds_is_left_out_alone(case: str) -> None:
+    """The other one is judged as if it stood there by itself."""
+    blocks, reason = BEYOND[case]
+    alone = checked(in_mode([*GROOVE, "G1 X100. C0"]))
+    both = checked(in_mode([*GROOVE, "G1 X100. C0", *loop(blocks, 40 + 0j)]))
+    cut = [line for line, rule in said(alone) if rule == "overcut"]
+    assert cut
+    assert [line for line, rule in said(both) if rule == "overcut"] == cut
+    assert reason in given_up(both)["overcut"]
+    assert "at line 19 " in given_up(both)["overcut"]
+
+
+def test_far_moves_elsewhere_leave_a_sound_contour_sound() -> None:
+    """A contour beyond all bounds in another section is no reason to say anything of this one."""
+    sound = square(6, 30)
+    assert not said(checked(in_mode(sound)))
+    both = checked(in_mode([*sound, "G13.1", "G0 X250. C0", "G12.1", *loop(["X300000.", "C10."], 40 + 0j)]))
+    assert not [line for line, rule in said(both) if line <= len(sound) + 6 and rule in HARD_RULES]
+
+
+def test_of_loops_with_too_many_chords_the_longest_are_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Those with more than a loop may have, then the longest, until a file has few enough; each arc counts once."""
+    radius = np.array([10.0, 20, 30, 30, 40])
+    number = np.array([0, 1, 2, 2, 3])
+    curves = Curves(radius + 0j, radius + 0j, np.zeros(5, complex), np.full(5, Motion.CCW), number, number)
+    count = segments.chord_counts(curves, 0.002)
+    assert count == pytest.approx(np.pi / np.arccos(1 - 0.0005 / radius), abs=1)
+    assert len(segments.segments(curves, 0.002)) == round(count.sum())
+    assert not len(bounds.long_loops(curves, 0.002))
+    monkeypatch.setattr(bounds, "CHORDS", 600)
+    assert bounds.long_loops(curves, 0.002).tolist() == [3]
+    monkeypatch.setattr(bounds, "CHORDS_OF_FILE", 800)
+    assert bounds.long_loops(curves, 0.002).tolist() == [2, 3]
+    monkeypatch.setattr(segments, "CHORDS_OF_FILE", 800)
+    with pytest.raises(TooHardError, match="chords are too many to look at"):
+        segments.segments(curves, 0.002)
+
+
+def test_only_so_many_loops_are_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    report = checked(in_mode(block for _ in range(30) for block in loop(["X300000.", "C10."], 40 + 0j)))
+    reasons = [missing for missing in report.not_evaluated if missing.rule == "overcut"]
+    assert len(reasons) == 21
+    assert reasons[-1].reason.startswith("each of 10 more contours reaches")
+    # The start-up, which lies outside, is of the loop as well.
+    assert reasons[-1].blocks == 10 * reasons[0].blocks
+
+
+def test_walls_that_only_together_are_too_many_are_said(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whether the tool fits between contours is open where they cross again and again, and nobody passes that."""
+    program = FAMILIES["nested-squares"].make(200)
+    assert checked(program).verdict == "pass"
+    monkeypatch.setattr(noding, "_PAIRS", 0)
+    monkeypatch.setattr(noding, "_FREE_PAIRS", 60)
+    report = checked(program)
+    assert report.verdict == "unverified"
+    assert "crosses itself or others beside it" in given_up(report)["slot-narrower-than-cutter"]
+
+
+def test_what_is_not_looked_for_is_said_without_weight(monkeypatch: pytest.MonkeyPatch) -> None:
+    from polarcheck.geometry import ribs, strips
+
+    for family, module, bound in (("slanted-leads", ribs, "_PAIRS"), ("passes", strips, "_MOST_PIECES")):
+        program = FAMILIES[family].make(200)
+        assert "material-left" in {rule for _, rule in said(checked(program))}
+        with monkeypatch.context() as patch:
+            patch.setattr(module, bound, -1)
+            report = checked(program)
+        assert "material-left" not in {rule for _, rule in said(report)}
+        missing = next(one for one in report.not_evaluated if one.rule == "material-left")
+        assert "nobody has looked for what stays between them" in missing.reason
+        assert not missing.matters
+
+
+def test_a_pass_that_is_written_once_more_deeper_sweeps_nothing_else(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Thirty depths of one contour are looked at as one."""
+    from polarcheck.geometry import strips
+
+    one = [*square(24, 60), *square(24, 50)]
+    blocks = [block for depth in range(30) for block in ("G1 Z2. F500", "X250. C0", f"G1 Z-{depth + 1}.", *one)]
+    monkeypatch.setattr(strips, "_MOST_PIECES", 4 * len(one))
+    assert "material-left" in {rule for _, rule in said(checked(in_mode([*blocks, "G1 Z2."])))}
+
+
+# ---- the same, with less ----
+
+
+@pytest.mark.parametrize("family", ["pockets", "bosses", "passes"])
+def test_rings_by_what_they_lie_in_or_one_by_one(family: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Parts of many rings are the same, however they are put together."""
+    from polarcheck.geometry import faces
+
+    found: dict[int, list[Any]] = {}
+    polygons = faces._polygons
+    for few in (0, 10**9):
+
+        def kept(*given: Any, few: int = few) -> Any:
+            result = polygons(*given)
+            found.setdefault(few, []).extend(result)
+            return result
+
+        with monkeypatch.context() as patch:
+            patch.setattr(faces, "_FEW", few)
+            patch.setattr(faces, "_polygons", kept)
+            checked(FAMILIES[family].make(600))
+    assert len(found[0]) == len(found[10**9]) > 0
+    for one, other in zip(found[0], found[10**9], strict=True):
+        assert one.is_valid
+        assert one.symmetric_difference(other).area == pytest.approx(0, abs=1e-6)
+
+
+def test_rings_in_rings() -> None:
+    """What lies in a hole is solid again; holes in nothing, and solid in solid, are left to who goes one by one."""
+    from polarcheck.geometry.faces import _nested
+
+    size = np.arange(20, 0, -1)
+    boxes = shapely.box(-size, -size, size, size)
+    hole = size % 2 == 1
+    beside = shapely.box(30, 0, 31, 1)
+    whole = _nested(np.append(boxes, beside), np.append(hole, False))
+    assert whole.is_valid
+    assert whole.area == 4 * sum((-1) ** int(number) * number**2 for number in size) + 1
+    assert len(whole.geoms) == 11
+    assert _nested(boxes[1:], hole[1:]) is None
+    assert _nested(boxes, np.zeros(20, bool)) is None
+
+
+def test_loops_that_begin_in_a_row_are_held_together_by_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What they are cut into grows with their number, not with its square."""
+    from polarcheck.geometry import faces
+
+    counts = []
+    for moves in (200, 400):
+        found = []
+
+        def kept(*given: Any, found: list[int] = found) -> Any:
+            edges = noding.noded(*given)
+            found.append(len(edges.wall))
+            return edges
+
+        with monkeypatch.context() as patch:
+            patch.setattr(faces, "noded", kept)
+            checked(FAMILIES["nested-squares"].make(moves))
+        counts.append(max(found))
+    assert counts[1] < 2.2 * counts[0]
+
+
+def test_a_trial_is_given_up_between_two_of_them(monkeypatch: pytest.MonkeyPatch) -> None:
+    tables = tables_of(in_mode(GROOVE), MACHINE, TOOL)
+    assert tables["fitting"]._asked.any()
+    tried = []
+    monkeypatch.setattr(fitting, "keep_time", lambda: tried.append(1))
+    assert tables["fitting"].radius[-1] == pytest.approx(3, rel=0.02)
+    assert 0 < len(tried) <= fitting._TRIALS
+
+
+def test_walls_without_a_length_meet_nothing() -> None:
+    """Points nearer than a touch are one; nothing is divided by what lies between them."""
+    start, end = np.array([0, 1, 1 + 1e-9, 0.5 - 1j]), np.array([1, 1 + 1e-9, 2, 0.5 + 1j])
+    edges = noding.noded(start, end, np.zeros(4, np.int64))
+    assert edges.wall.tolist() == [0, 0, 2, 3, 3]
+    assert not edges.tangled.any()
+
+
+# ---- areas ----
+
+
+def test_areas_without_an_answer_are_too_hard() -> None:
+    bow = shapely.Polygon([(0, 0), (2, 2), (2, 0), (0, 2)])
+    with pytest.raises(TooHardError, match="areas of its contours cannot be computed"):
+        areas.intersection(bow, shapely.box(0.5, 0.5, 3, 3))
+    with pytest.raises(TooHardError, match="areas of its contours cannot be computed"):
+        areas.difference(np.array([shapely.box(0, 0, 1, 1), bow]), shapely.box(0.5, 0.5, 3, 3))
+
+
+def test_areas_are_taken_in_portions(monkeypatch: pytest.MonkeyPatch) -> None:
+    boxes = shapely.box(np.arange(20), 0, np.arange(20) + 1.5, 1)
+    whole = areas.intersection(boxes, boxes[3])
+    asked = []
+    monkeypatch.setattr(areas, "_AT_A_TIME", 30)
+    monkeypatch.setattr(areas, "keep_time", lambda: asked.append(1))
+    assert (areas.intersection(boxes, boxes[3]) == whole).all()
+    assert len(asked) == 7
+    assert shapely.area(areas.buffer(boxes, 1.0)) == pytest.approx(shapely.area(shapely.buffer(boxes, 1.0)))
+    assert not len(areas.make_valid(boxes[:0]))
+    assert areas.union(boxes[0], boxes[1]).area == pytest.approx(2.5)
+    monkeypatch.setattr(areas, "_MOST", 90)
+    with pytest.raises(TooHardError, match="100 points are too many"):
+        areas.union_all(boxes)
+    assert (areas.intersection(boxes, boxes[3]) == whole).all()
+
+
+def test_points_are_compared_in_portions(monkeypatch: pytest.MonkeyPatch) -> None:
+    from polarcheck.geometry import ribs
+
+    count = 5
+    start = np.arange(count) * (1 + 1j)
+    none = np.zeros(count, np.int64)
+    swept = ribs.Swept(start, start + 3j, none, np.ones(count), np.zeros(count), none)
+    point = np.linspace(-3, 3, 7) - 4j
+    whole = ribs.first_tool(swept, swept.radius, point, np.full(7, 1j))
+    monkeypatch.setattr(ribs, "_PAIRS_AT_A_TIME", 1)
+    assert (ribs.first_tool(swept, swept.radius, point, np.full(7, 1j)) == whole).all()
+    assert np.isfinite(whole).all()
+
+
+# ---- whole processes ----
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no limit of address space there")
+@pytest.mark.parametrize(
+    ("family", "moves", "reason"),
+    [
+        ("zigzag", 3000, "crosses itself more than"),
+        ("half-circles", 1000, ""),
+        ("long-digits", 1000, "reaches farther than"),
+        ("huge-circles", 500, ""),
+        ("wide-circles", 500, "arcs of more than"),
+        ("sections", 4000, ""),
+    ],
+)
+def test_a_check_stays_within_its_memory(family: str, moves: int, reason: str, tmp_path: Path) -> None:
+    """Without the bounds each of the first five took some gigabytes, or ran for ever."""
+    path = tmp_path / "hard.nc"
+    path.write_text(FAMILIES[family].make(moves), encoding="ascii")
+    found = run(path, 300, 1500)
+    assert not found.fault
+    assert found.megabytes < 1000
+    assert not reason or any(reason in told for told in found.not_evaluated)
