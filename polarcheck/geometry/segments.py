@@ -12,6 +12,7 @@ from polarcheck.errors import TooHardError
 from polarcheck.geometry.plane import arc_sweep
 from polarcheck.geometry.tolerances import CHORDS_OF_FILE
 from polarcheck.machines.modal import Motion
+from polarcheck.time_limit import keep_time
 
 #: A length [mm] below this is none.
 ZERO = 1e-9
@@ -67,8 +68,9 @@ def segments(moves: Curves, tolerance: float) -> Segments:
     All moves that are known and have a length; arcs with a sagitta of a quarter of the tolerance at most.
 
     Two arcs of one circle have the same chords where they run over each other: their ends stand at whole multiples of
-    one angle. Raises TooHardError for more than CHORDS_OF_FILE.
+    one angle. Raises TooHardError for more than CHORDS_OF_FILE, and where the time is over.
     """
+    keep_time()
     start, end, center = moves.start, moves.end, moves.center
     arcs = (moves.kind == Motion.CW) | (moves.kind == Motion.CCW)
     known = ~(np.isnan(start) | np.isnan(end) | (arcs & np.isnan(center)))
