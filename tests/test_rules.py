@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+import ast
+import functools
+import inspect
 import re
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 import pytest
 from programs import machine_of, report_of_example, said
+from syrupy.assertion import SnapshotAssertion
 
 from polarcheck.checking.examples import Example, examples
+from polarcheck.checking.finding import SEVERITIES
 from polarcheck.checking.rule import OVER, Hits, Rule, load_all
 from polarcheck.machines import profiles
 
@@ -62,6 +68,40 @@ def test_a_constant_mask_fails(rule: Rule, value: bool) -> None:
         except (ValueError, TypeError, IndexError, KeyError, OverflowError):
             verdicts.append(False)  # a message about a row that has nothing to say
     assert not all(verdicts)
+
+
+@functools.cache
+def own_severities(name: str) -> list[list[str]]:
+    """The severities of what a rule finds in each of its examples, in the order of the program, without other rules."""
+    rule = RULES[name]
+    reports = [report_of_example(example, only=[rule]) for example in examples(rule.page)]
+    return [[finding.severity for finding in report.findings] for report in reports]
+
+
+def test_severities_are_the_golden_ones(snapshot: SnapshotAssertion) -> None:
+    """A line for each rule: what it is listed with, and what it gives in each of its examples."""
+    lines = [
+        f"{rule.name} ({rule.severity.name.lower()}): "
+        + "; ".join(", ".join(found) or "-" for found in own_severities(rule.name))
+        for rule in RULES.values()
+    ]
+    assert "\n".join(lines) == snapshot
+
+
+def named_severities(rule: Rule) -> Iterator[str]:
+    """Those that stand in its function: as a name, or as an argument of `graded`."""
+    for node in ast.walk(ast.parse(inspect.getsource(rule.function))):
+        if isinstance(node, ast.Name) and node.id.lower() in SEVERITIES:
+            yield node.id.lower()
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "graded":
+            yield from (word.arg for word in node.keywords if word.arg in SEVERITIES)
+
+
+@pytest.mark.parametrize("rule", RULES.values(), ids=list(RULES))
+def test_each_severity_of_a_rule_is_seen_in_its_examples(rule: Rule) -> None:
+    seen = {severity for found in own_severities(rule.name) for severity in found}
+    graded = set(named_severities(rule)) - {rule.severity.name.lower()}
+    assert graded <= seen
 
 
 def test_every_alarm_and_severity_of_a_machine_names_a_rule() -> None:

@@ -45,6 +45,24 @@ def uncompensated_cut_into_part(uncompensated_cuts: UncompensatedCuts) -> Hits:
         X-80.             (expect: uncompensated-cut-into-part)
         G13.1
 
+    Bad, tool 1:radius=5:
+
+        T0101
+        G98 G0 X80. Z2. C0
+        G12.1
+        G1 X80. C5. F500
+        Z-3.
+        G42 X40. C0. F200
+        X20. C17.32
+        X-20.
+        X-40. C0.
+        X-20. C-17.32
+        X20.
+        X40. C0.
+        G40 X80. C5.
+        G13.1
+        G0 X0.            (expect: uncompensated-cut-into-part)
+
     Good, tool 1:radius=5:
 
         T0101

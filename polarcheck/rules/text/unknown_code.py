@@ -36,6 +36,12 @@ def unknown_code(words: Words, written: Written, machine: Machine, other_mode: O
         G505 X2.
         G150 X2.          (expect: unknown-code)
 
+    Bad, set control.unknown_codes_are_errors=false:
+
+        G98 G0 X60. C0
+        G12.11            (expect: unknown-code)
+        G505 X1.          (expect: unknown-code)
+
     Good:
 
         G098 G00 X60. C0

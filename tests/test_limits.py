@@ -1,0 +1,141 @@
+"""At a limit nothing is said, just beyond it is: of each rule that has one."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import pytest
+from programs import report_of, tables_of
+
+
+@dataclass(frozen=True)
+class Limit:
+    """A rule, a program with a word left open, that word at the limit and just beyond, and what sets the limit."""
+
+    rule: str
+    program: str
+    at: str
+    beyond: str
+    changes: Mapping[str, Any] = field(default_factory=dict)
+    tool: str = ""
+
+
+def cut(block: str) -> str:
+    """A program that comes to X60 C0 in the mode at F100, and then runs a block."""
+    return f"G98 G0 X60. C0\nG12.1\nG1 C5. F100\n{block}\nG13.1\n"
+
+
+#: A square about the center, with R 4, up to the start-up and from the offset cancel on.
+BEFORE, AFTER = (
+    "T0101\nG98 G0 X80. C0\nG12.1\n",
+    "C-10.\nX-40.\nC10.\nX40.\nC0\n",
+)
+INSIDE_ARC = "T0101\nG98 G0 X100. C-30.\nG12.1\nG1 G42 X40. F100\nC10.\nG2 X60. C20. R{}\nG1 X80.\nG40 X100.\nG13.1\n"
+PAUSE = "T0101\nG98 G0 X80. Z5. C10.\nG12.1\nG1 G41 X40. F100\nC10.\nZ2.\n{}X20.\nG40 X80.\nG13.1\n"
+RECOMMENDED = {
+    "feed": {
+        "cutting_minimum": 100.0,
+        "cutting_maximum": 200.0,
+        "positioning_minimum": 1000.0,
+        "positioning_maximum": 2000.0,
+    }
+}
+TRAVEL = {"limits": {"x_minimum": -10.0, "x_maximum": 200.0, "z_minimum": -20.0, "z_maximum": 50.0}}
+
+LIMITS = [
+    Limit("feed-above-polar-limit", cut("C-5. F{}"), "500.", "500.001", {"limits": {"polar_feed": 500.0}}),
+    Limit("feed-outside-recommended-range", cut("C-5. F{}"), "200.", "200.001", RECOMMENDED),
+    Limit("feed-outside-recommended-range", cut("C-5. F{}"), "100.", "99.999", RECOMMENDED),
+    Limit("feed-outside-recommended-range", cut("C-5. F{}"), "1000.", "999.999", RECOMMENDED),
+    Limit("feed-outside-recommended-range", cut("C-5. F{}"), "2000.", "2000.001", RECOMMENDED),
+    Limit("path-near-center", cut("X{}\nC-5."), "10.", "9.999", {"limits": {"keep_out": 5.0}}),
+    Limit("start-up-shorter-than-radius", BEFORE + "G1 G42 X{} F100\n" + AFTER, "72.", "72.002", tool="1:radius=4"),
+    Limit(
+        "cancel-shorter-than-radius",
+        BEFORE + "G1 G42 X40. F100\n" + AFTER + "G40 X{}\nG13.1\n",
+        "48.",
+        "47.998",
+        tool="1:radius=4",
+    ),
+    Limit("inside-arc-smaller-than-radius", INSIDE_ARC, "10.002", "10.", tool="1:radius=10"),
+    Limit("movement-missing-in-offset-mode", PAUSE, "", "M9\n", {"compensation": {"read_ahead": 3}}, tool="1:radius=4"),
+    Limit(
+        "movement-missing-in-offset-mode",
+        PAUSE,
+        "M9\n",
+        "M9\nM8\n",
+        {"compensation": {"read_ahead": 4}},
+        tool="1:radius=4",
+    ),
+    Limit("travel-limit", "G0 X{} Z0\n", "400.", "400.002", TRAVEL),
+    Limit("travel-limit", "G0 X{} Z0\n", "-20.", "-20.002", TRAVEL),
+    Limit("travel-limit", "G0 X60. Z{}\n", "50.", "50.001", TRAVEL),
+    Limit("travel-limit", "G0 X60. Z{}\n", "-20.", "-20.001", TRAVEL),
+    Limit("travel-limit", cut("X60. C{}"), "40.", "40.001", {"limits": {"x_maximum": 50.0}}),
+    Limit(
+        "arc-sweep-above-limit",
+        cut("X40. C0\nG3 X{} I-20. J0"),
+        "-40. C0",
+        "-39. C-4.444",
+        {"arcs": {"sweep_limit": 180}},
+    ),
+    Limit("arc-end-off-circle", cut("X40. C0\nG3 X0 C{} I-20. J0"), "20.02", "20.04"),
+    Limit("arc-radius-too-small", cut("X40. C0\nG3 X-40. C0 R{}"), "19.99", "19.98"),
+    Limit("second-axis-never-programmed", "G98 G0 X60. C0\nG12.1\nG1 X40. F100\n{}G13.1\n", "X-20.\n", "X-20.\nX20.\n"),
+    Limit("degrees-in-polar", "G98 G0 X{0} C0\nG12.1\nG1 X{0} F100\nC-60.\nX40.\nG13.1\n", "60.", "59.9"),
+    Limit("z-with-plane-axis", cut("Z-1. C{}"), "5.", "5.001"),
+    Limit("x-not-positive-at-entry", "G98 G0 X{} C0\nG12.1\nG13.1\n", "0.002", "0."),
+    Limit("origin-off-center", "G52 X{}\nG98 G0 X60. C0\nG12.1\nG13.1\n", "0.", "0.001"),
+    Limit("feed-mode-unknown", "O1\nG0 X60. C0\nG12.1\nG1 X40. F{}\nG13.1\nM30\n", "4.999", "5."),
+    Limit("feed-mode-unknown", "O1\nG20 G0 X3. C0\nG12.1\nG1 X2. F{}\nG13.1\nM30\n", ".199", ".2"),
+    Limit("too-many-digits", "G0 X{}\n", "1234567.8", "12345678.9", {"control": {"digit_limit": 8}}),
+    Limit("too-many-m-codes", "M5 M8{}\n", "", " M10", {"control": {"m_code_limit": 2}}),
+    Limit("words-too-many", "G40 G80 G97{}\n", "", " M8", {"control": {"word_limit": 3}}),
+    Limit("loop-number-out-of-range", "O1\nWHILE[#1 LT 1]DO{0}\n#1=1\nEND{0}\nM30\n", "3", "4"),
+    Limit("nesting-too-deep", "O1\n#1={}\nM30\n", "[[[[[5]]]]]", "[[[[[[5]]]]]]"),
+    Limit("variable-out-of-range", "O1\n#{}=1\nM30\n", "33", "34"),
+    Limit("variable-out-of-range", "O1\n#{}=1\nM30\n", "199", "200"),
+]
+
+
+@pytest.mark.parametrize("limit", LIMITS, ids=lambda limit: f"{limit.rule} {limit.at}")
+def test_at_the_limit_nothing_is_said(limit: Limit) -> None:
+    tools = [limit.tool] if limit.tool else []
+    for word, is_beyond in ((limit.at, False), (limit.beyond, True)):
+        program = limit.program.format(word)
+        report = report_of(program, "fanuc", *tools, changes=limit.changes, only=[limit.rule])
+        assert bool(report.findings) == is_beyond, word
+
+
+@pytest.mark.parametrize(("code", "severity"), [("G26", "error"), ("G100", "warning"), ("G100.1", "error")])
+def test_from_g100_on_an_unknown_code_may_be_a_macro(code: str, severity: str) -> None:
+    changes = {"control": {"known_codes": ["G0"]}}
+    report = report_of(f"G0 X60.\n{code}\n", changes=changes, only=["unknown-code"])
+    assert [finding.severity for finding in report.findings] == [severity]
+
+
+ON_A_CIRCLE = "G98 G0 X60. C0\nG12.1\nG1 X40. F100\nG3 X-40. C0 R20. F{}\nX40. C0 R20.\nG1 X60.\nG13.1\n"
+
+
+def test_the_rate_of_c_at_its_limit_is_allowed() -> None:
+    """As the control does it: alarm above the limit."""
+    column = tables_of(ON_A_CIRCLE.format("123."))["tool_center"].c_feed
+    rate = float(np.nanmax(column))
+    for limit, is_above in ((rate, False), (np.nextafter(rate, 0), True)):
+        changes = {"limits": {"c_feed": float(limit)}}
+        report = report_of(ON_A_CIRCLE.format("123."), changes=changes, only=["c-feed-above-limit"])
+        assert bool(report.findings) == is_above
+
+
+LINE = "G98 G0 X60. C0\nG12.1\nG1 X2. C10. F200\nC-10. F300\nX60. F200\nG13.1\n"
+
+
+def test_the_acceleration_of_c_at_its_limit_is_allowed() -> None:
+    most = float(np.nanmax(tables_of(LINE)["tool_center"].c_acceleration))
+    for limit, is_above in ((most, False), (most * (1 - 1e-12), True)):
+        changes = {"limits": {"c_acceleration": limit, "c_feed": 1e6}}
+        report = report_of(LINE, changes=changes, only=["c-acceleration-above-limit"])
+        assert bool(report.findings) == is_above
