@@ -110,6 +110,19 @@ def test_at_the_limit_nothing_is_said(limit: Limit) -> None:
         assert bool(report.findings) == is_beyond, word
 
 
+RAMPS = [
+    ("start-up-shorter-than-radius", "T0101\nG98 G0 X60. C0\nG12.1\nG1 X50. F100\nG41\nG13.1\n"),
+    ("cancel-shorter-than-radius", "T0101\nG98 G0 X60. C0\nG12.1\nG1 G41 X40. F100\nC20.\nG40\nG13.1\n"),
+]
+
+
+@pytest.mark.parametrize(("rule", "program"), RAMPS)
+@pytest.mark.parametrize(("radius", "is_said"), [("0", False), ("0.001", True), ("1", True)])
+def test_without_a_radius_no_ramp_is_missing(rule: str, program: str, radius: str, is_said: bool) -> None:
+    report = report_of(program, "fanuc", f"1:radius={radius}", only=[rule])
+    assert [finding.rule for finding in report.findings] == [rule] * is_said
+
+
 @pytest.mark.parametrize(("code", "severity"), [("G26", "error"), ("G100", "warning"), ("G100.1", "error")])
 def test_from_g100_on_an_unknown_code_may_be_a_macro(code: str, severity: str) -> None:
     changes = {"control": {"known_codes": ["G0"]}}

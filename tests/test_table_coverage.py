@@ -80,6 +80,21 @@ def test_ribs_by_their_overlap(overlap: float, side: str, turn: float) -> None:
     assert height(finding) == pytest.approx(rib(overlap), abs=0.005)
 
 
+@pytest.mark.parametrize("count", [1, 2, 3, 4, 5])
+def test_ribs_beside_a_lead_of_several_blocks(count: int) -> None:
+    """The rib stands at one corner alone, that of the straight lead; the other lead is round."""
+    steps = [f"X{40 + 8 * number}." for number in range(count + 1)]
+    on, off = "/".join(steps[-2::-1]), "/".join(steps[1:])
+    for section in (
+        f"G42 {steps[-1]} C0./{on}/C20./X-40./C-20./X40./C1./G2 X54. C8. R7./G1 G40 X100.",
+        f"G42 X54. C-7./G2 X40. C0. R7./G1 C20./X-40./C-20./X40./C1./{off}/G40 X100. C5.",
+    ):
+        [finding] = found(f"G1 X100. C-20. F300/Z-2./{section}")
+        assert finding.rule == "material-left"
+        # Circles of R 3 and 7 that touch the side 2 mm apart meet so far above it.
+        assert height(finding) == pytest.approx(0.106, abs=0.001)
+
+
 @pytest.mark.parametrize("overlap", [0, 1, 3])
 def test_ribs_in_inch(overlap: float) -> None:
     [finding] = found(

@@ -46,6 +46,16 @@ def rapid_through_center(trace: Trace, entry: Entry) -> Mask:
         X0
         T0202
         G0 X-1.
+
+    Good:
+
+        G98 G0 X60. Z2. C0
+        G12.1
+        G1 X40. F200
+        C10.
+        X60.
+        G13.1
+        G1 X-1. F100
     """
     is_rapid = (trace.motion == Motion.RAPID) & trace.has("X", "U") & ~trace.in_polar
     return entry.after_section & is_rapid & (trace.x < -ROUNDING) & ~(trace.x_before < -ROUNDING)
