@@ -105,6 +105,8 @@ PATIENCE, LONGEST = 60, 1800.0
 MEMORY = 6_000_000_000
 OUTPUT = "output.txt"
 NICE = 5
+#: File, line of the source, what is written, what would be, which of those alike in that line.
+Key = tuple[str, str, str, str, int]
 OUTCOMES = ("killed", "timeout", "survived", "equivalent")
 
 
@@ -197,16 +199,16 @@ def room_of(file: str) -> str:
     return file.split("/")[1]
 
 
-def key(one: Mutation) -> tuple[str, str, str, str]:
+def key(one: Mutation) -> Key:
     """What is left of a mutation when lines above it come and go."""
-    return one.file, one.row, one.old, one.new
+    return one.file, one.row, one.old, one.new, one.nth
 
 
-def equivalent() -> dict[tuple[str, str, str, str], str]:
+def equivalent() -> dict[Key, str]:
     """The reasons for which no program can tell a mutant from the original."""
     table = tomllib.loads(EQUIVALENT.read_text("utf-8"))
     return {
-        (file, one["row"], one["old"], new): one["why"]
+        (file, one["row"], one["old"], new, one.get("nth", 1)): one["why"]
         for file, group in table.items()
         for one in group
         for new in ([one["new"]] if isinstance(one["new"], str) else one["new"])

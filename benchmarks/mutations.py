@@ -12,8 +12,9 @@ from __future__ import annotations
 
 import ast
 import re
+from collections import Counter
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 #: Other comparisons than the one that is written: its edge, and its opposite.
 COMPARISONS = {
@@ -84,7 +85,11 @@ _MESSAGES = ("RuleError", "UsageError", "ProfileError", "ValueError", "TypeError
 
 @dataclass(frozen=True)
 class Mutation:
-    """Bytes begin to end of a module replaced. line: where, from 1. row: that line of the source, stripped."""
+    """
+    Bytes begin to end of a module replaced.
+
+    line: where, from 1. row: that line of the source, stripped. nth: which of those alike in that line, from 1.
+    """
 
     file: str
     line: int
@@ -93,6 +98,7 @@ class Mutation:
     end: int
     old: str
     new: str
+    nth: int = 1
 
     def __str__(self) -> str:
         return f"{self.file}:{self.line}  {self.old} -> {self.new or 'nothing'}   | {self.row}"
@@ -104,7 +110,13 @@ class Mutation:
 
 def mutations(source: bytes, file: str) -> list[Mutation]:
     """All mutations of a module, in the order of its text; source in UTF-8."""
-    return sorted(_Finder(source, file).of(ast.parse(source)), key=lambda one: (one.begin, one.end, one.new))
+    found = sorted(_Finder(source, file).of(ast.parse(source)), key=lambda one: (one.begin, one.end, one.new))
+    alike = Counter[tuple[int, str, str]]()
+    numbered = []
+    for one in found:
+        alike[one.line, one.old, one.new] += 1
+        numbered.append(replace(one, nth=alike[one.line, one.old, one.new]))
+    return numbered
 
 
 def compiles(source: bytes) -> bool:

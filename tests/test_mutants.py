@@ -96,7 +96,7 @@ def test_what_counts_as_equivalent_is_still_there() -> None:
     known = mutants.equivalent()
     assert all(known.values())
     files = {file for file, *_ in known}
-    there: set[tuple[str, str, str, str]] = set()
+    there: set[mutants.Key] = set()
     for file in files:
         found: list[Mutation] = mutations((mutants.ROOT / file).read_bytes(), file)
         there |= {mutants.key(one) for one in found}
