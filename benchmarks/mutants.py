@@ -77,6 +77,7 @@ TESTS = (
     "table_coverage",
     "table_*",
     "polar",
+    "inside",
     "mesh",
     "finished_part",
     "faces",
@@ -105,6 +106,8 @@ PATIENCE, LONGEST = 60, 1800.0
 MEMORY = 6_000_000_000
 OUTPUT = "output.txt"
 NICE = 5
+#: What pytest ends with for a file that is not there.
+USAGE = 4
 #: File, line of the source, what is written, what would be, which of those alike in that line.
 Key = tuple[str, str, str, str, int]
 OUTCOMES = ("killed", "timeout", "survived", "equivalent")
@@ -225,7 +228,7 @@ def promising(file: str) -> list[str]:
     Those that are named as the module, or as one that imports it and so on upward, and the examples of the rules that
     compare one of these tables.
     """
-    names = []
+    names = list(importers(file))
     for stem in upward(file):
         names += [f"test_{stem}.py", f"test_table_{stem}"]
     for stem in upward(file):
@@ -237,13 +240,22 @@ def promising(file: str) -> list[str]:
 
 
 @functools.cache
+def importers(file: str) -> list[str]:
+    """The tests that import a module themselves."""
+    room, stem = file.split("/")[1], Path(file).stem
+    imported = re.compile(rf"from polarcheck\.{room}(\.{stem} import| import .*\b{stem}\b)")
+    tests = sorted((ROOT / "tests").glob("test_*.py"))
+    return [path.name for path in tests if imported.search(path.read_text("utf-8"))]
+
+
+@functools.cache
 def upward(file: str) -> list[str]:
     """The name of a module of geometry or tables, and those of the modules there that import it, the nearest first."""
     text = {one: (ROOT / one).read_text("utf-8") for one in modules() if one.split("/")[1] in ("geometry", "table")}
     found = [file]
     for one in found:  # grows
         room, stem = one.split("/")[1], Path(one).stem
-        imported = re.compile(rf"from polarcheck\.{room}(\.{stem} import|  *import .*\b{stem}\b)")
+        imported = re.compile(rf"from polarcheck\.{room}(\.{stem} import| import .*\b{stem}\b)")
         found += [other for other in text if other not in found and imported.search(text[other])]
     return [Path(one).stem for one in found]
 
@@ -260,12 +272,14 @@ def batches(one: Mutation) -> list[list[str]]:
     paths = [path for name in TESTS for path in sorted((ROOT / "tests").glob(f"test_{name}.py"))]
     files = [path.relative_to(ROOT).as_posix() for path in dict.fromkeys(paths)]
     names = promising(one.file)
-    near = [file for file in files if any(name in file for name in names)]
+    near = [f"tests/{name}" for name in importers(one.file)]
+    near += [file for file in files if any(name in file for name in names)]
     if any("findings[" in name for name in names):
         near.append("tests/test_rules.py")
     if room_of(one.file) == "rules":
         near += [file for file in files if names[-2] in (ROOT / file).read_text("utf-8")]
-    return [list(dict.fromkeys(near)), files] if near else [[], files]
+    near = list(dict.fromkeys(near))
+    return [near, [*files, *(file for file in near if file not in files)]]
 
 
 # ---- running ----
@@ -379,6 +393,8 @@ def outcome_of(run: Run) -> str:
         return "timeout"
     with contextlib.suppress(ProcessLookupError, PermissionError):
         os.killpg(run.process, signal.SIGKILL)  # what tests have started
+    if os.WIFEXITED(status) and os.WEXITSTATUS(status) == USAGE:
+        sys.exit(f"pytest was called in a wrong way for {run.mutation}")
     if os.WIFEXITED(status):
         return "survived" if os.WEXITSTATUS(status) in (0, 5) else "killed"
     return "timeout" if os.WTERMSIG(status) in (signal.SIGXCPU, signal.SIGKILL) else "killed"

@@ -123,6 +123,13 @@ def test_without_a_radius_no_ramp_is_missing(rule: str, program: str, radius: st
     assert [finding.rule for finding in report.findings] == [rule] * is_said
 
 
+@pytest.mark.parametrize(("diameter", "is_said"), [(120.0, False), (119.9, True)])
+def test_what_lies_within_the_stock_is_no_angle(diameter: float, is_said: bool) -> None:
+    program = "G98 G0 X40. C0\nG12.1\nG1 X25. F100\nC-60.\nX40.\nG13.1\n"
+    report = report_of(program, job={"stock": {"diameter": diameter}}, only=["degrees-in-polar"])
+    assert bool(report.findings) == is_said
+
+
 @pytest.mark.parametrize(("code", "severity"), [("G26", "error"), ("G100", "warning"), ("G100.1", "error")])
 def test_from_g100_on_an_unknown_code_may_be_a_macro(code: str, severity: str) -> None:
     changes = {"control": {"known_codes": ["G0"]}}

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from programs import tables_of
+from programs import report_of, said, tables_of
 
 from polarcheck.arrays import Mask
 from polarcheck.table.mode_words import ModeWords
@@ -222,3 +222,16 @@ def test_coordinates_under_the_address_of_other_controls(machine: str, found: li
     """Not a Y or C beside G28, where it is no coordinate of a move."""
     words = table("G1 Y1. V2.\nG1 C3. H4.\nG28 Y0 C0\nY5. C5.\n", machine)
     assert shown(words, words.of_other_axis) == found
+
+
+@pytest.mark.parametrize("code", ["G505", "G54.7", "G12.11"])
+def test_a_code_that_no_control_has_is_one_finding(code: str) -> None:
+    report = report_of(f"G98 G0 X60. C0\nG12.1\nG1 X40. F100\n{code}\nC5.\nX60.\nG13.1\n")
+    assert said(report) == [(4, "unknown-code")]
+
+
+@pytest.mark.parametrize("code", ["G10 L10 P1 R5.", "G10 L2 P1 X0", "G18", "G43 H1", "G0"])
+def test_what_has_a_rule_of_its_own_is_not_said_twice(code: str) -> None:
+    report = report_of(f"G98 G0 X60. C0\nG12.1\nG1 X40. F100\n{code}\nG1 C5.\nX60.\nG13.1\n")
+    assert "code-not-allowed-in-polar" not in {finding.rule for finding in report.findings}
+    assert report.findings

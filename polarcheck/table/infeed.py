@@ -58,10 +58,10 @@ class Infeed:
         and whether the contour is closed. Without a contour no row, and not closed.
         """
         trace = self.trace
-        first_row, leave = trace.sections.enter[section] + 1, min(trace.sections.leave[section], len(trace))
+        enter, leave = trace.sections.enter[section], trace.sections.leave[section]
         # A start-up in rapid traverse leads to the contour as one at feed does, which is what was meant.
         leads_or_cuts = trace.cuts | (trace.on_plane & trace.compensates)
-        moving = first_row + np.flatnonzero(leads_or_cuts[first_row:leave])
+        moving = enter + np.flatnonzero(leads_or_cuts[enter:leave])
         if not len(moving):
             return moving, False
         compensated = trace.side[moving] != Side.OFF

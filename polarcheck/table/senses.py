@@ -42,7 +42,7 @@ class Senses:
             return np.zeros(0, np.int64)
         loop = self._loop[rows]
         joined = (loop[1:] == loop[:-1]) & (loop[1:] >= 0)
-        between = np.append(False, joined) & np.append(joined, False) if len(rows) else np.zeros(0, bool)
+        between = np.append(False, joined) & np.append(joined, False)
         judged = self.trace.is_arc & ~self.arcs.is_no_circle & ~self.arcs.ends_at_start & ~np.isnan(self.trace.center)
         return np.flatnonzero(between & judged[rows])
 
