@@ -15,7 +15,7 @@ import pytest
 from programs import machine_of, report_of, said, tables_of
 
 from polarcheck.checking import message, tables
-from polarcheck.checking.engine import Engine
+from polarcheck.checking.engine import LISTED, Engine
 from polarcheck.checking.finding import ERROR, NOTE, WARNING, Finding
 from polarcheck.checking.other_machine import OtherMachine
 from polarcheck.checking.rule import FOLDER, Hits, Rule, graded, load_all, rule
@@ -472,3 +472,12 @@ def test_time_is_kept_only_inside_a_limit() -> None:
             keep_time()
         keep_time()
     keep_time()
+
+
+def test_findings_beyond_the_limit_are_counted() -> None:
+    """Nobody reads more than a thousand of one rule, and a report of hostile text stays small."""
+    report = report_of("O1\n" + "G0 X1. ?\n" * 1100 + "M30\n", only=["text"])
+    assert len(report.findings) == LISTED == 1000
+    (missing,) = report.not_evaluated
+    assert (missing.reason, missing.blocks) == ("only the first 1000 of 1100 findings are listed", 100)
+    assert (missing.matters, report.verdict) == (False, "fail")

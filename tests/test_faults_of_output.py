@@ -110,6 +110,9 @@ def test_nor_has_it_the_name_of_a_program(name: str) -> None:
 def test_two_reports_have_two_files() -> None:
     status, _, told = run("check", "b.nc", *ONLY, "-o", "json:r.json", "-o", "concise:./r.json")
     assert (status, told) == (2, "polarcheck: -o r.json: two reports would be written to this file\n")
+    status, _, told = run("check", "b.nc", "-o", "json:-")
+    assert (status, told.count("--format chooses the report on standard output")) == (2, 1)
+    assert not Path("-").exists()
     assert run("check", "b.nc", *ONLY, "-o", "json:r.json", "-o", "concise:r.txt")[0] == 0
     assert run("check", "b.nc", *ONLY, "-o", "json:r.json", "-o", "concise:r.txt")[0] == 0
 

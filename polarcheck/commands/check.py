@@ -44,6 +44,8 @@ def _outputs(ctx: click.Context, parameter: click.Parameter, values: tuple[str, 
         form, _, path = value.partition(":")
         if form not in _FORMATS or not path:
             raise click.BadParameter(f"{value!r}: expected FORMAT:FILE, the format one of {', '.join(_FORMATS)}")
+        if path == "-":
+            raise click.BadParameter(f"{value!r}: --format chooses the report on standard output")
         outputs.append((form, Path(path)))
     return outputs
 
