@@ -95,6 +95,16 @@ def test_ribs_beside_a_lead_of_several_blocks(count: int) -> None:
         assert height(finding) == pytest.approx(0.106, abs=0.001)
 
 
+def test_a_rib_of_the_second_contour_stands_where_it_is() -> None:
+    whole = "G42 X60. C0./X40./C20./X-40./C-20./X40./C15./X60./G40 X80. C5."
+    inner = "G42 X60. C0./X20./C10./X-20./C-10./X20./C1./X60./G40 X80. C5."
+    assert found(f"G1 X80. C-4. F300/Z-2./{whole}") == []
+    [finding] = found(f"G1 X80. C-4. F300/Z-2./{whole}/{inner}")
+    assert (finding.rule, finding.block) == ("material-left", "C1.")
+    assert "X20 C0.5" in finding.message
+    assert height(finding) == pytest.approx(rib(1), abs=0.001)
+
+
 @pytest.mark.parametrize("overlap", [0, 1, 3])
 def test_ribs_in_inch(overlap: float) -> None:
     [finding] = found(

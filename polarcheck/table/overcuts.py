@@ -248,7 +248,7 @@ class Overcuts:
         deep = np.where(
             np.isnan(own - of_wall),
             moves_z[ramp] == moves_z[wall[ramp]],
-            (own <= of_wall + ROUNDING) | ((own < -ROUNDING) & (of_wall < -ROUNDING)),
+            (own <= of_wall + ROUNDING) | (own < -ROUNDING),
         )
         result = np.zeros(len(trace), bool)
         result[ramp] = deep
