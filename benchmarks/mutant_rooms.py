@@ -1,0 +1,145 @@
+"""The rooms of the package in which benchmarks/mutants.py plants faults, and the tests that are likely to see them."""
+
+from __future__ import annotations
+
+import functools
+import re
+from fnmatch import fnmatch
+from pathlib import Path
+
+from mutations import Mutation
+
+ROOT = Path(__file__).resolve().parent.parent
+#: What is looked at, by patterns of files; the first that matches counts.
+ROOMS = {
+    "rules": ("polarcheck/rules/*",),
+    "compensation": (
+        *(f"polarcheck/geometry/{name}.py" for name in ("compensation*", "corner", "offset_vectors")),
+        *(
+            f"polarcheck/table/{name}.py"
+            for name in (
+                "fitting",
+                "infeed",
+                "lengths",
+                "mirrored",
+                "moves",
+                "overcuts",
+                "ramps",
+                "slots",
+                "tool_center",
+            )
+        ),
+        *(f"polarcheck/table/{name}.py" for name in ("coverage", "senses", "trial", "uncompensated_cuts")),
+    ),
+    "geometry": ("polarcheck/geometry/*",),
+}
+#: Files of tests that see all of these rooms, the quickest and sharpest first.
+TESTS = (
+    "limits",
+    "samples",
+    "rules",
+    "table_ramps",
+    "table_overcuts",
+    "table_slots",
+    "table_infeed",
+    "table_coverage",
+    "table_*",
+    "polar",
+    "inside",
+    "mesh",
+    "finished_part",
+    "faces",
+    "contour",
+    "compensation",
+    "missing_rules",
+    "polar_sections",
+    "one_cause",
+    "one_cut",
+    "modes",
+    "motion_and_feed",
+    "contour_families",
+    "trace",
+    "positions",
+    "controls",
+    "machine_keys",
+    "macro_faults",
+    "engine",
+    "messages",
+    "machines",
+    "properties",
+    "corpus",
+)
+
+
+def modules() -> list[str]:
+    """The modules of the package, from the checkout."""
+    return sorted(path.relative_to(ROOT).as_posix() for path in (ROOT / "polarcheck").rglob("*.py"))
+
+
+def room_of(file: str) -> str:
+    """The room of a file; for one that is in none the folder."""
+    for room, patterns in ROOMS.items():
+        if any(fnmatch(file, pattern) for pattern in patterns):
+            return room
+    return file.split("/")[1]
+
+
+def promising(file: str) -> list[str]:
+    """
+    Parts of the names of tests that are likely to see a fault in a module, the most likely first.
+
+    Those that are named as the module, or as one that imports it and so on upward, and the examples of the rules that
+    compare one of these tables.
+    """
+    names = list(importers(file))
+    for stem in upward(file):
+        names += [f"test_{stem}.py", f"test_table_{stem}"]
+    for stem in upward(file):
+        names += [f"findings[{rule}-" for rule in rules_of(stem)]
+    if room_of(file) == "rules":
+        rule = Path(file).stem.replace("_", "-")
+        names = [f"findings[{rule}-", "test_limits.py", "test_severities", rule, Path(file).stem]
+    return names
+
+
+@functools.cache
+def importers(file: str) -> list[str]:
+    """The tests that import a module themselves."""
+    room, stem = file.split("/")[1], Path(file).stem
+    imported = re.compile(rf"from polarcheck\.{room}(\.{stem} import| import .*\b{stem}\b)")
+    tests = sorted((ROOT / "tests").glob("test_*.py"))
+    return [path.name for path in tests if imported.search(path.read_text("utf-8"))]
+
+
+@functools.cache
+def upward(file: str) -> list[str]:
+    """The name of a module of geometry or tables, and those of the modules there that import it, the nearest first."""
+    text = {one: (ROOT / one).read_text("utf-8") for one in modules() if one.split("/")[1] in ("geometry", "table")}
+    found = [file]
+    for one in found:  # grows
+        room, stem = one.split("/")[1], Path(one).stem
+        imported = re.compile(rf"from polarcheck\.{room}(\.{stem} import| import .*\b{stem}\b)")
+        found += [other for other in text if other not in found and imported.search(text[other])]
+    return [Path(one).stem for one in found]
+
+
+@functools.cache
+def rules_of(table: str) -> list[str]:
+    """The names of the rules that compare a table."""
+    rules = [ROOT / one for one in modules() if room_of(one) == "rules" and not one.endswith("__init__.py")]
+    return [path.stem.replace("_", "-") for path in rules if re.search(rf"\b{table}: ", path.read_text("utf-8"))]
+
+
+def batches(one: Mutation) -> list[list[str]]:
+    """Files of tests for a mutation: of those that are promising, and of all the rest."""
+    paths = [path for name in TESTS for path in sorted((ROOT / "tests").glob(f"test_{name}.py"))]
+    files = [path.relative_to(ROOT).as_posix() for path in dict.fromkeys(paths)]
+    names = promising(one.file)
+    near = [f"tests/{name}" for name in importers(one.file)]
+    near += [file for file in files if any(name in file for name in names)]
+    if any("findings[" in name for name in names):
+        near.append("tests/test_rules.py")
+    if room_of(one.file) == "rules":
+        near += [file for file in files if names[-2] in (ROOT / file).read_text("utf-8")]
+    near = list(dict.fromkeys(near))
+    return [near, [*files, *(file for file in near if file not in files)]]
