@@ -1,8 +1,8 @@
-"""The array types of the tables, each defined once: what a column, a mask or a list of plane points is."""
+"""The array types of the tables, each defined once: what a column, a mask or a list of plane points is; a look-up."""
 
 from __future__ import annotations
 
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,3 +17,13 @@ Points: TypeAlias = NDArray[np.complex128]
 Rows: TypeAlias = NDArray[np.int64]
 #: Small whole numbers: a state or a kind per row, such as Motion or Side.
 States: TypeAlias = NDArray[np.int16]
+
+
+def stretch(column: NDArray[np.signedinteger[Any]], first: int, end: int) -> tuple[int, int]:
+    """
+    Where the values from first up to end, which is left out, stand in a rising column: from, to.
+
+    For one after the other: NumPy would copy the column at each call to compare it with numbers of another type.
+    """
+    low, high = column.searchsorted(np.array((first, end), column.dtype)).tolist()
+    return low, high

@@ -8,7 +8,7 @@ from collections.abc import Callable
 import msgspec
 import numpy as np
 
-from polarcheck.arrays import Mask, Rows
+from polarcheck.arrays import Mask, Rows, stretch
 from polarcheck.checking.tables import SPANS, Tables
 from polarcheck.machines.code_lists import numbers
 from polarcheck.machines.codes import code_numbers
@@ -87,7 +87,7 @@ def of_row(tables: Tables, index: int) -> Place:
     block = int(trace.run.block[index])
     start, end = int(trace.text.blocks.start[block]), int(trace.text.blocks.end[block])
     table, run = trace.run.words, trace.run
-    low, high = np.searchsorted(run.row, (index, index + 1))
+    low, high = stretch(run.row, index, index + 1)
     if low < high:
         start, end = int(table.start[low:high].min()), int(table.end[low:high].max())
     else:
@@ -174,7 +174,7 @@ def words_at_fault(tables: Tables, row: int, names: tuple[str, ...], at: Mask | 
     if row < 0:
         return []
     trace: Trace = tables["trace"]
-    low, high = np.searchsorted(trace.run.row, (row, row + 1))
+    low, high = stretch(trace.run.row, row, row + 1)
     if at is not None:
         return [index for index in range(low, high) if at[index]]
     return [index for index in range(low, high) if _is_named(trace, index, names)]

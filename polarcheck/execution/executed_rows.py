@@ -8,7 +8,7 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from polarcheck.arrays import Mask, Rows
+from polarcheck.arrays import Mask, Rows, stretch
 from polarcheck.execution.run import FlowFault, Remark, Run, is_code
 from polarcheck.execution.statement import Statement, Word
 from polarcheck.machines.machine import Machine
@@ -77,13 +77,13 @@ class ExecutedRows:
     def filled(self, first: int, end: int) -> list[int]:
         """The blocks of a range that have words or macro statements, in order."""
         words = self.text.words.block
-        low, high = np.searchsorted(words, (first, end))
+        low, high = stretch(words, first, end)
         macro = np.flatnonzero(self.text.blocks.is_macro[first:end]) + first
         return [int(block) for block in np.union1d(words[low:high], macro)]
 
     def first_moving(self, first: int, end: int) -> int | None:
         """The first block of a range with words of an axis."""
-        at = int(np.searchsorted(self.moving, first))
+        at, _ = stretch(self.moving, first, end)
         return int(self.moving[at]) if at < len(self.moving) and self.moving[at] < end else None
 
     def _add(self, words: Rows, row: Rows, block: Rows, depth: int) -> None:
@@ -97,7 +97,7 @@ class ExecutedRows:
         """Blocks as they stand."""
         key = (first, end)
         if key not in self.ranges:
-            low, high = np.searchsorted(self.text.words.block, key)
+            low, high = stretch(self.text.words.block, first, end)
             index = np.arange(low, high)[self.kept[low:high]]
             block, row = np.unique(self.text.words.block[index], return_inverse=True)
             self.ranges[key] = _Range(index, row, block)
@@ -108,7 +108,7 @@ class ExecutedRows:
     def _set_units(self, words: Rows) -> None:
         """The last code of units among words of the text is in force from here on."""
         if len(self._units):
-            low, high = np.searchsorted(self._units, (words[0], words[-1] + 1)) if len(words) else (0, 0)
+            low, high = stretch(self._units, int(words[0]), int(words[-1]) + 1) if len(words) else (0, 0)
             if low < high:
                 self.inch = self._is_inch[round(float(self.text.words.value[self._units[high - 1]]), 1)]
 
@@ -133,7 +133,7 @@ class ExecutedRows:
             kept = [w for w in statement.words if w.address in "NGM" and w.written is not None]
             self.add_computed(block, [(word, float(word.written or 0)) for word in kept], depth)
             return
-        low, high = np.searchsorted(self.text.words.block, (block, block + 1))
+        low, high = stretch(self.text.words.block, block, block + 1)
         index = np.arange(low, high)[self.kept[low:high]]
         if has_arguments:
             index = index[np.isin(self.text.words.address[index], list(b"NG"))]

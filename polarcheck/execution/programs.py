@@ -15,7 +15,7 @@ from typing import NamedTuple
 import msgspec
 import numpy as np
 
-from polarcheck.arrays import Mask
+from polarcheck.arrays import Mask, stretch
 from polarcheck.execution.run import begins_program, is_code
 from polarcheck.machines.machine import Machine
 from polarcheck.reading.source import Source
@@ -170,9 +170,9 @@ def block_text(text: Text, block: int) -> str:
     """A block as the control would read it: comments and stray characters blanked, digits for letters."""
     start, end = int(text.blocks.start[block]), int(text.blocks.end[block])
     written = text.source.excerpt(start, end)
-    strays = text.strays.start[slice(*np.searchsorted(text.strays.block, (block, block + 1)))].tolist()
-    letters = text.letters[slice(*np.searchsorted(text.letters, (start, end)))].tolist()
-    comments = slice(*np.searchsorted(text.comments.block, (block, block + 1)))
+    strays = text.strays.start[slice(*stretch(text.strays.block, block, block + 1))].tolist()
+    letters = text.letters[slice(*stretch(text.letters, start, end))].tolist()
+    comments = slice(*stretch(text.comments.block, block, block + 1))
     spans = list(zip(text.comments.start[comments].tolist(), text.comments.end[comments].tolist(), strict=True))
     if not (strays or letters or spans):
         return written

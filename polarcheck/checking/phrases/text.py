@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from polarcheck.arrays import stretch
 from polarcheck.checking.phrases.common import short
 from polarcheck.checking.places import Place, squeezed
 from polarcheck.machines.codes import code_numbers, spelled
@@ -40,7 +41,7 @@ def letter(text: Text, place: Place) -> str:
 
 def meant(text: Text, place: Place) -> str:
     """A word with its digits in the place of letters."""
-    first, end = np.searchsorted(text.letters, (place.start, place.end))
+    first, end = stretch(text.letters, place.start, place.end)
     found = list(text.source.excerpt(place.start, place.end))
     for at in (text.letters[first:end] - place.start).tolist():
         found[at] = "0" if found[at] in "oO" else "1"
@@ -63,7 +64,7 @@ def other(text: Text, written: Written, index: int) -> str:
 def repeated(text: Text, index: int) -> str:
     """`X is written twice in this block: X10. and X20.`, with the words of the address as they are written."""
     words = text.words
-    low, high = np.searchsorted(words.block, (words.block[index], words.block[index] + 1))
+    low, high = stretch(words.block, int(words.block[index]), int(words.block[index]) + 1)
     same = low + np.flatnonzero(words.address[low:high] == words.address[index])
     # A line of 50 MB may be one block: only what is listed is taken out of it.
     listed = same if len(same) <= _LISTED + 1 else np.append(same[:_LISTED], same[-1])
