@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 from plane_moves import points_along
-from programs import moves_of, trace_of
+from programs import moves_of, tables_of, trace_of
 
 from polarcheck.geometry.compensation import Phase
 from polarcheck.machines.modal import Motion
@@ -18,6 +18,7 @@ from polarcheck.table.moves import (
     joined,
     per_row,
     programmed_moves,
+    z_along,
 )
 
 PROGRAM = (
@@ -168,3 +169,20 @@ def test_chosen_and_joined() -> None:
     assert together.end.tolist() == [*moves.end[odd], *moves.end[~odd]]
     assert together.row.tolist() == [*moves.row[odd], *moves.row[~odd]]
     assert together.entry.tolist() == moves.entry.tolist()
+
+
+def test_z_goes_as_the_way_does_where_a_block_is_several_moves() -> None:
+    """Round an acute corner on its outer side the tool center makes more than one move for a block."""
+    program = "T0101\nG98 G0 X100. Z2. C0\nG12.1\nG1 G42 X60. F100\nC30. Z-1.\nX-60. C0 Z-9.\nG40 X-100.\nG13.1\n"
+    tables = tables_of(program, "fanuc", "1:radius=4")
+    trace, moves = tables["trace"], tables["moves"]
+    z_from, z_to = z_along(trace, moves)
+    assert z_from[0] == 2
+    assert z_from[1:].tolist() == z_to[:-1].tolist()
+    several = [row for row in set(moves.row.tolist()) if (moves.row == row).sum() > 1]
+    assert several
+    before = dict(zip([*range(1, len(trace))], trace.z[:-1].tolist(), strict=True))
+    for row in set(moves.row.tolist()):
+        own = moves.row == row
+        share = np.cumsum(moves.length[own]) / moves.length[own].sum()
+        assert z_to[own] == pytest.approx(before[row] + share * (trace.z[row] - before[row]))

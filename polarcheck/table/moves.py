@@ -114,7 +114,7 @@ def z_along(trace: Trace, moves: Moves) -> tuple[Floats, Floats]:
     count = np.diff(np.append(first, len(moves)))
     done = way - np.repeat((way - np.nan_to_num(moves.length))[first], count)
     whole = np.repeat(done[ends], count)
-    share = np.where(ends, 1.0, np.divide(done, whole, out=np.zeros(len(moves)), where=whole > 0))
+    share = np.divide(done, whole, out=np.zeros(len(moves)), where=whole > 0)
     z_from, z_to = before(trace.z, trace.starts, np.nan)[moves.row], trace.z[moves.row]
     after = np.where(ends, z_to, z_from + share * (z_to - z_from))
     return np.where(begins, z_from, np.append(np.nan, after[:-1])[: len(moves)]), after
