@@ -452,3 +452,11 @@ def test_the_profile_lists_the_codes_whose_axis_words_are_no_move(system: str, s
     for word in ("G0", "G1", "G2", "G40", "G41", "G54", "G98", "G99", "G12.1"):
         assert not found[codes.code(word)], word
     assert machine.codes("coordinate_setting") == [setting]
+
+
+def test_a_machine_without_feed_per_minute_is_told_in_words() -> None:
+    """No list of codes is so important that an empty one may break a message."""
+    program = "O1\nG99 G0 X60. C0\nG12.1\nG1 X40. F0.2\nC5.\nG13.1\nM30\n"
+    changes = {"g_code_system_a": {"feed_per_minute": []}}
+    told = [found.message for found in report_of(program, "fanuc", changes=changes, only=["feed"]).findings]
+    assert any("feed per minute" in message for message in told)

@@ -4,8 +4,6 @@ from collections.abc import Iterable
 
 import msgspec
 
-from polarcheck.machines.values import Codes
-
 
 class GCodes(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """
@@ -54,15 +52,15 @@ class GCodes(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
 
     rapid: list[str]
     line: list[str]
-    arc_clockwise: Codes
-    arc_counterclockwise: Codes
+    arc_clockwise: list[str]
+    arc_counterclockwise: list[str]
     motion_not_followed: list[str]
     plane_xy: list[str]
     plane_zx: list[str]
     plane_yz: list[str]
-    compensation_off: Codes
-    compensation_left: Codes
-    compensation_right: Codes
+    compensation_off: list[str]
+    compensation_left: list[str]
+    compensation_right: list[str]
     feed_inverse_time: list[str]
     constant_surface_speed: list[str]
     constant_surface_speed_off: list[str]
@@ -112,7 +110,7 @@ class GCodeSystem(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fiel
 
     inch: list[str]
     mm: list[str]
-    feed_per_minute: Codes
+    feed_per_minute: list[str]
     feed_per_revolution: list[str]
     absolute: list[str]
     incremental: list[str]

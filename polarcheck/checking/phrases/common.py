@@ -50,6 +50,11 @@ def codes(trace: Trace, at: list[int]) -> str:
     return ", ".join(dict.fromkeys(named))
 
 
+def code_of(machine: Machine, key: str) -> str:
+    """The first code of a list of the machine; what it is for where the machine has none: `feed per minute`."""
+    return next(iter(machine.codes(key)), key.replace("_", " "))
+
+
 def centers(machine: Machine) -> str:
     """The addresses of arc centers: I or J."""
     return " or ".join(machine.polar.center_words)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from polarcheck.checking.phrases.common import code_of
 from polarcheck.checking.quantity import in_row
 from polarcheck.errors import TooHardError
 from polarcheck.machines.machine import Machine
@@ -35,7 +36,7 @@ def remedy(trace: Trace, row: int) -> str:
     other = "compensation_left" if trace.side[row] == Side.RIGHT else "compensation_right"
     radius = float(trace.radius[row])
     shown = f", or R {in_row(-radius, trace, row):length} in the tool offset" if radius < 0 else ""
-    return f"write {trace.machine.codes(other)[0]}{shown}"
+    return f"write {code_of(trace.machine, other)}{shown}"
 
 
 def before(trace: Trace, row: int) -> str:
@@ -76,7 +77,7 @@ def written_sense(trace: Trace, row: int) -> str:
 
 def other_sense(trace: Trace, row: int) -> str:
     """The other one."""
-    return trace.machine.codes("arc_counterclockwise" if trace.motion[row] == Motion.CW else "arc_clockwise")[0]
+    return code_of(trace.machine, "arc_counterclockwise" if trace.motion[row] == Motion.CW else "arc_clockwise")
 
 
 def _along(trace: Trace, row: int, length: float, other: float) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from polarcheck.checking.phrases.common import executed_word
+from polarcheck.checking.phrases.common import code_of, executed_word
 from polarcheck.checking.quantity import in_row
 from polarcheck.machines.machine import Machine
 from polarcheck.table.center import Center
@@ -71,4 +71,4 @@ def meeting(center: Center, tool_center: ToolCenter, row: int) -> str:
 
 def per_minute(machine: Machine) -> str:
     """The code of feed per minute."""
-    return machine.codes("feed_per_minute")[0]
+    return code_of(machine, "feed_per_minute")
