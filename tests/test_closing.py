@@ -5,7 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from polarcheck.geometry.closing import crossings, may_leave_strips, middles
+from polarcheck.geometry.closing import Loops, crossings, gaps_of, may_be_open, may_leave_strips, middles
+from polarcheck.geometry.segments import Curves
+from polarcheck.machines.modal import Motion
 
 
 def square(half: float, middle: complex = 0j) -> np.ndarray:
@@ -76,3 +78,54 @@ def test_strips_are_between_neighbours_of_one_level(levels: list[list[np.ndarray
     end = np.concatenate([np.roll(one, -1) for level in levels for one in level])
     of = np.repeat(np.arange(len(levels)), [4 * len(level) for level in levels])
     assert may_leave_strips(start, end, of, np.ones(len(levels))).tolist() == expected
+
+
+Move = tuple[complex, complex, complex | None, Motion]
+LINE, CCW, CW = Motion.LINE, Motion.CCW, Motion.CW
+
+
+def loops_of(*moves: Move, radius: float = 1.0) -> Loops:
+    """One loop of these moves: start, end, center and kind of each; the tool on its right."""
+    start, end, center, kind = zip(*moves, strict=True)
+    rows = np.arange(len(moves))
+    centers = np.array([np.nan if one is None else one for one in center], complex)
+    curves = Curves(
+        np.array(start, complex), np.array(end, complex), centers, np.array(kind), np.zeros_like(rows), rows
+    )
+    return Loops(curves, np.zeros(len(rows), bool), rows[:1], rows[-1:], np.array([radius]))
+
+
+#: A gap of 1 from -1 to 0, along which the contour goes on at 0 as an arc begins, and nowhere else.
+BEGINS_AHEAD = [(0j, 10 + 10j, 10j, CCW), (10 + 10j, -1 + 10j, None, LINE), (-1 + 10j, -1 + 0j, None, LINE)]
+#: The same with an arc that only ends along the gap.
+BEGINS_ASIDE = [(0j, 10 - 10j, 10 + 0j, CCW), (10 - 10j, -1 - 10j, None, LINE), (-1 - 10j, -1 + 0j, None, LINE)]
+
+
+def backwards(moves: list[Move]) -> list[Move]:
+    """The same moves the other way round."""
+    other = {LINE: LINE, CCW: CW, CW: CCW}
+    return [(end, start, center, other[kind]) for start, end, center, kind in reversed(moves)]
+
+
+@pytest.mark.parametrize("turn", [1, 3j, 0.4 * np.exp(2.5j)])
+@pytest.mark.parametrize(
+    ("moves", "expected"),
+    [
+        (BEGINS_AHEAD, True),
+        (backwards(BEGINS_AHEAD), True),
+        (BEGINS_ASIDE, False),
+        (backwards(BEGINS_ASIDE), False),
+    ],
+)
+def test_a_gap_leads_on_from_where_arcs_begin_and_end(moves: list[Move], expected: bool, turn: complex) -> None:
+    turned = [(turn * a, turn * b, None if c is None else turn * c, kind) for a, b, c, kind in moves]
+    long = abs(turn)
+    loops = loops_of(*turned, radius=0.51 * long)
+    assert may_be_open(loops).tolist() == [expected]
+    assert not may_be_open(loops_of(*turned, radius=0.49 * long)).any()  # a gap of 2R lets the tool through
+    to, of = gaps_of(loops, np.array([long]))
+    assert (to.tolist(), of.tolist()) == ([0], [2])
+
+
+def test_a_gap_of_twice_r_lets_the_tool_through() -> None:
+    assert not may_be_open(loops_of(*BEGINS_AHEAD, radius=0.5)).any()
