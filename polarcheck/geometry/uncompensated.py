@@ -73,7 +73,6 @@ def cuts_into_part(contour: Contours, section: Rows, z: Floats, bare: Bare) -> t
     asked = np.unique(group[near])
     if not len(asked):
         return NOTHING, none
-    near &= np.isin(group, asked)
     kept = np.isin(groups.group, asked)
     number = np.searchsorted(asked, groups.group[kept])
     radius = radius[asked]
