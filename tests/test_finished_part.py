@@ -7,7 +7,12 @@ import re
 
 import numpy as np
 import pytest
+import shapely
 from programs import report_of
+
+from polarcheck.geometry.finished_part import Contours, FinishedParts, finished_parts
+from polarcheck.geometry.segments import Curves
+from polarcheck.machines.modal import Motion
 
 HEAD = "O1\nG21 G40 G97 G98 G18\nT0101\nG0 X150. Z2. C0\nG12.1\n"
 TAIL = "G13.1\nG0 X160.\nM30\n"
@@ -152,3 +157,59 @@ def test_a_tangle_is_not_evaluated_and_says_so() -> None:
     assert len(reasons) == 1
     assert "crosses itself more than 4 times a block" in reasons[0]
     assert not [found for found in report.findings if found.rule in ("overcut", "start-up-sweeps-contour")]
+
+
+# ---- contours that do not close: squares of 40, the tool outside ----
+
+
+def part_of(points: list[complex], radius: float, turn: complex = 1, mirrored: bool = False) -> FinishedParts:
+    """The part of one contour from point to point, the tool right of it; mirrored left."""
+    path = turn * np.array(points, complex)
+    path = path.conj() if mirrored else path
+    count = len(path) - 1
+    rows, zeros = np.arange(count), np.zeros(count, np.int64)
+    kind = np.full(count, Motion.LINE, np.int16)
+    curves = Curves(path[:-1], path[1:], np.full(count, np.nan + 0j), kind, zeros, rows)
+    one = np.zeros(1, np.int64)
+    return finished_parts(Contours(curves, np.full(count, mirrored), one, one, np.array([radius]), np.nan, 0.001))
+
+
+ROUND = [20 + 20j, -20 + 20j, -20 - 20j, 20 - 20j]
+#: A gap of 2 in the middle of the right side, whose ends are so far off each other sideways.
+STEP = {aside: [20 + aside + 1j, 20 + aside + 20j, *ROUND[1:], 20 - 1j] for aside in (0.0, 1.1, 1.2)}
+OUTWARDS = [26 + 1j, 20 + 1j, *ROUND, 20 - 1j, 26 - 1j]
+INWARDS = [14 + 1j, 20 + 1j, *ROUND, 20 - 1j, 14 - 1j]
+ONE_INWARDS = [26 + 1j, 20 + 1j, *ROUND, 20 - 1j, 14 - 1j]
+OTHER_INWARDS = [14 + 1j, 20 + 1j, *ROUND, 20 - 1j, 26 - 1j]
+
+
+@pytest.mark.parametrize("mirrored", [False, True])
+@pytest.mark.parametrize("turn", [1, -1j, np.exp(0.7j)])
+@pytest.mark.parametrize(
+    ("points", "radius", "gap", "area"),
+    [
+        (STEP[0.0], 3.0, 2.0, 1600.0),
+        (STEP[0.0], 1.01, 2.0, 1600.0),
+        (STEP[0.0], 0.99, 0.0, None),  # the tool goes through
+        (OUTWARDS, 3.0, 2.0, 1600.0),
+        (OUTWARDS, 0.99, 0.0, None),
+        # 30 degrees off the way, less and more.
+        (STEP[1.1], 3.0, math.hypot(2, 1.1), 1600.0 + 1.1 * 20),
+        (STEP[1.2], 3.0, 0.0, None),
+        # Leads with the tool between them are the walls of a slot.
+        (INWARDS, 3.0, 0.0, None),
+        (ONE_INWARDS, 3.0, 0.0, None),
+        (OTHER_INWARDS, 3.0, 0.0, None),
+        # What is less than the tolerance is no gap, whatever its direction.
+        ([20 + 0.0004j, *ROUND, 20 - 0.0004j], 3.0, 0.0, 1600.0),
+        ([20.0008, 20.0008 + 20j, *ROUND[1:], 20], 3.0, 0.0, 1600.0),
+    ],
+)
+def test_a_gap_on_the_way_of_the_contour_is_bridged(
+    points: list[complex], radius: float, gap: float, area: float | None, turn: complex, mirrored: bool
+) -> None:
+    part = part_of(points, radius, turn, mirrored)
+    assert part.gap.tolist() == pytest.approx([gap])
+    if area is not None:
+        assert not part.open[0]
+        assert shapely.area(part.polygon[0]) == pytest.approx(area, abs=0.05)
