@@ -213,3 +213,7 @@ def test_a_gap_on_the_way_of_the_contour_is_bridged(
     if area is not None:
         assert not part.open[0]
         assert shapely.area(part.polygon[0]) == pytest.approx(area, abs=0.05)
+
+
+def test_a_gap_of_twice_r_is_not_bridged() -> None:
+    assert part_of(STEP[0.0], 1.0).gap.tolist() == [0]
