@@ -57,6 +57,7 @@ def test_a_ramp_from_the_air_cuts_only_what_is_within_it(turn: complex, cancels:
 @pytest.mark.parametrize("cancels", [False, True])
 @pytest.mark.parametrize("turn", [1, 1j, np.exp(2j)])
 def test_a_slant_nicks_the_end_that_it_leads_to(turn: complex, cancels: bool) -> None:
-    """From above it takes no more off the corner than it must: 5 less 5 times the cosine of its slant."""
-    found = ramped([-10 + 16j, -10 + 17j, 0 + 16j], [math.inf] * 3, turn, cancels)
-    assert found.move.tolist() == []
+    """Past the end of the flat 0.02 nearer than 5 is no cut; behind it only what is more than the slant takes is."""
+    found = ramped([50 + 12j, 60 + 13j, 24.2 + 9.5j, 23 + 9j], [math.inf] * 4, turn, cancels)
+    assert found.move.tolist() == [3]
+    assert found.depth == pytest.approx([2.5], abs=0.002)
