@@ -159,3 +159,39 @@ def test_the_acceleration_of_c_at_its_limit_is_allowed() -> None:
         changes = {"limits": {"c_acceleration": limit, "c_feed": 1e6}}
         report = report_of(LINE, changes=changes, only=["c-acceleration-above-limit"])
         assert bool(report.findings) == is_above
+
+
+STATES = ["G51 X0 Z0 P500", "G68 X0 Z0 R30.", "G51.1 X0", "G83 X40. C90. Z-10. F100"]
+
+
+@pytest.mark.parametrize(("state", "severity"), [*((state, "error") for state in STATES), ("G96 S120", "warning")])
+def test_each_state_by_itself_is_wrong_at_entry(state: str, severity: str) -> None:
+    program = f"G98 G0 X60. C0\n{state}\nG12.1\nG1 X40. F200\nC10.\nX60.\nG13.1\n"
+    found = report_of(program, only=["modal-state-wrong-at-entry"]).findings
+    assert [(finding.line, finding.severity) for finding in found] == [(3, severity)]
+    without = program.replace(state, "M8")
+    assert not report_of(without, only=["modal-state-wrong-at-entry"]).findings
+
+
+@pytest.mark.parametrize(
+    ("x", "severities"), [("78.", []), ("77.9", ["warning"]), ("76.", ["warning"]), ("75.9", ["error"])]
+)
+def test_an_approach_within_the_clearance_alone_is_a_warning(x: str, severities: list[str]) -> None:
+    """A bar of 60 and a cutter of 16 touch at X 76; 2 more are to be left free."""
+    program = f"T0808\nG98 G0 X{x} C0\nG12.1\nG1 X40. F200\nC10.\nX{x}\nG13.1\n"
+    job = {"stock": {"diameter": 60, "clearance": 2}}
+    found = report_of(program, "fanuc", "8:diameter=16", job=job, only=["approach-inside-stock"]).findings
+    assert [finding.severity for finding in found] == severities
+
+
+#: A groove of 6 mm, gone round on the outside, which a cutter of R goes 2 R - 6 too deep into.
+GROOVE = (
+    "T0101\nG98 G0 X100. C0\nG12.1\nG1 C3. F500\nG41 X60. F200\nX30.\nC20.\nX-20.\nC-20.\nX30.\nC-3.\nX60.\n"
+    "G40 X100.\nG13.1\n"
+)
+
+
+@pytest.mark.parametrize(("radius", "is_cut"), [(3.0, False), (3.05, True), (3.4, True)])
+def test_a_cut_of_less_than_a_millimeter_is_an_overcut(radius: float, is_cut: bool) -> None:
+    report = report_of(GROOVE, "fanuc", f"1:radius={radius}", only=["overcut"])
+    assert bool(report.findings) == is_cut

@@ -116,6 +116,19 @@ def test_a_start_up_above_the_part_sweeps_nothing() -> None:
     assert depths(tables_of(OVER_CORNER.format("G1 Z1. F100\n", "Z-1.\n"), "fanuc", "1:radius=5"), "sweep_depth") == {}
 
 
+@pytest.mark.parametrize(("z", "sweeps"), [("0", False), ("-0.1", True), ("0.1", False)])
+def test_the_face_is_at_z0(z: str, sweeps: bool) -> None:
+    """At Z0 a ramp runs in air, above a contour that lies deeper; just below there is material."""
+    tables = tables_of(OVER_CORNER.format(f"G1 Z{z} F100\n", "Z-1.\n"), "fanuc", "1:radius=5")
+    assert bool(depths(tables, "sweep_depth")) == sweeps
+
+
+@pytest.mark.parametrize("z", ["0", "-1.", "2."])
+def test_a_ramp_at_the_depth_of_its_contour_sweeps_it(z: str) -> None:
+    tables = tables_of(OVER_CORNER.format(f"G1 Z{z} F100\n", ""), "fanuc", "1:radius=5")
+    assert depths(tables, "sweep_depth") == {5: pytest.approx(5, abs=0.006)}
+
+
 def test_an_offset_cancel_over_a_corner_belongs_to_its_loop() -> None:
     program = "T0101\nG98 G0 X20. C-50.\nG12.1\nG1 C-50. F100\nG42 C-30. F200\nX60.\nC0\n{}X20.\nG13.1\n"
     tables = tables_of(program.format("G40 "), "fanuc", "1:radius=5")
