@@ -30,7 +30,7 @@ class Fitting:
     def _worst(self, values: Floats) -> Floats:
         """The largest of these values in the loop of each row."""
         loop = self.since.compensation
-        found = np.zeros(int(loop[-1]) + 1)
+        found = np.zeros(int(loop.max(initial=0)) + 1)
         np.maximum.at(found, loop, values)
         return found[loop]
 
@@ -40,7 +40,7 @@ class Fitting:
     @cached_property
     def _asked(self) -> Mask:
         """The rows of the loops that are cut into; none if they are too many."""
-        asked = self._any(self.overcuts.depth > 0) if len(self.trace) else np.zeros(0, bool)
+        asked = self._any(self.overcuts.depth > 0)
         return asked & (np.count_nonzero(asked) <= _MANY)
 
     def _trial(self, radius: Floats) -> Trial:
@@ -58,8 +58,9 @@ class Fitting:
     def radius(self) -> Floats:
         """The largest R that leaves the loop of the row whole [mm]; NaN where there is none, or it is not known."""
         own = np.abs(self.trace.radius)
-        low, high = np.where(self._asked & ~self.never, 0.0, np.nan), own
-        if np.isnan(low).all():
+        wanted = self._asked & ~self.never
+        low, high = np.where(wanted, 0.0, np.nan), own
+        if not wanted.any():
             return low
         depth = self.overcuts.depth
         tried = own - self._worst(depth) / 2  # between parallel walls that is it
@@ -75,4 +76,4 @@ class Fitting:
             tried = np.where(fails, half, np.minimum(low * (1 + _NEAR), half))
             if not (high - low > _NEAR * high).any():
                 break
-        return np.where((low > 0) & (high - low <= 2 * _NEAR * high), low, np.nan)
+        return np.where(wanted & (low > 0) & (high - low <= 2 * _NEAR * high), low, np.nan)
