@@ -122,3 +122,17 @@ def test_a_slot_beside_its_walls_is_not_told() -> None:
     slot = "G0 X90. Z2. C0/G12.1/G1 C12. F300/Z-5. F300/G41 X60. C6. F200/X-60./G40 X-90. C12./Z2./G13.1"
     for section in (slot, exchanged(slot)):
         assert MIRRORED not in [rule for _, rule in said(report(section))]
+
+
+#: A square of which one side bends inward by 2 degrees: a tool center that is wrong there cuts next to nothing.
+BENT = "G0 X100. Z2. C0/G12.1/G1 Z-5. F300/G42 X40. F200/C20./X0 C19.65/X-40. C20./C-20./X40./C0/G40 X100./Z2./G13.1"
+
+
+@pytest.mark.parametrize(("pause", "is_mirrored"), [("", True), ("M8/", True), ("M8/M9/", False), ("M8/M9/M8/", False)])
+def test_a_loop_that_the_control_objects_to_on_the_other_side_is_not_mirrored(pause: str, is_mirrored: bool) -> None:
+    """Two blocks without a way leave the corner unknown to the control, whichever side the cutter is on."""
+    wrong = exchanged(BENT).replace("X-40. C20.", pause + "X-40. C20.")
+    for section, units in ((wrong, "G21"), (in_inch(wrong), "G20")):
+        found = report(section, 4.0 if units == "G21" else 4 / 25.4, units)
+        assert (MIRRORED in [one.rule for one in found.findings]) == is_mirrored
+    assert MIRRORED not in [rule for _, rule in said(report(exchanged(wrong)))]
