@@ -122,3 +122,28 @@ def test_without_a_contour_or_its_radius_nothing_is_said(text: str) -> None:
     cuts = tables_of(text, "fanuc", "1:radius=5")["uncompensated_cuts"]
     assert not cuts.depth.any()
     assert not cuts.is_rapid.any()
+
+
+#: The hexagon with its offset cancel left open; at X46 a cutter of R5 is 3 mm from its corner, that is in the part.
+OPEN = HEXAGON.removesuffix("X80. C5.")
+
+
+@pytest.mark.parametrize(
+    ("blocks", "expected"),
+    [
+        # Away from a cancel that is too short, and the block behind that.
+        (f"{OPEN}X46. C0/C3.", []),
+        (f"{OPEN}X46. C0/C3./C-3.", ["C-3."]),
+        (f"{OPEN}X80. C5./X46. C0/C3.", ["X46. C0"]),
+        # Wherever it comes from, a cut as deep as the cutter is wide is one.
+        (f"{OPEN}X46. C0/X-80.", ["X-80."]),
+        # To a start-up that is too short, and the block before that.
+        (f"X46. C-3./{HEXAGON}", []),
+        (f"X46. C-3./C3./{HEXAGON}", ["X46. C-3."]),
+        (f"X46. C-3./X46. C0/X80. C0/{HEXAGON}", ["X46. C0"]),
+        # Both ramps, each with its block.
+        (f"X46. C-3./{OPEN}X46. C0/C3.", []),
+    ],
+)
+def test_beside_a_ramp_that_is_too_short_the_way_is_no_second_mistake(blocks: str, expected: list[str]) -> None:
+    assert [block for block, _ in found(f"Z-3./{blocks}")] == expected
