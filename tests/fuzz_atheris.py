@@ -28,7 +28,7 @@ with atheris.instrument_imports(include=["polarcheck"], enable_loader_override=F
         if not module.name.endswith("__main__"):
             importlib.import_module(module.name)
 
-from mutations import mutated
+from fuzz_mutations import mutated
 
 
 class Told(Protocol):

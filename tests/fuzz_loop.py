@@ -19,8 +19,8 @@ from random import Random
 from types import CodeType, FrameType
 from typing import Any, NamedTuple
 
+from fuzz_mutations import mutated
 from fuzz_targets import SETUPS, TARGETS, BrokenError, fits_schema, seeds
-from mutations import mutated
 
 import polarcheck
 

@@ -10,9 +10,9 @@ import string
 from typing import Any
 
 import msgspec
+from fuzz_mutations import NUMBERS, WORDS, mutated
 from fuzz_targets import SETUPS, seeds
 from hypothesis import strategies as st
-from mutations import NUMBERS, WORDS, mutated
 
 from polarcheck.machines.job import Job
 from polarcheck.machines.machine import Machine

@@ -17,9 +17,9 @@ import fuzz_targets
 import pytest
 import strategies
 from fuzz_loop import Loop, smallest, told_of
+from fuzz_mutations import mutated
 from fuzz_targets import SETUPS, TARGETS, BrokenError, fits_schema, seeds
 from hypothesis import HealthCheck, given, settings
-from mutations import mutated
 from programs import ROOT
 from test_cli import IMPORTED_FROM
 
