@@ -19,7 +19,7 @@ import shapely  # type: ignore[import-untyped]
 
 from polarcheck.arrays import Floats, Mask, Points, Rows
 from polarcheck.geometry import areas
-from polarcheck.geometry.faces import Geometries, coordinates, lines_of
+from polarcheck.geometry.faces import Geometries, coordinates, edges_of, ends_of, gathered, lines_of
 from polarcheck.geometry.finished_part import Contours, FinishedParts, finished_parts, first_of_its_kind
 from polarcheck.geometry.segments import ZERO, Curves, Segments, members, segments
 from polarcheck.time_limit import keep_time
@@ -271,17 +271,13 @@ def _outline(part: FinishedParts, asked: Mask) -> _Outline:
     """Of the groups asked for."""
     whole = part.polygon.copy()
     whole[~asked] = None
-    in_open = (part.open & asked)[part.group]
-    start, end = part.start[in_open], part.end[in_open]
-    if len(start):
-        _, number = np.unique(part.group[in_open], return_inverse=True)
-        whole[part.open & asked] = shapely.multilinestrings(lines_of(start, end), indices=number)
+    by_walls = part.open & asked
+    of_wall = by_walls[part.group]
+    start, end = part.start[of_wall], part.end[of_wall]
+    whole[by_walls] = gathered(lines_of(start, end), part.group[of_wall], len(whole))[by_walls]
     shapely.prepare(whole)
-    rings = shapely.get_rings(shapely.get_parts(part.polygon[~part.open & asked]))
-    points, ring = shapely.get_coordinates(rings, return_index=True)
-    corner = points.view(np.complex128).ravel()
-    inner = ring[1:] == ring[:-1]
-    return _Outline(whole, np.append(start, corner[:-1][inner]), np.append(end, corner[1:][inner]))
+    begins, ends = edges_of(part.polygon[~part.open & asked])
+    return _Outline(whole, np.append(start, begins), np.append(end, ends))
 
 
 def _cuts(part: FinishedParts, ways: Segments, group: Rows, radius: Floats, tolerance: float) -> _Cuts:
@@ -305,16 +301,10 @@ def _cuts(part: FinishedParts, ways: Segments, group: Rows, radius: Floats, tole
         near = shapely.dwithin(outline.whole[group[rows]], lines, limit)
         rows, lines = rows[near], lines[near]
         (line, edge), distance = tree.query_nearest(lines, all_matches=False, return_distance=True)
-        place, tool = _ends(shapely.shortest_line(tree.geometries[edge], lines[line]))
+        place, tool = ends_of(shapely.shortest_line(tree.geometries[edge], lines[line]))
         distance[shapely.intersects(outline.whole[group[rows]], lines)] = 0
         found.append(_Cuts(ways.move[rows], group[rows], radius[group[rows]] - distance, place, tool))
     return _joined(*found)
-
-
-def _ends(lines: Geometries) -> tuple[Points, Points]:
-    """Where these lines of two points begin and end."""
-    points = shapely.get_coordinates(lines).view(np.complex128).reshape(-1, 2)
-    return points[:, 0], points[:, 1]
 
 
 _NOWHERE = np.zeros(0, np.complex128)
@@ -371,16 +361,13 @@ def _cuts_in_the_open(part: FinishedParts, ramps: _Ramps, radius: Floats, tolera
         (radius, np.full(len(ways), np.inf), lines, 0.0),
     ):
         start, end, chosen = _between(part, wall, length, low[way], high[way])
-        walls = np.full(len(ways), shapely.MultiLineString(), dtype=object)
-        if len(chosen):
-            has, number = np.unique(way[chosen], return_inverse=True)
-            walls[has] = shapely.multilinestrings(lines_of(start, end), indices=number)
+        walls = gathered(lines_of(start, end), way[chosen], len(ways))
         if path is lines:
             walls[in_air] = areas.intersection(walls[in_air], within)
         depth = radius - shapely.distance(walls, path)
         cut = np.flatnonzero(depth > tolerance + allowed)  # NaN without walls, or with nothing behind them
         found.append(
-            _Cuts(ways.move[cut], group[cut], depth[cut], *_ends(shapely.shortest_line(walls[cut], path[cut])))
+            _Cuts(ways.move[cut], group[cut], depth[cut], *ends_of(shapely.shortest_line(walls[cut], path[cut])))
         )
     return _joined(*found)
 

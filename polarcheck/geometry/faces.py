@@ -331,3 +331,27 @@ def lines_of(start: Points, end: Points) -> Geometries:
     if still.any():
         found[still] = shapely.points(coordinates(start[still]))
     return found
+
+
+def gathered(lines: Geometries, group: Rows, count: int) -> Geometries:
+    """The lines of each of so many groups as one; an empty one where it has none. group: int[lines]."""
+    found = np.full(count, shapely.MultiLineString(), dtype=object)
+    has, number = np.unique(group, return_inverse=True)
+    if len(has):
+        found[has] = shapely.multilinestrings(lines, indices=number)
+    return found
+
+
+def edges_of(polygons: Geometries) -> tuple[Points, Points]:
+    """Where the edges round these polygons and their holes begin and end, all together."""
+    rings = shapely.get_rings(shapely.get_parts(polygons))
+    points, ring = shapely.get_coordinates(rings, return_index=True)
+    corner = points.view(np.complex128).ravel()
+    inner = ring[1:] == ring[:-1]
+    return corner[:-1][inner], corner[1:][inner]
+
+
+def ends_of(lines: Geometries) -> tuple[Points, Points]:
+    """Where these lines of two points begin and end."""
+    points = shapely.get_coordinates(lines).view(np.complex128).reshape(-1, 2)
+    return points[:, 0], points[:, 1]

@@ -14,7 +14,7 @@ import numpy as np
 import shapely  # type: ignore[import-untyped]
 
 from polarcheck.arrays import Floats, Mask, Points, Rows
-from polarcheck.geometry.faces import Geometries, coordinates, lines_of
+from polarcheck.geometry.faces import Geometries, coordinates, edges_of, ends_of, gathered, lines_of
 from polarcheck.geometry.finished_part import FinishedParts
 from polarcheck.geometry.segments import ZERO, Segments
 from polarcheck.time_limit import keep_time
@@ -75,7 +75,7 @@ def reached(part: FinishedParts, ways: Segments, group: Rows, radius: Floats, to
         near = shapely.dwithin(whole[group[rows]], line, radius[group[rows]] - tolerance)
         rows, line = rows[near], line[near]
         (_, edge), aside = tree.query_nearest(line, all_matches=False, return_distance=True)
-        place = _first_points(shapely.shortest_line(tree.geometries[edge], line))
+        place = ends_of(shapely.shortest_line(tree.geometries[edge], line))[0]
         depth = radius[group[rows]] - np.where(shapely.intersects(solid[group[rows]], line), 0, aside)
         none = np.full(len(rows), -1)
         found.append(Reached(number[rows], ways.move[rows], group[rows], none, depth, aside, place))
@@ -108,17 +108,11 @@ def _outline(part: FinishedParts) -> tuple[Geometries, Points, Points]:
     """What is not to be cut of each group, and the edges of it, all groups together."""
     by_walls = part.open | endless(part)
     whole = part.polygon.copy()
-    whole[by_walls] = shapely.MultiLineString()
     of_wall = by_walls[part.group]
     start, end = part.start[of_wall], part.end[of_wall]
-    if len(start):
-        has, number = np.unique(part.group[of_wall], return_inverse=True)
-        whole[has] = shapely.multilinestrings(lines_of(start, end), indices=number)
-    rings = shapely.get_rings(shapely.get_parts(part.polygon[~by_walls]))
-    points, ring = shapely.get_coordinates(rings, return_index=True)
-    corner = points.view(np.complex128).ravel()
-    inner = ring[1:] == ring[:-1]
-    return whole, np.append(start, corner[:-1][inner]), np.append(end, corner[1:][inner])
+    whole[by_walls] = gathered(lines_of(start, end), part.group[of_wall], len(whole))[by_walls]
+    begins, ends = edges_of(part.polygon[~by_walls])
+    return whole, np.append(start, begins), np.append(end, ends)
 
 
 def _beside(
@@ -163,9 +157,3 @@ def _with_walls(part: FinishedParts, cuts: Reached) -> Reached:
     cut, wall = cut[kept], wall[kept]
     place = cuts.place - part.pitch * cuts.group
     return replace(cuts[cut], wall=part.move[wall], place=place[cut])
-
-
-def _first_points(geometries: Geometries) -> Points:
-    """Where these lines of two points begin."""
-    points: Points = shapely.get_coordinates(geometries).view(np.complex128).reshape(-1, 2)[:, 0]
-    return points

@@ -18,7 +18,7 @@ import shapely  # type: ignore[import-untyped]
 from polarcheck.arrays import Floats, Mask, Points, Rows
 from polarcheck.geometry import areas
 from polarcheck.geometry.closing import WITNESS, Corners
-from polarcheck.geometry.faces import GRID, Geometries, coordinates
+from polarcheck.geometry.faces import GRID, Geometries, coordinates, gathered
 from polarcheck.geometry.finished_part import FinishedParts
 from polarcheck.geometry.segments import ZERO, Segments
 from polarcheck.time_limit import keep_time
@@ -61,10 +61,6 @@ class Swept:
 
     def __getitem__(self, rows: Rows | Mask) -> Swept:
         return Swept(*(getattr(self, name)[rows] for name in Swept.__slots__))
-
-    def lines(self) -> Geometries:
-        """A line for each."""
-        return np.asarray(shapely.linestrings(coordinates(np.stack([self.start, self.end], axis=1))))
 
     def at_depth(self, z: Floats, program: Rows) -> Mask:
         """Whether each runs in that program at that Z or deeper; where one of the two is not known, it does."""
@@ -120,7 +116,7 @@ def ribs(
     samples = _Samples(samples.point - part.pitch * samples.group, samples.along, samples.corner, samples.group)
     if not len(samples):
         return _none()
-    tree = shapely.STRtree(swept.lines())
+    tree = shapely.STRtree(_lines(swept.start, swept.end))
     touched, asked = _touched_by_any(swept, tree, samples, z, program)
     given_up = [samples.group[asked:]]
     samples = samples[:asked][~touched]
@@ -208,10 +204,7 @@ def _reachable(part: FinishedParts, samples: _Samples, radius: Floats) -> Mask:
 
 def _touched(path: Segments, samples: _Samples, radius: Floats) -> Mask:
     """Whether the path of its own group touches each sample."""
-    groups, number = np.unique(path.loop, return_inverse=True)
-    lines = np.full(len(radius), shapely.MultiLineString(), dtype=object)
-    if len(groups):
-        lines[groups] = shapely.multilinestrings(_lines(path.start, path.end), indices=number)
+    lines = gathered(_lines(path.start, path.end), path.loop, len(radius))
     shapely.prepare(lines)
     limit = radius[samples.group] + _TOUCH
     return np.asarray(shapely.dwithin(lines[samples.group], shapely.points(coordinates(samples.point)), limit))
