@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Mapping, Set
 from enum import Enum
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -17,6 +19,15 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption(
         "--accept", action="store_true", dest="update_snapshots", help="take the present outcomes as golden ones"
     )
+
+
+@pytest.fixture
+def own_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The test works in an empty folder, and nothing of the environment is meant for polarcheck."""
+    monkeypatch.chdir(tmp_path)
+    for name in list(os.environ):
+        if name.startswith("POLARCHECK_") or name in ("NO_COLOR", "FORCE_COLOR"):
+            monkeypatch.delenv(name)
 
 
 def pytest_make_parametrize_id(val: Any) -> str:

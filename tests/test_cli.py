@@ -37,12 +37,7 @@ RAPID_ONLY = ("--select", "rapid-in-polar")
 RAMP_ONLY = ("--select", "start-up-shorter-than-radius")
 
 
-@pytest.fixture(autouse=True)
-def _in_a_folder_of_its_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
-    for name in list(os.environ):
-        if name.startswith("POLARCHECK_") or name in ("NO_COLOR", "FORCE_COLOR"):
-            monkeypatch.delenv(name)
+pytestmark = pytest.mark.usefixtures("own_folder")
 
 
 def make(**texts: str) -> None:

@@ -35,12 +35,7 @@ of_posix = pytest.mark.skipif(sys.platform == "win32", reason="pipes, devices an
 of_linux = pytest.mark.skipif(sys.platform != "linux", reason="names of any bytes, folders of any depth")
 
 
-@pytest.fixture(autouse=True)
-def _in_a_folder_of_its_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
-    for name in list(os.environ):
-        if name.startswith("POLARCHECK_") or name in ("NO_COLOR", "FORCE_COLOR"):
-            monkeypatch.delenv(name)
+pytestmark = pytest.mark.usefixtures("own_folder")
 
 
 def make(*paths: str, text: str = RAPID) -> None:

@@ -31,11 +31,7 @@ posix = pytest.mark.skipif(os.name == "nt", reason="there are no such signals, l
 
 
 @pytest.fixture(autouse=True)
-def _in_a_folder_of_its_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
-    for name in list(os.environ):
-        if name.startswith("POLARCHECK_") or name in ("NO_COLOR", "FORCE_COLOR"):
-            monkeypatch.delenv(name)
+def _programs(own_folder: None) -> None:
     for name, text in (("a.nc", RAPID), ("b.nc", GOOD)):
         Path(name).write_text(text)
 

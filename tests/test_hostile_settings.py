@@ -24,10 +24,7 @@ LONG = "a" * 5000
 
 
 @pytest.fixture(autouse=True)
-def _in_a_folder_of_its_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
-    for name in [name for name in os.environ if name.startswith("POLARCHECK_")]:
-        monkeypatch.delenv(name)
+def _program(own_folder: None) -> None:
     make(a__nc=GOOD)
 
 

@@ -24,7 +24,7 @@ CONTROLS = [name for name in profiles.names() if name != profiles.DEFAULT]
 
 def settings(path: Path) -> dict[str, Any]:
     """The machine and the job that the nearest polarcheck.toml gives a sample."""
-    found = job_files.find(path)
+    found = job_files.Nearest().of(path)
     assert found is not None
     work = job_files.load(found)
     assert work.machine is not None

@@ -27,24 +27,18 @@ class JobFile(msgspec.Struct, frozen=True):
     path: Path | None = None
 
 
-def find(path: Path) -> Path | None:
-    """
-    The job file of a program or folder, the nearest from there upward; from the working folder where it lies below it.
-
-    Raises JobError for a pyproject.toml that cannot be read.
-    """
-    return Nearest().of(path)
-
-
 class Nearest:
-    """The job files of many folders, as find gives them; each folder is looked into once, however deep it lies."""
+    """
+    The job files of many programs and folders, the nearest from there upward; from the working folder where it lies
+    below it. Each folder is looked into once, however deep it lies.
+    """
 
     def __init__(self) -> None:
         self._real = RealPaths()
         self._known: dict[str, Path | None] = {}
 
     def of(self, path: Path) -> Path | None:
-        """The job file of a program or folder. Raises JobError as find does."""
+        """The job file of a program or folder. Raises JobError for a pyproject.toml that cannot be read."""
         try:
             found = self._from(self._real.folder(str(path if path.is_dir() else path.parent)))
         except (OSError, RuntimeError, ValueError):

@@ -63,10 +63,11 @@ def said_of_bug(error: Exception, with_traceback: bool) -> list[str]:
         import traceback
 
         return [line for text in traceback.format_exception(error) for line in text.splitlines()]
+    from polarcheck.reading.excerpt import shortened
+
     where = "".join(f", {note}" for note in getattr(error, "__notes__", ()))
-    said = str(error)
-    said = said if len(said) <= _MOST_SAID else f"{said[:_MOST_SAID]}..."
-    return [f"polarcheck: internal error: {type(error).__name__}: {said}{where}; run with --debug for the traceback"]
+    said = f"{type(error).__name__}: {shortened(str(error), _MOST_SAID)}{where}"
+    return [f"polarcheck: internal error: {said}; run with --debug for the traceback"]
 
 
 def say_lines(lines: Iterable[str]) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import stat
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -58,4 +59,4 @@ def _identity(path: str | Path) -> tuple[int, int] | None:
         status = Path(path).stat()
     except (OSError, ValueError):
         return None
-    return (status.st_dev, status.st_ino) if Path(path).is_file() else None
+    return (status.st_dev, status.st_ino) if stat.S_ISREG(status.st_mode) else None
