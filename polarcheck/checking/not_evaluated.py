@@ -11,7 +11,7 @@ import numpy as np
 from polarcheck.arrays import Floats, Mask, Rows
 from polarcheck.checking.finding import NotEvaluated
 from polarcheck.checking.macro_faults import reason_of
-from polarcheck.checking.phrases.polar import extrudes, not_simulated, not_understood, on_cylinder
+from polarcheck.checking.phrases.polar import axes_not_followed, extrudes, not_simulated, not_understood, on_cylinder
 from polarcheck.checking.places import block_in_line
 from polarcheck.checking.rule import Rule
 from polarcheck.checking.tables import Tables
@@ -42,7 +42,8 @@ def unexecuted(tables: Tables) -> Iterator[NotEvaluated]:
         return
     for reason, count in (
         *Counter(map(reason_of, trace.run.remarks)).items(),
-        *not_simulated(trace, tables["infeed"]),
+        *axes_not_followed(trace),
+        *not_simulated(tables["infeed"]),
         not_understood(trace, tables["other_mode"]),
         on_cylinder(trace),
         extrudes(trace),
@@ -58,7 +59,8 @@ def unevaluated(tables: Tables, rule: Rule) -> Iterator[NotEvaluated]:
         where: Mask = tables.column(rule.where)
         if not where.any():
             continue
-        rows = np.flatnonzero(np.isnan(tables.column(name)) & where)
+        # Of sections whose linear axis is not known one entry speaks for all.
+        rows = np.flatnonzero(np.isnan(tables.column(name)) & where & trace.linear_is_known)
         if name in _OF_MOVES:
             rows = rows[~(tables["feeds"].missing | tables["feeds"].lost)[rows]]  # a finding says so
         reasons: dict[str, int] = {}
@@ -200,7 +202,10 @@ def _no_offset(what: str, key: str) -> Callable[[Trace, int], str]:
 def _position(trace: Trace, row: int) -> str:
     lost = np.flatnonzero((trace.run.unknown & (trace.program == trace.program[row]))[: row + 1])
     if not len(lost):
-        return "the position is not known: X was not programmed before the polar mode; write G0 X... before it"
+        axis = chr(trace.linear_axis[row])
+        return (
+            f"the position is not known: {axis} was not programmed before the polar mode; write G0 {axis}... before it"
+        )
     at = int(lost[-1])
     written = f"line {int(trace.line[at])}, {block_in_line(trace, at, _BLOCK_LENGTH)}"
     remedy = "--subprograms FOLDER says where called programs lie, or program X and C after it"

@@ -17,7 +17,7 @@ from polarcheck.execution.expression import DEFAULT, Fault, evaluate
 from polarcheck.execution.kinds import FaultKind
 from polarcheck.execution.programs import ProgramName
 from polarcheck.execution.statement import Statement, Word
-from polarcheck.machines.machine import Macro
+from polarcheck.machines.macro_keys import Macro
 
 
 @dataclass(slots=True)

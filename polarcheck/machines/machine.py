@@ -6,13 +6,15 @@ What a key means stands in the docstring of its class and, in the same words, at
 
 import math
 import re
-from typing import Annotated, Literal
+from typing import Annotated, Literal, TypeAlias
 
 import msgspec
 
 from polarcheck.errors import RuleError
+from polarcheck.machines.axes import INCREMENTS, axis_of, check_axes
 from polarcheck.machines.code_lists import GCodes, GCodeSystem, expanded, is_code
 from polarcheck.machines.fitting import MOST
+from polarcheck.machines.macro_keys import Macro
 from polarcheck.machines.parameters import Meaning
 from polarcheck.machines.values import (
     Address,
@@ -25,13 +27,12 @@ from polarcheck.machines.values import (
     NotNegative,
     Plain,
     Positive,
-    Ranges,
     SwitchWord,
-    Variable,
     ascend,
 )
 
-_FLOW_CODE = re.compile(r"[GM](?:0|[1-9]\d{0,2})(?:\.[1-9])?", re.ASCII)
+#: A linear axis that is followed in the polar mode.
+LinearAddress: TypeAlias = Literal["X", "Y", "Z"]
 
 
 def meanings(table: type) -> dict[str, str]:
@@ -55,6 +56,7 @@ class Control(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     offset_digits: how many of the last digits of T are the offset number: 2 where T0808 is tool 8 with offset 8
     unknown_codes_are_errors: whether the control stops at a G code that is not among the known codes
     x: diameter or radius: what X words are outside the polar mode
+    axes: names of the axes in the order of their numbers, which P, Q and parameters count; none where it is not known
     known_codes: G codes of the control, from the whole list of it; G27-G80 is a range of whole numbers
     motion_codes: codes that move but have another number here, by what they mean: G101 = "G1"
     native_words: words of the control's own language, by the code or address that they are read as: TRANSMIT = "G12.1"
@@ -74,6 +76,7 @@ class Control(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     offset_digits: Annotated[int, msgspec.Meta(ge=1, le=4)]
     unknown_codes_are_errors: bool
     x: Literal["diameter", "radius"]
+    axes: list[Address] = []
     known_codes: list[str]
     motion_codes: dict[str, str] = {}
     native_words: dict[Plain, Plain] = {}
@@ -105,7 +108,8 @@ class Polar(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     x: diameter or radius: what X words are in the mode
     virtual_axis_programming: radius or diameter: what words of the virtual axis are
     other_axes: what Z does in one block with X or C: independent of them, together with them, or forbidden
-    center_words: addresses of arc centers, along X and along the virtual axis
+    center_words: addresses of arc centers, along the linear and along the virtual axis, by the linear axis
+    linear_address: address of the axis with the number 1, where control.axes does not say it: the linear axis
     linear_axis: number of the linear axis, as P beside G12.1 names it
     rotary_axis: number of the rotary axis, as Q beside G12.1 names it
     infeed_word: address beside G12.1 of the infeed of a cycle that goes round the contour; empty without such a cycle
@@ -126,7 +130,8 @@ class Polar(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     x: Literal["diameter", "radius"]
     virtual_axis_programming: Literal["radius", "diameter"]
     other_axes: Literal["independent", "together", "forbidden"]
-    center_words: tuple[Address, Address]
+    center_words: dict[LinearAddress, tuple[Address, Address]]
+    linear_address: LinearAddress
     linear_axis: AxisNumber
     rotary_axis: AxisNumber
     infeed_word: AddressOrNone
@@ -137,11 +142,9 @@ class Polar(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     def __post_init__(self) -> None:
         if self.linear_axis == self.rotary_axis:
             raise ValueError(f"linear_axis and rotary_axis are both {self.linear_axis}; expected two axes")
-
-    @property
-    def other_center_word(self) -> str:
-        """The address of arc centers that is of no axis of the polar plane."""
-        return next(word for word in ("K", "I", "J") if word not in self.center_words)
+        missing = [axis for axis in INCREMENTS if axis not in self.center_words]
+        if missing:
+            raise ValueError(f"center_words has no words for the linear axis {missing[0]}")
 
 
 class CircularInterpolation(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -267,97 +270,6 @@ class MCodes(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     stops_reading_ahead: list[str]
 
 
-class Macro(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """
-    Custom macro and calls.
-
-    local_variables: ranges, first and last number, of local variables, of which each macro call has its own
-    common_variables: ranges of common variables that are vacant at power-on
-    retained_variables: ranges of common variables that outlive the power-off: not known until a program assigns them
-    system_variables: ranges of system variables: offsets, positions, modal states, signals; not known unless given
-    read_only_variables: ranges of system variables that a program cannot assign; nor can it #0, which is always vacant
-    clock_variables: ranges of system variables that count on by themselves: not known even after an assignment
-    alarm_variables: system variables by which a program ends itself with an alarm: #3000 = 1 (MESSAGE)
-    stop_variables: system variables by which a program stops with a message until cycle start: #3006 = 1 (MESSAGE)
-    tool_offset_variables: ranges of system variables that are tool offsets, so that an assignment changes one
-    work_offset_variables: ranges of system variables that are work offsets
-    subprogram_calls: codes that call a subprogram by its number in P or its <NAME>; M198 that of another device
-    macro_calls: codes that call a macro once; the other words of the block are its arguments
-    modal_macro_calls: codes after which each block that moves an axis calls the macro
-    modal_macro_calls_each_block: modal calls that take the words of each block as arguments, G codes too
-    modal_macro_cancel: codes that end a modal call
-    program_returns: codes that return from a called program
-    computed_increments: address -> what a computed value is rounded to there; elsewhere to the least input increment
-    bracket_levels: most levels of brackets in an expression, those of functions included
-    loop_numbers: highest number of DO and END
-    loop_levels: most loops inside each other
-    subprogram_levels: most levels of subprogram calls
-    macro_levels: most levels of macro calls
-    repeats_in_p: whether P of a subprogram call with more than four digits has the repeats before the last four
-    second_arguments: whether a macro call takes I J K up to ten times: argument specification II
-    signed_angles: whether ATAN gives -180 to 180 and ASIN -90 to 90, else 0 to 360 and 270 to 90
-    largest_number: a result above it overflows
-    given: variable -> its value, as the job or the machine knows it
-    """
-
-    local_variables: Ranges
-    common_variables: Ranges
-    retained_variables: Ranges
-    system_variables: Ranges
-    read_only_variables: Ranges
-    clock_variables: Ranges
-    alarm_variables: list[int]
-    stop_variables: list[int]
-    tool_offset_variables: Ranges
-    work_offset_variables: Ranges
-    subprogram_calls: list[str]
-    macro_calls: list[str]
-    modal_macro_calls: list[str]
-    modal_macro_calls_each_block: list[str]
-    modal_macro_cancel: list[str]
-    program_returns: list[str]
-    computed_increments: dict[Address, Positive]
-    bracket_levels: Count
-    loop_numbers: Count
-    loop_levels: Count
-    subprogram_levels: Count
-    macro_levels: Count
-    repeats_in_p: bool
-    second_arguments: bool
-    signed_angles: bool
-    largest_number: Annotated[float, msgspec.Meta(gt=0)]
-    given: dict[Variable, float] = {}
-
-    def __post_init__(self) -> None:
-        for code in self.flow_codes:
-            if not _FLOW_CODE.fullmatch(code):
-                raise ValueError(f"{code!r}: expected a G or M code as in G66.1 or M98, without leading zeros")
-        for kind in ("local", "common", "retained", "system", "read_only", "clock"):
-            for first, last in getattr(self, f"{kind}_variables"):
-                if first > last:
-                    raise ValueError(f"{kind}_variables: the range {first} to {last} ends before it begins")
-
-    def is_of_offset(self, number: float) -> bool:
-        """Whether a variable is a tool offset or a work offset."""
-        ranges = (*self.tool_offset_variables, *self.work_offset_variables)
-        return any(first - 0.5 <= number < last + 0.5 for first, last in ranges)
-
-    @property
-    def macro_call_codes(self) -> frozenset[str]:
-        """The codes that call a macro with arguments, once or modally."""
-        return frozenset((*self.macro_calls, *self.modal_macro_calls, *self.modal_macro_calls_each_block))
-
-    @property
-    def call_codes(self) -> frozenset[str]:
-        """The codes that call a program."""
-        return self.macro_call_codes | frozenset(self.subprogram_calls)
-
-    @property
-    def flow_codes(self) -> frozenset[str]:
-        """The codes that call a program, end a modal call, or return."""
-        return self.call_codes | frozenset((*self.modal_macro_cancel, *self.program_returns))
-
-
 class Machine(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """
     A lathe: the merged profile.
@@ -388,6 +300,23 @@ class Machine(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     notes: list[str] = []
     known_parameters: dict[str, Meaning] = {}
     parameters: dict[str, int | float | str] = {}
+
+    def __post_init__(self) -> None:
+        check_axes(self.control.axes, self.polar.linear_axis, self.polar.rotary_axis)
+
+    def linear_address_of(self, number: float) -> str:
+        """
+        The address of the linear axis with a number, as P beside G12.1 has it; empty where that is not known, or where
+        the virtual axis has the same one.
+        """
+        axes = self.control.axes or [self.polar.linear_address]
+        name = axis_of(axes, number)
+        return name if name in INCREMENTS and name != self.polar.virtual_axis else ""
+
+    @property
+    def linear_address(self) -> str:
+        """The address of the linear axis where no P beside G12.1 says otherwise; empty where that is not known."""
+        return self.linear_address_of(self.polar.linear_axis)
 
     @property
     def system_table(self) -> str:

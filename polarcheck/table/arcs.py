@@ -38,20 +38,19 @@ class Arcs:
     @cached_property
     def by_center(self) -> Mask:
         """Arcs with I or J and without R, which would count before them (B-62754EN/01 p. 67)."""
-        return np.asarray(self.trace.is_arc & self.trace.has(*self.trace.machine.polar.center_words) & ~self.by_radius)
+        return np.asarray(self.trace.is_arc & self.trace.has_center & ~self.by_radius)
 
     @cached_property
     def has_word_of_other_plane(self) -> Mask:
-        """Rows with a K; K0 moves nothing."""
-        other = self.trace.machine.polar.other_center_word
-        return np.asarray(self.trace.has(other) & (self.trace.word(other) != 0))
+        """Rows with a center word of another plane: a K with X and C; K0 moves nothing."""
+        other = self.trace.with_words(self.trace.other_center_words)
+        return np.asarray(other & (self.trace.other_center_word != 0))
 
     @cached_property
     def has_word_of_plane(self) -> Mask:
         """Rows with a word of the polar plane: X, C, or I or J without a K beside them."""
-        polar = self.trace.machine.polar
-        own_center = self.trace.has(*polar.center_words) & ~self.trace.has(polar.other_center_word)
-        return np.asarray(self.trace.moves_plane | own_center)
+        trace = self.trace
+        return np.asarray(trace.moves_plane | (trace.has_center & ~trace.with_words(trace.other_center_words)))
 
     @cached_property
     def ends_at_start(self) -> Mask:
@@ -63,7 +62,7 @@ class Arcs:
     @cached_property
     def _to_center(self) -> Points:
         """I + jJ [mm]; what is not written is 0."""
-        i, j = (self.trace.length_of(word) for word in self.trace.machine.polar.center_words)
+        i, j = self.trace.to_center
         return np.asarray(np.nan_to_num(i) + 1j * np.nan_to_num(j))
 
     @cached_property
@@ -95,7 +94,7 @@ class Arcs:
         Where one fits, the axis that stays where it is was left out, and Z makes a helix of it.
         """
         trace, polar = self.trace, self.trace.machine.polar
-        one_axis = trace.has("X", "U") ^ trace.has(polar.virtual_axis, polar.virtual_axis_incremental)
+        one_axis = trace.programs_linear_axis ^ trace.has(polar.virtual_axis, polar.virtual_axis_incremental)
         to_start = self.by_radius & self.ends_at_start
         fits_none = ~self.has_word_of_plane | (one_axis & (self._misses_circle | to_start))
         return np.asarray(self.in_force & trace.moves_z & fits_none)
@@ -166,7 +165,7 @@ class Arcs:
         """From start to end [mm], were X in the mode the other of diameter and radius; X before G12.1 stays."""
         trace = self.trace
         factor = np.where(trace.x_factor < 1, 2.0, 0.5)
-        has_x = trace.has("X") & ~trace.incremental
+        has_x = trace.has("X") & ~trace.incremental & (trace.linear_axis == ord("X"))
         had_x = np.zeros(len(trace), bool)
         had_x[1:] = trace.given_in_section(has_x)[:-1]
         x = trace.end.real * factor - trace.start.real * np.where(has_x & ~had_x, 1.0, factor)

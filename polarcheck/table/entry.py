@@ -162,8 +162,13 @@ class Entry:
 
     @property
     def origin_shift(self) -> Floats:
-        """How far X0 is known to lie off the spindle axis, as it is written [mm]."""
-        return self.origin.shift
+        """
+        How far the place where the program has the center of C is known to lie off the spindle axis, as written [mm].
+
+        That is X0, or X beside G12.1, which may name the center where nothing else says where X0 lies.
+        """
+        shift, named = self.origin.shift, self.trace.center_shift.real / self.trace.x_factor
+        return np.where((named != 0) & (shift == 0), 0.0, shift + named)
 
     # ---- stock and tool ----
 

@@ -229,7 +229,7 @@ def _cancel_vector(trace: Trace, row: Rows) -> Points:
     """I and J beside G40 say where the tool leaves (B-63324EN/03 p. 402)."""
     vector = np.full(len(row), complex("nan+nanj"))
     cancels = np.flatnonzero(trace.writes_cancel[row])
-    i, j = (trace.length_of(word)[row[cancels]] for word in trace.machine.polar.center_words)
+    i, j = (words[row[cancels]] for words in trace.to_center)
     written = ~np.isnan(i) | ~np.isnan(j)
     vector[cancels[written]] = (np.nan_to_num(i) + 1j * np.nan_to_num(j))[written]
     return vector

@@ -14,19 +14,19 @@ import numpy as np
 from polarcheck.arrays import Floats, Mask, Points, Rows, States
 from polarcheck.geometry import polar
 from polarcheck.geometry.tolerances import ZERO
+from polarcheck.machines.axes import INCREMENTS
 from polarcheck.machines.code_lists import numbers
 from polarcheck.machines.modal import Distance, Motion
 from polarcheck.table.filling import before, fill_down, positions
-from polarcheck.table.lengths import Lengths
+from polarcheck.table.linear_axis import LinearAxis
 from polarcheck.table.sections import Marks, Sections, find_sections, section_column
 
-_PLANE_AXES = ("X", "U")
 _FACTOR = {"diameter": 0.5, "radius": 1.0}
 _NOWHERE = complex("nan+nanj")
 _PASSES = 8
 
 
-class Positions(Lengths):
+class Positions(LinearAxis):
     """The columns of where the tool is programmed to be; see the properties."""
 
     # ---- motion ----
@@ -35,13 +35,13 @@ class Positions(Lengths):
     def moves_plane(self) -> Mask:
         """Programs the linear or the virtual axis, an arc by its center alone included."""
         is_arc = np.isin(self.state("motion"), (Motion.CW, Motion.CCW))
-        axes = self.has(*_PLANE_AXES) | self.programs_virtual_axis
-        return self.uses_axes & (axes | (is_arc & self.has("I", "J", "K") & ~self.has("Z", "W"))) & ~self.switches_on
+        axes = self.programs_linear_axis | self.programs_virtual_axis
+        return self.uses_axes & (axes | (is_arc & self.has("I", "J", "K") & ~self.programs_z)) & ~self.switches_on
 
     @cached_property
     def moves_z(self) -> Mask:
-        """Programs Z."""
-        return self.uses_axes & self.has("Z", "W")
+        """Programs Z, where that is not the linear axis."""
+        return self.uses_axes & self.programs_z
 
     @cached_property
     def _virtual(self) -> tuple[tuple[str, str], ...]:
@@ -50,10 +50,11 @@ class Positions(Lengths):
         elsewhere = mode.virtual_axis_of_other_controls
         return (mode.virtual_axis, mode.virtual_axis_incremental), *zip(elsewhere[::2], elsewhere[1::2], strict=False)
 
-    @property
+    @cached_property
     def virtual_words(self) -> Rows:
         """The words of the virtual axis, be it under the address of another control."""
-        return self.word_indices(*(address for pair in self._virtual for address in pair))
+        words = self.word_indices(*(address for pair in self._virtual for address in pair))
+        return words[~self.linear_words[words]] if self.other_linear_axes else words
 
     @cached_property
     def programs_virtual_axis(self) -> Mask:
@@ -73,16 +74,6 @@ class Positions(Lengths):
         return np.asarray(self.motion != Motion.NONE)
 
     # ---- polar sections ----
-
-    @cached_property
-    def switches_on(self) -> Mask:
-        """G12.1."""
-        return self.codes(*self.machine.polar.on)
-
-    @cached_property
-    def switches_off(self) -> Mask:
-        """G13.1."""
-        return self.codes(*self.machine.polar.off)
 
     @cached_property
     def sections(self) -> Sections:
@@ -201,7 +192,7 @@ class Positions(Lengths):
         own, *elsewhere = self._virtual
         absolute, steps = self._programmed(*own, factor, self.in_polar)
         for pair in elsewhere:
-            meant = self.has(*pair) & ~self.has(*own)
+            meant = self.has(*pair) & ~self.has(*own) & (self.linear_axis != ord(pair[0]))
             if meant.any():
                 other = self._programmed(*pair, factor, self.in_polar & meant)
                 absolute, steps = np.where(meant, other[0], absolute), np.where(meant, other[1], steps)
@@ -230,9 +221,10 @@ class Positions(Lengths):
 
     @cached_property
     def x_factor(self) -> Floats:
-        """Radius per written X: a half where X is a diameter."""
+        """Radius per written X, or other linear axis of the polar plane: a half where X is a diameter."""
         control = self.machine.control
         factor = np.where(self.section >= 0, _FACTOR[self.machine.polar.x], _FACTOR[control.x])
+        factor[self.linear_axis != ord("X")] = 1.0
         if not (control.x_radius_words or control.x_diameter_words):
             return factor
         radius, diameter = self._with(control.x_radius_words), self._with(control.x_diameter_words)
@@ -250,21 +242,61 @@ class Positions(Lengths):
         return rows
 
     @cached_property
+    def center_shift(self) -> Points:
+        """
+        Where the program has the center of C on the polar plane of each row [mm]: at the origin, or at the coordinates
+        beside G12.1 where the control knows such (5450#2 PLS; GSK: offsets of the linear and of the rotary axis).
+        """
+        shift = np.zeros(len(self), np.complex128)
+        own, takes = self.machine.polar, set(self.machine.polar.words_beside_switch)
+        if not len(self.sections) or not takes & {*INCREMENTS, own.virtual_axis}:
+            return shift
+        enter, axis = self.sections.enter, self.linear_axis
+        linear = self._of_axis(lambda axis: self.length_of(axis)) * self.x_factor
+        virtual = self.length_of(own.virtual_axis) * _FACTOR[own.virtual_axis_programming]
+        is_taken = np.isin(axis[enter], [ord(address) for address in takes])
+        of_section = np.append(np.where(is_taken, np.nan_to_num(linear[enter]), 0.0), 0.0).astype(np.complex128)
+        if own.virtual_axis in takes:
+            of_section[:-1] += 1j * np.nan_to_num(virtual[enter])
+        return of_section[self.section]
+
+    @cached_property
+    def _linear_coordinates(self) -> tuple[Floats, Floats]:
+        """The linear axis of each row as _programmed gives an axis; X outside the mode."""
+        absolute, steps = self._programmed("X", "U", self.x_factor, ~self.enters & (self.linear_axis == ord("X")))
+        for axis in self.other_linear_axes:
+            other = self._programmed(axis, INCREMENTS[axis], 1.0, self.in_polar & (self.linear_axis == ord(axis)))
+            absolute, steps = np.where(np.isnan(absolute), other[0], absolute), steps + other[1]
+        return absolute, steps
+
+    def _alone(self, axis: str) -> Floats:
+        """An axis after each row [mm] by what stands outside the mode."""
+        where = self.section < 0
+        resets = self._forgets(axis, INCREMENTS[axis]) | self.leaves
+        return positions(*self._programmed(axis, INCREMENTS[axis], 1.0, where), resets, self._set_by(axis))
+
+    @cached_property
     def _plane(self) -> tuple[Points, Points]:
         """Plane points after and before each row; the virtual coordinate is NaN outside the mode."""
-        x_words = self._programmed("X", "U", self.x_factor, ~self.enters)
-        c_words = self._virtual_coordinates
-        leave = self.sections.leave[self.sections.leave < len(self)]
-        c = positions(*c_words, self.enters, np.zeros(len(self)))
+        shift = self.center_shift
+        c = positions(*self._virtual_coordinates, self.enters, shift.imag)
         c = np.where(self.section >= 0, c, np.nan)
+        leave = self.sections.leave[self.sections.leave < len(self)]
         resets = self._forgets("X", "U") | self.mask_of(leave)
         values = self._set_by("X") * self.x_factor
+        # Outside its section nobody asks where another linear axis is but at G12.1, and X is not followed within.
+        for axis in self.other_linear_axes:
+            begins = self.enters & (self.linear_axis == ord(axis))
+            resets, values = resets | begins, np.where(begins, self._alone(axis), values)
+        leave = leave[(self.linear_axis == ord("X"))[leave - 1]]
+        x_words = self._linear_coordinates
         for _ in range(_PASSES):
             x = positions(*x_words, resets, values)
             if not len(leave):
                 break
             # The control leaves the mode with X where the machine stands: never negative (B-62764EN/01 p. 51).
-            found = np.hypot(x[leave - 1], c[leave - 1])
+            last = leave - 1
+            found = np.hypot(x[last] - shift.real[last], c[last] - shift.imag[last]) + shift.real[last]
             if np.array_equal(found, values[leave], equal_nan=True):
                 break
             values[leave] = found
@@ -272,7 +304,8 @@ class Positions(Lengths):
             values[leave] = np.nan  # sections that hang on each other by increments alone, one after another
             x = positions(*x_words, resets, values)
         end = np.empty(len(self), np.complex128)
-        end.real, end.imag = x, c
+        end.real, end.imag = np.where(self.linear_is_known, x, np.nan), c
+        end -= shift
         return end, before(end, self.starts, _NOWHERE)
 
     @cached_property
@@ -308,7 +341,7 @@ class Positions(Lengths):
         center = np.full(len(self), _NOWHERE)
         if not arcs.any():
             return center
-        i, j = (self.length_of(word)[arcs] for word in self.machine.polar.center_words)
+        i, j = (words[arcs] for words in self.to_center)
         written = ~np.isnan(i) | ~np.isnan(j)
         start, end, kind = self.start[arcs], self.end[arcs], self.motion[arcs]
         by_center = np.where(written, start + np.nan_to_num(i) + 1j * np.nan_to_num(j), _NOWHERE)

@@ -55,9 +55,14 @@ def code_of(machine: Machine, key: str) -> str:
     return next(iter(machine.codes(key)), key.replace("_", " "))
 
 
-def centers(machine: Machine) -> str:
+def centers(trace: Trace, row: int) -> str:
     """The addresses of arc centers: I or J."""
-    return " or ".join(machine.polar.center_words)
+    return " or ".join(trace.center_words(row))
+
+
+def linear(trace: Trace, row: int) -> str:
+    """The address of the linear axis: X."""
+    return chr(trace.linear_axis[row])
 
 
 def switch(trace: Trace, row: int) -> str:

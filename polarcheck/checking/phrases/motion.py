@@ -7,7 +7,6 @@ import numpy as np
 from polarcheck.checking.other_machine import OtherMachine
 from polarcheck.checking.quantity import in_row
 from polarcheck.geometry.tolerances import ROUNDING
-from polarcheck.machines.machine import Machine
 from polarcheck.machines.modal import MM_PER_INCH, Units
 from polarcheck.table.arcs import Arcs
 from polarcheck.table.trace import Trace
@@ -26,10 +25,10 @@ def least_radius(trace: Trace, arcs: Arcs, row: int) -> str:
     return f"{text} {'inch' if inch else 'mm'}"
 
 
-def center(machine: Machine) -> str:
+def center(trace: Trace, row: int) -> str:
     """`I along X and J along C`."""
-    linear, virtual = machine.polar.center_words
-    return f"{linear} along X and {virtual} along {machine.polar.virtual_axis}"
+    along, across = trace.center_words(row)
+    return f"{along} along {chr(trace.linear_axis[row])} and {across} along {trace.machine.polar.virtual_axis}"
 
 
 def reading(trace: Trace, row: int) -> str:

@@ -138,23 +138,26 @@ def else_a_macro(other_mode: OtherMode, row: int) -> str:
     return "" if other_mode.is_meant[row] else ", unless it is a macro of the builder"
 
 
-def not_simulated(trace: Trace, infeed: Infeed) -> Iterator[tuple[str, int]]:
-    """What of the words beside G12.1 is not simulated, and in how many blocks."""
-    mode = trace.machine.polar
-    for word, number, axis in (("P", mode.linear_axis, "linear"), ("Q", mode.rotary_axis, "rotary")):
-        if word in mode.words_beside_switch:
-            value = trace.word(word)
-            other = trace.enters & ((value < number) | (value > number))
-            yield (
-                f"{word} names another {axis} axis than {number}, which is not simulated: look at it on the control",
-                int(other.sum()),
-            )
-    for word in sorted({"X", mode.virtual_axis} & set(mode.words_beside_switch)):
-        shifts = trace.enters & (abs(trace.word(word)) > 0)
-        yield (
-            f"the center of the C axis shifted by {word} is not simulated: look at it on the control",
-            int(shifts.sum()),
-        )
+def axes_not_followed(trace: Trace) -> Iterator[tuple[str, int]]:
+    """Which axes of the polar plane are not followed, and in how many blocks."""
+    mode, axes = trace.machine.polar, trace.machine.control.axes
+    unknown = trace.enters & ~trace.linear_is_known
+    named = unknown & trace.has("P") & ("P" in mode.words_beside_switch)
+    remedy = "look at it on the control" if axes else 'give their names in order, as control.axes = ["X", "Z", "C"]'
+    for rows, what in (
+        (named, f"P beside {mode.on[0]}"),
+        (unknown & ~named, f"{mode.linear_axis}, the number in polar.linear_axis,"),
+    ):
+        yield f"{what} is a linear axis that is not known, nothing of the section is judged: {remedy}", int(rows.sum())
+    if "Q" in mode.words_beside_switch:
+        value, own = trace.word("Q"), mode.rotary_axis
+        rows = trace.enters & ((value < own) | (value > own))
+        effect = "its angle at the switch and its limits are not followed: look at them on the control"
+        yield f"Q names another rotary axis than {own}; {effect}", int(rows.sum())
+
+
+def not_simulated(infeed: Infeed) -> Iterator[tuple[str, int]]:
+    """What of an infeed cycle is not simulated, and in how many blocks."""
     partly = int(infeed.is_simulated_in_part.sum())
     yield (
         "of an infeed cycle only the passes next to the contour are simulated: look at the others on the control",

@@ -104,7 +104,8 @@ def _shown(value: Any, group: str = "") -> str:
     if isinstance(value, float):
         return "not known" if math.isnan(value) else f"{value:g}"
     if isinstance(value, dict):
-        return ", ".join(f"{key} = {element or 'nothing'}" for key, element in value.items()) or "none"
+        elements = ((key, " ".join(of) if isinstance(of, list | tuple) else of) for key, of in value.items())
+        return ", ".join(f"{key} = {element or 'nothing'}" for key, element in elements) or "none"
     if isinstance(value, list | tuple):
         spans = (f"{each[0]}-{each[1]}" if isinstance(each, list | tuple) else str(each) for each in value)
         return ", ".join(spans) or "none"

@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Arcs, Hits, Machine, Trace, rule
+from polarcheck.checking.rule import ERROR, Arcs, Hits, Trace, rule
 
 
 @rule(ERROR, "{word} is not of the polar plane; the center is {center}", follows={"block": ("arc-off-polar-plane",)})
-def arc_word_of_other_plane(trace: Trace, arcs: Arcs, machine: Machine) -> Hits:
+def arc_word_of_other_plane(trace: Trace, arcs: Arcs) -> Hits:
     """
     Center of an arc with K.
 
@@ -40,5 +40,4 @@ def arc_word_of_other_plane(trace: Trace, arcs: Arcs, machine: Machine) -> Hits:
         G1 X60.
         G13.1
     """
-    words = trace.words_at(trace.word_indices(machine.polar.other_center_word))
-    return Hits(trace.is_arc & arcs.has_word_of_other_plane, at=words)
+    return Hits(trace.is_arc & arcs.has_word_of_other_plane, at=trace.other_center_words)

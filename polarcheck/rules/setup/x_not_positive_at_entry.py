@@ -4,7 +4,7 @@ from polarcheck.checking.rule import WARNING, Mask, Trace, rule
 from polarcheck.geometry.tolerances import ROUNDING
 
 
-@rule(WARNING, "X stands at {trace.x:diameter} at {switch}; enter the polar mode above 0", at=("on",))
+@rule(WARNING, "{linear} stands at {trace.x:diameter} at {switch}; enter the polar mode above 0", at=("on",))
 def x_not_positive_at_entry(trace: Trace) -> Mask:
     """
     X at the center or beyond it where the polar mode begins.

@@ -1,0 +1,38 @@
+"""The axes of a lathe by number and name: which of them can be the linear, which the rotary axis of the mode."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+#: Linear axes that are followed in the polar mode, and the addresses of their incremental words (B-62754EN/01).
+INCREMENTS = {"X": "U", "Y": "V", "Z": "W"}
+_LINEAR = frozenset("XYZUVW")
+_ROTARY = frozenset("ABC")
+
+
+def check_axes(axes: Sequence[str], linear: int, rotary: int) -> None:
+    """
+    Raises ValueError where two axes have one name, or a number names no axis or one of the other kind.
+
+    axes: their names in the order of their numbers, from 1; nothing is checked where there are none.
+    """
+    if not axes:
+        return
+    if len(set(axes)) < len(axes):
+        raise ValueError(f"control.axes names {next(name for name in axes if axes.count(name) > 1)} twice")
+    for kind, number, names in (("linear", linear, _LINEAR), ("rotary", rotary, _ROTARY)):
+        name = axis_of(axes, number)
+        if not name:
+            raise ValueError(f"polar.{kind}_axis is {number}, but control.axes names no more than {listed(axes)}")
+        if name not in names:
+            raise ValueError(f"polar.{kind}_axis is {number}, but {name} is no {kind} axis: axes are {listed(axes)}")
+
+
+def axis_of(axes: Sequence[str], number: float) -> str:
+    """The name of an axis by its number, from 1; empty where there is none."""
+    return axes[int(number) - 1] if number == number // 1 and 1 <= number <= len(axes) else ""
+
+
+def listed(axes: Sequence[str]) -> str:
+    """The axes with their numbers, as in `1 X, 2 Z, 3 C`."""
+    return ", ".join(f"{number} {name}" for number, name in enumerate(axes, 1))

@@ -1,0 +1,140 @@
+"""
+The linear axis of the polar plane: which axis it is, and the words of arc centers that follow it.
+
+X on nearly every lathe. Parameter 5460, P beside G12.1 and, on Mitsubishi, parameter 1533 name another one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from functools import cached_property
+from typing import TypeVar, cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from polarcheck.arrays import Floats, Mask, States
+from polarcheck.machines.axes import INCREMENTS
+from polarcheck.machines.machine import LinearAddress
+from polarcheck.table.filling import fill_down
+from polarcheck.table.lengths import Lengths
+
+_X = ord("X")
+_UNKNOWN = 0
+
+Element = TypeVar("Element", bound=np.generic)
+
+
+class LinearAxis(Lengths):
+    """The columns of the linear axis; see the properties."""
+
+    @cached_property
+    def switches_on(self) -> Mask:
+        """G12.1."""
+        return self.codes(*self.machine.polar.on)
+
+    @cached_property
+    def switches_off(self) -> Mask:
+        """G13.1."""
+        return self.codes(*self.machine.polar.off)
+
+    @cached_property
+    def _named_axis(self) -> States:
+        """The character of the linear axis, from a G12.1 up to its G13.1; that of X elsewhere, 0 where unknown."""
+        own = _character(self.machine.linear_address)
+        named = self.switches_on & self.has("P") & ("P" in self.machine.polar.words_beside_switch)
+        if own == _X and not named.any():
+            return np.full(len(self), _X, np.int16)
+        axis = np.where(self.switches_on, own, _X)
+        for number in np.unique(self.word("P")[named]).tolist():
+            axis[named & (self.word("P") == number)] = _character(self.machine.linear_address_of(number))
+        return fill_down(axis.astype(np.int16), self.switches_on | self.switches_off | self.starts, _X)
+
+    @cached_property
+    def linear_is_known(self) -> Mask:
+        """The linear axis of the row is one that is followed: X, Y or Z by the names in control.axes."""
+        return np.asarray(self._named_axis != _UNKNOWN)
+
+    @cached_property
+    def linear_axis(self) -> States:
+        """
+        The address of the linear axis, as its character; X outside the mode and where it is not known.
+
+        P beside G12.1 says it by the number of the axis, else the machine (parameter 5460).
+        """
+        return np.where(self.linear_is_known, self._named_axis, _X).astype(np.int16)
+
+    @cached_property
+    def other_linear_axes(self) -> list[str]:
+        """The addresses of linear axes other than X in this file."""
+        return [axis for axis in INCREMENTS if axis != "X" and (self.linear_axis == ord(axis)).any()]
+
+    def _of_axis(self, column: Callable[[str], NDArray[Element]]) -> NDArray[Element]:
+        """Of a column for each axis the values of the linear axis of each row."""
+        found = column("X")
+        for axis in self.other_linear_axes:
+            found = np.where(self.linear_axis == ord(axis), column(axis), found)
+        return found
+
+    @cached_property
+    def programs_linear_axis(self) -> Mask:
+        """Has a word of the linear axis."""
+        return self._of_axis(lambda axis: self.has(axis, INCREMENTS[axis]))
+
+    @cached_property
+    def linear_words(self) -> Mask:
+        """Per executed word: one of the linear axis of its row."""
+        return self._words_of_axis(lambda axis: (axis, INCREMENTS[axis]))
+
+    def _words_of_axis(self, addresses: Callable[[str], Iterable[str]]) -> Mask:
+        """Per executed word: of the addresses that the linear axis of its row has."""
+        words = np.zeros(len(self.run.words), bool)
+        for axis in ("X", *self.other_linear_axes):
+            at = self.word_indices(*addresses(axis))
+            words[at[self.linear_axis[self.run.row[at]] == ord(axis)]] = True
+        return words
+
+    @cached_property
+    def programs_z(self) -> Mask:
+        """Has a word of Z, where that is not the linear axis."""
+        return np.asarray(self.has("Z", "W") & (self.linear_axis != ord("Z")))
+
+    # ---- words of arc centers ----
+
+    def center_words(self, row: int) -> tuple[str, str]:
+        """The addresses of arc centers in a row, along the linear and along the virtual axis: I and J with X."""
+        return self._center_words(chr(self.linear_axis[row]))
+
+    def _center_words(self, axis: str) -> tuple[str, str]:
+        return self.machine.polar.center_words[cast(LinearAddress, axis)]
+
+    def _other_center_word(self, axis: str) -> str:
+        return next(word for word in ("K", "I", "J") if word not in self._center_words(axis))
+
+    @cached_property
+    def has_center(self) -> Mask:
+        """Has a word of the center of an arc on the polar plane."""
+        return self._of_axis(lambda axis: self.has(*self._center_words(axis)))
+
+    @cached_property
+    def to_center(self) -> tuple[Floats, Floats]:
+        """The words of the center of an arc along the linear and the virtual axis [mm]; NaN where not written."""
+        along, across = (
+            self._of_axis(lambda axis, at=at: self.length_of(self._center_words(axis)[at]))  # type: ignore[misc]
+            for at in (0, 1)
+        )
+        return along, across
+
+    @cached_property
+    def other_center_word(self) -> Floats:
+        """The word of arc centers of the axis that is not of the polar plane, as written; NaN where there is none."""
+        return self._of_axis(lambda axis: self.word(self._other_center_word(axis)))
+
+    @cached_property
+    def other_center_words(self) -> Mask:
+        """Per executed word: one of those."""
+        return self._words_of_axis(self._other_center_word)
+
+
+def _character(axis: str) -> int:
+    return ord(axis) if axis else _UNKNOWN
