@@ -342,6 +342,29 @@ def test_virtual_axis_as_a_diameter() -> None:
 
 
 @pytest.mark.parametrize(
+    ("code", "alarm"),
+    [
+        *((code, "PS0146") for code in ("G0", "G17", "G28 U0", "G31 X3.", "G32 Z-5.", "G52 X0", "G53 X0", "G68")),
+        *((code, "PS0146") for code in ("G83 X40. C90. Z-1.", "G90 X20. Z-5.", "G92 X20. Z-1.", "G94 X20. Z-5.")),
+        *((code, None) for code in ("G10 L2 P1 X0", "G20", "G43 H1", "G54", "G61", "G80", "G93", "G96 S100")),
+    ],
+)
+def test_an_alarm_is_shown_at_codes_that_its_text_names(code: str, alarm: str | None) -> None:
+    """What the mode does not allow is an error whichever it is; its number is told where that is proved."""
+    program = f"G98 G0 X60. C0\nG12.1\nG1 X40. F100\n{code}\nG1 C5.\nX60.\nG13.1\n"
+    (finding,) = report_of(program, "fanuc-30i").findings
+    assert (finding.line, finding.severity, finding.alarm) == (4, "error", alarm)
+    (finding,) = report_of(program, "fanuc-16i").findings
+    assert finding.alarm == "146"
+
+
+def test_a_code_of_another_system_is_another_alarm() -> None:
+    """G94 is a cycle of system A, and allowed in systems B and C."""
+    program = "G90 G94 G0 X60. C0\nG12.1\nG1 X40. F100\nG94\nG1 C5.\nX60.\nG13.1\n"
+    assert report_of(program, "fanuc-30i", changes={"control": {"g_code_system": "B"}}).findings == []
+
+
+@pytest.mark.parametrize(
     ("program", "name", "rule", "alarm"),
     [
         ("G98 G0 X60. C0\nG12.1\nG1 X40. F100\nG0 C5.\nG1 C0\nG13.1\n", "fanuc-16i", "rapid-in-polar", "146"),

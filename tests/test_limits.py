@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -140,14 +141,34 @@ def test_from_g100_on_an_unknown_code_may_be_a_macro(code: str, severity: str) -
 ON_A_CIRCLE = "G98 G0 X60. C0\nG12.1\nG1 X40. F100\nG3 X-40. C0 R20. F{}\nX40. C0 R20.\nG1 X60.\nG13.1\n"
 
 
-def test_the_rate_of_c_at_its_limit_is_allowed() -> None:
-    """As the control does it: alarm above the limit."""
-    column = tables_of(ON_A_CIRCLE.format("123."))["tool_center"].c_feed
-    rate = float(np.nanmax(column))
-    for limit, is_above in ((rate, False), (np.nextafter(rate, 0), True)):
-        changes = {"limits": {"c_feed": float(limit)}}
-        report = report_of(ON_A_CIRCLE.format("123."), changes=changes, only=["c-feed-above-limit"])
-        assert bool(report.findings) == is_above
+@pytest.mark.parametrize(
+    ("share", "severity", "told"),
+    [
+        (1.0, "warning", "at 352 deg/min with F123., the limit of FANUC lathe control, below which it must stay"),
+        (1 - 1e-7, "error", "at 352.36904 deg/min with F123., FANUC lathe control allows 352.36901"),
+        (1 - 1e-5, "error", "deg/min with F123., FANUC lathe control allows 352.3"),
+        (1 + 1e-7, "", ""),
+    ],
+)
+def test_the_limit_of_c_is_open(share: float, severity: str, told: str) -> None:
+    """F < L * R * pi / 180 (B-62764EN/01 p. 52): equality and a hair above show the digits that tell them apart."""
+    rate = float(np.nanmax(tables_of(ON_A_CIRCLE.format("123."))["tool_center"].c_feed))
+    changes = {"limits": {"c_feed": rate * share}}
+    found = report_of(ON_A_CIRCLE.format("123."), changes=changes, only=["c-feed-above-limit"]).findings
+    assert [finding.severity for finding in found] == [severity] * bool(severity)
+    assert all(told in finding.message for finding in found)
+
+
+def test_the_highest_feed_told_is_none_that_is_told() -> None:
+    """What a message says to write instead gives no finding: not F200 where that turns C at its limit."""
+    changes = {"limits": {"c_feed": float(np.degrees(200 / 20))}}
+    asked = "200."
+    for _ in range(3):
+        found = report_of(ON_A_CIRCLE.format(asked), changes=changes, only=["c-feed-above-limit"]).findings
+        if not found:
+            break
+        asked = str(re.search(r"highest F .*?: ([\d.]+) mm/min", found[0].message)[1])  # type: ignore[index]
+    assert asked == "199"
 
 
 LINE = "G98 G0 X60. C0\nG12.1\nG1 X2. C10. F200\nC-10. F300\nX60. F200\nG13.1\n"

@@ -25,6 +25,7 @@ TABLES = {
 #: Keys that no check reads, and why.
 NOT_CHECKED = {
     "macro": "each of its keys has its program in test_macro_keys",
+    "alarm_codes": "test_an_alarm_is_shown_at_codes_that_its_text_names",
     "notes": "text for `polarcheck machines` and the page of controls",
     "known_parameters": "read where the profile is loaded; with [parameters] it is used below",
 }

@@ -17,6 +17,7 @@ from polarcheck.checking.rule import Hits, Rule
 from polarcheck.checking.tables import OF_CAUSE, Tables
 from polarcheck.errors import TooHardError
 from polarcheck.execution.run import begins_program
+from polarcheck.machines.codes import code_numbers, code_set
 from polarcheck.reading.excerpt import shortened
 from polarcheck.table.trace import Trace
 
@@ -216,12 +217,21 @@ class Engine:
             block=block,
             program=self._program_name(place.block),
             section_line=int(trace.line[trace.sections.enter[section]]) if section >= 0 else None,
-            alarm=None if is_note else trace.machine.alarms.get(rule.name) or None,
+            alarm=None if is_note else self._alarm(rule, at),
             values=values,
             count=count,
             source=rule.source,
             fingerprint=_fingerprint(rule.name, block),
         )
+
+    def _alarm(self, rule: Rule, at: list[int]) -> str | None:
+        """What the control shows; not where the text of the alarm names codes, and those at fault are others."""
+        machine, table = self.trace.machine, self.trace.run.words
+        alarm = machine.alarms.get(rule.name) or None
+        if alarm not in machine.alarm_codes:
+            return alarm
+        written = code_numbers(table.value[[index for index in at if table.address[index] == ord("G")]])
+        return alarm if not len(written) or code_set(machine.codes_of_alarm(alarm))[written].any() else None
 
     def _program_name(self, block: int) -> str | None:
         at = bisect.bisect_right(self.heads, block, key=lambda head: head[0])

@@ -22,9 +22,9 @@ class Quantity:
     A value of one row that knows how to show itself.
 
     Formats beyond Python's: `length` and `feed` turn mm and mm/min to the program's units, `diameter` doubles a radius
-    where the program writes diameters, `highest` is a feed of three digits that is never above the value, `whole` has
-    no digits behind the point, `point` shows a plane point as X and C words, `blocks` tells a
-    number of blocks above one.
+    where the program writes diameters, `highest` is a feed of three digits that is never above the value, `below` one
+    that is not equal to it either, `whole` has no digits behind the point, `point` shows a plane point as X and C
+    words, `blocks` tells a number of blocks above one.
     """
 
     def __init__(self, value: Any, inch: bool, diameter: bool) -> None:
@@ -36,8 +36,8 @@ class Quantity:
         if form in _DIGITS:
             return self.shown(form)
         value = self.value
-        if form == "highest":
-            return f"{_rounded_down(self.length(value))} {self.unit}/min"
+        if form in ("highest", "below"):
+            return f"{_rounded_down(self.length(value), form == 'below')} {self.unit}/min"
         if form == "point":
             x, c = self.length(value.real) * (2 if self.diameter else 1), self.length(value.imag)
             digits = _DIGITS["length"][self.inch]
@@ -95,12 +95,13 @@ def _short(value: float, digits: int) -> str:
     return "0" if text in ("-0", "") else text
 
 
-def _rounded_down(value: float) -> str:
-    """Three significant digits, never above the value: a highest F must be allowed itself."""
+def _rounded_down(value: float, below: bool) -> str:
+    """Three significant digits, never above the value, nor equal to it where below: a highest F must be allowed."""
     if not np.isfinite(value) or value <= 0:
         return f"{value:g}"
     places = 2 - int(np.floor(np.log10(value)))
-    scaled = np.floor(value * 10.0**places + 1e-9) / 10.0**places
+    whole = value * 10.0**places
+    scaled = (np.ceil(whole - 1e-6) - 1 if below else np.floor(whole + 1e-9)) / 10.0**places
     return f"{scaled:.{max(places, 0)}f}".rstrip("0").rstrip(".") if places > 0 else f"{scaled:.0f}"
 
 

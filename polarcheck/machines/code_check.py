@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 
-from polarcheck.errors import MachineError
+from polarcheck.errors import MachineError, RuleError
 from polarcheck.machines.code_lists import GCodes, GCodeSystem, is_code, numbers
 from polarcheck.machines.machine import Machine, MCodes
 from polarcheck.machines.modal import STATES
@@ -40,6 +40,12 @@ def check_codes(machine: Machine, origins: Mapping[str, Origin], chain: Sequence
                     if isinstance(code, str) and not is_one(code):
                         raise MachineError(f"{origins[f'{table}.{key}'].profile}: {table}.{key}: {code!r} is no code")
 
+    for alarm, names in machine.alarm_codes.items():
+        for name in names:
+            if not is_code(name) and not _is_list(machine, name):
+                key = f"alarm_codes.{alarm}"
+                raise MachineError(f"{origins[key].profile}: {key}: {name!r} is neither a code nor a list of codes")
+
     def distance(key: str) -> int:
         profile = origins[key].profile
         return chain.index(profile) if profile in chain else -1
@@ -66,3 +72,10 @@ def _is_address_or_code(text: str) -> bool:
 def _is_word(text: str) -> bool:
     """TRANSMIT is one; what looks like a code must be one."""
     return bool(text) and (_is_single(text) or not re.match("[GM][0-9.-]", text))
+
+
+def _is_list(machine: Machine, name: str) -> bool:
+    try:
+        return bool(machine.table_of(name))
+    except RuleError:
+        return False

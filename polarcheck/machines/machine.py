@@ -276,6 +276,7 @@ class Machine(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
 
     title: what messages call it
     alarms: rule -> alarm that the control shows
+    alarm_codes: alarm -> the G codes, and lists of G codes, that its text names; at others its number is not proved
     severities: rule -> error, warning, note or off, where the rule itself says otherwise
     notes: what is not known, or why a rule is silent
     known_parameters: control parameter -> the values of this file that it stands for (parameters.Meaning)
@@ -296,6 +297,7 @@ class Machine(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     g_code_system_c: GCodeSystem
     macro: Macro
     alarms: dict[str, str] = {}
+    alarm_codes: dict[str, list[str]] = {}
     severities: dict[str, Literal["error", "warning", "note", "off"]] = {}
     notes: list[str] = []
     known_parameters: dict[str, Meaning] = {}
@@ -341,6 +343,11 @@ class Machine(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
         """The codes of all lists of [g_codes] and of the G-code system in force: what the control has, too."""
         lists = [*msgspec.structs.astuple(self.g_codes), *msgspec.structs.astuple(self.system)]
         return [code for codes in lists for code in codes if isinstance(code, str)]
+
+    def codes_of_alarm(self, alarm: str) -> list[str]:
+        """The codes that the text of an alarm names, one by one; none where it is shown at any."""
+        listed = self.alarm_codes.get(alarm, [])
+        return expanded(code for name in listed for code in ([name] if is_code(name) else self.codes(name)))
 
     def codes(self, key: str) -> list[str]:
         """The codes of a list, whichever table it is in, one by one. Raises RuleError for a list that there is not."""

@@ -23,7 +23,7 @@ DEFAULT = "fanuc"
 #: Files that may stand behind each other by `inherits`; the built-in ones have four.
 _LONGEST_CHAIN = 10
 #: Tables that a profile can leave behind.
-_REPLACED = ("alarms", "known_parameters", "severities", "notes")
+_REPLACED = ("alarms", "alarm_codes", "known_parameters", "severities", "notes")
 
 
 class UnknownMachineError(MachineError):

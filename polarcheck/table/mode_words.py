@@ -9,6 +9,7 @@ import numpy as np
 from polarcheck.arrays import Mask
 from polarcheck.machines.codes import NO_CODE, code_set
 from polarcheck.reading.words import NumberFault
+from polarcheck.table.filling import before
 from polarcheck.table.trace import Trace
 
 _AXES = ("X", "Y", "Z", "C", "U", "V", "W", "H")
@@ -59,6 +60,13 @@ class ModeWords:
         found = np.zeros(len(trace.run.words), bool)
         found[trace.g_words] = ~allowed[trace.g_codes] & (trace.g_codes != NO_CODE)
         return found & self.in_rows(trace.in_polar)
+
+    @cached_property
+    def ends_drilling(self) -> Mask:
+        """G80 of a drilling cycle that is in force: it was that which cannot stand in the mode."""
+        trace = self.trace
+        drills = before(trace.drilling, trace.starts, 0) != 0
+        return self.listed("drilling_cycle_off") & self.in_rows(drills)
 
     @cached_property
     def unknown(self) -> Mask:

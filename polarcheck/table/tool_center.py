@@ -20,6 +20,8 @@ from polarcheck.table.trace import Trace
 
 #: The share of R that must fit beside a stretch of many blocks for their rounding to be what is wrong.
 _SURELY = 7 / 8
+#: Rates that differ by no more than this share are the same: what the last bits of their formulas make.
+_SAME = 1e-9
 
 
 class ToolCenter:
@@ -158,8 +160,21 @@ class ToolCenter:
         return limits.c_feed * (min(limits.override_share, 100) / 100 if limits.automatic_override else 1)
 
     @cached_property
+    def exceeds_c_feed_limit(self) -> Mask:
+        """C would turn faster than its limit."""
+        return np.asarray(self.c_feed > self.c_feed_limit * (1 + _SAME))
+
+    @cached_property
+    def is_at_c_feed_limit(self) -> Mask:
+        """C would turn at the machine's own limit, which F < L * R * pi / 180 leaves out (B-62764EN/01 p. 52)."""
+        limits = self.trace.machine.limits
+        if np.isnan(limits.c_feed) or limits.automatic_override:
+            return np.zeros(len(self.trace), bool)
+        return np.asarray(np.abs(self.c_feed - self.c_feed_limit) <= self.c_feed_limit * _SAME)
+
+    @cached_property
     def feed_allowed(self) -> Floats:
-        """Highest F that keeps C at or below its limit [mm/min]; inf without movement."""
+        """F that turns C at its limit [mm/min]; inf without movement."""
         return self._of_moves(self.moves.feed_allowed(self.c_feed_limit), np.inf, largest=False)
 
     @cached_property

@@ -42,6 +42,8 @@ def verdict(trace: Trace, tool_center: ToolCenter, row: int) -> str:
     if np.isnan(limits.c_feed):
         turns, most = float(tool_center.c_feed[row]) / 360, limits.c_feed_suspicious / 360
         return f"which is {turns:.0f} turns a minute, and no C axis is known to cut with more than {most:.0f}"
+    if tool_center.is_at_c_feed_limit[row]:
+        return f"the limit of {trace.machine.title}, below which it must stay"
     rate, limit = (in_row(float(value), trace, row) for value in (tool_center.c_feed[row], limits.c_feed))
     allows = f"{trace.machine.title} allows {limit.beside(rate, 'whole')}"
     if not limits.automatic_override:
@@ -55,7 +57,7 @@ def advice(trace: Trace, tool_center: ToolCenter, row: int, count: int) -> str:
     where = f"for its {count} blocks" if count > 1 else "here"
     if np.isnan(trace.machine.limits.c_feed):
         return f"--set limits.c_feed=... would give the highest F {where}"
-    return f"highest F {where}: {in_row(float(tool_center.feed_allowed[row]), trace, row):highest}"
+    return f"highest F {where}: {in_row(float(tool_center.feed_allowed[row]), trace, row):below}"
 
 
 def meeting(center: Center, tool_center: ToolCenter, row: int) -> str:

@@ -1,7 +1,7 @@
 from __future__ import annotations
 
 from polarcheck.checking.causes import NO_SUCH_ARC, SECTION_READ_OTHERWISE
-from polarcheck.checking.rule import ERROR, WARNING, Center, Hits, Machine, ToolCenter, rule
+from polarcheck.checking.rule import ERROR, WARNING, Center, Hits, Machine, ToolCenter, graded, rule
 
 
 @rule(
@@ -22,8 +22,9 @@ def c_feed_above_limit(center: Center, tool_center: ToolCenter, machine: Machine
     F is the speed of the tool center on the plane. The nearer the tool center comes to the center of the C axis, the
     faster C must turn for it: F / L, where L is their smallest distance. Above the limit the control stops with an
     alarm or, with automatic override, slows down. Use F < L * R * pi / 180, with R the limit of C in deg/min, or keep
-    away from the center. limits.c_feed of the profile is R; without it only a rate that no C axis cuts with is
-    reported. One finding stands for all blocks that an F word governs, at the one with the highest rate.
+    away from the center; exactly at the limit it is a warning. limits.c_feed of the profile is R; without it only a
+    rate that no C axis cuts with is reported. One finding stands for all blocks that an F word governs, at the one with
+    the highest rate.
 
     Source: FANUC B-62764EN/01, p. 52; B-63324EN/03, p. 192.
 
@@ -61,6 +62,14 @@ def c_feed_above_limit(center: Center, tool_center: ToolCenter, machine: Machine
         X4.
         G13.1
 
+    Bad, set limits.c_feed=1145.9155902616465:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X10. C5. F60
+        C-5. F100         (expect: c-feed-above-limit)
+        G13.1
+
     Good, set limits.c_feed=3600:
 
         G98 G0 X60. C0
@@ -70,5 +79,8 @@ def c_feed_above_limit(center: Center, tool_center: ToolCenter, machine: Machine
         G13.1
     """
     limit = machine.limits.c_feed
-    above = center.cuts_off_center & (tool_center.c_feed > tool_center.c_feed_limit)
-    return Hits(above, WARNING if machine.limits.automatic_override or limit != limit else ERROR)
+    above = center.cuts_off_center & tool_center.exceeds_c_feed_limit
+    at_limit = center.cuts_off_center & tool_center.is_at_c_feed_limit
+    if machine.limits.automatic_override or limit != limit:
+        return Hits(above, WARNING)
+    return graded(error=above, warning=at_limit)

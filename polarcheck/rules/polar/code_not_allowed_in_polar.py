@@ -71,6 +71,7 @@ def code_not_allowed_in_polar(mode_words: ModeWords, machine: Machine) -> Hits:
         | mode_words.sets_length_offset
         | mode_words.shifts_origin
         | mode_words.changes_tool_offset
+        | mode_words.ends_drilling
         | mode_words.unknown
     )
     other = mode_words.not_allowed & ~has_its_own_rule

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Mask, Trace, rule
+from polarcheck.checking.rule import ERROR, NOTE, WARNING, Hits, Machine, Trace, rule
 from polarcheck.machines.modal import Motion
 
 
@@ -9,7 +9,7 @@ from polarcheck.machines.modal import Motion
     "{others} in one block in the polar mode: {what_z_does}; write Z in a block of its own",
     at=("X", "U", "C", "H", "Y", "V", "Z", "W"),
 )
-def z_with_plane_axis(trace: Trace) -> Mask:
+def z_with_plane_axis(trace: Trace, machine: Machine) -> Hits:
     """
     Z in one block with X or C.
 
@@ -17,7 +17,8 @@ def z_with_plane_axis(trace: Trace) -> Mask:
     do, or after them, and the tool does not follow the line in space from start to end. Some lathes cannot move them
     together at all. Where it works as posts write it, compensation may still take the block for one more corner. Move Z
     in a block of its own: in the plane first and then in on approach, out first and then in the plane on retract. A
-    block that repeats X and C as they are moves Z only. The machine's profile says what Z does (polar.other_axes).
+    block that repeats X and C as they are moves Z only. The machine's profile says what Z does (polar.other_axes):
+    where that is forbidden this is an error, where Z moves along with the others a note.
 
     Source: FANUC B-62764EN/01, p. 51, axes that are not in the plane; builder's guide to G12.1, linear interpolation.
 
@@ -40,6 +41,15 @@ def z_with_plane_axis(trace: Trace) -> Mask:
         G40 X2.4
         G13.1
 
+    Bad, set polar.other_axes="together":
+
+        G98 G0 X60. Z2. C0
+        G12.1
+        G1 X40. C5. Z-5. F200   (expect: z-with-plane-axis)
+        C10.
+        X60.
+        G13.1
+
     Good:
 
         G98 G0 X60. Z2. C0
@@ -51,4 +61,5 @@ def z_with_plane_axis(trace: Trace) -> Mask:
         G13.1
     """
     moves_both = trace.in_polar & trace.moves_plane & trace.moves_z
-    return moves_both & (trace.motion == Motion.LINE) & (trace.length > 0)
+    severity = {"forbidden": ERROR, "independent": WARNING, "together": NOTE}[machine.polar.other_axes]
+    return Hits(moves_both & (trace.motion == Motion.LINE) & (trace.length > 0), severity)
