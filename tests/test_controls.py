@@ -211,7 +211,8 @@ def test_infeed_cycle_pass_by_pass() -> None:
 
 def test_infeed_cycle_with_a_cutter() -> None:
     moves = moves_of(GSK_CYCLE, "gsk-988", "2:radius=10")
-    assert sorted({round(float(value), 6) for value in moves.end.real[::10]}) == [160, 168, 176]
+    # The start point at 174 is that of the tool center: a pass at 176 would lie beyond it.
+    assert sorted({round(float(value), 6) for value in moves.end.real[::10]}) == [160, 168]
     unknown = moves_of(GSK_CYCLE, "gsk-988")
     assert len(unknown) == 30
     assert not unknown.known.any()
@@ -224,6 +225,16 @@ def test_infeed_cycle_with_a_cutter() -> None:
 def test_how_many_passes(infeed: str, passes: int) -> None:
     moves = moves_of(GSK_CYCLE.replace("E8.", infeed), "gsk-988", "2:radius=0")
     assert len(moves) == 10 * passes
+
+
+@pytest.mark.parametrize(
+    ("infeed", "passes"),
+    [("E8.", [171, 163, 155]), ("E5.", [170, 165, 160, 155]), ("E7.", [169, 162, 155]), ("E23.9", [155])],
+)
+def test_the_first_pass_is_not_beyond_the_start_point(infeed: str, passes: list[float]) -> None:
+    """From X348 with R 5 round X300: all between 174 and 155, E apart."""
+    moves = moves_of(GSK_CYCLE.replace("E8.", infeed), "gsk-988", "2:radius=5")
+    assert moves.end.real[::10] == pytest.approx(passes)
 
 
 def test_infeed_cycle_along_the_path_of_the_tool_center() -> None:

@@ -6,10 +6,13 @@ The moves of the passes are compared with the manual's own program in test_contr
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
-from programs import tables_of
+from programs import moves_of, report_of, said, tables_of
 
+from polarcheck.machines.modal import Motion
 from polarcheck.table.infeed import MOST_PASSES, Infeed
 
 #: Around a square of 20 mm half width, from X60. (30 mm) to the last point and out again.
@@ -17,8 +20,8 @@ SQUARE = "G98 G0 X60. C0\nG12.1 {}\nG1 X40. F100\nC20.\nX-40.\nC-20.\nX40.\n{}\n
 ENTRY = 1
 
 
-def table(program: str, machine: str = "gsk-988", *tools: str) -> Infeed:
-    infeed: Infeed = tables_of(program, machine, *tools)["infeed"]
+def table(program: str, machine: str = "gsk-988", *tools: str, **changes: dict[str, float]) -> Infeed:
+    infeed: Infeed = tables_of(program, machine, *tools, changes=changes)["infeed"]
     return infeed
 
 
@@ -94,7 +97,7 @@ def test_one_move_has_no_gap() -> None:
 
 @pytest.mark.parametrize(
     ("written", "offsets"),
-    [("E4.", [8.0, 4.0]), ("E5.", [5.0]), ("E10.", []), ("E3.", [9.0, 6.0, 3.0]), ("E9.999", [9.999])],
+    [("E4.", [8.0, 4.0]), ("E5.", [5.0]), ("E10.", []), ("E3.", [9.0, 6.0, 3.0]), ("E9.999", []), ("E9.99", [9.99])],
 )
 def test_passes_lie_whole_depths_off_the_contour(written: str, offsets: list[float]) -> None:
     """The start point lies 10 mm off the contour; a pass through it would cut nothing."""
@@ -110,6 +113,231 @@ def test_an_open_contour_has_one_pass() -> None:
 def test_of_many_passes_only_some_are_simulated(count: int, in_part: bool) -> None:
     """10 mm and one pass less than there are whole depths in them: the last is the contour itself."""
     depth = 10.0 / (count + 0.5)
-    infeed = table(SQUARE.format(f"E{depth:.9f}", "C0"))
+    infeed = table(SQUARE.format(f"E{depth:.9f}", "C0"), control={"least_increment": 1e-9})
     assert len(infeed.offsets(ENTRY)) == count
     assert infeed.is_simulated_in_part.tolist() == [in_part and row == ENTRY for row in range(len(infeed.trace))]
+
+
+@pytest.mark.parametrize(
+    ("head", "written", "depth"),
+    [
+        ("", "E8.0009", 8.0),
+        ("", "E.0009", 0.0),
+        ("", "E.001", 0.001),
+        ("G20\n", "E.10009", 2.54),
+        ("G20\n", "E.00009", 0.0),
+    ],
+)
+def test_what_is_finer_than_the_least_increment_is_dropped(head: str, written: str, depth: float) -> None:
+    infeed = table(head + SQUARE.format(written, "C0"))
+    assert infeed.depth.max() == pytest.approx(depth)
+    assert len(infeed.passes.nonzero()[0]) == (depth > 0)
+
+
+# ---- how many passes, in closed form ----
+
+
+def circle(code: str, radius: float, start: float, infeed: float, way: str = "G3") -> str:
+    """Once round a circle about the center, from a start point on X and back to it; X in diameters."""
+    x, s = 2 * radius, 2 * start
+    half = f"{way} X{{:.4f}} C0 R{radius:.4f}\n"
+    rounds = half.format(-x) + half.format(x)
+    contour = f"{code} G1 X{x:.4f} C0 F200\n{rounds}G40 G1 X{s:.4f} C0\n"
+    return f"T0202\nG98 G0 X{s:.4f} C0\nG12.1 E{infeed:.4f}\n{contour}G13.1\n"
+
+
+def radii_by_steps(radius: float, cutter: float, start: float, infeed: float) -> list[float]:
+    """Where the tool center goes round: out (or in) from the contour by E as long as the start point lies beyond."""
+    outward = 1 if start > radius else -1
+    found = [radius + outward * cutter]
+    while outward * (start - (found[-1] + outward * infeed)) > 1e-6:
+        found.append(found[-1] + outward * infeed)
+    return found[::-1]
+
+
+def radii_of(program: str, *tools: str, arcs: int = 2, **changes: object) -> list[float]:
+    """Those of the arcs of the tool center, one for each pass, which has so many arcs."""
+    moves = moves_of(program, "gsk-988", *tools, changes=changes)
+    round_about = moves.chosen(np.isin(moves.kind, (Motion.CW, Motion.CCW)))
+    radius = np.abs(round_about.start - round_about.center)
+    assert np.abs(round_about.center).max() < 1e-3
+    assert radius == pytest.approx(np.repeat(radius[::arcs], arcs), abs=1e-3)
+    return [round(float(value), 5) for value in radius[::arcs]]
+
+
+CIRCLES = [
+    # radius of the contour, R, start point, E
+    (150.0, 5.0, 174.0, 8.0),
+    (150.0, 5.0, 174.0, 5.0),
+    (150.0, 5.0, 174.0, 7.0),
+    (150.0, 5.0, 174.0, 23.9),
+    (150.0, 0.0, 174.0, 8.0),
+    (150.0, 4.0, 174.0, 10.0),
+    (60.0, 5.0, 50.0, 4.0),
+    (60.0, 4.0, 50.0, 8.0),
+    (60.0, 5.0, 20.0, 8.0),
+    (60.0, 5.0, 10.0, 2.5),
+    (60.0, 0.0, 50.0, 3.0),
+]
+
+
+@pytest.mark.parametrize(("radius", "cutter", "start", "infeed"), CIRCLES)
+@pytest.mark.parametrize("way", ["G3", "G2"])
+def test_passes_of_a_circle(radius: float, cutter: float, start: float, infeed: float, way: str) -> None:
+    """Outside and inside, G41 and G42, both ways round: none is beyond the start point, R counts, the steps are E."""
+    code = "G42" if (start > radius) == (way == "G3") else "G41"
+    found = radii_of(circle(code, radius, start, infeed, way), f"2:radius={cutter}")
+    assert found == pytest.approx(radii_by_steps(radius, cutter, start, infeed))
+    assert all(abs(one - radius) < abs(start - radius) for one in found)
+    other = {"G41": "G42", "G42": "G41"}[code]
+    mirrored = radii_of(circle(other, radius, start, infeed, way), f"2:radius={-cutter}")
+    assert mirrored == pytest.approx(found) or cutter == 0, "R below 0 is the other side"
+
+
+@pytest.mark.parametrize(("radius", "cutter", "start", "infeed"), CIRCLES)
+def test_passes_of_twins(radius: float, cutter: float, start: float, infeed: float) -> None:
+    """The same in inch, with numbers fine enough, and with X as a radius in the mode."""
+    code = "G42" if start > radius else "G41"
+    # A pass through the start point is none, and in inch its numbers would be as near to that as their digits are.
+    start += 0.01 if start > radius else -0.01
+    program = circle(code, radius, start, infeed)
+    expected = pytest.approx(radii_by_steps(radius, cutter, start, infeed), abs=1e-3)
+    inch = "G20\n" + re.sub(r"([XRE])(-?[\d.]+)", lambda word: f"{word[1]}{float(word[2]) / 25.4:.8f}", program)
+    fine = {"least_increment_inch": 1e-8}
+    assert radii_of(inch, f"2:radius={cutter / 25.4:.9f}", control=fine) == expected
+    before, mode = program.split("G12.1")
+    halved = re.sub(r"X(-?[\d.]+)", lambda word: f"X{float(word[1]) / 2}", mode)
+    assert radii_of(f"{before}G12.1{halved}", f"2:radius={cutter}", parameters={"5450#6": 1}) == expected
+
+
+@pytest.mark.parametrize("angle", [0.0, 30.0, 137.0, 250.0])
+@pytest.mark.parametrize(("start", "code"), [(62.0, "G42"), (25.0, "G41")])
+def test_passes_of_a_turned_twin(angle: float, start: float, code: str) -> None:
+    """Begun from any direction: the number of passes hangs on the distance alone."""
+    degrees = [0, 0, 120, 240, 360, 0]
+    points = np.array([start, 40, 40, 40, 40, start]) * np.exp(1j * np.radians(np.add(degrees, angle)))
+    begin, first, *arcs, out = (f"X{2 * point.real:.4f} C{point.imag:.4f}" for point in points)
+    contour = f"{code} {first}\n" + "".join(f"G3 {arc} R40.\n" for arc in arcs)
+    head = f"T0202\nG98 G0 X{2 * start} C0\nG12.1 E4.\nG1 {begin} F200\n"
+    found = radii_of(f"{head}{contour}G40 G1 {out}\nG13.1\n", "2:radius=3", arcs=3)
+    assert found == pytest.approx(radii_by_steps(40, 3, start, 4), abs=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("start", "widths"),
+    [
+        ("X68. C0.", [30.0, 25.0, 20.0]),
+        # Off a corner: 19.8 mm from it, 14 mm from the lines of both sides; the corner of a pass lies as far out.
+        ("X68. C34.", [30.0, 25.0, 20.0]),
+        ("X72. C36.", [35.0, 30.0, 25.0, 20.0]),
+        # No pass lies between the contour and a start point on the other side of it.
+        ("X20. C0.", [20.0]),
+    ],
+)
+def test_no_pass_is_beyond_the_start_point(start: str, widths: list[float]) -> None:
+    sides = "C20.\nX-40.\nC-20.\nX40.\nC0\n"
+    head = f"T0202\nG98 G0 X200. C0\nG12.1 E5.\nG1 {start} F100\n"
+    moves = moves_of(f"{head}G42 X40. C0\n{sides}G40 {start}\nG13.1\n", "gsk-988", "2:radius=0")
+    far = moves.end[moves.row == 7]
+    assert np.abs(far.real) == pytest.approx(widths)
+
+
+# ---- passes are checked as the contour is ----
+
+POCKET = """T0202
+G98 G0 X20. C0
+G12.1 E{}
+G41 G1 X80. F600
+C40.
+X-80.
+C-40.
+X80.
+C0
+G40 X20.
+G13.1
+"""
+
+
+def test_the_rate_of_c_on_a_pass_is_named() -> None:
+    """The pass 24 mm off a wall at 40 mm runs 11 mm off the center: 600 / 11 mm is 3125 deg/min."""
+    report = report_of(POCKET.format("8."), "gsk-988", "2:radius=5,nose=0", changes={"limits": {"c_feed": 2000}})
+    assert said(report) == [(5, "c-feed-above-limit")]
+    found = report.findings[0]
+    assert found.severity == "error"
+    assert (
+        "nearest distance 11 mm; highest F for its 5 blocks, on the pass 24 mm off the contour: 383 mm/min"
+        in found.message
+    )
+    alone = report_of(POCKET.format("0"), "gsk-988", "2:radius=5,nose=0", changes={"limits": {"c_feed": 2000}})
+    assert said(alone) == []
+
+
+SLOT = """T0202
+G98 G0 X{} C0
+G12.1 E{}
+G42 G1 X80. F200
+C40.
+X20.
+{}
+C40.
+X-80.
+C-40.
+X80.
+C0
+G40 X{}
+G13.1
+"""
+ROUND = "C38.\nG2 X-20. R10.\nG1"
+SHARP = "C30.\nX-20.\n"
+
+
+@pytest.mark.parametrize(
+    ("start", "infeed", "inner", "unfit"),
+    [
+        # The groove is 20 mm wide: R 5 and 4 mm fit, with 8 mm they do not.
+        ("120.", "4.", ROUND, (2, "2 of 4 passes", "already 8 mm off it with R 5 mm")),
+        ("120.", "4.", SHARP, (2, "2 of 4 passes", "already 8 mm off it with R 5 mm")),
+        ("120.", "1.5", ROUND, (2, "6 of 10 passes", "already 6 mm off it with R 5 mm")),
+        ("98.", "2.", ROUND, None),
+        ("98.", "2.", SHARP, None),
+        ("120.", "0", ROUND, None),
+    ],
+)
+def test_passes_that_do_not_fit_are_one_finding(
+    start: str, infeed: str, inner: str, unfit: tuple[int, str, str] | None
+) -> None:
+    program = SLOT.format(start, infeed, inner, start)
+    report = report_of(program, "gsk-988", "2:radius=5,nose=0")
+    assert said(report) == ([] if unfit is None else [(3, "infeed-pass-does-not-fit")])
+    if unfit is not None:
+        assert report.findings[0].severity == "warning"
+        assert report.findings[0].message.startswith(unfit[1])
+        assert unfit[2] in report.findings[0].message
+
+
+def test_passes_that_do_not_fit_in_two_sections_are_two_findings() -> None:
+    one = SLOT.format("120.", "4.", ROUND, "120.").removeprefix("T0202\n")
+    report = report_of(f"T0202\n{one}{one}", "gsk-988", "2:radius=5,nose=0")
+    assert [rule for _, rule in said(report)] == ["infeed-pass-does-not-fit"] * 2
+
+
+def test_a_pass_does_not_fit_where_the_contour_does_not() -> None:
+    """R 11 in an arc of 10 is the fault of the contour, from which that of its passes follows."""
+    report = report_of(SLOT.format("120.", "4.", ROUND, "120."), "gsk-988", "2:radius=11,nose=0")
+    assert "infeed-pass-does-not-fit" not in [rule for _, rule in said(report)]
+    follows = [one.rule for found in report.findings for one in found.follows]
+    assert "infeed-pass-does-not-fit" in follows
+
+
+def test_without_a_radius_passes_are_not_judged() -> None:
+    report = report_of(SLOT.format("120.", "4.", ROUND, "120."), "gsk-988")
+    assert "infeed-pass-does-not-fit" not in [rule for _, rule in said(report)]
+    assert "infeed-pass-does-not-fit" in [entry.rule for entry in report.not_evaluated]
+
+
+def test_a_stock_that_is_cleared_is_cleared_by_all_passes() -> None:
+    """A pass that runs outside of the bar cuts air; a start point inside of it has a finding of its own."""
+    program = POCKET.replace("X20.", "X140.").replace("G41", "G42").format("4.")
+    tool = "2:radius=5,nose=0,diameter=10"
+    assert said(report_of(program, "gsk-988", tool, job={"stock": {"diameter": 115}})) == []
+    assert said(report_of(program, "gsk-988", tool, job={"stock": {"diameter": 135}})) == [(3, "approach-inside-stock")]

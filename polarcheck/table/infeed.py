@@ -6,18 +6,29 @@ further cycle until the contour is reached; the contour must be closed; E is a r
 What it leaves open, and what is taken here: a pass is the contour, moved off by a whole multiple of E to the side on
 which the tool is, and its F is that of the contour; as many passes are cut as lie between the contour and the start
 point, the farthest first; the control goes straight from the end of a pass to the beginning of the next.
+
+How many these are: the start point is one of the tool center, and lies d off the contour, on the side of the tool. The
+tool center of the pass k E off the contour runs R + k E off it. The first pass is an infeed from the start point, too,
+so that R + k E < d: there are ceil((d - R) / E) - 1 of them before the contour itself, inside as outside. One that is
+through the start point but for the rounding of coordinates is none. R is 0 where the tool center itself is programmed,
+and where nobody knows R. Where the contour lies between the start point and the tool there is none; and round a corner,
+where the tool center swings out by more than R + k E, none beyond the start point.
+
+A pass that runs along arcs or corners into which R and its offset together do not fit has a finding and no moves.
 """
 
 from __future__ import annotations
 
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from msgspec.structs import replace
 
-from polarcheck.arrays import Floats, Mask, Rows
-from polarcheck.geometry import polar
-from polarcheck.machines.modal import Motion, Side
+from polarcheck.arrays import Floats, Mask, Points, Rows, States
+from polarcheck.geometry import enclosed, polar
+from polarcheck.geometry.compensation import ToolPath
+from polarcheck.machines.modal import Motion, Side, Units
 from polarcheck.table.moves import Moves, compensation_path, joined, of_tool, tool_center_path
 from polarcheck.table.trace import Trace
 
@@ -26,6 +37,29 @@ CLOSED = 0.002
 #: Passes of a section that are simulated, those next to the contour: C turns fastest where the tool is nearest.
 MOST_PASSES = 200
 MOST_MOVES = 200_000
+#: Of a least increment: what computing leaves of a whole number of them.
+_NOISE = 1e-6
+
+
+class _Cycle(NamedTuple):
+    """
+    The simulated passes of one cycle: the rows of its contour, how far each pass lies off it [mm], the farthest first.
+
+    rows: of the trace, those of the contour for each pass. tool: its path, of which `row` leads into `rows`. known:
+    bool[rows]. unfit: bool[passes, contour], where the control would object to a pass.
+    """
+
+    contour: Rows
+    offsets: Floats
+    rows: Rows
+    tool: ToolPath
+    known: Mask
+    unfit: Mask
+
+    @property
+    def is_unfit(self) -> Mask:
+        """Passes to which the control would object anywhere."""
+        return np.asarray(self.unfit.any(axis=1))
 
 
 class Infeed:
@@ -35,12 +69,28 @@ class Infeed:
         self.trace = trace
 
     @cached_property
-    def depth(self) -> Floats:
-        """E of the section that each G12.1 begins [mm, radius], without its sign; 0 where there is none."""
+    def written(self) -> Floats:
+        """E beside each G12.1 [mm, radius], without its sign and as it is written; NaN where there is none."""
         trace, word = self.trace, self.trace.machine.polar.infeed_word
         if not word:
-            return np.zeros(len(trace))
-        return np.where(trace.enters, np.abs(np.nan_to_num(trace.length_of(word))), 0.0)
+            return np.full(len(trace), np.nan)
+        return np.where(trace.enters, np.abs(trace.length_of(word)), np.nan)
+
+    @cached_property
+    def least_increment(self) -> Floats:
+        """Least input increment of lengths [mm]."""
+        trace, control = self.trace, self.trace.machine.control
+        inch = trace.units == Units.INCH
+        return np.where(inch, control.least_increment_inch, control.least_increment) * trace.scale
+
+    @cached_property
+    def depth(self) -> Floats:
+        """
+        E of the section that each G12.1 begins [mm, radius], without its sign; 0 where there is none.
+
+        The control drops what is finer than its least increment, so that an E below that is none.
+        """
+        return np.nan_to_num(np.floor(self.written / self.least_increment + _NOISE) * self.least_increment)
 
     @cached_property
     def _begins(self) -> list[int]:
@@ -92,16 +142,38 @@ class Infeed:
         if not closed:
             return np.zeros(0)
         depth = float(self.depth[row])
-        count = int(min(np.ceil(self._start_distance(contour) / depth - 1e-9) - 1, 1e6))
+        count = int(min(np.ceil((self._room(contour) - CLOSED) / depth) - 1, 1e6))
         return depth * np.arange(max(count, 0), 0, -1.0)
 
-    def _start_distance(self, contour: Rows) -> float:
-        """From the start point to the nearest point of the contour [mm]; 0 if unknown."""
+    def _seen_from(self, point: complex, contour: Rows) -> tuple[Points, Points, Points, States]:
+        """start, end, center, kind of the contour, from a point instead of the center of C."""
         trace, on = self.trace, contour[1:]
-        start = trace.start[contour[0]]
-        shape = (trace.start[on] - start, trace.end[on] - start, trace.center[on] - start)
         kind = np.where(np.isnan(trace.center[on]), Motion.LINE, trace.motion[on]).astype(np.int16)
-        return float(np.nan_to_num(np.min(polar.nearest(*shape, kind))))
+        return trace.start[on] - point, trace.end[on] - point, trace.center[on] - point, kind
+
+    def _room(self, contour: Rows) -> float:
+        """From the tool center at the start point to where it runs along the contour [mm]: d - R; 0 if unknown."""
+        trace = self.trace
+        shape = self._seen_from(complex(trace.start[contour[0]]), contour)
+        side, radius = int(trace.side[contour[0]]), float(np.nan_to_num(trace.radius[contour[0]]))
+        if side == Side.OFF:
+            radius = 0.0
+        elif enclosed.is_on_left(*shape) != ((side == Side.LEFT) == (radius >= 0)):
+            return 0.0
+        return float(np.nan_to_num(np.min(polar.nearest(*shape)))) - abs(radius)
+
+    @cached_property
+    def _cycles(self) -> dict[int, _Cycle]:
+        """The cycles with passes before the last, by their G12.1."""
+        cycles: dict[int, _Cycle] = {}
+        added = 0
+        for row, (contour, _) in self._contours.items():
+            found = self._simulated(row, MOST_MOVES - added)
+            if len(found):
+                cycle = self._passes(contour, found)
+                cycles.update({row: cycle} if len(cycle.offsets) else {})
+                added += len(cycle.tool.row)
+        return cycles
 
     def _simulated(self, row: int, moves_left: int) -> Floats:
         """Of the passes behind a G12.1 those that are simulated: the ones next to the contour."""
@@ -115,25 +187,42 @@ class Infeed:
             return moves
         moved, first = np.unique(moves.row, return_index=True)
         parts: list[Moves] = []
-        done, added = 0, 0
-        for row, (contour, _) in self._contours.items():
-            found = self._simulated(row, MOST_MOVES - added)
-            place = int(np.searchsorted(moved, contour[0])) if len(found) else len(moved)
-            if place == len(moved) or moved[place] != contour[0]:
+        done = 0
+        for cycle in self._cycles.values():
+            place = int(np.searchsorted(moved, cycle.contour[0]))
+            if place == len(moved) or moved[place] != cycle.contour[0]:
                 continue
             at = int(first[place])
+            cuts = self._moves(cycle, complex(moves.start[at]))
+            if not len(cuts):
+                continue
             parts.append(_between(moves, done, at))
-            cuts = self._passes(contour, found, complex(moves.start[at]))
             parts.append(cuts)
-            added += len(cuts)
             start = moves.start.copy()
             start[at] = cuts.end[-1]
             moves = replace(moves, start=start)
             done = at
         return joined([*parts, _between(moves, done, len(moves))])
 
-    def _passes(self, contour: Rows, found: Floats, start: complex) -> Moves:
-        """The rounds at some offsets from a start point: the contour as if the cutter were larger by each of them."""
+    def _moves(self, cycle: _Cycle, start: complex) -> Moves:
+        """The rounds of a cycle one after the other, from a start point; of one that does not fit nobody knows it."""
+        tool, number = cycle.tool, cycle.tool.row // len(cycle.contour)
+        allowance, known = cycle.offsets[number], tool.known & cycle.known[tool.row]
+        rounds = replace(of_tool(self.trace, tool, cycle.rows), known=known, allowance=allowance)
+        fits = ~cycle.is_unfit[number]
+        rounds, number = rounds.chosen(fits), number[fits]
+        first = np.flatnonzero(np.diff(number, prepend=-1))
+        begin = rounds.start.copy()
+        begin[first] = np.append(start, rounds.end[first[1:] - 1])[: len(first)]
+        return replace(rounds, start=begin)
+
+    def _passes(self, contour: Rows, found: Floats) -> _Cycle:
+        """The rounds at some offsets: the contour as if the cutter were larger by each of them."""
+        cycle = self._rounds(contour, found)
+        beyond = self._beyond_start(cycle) & ~cycle.is_unfit
+        return self._rounds(contour, found[~beyond]) if beyond.any() else cycle
+
+    def _rounds(self, contour: Rows, found: Floats) -> _Cycle:
         trace, count = self.trace, len(contour)
         rows, offset = np.tile(contour, len(found)), np.repeat(found, count)
         path = replace(compensation_path(trace, rows), section=np.repeat(np.arange(len(found)), count))
@@ -147,17 +236,63 @@ class Infeed:
             radius = np.nan_to_num(path.radius)
             path = replace(path, radius=np.where(radius < 0, radius - offset, radius + offset))
         tool = tool_center_path(trace, path)
-        first = np.flatnonzero(np.diff(tool.row // count, prepend=-1))
-        begin = tool.start.copy()
-        begin[first] = np.append(start, tool.end[first[1:] - 1])
-        return replace(of_tool(trace, tool, rows), start=begin, known=tool.known & is_known[tool.row])
+        unfit = ((tool.inside_arc_too_small | tool.interferes | tool.no_intersection) & is_known).reshape(-1, count)
+        # The way to the contour is no part of it, and has rules of its own.
+        unfit[:, :1] = False
+        return _Cycle(contour, found, rows, tool, is_known, unfit)
+
+    def _beyond_start(self, cycle: _Cycle) -> Mask:
+        """Passes that do not lie between the contour and the start point."""
+        trace, tool, count = self.trace, cycle.tool, len(cycle.contour)
+        start = complex(trace.start[cycle.contour[0]])
+        inside = enclosed.goes_round(*self._seen_from(start, cycle.contour))
+        on = tool.row % count > 0
+        group = tool.row[on] // count
+        shape = (tool.start[on] - start, tool.end[on] - start, tool.center[on] - start, tool.kind[on])
+        return np.asarray(enclosed.go_round(*shape, group, len(cycle.offsets)) != inside)
 
     def _side_of_start(self, contour: Rows) -> Side:
         """The side of the contour on which the start point lies, where the tool center itself is programmed."""
-        trace = self.trace
-        way = trace.end[contour[1]] - trace.start[contour[1]]
-        across = (way.conjugate() * (trace.start[contour[0]] - trace.end[contour[0]])).imag
-        return Side.LEFT if across > 0 else Side.RIGHT
+        shape = self._seen_from(complex(self.trace.start[contour[0]]), contour)
+        return Side.LEFT if enclosed.is_on_left(*shape) else Side.RIGHT
+
+    # ---- passes that do not fit ----
+
+    def _counts(self, counts: dict[int, int]) -> Rows:
+        column = np.zeros(len(self.trace), np.int64)
+        column[list(counts)] = list(counts.values())
+        return column
+
+    @cached_property
+    def passes(self) -> Rows:
+        """How many passes are simulated behind each G12.1 with an E, the contour itself among them; 0 elsewhere."""
+        return self._counts({row: len(cycle.offsets) + 1 for row, cycle in self._cycles.items()})
+
+    @cached_property
+    def unfit(self) -> Rows:
+        """How many of them run along arcs or corners into which the tool does not fit so far off the contour."""
+        return self._counts({row: int(cycle.is_unfit.sum()) for row, cycle in self._cycles.items()})
+
+    @cached_property
+    def least_unfit(self) -> dict[int, tuple[float, int]]:
+        """Of each G12.1 with such passes how far the nearest lies off the contour [mm], and the first row at fault."""
+        found = {}
+        for row, cycle in self._cycles.items():
+            bad = np.flatnonzero(cycle.is_unfit)
+            if len(bad):
+                at = int(cycle.contour[np.argmax(cycle.unfit[bad[-1]])])
+                found[row] = float(cycle.offsets[bad[-1]]), at
+        return found
+
+    @cached_property
+    def judged_by_radius(self) -> Mask:
+        """G12.1 with an E whose passes nothing can be said of without R: along a closed contour with G41 or G42."""
+        rows = np.zeros(len(self.trace), bool)
+        rows[[row for row, (contour, _) in self._contours.items() if self._is_compensated(contour)]] = True
+        return np.asarray(rows & (self.gap == 0))
+
+    def _is_compensated(self, contour: Rows) -> bool:
+        return bool((self.trace.side[contour] != Side.OFF).any())
 
     @cached_property
     def is_simulated_in_part(self) -> Mask:

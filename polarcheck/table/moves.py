@@ -22,7 +22,8 @@ class Moves(msgspec.Struct, frozen=True, dict=True):
 
     row: the row of the trace that it belongs to. section: its polar section. kind: int16, Motion. start, end, center:
     plane points [mm]. feed: along the path [mm/min]. known: False where the radius or a position is unknown. phase:
-    compensation.Phase. corner: a line that the control adds. entry: C angle at which each section begins [deg].
+    compensation.Phase. corner: a line that the control adds. allowance: what a pass of an infeed cycle leaves on the
+    contour [mm], 0 elsewhere. entry: C angle at which each section begins [deg].
     """
 
     row: Rows
@@ -35,6 +36,7 @@ class Moves(msgspec.Struct, frozen=True, dict=True):
     known: Mask
     phase: States
     corner: Mask
+    allowance: Floats
     entry: Floats
 
     def __len__(self) -> int:
@@ -165,6 +167,7 @@ def programmed_moves(trace: Trace) -> Moves:
         known=~np.isnan(end - start),
         phase=np.zeros(len(row), np.int16),
         corner=np.zeros(len(row), bool),
+        allowance=np.zeros(len(row)),
         entry=trace.section_entry,
     )
 
@@ -221,6 +224,7 @@ def of_tool(trace: Trace, tool: compensation.ToolPath, row: Rows) -> Moves:
         known=tool.known,
         phase=tool.phase,
         corner=tool.corner,
+        allowance=np.zeros(len(at)),
         entry=trace.section_entry,
     )
 

@@ -54,10 +54,18 @@ def verdict(trace: Trace, tool_center: ToolCenter, row: int) -> str:
 
 def advice(trace: Trace, tool_center: ToolCenter, row: int, count: int) -> str:
     """The highest F, or what to give to learn it."""
-    where = f"for its {count} blocks" if count > 1 else "here"
+    where = (f"for its {count} blocks" if count > 1 else "here") + _on_pass(tool_center, row)
     if np.isnan(trace.machine.limits.c_feed):
         return f"--set limits.c_feed=... would give the highest F {where}"
     return f"highest F {where}: {in_row(float(tool_center.feed_allowed[row]), trace, row):below}"
+
+
+def _on_pass(tool_center: ToolCenter, row: int) -> str:
+    """Which pass of an infeed cycle turns C fastest in a row; empty for the contour itself, and without a cycle."""
+    moves = tool_center.moves
+    at = np.flatnonzero(moves.row == row)
+    allowance = float(moves.allowance[at[np.argmax(moves.c_feed[at])]])
+    return f", on the pass {in_row(allowance, tool_center.trace, row):length} off the contour" if allowance > 0 else ""
 
 
 def meeting(center: Center, tool_center: ToolCenter, row: int) -> str:

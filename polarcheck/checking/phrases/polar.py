@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from polarcheck.checking.other_machine import NAMED, OtherMachine
 from polarcheck.checking.phrases.common import codes, executed_word, outside, switch_off, written
 from polarcheck.checking.places import block_in_line
+from polarcheck.checking.quantity import in_row
 from polarcheck.machines.codes import spelled
 from polarcheck.machines.machine import Machine
 from polarcheck.machines.own_language import shown
@@ -163,6 +164,15 @@ def not_simulated(infeed: Infeed) -> Iterator[tuple[str, int]]:
         "of an infeed cycle only the passes next to the contour are simulated: look at the others on the control",
         partly,
     )
+
+
+def misfit_of_pass(trace: Trace, infeed: Infeed, row: int) -> str:
+    """From where on the passes of an infeed cycle do not fit, and into what."""
+    offset, at = infeed.least_unfit[row]
+    radius = abs(float(trace.radius[at]))
+    tool = f" with R {in_row(radius, trace, row):length}" if radius > 0 and trace.compensates[at] else ""
+    where = f"line {int(trace.line[at])}, {block_in_line(trace, at, _BLOCK_LENGTH)}"
+    return f"already {in_row(offset, trace, row):length} off it{tool} there is no way along {where}"
 
 
 def what(trace: Trace, arcs: Arcs, index: int) -> str:

@@ -1,0 +1,46 @@
+"""
+Whether closed ways go round the center of C, and on which side of them it lies.
+
+Moves come as in `polar`. A way whose end is not its start is closed by a straight line.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from polarcheck.arrays import Mask, Points, Rows, States
+from polarcheck.geometry.plane import angle_between, arc_sweep, quiet
+from polarcheck.geometry.polar import c_sweep
+
+
+@quiet
+def go_round(start: Points, end: Points, center: Points, kind: States, way: Rows, count: int) -> Mask:
+    """Whether each of `count` ways goes round the center; way: the number of that of each move, in ascending order."""
+    first = np.flatnonzero(np.diff(way, prepend=-1))
+    last = np.append(first[1:], len(way)) - 1
+    turns = np.radians(c_sweep(start, end, center, kind))
+    turns[last] += angle_between(end[last], start[first])
+    turn = np.bincount(way, weights=turns, minlength=count)
+    # Of a way round the center it is a whole number of turns, of any other none.
+    return np.asarray(np.abs(turn) > np.pi)
+
+
+def goes_round(start: Points, end: Points, center: Points, kind: States) -> bool:
+    """Whether one way goes round the center."""
+    return bool(go_round(start, end, center, kind, np.zeros(len(start), np.int64), 1)[0])
+
+
+@quiet
+def signed_area(start: Points, end: Points, center: Points, kind: States) -> float:
+    """What one way encloses [mm2], above 0 where it is to the left."""
+    chords = (start.conjugate() * end).imag
+    sweep = arc_sweep(start, end, center, kind)
+    is_arc = sweep != 0
+    bows = np.where(is_arc, np.abs(start - center) ** 2 * (sweep - np.sin(sweep)), 0.0)
+    closing = (end[-1].conjugate() * start[0]).imag
+    return float(np.sum(chords + bows) + closing) / 2
+
+
+def is_on_left(start: Points, end: Points, center: Points, kind: States) -> bool:
+    """Whether the center lies on the left of one way: inside a way that encloses its left, outside any other."""
+    return goes_round(start, end, center, kind) == (signed_area(start, end, center, kind) > 0)

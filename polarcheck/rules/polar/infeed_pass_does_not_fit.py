@@ -1,0 +1,74 @@
+from __future__ import annotations
+
+from polarcheck.checking.causes import NO_SUCH_ARC, SECTION_READ_OTHERWISE
+from polarcheck.checking.rule import WARNING, Infeed, Mask, rule
+
+
+@rule(
+    WARNING,
+    "{infeed.unfit} of {infeed.passes} passes do not fit into the contour: {misfit_of_pass}",
+    at=("E",),
+    needs=("trace.radius",),
+    where="infeed.judged_by_radius",
+    follows={
+        "section": (
+            *NO_SUCH_ARC,
+            *SECTION_READ_OTHERWISE,
+            "arc-sense-reversed",
+            "inside-arc-smaller-than-radius",
+            "interference",
+            "no-offset-intersection",
+            "side-of-compensation-mirrored",
+            "side-changed-in-offset-mode",
+            "side-repeated-in-offset-mode",
+        )
+    },
+)
+def infeed_pass_does_not_fit(infeed: Infeed) -> Mask:
+    """
+    Infeed cycle whose passes are too far off for the inside of the contour.
+
+    A pass runs as if the cutter were larger by what it leaves on the contour. Round an inside arc, or in a slot, R and
+    this allowance together must fit, even where R alone does: else the control has no path for the pass, and stops or
+    cuts into what should stay. Take a smaller E and a start point nearer to the contour, so that no pass lies so far
+    off, or cut such places in a section of their own.
+
+    Source: GSK 988, description of G12.1 IP P Q E; FANUC B-63664EN, p. 184, for what does not fit.
+
+    Bad, machine gsk-988, tool 2:radius=5, tool 2:nose=0:
+
+        T0202
+        G98 G0 X120. C0
+        G12.1 E4.             (expect: infeed-pass-does-not-fit)
+        G42 G1 X80. F200
+        C40.
+        X20.
+        C38.
+        G2 X-20. R10.
+        G1 C40.
+        X-80.
+        C-40.
+        X80.
+        C0
+        G40 X120.
+        G13.1
+
+    Good, machine gsk-988, tool 2:radius=5, tool 2:nose=0:
+
+        T0202
+        G98 G0 X98. C0
+        G12.1 E2.
+        G42 G1 X80. F200
+        C40.
+        X20.
+        C38.
+        G2 X-20. R10.
+        G1 C40.
+        X-80.
+        C-40.
+        X80.
+        C0
+        G40 X98.
+        G13.1
+    """
+    return infeed.unfit > 0
