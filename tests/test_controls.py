@@ -547,3 +547,51 @@ def test_a_mazak_selects_the_plane_with_its_axes(plane: str) -> None:
     assert not {"bad-number", "plane-wrong-at-entry"} & {
         found.rule for found in report_of(program, "mazak-eia").findings
     }
+
+
+# ---- the clamp of the feed, GSK parameters 5450#1 and 5462 ----
+
+
+@pytest.mark.parametrize(
+    ("on", "severity", "text", "rate"),
+    [
+        (1, "warning", "F is 2000 mm/min, GSK 988T/TA/TB lathe control clamps it at 500 mm/min in the polar mode", 500),
+        (
+            0,
+            "note",
+            "F is 2000 mm/min, GSK 988T/TA/TB lathe control runs it as programmed, since limits.polar_feed_clamps is "
+            "off: no clamp at 500 mm/min in the polar mode",
+            2000,
+        ),
+    ],
+)
+def test_the_clamp_is_switched_by_a_parameter(on: int, severity: str, text: str, rate: float) -> None:
+    changes = {"parameters": {"5450#1": on, "5462": 500}}
+    report = report_of(GSK_CYCLE, "gsk-988", "2:radius=5,nose=0", changes=changes)
+    (found,) = (one for one in report.findings if one.rule == "feed-above-polar-limit")
+    assert (found.severity, found.message) == (severity, text)
+    # The nearest the tool comes is 125 mm, in the middle of a straight side.
+    assert report.polar_sections[0].c_feed == pytest.approx(np.degrees(rate / 125))
+
+
+@pytest.mark.parametrize("on", [0, 1])
+def test_the_alarm_of_c_is_an_alarm_beside_the_clamp(on: int) -> None:
+    """Note 1: beyond the limit of C the control stops; no parameter of this one slows C down."""
+    changes = {"parameters": {"5450#1": on, "5462": 500}, "limits": {"c_feed": 200}}
+    report = report_of(GSK_CYCLE, "gsk-988", "2:radius=5,nose=0", changes=changes)
+    (found,) = (one for one in report.findings if one.rule == "c-feed-above-limit")
+    assert found.severity == "error"
+    rate, word = ("229", "F2000 of line 5 clamped at 500 mm/min,") if on else ("917", "F2000 of line 5,")
+    assert f"C axis would turn at {rate} deg/min with {word}" in found.message
+    assert "slows" not in found.message
+    enough = {**changes, "limits": {"c_feed": 230}}
+    rules = [rule for _, rule in said(report_of(GSK_CYCLE, "gsk-988", "2:radius=5,nose=0", changes=enough))]
+    assert ("c-feed-above-limit" in rules) == (not on)
+
+
+@pytest.mark.parametrize("limit", [0, 2000, 3000])
+def test_an_f_up_to_the_clamp_says_nothing(limit: int) -> None:
+    """5462 of 0 is no limit of its own."""
+    changes = {"parameters": {"5450#1": 1, "5462": limit}}
+    rules = [rule for _, rule in said(report_of(GSK_CYCLE, "gsk-988", "2:radius=5,nose=0", changes=changes))]
+    assert "feed-above-polar-limit" not in rules

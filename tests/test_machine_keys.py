@@ -258,6 +258,7 @@ USES = {
     "limits.c_feed_suspicious": Use(100, FLAT),
     "limits.c_acceleration": Use(0.01, FLAT),
     "limits.polar_feed": Use(100, FLAT),
+    "limits.polar_feed_clamps": Use(False, FLAT, also={"limits": {"polar_feed": 100}}),
     "limits.automatic_override": Use(True, FLAT, also={"limits": {"c_feed": 100}}),
     "limits.override_share": Use(50, FLAT, also={"limits": {"c_feed": 100, "automatic_override": True}}),
     "limits.keep_out": Use(5, FLAT.replace("X40.", "X4.").replace("C10.", "C3.")),

@@ -67,9 +67,9 @@ def test_what_is_long_is_cut_off() -> None:
 @pytest.mark.parametrize(
     ("feed", "limit", "said"),
     [
-        ("1525", 1500, "F is 1525 mm/min, FANUC lathe control moves with 1500 mm/min"),
+        ("1525", 1500, "F is 1525 mm/min, FANUC lathe control clamps it at 1500 mm/min"),
         ("1525.5", 1500, "F is 1525.5 mm/min,"),
-        ("1525.", 1524.9999, "F is 1525 mm/min, FANUC lathe control moves with 1524.9999 mm/min"),
+        ("1525.", 1524.9999, "F is 1525 mm/min, FANUC lathe control clamps it at 1524.9999 mm/min"),
     ],
 )
 def test_a_programmed_feed_is_shown_as_it_is(feed: str, limit: float, said: str) -> None:
@@ -80,7 +80,7 @@ def test_a_programmed_feed_is_shown_as_it_is(feed: str, limit: float, said: str)
 def test_a_programmed_feed_of_an_inch_program_is_shown_as_it_is() -> None:
     program = polar("G1 X1.5 F60.255", "C.2", head=HEAD.replace("G21", "G20").replace("X50.", "X2."))
     said = message(program, "feed-above-polar-limit", changes={"limits": {"polar_feed": 1500}})
-    assert said.startswith("F is 60.255 inch/min, FANUC lathe control moves with 59.0551 inch/min")
+    assert said.startswith("F is 60.255 inch/min, FANUC lathe control clamps it at 59.0551 inch/min")
 
 
 @pytest.mark.parametrize(

@@ -86,3 +86,42 @@ def test_without_a_limit_of_the_acceleration_any_f_is_allowed() -> None:
 def test_without_any_acceleration_no_f_is_allowed_but_where_c_keeps_its_rate() -> None:
     column = tables_of(NEAR.format("0"), changes={"limits": {"c_acceleration": 0}})["feeds"].allowed_by_acceleration
     assert column[[2, 3, 4]].tolist() == [0, 0, 0]
+
+
+# ---- the clamp of the mode ----
+
+CLAMP = {"limits": {"polar_feed": 500, "polar_feed_clamps": True}}
+NO_CLAMP = {"limits": {"polar_feed": 500, "polar_feed_clamps": False}}
+FAST = "O1\nG98 G0 X60. C0\nG1 Z-1. F2000\nG12.1\nG1 X40.\nC10. F200\nX60. F800\nG4 X1.\nG13.1\nG1 Z5. F900\n"
+
+
+@pytest.mark.parametrize("name", ["fanuc", "gsk-988"])
+def test_f_of_the_mode_is_clamped_and_f_outside_is_not(name: str) -> None:
+    trace = tables_of(FAST, name, changes=CLAMP)["trace"]
+    assert trace.feed[2:].tolist() == [2000, 2000, 500, 200, 500, 500, 800, 900]
+    assert trace.programmed_feed[2:].tolist() == [2000, 2000, 2000, 200, 800, 800, 800, 900]
+    off = tables_of(FAST, name, changes=NO_CLAMP)["trace"]
+    assert off.feed[2:].tolist() == off.programmed_feed[2:].tolist() == trace.programmed_feed[2:].tolist()
+
+
+def test_an_unknown_f_or_limit_clamps_nothing() -> None:
+    per_revolution = tables_of("O1\nG99 G0 X60. C0\nG12.1\nG1 X40. F.2\nG13.1\n", changes=CLAMP)["trace"]
+    assert np.isnan(per_revolution.feed).all()
+    no_limit = tables_of(FAST, changes={"limits": {"polar_feed_clamps": True}})["trace"]
+    assert no_limit.feed[2:].tolist() == no_limit.programmed_feed[2:].tolist()
+
+
+@pytest.mark.parametrize("units", ["G21", "G20"])
+def test_rates_and_times_are_those_of_the_clamped_f(units: str) -> None:
+    """As if the lower F were written; in inch as well, the limit being in mm/min."""
+    scale = 25.4 if units == "G20" else 1
+    program = f"O1\n{units} G98 G0 X{60 / scale:.8f} C0\nG12.1\nG1 X{{}} F{{}}\nC{10 / scale:.8f}\nG13.1\n"
+    asked = program.format(f"{40 / scale:.8f}", f"{1500 / scale:.8f}")
+    written = program.format(f"{40 / scale:.8f}", f"{500 / scale:.8f}")
+    clamped, plain = (tables_of(text, changes=CLAMP)["moves"] for text in (asked, written))
+    assert clamped.feed == pytest.approx([500, 500])
+    for column in ("feed", "c_feed", "x_feed", "c_acceleration", "x_acceleration", "time"):
+        assert getattr(clamped, column) == pytest.approx(getattr(plain, column)), column
+    unclamped = tables_of(asked, changes=NO_CLAMP)["moves"]
+    assert unclamped.c_feed == pytest.approx(3 * clamped.c_feed)
+    assert unclamped.time == pytest.approx(clamped.time / 3)

@@ -195,6 +195,7 @@ class Limits(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     c_feed_suspicious: feed of the C axis that is suspicious where its limit is not known [deg/min]
     c_acceleration: largest acceleration of the C axis [deg/s2]
     polar_feed: largest F in the polar mode [mm/min]
+    polar_feed_clamps: whether the control clamps a higher F at it; else it runs as programmed
     automatic_override: whether the control slows down by itself where C would turn too fast
     override_share: share of the limit of C above which it does so, and which it leaves [%]
     keep_out: how far the tool center should stay away from the center of C [mm]
@@ -209,6 +210,7 @@ class Limits(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     c_feed_suspicious: Positive
     c_acceleration: NotNegative = math.nan
     polar_feed: Positive = math.nan
+    polar_feed_clamps: bool = True
     automatic_override: bool = False
     override_share: Positive
     keep_out: NotNegative = math.nan

@@ -243,6 +243,14 @@ class Trace(Positions):
         return np.where(self.entered_per_revolution, self.written_feed, outside)
 
     @cached_property
-    def feed(self) -> Floats:
-        """F in force [mm/min]; NaN where none is or where it depends on a spindle."""
+    def programmed_feed(self) -> Floats:
+        """F in force as programmed [mm/min]; NaN where none is or where it depends on a spindle."""
         return np.where(self.per_minute, self.feed_number, np.nan)
+
+    @cached_property
+    def feed(self) -> Floats:
+        """F in force with which the control moves [mm/min]: in the mode clamped, where its limit acts; NaN likewise."""
+        limits, feed = self.machine.limits, self.programmed_feed
+        if not limits.polar_feed_clamps or np.isnan(limits.polar_feed):
+            return feed
+        return np.where(self.in_polar, np.minimum(feed, limits.polar_feed), feed)

@@ -25,12 +25,24 @@ def _range(trace: Trace, row: int, least: float, most: float) -> str:
     return f"{shown.length(least):.4g} to {shown.length(most):.4g} {shown.unit}/min"
 
 
+def clamps(machine: Machine) -> str:
+    """What the control makes of an F above the limit of the mode."""
+    if machine.limits.polar_feed_clamps:
+        return "clamps it at"
+    return "runs it as programmed, since limits.polar_feed_clamps is off: no clamp at"
+
+
 def feed_word(trace: Trace, row: int) -> str:
-    """The F word in force in a row, and its line where that is another."""
+    """The F word in force in a row, its line where that is another, and at what it is clamped."""
+    written, taken = _feed_word(trace, row), float(trace.feed[row])
+    return f"{written} clamped at {in_row(taken, trace, row):feed}" if taken < trace.programmed_feed[row] else written
+
+
+def _feed_word(trace: Trace, row: int) -> str:
     words = trace.word_indices("F")
     at = words[trace.run.words.start[words] == trace.feed_word[row]]
     if not len(at):
-        return f"F {in_row(float(trace.feed[row]), trace, row):feed}"
+        return f"F {in_row(float(trace.programmed_feed[row]), trace, row):feed}"
     line = int(trace.line[trace.run.row[at[0]]])
     written = executed_word(trace, int(at[0]))
     return written if line == trace.line[row] else f"{written} of line {line}"

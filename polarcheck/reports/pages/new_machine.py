@@ -20,6 +20,7 @@ _ASKED: dict[str, dict[str, Any]] = {
         "c_feed": 3600,
         "c_acceleration": 7200,
         "polar_feed": 2000,
+        "polar_feed_clamps": True,
         "automatic_override": True,
         "keep_out": 0.1,
         "x_minimum": -10.0,

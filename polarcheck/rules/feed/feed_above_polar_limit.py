@@ -1,21 +1,23 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Feeds, Hits, Machine, Trace, rule
+from polarcheck.checking.rule import NOTE, WARNING, Feeds, Hits, Machine, Trace, rule
 
 
 @rule(
     WARNING,
-    "F is {trace.feed:feed/limit}, {machine.title} moves with {limit:feed/trace.feed} at most in the polar mode",
+    "F is {feed:feed/limit}, {machine.title} {clamps} {limit:feed/feed} in the polar mode",
     at=("F",),
 )
 def feed_above_polar_limit(trace: Trace, feeds: Feeds, machine: Machine) -> Hits:
     """
     F above the highest feed of the polar mode.
 
-    A parameter of the control limits the feed in the mode; a higher F is cut down to it, and the part takes longer
-    than planned. limits.polar_feed of the profile is that parameter.
+    A parameter of the control limits the feed in the mode: a higher F is clamped at it, and the part takes longer than
+    planned. All rates and times are those of the clamped F. limits.polar_feed of the profile is that parameter. On some
+    controls another parameter switches the clamp, limits.polar_feed_clamps; where it is off, the higher F runs as
+    programmed, which is a note. The clamp does not keep C below its own limit: near the center that is an alarm still.
 
-    Source: FANUC B-64120EN/01, p. 280, parameter 5462.
+    Source: FANUC B-64120EN/01, p. 280, parameter 5462; GSK 988, description of G12.1, parameters 5450#1 and 5462.
 
     Bad, set limits.polar_feed=1000:
 
@@ -26,6 +28,14 @@ def feed_above_polar_limit(trace: Trace, feeds: Feeds, machine: Machine) -> Hits
         X60. F1500        (expect: feed-above-polar-limit)
         G13.1
 
+    Bad, machine gsk-988, set limits.polar_feed=1000:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. F1500     (expect: feed-above-polar-limit)
+        C10. F200
+        G13.1
+
     Good, set limits.polar_feed=1000:
 
         G98 G0 X60. C0
@@ -34,5 +44,6 @@ def feed_above_polar_limit(trace: Trace, feeds: Feeds, machine: Machine) -> Hits
         C10. F200
         G13.1
     """
-    limit = machine.limits.polar_feed
-    return Hits(feeds.begins & (trace.feed > limit), values={"limit": limit})
+    limit, feed = machine.limits.polar_feed, trace.programmed_feed
+    severity = WARNING if machine.limits.polar_feed_clamps else NOTE
+    return Hits(feeds.begins & (feed > limit), severity, values={"limit": limit, "feed": feed})

@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import NOTE, Feeds, Machine, Mask, Trace, rule
+from polarcheck.checking.rule import NOTE, Feeds, Hits, Machine, Trace, rule
 
 
-@rule(NOTE, "F is {trace.feed:feed}; recommended in the polar mode: {recommended}", at=("F",))
-def feed_outside_recommended_range(trace: Trace, feeds: Feeds, machine: Machine) -> Mask:
+@rule(NOTE, "F is {feed:feed}; recommended in the polar mode: {recommended}", at=("F",))
+def feed_outside_recommended_range(trace: Trace, feeds: Feeds, machine: Machine) -> Hits:
     """
     Feed outside what the builder recommends for the polar mode.
 
@@ -44,7 +44,7 @@ def feed_outside_recommended_range(trace: Trace, feeds: Feeds, machine: Machine)
         G40 X3. F40.
         G13.1
     """
-    feed, recommended = trace.feed, machine.feed
+    feed, recommended = trace.programmed_feed, machine.feed
     not_cutting = (feed < recommended.cutting_minimum) | (feed > recommended.cutting_maximum)
     not_positioning = (feed < recommended.positioning_minimum) | (feed > recommended.positioning_maximum)
-    return feeds.first_at_each(feeds.begins & not_cutting & not_positioning)
+    return Hits(feeds.first_at_each(feeds.begins & not_cutting & not_positioning), values={"feed": feed})
