@@ -234,7 +234,7 @@ def test_what_is_wrong_is_said_in_one_line(text: str, said: str) -> None:
         ("[parameters]\n1422 = nan", "parameters.1422: limits.c_feed: expected a number above 0, found nan"),
         ("[parameters]\n5461 = 1", "parameters.5461: polar: linear_axis and rotary_axis are both 1; expected two axes"),
         ("[parameters]\n5460 = 4\n5461 = 4", "parameters.5460 and parameters.5461: polar: linear_axis and rotary_"),
-        ("[parameters]\n5461 = 0", "parameters.5461: polar.rotary_axis: expected the number of an axis from 1 to 99"),
+        ("[parameters]\n5461 = 0", "parameters.5461: polar.rotary_axis: expected the number of an axis from 1 to 24"),
         ("[polar]\nrotary_axis = 1", "polar: linear_axis and rotary_axis are both 1; expected two axes"),
         ("[alarm_codes]\nPS0146 = ['G12,1']", "alarm_codes.PS0146: 'G12,1' is neither a code nor a list of codes"),
         ("[alarm_codes]\nPS0146 = ['cycles']", "alarm_codes.PS0146: 'cycles' is neither a code nor a list of codes"),

@@ -20,6 +20,7 @@ MAKERS = {
     "infeed": "polarcheck.table.infeed:Infeed",
     "tool_center": "polarcheck.table.tool_center:ToolCenter",
     "mode_words": "polarcheck.table.mode_words:ModeWords",
+    "switch_words": "polarcheck.table.switch_words:SwitchWords",
     "other_mode": "polarcheck.table.other_mode:OtherMode",
     "angles": "polarcheck.table.angles:Angles",
     "entry": "polarcheck.table.entry:Entry",

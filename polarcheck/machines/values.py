@@ -34,9 +34,10 @@ AddressOrNone: TypeAlias = Annotated[
     str, msgspec.Meta(pattern="^[A-Z]?$(?!\\n)", extra={EXPECTED: "an address, one letter, or none"})
 ]
 Variable: TypeAlias = Annotated[int, msgspec.Meta(ge=1, extra={EXPECTED: "the number of a variable, 100 for #100"})]
-#: Controls number their axes with two digits.
+#: No control of a lathe has more axes in a path.
+MOST_AXES = 24
 AxisNumber: TypeAlias = Annotated[
-    int, msgspec.Meta(ge=1, le=99, extra={EXPECTED: "the number of an axis from 1 to 99"})
+    int, msgspec.Meta(ge=1, le=MOST_AXES, extra={EXPECTED: f"the number of an axis from 1 to {MOST_AXES}"})
 ]
 
 

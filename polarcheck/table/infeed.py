@@ -38,7 +38,7 @@ CLOSED = 0.002
 MOST_PASSES = 200
 MOST_MOVES = 200_000
 #: Of a least increment: what computing leaves of a whole number of them.
-_NOISE = 1e-6
+CUT = 1e-6
 
 
 class _Cycle(NamedTuple):
@@ -90,7 +90,7 @@ class Infeed:
 
         The control drops what is finer than its least increment, so that an E below that is none.
         """
-        return np.nan_to_num(np.floor(self.written / self.least_increment + _NOISE) * self.least_increment)
+        return np.nan_to_num(np.floor(self.written / self.least_increment + CUT) * self.least_increment)
 
     @cached_property
     def _begins(self) -> list[int]:

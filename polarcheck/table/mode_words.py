@@ -130,13 +130,15 @@ class ModeWords:
     def may_stand_beside_switch(self) -> Mask:
         """
         Is the G12.1 or G13.1 itself, or may share its block: N, O, block skip, the words that the profile names, and
-        words without a good number, which have rules of their own.
+        words without a good number, which have rules of their own. Addresses that the profile names are for the G12.1.
         """
         words, polar = self.trace.run.words, self.trace.machine.polar
-        of_address = np.zeros(256, bool)
-        of_address[[ord(name) for name in ("N", "O", "/", *polar.words_beside_switch) if len(name) == 1]] = True
+        of_address, of_begin = np.zeros((2, 256), bool)
+        of_address[[ord(name) for name in ("N", "O", "/")]] = True
+        of_begin[[ord(name) for name in polar.words_beside_switch if len(name) == 1]] = True
         of_code = self.codes(*polar.on, *polar.off, *(name for name in polar.words_beside_switch if len(name) > 1))
-        return np.asarray(of_address[words.address] | of_code | (words.fault != NumberFault.NONE))
+        begins = of_begin[words.address] & ~self.in_rows(self.trace.leaves)
+        return np.asarray(of_address[words.address] | begins | of_code | (words.fault != NumberFault.NONE))
 
     # ---- the virtual axis ----
 

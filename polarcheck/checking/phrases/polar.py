@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from polarcheck.arrays import Floats
 from polarcheck.checking.other_machine import NAMED, OtherMachine
 from polarcheck.checking.phrases.common import codes, executed_word, outside, switch_off, written
 from polarcheck.checking.places import block_in_line
@@ -16,6 +17,7 @@ from polarcheck.table.arcs import Arcs
 from polarcheck.table.entry import Entry
 from polarcheck.table.infeed import Infeed
 from polarcheck.table.other_mode import OtherMode
+from polarcheck.table.switch_words import SwitchWords
 from polarcheck.table.trace import Trace
 
 #: What the codes of a list of G-code system B are in system A, and what stands for them there.
@@ -164,6 +166,35 @@ def not_simulated(infeed: Infeed) -> Iterator[tuple[str, int]]:
         "of an infeed cycle only the passes next to the contour are simulated: look at the others on the control",
         partly,
     )
+
+
+def absolute(machine: Machine) -> str:
+    """The absolute words of a shift, X and the rotary axis."""
+    return f"X and {machine.polar.virtual_axis}"
+
+
+def axis_fault(trace: Trace, switch_words: SwitchWords, row: int) -> str:
+    """Why P or Q of a G12.1 are no pair of axes."""
+    if not trace.with_words(switch_words.names_no_axis)[row]:
+        both = f"would be both the linear and the rotary axis; without P it is {trace.machine.polar.linear_axis}"
+        return f"axis {switch_words.linear_axis[row]:.0f} {both}, without Q {trace.machine.polar.rotary_axis}"
+    return f"no such axis; P and Q take whole numbers from 1 to {switch_words.most_axes}"
+
+
+def infeed_fault(trace: Trace, switch_words: SwitchWords, row: int) -> str:
+    """What the control makes of an infeed that its word cannot hold."""
+    infeed = switch_words.infeed
+    if switch_words.infeed_too_large[row]:
+        return f"is too large: {_every_digit(switch_words.infeed_limit, trace, row)} is the most"
+    least, taken = (_every_digit(column, trace, row) for column in (infeed.least_increment, infeed.depth))
+    once = "" if infeed.depth[row] > 0 else ", which is a single pass"
+    return f"is finer than the least increment, {least}: {taken} is taken{once}"
+
+
+def _every_digit(lengths: Floats, trace: Trace, row: int) -> str:
+    """A length with all the digits that a control can hold."""
+    shown = in_row(float(lengths[row]), trace, row)
+    return f"{shown.length(shown.value):.10g} {shown.unit}"
 
 
 def misfit_of_pass(trace: Trace, infeed: Infeed, row: int) -> str:

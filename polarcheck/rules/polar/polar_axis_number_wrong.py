@@ -1,0 +1,45 @@
+from __future__ import annotations
+
+from polarcheck.checking.rule import ERROR, Hits, SwitchWords, Trace, rule
+
+
+@rule(ERROR, "{others} beside {switch}: {axis_fault}")
+def polar_axis_number_wrong(trace: Trace, switch_words: SwitchWords) -> Hits:
+    """
+    P or Q of G12.1 that gives no pair of axes.
+
+    Beside G12.1 some controls take the number of the linear axis in P and that of the rotary axis in Q; without them
+    those of the parameters count, polar.linear_axis and polar.rotary_axis of the profile. Both are whole numbers from 1
+    to the number of axes, and one axis cannot be both.
+
+    Source: GSK 988, description of G12.1 IP P Q E, table of ranges; parameters 5460 and 5461.
+
+    Bad, machine gsk-988:
+
+        G98 G0 X60. C0
+        G12.1 P0          (expect: polar-axis-number-wrong)
+        G1 X40. F200
+        C10.
+        X60.
+        G13.1
+
+    Bad, machine gsk-988, set polar.rotary_axis=3:
+
+        G98 G0 X60. C0
+        G12.1 P3          (expect: polar-axis-number-wrong)
+        G1 X40. F200
+        C10.
+        X60.
+        G13.1
+
+    Good, machine gsk-988:
+
+        G98 G0 X60. C0
+        G12.1 P1 Q3
+        G1 X40. F200
+        C10.
+        X60.
+        G13.1
+    """
+    found = switch_words.names_no_axis | switch_words.names_axis_twice
+    return Hits(trace.with_words(found), at=found)

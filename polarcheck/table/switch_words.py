@@ -1,0 +1,111 @@
+"""The words beside G12.1, where the control takes some: the two axes, the shift of the center, the infeed."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from polarcheck.arrays import Floats, Mask
+from polarcheck.machines.modal import Distance
+from polarcheck.machines.values import MOST_AXES
+from polarcheck.reading.words import NumberFault
+from polarcheck.table.infeed import CUT, Infeed
+from polarcheck.table.trace import Trace
+
+#: The words that name the linear and the rotary axis.
+_AXES = ("P", "Q")
+
+
+class SwitchWords:
+    """Columns of one trace, over its executed words or its rows, as each says."""
+
+    def __init__(self, trace: Trace, infeed: Infeed) -> None:
+        self.trace = trace
+        self.infeed = infeed
+
+    def _beside(self, *addresses: str) -> Mask:
+        """Per executed word: of one of these addresses, with a good number, beside a G12.1 that begins a section."""
+        trace = self.trace
+        words = trace.run.words
+        named = trace.words_at(trace.word_indices(*addresses)) & (words.fault == NumberFault.NONE)
+        return np.asarray(named & trace.enters[trace.run.row])
+
+    @property
+    def _taken(self) -> list[str]:
+        return self.trace.machine.polar.words_beside_switch
+
+    # ---- the axes ----
+
+    @property
+    def most_axes(self) -> int:
+        """How many axes the control has: the highest number of one."""
+        axes: Any = getattr(self.trace.machine.control, "axes", ())
+        return len(axes) or MOST_AXES
+
+    @cached_property
+    def names_axis(self) -> Mask:
+        """Per word: P or Q where both name axes; where G12.1 takes one of them alone it may be anything."""
+        return self._beside(*_AXES) if set(_AXES) <= set(self._taken) else self._beside()
+
+    @cached_property
+    def names_no_axis(self) -> Mask:
+        """Per word: P or Q that is not the number of an axis, a whole one from 1 to most_axes."""
+        number = self.trace.run.words.value
+        is_axis = (number >= 1) & (number <= self.most_axes) & (number == np.rint(number))
+        return np.asarray(self.names_axis & ~is_axis)
+
+    @cached_property
+    def linear_axis(self) -> Floats:
+        """Per row: number of the linear axis that a G12.1 in it takes, that of P or, without it, of the machine."""
+        return self._axis("P", self.trace.machine.polar.linear_axis)
+
+    @cached_property
+    def rotary_axis(self) -> Floats:
+        """Per row: number of the rotary axis likewise, that of Q."""
+        return self._axis("Q", self.trace.machine.polar.rotary_axis)
+
+    def _axis(self, word: str, without: int) -> Floats:
+        number = self.trace.word(word)
+        return np.where(np.isnan(number), without, number)
+
+    @cached_property
+    def names_axis_twice(self) -> Mask:
+        """Per word: P and Q of a G12.1 that makes one axis both linear and rotary."""
+        is_one = (self.linear_axis == self.rotary_axis) & ~self.trace.with_words(self.names_no_axis)
+        return np.asarray(self.names_axis & is_one[self.trace.run.row])
+
+    # ---- the shift of the center ----
+
+    @cached_property
+    def shifts_incrementally(self) -> Mask:
+        """Per word: a shift of the center by an incremental word, or by an absolute one while G91 is in force."""
+        mode = self.trace.machine.polar
+        pairs = {"X": "U", mode.virtual_axis: mode.virtual_axis_incremental}
+        axes = [axis for axis in pairs if axis in self._taken]
+        is_incremental = self.trace.state("distance") == Distance.INCREMENTAL
+        absolute = self._beside(*axes) & is_incremental[self.trace.run.row]
+        return np.asarray(self._beside(*(pairs[axis] for axis in axes)) | absolute)
+
+    # ---- the infeed ----
+
+    @property
+    def _increments(self) -> Floats:
+        return self.infeed.written / self.infeed.least_increment
+
+    @cached_property
+    def infeed_limit(self) -> Floats:
+        """Per row: the largest infeed [mm], as many least increments as have the most digits of a number."""
+        return (10.0**self.trace.machine.control.digit_limit - 1) * self.infeed.least_increment
+
+    @cached_property
+    def infeed_too_large(self) -> Mask:
+        """Per row: the infeed beside G12.1 is beyond what its word can hold."""
+        return np.asarray(self._increments > 10.0**self.trace.machine.control.digit_limit - 0.5)
+
+    @cached_property
+    def infeed_too_fine(self) -> Mask:
+        """Per row: the infeed beside G12.1 has digits below the least increment, which are dropped."""
+        finer = self._increments - np.floor(self._increments + CUT)
+        return np.asarray(~self.infeed_too_large & (finer > CUT))
