@@ -24,6 +24,7 @@ MAKERS = {
     "other_mode": "polarcheck.table.other_mode:OtherMode",
     "angles": "polarcheck.table.angles:Angles",
     "entry": "polarcheck.table.entry:Entry",
+    "procedure": "polarcheck.table.procedure:Procedure",
     "since": "polarcheck.table.since:Since",
     "ramps": "polarcheck.table.ramps:Ramps",
     "overcuts": "polarcheck.table.overcuts:Overcuts",

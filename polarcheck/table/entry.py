@@ -7,10 +7,9 @@ from functools import cached_property
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Rows
+from polarcheck.arrays import Floats, Mask
 from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.machines.codes import code_set
-from polarcheck.machines.modal import Motion, Side
 from polarcheck.table.filling import before, fill_down
 from polarcheck.table.origin import Origin
 from polarcheck.table.trace import Trace
@@ -82,30 +81,6 @@ class Entry:
         """A G13.1 has ended a section of the tool in force."""
         trace = self.trace
         return fill_down(trace.leaves, trace.leaves | trace.changes_tool | trace.starts, False).astype(bool)
-
-    @cached_property
-    def turned_in_offset_mode(self) -> Rows:
-        """
-        The first row above in which C moves at feed with G41 or G42, outside the mode and known to be so; -1 for none.
-
-        Looked for back to the last tool change, G12.1 or G13.1, and only if a G13.1 stands outside sections. Beside
-        G7.1 C is the radius of a cylinder, on which offset mode may move C.
-        """
-        trace, mode = self.trace, self.trace.machine.polar
-        if not np.any(trace.switches_off & ~trace.leaves):
-            return np.full(len(trace), -1)
-        foreign = [code for code in mode.on_of_other_controls if code[1:2].isdigit()]
-        begun = trace.switches_on | trace.codes(*foreign) | trace.run.unknown
-        begun |= trace.listed("cylindrical_interpolation")
-        since = trace.changes_tool | trace.switches_off | trace.starts
-        at_feed = np.isin(trace.motion, (Motion.LINE, Motion.CW, Motion.CCW)) & (trace.side != Side.OFF)
-        turns = at_feed & trace.has(mode.virtual_axis, mode.virtual_axis_incremental) & (trace.section < 0)
-        is_begun = fill_down(begun, begun | since, False).astype(bool)
-        turns &= ~is_begun & (trace.whole_program | trace.has_called_tool)
-        has_turned = fill_down(turns, turns | since | begun, False).astype(bool)
-        first = turns & ~before(has_turned, trace.starts, False).astype(bool)
-        rows = fill_down(np.where(first, np.arange(len(trace)), -1), first | since | begun, -1)
-        return before(rows, trace.starts, -1)
 
     # ---- the C axis ----
 

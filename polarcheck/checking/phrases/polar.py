@@ -11,13 +11,14 @@ from polarcheck.checking.places import block_in_line
 from polarcheck.checking.quantity import in_row
 from polarcheck.machines.codes import spelled
 from polarcheck.machines.machine import Machine
+from polarcheck.machines.modal import Motion, Side
 from polarcheck.machines.own_language import shown
 from polarcheck.table.angles import Angles
 from polarcheck.table.arcs import Arcs
-from polarcheck.table.entry import Entry
 from polarcheck.table.infeed import Infeed
 from polarcheck.table.other_mode import OtherMode
 from polarcheck.table.switch_words import SwitchWords
+from polarcheck.table.procedure import Procedure
 from polarcheck.table.trace import Trace
 
 #: What the codes of a list of G-code system B are in system A, and what stands for them there.
@@ -262,6 +263,12 @@ def begins(angles: Angles, row: int) -> str:
     return f"is one of {count} steps at nearly the same X to"
 
 
-def turned(trace: Trace, entry: Entry, row: int) -> int:
-    """The line in which C first moves at feed in offset mode above a G13.1 that no G12.1 began."""
-    return int(trace.line[entry.turned_in_offset_mode[row]])
+def turned(trace: Trace, procedure: Procedure, row: int) -> str:
+    """From which line on the virtual axis moves as on a contour, and what tells so."""
+    first = int(procedure.contour_without_mode[row])
+    axis, line = trace.machine.polar.virtual_axis, int(trace.line[first])
+    if trace.side[first] != Side.OFF:
+        return f"from line {line} on {axis} moves at feed with G41 or G42"
+    if trace.motion[first] != Motion.LINE:
+        return f"from line {line} on {axis} moves on an arc"
+    return f"from line {line} on X and {axis} move at feed right up to it"

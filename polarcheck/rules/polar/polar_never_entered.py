@@ -1,21 +1,22 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Entry, Mask, Trace, rule
+from polarcheck.checking.rule import ERROR, Mask, Procedure, Trace, rule
 
 
 @rule(
     ERROR,
-    "{switch} ends a polar mode that was never entered: from line {turned} on {machine.polar.virtual_axis} moves at "
-    "feed with G41 or G42 as outside the mode, not on the contour; write {switch_on} before it",
+    "{switch} ends a polar mode that was never entered: {turned} as outside the mode, not on the contour; "
+    "write {switch_on} before it",
     at=("off",),
 )
-def polar_never_entered(trace: Trace, entry: Entry) -> Mask:
+def polar_never_entered(trace: Trace, procedure: Procedure) -> Mask:
     """
     G13.1 after a contour that no G12.1 began.
 
     Cutter compensation and moves of C at feed belong into the polar mode. Without its G12.1 the control takes C as an
-    angle, and compensates in another plane or stops: the shape is not cut. Write G12.1 before G41 or G42. A G13.1 for
-    safety, at the head of a program or of a tool, ends nothing and is right.
+    angle, and compensates in another plane or stops: the shape is not cut. Write G12.1 before G41 or G42. Without them
+    an arc of C tells the same, and so do moves of X and C at feed that lead right up to the G13.1. A G13.1 for safety,
+    at the head of a program or of a tool, ends nothing and is right.
 
     Source: FANUC B-62764EN/01, p. 50; builder's guide to G12.1, cutter compensation in the mode.
 
@@ -47,6 +48,31 @@ def polar_never_entered(trace: Trace, entry: Entry) -> Mask:
         G13.1             (expect: polar-never-entered)
         M30
 
+    Bad:
+
+        O1
+        T0101
+        G98 G0 X60. C0
+        G1 C-20. F500
+        X40. F200
+        C20.
+        X60.
+        G13.1             (expect: polar-never-entered)
+        M30
+
+    Good:
+
+        O1
+        T0101
+        G98 G0 X60. Z2. C0
+        G1 X40. F50
+        C90. F500
+        C180.
+        X60.
+        G0 X100. Z50.
+        G13.1
+        M30
+
     Good, tool 1:radius=4:
 
         O1
@@ -63,4 +89,4 @@ def polar_never_entered(trace: Trace, entry: Entry) -> Mask:
         G40 G13.1
         M30
     """
-    return trace.switches_off & (entry.turned_in_offset_mode >= 0)
+    return trace.switches_off & (procedure.contour_without_mode >= 0)
