@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 import pytest
-from guide_programs import METHOD_A, PROGRAMS, in_mm, without
+from guide_programs import METHOD_A, METHOD_B, PROGRAMS, SAMPLE, in_mm, without
 from programs import Changes, report_of, said
 
 MACHINE = "turning-center"
@@ -85,3 +85,152 @@ def test_an_arc_of_c_belongs_into_the_mode(between: str) -> None:
 )
 def test_what_is_no_contour_needs_no_g12_1(program: str) -> None:
     assert "polar-never-entered" not in [rule for _, rule in said(report_of(program, "fanuc"))]
+
+
+# ---- the live tool ----
+
+TURNED = "T0101\nG50 S3000\n{}\nG99 G0 X1. Z.1\nG1 Z-1. F.01\nG0 X5. Z5.\nM5\nM35\n"
+
+
+@pytest.mark.parametrize(
+    ("wrong", "block"),
+    [
+        (SAMPLE.replace("S2000 ", ""), "G97 M33"),
+        (SAMPLE.replace("S2000", "S0"), "G97 S0 M33"),
+        (METHOD_A.replace("S1000 ", ""), "G97 M33"),
+        # What was given was for the main spindle, or is a limit of its speed.
+        (SAMPLE.replace("S2000 ", "").replace("M5\nM35\n", TURNED.format("G96 S200 M3"), 1), "G97 M33"),
+        (SAMPLE.replace("S2000 ", "").replace("M5\nM35\n", TURNED.format("G97 S800\nM3"), 1), "G97 M33"),
+    ],
+)
+def test_a_live_tool_wants_its_speed(wrong: str, block: str) -> None:
+    assert errors_and_warnings(wrong, "8:radius=0", "1:radius=.25") == [(block, "live-tool-without-speed")]
+
+
+@pytest.mark.parametrize(
+    "right",
+    [
+        SAMPLE.replace("G97 S2000 M33", "G97 S2000\nM33"),
+        SAMPLE.replace("G97 S2000 M33", "G97\nM33\nS2000"),
+        SAMPLE.replace("S2000", "S#500"),
+        SAMPLE.replace("M5\nM35\n", TURNED.format("G96 S200 M3"), 1),
+        # What was given for it holds for the next tool.
+        METHOD_A.replace("M30\n", "") + SAMPLE.replace("S2000 ", "").replace("%\nO0001\n", ""),
+        # It may be given in what is not shown, or not executed.
+        SAMPLE[SAMPLE.index("G97") : -2].replace("S2000 ", ""),
+        SAMPLE.replace("G97 S2000 M33", "M98 P9000\nM33"),
+    ],
+)
+def test_a_speed_that_may_be_meant_for_the_live_tool_is_enough(right: str) -> None:
+    assert "live-tool-without-speed" not in [rule for _, rule, _ in found(right, "8:radius=0", "1:radius=.25")]
+
+
+NEXT_TOOL = "M1\nT0202\nM35\nG0 X5. Z5.\nM30\n"
+
+
+@pytest.mark.parametrize(
+    ("wrong", "block", "severity"),
+    [
+        (SAMPLE.replace("Z.1 M35", "Z.1"), "M30", "note"),
+        (METHOD_B.replace("Z5. M35", "Z5."), "M30", "note"),
+        (METHOD_A.replace("Z5. M35", "Z5.").replace("M1\nM30\n", NEXT_TOOL), "T0202", "warning"),
+        (SAMPLE.replace("Z.1 M35", "Z.1").replace("M1\nM30\n", NEXT_TOOL), "T0202", "warning"),
+    ],
+)
+def test_a_live_tool_is_stopped_after_its_section(wrong: str, block: str, severity: str) -> None:
+    tools = "8:radius=0", "1:radius=.25"
+    assert (block, "live-tool-never-stopped", severity) in found(wrong, *tools)
+    assert len(errors_and_warnings(wrong, *tools)) == (severity == "warning")
+    line = 1 + wrong.splitlines().index("G97 S2000 M33" if "T0808" in wrong else "G97 S1000 M33")
+    assert f"M33 of line {line} was not stopped" in message(wrong, "live-tool-never-stopped", *tools)
+
+
+@pytest.mark.parametrize(
+    "right",
+    [
+        SAMPLE.replace("Z.1 M35", "Z.1").replace("M1\n", "M35\nM1\n"),
+        SAMPLE.replace("Z.1 M35", "Z.1 M5"),
+        SAMPLE.replace("Z.1 M35", "Z.1").replace("M1\nM30\n", "M35 T0202\nG0 X5. Z5.\nM30\n"),
+        SAMPLE.replace("Z.1 M35", "Z.1").replace("M1\nM30\n", "M98 P9000\nM30\n"),  # which may stop it
+        SAMPLE.replace("Z.1 M35", "Z.1").replace("M1\nM30\n", ""),  # nobody knows what follows
+        SAMPLE.replace(
+            "M1\nM30\n", "T0202\nM35\nG28 H0\nS900 M33\nG0 X1. Z.1\nG1 Z-.5 F3.\nG0 Z1.\nM30\n"
+        ),  # no section
+    ],
+)
+def test_a_live_tool_that_is_stopped_or_not_of_a_section(right: str) -> None:
+    assert "live-tool-never-stopped" not in [rule for _, rule, _ in found(right, "8:radius=0")]
+
+
+# ---- the feed after a section ----
+
+#: The sample program without its G99, and work of a turning tool behind it.
+CARRIED = SAMPLE.replace("G99 G0 X2.5", "G0 X2.5")
+TURNING = "T0101\nM34\nG97 S800 M3\nG0 X1. Z.1\n{}\nG0 X5. Z5.\nM30\n"
+
+
+@pytest.mark.parametrize(
+    ("work", "block"),
+    [
+        ("G1 Z-.5 F.008", "G1 Z-.5 F.008"),
+        ("G1 X.9\nZ-.5", "G1 X.9"),  # at the F60. of the section
+        ("G90 X.9 Z-1. F.01\nX.8", "G90 X.9 Z-1. F.01"),
+        ("G94 X0 Z0 F.008", "G94 X0 Z0 F.008"),
+        ("G83 Z-1. F.004", "G83 Z-1. F.004"),
+        ("G71 U.1 R.05\nG71 P10 Q20 U.02 W.01 F.012\nN10 G0 X.5\nG1 Z-1.\nN20 X1.", "G71 P10 Q20 U.02 W.01 F.012"),
+    ],
+)
+def test_the_feed_of_a_mill_is_not_carried_into_turning(work: str, block: str) -> None:
+    wrong = CARRIED.replace("M30\n", TURNING.format(work))
+    assert errors_and_warnings(wrong, "8:radius=0") == [(block, "turning-feed-not-restored")]
+    for right in (
+        wrong.replace("G0 X2.5", "G99 G0 X2.5"),
+        wrong.replace("G97 S800", "G99 G97 S800"),
+        wrong.replace("T0101\n", "M98 P9000\nT0101\n"),  # which may say G99
+    ):
+        assert "turning-feed-not-restored" not in [rule for _, rule in errors_and_warnings(right, "8:radius=0")]
+
+
+def test_it_is_carried_within_the_work_of_the_mill_too() -> None:
+    wrong = CARRIED.replace("G0 X2.5\n", "G0 X2.5\nG1 Z-.5 F.008\nG0\n")
+    assert errors_and_warnings(wrong, "8:radius=0") == [("G1 Z-.5 F.008", "turning-feed-not-restored")]
+    said_of_it = message(wrong, "turning-feed-not-restored", "8:radius=0")
+    assert said_of_it.startswith("F.008 is 0.008 inch a minute in this turning move: G98 of line 14 is still in force")
+
+
+def test_a_program_in_mm_is_judged_alike() -> None:
+    program = in_mm(CARRIED.replace("M30\n", TURNING.format("G1 Z-.5 F.008")))
+    assert errors_and_warnings(program, "8:radius=0") == [("G1 Z-12.7 F0.2032", "turning-feed-not-restored")]
+    program = in_mm(CARRIED.replace("M30\n", TURNING.format("G1 Z-.5 F3.")))
+    assert errors_and_warnings(program, "8:radius=0") == []
+
+
+def test_each_g98_is_carried_once() -> None:
+    work = TURNING.format("G1 Z-.5 F.008\nX1.1\nZ-.6 F.006").replace("M30\n", "")
+    again = CARRIED[CARRIED.index("M5\n") :].replace("M1\nM30\n", TURNING.format("G1 Z-.5 F.008"))
+    program = CARRIED.replace("M1\nM30\n%\n", f"{work}G99\n{again}")
+    assert errors_and_warnings(program, "8:radius=0") == [("G1 Z-.5 F.008", "turning-feed-not-restored")] * 2
+
+
+@pytest.mark.parametrize(
+    "work",
+    [
+        TURNING.format("G92 X.9 Z-1. F.05\nX.88"),
+        TURNING.format("G76 P010060 Q50 R20\nG76 X.9 Z-1. P500 Q200 F.05"),
+        TURNING.format("G32 Z-1. F.05"),
+        TURNING.format("G1 Z-.5 F5."),  # a feed per minute, as for a bar puller
+        TURNING.format("G98 G1 Z-.5 F.008"),  # which is said anew
+        "T0909\nM35\nG28 H0\nS3000 M33\nG0 X1. Z.1\nG1 Z-.5 F3.\nG0 Z1. M35\nM30\n",
+        "T0909\nM35\nG28 H0\nS3000 M33\nG0 X1. Z.1\nG83 Z-.5 F1.5\nG80 G0 Z1. M35\nM30\n",
+    ],
+)
+def test_a_feed_per_minute_that_is_meant_is_right(work: str) -> None:
+    assert errors_and_warnings(CARRIED.replace("M30\n", work), "8:radius=0") == []
+
+
+@pytest.mark.parametrize("machine", ["fanuc", "haas-lathe", "mazak-eia", "siemens-iso", "okuma-osp", "gsk-988"])
+def test_the_procedure_is_that_of_one_builder(machine: str) -> None:
+    program = CARRIED.replace("S2000 ", "").replace("Z.1 M35", "Z.1").replace("M30\n", TURNING.format("G1 Z-.5 F.008"))
+    rules = {"live-tool-without-speed", "live-tool-never-stopped", "turning-feed-not-restored"}
+    assert rules <= {rule for _, rule, _ in found(program, "8:radius=0")}
+    assert not rules & {rule for _, rule, _ in found(program, "8:radius=0", machine=machine)}

@@ -620,7 +620,7 @@ def test_one_mistake_of_a_whole_program_is_one_finding(
 # ---- one mistake, and more findings ----
 
 THREE = f"{SQUARE}/G0 Z20./{SQUARE}/G0 Z20./{SQUARE}"
-TURNING_CENTER = "O1/G21 G40 G97 G98 G18/T0101/M35/G28 H0/M33"
+TURNING_CENTER = "O1/G21 G40 G97 G98 G18/T0101/M35/G28 H0/S1000 M33"
 
 
 def called_three_times(section: str) -> str:
@@ -658,7 +658,7 @@ def called_three_times(section: str) -> str:
             ),
             (
                 "M33",
-                TURNING_CENTER.replace("/M33", "") + f"/{THREE}/M30",
+                TURNING_CENTER.replace("/S1000 M33", "") + f"/{THREE}/M30",
                 "turning-center",
                 "live-tool-stopped-in-cut",
                 None,

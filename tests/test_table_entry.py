@@ -75,11 +75,11 @@ def test_x_unknown(before: str, unknown: bool) -> None:
 
 def test_c_is_positioned_again_after_it_was_engaged_again() -> None:
     """A spindle that ran in between stands anywhere."""
-    first = "O1\nT0101\nM35\nG28 H0\nM33\nG0 X60. C0\n"
-    assert asked(first + SECTION + "M30", "turning-center") == []
-    again = first + SECTION + "M34\nM3\nM5\nM35\nM33\nG0 X60.\n" + SECTION + "M30"
+    first = "O1\nT0101\nM35\nG28 H0\nS1000 M33\nG0 X60. C0\n"
+    assert asked(first + SECTION + "M35\nM30", "turning-center") == []
+    again = first + SECTION + "M34\nM3\nM5\nM35\nM33\nG0 X60.\n" + SECTION + "M35\nM30"
     assert asked(again, "turning-center") == ["c-axis-not-referenced"]
-    referenced = first + SECTION + "M34\nM35\nG28 H0\nM33\nG0 X60.\n" + SECTION + "M30"
+    referenced = first + SECTION + "M34\nM35\nG28 H0\nM33\nG0 X60.\n" + SECTION + "M35\nM30"
     assert asked(referenced, "turning-center") == []
 
 

@@ -62,6 +62,7 @@ SPANS = {
     "tool call": "since.tool_call",
     "modal state": "since.modal_state",
     "plane": "since.plane",
+    "feed mode": "since.feed_mode",
     "origin": "since.origin",
     "compensation": "since.compensation",
     "spindle code": "since.spindle_code",

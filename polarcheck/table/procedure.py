@@ -1,4 +1,4 @@
-"""The procedure around a polar section: the G12.1 that begins it."""
+"""The procedure around a polar section: the G12.1 that begins it, the live tool, and what it leaves to later work."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from polarcheck.arrays import Mask, Rows
-from polarcheck.machines.modal import Motion, Side
+from polarcheck.machines.modal import FeedMode, Motion, Side
 from polarcheck.table.filling import before, fill_down
 from polarcheck.table.trace import Trace
 
@@ -15,6 +15,8 @@ from polarcheck.table.trace import Trace
 _ROTARY = "C"
 #: So many moves of C at feed, with one of X among them, are a contour; one alone is a groove or a position.
 _MOVES_OF_CONTOUR = 2
+#: Below these F is no feed per minute but one per revolution: without the live tool, and with it [mm].
+_LEAST_OF_TURNING, _LEAST_OF_LIVE_TOOL = 5.0, 1.0
 _AT_FEED = (Motion.LINE, Motion.CW, Motion.CCW)
 
 
@@ -85,6 +87,86 @@ class Procedure:
         turning, moving = (before(_count(mask, stops), trace.starts, 0) for mask in (plane, along_x))
         first = _first(plane, stops, trace.starts)
         return np.where((turning >= _MOVES_OF_CONTOUR) & (moving > 0), first, -1)
+
+    # ---- the live tool ----
+
+    @cached_property
+    def live_tool_without_speed(self) -> Mask:
+        """
+        The live tool is started, and up to the first move at feed behind that no S was ever given for it.
+
+        S is for the live tool if that starts next or runs; one that the main spindle starts with is not, nor is the
+        limit of G50, a surface speed, or S0. What stands before an excerpt without T may have given it.
+        """
+        trace, codes = self.trace, self.trace.machine.m_codes
+        started = trace.codes(*codes.live_tool_on)
+        if not started.any():
+            return started
+        begins = np.flatnonzero(started | trace.codes(*codes.spindle_on))
+        of_live_tool = np.append(started[begins], False)
+        rows = np.arange(len(trace))
+        following = of_live_tool[np.searchsorted(begins, rows)]
+        running = of_live_tool[np.searchsorted(begins, rows, side="right") - 1]
+        is_speed = ~(trace.word("S") == 0) & ~trace.sets_coordinates & (started | (trace.state("speed") == 0))
+        given = _happened((trace.has("S") & is_speed & (following | running)) | trace.run.unknown, trace.starts)
+        ends = np.isin(trace.motion, _AT_FEED) | trace.codes(*codes.live_tool_off) | trace.ends_program
+        until = np.append(np.flatnonzero(ends), len(trace) - 1)[np.searchsorted(np.flatnonzero(ends), rows)]
+        return np.asarray(started & ~given[until] & (trace.whole_program | trace.has_called_tool))
+
+    @cached_property
+    def live_tool_runs_on(self) -> Rows:
+        """
+        In rows that change the tool or end the program: the row that started the live tool of a section, if it still
+        runs; -1 elsewhere.
+        """
+        trace, codes = self.trace, self.trace.machine.m_codes
+        ends = trace.changes_tool | trace.ends_program
+        starts_tool, stops_tool = trace.codes(*codes.live_tool_on), trace.codes(*codes.live_tool_off)
+        begun = starts_tool & ~before(trace.live_tool, trace.starts, False)
+        since = begun | stops_tool | trace.run.unknown | trace.changes_tool | trace.starts
+        has_cut = before(_happened(trace.cuts & trace.live_tool, since), trace.starts, False)
+        still = before(trace.live_tool, trace.starts, False) & ~stops_tool & has_cut
+        row = fill_down(np.where(begun, np.arange(len(trace)), -1), begun | trace.starts, -1)
+        return np.where(ends & still, before(row, trace.starts, -1), -1)
+
+    # ---- what a section leaves ----
+
+    @cached_property
+    def section_before(self) -> Rows:
+        """The row in which the last section above ended, -1 without one; of the same program."""
+        trace = self.trace
+        rows = np.where(trace.leaves, np.arange(len(trace)), -1)
+        return fill_down(rows, trace.leaves | trace.enters | trace.starts, -1)
+
+    @cached_property
+    def turns_at_feed_of_mill(self) -> Mask:
+        """
+        Moves of turning, behind a section, with the feed per minute that was in force in it.
+
+        It is known by F: below what anything is milled with per minute; or by F of the section itself while the main
+        spindle runs. F of threads is a lead in either mode.
+        """
+        trace = self.trace
+        rows = np.arange(len(trace))
+        of_mode = fill_down(np.where(trace.sets("feed_mode"), rows, -1), trace.sets("feed_mode") | trace.starts, -1)
+        known = ~_happened(trace.run.unknown, trace.leaves | trace.starts)
+        carried = (of_mode >= 0) & (of_mode < self.section_before) & (trace.feed_mode == FeedMode.PER_MINUTE) & known
+        takes_feed = trace.has("F") | trace.starts
+        is_own = fill_down(np.where(trace.has("F"), rows, -1), takes_feed, -1) > self.section_before
+        least = np.where(trace.live_tool, _LEAST_OF_LIVE_TOOL, _LEAST_OF_TURNING)
+        is_small = np.abs(trace.feed_number) < least
+        of_section = ~is_own & ~trace.live_tool & trace.spindle
+        return np.asarray(carried & self._turning & ((is_own & is_small) | of_section))
+
+    @property
+    def _turning(self) -> Mask:
+        """Moves of X and Z at feed outside the mode, and cycles, but no threads."""
+        trace = self.trace
+        leads = trace.listed("thread_cutting", "threading_cycle", "feed_is_lead")
+        threads = _happened(leads, trace.sets("motion") | trace.starts)
+        at_feed = np.isin(trace.motion, _AT_FEED) & (trace.moves_plane | trace.moves_z) & ~self._turns
+        cycle = (trace.motion == Motion.CYCLE) | (trace.listed("repetitive_cycle") & trace.has("F"))
+        return np.asarray((trace.section < 0) & (at_feed | cycle) & ~threads)
 
 
 def _happened(mask: Mask, ends: Mask) -> Mask:

@@ -60,6 +60,11 @@ class Since:
         return self._last(self.trace.sets("plane"))
 
     @cached_property
+    def feed_mode(self) -> Rows:
+        """From one code of feed per minute or per revolution to the next."""
+        return self._last(self.trace.sets("feed_mode"))
+
+    @cached_property
     def origin(self) -> Rows:
         """From one block to the next that sets or selects a coordinate system."""
         trace = self.trace

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from polarcheck.checking.phrases.common import executed_word, short
+from polarcheck.checking.phrases.common import code_of, executed_word, short
+from polarcheck.checking.phrases.feed import feed_word as feed_word
 from polarcheck.checking.quantity import in_row
+from polarcheck.machines.machine import Machine
 from polarcheck.table.entry import Entry
+from polarcheck.table.procedure import Procedure
 from polarcheck.table.trace import Trace
 
 
@@ -78,3 +81,27 @@ def unknown_since(trace: Trace, entry: Entry, row: int) -> str:
     low, high = np.searchsorted(trace.run.row, (at, at + 1))
     words = [index for index in range(low, high) if chr(int(trace.run.words.address[index])) in named]
     return f"is not known since {' '.join(executed_word(trace, word) for word in words)} in line {int(trace.line[at])}"
+
+
+def started(trace: Trace, procedure: Procedure, row: int) -> str:
+    """The code that started the live tool that still runs, and its line."""
+    at = int(procedure.live_tool_runs_on[row])
+    words = trace.code_indices(*trace.machine.m_codes.live_tool_on)
+    code = executed_word(trace, int(words[trace.run.row[words] == at][0]))
+    return f"{code} of line {int(trace.line[at])}"
+
+
+def stop(machine: Machine) -> str:
+    """The code that stops the live tool."""
+    return next(iter(machine.m_codes.live_tool_off), "the code")
+
+
+def carried_mode(trace: Trace, row: int) -> str:
+    """The code of feed per minute that is still in force, and its line."""
+    rows = np.flatnonzero(trace.sets("feed_mode")[: row + 1])
+    return f"{code_of(trace.machine, 'feed_per_minute')} of line {int(trace.line[rows[-1]])}"
+
+
+def per_revolution(machine: Machine) -> str:
+    """The code of feed per revolution."""
+    return code_of(machine, "feed_per_revolution")

@@ -1,0 +1,59 @@
+from __future__ import annotations
+
+from polarcheck.checking.rule import WARNING, Hits, Machine, Procedure, Trace, rule
+
+
+@rule(
+    WARNING,
+    "{word} starts the live tool, and no S was given for it: it turns as it did last, or not at all; write S before it",
+    once="program",
+)
+def live_tool_without_speed(trace: Trace, procedure: Procedure, machine: Machine) -> Hits:
+    """
+    Live tool started without a speed.
+
+    The code that starts the live tool takes the S in force. Where the program gives none for it, that is the speed of
+    the job before, or 0, and the cutter is pressed into the part without turning. An S with which the main spindle was
+    started is not meant for it, nor is the limit of G50. Write S beside the code: `G97 S2000 M33`.
+
+    Source: builder's guide to G12.1, sample program: live tool spindle ON.
+
+    Bad, machine turning-center, tool 8:radius=0:
+
+        O1
+        T0808
+        M5
+        M35
+        G28 H0
+        G97 M33           (expect: live-tool-without-speed)
+        G98 G0 X2.15 Z.1 C0
+        G12.1
+        G1 C.5339 F60.
+        G41 X1.75 F7.
+        C-.5339
+        G40 X2.15 F60.
+        G13.1
+        G99 G0 Z1. M35
+        M30
+
+    Good, machine turning-center, tool 8:radius=0:
+
+        O1
+        T0808
+        M5
+        M35
+        G28 H0
+        G97 S2000 M33
+        G98 G0 X2.15 Z.1 C0
+        G12.1
+        G1 C.5339 F60.
+        G41 X1.75 F7.
+        C-.5339
+        G40 X2.15 F60.
+        G13.1
+        G99 G0 Z1. M35
+        M30
+    """
+    # Compares nothing: for which of two spindles an S is hangs on what starts after it.
+    started = trace.words_at(trace.code_indices(*machine.m_codes.live_tool_on))
+    return Hits(procedure.live_tool_without_speed, at=started)

@@ -1,0 +1,73 @@
+from __future__ import annotations
+
+from polarcheck.checking.rule import WARNING, Mask, Procedure, rule
+
+
+@rule(
+    WARNING,
+    "{feed_word} is {trace.feed_number:length} a minute in this turning move: {carried_mode} is still in force from "
+    "the polar mode; write {per_revolution} after it",
+    at=("F",),
+    once="feed mode",
+)
+def turning_feed_not_restored(procedure: Procedure) -> Mask:
+    """
+    Feed per minute of the polar mode carried into turning.
+
+    Milling in the mode goes with feed per minute, turning with feed per revolution, and either is modal. Without G99
+    (G95 in systems B and C) behind the section an F of .008 inch for each turn is .008 inch a minute, the tool rubs,
+    and nobody sees why the lathe stands still; or the F of the mill turns on. Write it on the retract: `G99 G0 X2.5`.
+    Nothing is said of an F that may be meant per minute, as in drilling with a live tool, nor of threads.
+
+    Source: builder's guide to G12.1, sample program: switch back to IPR feed mode.
+
+    Bad, machine turning-center, tool 8:radius=0:
+
+        T0808
+        M5
+        M35
+        G28 H0
+        G97 S2000 M33
+        G98 G0 X2.15 Z.1 C0
+        G12.1
+        G1 C.5339 F60.
+        G41 X1.75 F7.
+        C-.5339
+        G40 X2.15 F60.
+        G13.1
+        G0 Z1. M35
+        T0101
+        M34
+        G97 S800 M3
+        G0 X1. Z.1
+        G1 Z-.5 F.008     (expect: turning-feed-not-restored)
+        X1.2
+        G0 X5.
+
+    Good, machine turning-center, tool 8:radius=0:
+
+        T0808
+        M5
+        M35
+        G28 H0
+        G97 S2000 M33
+        G98 G0 X2.15 Z.1 C0
+        G12.1
+        G1 C.5339 F60.
+        G41 X1.75 F7.
+        C-.5339
+        G40 X2.15 F60.
+        G13.1
+        G0 X0 Z.1
+        G1 Z-.5 F3.
+        G99 G0 Z1. M35
+        T0101
+        M34
+        G97 S800 M3
+        G0 X1. Z.1
+        G1 Z-.5 F.008
+        X1.2
+        G0 X5.
+    """
+    # Compares nothing: which moves turn, and whose F is in force, hangs on the rows above.
+    return procedure.turns_at_feed_of_mill
