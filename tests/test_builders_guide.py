@@ -8,6 +8,8 @@ import pytest
 from guide_programs import METHOD_A, METHOD_B, PROGRAMS, SAMPLE, in_mm, without
 from programs import Changes, report_of, said
 
+from polarcheck.checking.rule import load_all
+
 MACHINE = "turning-center"
 
 
@@ -234,3 +236,152 @@ def test_the_procedure_is_that_of_one_builder(machine: str) -> None:
     rules = {"live-tool-without-speed", "live-tool-never-stopped", "turning-feed-not-restored"}
     assert rules <= {rule for _, rule, _ in found(program, "8:radius=0")}
     assert not rules & {rule for _, rule, _ in found(program, "8:radius=0", machine=machine)}
+
+
+# ---- R, the feed mode, the plane ----
+
+
+@pytest.mark.parametrize("radius", ["-.005", ".005", "0", "-.0098", ".0098"])
+@pytest.mark.parametrize("unit", ["inch", "mm"])
+def test_r_is_adjusted_either_plus_or_minus(radius: str, unit: str) -> None:
+    """Beside a comment that tells the cutter, too."""
+    given = f"{float(radius) * (25.4 if unit == 'mm' else 1)}"
+    program = SAMPLE if unit == "inch" else in_mm(SAMPLE)
+    assert found(program, f"8:radius={given}") == []
+
+
+@pytest.mark.parametrize("radius", [".245", ".255"])
+@pytest.mark.parametrize("program", [METHOD_A, METHOD_B])
+def test_so_is_the_r_of_a_program_of_the_part(program: str, radius: str) -> None:
+    assert errors_and_warnings(program.replace("T0101", "T0101 (1/2 INCH END MILL)"), f"1:radius={radius}") == []
+
+
+BY_REVOLUTION = re.sub(r"F60\.", "F.03", SAMPLE).replace("F7.", "F.0035")
+
+
+@pytest.mark.parametrize("before", ["", "G99\n"])
+def test_feed_is_per_minute_or_per_revolution(before: str) -> None:
+    """G99 in the mode is allowed, and a note at most: F hangs on a spindle that is the C axis."""
+    program = BY_REVOLUTION.replace("G98", "G99" if not before else "").replace("X2.15\n", f"X2.15\n{before}", 1)
+    assert [(rule, severity) for _, rule, severity in found(program, "8:radius=0")] == [
+        ("feed-per-revolution-in-polar", "note")
+    ]
+    assert found(SAMPLE.replace("G1 G98", "G1").replace("G40\n", "G40 G98\n", 1), "8:radius=0") == []
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("G40\n", "G18 G40\n"),
+        ("X2.15\n", "X2.15\nG18\n"),
+        ("G12.1\n", "G12.1\nG18\n"),
+        ("G12.1\nG1", "G12.1\nG18 G1"),
+        ("Z-.88\n", "Z-.88\nG18\n"),
+        ('G40\nG13.1\nG30 U0 W0\nG28 H0\nT0808 (3/4" DIA. CUTTER)\nG97 S2000 M33\nG0Z.1 C0 M8\nX2.15\nG12.1\n', None),
+    ],
+)
+def test_g18_in_the_mode_or_before_it_satisfies_the_guide(old: str, new: str | None) -> None:
+    """So does the default plane of the lathe, and G18 as the first block in the mode after G17."""
+    new = old.replace("G40", "G40 G17").replace("G12.1\n", "G12.1\nG18\n") if new is None else new
+    assert old in SAMPLE
+    assert found(SAMPLE.replace(old, new, 1), "8:radius=0") == []
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "block", "rule"),
+    [
+        ("G12.1\n", "G12.1\nG17\n", "G17", "plane-selected-in-polar"),
+        ("Z-.88\n", "Z-.88\nG19\n", "G19", "plane-selected-in-polar"),
+        ("X2.15\n", "G17 X2.15\n", "G12.1", "plane-wrong-at-entry"),
+        ("X2.15\n", "G19 X2.15\n", "G12.1", "plane-wrong-at-entry"),
+    ],
+)
+def test_only_g17_and_g19_are_wrong(old: str, new: str, block: str, rule: str) -> None:
+    assert errors_and_warnings(SAMPLE.replace(old, new, 1), "8:radius=0") == [(block, rule)]
+
+
+# ---- the offset of the cutter ----
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ('T0808 (3/4" DIA. CUTTER)\n', 'T0808 (3/4" DIA. CUTTER)\nD08\n'),
+        ('T0808 (3/4" DIA. CUTTER)\n', "T0808 D08\n"),
+        ('T0808 (3/4" DIA. CUTTER)\n', "D08\nT0808\n"),
+        ("S2000 M33", "S2000 M33 D8"),
+        ("X2.15\n", "G0 X2.15 D8\n"),
+        ("G12.1\n", "G12.1\nD8\n"),
+        ("G1 G41 X1.75", "G1 G41 D8 X1.75"),
+    ],
+)
+def test_d_calls_nothing_on_a_lathe(old: str, new: str) -> None:
+    [(_, rule, severity)] = found(SAMPLE.replace(old, new, 1), "8:radius=0")
+    assert (rule, severity) == ("d-word-on-lathe", "error")
+
+
+@pytest.mark.parametrize(
+    "before",
+    [
+        "G71 U.1 R.05\nG71 P10 Q20 U.02 W.01 D1000 F.01",
+        "G76 X.9 Z-1. K.03 D100 F.05",
+        "G83 Z-1. D100 F3.",
+        "G65 P9000 D8",
+        "G200 D8",
+        "M200 D8",
+        "G101 X1. D8",
+    ],
+)
+def test_a_cycle_or_a_call_has_a_d_of_its_own(before: str) -> None:
+    program = SAMPLE.replace("X2.15\n", f"{before}\nG0 X2.15\n", 1)
+    assert "d-word-on-lathe" not in [rule for _, rule, _ in found(program, "8:radius=0")]
+
+
+def test_a_nose_that_is_not_given_has_no_weight() -> None:
+    report = report_of(SAMPLE, MACHINE, "8:radius=0")
+    assert [(one.rule, one.matters) for one in report.not_evaluated] == [("nose-type-not-zero", False)]
+    assert report.verdict == "pass"
+    assert report_of(SAMPLE, MACHINE, "8:radius=0", "8:nose=0").not_evaluated == []
+
+
+@pytest.mark.parametrize(
+    ("machine", "nose", "allowed"), [(MACHINE, 3, "0"), (MACHINE, 9, "0"), ("fanuc", 3, "0 or 9"), ("fanuc", 9, "")]
+)
+def test_the_nose_type_is_that_of_the_machine(machine: str, nose: int, allowed: str) -> None:
+    findings = report_of(SAMPLE, machine, "8:radius=0", f"8:nose={nose}").findings
+    assert [(one.rule, one.message.rpartition("must be ")[2]) for one in findings] == (
+        [("nose-type-not-zero", allowed)] if allowed else []
+    )
+
+
+def test_the_page_of_the_nose_type_speaks_of_no_other_machine() -> None:
+    assert "9" not in load_all()["nose-type-not-zero"].page.partition("Source:")[0]
+
+
+@pytest.mark.parametrize(
+    ("program", "old", "new"),
+    [
+        (SAMPLE, "G1 G41 X1.75F7. (1)\n", "G41\nG1 X1.75F7.\n"),
+        (SAMPLE, "G1 G41 X1.75F7. (1)\nZ-.88\n", "G1 G41 Z-.88 F7.\nX1.75\n"),
+        (METHOD_A, "G1 G41 X1.0 F5.\n", "G42\nG41\nX1.0 F5.\n"),
+        (METHOD_B, "G1 G41 X1.0 F5.\n", "G41 C.4153\nX1.0 F5.\n"),  # where it stands already
+    ],
+)
+def test_g41_belongs_beside_the_move_that_begins_the_offset(program: str, old: str, new: str) -> None:
+    assert old in program
+    report = report_of(program.replace(old, new, 1), MACHINE, "8:radius=0", "1:radius=.25")
+    [finding] = [one for one in report.findings if one.rule == "start-up-without-move"]
+    assert finding.severity == "note"
+    assert not [one for one in report.findings if one.severity != "note"]
+    assert "start-up-without-move" not in {
+        rule for _, rule, _ in found(program.replace(old, new, 1), "8:radius=0", "1:radius=.25", machine="fanuc")
+    }
+
+
+def test_a_start_up_that_is_too_short_is_one_finding() -> None:
+    program = METHOD_A.replace("G1 G41 X1.0 F5.\n", "G41\nX1.0 F5.\n", 1).replace("X1.8\n", "X1.4\n", 1)
+    [finding] = [one for one in report_of(program, MACHINE, "1:radius=.25").findings if one.severity == "error"]
+    assert finding.rule == "start-up-shorter-than-radius"
+    assert [one.rule for one in finding.follows] == ["start-up-without-move"]
+    never = METHOD_A.replace("G1 G41 X1.0 F5.\nZ-.375 (depth of cut)\nC-0.4153\nG40", "G41\nG40", 1)
+    assert [rule for _, rule, _ in found(never, "1:radius=.25")].count("start-up-without-move") == 0

@@ -10,9 +10,14 @@ import numpy as np
 from polarcheck.arrays import Floats, Mask
 from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.machines.codes import code_set
+from polarcheck.machines.modal import STATES
 from polarcheck.table.filling import before, fill_down
 from polarcheck.table.origin import Origin
 from polarcheck.table.trace import Trace
+
+#: What may stand beside a D that is meant for the cutter: words, and modal groups of G codes.
+_WORDS_BESIDE_D = ("T", "S", "M", "G", "F", "X", "U", "Z", "W", "C", "H")
+_BESIDE_D = ("motion", "side", "units", "plane", "feed_mode", "speed")
 
 
 class Entry:
@@ -58,11 +63,24 @@ class Entry:
 
     @cached_property
     def calls_d_before_mode(self) -> Mask:
-        """A D word alone, or beside T alone, outside the mode; the program enters it before the tool changes."""
+        """
+        A D word outside the mode that can only be meant for the cutter; the program enters the mode with its tool.
+
+        It stands alone, or beside T, S, M codes of the lathe, positions, and G codes of modal states; not beside
+        cycles, calls and codes of the builder, which have a D of their own. Alone it may stand right above its T.
+        """
         trace = self.trace
         if not trace.has("D").any():
             return np.zeros(len(trace), bool)
-        return self._is_before_mode & trace.has("D") & trace.consists_of("D", "T")
+        machine, m_codes = trace.machine, trace.machine.m_codes
+        codes = [code for group in _BESIDE_D for key in STATES[group] for code in machine.codes(key)]
+        codes += [code for name in m_codes.__struct_fields__ for code in getattr(m_codes, name)]
+        plain = trace.words_at(trace.code_indices(*codes))
+        has_other_code = trace.with_words(np.isin(trace.run.words.address, list(b"GM")) & ~plain)
+        calls = trace.has("D") & trace.consists_of("D", *_WORDS_BESIDE_D) & ~has_other_code & ~trace.in_cycle
+        ahead = self._is_before_mode
+        above_tool = np.append((trace.changes_tool & ahead)[1:], False) & trace.consists_of("D")
+        return np.asarray(calls & (ahead | above_tool))
 
     @property
     def _is_before_mode(self) -> Mask:

@@ -56,8 +56,18 @@ class Ramps:
     def start_up_missing(self) -> Mask:
         """G41 or G42 after which nothing moves on the plane before G40 or the end of the mode."""
         trace = self.trace
+        return self._without_move(self._begins_at_rest, trace.writes_cancel | ~trace.in_polar, trace.starts_up)
+
+    @cached_property
+    def start_up_later(self) -> Mask:
+        """G41 or G42 without a move on the plane, alone or with Z; the next one there is the start-up."""
+        return self._begins_at_rest & ~self.start_up_missing
+
+    @cached_property
+    def _begins_at_rest(self) -> Mask:
+        trace = self.trace
         begins = trace.in_polar & trace.writes_side & ~trace.travels & (trace.side_before == Side.OFF)
-        return self._without_move(begins & ~trace.offset_mode, trace.writes_cancel | ~trace.in_polar, trace.starts_up)
+        return np.asarray(begins & ~trace.offset_mode)
 
     @cached_property
     def cancel_missing(self) -> Mask:

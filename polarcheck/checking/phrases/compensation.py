@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from polarcheck.checking.phrases.common import code_of
 from polarcheck.checking.quantity import in_row
 from polarcheck.errors import TooHardError
@@ -56,6 +58,11 @@ def changed_by(trace: Trace, row: int) -> str:
 def allowed(machine: Machine) -> str:
     """The nose types that a mill may have."""
     return " or ".join(str(number) for number in machine.compensation.nose_types)
+
+
+def start_up(trace: Trace, row: int) -> int:
+    """The line of the next move on the plane."""
+    return int(trace.line[row + int(np.argmax(trace.travels[row:]))])
 
 
 def misfit(trace: Trace, tool_center: ToolCenter, row: int, count: int) -> str:

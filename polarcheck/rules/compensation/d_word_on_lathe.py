@@ -14,8 +14,8 @@ def d_word_on_lathe(trace: Trace, entry: Entry) -> Mask:
 
     On machining centers D calls the radius of the cutter. A lathe takes R from the tool offset that T calls, and does
     not know D: it is an alarm, or the radius is not the one that D was to call. Delete D, put R into the offset table,
-    and call the offset with T before G12.1. Before the mode D is meant so where it stands alone in its block, or beside
-    T alone.
+    and call the offset with T before G12.1. Before the mode D is meant so where it stands alone in its block,
+    or beside T, S, M codes and positions; a cycle or a call has a D of its own.
 
     Source: builder's guide to G12.1, cutter compensation data setting and notes.
 

@@ -15,9 +15,11 @@ def nose_type_not_zero(trace: Trace) -> Mask:
     """
     Nose type of a turning tool in the offset of a mill.
 
-    T of the tool offset says where on the nose the programmed point lies. For a mill it is the cutter center, type 0
-    (or 9); with another type compensation shifts the contour by R along one or both axes of the plane. Set T to 0 in
-    the offset table.
+    T of the tool offset says where on the nose the programmed point lies. For a mill it is the cutter center, type 0;
+    with another type compensation shifts the contour by R along one or both axes of the plane. Set T to 0 in the offset
+    table. Other types that mean the center on a machine, too, are in its profile (compensation.nose_types), and the
+    message names them. A T that is not given is listed as not evaluated, without weight: offset tables have it for
+    turning tools.
 
     Source: builder's guide to G12.1, cutter compensation data setting; FANUC B-62754EN/01, tool nose radius
     compensation.

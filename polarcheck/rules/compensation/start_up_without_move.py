@@ -1,0 +1,65 @@
+from __future__ import annotations
+
+from polarcheck.checking.rule import NOTE, Mask, Ramps, rule
+
+
+@rule(
+    NOTE,
+    "{side} without a move on the plane: the offset begins with that of line {start_up}; write {side} there",
+    at=("compensation_left", "compensation_right"),
+    follows={
+        "way": (
+            "start-up-shorter-than-radius",
+            "start-up-on-arc",
+            "start-up-sweeps-contour",
+            "offset-number-missing",
+            "nose-type-not-zero",
+        )
+    },
+)
+def start_up_without_move(ramps: Ramps) -> Mask:
+    """
+    Compensation begun in a block without a move on the plane.
+
+    G41 or G42 alone, or beside Z, builds up nothing yet: the next move on the plane is the start-up, whatever it was
+    meant for, and needs the length of one. Who reads the program does not see it. Write G41 or G42 into the G1 that
+    moves the tool onto the part: `G1 G41 X1.75 F7.`. Under a fault of that start-up this is listed with it.
+
+    Source: builder's guide to G12.1, cutter compensation function.
+
+    Bad, machine turning-center, tool 8:radius=0:
+
+        T0808
+        G98 G0 X2.15 Z.1 C0
+        G12.1
+        G1 C.5339 F60.
+        G41               (expect: start-up-without-move)
+        X1.75 F7.
+        C-.5339
+        G40 X2.15 F60.
+        G13.1
+
+    Bad, machine turning-center, tool 8:radius=0:
+
+        T0808
+        G98 G0 X2.15 Z.1 C0
+        G12.1
+        G1 C.5339 F60.
+        G41 Z-.88 F7.     (expect: start-up-without-move)
+        X1.75
+        C-.5339
+        G40 X2.15 F60.
+        G13.1
+
+    Good, machine turning-center, tool 8:radius=0:
+
+        T0808
+        G98 G0 X2.15 Z.1 C0
+        G12.1
+        G1 C.5339 F60.
+        G41 X1.75 F7.
+        C-.5339
+        G40 X2.15 F60.
+        G13.1
+    """
+    return ramps.start_up_later
