@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 
 import pytest
 from guide_programs import METHOD_A, METHOD_B, PROGRAMS, SAMPLE, in_mm, without
-from programs import Changes, report_of, said
+from programs import Changes, machine_of, report_of, said
 
 from polarcheck.checking.rule import load_all
 
@@ -385,3 +386,190 @@ def test_a_start_up_that_is_too_short_is_one_finding() -> None:
     assert [one.rule for one in finding.follows] == ["start-up-without-move"]
     never = METHOD_A.replace("G1 G41 X1.0 F5.\nZ-.375 (depth of cut)\nC-0.4153\nG40", "G41\nG40", 1)
     assert [rule for _, rule, _ in found(never, "1:radius=.25")].count("start-up-without-move") == 0
+
+
+# ---- feeds ----
+
+RULE = "feed-outside-recommended-range"
+TOOLS = ("8:radius=0", "1:radius=.25")
+
+
+def of_feed(program: str, *tools: str, job: Changes | None = None) -> list[str]:
+    """The blocks in which an F is outside what the guide recommends."""
+    return [block for block, rule, _ in found(program, *(tools or TOOLS), job=job) if rule == RULE]
+
+
+@pytest.mark.parametrize("program", [SAMPLE, METHOD_A, METHOD_B])
+@pytest.mark.parametrize("convert", [str, in_mm])
+def test_the_feeds_of_the_guide_are_its_recommendation(program: str, convert: Callable[[str], str]) -> None:
+    """F20. for positioning and F60. on the way round the part included."""
+    assert of_feed(convert(program)) == []
+
+
+@pytest.mark.parametrize("feed", ["10.5", "20.", "30.", "45.", "60."])
+@pytest.mark.parametrize(
+    ("program", "old", "block", "why"),
+    [
+        (SAMPLE, "X1.75F7.", "G1 C-.5339 (2)", "it is as near to the center as that of line 19"),
+        (SAMPLE, "G1 C.5339 F7.", "G1 C.5339 F{} (4)", "it is as near to the center as that of line 17"),
+        (METHOD_A, "X1.0 F5.", "C-0.4153", "no move along this contour is slower"),
+        (METHOD_B, "F5.\nG40", "G1 C0.4153 F{}", "it is as near to the center as that of line 16"),
+    ],
+)
+def test_a_cut_at_more_than_the_feed_for_cutting_is_told(
+    feed: str, program: str, old: str, block: str, why: str
+) -> None:
+    new = re.sub(r"F\d+\.", f"F{feed}", old)
+    wrong = program.replace(old, new, 1)
+    assert of_feed(wrong) == [block.format(feed)]
+    text = message(wrong, RULE, *TOOLS)
+    where = "between the two ranges" if float(feed) < 30 else "a feed for positioning"
+    assert f" is {feed.rstrip('.')} inch/min, {where}, and this move cuts: {why}; recommended" in text
+    assert text.endswith("1 to 10 inch/min for cutting, 30 to 60 inch/min for positioning")
+
+
+@pytest.mark.parametrize("feed", ["1.", "10.", "12.", "20.", "30.", "60."])
+@pytest.mark.parametrize(
+    ("program", "old"),
+    [
+        (SAMPLE, "G1 G98 C.5339 F60."),
+        (SAMPLE, "R1.025 F60."),
+        (SAMPLE, "G40 X-2.15 F60."),
+        (METHOD_A, "C0.4153 F20."),
+        (METHOD_A, "G40 X1.8 F20."),
+        (METHOD_B, "R.650 F60."),
+    ],
+)
+def test_positioning_goes_at_any_feed_of_the_ranges_and_between(feed: str, program: str, old: str) -> None:
+    assert of_feed(program.replace(old, re.sub(r"F\d+\.", f"F{feed}", old), 1)) == []
+
+
+@pytest.mark.parametrize(("feed", "where"), [(".9", "below"), ("60.5", "above")])
+@pytest.mark.parametrize("old", ["G98 C.5339 F60.", "X1.75F7.", "R1.025 F60.", "G40 X-2.15 F60."])
+def test_beyond_both_ranges_any_move_is_told(feed: str, where: str, old: str) -> None:
+    wrong = SAMPLE.replace(old, re.sub(r"F\d+\.", f"F{feed}", old), 1)
+    assert len(of_feed(wrong)) == 1
+    assert f"inch/min, {where} both ranges" in message(wrong, RULE, *TOOLS)
+
+
+def test_each_f_of_a_section_is_told_once() -> None:
+    every = METHOD_A.replace("F5.", "F40.")
+    assert of_feed(every) == ["C-0.4153", "C-0.4153"]
+    more = SAMPLE.replace("G1 C.5339 F7. (4)\n", "G1 C.2 F40.\nC0 F50.\nC.2 F40.\nC.5339\n")
+    assert of_feed(more) == ["G1 C.2 F40.", "C0 F50."]
+
+
+@pytest.mark.parametrize(("diameter", "cuts"), [(1.25, False), (1.29, False), (1.31, True), (1.4, True)])
+@pytest.mark.parametrize("convert", [str, in_mm])
+def test_given_stock_decides_whether_the_way_round_cuts(
+    diameter: float, cuts: bool, convert: Callable[[str], str]
+) -> None:
+    """The arc of the guide leads the edge of the cutter round a circle of 1.3 inch."""
+    unit = 1 if convert is str else 25.4
+    job = {"stock": {"diameter": diameter * unit}}
+    for program, tools in (
+        (METHOD_B, [f"1:radius={0.25 * unit}"]),
+        (SAMPLE, ["8:radius=0", f"8:diameter={0.75 * unit}"]),
+    ):
+        assert len(of_feed(convert(program), *tools, job=job)) == cuts
+    slow = METHOD_B.replace("F60.", "F5.")
+    assert of_feed(convert(slow), f"1:radius={0.25 * unit}", job=job) == []
+
+
+def test_a_cut_outside_the_stock_is_none() -> None:
+    """With the stock given, what is as near as a cut counts no more."""
+    program = METHOD_B.replace("G1 C0.4153 F5.", "G1 C0.4153 F40.")
+    assert of_feed(program, job={"stock": {"diameter": 1.25}}) == ["G1 C0.4153 F40."]
+    assert of_feed(program, job={"stock": {"diameter": 0.9}}) == []
+
+
+@pytest.mark.parametrize(
+    ("blocks", "told"),
+    [
+        # A lead in and a lead out on arcs, whose ends lie on the contour; then the contour itself.
+        ("G1 X1.4 C.6153 F40.\nG41 X1.4 C.2 F40.\nG3 X1. C0 R.2\nG1 C-.4 F5.\nG3 X1.4 C-.6 R.2 F40.\nG1 G40 X2.", []),
+        ("G1 C.6 F40.\nG41 X1. F5.\nC-.6\nX-1. F40.\nC.6 F5.\nX.9 F40.\nG40 X2.4", []),
+        # Above the depth of the cuts.
+        ("G1 C.6 F40.\nG41 X1. F40.\nC-.6\nC.6\nZ-.3 F5.\nC-.6\nG40 X2.4", []),
+        # A polygon in chords, each of which is nearest at an end.
+        ("G1 C.1 F40.\nG41 X1.1 F5.\nX1.08 C.15\nX1. C.25 F40.\nX.8 C.37\nX.6 C.45 F5.\nG40 X2.4", ["X1. C.25 F40."]),
+    ],
+)
+def test_leads_and_moves_in_the_air_are_no_cuts(blocks: str, told: list[str]) -> None:
+    program = f"T0101\nM5\nM35\nG28 H0\nG97 S900 M33\nG98 G0 X2.4 Z.1 C0\nG12.1\n{blocks}\nG13.1\n"
+    assert of_feed(program, "1:radius=.05") == told
+
+
+def test_without_compensation_nobody_knows_what_cuts() -> None:
+    program = METHOD_A.replace("G41 ", "").replace("G40 X1.8", "X1.8")
+    assert of_feed(program) == ["G1 G98 C0.4153 F20."] * 2
+    texts = [one.message for one in report_of(program, MACHINE, *TOOLS).findings if one.rule == RULE]
+    assert all("between the two ranges; recommended" in text for text in texts)
+
+
+def test_an_unknown_radius_takes_nothing_from_it() -> None:
+    assert of_feed(METHOD_A.replace("F5.", "F40.", 1), "8:radius=0") == ["C-0.4153"]
+    assert of_feed(METHOD_B, "8:radius=0") == []
+
+
+@pytest.mark.parametrize(
+    ("feed", "shown"),
+    [("25.", "25 mm"), ("25.4", ""), ("250.", ""), ("254.", ""), ("254.0001", "254.0001 mm"), ("254.5", "254.5 mm")],
+)
+def test_limits_in_mm_are_true_as_they_are_shown(feed: str, shown: str) -> None:
+    program = in_mm(METHOD_A).replace("F127.", f"F{feed}", 1)
+    assert len(of_feed(program, "1:radius=6.35")) == bool(shown)
+    if shown:
+        text = message(program, RULE, "1:radius=6.35")
+        assert f" is {shown}/min, " in text
+        assert text.endswith("25.4 to 254 mm/min for cutting, 762 to 1524 mm/min for positioning")
+
+
+def test_limits_of_a_lathe_of_ones_own_are_rounded_to_what_lies_within() -> None:
+    """250 mm is 9.84252 inch: 9.8425 is within, 9.8426 is not."""
+    changes = {"feed": {"cutting_maximum": 250.0, "cutting_minimum": 33.333}}
+    for feed, is_told in (("9.8425", False), ("9.8426", True), ("1.3124", False), ("1.3123", True)):
+        report = report_of(METHOD_A.replace("F5.", f"F{feed}", 1), machine_of(MACHINE, changes), "1:radius=.25")
+        told = [one.message for one in report.findings if one.rule == RULE]
+        assert len(told) == is_told
+        assert all("recommended in the polar mode: 1.3124 to 9.8425 inch/min for cutting" in text for text in told)
+
+
+@pytest.mark.parametrize(
+    ("feed", "where", "recommended"),
+    [
+        ({"cutting_minimum": 25.4, "cutting_maximum": 254.0}, "above the range", "1 to 10 inch/min for cutting"),
+        ({"positioning_minimum": 254.0, "positioning_maximum": 508.0}, "above the range", "10 to 20 inch/min for pos"),
+    ],
+)
+def test_one_range_alone(feed: dict[str, float], where: str, recommended: str) -> None:
+    program = METHOD_A.replace("X1.0 F5.", "X1.0 F40.", 1)
+    report = report_of(program, "fanuc", *TOOLS, changes={"feed": feed}, job={"program_units": "inch"})
+    [finding] = [one for one in report.findings if one.rule == RULE]
+    assert f"40 inch/min, {where}" in finding.message
+    assert f"recommended in the polar mode: {recommended}" in finding.message
+
+
+# ---- the approach ----
+
+
+@pytest.mark.parametrize("convert", [str, in_mm])
+def test_the_approach_is_od_and_cutter_and_clearance(convert: Callable[[str], str]) -> None:
+    """X2.15 of the sample is 1.3 + .75 + .1, X1.8 of the methods 1.25 + .5 + .05."""
+    unit, name = (1, "inch") if convert is str else (25.4, "mm")
+    cutter = "8:radius=0", f"8:diameter={0.75 * unit}", f"1:radius={0.25 * unit}"
+
+    def told(program: str, diameter: float, clearance: float) -> list[tuple[str, str]]:
+        job = {"stock": {"diameter": diameter * unit, "clearance": clearance * unit}}
+        findings = report_of(convert(program), MACHINE, *cutter, job=job).findings
+        return [(one.severity, one.message) for one in findings if one.rule == "approach-inside-stock"]
+
+    assert told(SAMPLE, 1.3, 0.1) == []
+    assert told(METHOD_A, 1.25, 0.05) == told(METHOD_B, 1.25, 0.05) == []
+    [(severity, text)] = told(SAMPLE, 1.3, 0.2)
+    numbers = [f"{number * unit:.3f}".rstrip("0").rstrip(".") for number in (1.3, 0.75, 0.2, 2.25)]
+    assert severity == "warning"
+    assert text.endswith(
+        "stock {0} {4}, cutter {1} {4} and clearance {2} {4} need {3} {4} or more".format(*numbers, name)
+    )
+    assert [severity for severity, _ in told(SAMPLE, 1.5, 0.1)] == ["error"]

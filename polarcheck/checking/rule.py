@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from polarcheck.table.coverage import Coverage as Coverage
     from polarcheck.table.dialect import Dialect as Dialect
     from polarcheck.table.entry import Entry as Entry
+    from polarcheck.table.feed_ranges import FeedRanges as FeedRanges
     from polarcheck.table.feeds import Feeds as Feeds
     from polarcheck.table.infeed import Infeed as Infeed
     from polarcheck.table.mirrored import Mirrored as Mirrored

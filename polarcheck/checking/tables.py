@@ -38,6 +38,7 @@ MAKERS = {
     "travel": "polarcheck.table.travel:Travel",
     "center": "polarcheck.table.center:Center",
     "feeds": "polarcheck.table.feeds:Feeds",
+    "feed_ranges": "polarcheck.table.feed_ranges:FeedRanges",
     "unpointed": "polarcheck.table.unpointed:Unpointed",
     "written": "polarcheck.table.written:Written",
     "dialect": "polarcheck.table.dialect:Dialect",

@@ -9,7 +9,7 @@ G97 S1000 M33
 G0 Z.1 C0
 X1.8
 G12.1
-G1 G98 C0.4153 F20. (expect: feed-outside-recommended-range)
+G1 G98 C0.4153 F20.
 G1 G41 X1.0 F5.
 Z-.375 (DEPTH OF CUT)
 C-0.4153
@@ -18,7 +18,7 @@ G13.1
 G0 Z0.1
 G0 C180.
 G12.1
-G1 G98 C0.4153 F20. (expect: feed-outside-recommended-range)
+G1 G98 C0.4153 F20.
 G1 G41 X1.0 F5.
 Z-.375 (DEPTH OF CUT)
 C-0.4153

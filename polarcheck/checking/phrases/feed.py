@@ -8,21 +8,53 @@ from polarcheck.checking.phrases.common import code_of, executed_word
 from polarcheck.checking.quantity import in_row
 from polarcheck.machines.machine import Machine
 from polarcheck.table.center import Center
+from polarcheck.table.feed_ranges import FeedRanges
 from polarcheck.table.tool_center import ToolCenter
 from polarcheck.table.trace import Trace
+
+#: What the arithmetic may add to a limit, as a share of it.
+_DUST = 1e-9
 
 
 def recommended(trace: Trace, row: int) -> str:
     """The ranges of F that the builder recommends."""
     feeds = trace.machine.feed
-    cutting = _range(trace, row, feeds.cutting_minimum, feeds.cutting_maximum)
-    positioning = _range(trace, row, feeds.positioning_minimum, feeds.positioning_maximum)
-    return f"{cutting} for cutting, {positioning} for positioning"
+    ranges = (
+        (feeds.cutting_minimum, feeds.cutting_maximum, "cutting"),
+        (feeds.positioning_minimum, feeds.positioning_maximum, "positioning"),
+    )
+    return ", ".join(f"{_range(trace, row, least, most)} for {what}" for least, most, what in ranges if least == least)
 
 
 def _range(trace: Trace, row: int, least: float, most: float) -> str:
+    """Rounded to what lies within."""
     shown = in_row(least, trace, row)
-    return f"{shown.length(least):.4g} to {shown.length(most):.4g} {shown.unit}/min"
+    places = 10.0 ** (4 if shown.inch else 3)
+    low = np.ceil(shown.length(least) * places * (1 - _DUST)) / places
+    high = np.floor(shown.length(most) * places * (1 + _DUST)) / places
+    return f"{low:.10g} to {high:.10g} {shown.unit}/min"
+
+
+def against_ranges(trace: Trace, feed_ranges: FeedRanges, row: int) -> str:
+    """Which of the ranges F is outside of, and why the move is taken to cut."""
+    has_both = len(feed_ranges.known_limits) > 2
+    if feed_ranges.too_low[row] or feed_ranges.too_high[row]:
+        side = "below" if feed_ranges.too_low[row] else "above"
+        return f"{side} {'both ranges' if has_both else 'the range'}"
+    if not feed_ranges.too_high_for_cut[row]:
+        return "between the two ranges"
+    fast = "a feed for positioning" if has_both else "above the range"
+    where = "between the two ranges" if feed_ranges.between[row] else fast
+    return f"{where}, and this move cuts: {_why_it_cuts(trace, feed_ranges, row)}"
+
+
+def _why_it_cuts(trace: Trace, feed_ranges: FeedRanges, row: int) -> str:
+    if feed_ranges.knows_stock[row]:
+        return f"it leads into the stock of {in_row(float(trace.stock_diameter[row]), trace, row):length}"
+    if feed_ranges.is_of_fast_loop[row]:
+        return "no move along this contour is slower"
+    line = int(trace.line[feed_ranges.slow_row(row)])
+    return f"it is as near to the center as that of line {line}"
 
 
 def clamps(machine: Machine) -> str:

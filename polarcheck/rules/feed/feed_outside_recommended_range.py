@@ -1,16 +1,27 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import NOTE, Feeds, Hits, Machine, Trace, rule
+from polarcheck.checking.rule import NOTE, FeedRanges, Feeds, Mask, rule
 
 
-@rule(NOTE, "F is {feed:feed}; recommended in the polar mode: {recommended}", at=("F",))
-def feed_outside_recommended_range(trace: Trace, feeds: Feeds, machine: Machine) -> Hits:
+@rule(
+    NOTE,
+    "{feed_word} is {trace.programmed_feed:feed/feed_ranges.nearest_limit}, {against_ranges}; recommended in the polar "
+    "mode: {recommended}",
+    at=("F",),
+)
+def feed_outside_recommended_range(feed_ranges: FeedRanges, feeds: Feeds) -> Mask:
     """
     Feed outside what the builder recommends for the polar mode.
 
     Builders recommend one range of F for cutting and a higher one for positioning in the mode. Too high an F costs
-    accuracy of the shape, as X and C do not follow. This F lies in neither range; it is told once in
-    each section.
+    accuracy of the shape, as X and C do not follow. It is told once for each F of a section: below the one range, above
+    the other, or above that for cutting in a move along the contour that cuts.
+
+    Which moves cut is seen by the contour: the moves with G41 or G42 in force, and neither a ramp nor a lead in or out.
+    Where stock and cutter are given, the cutter must get into the stock; else the move must come as near to the center
+    as another one at an F for cutting, or all of the contour must be as fast. A way round the part, as the arc between
+    two flats, is none. Positioning below its own range is nobody's loss: an F between the two is told where the move
+    cuts, and in sections without compensation, of which nobody knows.
 
     Source: builder's guide to G12.1, feed and positioning command.
 
@@ -24,9 +35,26 @@ def feed_outside_recommended_range(trace: Trace, feeds: Feeds, machine: Machine)
         G98 G0 X3. C0
         G12.1
         G1 C.6 F40.
-        G41 X1.75 F20.    (expect: feed-outside-recommended-range)
-        C-.6
+        G41 X1.75 F20.
+        C-.6              (expect: feed-outside-recommended-range)
         G40 X3. F40.
+        G13.1
+
+    Bad, machine turning-center, tool 8:radius=.375:
+
+        T0808
+        M5
+        M35
+        G28 H0
+        G97 S2000 M33
+        G98 G0 X3. C0
+        G12.1
+        G1 C.6 F20.
+        G41 X1.75 F7.
+        C-.6
+        G2 X-1.75 R1.061 F60.
+        G1 C.6 F40.       (expect: feed-outside-recommended-range)
+        G40 X-3. F80.     (expect: feed-outside-recommended-range)
         G13.1
 
     Good, machine turning-center, tool 8:radius=.375:
@@ -44,7 +72,6 @@ def feed_outside_recommended_range(trace: Trace, feeds: Feeds, machine: Machine)
         G40 X3. F40.
         G13.1
     """
-    feed, recommended = trace.programmed_feed, machine.feed
-    not_cutting = (feed < recommended.cutting_minimum) | (feed > recommended.cutting_maximum)
-    not_positioning = (feed < recommended.positioning_minimum) | (feed > recommended.positioning_maximum)
-    return Hits(feeds.first_at_each(feeds.begins & not_cutting & not_positioning), values={"feed": feed})
+    between = feed_ranges.between & feed_ranges.without_contour
+    outside = feed_ranges.too_low | feed_ranges.too_high | between | feed_ranges.too_high_for_cut
+    return feeds.first_at_each(outside)
