@@ -103,6 +103,7 @@ FLAT = "O1\nG98 G0 X60. C0\nG12.1\nG1 X40. F200\nC10.\nX60.\nG13.1\nM30\n"
 ARC = "O1\nG98 G0 X60. C0\nG12.1\nG1 X40. F200\nG3 X20. C10. {}\nG1 X60.\nG13.1\nM30\n"
 RAMPS = "O1\nT0101\nG98 G0 X100. C0\nG12.1\n{}G1 G42 X40. F200\n{}C20.\nX10.\nC-20.\nX60.\n{}G40 X100.\nG13.1\nM30\n"
 CUTTER = ("1:radius=4",)
+SETS = "O1\n{}\nT0101\nG98 G0 X100. C0\nG12.1\nG1 G42 X60. F200\nC20.\nG40 X100.\nG13.1\nM30\n"
 CORNERS = "O1\nT0101\nG98 G0 X100. C0\nG12.1\nG1 C{}. F500\nG41 {}\nG1 G40 X120.\nG13.1\nM30\n"
 REVERSED = CORNERS.format(20, "X60. F200\nG3 X58. C10. R6.\nG1 X68. C5.\nX66. C8.")
 OUTSIDE = CORNERS.format(20, "X60. F200\nG3 X70. C25. R5.\nG1 X72. C30.")
@@ -220,6 +221,7 @@ USES = {
     "g_code_system_a.facing_cycle": Use([], before("G94 X50. Z-5.")),
     "g_code_system_a.repetitive_cycle": Use([], before("G71 U1. R1.")),
     "g_code_system_a.coordinate_setting": Use([], before("G50 X0")),
+    "g_code_system_a.coordinate_preset": Use([], before("G52 X1.", "G50.3 X0")),
     "g_code_system_a.feed_is_lead": Use([], before("G76 X50. F100").replace(" F200", "")),
     "control.axes": Use(["Y", "X", "C"], FLAT),
     "polar.on": Use(["G112"], FLAT),
@@ -281,6 +283,19 @@ USES = {
     "m_codes.optional_stop": Use([], ENDED.format("G28 U0\nM1")),
     "m_codes.program_end": Use(["M30"], FLAT.replace("M30", "M2")),
     "m_codes.stops_reading_ahead": Use([], RAMPS.format("", "M1\n", ""), tools=CUTTER),
+    "offsets.geometry_from": Use(20000, SETS.format("G10 P10001 R4.")),
+    "offsets.geometry": Use([11], SETS.format("G10 L10 P1 R4.")),
+    "offsets.wear": Use([], SETS.format("G10 L10 P1 R4.\nG10 L11 P1 R-.1")),
+    "offsets.radius_alone": Use([], SETS.format("G10 L12 P1 R4.\nG10 L10 P1 R9.")),
+    "offsets.radius_geometry_variables": Use([], SETS.format("#2901=4.")),
+    "offsets.radius_wear_variables": Use([], SETS.format("#2201=4.")),
+    "offsets.nose_variables": Use([], SETS.format("#2301=3")),
+    "offsets.x_geometry_variables": Use([], SETS.format("#2701=#2701-.1"), "turning-center"),
+    "offsets.x_wear_variables": Use([], SETS.format("#2001=-.1"), "turning-center"),
+    "offsets.work_shift_variable": Use(0, SETS.format("#2501=1.")),
+    "offsets.work_offset_variable": Use(5301, SETS.format("#5221=1.")),
+    "offsets.work_offset_extended_variable": Use(14001, SETS.format("#7001=1.\nG54.1 P1")),
+    "offsets.work_offset_step": Use(40, SETS.format("#5221=1.")),
     "alarms": Use({"rapid-in-polar": "A1"}, inside("G0 X50.")),
     "severities": Use({"rapid-in-polar": "note"}, inside("G0 X50.")),
     "parameters": Use({"3410": 1000}, ARC.format("I-10.1 J0")),

@@ -259,6 +259,11 @@ ASSIGNED = "G0 X50. Z2. C0/G12.1/G1 X40. F200./{}/C10./C-10./X50./G13.1"
         ("#5221=.1", "origin-shifted-in-polar"),
         ("#5201=0", "origin-shifted-in-polar"),
         ("IF[1EQ1]THEN #7001=.1", "origin-shifted-in-polar"),
+        ("#[5201+20]=.1", "origin-shifted-in-polar"),
+        ("#2501=.1", "origin-shifted-in-polar"),
+        ("#10008=.1", "offset-changed-in-polar"),
+        ("#14001=.1", "offset-changed-in-polar"),
+        ("#2301=0", "offset-changed-in-polar"),
     ],
 )
 @pytest.mark.parametrize("machine", ["fanuc", "fanuc-16i", "haas-lathe"])
@@ -276,6 +281,23 @@ def test_it_names_the_variable() -> None:
     assert message == "tool offset changed in the polar mode by #2012; write it before G12.1 or after G13.1"
     [(_, _, message)] = found(ASSIGNED.format("#5241=.5"), head=INCH)
     assert message.startswith("#5241 changes the coordinate system in the polar mode")
+
+
+@pytest.mark.parametrize(
+    ("blocks", "behind", "block", "rule"),
+    [
+        ("#100=1/WHILE[#100LT4]DO1/#[2000+#100]=.1/#100=#100+1/END1", "", "#[2000+#100]=.1", "offset-changed-in-polar"),
+        ("#100=2/#[5201+20*#100]=.1", "", "#[5201+20*#100]=.1", "origin-shifted-in-polar"),
+        ("M98 P2", "O2/#5221=.5/M99", "#5221=.5", "origin-shifted-in-polar"),
+        ("M98 P30002", "O2/#10001=#10001-.1/M99", "#10001=#10001-.1", "offset-changed-in-polar"),
+        ("G65 P2 A2008. B.5", "O2/#[#1]=#2/M99", "#[#1]=#2", "offset-changed-in-polar"),
+        ("G65 P2 A7021. B.5", "O2/#[#1]=#2/M99", "#[#1]=#2", "origin-shifted-in-polar"),
+    ],
+)
+def test_an_offset_assigned_in_the_mode_by_a_loop_or_a_call(blocks: str, behind: str, block: str, rule: str) -> None:
+    program = f"{MM}{ASSIGNED.format(blocks)}/M30/{behind}".replace("/", "\n")
+    [finding] = report_of(program).findings
+    assert (finding.block, finding.rule) == (block, rule)
 
 
 @pytest.mark.parametrize(
@@ -317,11 +339,33 @@ G92 = "O1\nG21 G40 G97 G94 G18\nT0101\n"
         ("G50 U.5", "G50", "-0.5"),
         ("G0 X60./G50 U-.5/G50 U.25", "G50", "0.25"),
         ("G10 L2 P1 X.5/G52 X.25/G50 U-.25", "G10 on G54 and G52 and G50", "1"),
+        # What is added to the way from the reference position.
+        ("G10 L2 P1 X-260.5/G10 L2 P1 U.5", "G10 on G54", "0.5"),
+        ("G10 L2 P1 X-260.5/#5221=#5221+.5/G54", "#5221", "0.5"),
+        ("#5221=-260.5/#5221=[#5221-.25]", "#5221", "-0.25"),
+        ("#5221=#5221+.5", "#5221", "0.5"),
+        ("G10 L2 P1 U-260.5/G10 L2 P1 U.1", "G10 on G54", "0.1"),
+        # Variables of work offsets, computed ones too.
+        ("#5221=.5", "#5221", "0.5"),
+        ("#[5201+20*2]=-1./G55", "#5241", "-1"),
+        ("#5201=.1", "#5201", "0.1"),
+        ("#2501=.1", "#2501", "0.1"),
+        ("#7061=.2/G54.1 P4", "#7061", "0.2"),
+        ("#7061=.2/G54 P4", "#7061", "0.2"),
+        ("G10 L20 P4 X.2/G54 P4", "G10 on G54.1 P4", "0.2"),
+        ("#1=0/WHILE[#1LT5]DO1/#5221=#5221+.1/#1=#1+1/END1", "#5221", "0.5"),
+        ("G10 L2 P1 X.5/#5221=.25", "#5221", "0.25"),
+        ("#5221=.25/G10 L2 P1 U.25", "G10 on G54", "0.5"),
+        ("G10 P0 X.1/G10 L2 P0 X.2", "G10 P0", "0.3"),
+        # A G52 that was never cancelled after the section before; a preset takes it back, another G52 sets it.
+        ("G52 X1./G0 X60. C0/G12.1/G13.1/G0 X80.", "G52", "1"),
+        ("G52 X1./G50.3 X0/G52 X.5", "G52", "0.5"),
+        ("G50 U.5/G50.3 X0/G52 X.5", "G52", "0.5"),
     ],
 )
 @pytest.mark.parametrize(("head", "unit"), [(MM, "mm"), (INCH, "inch")])
 def test_an_origin_that_the_program_moves(blocks: str, name: str, shift: str, head: str, unit: str) -> None:
-    [(block, rule, message)] = found(SHIFTED.format(blocks), head=head)
+    *_, (block, rule, message) = found(SHIFTED.format(blocks), head=head)
     assert (block, rule) == ("G12.1", "origin-off-center")
     assert message == f"{name} puts X0 {shift} {unit} off the spindle axis at G12.1"
 
@@ -356,10 +400,62 @@ def test_an_origin_in_g_code_system_b(blocks: str) -> None:
         "G0 X200./G50 X198.5/T0202",
         "G0 X200./G50 X198.5 T0202",
         "G10 L2 P1 X.5/M98 P9000",
+        "G10 L2 P1 X-260.5/G10 L2 P1 X-260.",
+        "G10 L2 P1 X-260.5/G10 L2 P1 U.5/G10 L2 P1 U-.5",
+        "#5221=-260.5/G54",
+        "#5221=.5/#5221=0",
+        "#5221=.5/G55",
+        "#5222=.5/#5223=-1.",
+        "#7061=.2/G54.1 P5",
+        "#2601=1.",
+        "#2001=.5",
+        "#5221=#5221+0",
+        "#5221=#5222-#5222",
+        "G52 X1./G50.3 X0",
+        "G50 U.5/G50.3 U0",
+        "G52 C5.",
+        "G10 L2 P1 C30.",
     ],
 )
 def test_an_origin_at_the_center_or_unknown(blocks: str) -> None:
     assert "origin-off-center" not in [rule for _, rule in said(SHIFTED.format(blocks))]
+
+
+@pytest.mark.parametrize(
+    ("blocks", "cause"),
+    [
+        ("#5221=#500", "#5221"),
+        ("#5221=#5221+#500", "#5221"),
+        ("#5221=#5021", "#5221"),
+        ("#5221=ABS[#5221]", "#5221"),
+        ("#5201=-#500/#5221=.5", "#5201"),
+        ("#2501=#500", "#2501"),
+        ("G10 L2 P1 X#500", "G10 on G54"),
+        ("G10 L2 P1 U[#500/2]", "G10 on G54"),
+        ("G10 L20 P2 X#500/G54.1 P2", "G10 on G54.1 P2"),
+        ("G52 X#500", "G52"),
+        ("G50 U#500", "G50"),
+        ("G0 X80./G50 X#500", "G50"),
+        ("G52 X#500/#5221=#501", "#5221 and G52"),
+    ],
+)
+def test_an_origin_that_is_set_to_what_is_not_known(blocks: str, cause: str) -> None:
+    program = f"{MM}{SHIFTED.format(blocks.replace('[#500/2]', '[#500*2]'))}/M30\n".replace("/", "\n")
+    report = report_of(program)
+    assert [finding.rule for finding in report.findings] == []
+    [entry] = [entry for entry in report.not_evaluated if entry.rule == "origin-off-center"]
+    assert entry.reason.startswith(f"where X0 lies is not known: {cause} sets X to what is not known; give its")
+    assert report.verdict == "unverified"
+    given = report_of(program, job={"run": {"variables": {"500": 0.0, "501": 0.0, "5021": 0.0, "5221": 0.0}}})
+    assert not given.not_evaluated
+
+
+@pytest.mark.parametrize(
+    "blocks", ["G10 L2 P1 X#500/G10 L2 P1 X0", "#5221=#500/G55", "G52 X#500/G52 X0", "G52 X#500/G50.3 X0", "G50 X#500"]
+)
+def test_an_unknown_value_that_does_not_count(blocks: str) -> None:
+    report = report_of(f"{MM}{SHIFTED.format(blocks)}/M30\n".replace("/", "\n"))
+    assert not [entry for entry in report.not_evaluated if entry.rule == "origin-off-center"]
 
 
 def test_what_the_program_sets_takes_the_place_of_the_job() -> None:

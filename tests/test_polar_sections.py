@@ -127,13 +127,9 @@ COMMENTED = PROGRAM.replace("T0101", "T0101 (D=8. END MILL)")
         (COMMENTED, [], {}, (None, "none")),
         (COMMENTED, [], {"radius_from_comments": True}, (4.0, "comment")),
         (COMMENTED, ["1:radius=3.9"], {"radius_from_comments": True}, (3.9, "command line")),
-        pytest.param(
-            PROGRAM.replace("T0101", "G10 P10001 R4. Q0\nT0101"),
-            [],
-            {},
-            (4.0, "program"),
-            marks=pytest.mark.xfail(strict=True, reason="R that the program sets by G10 is not taken"),
-        ),
+        (PROGRAM.replace("T0101", "G10 P10001 R4. Q0\nT0101"), [], {}, (4.0, "program")),
+        (PROGRAM.replace("T0101", "G10 P1 R4. Q0\nT0101"), ["1:radius=3"], {}, (4.0, "program")),
+        (COMMENTED.replace("G0 ", "G10 P1 R3.9\nG0 ", 1), [], {"radius_from_comments": True}, (3.9, "program")),
     ],
 )
 def test_where_the_radius_comes_from(

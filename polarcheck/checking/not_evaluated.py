@@ -11,11 +11,13 @@ import numpy as np
 from polarcheck.arrays import Floats, Mask, Rows
 from polarcheck.checking.finding import NotEvaluated
 from polarcheck.checking.macro_faults import reason_of
+from polarcheck.checking.phrases.common import block_and_line
 from polarcheck.checking.phrases.polar import axes_not_followed, extrudes, not_simulated, not_understood, on_cylinder
 from polarcheck.checking.places import block_in_line
 from polarcheck.checking.rule import Rule
 from polarcheck.checking.tables import Tables
 from polarcheck.geometry.tolerances import CHORDS, CROSSINGS, FARTHEST
+from polarcheck.table.origin import Origin
 from polarcheck.table.trace import Trace
 
 #: Columns that hang on the offset in force, and those that hang on the whole move.
@@ -188,15 +190,31 @@ def _loops_given_up(
         yield NotEvaluated(rule=rule.name, reason=told, blocks=int(counts[order[_LISTED:]].sum()), matters=matters)
 
 
-def _no_offset(what: str, key: str) -> Callable[[Trace, int], str]:
+def _no_offset(what: str, key: str, of_program: Callable[[Trace], Rows] | None = None) -> Callable[[Trace, int], str]:
+    """of_program: gives the row in which the program has set it, -1 where it has not."""
+
     def reason(trace: Trace, row: int) -> str:
         number = int(trace.offset_number[row])
         if not number:
             return f"no {what}: no tool offset is in force; call one before the polar mode, as in T0808"
         tool = f"T{int(trace.tool[row]):02d}{number:02d}"
+        setter = int(of_program(trace)[row]) if of_program else -1
+        if setter >= 0:
+            return _not_known_from_program(trace, number, setter, what, key)
         return f"no {what} for {tool}: give --tool {number}:{key}=... or [tools.{number}] {key} in polarcheck.toml"
 
     return reason
+
+
+def _not_known_from_program(trace: Trace, number: int, setter: int, what: str, key: str) -> str:
+    """Why what the program itself sets of an offset is not known: by which block, and what to give."""
+    unknown = trace.row_of_unknown_setting(number, setter, key)
+    if unknown >= 0:
+        remedy = "give its variables as [run.variables] in polarcheck.toml, or write the number"
+        return f"no {what} for offset {number}: {block_and_line(trace, unknown)} sets what is not known; {remedy}"
+    setting = block_and_line(trace, setter)
+    remedy = f"give --tool {number}:{key}=... or [tools.{number}] {key} in polarcheck.toml"
+    return f"no {what} for offset {number}: {setting} sets wear or a difference alone; {remedy}"
 
 
 def _position(trace: Trace, row: int) -> str:
@@ -212,6 +230,12 @@ def _position(trace: Trace, row: int) -> str:
     return f"the position is not known after {written}, which is not executed; {remedy}"
 
 
+def _origin(trace: Trace, row: int) -> str:
+    causes = " and ".join(Origin(trace).unknown_causes(row))
+    remedy = "give its variables as [run.variables] in polarcheck.toml, or write the number"
+    return f"where X0 lies is not known: {causes} sets X to what is not known; {remedy}"
+
+
 def _feed(trace: Trace, row: int) -> str:
     if trace.per_minute[row]:
         return "the feed is not known: no F is in force; write one before the cutting move"
@@ -224,9 +248,9 @@ def _plain(name: str) -> Callable[[Trace, int], str]:
 
 
 _REASONS: dict[str, Callable[[Trace, int], str]] = {
-    "trace.radius": _no_offset("radius", "radius"),
+    "trace.radius": _no_offset("radius", "radius", lambda trace: trace.radius_set_in),
     "trace.cutter_diameter": _no_offset("cutter diameter", "diameter"),
-    "trace.nose": _no_offset("nose type", "nose"),
+    "trace.nose": _no_offset("nose type", "nose", lambda trace: trace.nose_set_in),
     "trace.length": _position,
     "trace.start": _position,
     "trace.end": _position,
@@ -236,6 +260,7 @@ _REASONS: dict[str, Callable[[Trace, int], str]] = {
     "tool_center.c_feed": _of_move,
     "tool_center.c_acceleration": _of_move,
     "trace.feed": _feed,
+    "entry.origin_shift": _origin,
 }
 
 _SAID_OF: dict[str, Callable[[Tables, Rule], Iterator[NotEvaluated]]] = {

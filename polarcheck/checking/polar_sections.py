@@ -74,6 +74,8 @@ def _offset_rows(trace: Trace) -> Rows:
 def _radius_source(trace: Trace, row: int) -> str:
     if np.isnan(trace.radius[row]):
         return "none"
+    if trace.radius_set_in[row] >= 0:
+        return "program"
     tool = trace.job.tools.get(int(trace.offset_number[row]))
     if trace.radius_is_from_comment[row] or tool is None:
         return "comment"

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import bisect
 import time
+from collections.abc import Iterable
 
 import numpy as np
 
+from polarcheck.execution.arithmetic import UNKNOWN
 from polarcheck.execution.calls import Again, Calls, Level, ModalCall, Resolver, Stop
 from polarcheck.execution.executed_rows import AXES, ExecutedRows
 from polarcheck.execution.expression import Fault, decide, evaluate
@@ -14,9 +16,9 @@ from polarcheck.execution.fault_list import FaultList, HasPlace
 from polarcheck.execution.kinds import FaultKind, RemarkKind
 from polarcheck.execution.library import Shelf
 from polarcheck.execution.listing import Listing
-from polarcheck.execution.macro import Variables, assign, word_value
+from polarcheck.execution.macro import Variables, assign, step_of, word_value
 from polarcheck.execution.programs import Program, ProgramName
-from polarcheck.execution.run import Remark
+from polarcheck.execution.run import Assigned, Remark
 from polarcheck.execution.statement import Kind, Statement, Word
 from polarcheck.machines.codes import code_numbers, code_set
 from polarcheck.machines.job import Running
@@ -51,6 +53,7 @@ class Execution(Calls):
         self.stopped = False
         self.modal: ModalCall | None = None
         self.variables = Variables(listing.macro)
+        self._of_offsets = (*listing.macro.tool_offset_variables, *listing.macro.work_offset_variables)
         self.stack: list[Level] = []
         self.changes = 0
         self._count = self._total = 0
@@ -213,15 +216,19 @@ class Execution(Calls):
 
     def assign(self, statement: Statement, block: int) -> None:
         macro, arithmetic = self.listing.macro, self.listing.arithmetic
-        number = None
+        number, step = None, UNKNOWN
         if statement.target is not None:
             number, _ = evaluate(statement.target, self.variables, arithmetic)
         before = self.variables.read(number) if number is not None and self.variables.exists(number) else None
+        is_of_offset = number is not None and _is_within(number, self._of_offsets)
+        if is_of_offset:
+            step = step_of(statement, number or 0.0, self.variables, arithmetic)
         self.found(assign(statement, self.variables, arithmetic), block)
         after = self.variables.read(number) if number is not None and self.variables.exists(number) else None
         self.changes += before != after or number is None or number != number
-        if number is not None and macro.is_of_offset(number):
-            self.rows.add_assigned(block, round(number), len(self.stack) - 1)
+        if is_of_offset:
+            value = step if step == step else UNKNOWN if after is None else after
+            self.rows.add_assigned(block, Assigned(round(number or 0), value, step == step), len(self.stack) - 1)
         if number in macro.alarm_variables or number in macro.stop_variables:
             self.remark("stops-itself", block, number=int(number or 0))
             if number in macro.alarm_variables:
@@ -325,6 +332,11 @@ class Execution(Calls):
                 continue
             words.append((word, value))
         return words
+
+
+def _is_within(number: float, ranges: Iterable[tuple[int, int]]) -> bool:
+    """Whether a variable, whose number is rounded to a whole one, stands in one of some ranges."""
+    return any(first - 0.5 <= number < last + 0.5 for first, last in ranges)
 
 
 def execute(shelf: Shelf, asked: Running, *, skip: bool, inch: bool) -> Execution:

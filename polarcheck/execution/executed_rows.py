@@ -9,7 +9,7 @@ import msgspec
 import numpy as np
 
 from polarcheck.arrays import Mask, Rows, stretch
-from polarcheck.execution.run import FlowFault, Remark, Run, is_code
+from polarcheck.execution.run import Assigned, FlowFault, Remark, Run, is_code
 from polarcheck.execution.statement import Statement, Word
 from polarcheck.machines.machine import Machine
 from polarcheck.reading.words import Blocks, Text, Words
@@ -55,7 +55,7 @@ class ExecutedRows:
         self.starts: list[int] = []
         self.unknown: list[int] = []
         self.computed: list[tuple[int, Word, float]] = []
-        self.assigned: dict[int, int] = {}
+        self.assigned: dict[int, Assigned] = {}
         self.count = 0
 
     def __len__(self) -> int:
@@ -122,9 +122,9 @@ class ExecutedRows:
             self.inch = self._is_inch.get(value, self.inch) if word.address == "G" else self.inch
         return any(word.address == "M" and value in self._is_end for word, value in words)
 
-    def add_assigned(self, block: int, number: int, depth: int) -> None:
+    def add_assigned(self, block: int, assigned: Assigned, depth: int) -> None:
         """A block that assigns a variable of an offset: a row without words."""
-        self.assigned[self.count] = number
+        self.assigned[self.count] = assigned
         self.add_computed(block, (), depth)
 
     def add_call(self, block: int, statement: Statement, depth: int, has_arguments: bool) -> None:
@@ -165,7 +165,7 @@ class ExecutedRows:
             np.repeat([depth for depth, _ in self.depth], [rows for _, rows in self.depth]).astype(np.int64),
             faults,
             remarks,
-            {row: number for row, number in self.assigned.items() if row < self.count},
+            {row: assigned for row, assigned in self.assigned.items() if row < self.count},
         )
 
 

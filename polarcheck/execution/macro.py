@@ -151,6 +151,28 @@ def assign(statement: Statement, variables: Variables, arithmetic: Arithmetic = 
     return fault_of_target or fault
 
 
+#: What a variable is tried with: what gives each of them and the same more is a step, be it written as it may.
+_TRIED: Final = (-1.0, 0.0, 0.25, 1.0)
+
+
+def step_of(statement: Statement, number: float, variables: Variables, arithmetic: Arithmetic = DEFAULT) -> float:
+    """
+    By how much an ASSIGN changes a variable, be its value known or not: .5 for #5221=#5221+.5; NaN where it is no step.
+    """
+    held, steps = variables.read(number), []
+    if statement.value is None:
+        return UNKNOWN
+    for tried in _TRIED:
+        if variables.write(number, tried) is not None:
+            return UNKNOWN
+        value, _ = evaluate(statement.value, variables, arithmetic)
+        steps.append(UNKNOWN if value is None else value - tried)
+    variables.write(number, held)
+    return steps[1] if all(abs(step - steps[1]) <= _SAME for step in steps) else UNKNOWN
+
+
+#: Steps that differ by no more differ by rounding.
+_SAME: Final = 1e-9
 #: Longer numbers have no exact value here, and no control takes them.
 _LARGEST_WORD: Final = 1e15
 

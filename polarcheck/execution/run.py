@@ -40,6 +40,18 @@ class Remark(msgspec.Struct, frozen=True):
     values: dict[str, str | int | float] = {}
 
 
+class Assigned(msgspec.Struct, frozen=True):
+    """
+    A variable of an offset that a row assigns.
+
+    value: in the units of the program; NaN where it is not known. is_step: it is added to what the variable held.
+    """
+
+    variable: int
+    value: float
+    is_step: bool = False
+
+
 class Run(msgspec.Struct, frozen=True):
     """
     The executed blocks of one file in order.
@@ -47,7 +59,7 @@ class Run(msgspec.Struct, frozen=True):
     words: in order of execution. row: the row of each word, ascending. block: the index into text.blocks of each row.
     starts: rows at which a program begins, so that nothing before them counts. unknown: rows whose effect is not known.
     depth: of calls. faults: what macro and flow found. remarks: what was not evaluated. assigned: row -> the variable
-    of an offset that it assigns.
+    of an offset that it assigns, with its value.
     """
 
     text: Text
@@ -59,7 +71,7 @@ class Run(msgspec.Struct, frozen=True):
     depth: Rows
     faults: tuple[FlowFault, ...] = ()
     remarks: tuple[Remark, ...] = ()
-    assigned: Mapping[int, int] = {}
+    assigned: Mapping[int, Assigned] = {}
 
     def __len__(self) -> int:
         return len(self.block)

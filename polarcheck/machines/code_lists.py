@@ -105,6 +105,7 @@ class GCodeSystem(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fiel
     facing_cycle: facing cycle
     repetitive_cycle: multiple repetitive cycles: roughing, finishing, grooving, threading
     coordinate_setting: sets the coordinates of the present position or, with S alone, the highest spindle speed
+    coordinate_preset: takes back what local coordinate system and coordinate setting have moved
     feed_is_lead: cycles whose F is the lead of a thread and no feed for later blocks
     """
 
@@ -120,6 +121,7 @@ class GCodeSystem(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fiel
     facing_cycle: list[str]
     repetitive_cycle: list[str]
     coordinate_setting: list[str]
+    coordinate_preset: list[str]
     feed_is_lead: list[str]
 
 

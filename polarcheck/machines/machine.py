@@ -15,6 +15,7 @@ from polarcheck.machines.axes import INCREMENTS, axis_of, check_axes
 from polarcheck.machines.code_lists import GCodes, GCodeSystem, expanded, is_code
 from polarcheck.machines.fitting import MOST
 from polarcheck.machines.macro_keys import Macro
+from polarcheck.machines.offsets import Offsets
 from polarcheck.machines.parameters import Meaning
 from polarcheck.machines.values import (
     Address,
@@ -298,6 +299,7 @@ class Machine(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     g_code_system_b: GCodeSystem
     g_code_system_c: GCodeSystem
     macro: Macro
+    offsets: Offsets
     alarms: dict[str, str] = {}
     alarm_codes: dict[str, list[str]] = {}
     severities: dict[str, Literal["error", "warning", "note", "off"]] = {}

@@ -80,11 +80,6 @@ class Macro(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
                 if first > last:
                     raise ValueError(f"{kind}_variables: the range {first} to {last} ends before it begins")
 
-    def is_of_offset(self, number: float) -> bool:
-        """Whether a variable is a tool offset or a work offset."""
-        ranges = (*self.tool_offset_variables, *self.work_offset_variables)
-        return any(first - 0.5 <= number < last + 0.5 for first, last in ranges)
-
     @property
     def macro_call_codes(self) -> frozenset[str]:
         """The codes that call a macro with arguments, once or modally."""

@@ -95,6 +95,7 @@ NO_MOVE = (
     "modal_macro_calls_each_block",
     "repetitive_cycle",
     "coordinate_setting",
+    "coordinate_preset",
     "scaling",
     "rotation",
     "mirror_image",

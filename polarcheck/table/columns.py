@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,9 +16,6 @@ from polarcheck.machines.job import Job
 from polarcheck.machines.machine import Machine
 from polarcheck.machines.modal import MM_PER_INCH, NO_FEED, NO_MOVE, STATES, Distance, FeedMode, Motion, Side, Units
 from polarcheck.table.filling import before, fill_down
-
-if TYPE_CHECKING:
-    from polarcheck.table.radius_comments import Found
 
 Column = TypeVar("Column")
 
@@ -103,8 +100,8 @@ class Columns:
         """Whether a row assigns a variable of an offset in one of these ranges."""
         found = np.zeros(len(self), bool)
         spans = list(ranges)
-        for row, number in self.run.assigned.items():
-            found[row] = any(first <= number <= last for first, last in spans)
+        for row, assigned in self.run.assigned.items():
+            found[row] = any(first <= assigned.variable <= last for first, last in spans)
         return found
 
     # ---- codes ----
@@ -293,60 +290,10 @@ class Columns:
         """A T word that names another tool than the one in force."""
         return np.asarray(self.has("T") & (self.tool != before(self.tool, self.starts, 0)) & (self.tool > 0))
 
-    def _offset_column(self, values: dict[int, float]) -> Floats:
-        table = np.full(10**self.machine.control.offset_digits, np.nan)
-        for number, value in values.items():
-            if number < len(table):
-                table[number] = value
-        return table[self.offset_number]
-
     @cached_property
     def job_scale(self) -> Floats | float:
         """mm per unit of the lengths of the job."""
         return {"mm": 1.0, "inch": MM_PER_INCH}[self.job.units] if self.job.units else self.scale
-
-    @cached_property
-    def radius_of_offset(self) -> Floats:
-        """R of the tool offset in force [mm]; NaN where neither the job nor, if asked for, a comment knows it."""
-        return np.where(np.isnan(self._radius_of_job), self._radius_of_comments, self._radius_of_job)
-
-    @cached_property
-    def _radius_of_job(self) -> Floats:
-        return self._offset_column({n: tool.radius for n, tool in self.job.tools.items()}) * self.job_scale
-
-    @cached_property
-    def radius_told(self) -> dict[int, Found]:
-        """What the comments say of R by offset number."""
-        from polarcheck.table.radius_comments import Called, radii
-
-        rows = np.flatnonzero(self.has("T"))
-        called = Called(self.run.block[rows], self.offset_number[rows], self.tool[rows], self.scale[rows] != 1.0)
-        return radii(self.text, called)
-
-    @cached_property
-    def radius_comments(self) -> dict[int, Found]:
-        """What the comments say of R by offset number, if that is asked for."""
-        return self.radius_told if self.job.radius_from_comments else {}
-
-    @cached_property
-    def _radius_of_comments(self) -> Floats:
-        return self._offset_column({number: found.radius for number, found in self.radius_comments.items()})
-
-    @cached_property
-    def radius_is_from_comment(self) -> Mask:
-        """R of the offset in force is from a comment."""
-        return np.isnan(self._radius_of_job) & ~np.isnan(self._radius_of_comments)
-
-    @cached_property
-    def cutter_diameter(self) -> Floats:
-        """Diameter of the cutter in force [mm], twice R where the job gives no other; NaN unknown."""
-        given = self._offset_column({n: tool.diameter for n, tool in self.job.tools.items()}) * self.job_scale
-        return np.where(np.isnan(given) & (self.radius_of_offset > 0), 2 * self.radius_of_offset, given)
-
-    @cached_property
-    def nose(self) -> Floats:
-        """T of the tool offset in force (nose type); NaN unknown."""
-        return self._offset_column({n: t.nose for n, t in self.job.tools.items() if t.nose is not None})
 
     # ---- M codes ----
 

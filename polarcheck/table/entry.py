@@ -158,7 +158,7 @@ class Entry:
         """
         How far the place where the program has the center of C is known to lie off the spindle axis, as written [mm].
 
-        That is X0, or X beside G12.1, which may name the center where nothing else says where X0 lies.
+        That is X0, or X beside G12.1, which may name the center where nothing else says where X0 lies. NaN where the program sets what is not known.
         """
         shift, named = self.origin.shift, self.trace.center_shift.real / self.trace.x_factor
         return np.where((named != 0) & (shift == 0), 0.0, shift + named)
@@ -166,28 +166,44 @@ class Entry:
     # ---- stock and tool ----
 
     @cached_property
-    def radius_told(self) -> Floats:
-        """
-        R that a comment tells of an offset whose R the job gives [mm], at the first T word that calls it; else NaN.
+    def first_in_mode(self) -> dict[int, int]:
+        """The first row of the mode in which each offset is in force; of a turning tool comments tell the nose."""
+        trace = self.trace
+        rows = np.flatnonzero(trace.in_polar | trace.enters)
+        numbers, first = np.unique(trace.offset_number[rows], return_index=True)
+        return dict(zip(numbers.tolist(), rows[first].tolist(), strict=True))
 
-        Only of offsets that are in force in a polar section: of a turning tool comments tell the nose.
+    @cached_property
+    def radius_in_mode(self) -> Floats:
+        """
+        R of an offset in the mode, given by the job or set by the program [mm], at the first T word that calls it.
+
+        Else NaN, and where R is that of a comment.
         """
         trace = self.trace
-        told = np.full(len(trace), np.nan)
-        if not trace.job.tools or not len(trace.sections):
-            return told
-        in_mode = trace.offset_number[trace.in_polar | trace.enters]
-        called = np.flatnonzero(trace.has("T") & ~trace.radius_is_from_comment & ~np.isnan(trace.radius_of_offset))
-        called = called[np.isin(trace.offset_number[called], in_mode)]
+        radius = np.full(len(trace), np.nan)
+        if not (trace.job.tools or trace.sets_offsets) or not len(trace.sections):
+            return radius
+        called = np.flatnonzero(trace.has("T"))
         for number, first in zip(*np.unique(trace.offset_number[called], return_index=True), strict=True):
-            if int(number) in trace.radius_told:
-                told[called[first]] = trace.radius_told[int(number)].radius
+            row = self.first_in_mode.get(int(number))
+            if row is not None and not trace.radius_is_from_comment[row]:
+                radius[called[first]] = trace.radius_of_offset[row]
+        return radius
+
+    @cached_property
+    def radius_told(self) -> Floats:
+        """R that a comment tells of an offset whose R is given or set [mm], at the same T word; else NaN."""
+        told = np.full(len(self.trace), np.nan)
+        for row in np.flatnonzero(~np.isnan(self.radius_in_mode)).tolist():
+            found = self.trace.radius_told.get(int(self.trace.offset_number[row]))
+            told[row] = found.radius if found else np.nan
         return told
 
     @property
     def radius_off_comment(self) -> Floats:
         """How far a given R is from what a comment tells of its offset [mm]; NaN where none does."""
-        return np.abs(np.abs(self.trace.radius_of_offset) - self.radius_told)
+        return np.abs(np.abs(self.radius_in_mode) - self.radius_told)
 
     @property
     def stock_diameter(self) -> Floats:

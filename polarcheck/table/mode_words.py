@@ -105,6 +105,7 @@ class ModeWords:
         )
         sets = self.sets_coordinates
         shifts = self.listed("local_shift", "machine_coordinates", "work_offset", "work_offset_extended")
+        shifts |= self.listed("coordinate_preset")
         shifts |= sets & self.in_rows(trace.has(*_AXES))
         shifts |= self.listed("data_input") & self.in_rows(is_work_offset)
         shifts &= self.not_allowed

@@ -1,21 +1,28 @@
-"""Where X0 lies: the work offset in force, what the job, G10, G52 and G50 make of it, as far as it can be computed."""
+"""Where X0 lies: the work offset in force, and what job, G10, variables, G52 and G50 make of it, as far as is known."""
 
 from __future__ import annotations
 
+import functools
+from collections.abc import Callable
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
-from polarcheck.arrays import Floats, Mask
+from polarcheck.arrays import Floats, Mask, Rows
 from polarcheck.machines.code_lists import numbers
+from polarcheck.machines.offsets import steps_above
 from polarcheck.table.filling import fill_down, positions
+from polarcheck.table.tool_offsets import Settings, X, in_order, of_list
 from polarcheck.table.trace import Trace
 
 #: Numbers of further work offsets begin here: G54.1 P1 is 1001.
 _EXTENDED = 1000
-#: The work offset that is added to all others.
-_EXTERNAL = 0
+#: The work offset that is added to all others, and the work shift, which is added, too.
+_EXTERNAL, _SHIFT = 0, -1
+#: No control has more of the further work offsets.
+_MOST_EXTENDED = 300
+#: P of no work offset.
+_LONGEST = 1e9
 #: What G10 sets beyond it [mm] is the way from the reference position of the lathe, of which nothing is known.
 _NEAR = 50.0
 
@@ -31,10 +38,19 @@ class Origin:
         """The work offset in force: 54 for G54, 1001 for G54.1 P1."""
         trace = self.trace
         state = np.where(trace.state("work_offset") == 0, self._plain[0], trace.state("work_offset"))
-        extended = trace.listed("work_offset_extended")
+        extended = trace.listed("work_offset_extended") | self._is_extended_by_p
         is_extended = fill_down(extended, trace.sets("work_offset") | trace.starts, False).astype(bool)
         number = fill_down(np.nan_to_num(trace.word("P")), extended, 0.0)
         return np.where(is_extended, _EXTENDED + number, state).astype(np.float64)
+
+    @property
+    def _is_extended_by_p(self) -> Mask:
+        """G54 P1 is G54.1 P1; beside a call P is the number of a program."""
+        trace, machine = self.trace, self.trace.machine
+        if not machine.codes("work_offset_extended"):
+            return np.zeros(len(trace), bool)
+        first = trace.codes(*machine.codes("work_offset")[:1]) & (trace.word("P") >= 1)
+        return first & ~trace.codes(*sorted(machine.macro.call_codes)) & ~trace.listed("data_input", "dwell")
 
     @cached_property
     def _plain(self) -> list[int]:
@@ -52,60 +68,108 @@ class Origin:
                 found[number] = name.upper(), offset.x
         return found
 
-    # ---- G10 ----
+    # ---- G10, and the variables of work offsets ----
 
     @cached_property
-    def _set_by_program(self) -> tuple[Mask, Floats]:
-        """Rows in which G10 sets X of a work offset, and its number."""
+    def _settings(self) -> Settings:
+        """What the program sets of X of work offsets outside the mode, in order of the rows."""
+        return in_order([self._set_by_data_input(), self._set_by_variables()])
+
+    def _set_by_data_input(self) -> Settings:
         trace = self.trace
         kinds = trace.machine.g_codes.data_input_work_offset
-        kind, p = trace.word("L"), np.nan_to_num(trace.word("P"))
+        rows = np.flatnonzero(trace.listed("data_input") & trace.has("X", "U") & (trace.section < 0))
+        kind, p = trace.word("L")[rows], np.minimum(np.nan_to_num(trace.word("P")[rows]), _LONGEST)
         # Without L a lathe takes P0 as the work shift; other numbers are tool offsets.
-        is_external = (np.isnan(kind) | np.isin(kind, kinds[:1])) & (p == 0)
+        is_shift = np.isnan(kind) & (p == 0)
+        is_external = np.isin(kind, kinds[:1]) & (p == 0)
         is_plain = np.isin(kind, kinds[:1]) & (p >= 1) & (p <= len(self._plain))
         is_extended = np.isin(kind, kinds[1:]) & (p >= 1)
-        plain = np.array(self._plain, np.float64)[np.where(is_plain, p - 1, 0).astype(np.int64)]
-        number = np.where(is_external, _EXTERNAL, np.where(is_plain, plain, _EXTENDED + p))
-        sets = trace.listed("data_input") & trace.has("X", "U") & (is_external | is_plain | is_extended)
-        return sets & (trace.section < 0), number
+        plain = np.array(self._plain)[np.where(is_plain, p - 1, 0).astype(np.int64)]
+        number = np.select((is_shift, is_external, is_plain), (_SHIFT, _EXTERNAL, plain), _EXTENDED + p)
+        has_x = trace.has("X")[rows]
+        value = np.where(has_x, trace.length_of("X")[rows], trace.length_of("U")[rows])
+        found = Settings(rows, number.astype(np.int64), np.full(len(rows), X), value, trace.incremental[rows] | ~has_x)
+        return found.of(is_shift | is_external | is_plain | is_extended)
 
-    def _x_of(self, number: float) -> tuple[Floats, Mask]:
-        """X of a work offset in each row, and whether G10 has set it by then."""
+    def _set_by_variables(self) -> Settings:
+        trace, offsets = self.trace, self.trace.machine.offsets
+        first, step = offsets.work_offset_variable, offsets.work_offset_step
+        found = []
+        for row, assigned in trace.run.assigned.items():
+            plain = steps_above(assigned.variable, first, step)
+            extended = steps_above(assigned.variable, offsets.work_offset_extended_variable, step)
+            number = None
+            if assigned.variable == offsets.work_shift_variable:
+                number = _SHIFT
+            elif 0 <= plain <= len(self._plain):
+                number = self._plain[plain - 1] if plain else _EXTERNAL
+            elif 0 <= extended < _MOST_EXTENDED:
+                number = _EXTENDED + extended + 1
+            if number is not None and trace.section[row] < 0:
+                found.append((row, number, X, assigned.value * float(trace.scale[row]), assigned.is_step))
+        return of_list(found)
+
+    def _x_of(self, number: float) -> tuple[Floats, Rows]:
+        """X of a work offset in each row, NaN where it is not known, and the row that has set it; -1 where none has."""
         trace = self.trace
-        sets, numbers_set = self._set_by_program
-        sets = sets & (numbers_set == number)
-        is_step = trace.incremental | ~trace.has("X")
-        absolute = np.where(sets & ~is_step, trace.length_of("X"), np.nan)
-        step = np.where(trace.has("X"), trace.length_of("X"), trace.length_of("U"))
-        steps = np.where(sets & is_step, np.nan_to_num(step), 0.0)
-        given = self._of_job.get(number, ("", 0.0))[1] * np.broadcast_to(trace.job_scale, len(trace))
+        row, _, _, value, is_step = self._settings.of(self._settings.number == number)
+        # The way from the reference position puts X0 on the axis; what is added to it puts X0 beside it.
+        is_way = np.abs(value) > _NEAR
+        absolute, steps = np.full(len(trace), np.nan), np.zeros(len(trace))
+        sets = is_way | ~is_step
+        absolute[row[sets]] = np.where(is_way, 0.0, value)[sets]
+        steps[row[~sets]] = value[~sets]
+        steps[row[sets & np.isnan(value)]] = np.nan
         forgets = trace.starts | trace.run.unknown
-        is_set = fill_down(sets, sets | forgets, False).astype(bool)
+        given = self._of_job.get(number, ("", 0.0))[1] * np.broadcast_to(trace.job_scale, len(trace))
+        written, setter = forgets.copy(), np.full(len(trace), -1)
+        written[row], setter[row] = True, row
         x = positions(absolute, steps, forgets, given)
-        return np.where(is_set & ~(np.abs(x) <= _NEAR), 0.0, x), is_set
+        setter = fill_down(setter, written, -1)
+        return np.where((setter >= 0) & (np.abs(x) > _NEAR), 0.0, x), setter
 
     @cached_property
-    def work_offset(self) -> tuple[Floats, NDArray[np.object_]]:
+    def work_offset(self) -> tuple[Floats, Rows]:
         """
-        X0 of the work offset in force, and its name; 0 where neither the job nor the program says it.
+        X0 of the work offset in force, and the row that has set it; 0 where neither the job nor the program says it.
 
         Only of those that are in force at a G12.1: a program may set many more.
         """
         trace = self.trace
-        asked = set(self._number[trace.sections.enter].tolist()) - {_EXTERNAL}
-        x, name = np.zeros(len(trace)), np.full(len(trace), "", object)
-        sets, set_numbers = self._set_by_program
-        for number in sorted({*self._of_job, *set_numbers[sets].tolist()} & asked):
+        asked = set(self._number[trace.sections.enter].tolist()) - {_EXTERNAL, _SHIFT}
+        x, setter = np.zeros(len(trace)), np.full(len(trace), -1)
+        for number in sorted({*self._of_job, *self._settings.number.tolist()} & asked):
             in_force = self._number == number
-            given, is_set = self._x_of(number)
-            x[in_force], name[in_force] = given[in_force], self._name(number)
-            name[in_force & is_set] = f"{self._code('data_input')} on {self._name(number)}"
-        return x, name
+            given, row = self._x_of(number)
+            x[in_force], setter[in_force] = given[in_force], row[in_force]
+        return x, setter
 
     @cached_property
-    def external(self) -> Floats:
-        """X of the offset that is added to all work offsets."""
-        return self._x_of(_EXTERNAL)[0] if self._set_by_program[0].any() else np.zeros(len(self.trace))
+    def external(self) -> tuple[Floats, Rows]:
+        """X of the offset that is added to all work offsets, and the row that has set it."""
+        return self._added(_EXTERNAL)
+
+    @cached_property
+    def work_shift(self) -> tuple[Floats, Rows]:
+        """X of the work shift, and the row that has set it."""
+        return self._added(_SHIFT)
+
+    def _added(self, number: int) -> tuple[Floats, Rows]:
+        if np.any(self._settings.number == number):
+            return self._x_of(number)
+        return np.zeros(len(self.trace)), np.full(len(self.trace), -1)
+
+    def _set_in(self, row: int, setter: int) -> str:
+        """What has set a work offset that counts in a row: `G10 on G54`, `G10 P0`, `#5221`, or the job."""
+        number = float(self._number[row])
+        if setter < 0:
+            return self._name(number)
+        if setter in self.trace.run.assigned:
+            return f"#{self.trace.run.assigned[setter].variable}"
+        own = self._settings.number[self._settings.row == setter]
+        on = f"on {self._name(number)}" if own[-1] > 0 else "P0"
+        return f"{self._code('data_input')} {on}"
 
     def _name(self, number: float) -> str:
         if number in self._of_job:
@@ -124,8 +188,13 @@ class Origin:
         """X of the G52 in force."""
         trace = self.trace
         written = trace.listed("local_shift") & trace.has("X")
-        shift = np.where(written, np.nan_to_num(trace.length_of("X")), 0.0)
-        return fill_down(shift, written | trace.starts, 0.0).astype(np.float64)
+        shift = np.where(written, trace.length_of("X"), 0.0)
+        return fill_down(shift, written | trace.starts | self._is_preset, 0.0).astype(np.float64)
+
+    @cached_property
+    def _is_preset(self) -> Mask:
+        """X is that of the work offset again: what G52 and G50 (G92) have moved is taken back."""
+        return self.trace.listed("coordinate_preset") & self.trace.has("X", "U")
 
     @cached_property
     def coordinate_setting(self) -> Floats:
@@ -141,7 +210,9 @@ class Origin:
         is_step = trace.incremental | ~trace.has("X")
         step = -np.where(trace.has("X"), trace.length_of("X"), trace.length_of("U"))
         moved = np.where(is_step, step, trace.x_before / trace.x_factor + step)
-        forgets = trace.changes_tool | trace.run.unknown | (sets & np.isnan(moved))
+        # How far X0 moves is not known where the word is not; elsewhere it is where X stands that is not known.
+        by_unknown = sets & np.isnan(step) & (is_step | ~np.isnan(trace.x_before))
+        forgets = trace.changes_tool | trace.run.unknown | self._is_preset | (sets & np.isnan(moved) & ~by_unknown)
         steps = np.where(sets & ~forgets, moved, 0.0)
         return positions(np.full(len(trace), np.nan), steps, forgets | trace.starts, np.zeros(len(trace)))
 
@@ -149,23 +220,35 @@ class Origin:
 
     @cached_property
     def shift(self) -> Floats:
-        """How far X0 is known to lie off the spindle axis."""
+        """How far X0 is known to lie off the spindle axis; NaN where the program sets what is not known."""
         trace = self.trace
         shifts = trace.listed("data_input", "local_shift", "coordinate_setting")
         # G50 S2000 is a speed.
-        if not trace.job.work_offsets and not (shifts.any() and (shifts & trace.has("X", "U")).any()):
-            return np.zeros(len(trace))
-        return self.work_offset[0] + self.external + self.local + self.coordinate_setting
+        is_shifted = (
+            trace.job.work_offsets or trace.run.assigned or (shifts.any() and (shifts & trace.has("X", "U")).any())
+        )
+        return sum((part for part, _ in self._parts), np.zeros(len(trace))) if is_shifted else np.zeros(len(trace))
+
+    @cached_property
+    def _parts(self) -> tuple[tuple[Floats, Callable[[int], str]], ...]:
+        """What is added up, and what each part is called in a row."""
+        offsets = (self.work_offset, self.external, self.work_shift)
+        return (
+            *((x, functools.partial(self._of_offset, setter)) for x, setter in offsets),
+            (self.local, lambda row: self._code("local_shift")),
+            (self.coordinate_setting, lambda row: self._code("coordinate_setting")),
+        )
+
+    def _of_offset(self, setter: Rows, row: int) -> str:
+        return self._set_in(row, int(setter[row]))
 
     def causes(self, row: int) -> list[str]:
-        """What shifts the origin in a row: a work offset by its name, G10, G52, G50."""
-        parts = (
-            (self.work_offset[0], self.work_offset[1][row]),
-            (self.external, f"{self._code('data_input')} P0"),
-            (self.local, self._code("local_shift")),
-            (self.coordinate_setting, self._code("coordinate_setting")),
-        )
-        return [name for part, name in parts if part[row]]
+        """What shifts the origin in a row: a work offset by its name, G10, a variable, G52, G50."""
+        return list(dict.fromkeys(name(row) for part, name in self._parts if part[row]))
+
+    def unknown_causes(self, row: int) -> list[str]:
+        """Those of them that set what is not known."""
+        return list(dict.fromkeys(name(row) for part, name in self._parts if np.isnan(part[row])))
 
 
 def _number(text: str) -> float:

@@ -201,7 +201,7 @@ class Positions(LinearAxis):
     def _forgets(self, axis: str, increment: str) -> Mask:
         """Rows after which an axis is not where its words say: references, shifts, cycles, blocks not executed."""
         named = self.has(axis, increment)
-        lost = self.listed("data_input", "reference_return", "local_shift", "machine_coordinates")
+        lost = self.listed("data_input", "reference_return", "local_shift", "machine_coordinates", "coordinate_preset")
         lost = (lost | self.sets_coordinates) & named
         work_offset = self.state("work_offset")
         lost |= self.sets("work_offset") & (work_offset != before(work_offset, self.starts, 0))

@@ -68,7 +68,11 @@ class Since:
     def origin(self) -> Rows:
         """From one block to the next that sets or selects a coordinate system."""
         trace = self.trace
-        written = trace.listed("local_shift", "data_input") | trace.sets("work_offset") | trace.sets_coordinates
+        written = (
+            trace.listed("local_shift", "data_input", "coordinate_preset")
+            | trace.sets("work_offset")
+            | trace.sets_coordinates
+        )
         written[list(trace.run.assigned)] = True
         return self._last(written)
 

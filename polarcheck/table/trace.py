@@ -16,13 +16,13 @@ from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.machines.modal import FeedMode, Motion, Side
 from polarcheck.reading.words import NumberFault
 from polarcheck.table.filling import before, fill_down
-from polarcheck.table.positions import Positions
+from polarcheck.table.tool_offsets import ToolOffsets
 
 #: Addresses that name the rotary axis of a cylinder with its radius, or the radius itself.
 _CYLINDER_WORDS = ("A", "B", "C", "H", "Q", "R")
 
 
-class Trace(Positions):
+class Trace(ToolOffsets):
     """The table of one file on one machine for one job; see the properties for its columns, and those it inherits."""
 
     # ---- what is known of the program ----

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from polarcheck.checking.places import Place, squeezed
+from polarcheck.checking.places import Place, block_in_line, squeezed
 from polarcheck.machines.codes import code_numbers, spelled
 from polarcheck.machines.machine import Machine
 from polarcheck.machines.own_language import shown
@@ -29,6 +29,11 @@ def written(trace: Trace, row: int, address: str) -> str:
     indices = trace.word_indices(address)
     at = indices[trace.run.row[indices] == row]
     return executed_word(trace, int(at[-1])) if len(at) else address
+
+
+def block_and_line(trace: Trace, row: int) -> str:
+    """A block with its line, as in `G10 P8 R4. in line 3`."""
+    return f"{block_in_line(trace, row, _LONGEST)} in line {int(trace.line[row])}"
 
 
 def word(trace: Trace, at: list[int]) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from polarcheck.checking.phrases.common import code_of
+from polarcheck.checking.phrases.common import block_and_line, code_of
 from polarcheck.checking.quantity import in_row
 from polarcheck.errors import TooHardError
 from polarcheck.machines.machine import Machine
@@ -49,10 +49,16 @@ def before(trace: Trace, row: int) -> str:
 def changed_by(trace: Trace, row: int) -> str:
     """T0808, G10 or #2001."""
     if row in trace.run.assigned:
-        return f"#{trace.run.assigned[row]}"
+        return f"#{trace.run.assigned[row].variable}"
     if trace.has("T")[row]:
         return f"T{int(trace.tool[row]):02d}{int(trace.offset_number[row]):02d}"
     return trace.machine.codes("data_input")[0]
+
+
+def has_nose(trace: Trace, row: int) -> str:
+    """Where the program has set the nose type of the offset in force: `is set to`, else `has`."""
+    setter = int(trace.nose_set_in[row])
+    return f"is set by {block_and_line(trace, setter)} to" if setter >= 0 else "has"
 
 
 def allowed(machine: Machine) -> str:
@@ -110,7 +116,9 @@ def fault(trace: Trace, row: int) -> str:
     shown = in_row(radius, trace, row)
     length = float(trace.length[row])
     moved, needed = _along(trace, row, length, radius), _along(trace, row, radius, length)
-    return f"moves {moved}; with R {shown.beside(in_row(length, trace, row), 'length')} it needs {needed}"
+    setter = int(trace.radius_set_in[row])
+    of_program = f", set by {block_and_line(trace, setter)}," if setter >= 0 else ""
+    return f"moves {moved}; with R {shown.beside(in_row(length, trace, row), 'length')}{of_program} it needs {needed}"
 
 
 def why(trace: Trace, row: int) -> str:

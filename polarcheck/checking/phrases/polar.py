@@ -17,8 +17,8 @@ from polarcheck.table.angles import Angles
 from polarcheck.table.arcs import Arcs
 from polarcheck.table.infeed import Infeed
 from polarcheck.table.other_mode import OtherMode
-from polarcheck.table.switch_words import SwitchWords
 from polarcheck.table.procedure import Procedure
+from polarcheck.table.switch_words import SwitchWords
 from polarcheck.table.trace import Trace
 
 #: What the codes of a list of G-code system B are in system A, and what stands for them there.
@@ -245,7 +245,7 @@ def on_cylinder(trace: Trace) -> tuple[str, int]:
 
 def shifted_by(trace: Trace, row: int, at: list[int]) -> str:
     """What shifts the origin: codes, as in G55, or the variable of a work offset."""
-    return codes(trace, at) if at else f"#{trace.run.assigned[row]}"
+    return codes(trace, at) if at else f"#{trace.run.assigned[row].variable}"
 
 
 def where(trace: Trace, row: int) -> str:

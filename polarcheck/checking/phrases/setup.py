@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from polarcheck.checking.phrases.common import code_of, executed_word, short
+from polarcheck.checking.phrases.common import block_and_line, code_of, executed_word, short, written
 from polarcheck.checking.phrases.feed import feed_word as feed_word
 from polarcheck.checking.quantity import in_row
 from polarcheck.machines.machine import Machine
@@ -52,6 +52,30 @@ def origin(trace: Trace, row: int) -> str:
 def comment(trace: Trace, row: int) -> str:
     """The comment that tells R of the offset that is called."""
     return short(trace.radius_told[int(trace.offset_number[row])].comment)
+
+
+def is_given(trace: Trace, entry: Entry, row: int) -> str:
+    """Who gives R of the offset that is called: `is given for offset 8`, or set by a block of the program."""
+    number = int(trace.offset_number[row])
+    setter = int(trace.radius_set_in[entry.first_in_mode[number]])
+    return (
+        f"is set for offset {number} by {block_and_line(trace, setter)}"
+        if setter >= 0
+        else f"is given for offset {number}"
+    )
+
+
+def x_changed_by(trace: Trace, row: int) -> str:
+    """The word or the variable that sets X of a tool offset."""
+    if row in trace.run.assigned:
+        return f"#{trace.run.assigned[row].variable}"
+    return written(trace, row, "X" if trace.has("X")[row] else "U")
+
+
+def offset_of_block(trace: Trace, row: int) -> int:
+    """The number of the tool offset that a block sets."""
+    settings = trace.offset_settings
+    return int(settings.number[settings.row == row][0])
 
 
 def to_clear(trace: Trace, entry: Entry, row: int) -> str:

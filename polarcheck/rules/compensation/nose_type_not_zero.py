@@ -5,7 +5,7 @@ from polarcheck.checking.rule import ERROR, Mask, Trace, rule
 
 @rule(
     ERROR,
-    "offset {trace.offset_number} has nose type T{trace.nose:.0f}; for a mill it must be {allowed}",
+    "offset {trace.offset_number} {has_nose} nose type T{trace.nose:.0f}; for a mill it must be {allowed}",
     at=("compensation_left", "compensation_right"),
     once="section",
     needs=("trace.nose",),
@@ -26,6 +26,17 @@ def nose_type_not_zero(trace: Trace) -> Mask:
 
     Bad, tool 8:radius=4, tool 8:nose=3:
 
+        T0808
+        G98 G0 X60. C0
+        G12.1
+        G1 G41 X40. F200   (expect: nose-type-not-zero)
+        C-10.
+        G40 X60.
+        G13.1
+
+    Bad:
+
+        G10 P8 R4. Q3
         T0808
         G98 G0 X60. C0
         G12.1

@@ -10,6 +10,7 @@ from polarcheck.checking.rule import ERROR, Machine, Mask, ModeWords, Trace, rul
     at=(
         "data_input",
         "coordinate_setting",
+        "coordinate_preset",
         "local_shift",
         "machine_coordinates",
         "work_offset",

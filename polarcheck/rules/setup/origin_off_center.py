@@ -9,6 +9,8 @@ from polarcheck.geometry.tolerances import ROUNDING
     "{name} puts X0 {shift:length} off the spindle axis at {switch}",
     at=("on",),
     once="origin",
+    needs=("entry.origin_shift",),
+    where="trace.enters",
     follows={"origin": ("origin-shifted-in-polar",)},
 )
 def origin_off_center(trace: Trace, entry: Entry) -> Hits:
@@ -18,8 +20,10 @@ def origin_off_center(trace: Trace, entry: Entry) -> Hits:
     The control takes X0 as the center that C turns about. If the work offset or a local shift in force puts X0
     elsewhere, every radius and every angle of the shape is wrong. Set X of the work offset to the spindle axis and
     cancel G52 before G12.1. Known are the work offsets of the job, `[work_offsets.G54] x = 0`, and in the program G52,
-    G10 on a work offset up to 50 mm (beyond, it is the way from the reference position of the lathe), and G50 (G92 in
-    systems B and C) with U, or with X where the program says where X stands.
+    and G50 (G92 in systems B and C) with U, or with X where the program says where X stands; G50.3 (G92.1) takes both
+    back. What sets X of a work offset, of the external one or of the work shift counts up to 50 mm, be it G10 or a
+    variable: beyond, it is the way from the reference position of the lathe, and what is added to that counts again.
+    Where the value set is not known, nothing is said of the origin but that.
 
     Source: FANUC B-62764EN/01, p. 51; builder's guide to G12.1, coordinate system origin.
 
@@ -38,6 +42,17 @@ def origin_off_center(trace: Trace, entry: Entry) -> Hits:
 
         G10 L2 P1 X.5
         G54
+        G98 G0 X60. C0
+        G12.1             (expect: origin-off-center)
+        G1 X40. F200
+        C10.
+        X60.
+        G13.1
+
+    Bad:
+
+        G10 L2 P1 X-260.5
+        #5221=#5221+.5
         G98 G0 X60. C0
         G12.1             (expect: origin-off-center)
         G1 X40. F200
@@ -84,6 +99,8 @@ def origin_off_center(trace: Trace, entry: Entry) -> Hits:
         G0 X80. C0
         G52 X2.
         G52 X0.
+        G52 X1.
+        G50.3 X0
         G54
         G98 G0 X60. C0
         G12.1

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import NOTE, Entry, Hits, Trace, rule
+from polarcheck.checking.rule import NOTE, Entry, Hits, rule
 
 #: So far wear and a path of the tool center may take R from what a comment tells, or from 0 [mm].
 _WEAR = 0.25
@@ -8,11 +8,10 @@ _WEAR = 0.25
 
 @rule(
     NOTE,
-    "R {trace.radius_of_offset:length} is given for offset {trace.offset_number}, the comment tells {told:length}: "
-    "{comment}; measure the cutter",
+    "R {given:length} {is_given}, the comment tells {told:length}: {comment}; measure the cutter",
     at=("T",),
 )
-def radius_contradicts_comment(trace: Trace, entry: Entry) -> Hits:
+def radius_contradicts_comment(entry: Entry) -> Hits:
     """
     Given radius that is not that of the program's own comment.
 
@@ -27,6 +26,20 @@ def radius_contradicts_comment(trace: Trace, entry: Entry) -> Hits:
         O1
         G20 G98
         T0808 (3/4 DIA. CUTTER)    (expect: radius-contradicts-comment)
+        G0 X3. C0
+        G12.1
+        G1 G42 X1. F5.
+        C.1
+        G40 X3.
+        G13.1
+        M30
+
+    Bad:
+
+        O1
+        G20 G98
+        T0808 (3/4 DIA. CUTTER)    (expect: radius-contradicts-comment)
+        G10 P8 R.6
         G0 X3. C0
         G12.1
         G1 G42 X1. F5.
@@ -61,5 +74,5 @@ def radius_contradicts_comment(trace: Trace, entry: Entry) -> Hits:
         G13.1
         M30
     """
-    contradicts = (entry.radius_off_comment > _WEAR) & (abs(trace.radius_of_offset) > _WEAR)
-    return Hits(contradicts, values={"told": entry.radius_told})
+    contradicts = (entry.radius_off_comment > _WEAR) & (abs(entry.radius_in_mode) > _WEAR)
+    return Hits(contradicts, values={"given": entry.radius_in_mode, "told": entry.radius_told})

@@ -48,6 +48,17 @@ def radius_from_comment(trace: Trace) -> Mask:
         G40 X60.
         G13.1
 
+    Good, set job.radius_from_comments=true:
+
+        T0808 (D=8. END MILL)
+        G10 P10008 R4. Q0
+        G98 G0 X60. C0
+        G12.1
+        G1 G41 X40. F200
+        C-10.
+        G40 X60.
+        G13.1
+
     Good:
 
         T0808 (D=8. END MILL)
@@ -58,4 +69,4 @@ def radius_from_comment(trace: Trace) -> Mask:
         X60.
         G13.1
     """
-    return trace.has("T") & trace.radius_is_from_comment
+    return trace.has("T") & trace.radius_is_from_comment & ~trace.sets_radius_after_call

@@ -1,0 +1,344 @@
+"""R and nose type of the tool offset in force, as the job, the comments and the program itself say."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import cached_property
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from polarcheck.arrays import Floats, Mask, Rows
+from polarcheck.geometry.tolerances import ADJUSTMENT, ROUNDING
+from polarcheck.machines.modal import Units
+from polarcheck.machines.offsets import place_in
+from polarcheck.table.filling import fill_down, positions
+from polarcheck.table.positions import Positions
+
+if TYPE_CHECKING:
+    from polarcheck.table.radius_comments import Found
+
+#: What a setting is of.
+RADIUS, RADIUS_WEAR, NOSE, X, X_WEAR = range(5)
+#: R of no cutter: it is a length, which mills give in the same words [mm].
+_LONGEST = 100.0
+#: No cutter of a lathe is larger: what is set is not known [mm].
+_LARGEST = 1000.0
+#: No control has as many offsets.
+_LONGEST_NUMBER = 1e9
+#: A larger X of the wear is where the tool has been touched off, likewise [mm].
+_LARGEST_X_WEAR = 5.0
+
+
+class Settings(NamedTuple):
+    """
+    What the program sets of offsets outside the mode, one element each.
+
+    number: of the offset. kind: RADIUS and the like. value: [mm], or the nose type; NaN where it is not known.
+    is_step: it is added.
+    """
+
+    row: Rows
+    number: Rows
+    kind: Rows
+    value: Floats
+    is_step: Mask
+
+    def of(self, chosen: Mask | Rows) -> Settings:
+        """Those at some indices, or of a mask."""
+        row, number, kind, value, is_step = self
+        return Settings(row[chosen], number[chosen], kind[chosen], value[chosen], is_step[chosen])
+
+
+def of_list(found: Sequence[tuple[int, int, int, float, bool]]) -> Settings:
+    """Settings that were found one by one: row, number, kind, value, is_step."""
+    table = np.array(found, np.float64).reshape(-1, 5)
+    row, number, kind = (table[:, column].astype(np.int64) for column in range(3))
+    return Settings(row, number, kind, table[:, 3], table[:, 4].astype(bool))
+
+
+def in_order(parts: Sequence[Settings]) -> Settings:
+    """Settings that were found in several ways, in order of the rows."""
+    row, number, kind, value, is_step = (
+        np.concatenate([part[column] for part in parts]) for column in range(len(Settings._fields))
+    )
+    return Settings(row, number, kind, value, is_step).of(np.argsort(row, kind="stable"))
+
+
+class _Set(NamedTuple):
+    """What the program has set of the offset in force: the row that did so last, -1 where none has, and the value."""
+
+    row: Rows
+    value: Floats
+
+
+class ToolOffsets(Positions):
+    """What the tool offset in force holds; the columns of Positions besides."""
+
+    # ---- R and nose type ----
+
+    @cached_property
+    def radius_of_offset(self) -> Floats:
+        """R of the tool offset in force [mm]; NaN where neither program, job nor, if asked, a comment tells it."""
+        return np.where(self.radius_set_in >= 0, self._radius_set.value, self._radius_given)
+
+    @cached_property
+    def nose(self) -> Floats:
+        """T of the tool offset in force (nose type); NaN unknown."""
+        given = self._offset_column({n: t.nose for n, t in self.job.tools.items() if t.nose is not None})
+        return np.where(self.nose_set_in >= 0, self._nose_set.value, given)
+
+    @property
+    def radius_set_in(self) -> Rows:
+        """The row in which the program has set R of the offset in force; -1 where it has not."""
+        return self._radius_set.row
+
+    @property
+    def nose_set_in(self) -> Rows:
+        """The row in which the program has set the nose type of the offset in force; -1 where it has not."""
+        return self._nose_set.row
+
+    @cached_property
+    def radius_is_from_comment(self) -> Mask:
+        """R of the offset in force is from a comment."""
+        told = np.isnan(self._radius_of_job) & ~np.isnan(self._radius_of_comments)
+        return np.asarray(told & (self.radius_set_in < 0))
+
+    @cached_property
+    def sets_radius_after_call(self) -> Mask:
+        """
+        Between the T word in force and the next, the program sets R of its offset before the mode needs it.
+
+        What a comment tells of R is not taken there.
+        """
+        call = np.cumsum(self.has("T") | self.starts)
+        sets, needs = (
+            np.bincount(call[rows], minlength=int(call[-1]) + 1 if len(call) else 1) > 0
+            for rows in (self.radius_set_in == np.arange(len(self)), self.in_polar & self.radius_is_from_comment)
+        )
+        return np.asarray((sets & ~needs)[call])
+
+    @cached_property
+    def sizes_by_x(self) -> Mask:
+        """
+        X of an offset is changed that a polar section of the program uses: by a step, or as wear.
+
+        X of the geometry is where the tool has been touched off, and so is one that is too large for wear.
+        """
+        found, sizes = self.offset_settings, np.zeros(len(self), bool)
+        is_wear = (found.kind == X_WEAR) & ~(np.abs(found.value) > _LARGEST_X_WEAR)
+        chosen = found.of((found.kind >= X) & (is_wear | found.is_step) & (found.value != 0))
+        table, most = np.flatnonzero(self.in_polar | self.enters), 10**self.machine.control.offset_digits
+        used = self.program[table] * most + self.offset_number[table]
+        sizes[chosen.row[np.isin(self.program[chosen.row] * most + chosen.number, used)]] = True
+        return sizes
+
+    @cached_property
+    def cutter_diameter(self) -> Floats:
+        """Diameter of the cutter in force [mm], twice R where the job gives no other; NaN unknown."""
+        given = self._offset_column({n: tool.diameter for n, tool in self.job.tools.items()}) * self.job_scale
+        return np.where(np.isnan(given) & (self.radius_of_offset > 0), 2 * self.radius_of_offset, given)
+
+    # ---- what is given ----
+
+    def _offset_column(self, values: Mapping[int, float]) -> Floats:
+        table = np.full(10**self.machine.control.offset_digits, np.nan)
+        for number, value in values.items():
+            if number < len(table):
+                table[number] = value
+        return table[self.offset_number]
+
+    @cached_property
+    def _radius_given(self) -> Floats:
+        return np.where(np.isnan(self._radius_of_job), self._radius_of_comments, self._radius_of_job)
+
+    @cached_property
+    def _radius_of_job(self) -> Floats:
+        return self._offset_column({n: tool.radius for n, tool in self.job.tools.items()}) * self.job_scale
+
+    @cached_property
+    def _radius_of_comments(self) -> Floats:
+        return self._offset_column({number: found.radius for number, found in self.radius_comments.items()})
+
+    @cached_property
+    def radius_told(self) -> dict[int, Found]:
+        """What the comments say of R by offset number."""
+        from polarcheck.table.radius_comments import Called, radii
+
+        rows = np.flatnonzero(self.has("T"))
+        called = Called(self.run.block[rows], self.offset_number[rows], self.tool[rows], self.scale[rows] != 1.0)
+        return radii(self.text, called)
+
+    @cached_property
+    def radius_comments(self) -> dict[int, Found]:
+        """What the comments say of R by offset number, if that is asked for."""
+        return self.radius_told if self.job.radius_from_comments else {}
+
+    # ---- what the program sets ----
+
+    @cached_property
+    def offset_settings(self) -> Settings:
+        """
+        What the program sets of tool offsets, by data input and by system variables.
+
+        What it sets in the mode is a finding, and changes nothing of what is meant.
+        """
+        found = in_order([*self._set_by_data_input(), self._set_by_variables()])
+        found = found.of((found.number > 0) & (found.number < 10**self.machine.control.offset_digits))
+        too_large = (found.kind <= RADIUS_WEAR) & (np.abs(found.value) > _LARGEST)
+        return found._replace(value=np.where(too_large, np.nan, found.value))
+
+    def _set_by_data_input(self) -> list[Settings]:
+        rows = np.flatnonzero(self.listed("data_input") & self.has("P") & (self.section < 0))
+        if not len(rows):
+            return []
+        offsets, kind, place = self.machine.offsets, self.word("L")[rows], np.nan_to_num(self.word("P")[rows])
+        base = offsets.geometry_from
+        plain = np.isnan(kind) & (base > 0)
+        is_geometry = np.where(plain, place > base, np.isin(kind, offsets.geometry))
+        known = plain | is_geometry | np.isin(kind, offsets.wear)
+        known &= place < _LONGEST_NUMBER
+        number = np.where(known, place - base * (plain & is_geometry), 0).astype(np.int64)
+        # Mills give lengths as they give radii: in R.
+        alone = np.isin(kind, offsets.radius_alone)
+        as_mill = np.zeros(len(self), bool)
+        as_mill[rows[alone]] = True
+        of_length = ~plain & ~alone & self.anywhere_in_program(as_mill)[rows]
+        steps = self.incremental[rows]
+        found = []
+        for address, geometry, wear, always_step in (
+            ("R", RADIUS, RADIUS_WEAR, False),
+            ("C", RADIUS, RADIUS_WEAR, True),
+            ("Q", NOSE, NOSE, False),
+            ("X", X, X_WEAR, False),
+            ("U", X, X_WEAR, True),
+        ):
+            value = self._data(address)[rows] if address != "Q" else self.word("Q")[rows]
+            has = self.has(address)[rows]
+            if address in "RC":
+                has &= ~of_length & ~(~plain & ~alone & (np.abs(value) > _LONGEST))
+            is_step = (steps | always_step) & (address != "Q")
+            one = Settings(
+                rows, number, np.where(is_geometry, geometry, wear), value, np.broadcast_to(is_step, len(rows))
+            )
+            found.append(one.of(has))
+        return found
+
+    def _data(self, address: str) -> Floats:
+        """A word of data input as a length [mm]: without a point the control takes it in least increments."""
+        control, at = self.machine.control, self.word_indices(address)
+        words, row = self.run.words, self.run.row[at]
+        least = np.where(self.units[row] == Units.INCH, control.least_increment_inch, control.least_increment)
+        counts = ~words.has_point[at] & (control.number_without_point == "least-increment")
+        column = np.full(len(self), np.nan)
+        value = np.clip(words.value[at], -_LONGEST_NUMBER, _LONGEST_NUMBER)
+        column[row] = value * np.where(counts, least, 1.0) * self.scale[row]
+        return column
+
+    def _set_by_variables(self) -> Settings:
+        offsets = self.machine.offsets
+        ranges = {
+            RADIUS: offsets.radius_geometry_variables,
+            RADIUS_WEAR: offsets.radius_wear_variables,
+            NOSE: offsets.nose_variables,
+            X: offsets.x_geometry_variables,
+            X_WEAR: offsets.x_wear_variables,
+        }
+        found = []
+        for at, assigned in self.run.assigned.items():
+            for of, spans in ranges.items():
+                place = place_in(spans, assigned.variable)
+                if place and self.section[at] < 0:
+                    value = assigned.value * (1.0 if of == NOSE else float(self.scale[at]))
+                    found.append((at, place, of, value, assigned.is_step))
+        return of_list(found)
+
+    def row_of_unknown_setting(self, number: int, row: int, key: str) -> int:
+        """The last row, down to this one, that sets R or the nose type of an offset to what is not known; -1: none."""
+        found = self.offset_settings
+        of_key = found.kind == NOSE if key == "nose" else found.kind <= RADIUS_WEAR
+        own = of_key & (found.number == number) & (found.row <= row) & (self.program[found.row] == self.program[row])
+        rows = found.row[own & np.isnan(found.value)]
+        return int(rows[-1]) if len(rows) else -1
+
+    @cached_property
+    def _nothing_set(self) -> _Set:
+        return _Set(np.full(len(self), -1), np.full(len(self), np.nan))
+
+    def _numbers_in_force(self, chosen: Settings) -> list[int]:
+        """The offsets of some settings that are in force anywhere."""
+        in_force = set(self.called_offsets)
+        return sorted(in_force.intersection(chosen.number.tolist()))
+
+    def _last(self, rows: Rows) -> Rows:
+        """The last of some rows at or above each row of its program; -1 where there is none."""
+        written = self.starts.copy()
+        found = np.full(len(self), -1)
+        written[rows], found[rows] = True, rows
+        return fill_down(found, written, -1)
+
+    @cached_property
+    def _nose_set(self) -> _Set:
+        if not self.sets_offsets:
+            return self._nothing_set
+        chosen = self.offset_settings.of(self.offset_settings.kind == NOSE)
+        row, value = np.full(len(self), -1), np.full(len(self), np.nan)
+        of_row = np.full(len(self), np.nan)
+        for number in self._numbers_in_force(chosen):
+            here = self.offset_number == number
+            own = chosen.of(chosen.number == number)
+            of_row[own.row] = own.value
+            last = self._last(own.row)[here]
+            row[here], value[here] = last, np.where(last >= 0, of_row[last], np.nan)
+        return _Set(row, value)
+
+    @cached_property
+    def sets_offsets(self) -> bool:
+        """Whether the program may set any offset."""
+        return bool(self.run.assigned) or bool(self.listed("data_input").any())
+
+    @cached_property
+    def _radius_set(self) -> _Set:
+        if not self.sets_offsets:
+            return self._nothing_set
+        chosen = self.offset_settings.of(self.offset_settings.kind <= RADIUS_WEAR)
+        row, value = np.full(len(self), -1), np.full(len(self), np.nan)
+        for number in self._numbers_in_force(chosen):
+            here = self.offset_number == number
+            own = chosen.of(chosen.number == number)
+            is_given = not np.isnan(self._radius_given[here]).any()
+            after, changes = self._radius_after(own, is_given)
+            value[here] = after[here]
+            row[here] = np.where(changes, self._last(own.row), -1)[here]
+        return _Set(row, value)
+
+    def _radius_after(self, settings: Settings, is_given: bool) -> tuple[Floats, Mask]:
+        """
+        R of one offset after each row, from what the program sets of it [mm]: the sum of geometry and wear; and whether
+        it is another by it than is given. A wear of 0 changes nothing.
+
+        The wear alone is added to the R that is given. But one that is too large for a wear is R itself, on a control
+        that keeps both in one number; and so is one beside which the nose type is set, where no R is given.
+        """
+        row, _, kind, value, is_step = settings
+        is_geometry = (kind == RADIUS) & ~is_step
+        has_geometry = np.zeros(len(self), bool)
+        has_geometry[row[is_geometry]] = True
+        is_whole = self.has("Q")[row] & (not is_given) & ~np.isnan(value)
+        of_both = (kind == RADIUS_WEAR) & ~is_step & (is_whole | (np.abs(value) > ADJUSTMENT + ROUNDING))
+        of_both &= ~self.anywhere_in_program(has_geometry)[row]
+        geometry = self._summed(settings, is_geometry | of_both, (kind == RADIUS) & is_step)
+        of_wear = settings._replace(value=np.where(of_both, 0.0, value))
+        wear = self._summed(of_wear, (kind == RADIUS_WEAR) & ~is_step, (kind == RADIUS_WEAR) & is_step)
+        is_absolute = self._last(row[is_geometry | of_both]) >= 0
+        given = np.where(is_absolute, 0.0, self._radius_given)
+        return given + geometry + wear, is_absolute | (geometry + wear != 0) | np.isnan(given)
+
+    def _summed(self, settings: Settings, absolute: Mask, added: Mask) -> Floats:
+        """What some settings put together make, from 0 on; NaN from one that is not known to the next absolute one."""
+        row, value = settings.row, settings.value
+        at, step = np.full(len(self), np.nan), np.zeros(len(self))
+        at[row[absolute]] = value[absolute]
+        step[row[absolute & np.isnan(value)]] = np.nan
+        np.add.at(step, row[added], value[added])
+        return positions(at, step, self.starts, np.zeros(len(self)))
