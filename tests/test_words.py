@@ -190,9 +190,9 @@ def test_a_wrong_dash_is_read_as_a_minus() -> None:
 
 
 def test_of_a_run_of_unreadable_words_only_the_first_is_reported() -> None:
-    text = text_of("SOME PROSE\nX-- G1 Z..1 F1")
+    text = text_of("G X Z F\nX-- G1 Z..1 F1")
     assert [place for place, bad in zip(written(text), text.words.is_unreadable, strict=True) if bad] == [
-        "S",
+        "G",
         "X--",
         "Z..1",
     ]
@@ -307,7 +307,7 @@ REGIONS = [
     (f"%\n{PROGRAM}%\n{PROGRAM}%\n", [], "OGXM" * 2),
     (f"%\n{PROGRAM}%\nsome notes\n%\n{PROGRAM}%\n", ["\nsome notes\n"], "OGXM" * 2),
     ("%\nnot much\n%\n", [], "NOTMUCH"),
-    ("some text", [], "SOMETEXT"),
+    ("some text", [], ""),
     ("%\nG0 X1.\nM30%\nsome notes\n", ["\nsome notes\n"], "GXM"),
     ("%\nG0 X1.\nM30 %", [], "GXM"),
     ("\0\0\0\n%\nG0 X1.\nM30\n%\0\0", [], "GXM"),
@@ -389,8 +389,12 @@ GARBAGE = st.lists(st.sampled_from([*LETTERS, *SIGNS, *PARTS, *LONG]), max_size=
 
 
 def as_meant(program: str, text: Text) -> str:
-    """The program with the digits that its letters O and I stand for."""
+    """The program with the digits that its letters O and I stand for, without text in no parentheses."""
     shown = list(program)
+    for start, end in zip(text.prose.start.tolist(), text.prose.end.tolist(), strict=True):
+        shown[start:end] = " " * (end - start)
+    for start, end in zip(text.comments.start.tolist(), text.comments.end.tolist(), strict=True):
+        shown[start:end] = program[start:end]
     for at in text.letters.tolist():
         shown[at] = {"O": "0", "I": "1"}[shown[at].upper()]
     return "".join(shown)

@@ -160,7 +160,7 @@ PLACES: dict[str, Callable[[Tables, int], Place]] = {
     "programs": of_program,
     "faults": of_fault,
     "files": of_file,
-    **{name: _of_span(name) for name in ("comments", "strays", "foreign", "dots", "outside")},
+    **{name: _of_span(name) for name in ("comments", "strays", "foreign", "prose", "dots", "outside")},
 }
 
 

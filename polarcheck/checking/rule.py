@@ -74,6 +74,7 @@ OVER = (
     "comments",
     "strays",
     "foreign",
+    "prose",
     "dots",
     "outside",
     "programs",

@@ -167,13 +167,15 @@ def needs_flow(text: Text, codes: Iterable[str]) -> bool:
 
 
 def block_text(text: Text, block: int) -> str:
-    """A block as the control would read it: comments and stray characters blanked, digits for letters."""
+    """A block as the control would read it: comments, other text and stray characters blanked, digits for letters."""
     start, end = int(text.blocks.start[block]), int(text.blocks.end[block])
     written = text.source.excerpt(start, end)
     strays = text.strays.start[slice(*stretch(text.strays.block, block, block + 1))].tolist()
     letters = text.letters[slice(*stretch(text.letters, start, end))].tolist()
-    comments = slice(*stretch(text.comments.block, block, block + 1))
-    spans = list(zip(text.comments.start[comments].tolist(), text.comments.end[comments].tolist(), strict=True))
+    spans: list[tuple[int, int]] = []
+    for table in (text.comments, text.prose):
+        chosen = slice(*stretch(table.block, block, block + 1))
+        spans += zip(table.start[chosen].tolist(), table.end[chosen].tolist(), strict=True)
     if not (strays or letters or spans):
         return written
     found = list(written)  # a text would be copied for each of them

@@ -52,6 +52,7 @@ def joined(files: Sequence[Text]) -> Text:
         names=table(Spans, [file.names for file in files]),
         strays=table(Spans, [file.strays for file in files]),
         foreign=table(Spans, [file.foreign for file in files]),
+        prose=table(Spans, [file.prose for file in files]),
         dots=table(Spans, [file.dots for file in files]),
         outside=table(Spans, [file.outside for file in files]),
         tape_marks=moved([file.tape_marks for file in files], characters),

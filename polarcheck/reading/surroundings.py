@@ -36,6 +36,14 @@ _READS_AS_BLOCKS = re.compile(
 )
 
 
+#: Marks of HTML, as they come with a page that was copied; behind O or P such a name is that of a program.
+_TAG = re.compile(
+    rb"(?<![OP])(?<![OP] )</?(?:b|i|p|u|a|em|strong|td|tr|th|br|hr|table|thead|tbody|span|div|code|pre|html|head|title"
+    rb"|body|li|ul|ol|sup|sub|h\d)(?:[ \t][^<>\n]{0,200})?/?>",
+    re.IGNORECASE,
+)
+
+
 class Ranges(msgspec.Struct, frozen=True):
     """Places in a text, from start to end (exclusive), in order."""
 
@@ -56,6 +64,7 @@ class Surroundings(msgspec.Struct, frozen=True):
 
     tape_marks: positions of % at the head or the end of a line. outside: what a control does not store. comments, with
     unclosed and nested per comment. names: of programs, <...>. strays: positions of % inside a block.
+    tags: of HTML.
     """
 
     tape_marks: Positions
@@ -65,6 +74,7 @@ class Surroundings(msgspec.Struct, frozen=True):
     nested: Mask
     names: Ranges
     strays: Positions
+    tags: Ranges
 
 
 def narrow(size: int) -> type[np.signedinteger[Any]]:
@@ -77,6 +87,7 @@ def read_surroundings(code: Bytes, line_comments: str = "") -> Surroundings:
     lines = np.append(np.flatnonzero(code == LF), len(code))
     remarks = _line_comments(code, lines, line_comments)
     comments, unclosed, nested = _comments(code)
+    tags = _tags(code)
     marks, strays = _percents(code, lines)
     outside = _outside(code, marks)
     names = _names(code)
@@ -92,11 +103,23 @@ def read_surroundings(code: Bytes, line_comments: str = "") -> Surroundings:
         nested=np.append(nested[kept], np.zeros(count, bool)),
         names=names,
         strays=strays,
+        tags=tags.only(~_within(tags, outside)),
     )
 
 
 def _joined(parts: list[Ranges]) -> Ranges:
     return Ranges(np.concatenate([part.start for part in parts]), np.concatenate([part.end for part in parts]))
+
+
+def united(one: Ranges, other: Ranges) -> Ranges:
+    """The ranges of both, each of which has none that overlap, by where they begin; those that touch are one."""
+    if not len(other):
+        return one
+    both = _joined([one, other])
+    order = np.argsort(both.start, kind="stable")
+    start, end = both.start[order], np.maximum.accumulate(both.end[order])
+    begins = np.append(True, start[1:] > end[:-1])
+    return Ranges(start[begins], end[np.append(begins[1:], True)])
 
 
 def _characters(ranges: Ranges, size: int) -> tuple[Positions, Positions]:
@@ -109,7 +132,7 @@ def _characters(ranges: Ranges, size: int) -> tuple[Positions, Positions]:
     return at, owner
 
 
-def _blank(code: Bytes, ranges: Ranges) -> None:
+def blank(code: Bytes, ranges: Ranges) -> None:
     """Blank the ranges, none of which holds a line end."""
     code[_characters(ranges, len(code))[0]] = _SPACE
 
@@ -146,7 +169,7 @@ def _line_comments(code: Bytes, lines: Positions, characters: str) -> list[Range
     brackets = np.flatnonzero((code == _OPEN) | (code == _CLOSE) | (code == LF))
     inside = np.append(LF, code[brackets])[np.searchsorted(brackets, at)] == _OPEN
     remarks = _first_of_line(at[~inside], lines)
-    _blank(code, remarks)
+    blank(code, remarks)
     return [remarks]
 
 
@@ -166,7 +189,7 @@ def _comments(code: Bytes) -> tuple[Ranges, Mask, Mask]:
     closed = end < len(code)
     closed[closed] = code[end[closed]] == _CLOSE
     comments = Ranges(at[first], end + closed)
-    _blank(code, comments)
+    blank(code, comments)
     return comments, ~closed, opens[np.flatnonzero(first) + 1]
 
 
@@ -182,7 +205,7 @@ def _percents(code: Bytes, lines: Positions) -> tuple[Positions, Positions]:
         return at, at
     line_start = np.append(0, lines + 1)[np.searchsorted(lines, at)]
     is_mark = ~_has_text(code, line_start, at) | ~_has_text(code, at + 1, tails.end)
-    _blank(code, tails)
+    blank(code, tails)
     return at[is_mark], at[~is_mark]
 
 
@@ -219,6 +242,16 @@ def _outside(code: Bytes, marks: Positions) -> Ranges:
     return Ranges(np.array(starts, np.int64), np.array(ends, np.int64))
 
 
+def _tags(code: Bytes) -> Ranges:
+    """Marks of HTML in a file that has closing ones: `<b>` alone would be the name of a program."""
+    data = code.tobytes()
+    spans = [tag.span() for tag in _TAG.finditer(data)] if b"</" in data else []
+    start, end = np.array(spans, np.int64).reshape(-1, 2).T
+    found = Ranges(start, end)
+    blank(code, found)
+    return found
+
+
 def _names(code: Bytes) -> Ranges:
     """Program names <...> of the 30i family, as in O<HEX> or M98 <HEX>."""
     at = np.flatnonzero(code == _LESS)
@@ -228,7 +261,7 @@ def _names(code: Bytes) -> Ranges:
     length = end - start - 1
     named = (code[start] == _LESS) & (code[end] == _GREATER) & (length > 0) & (length <= _NAME_LENGTH)
     names = Ranges(start[named], end[named] + 1)
-    _blank(code, names)
+    blank(code, names)
     return names
 
 
@@ -246,7 +279,7 @@ def _semicolon_remarks(code: Bytes, lines: Positions) -> Ranges:
     places = zip(tails.start.tolist(), tails.end.tolist(), strict=True)
     is_remark = [_READS_AS_BLOCKS.fullmatch(data, start + 1, end) is None for start, end in places]
     remarks = tails.only(np.array(is_remark, bool))
-    _blank(code, remarks)
+    blank(code, remarks)
     return remarks
 
 

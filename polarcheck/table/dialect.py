@@ -38,6 +38,7 @@ class Dialect:
             np.any(text.words.is_unreadable)
             or np.any(text.words.address == ord("E"))
             or len(text.strays)
+            or len(text.prose)
             or len(text.outside)
             or np.any(behind_marks >= ord("A"))
         )

@@ -228,6 +228,7 @@ class Written:
         code = self.text.source.code
         letter = code[self.words.start]
         index = np.flatnonzero((letter >= ord("a")) & (letter <= ord("z")))
+        index = index[~np.isin(self.words.block[index], self.text.prose.block)]
         found[index[~self._in_broken_block(index)][:1]] = True
         return found
 
@@ -309,6 +310,18 @@ class Written:
         return self._habits(np.flatnonzero(self.text.unclosed), block=block)
 
     @cached_property
+    def prose_count(self) -> Rows:
+        """
+        Per text in no parentheses: at the first of the file in how many blocks such stands, else 0.
+
+        What nested comments or one that is not closed leave over is told by itself, since it is no mistake of its own.
+        """
+        text = self.text
+        broken = text.comments.block[text.nested | text.unclosed]
+        is_left_over = np.isin(text.prose.block, broken)
+        return self._habits(np.arange(len(text.prose)), is_left_over, block=text.prose.block, often=0)
+
+    @cached_property
     def is_first_dots(self) -> Mask:
         """The first of lines of points that follow each other."""
         first = np.ones(len(self.text.dots), bool)
@@ -329,8 +342,8 @@ class Written:
         """
         Per run of foreign characters: at the first on its line how many there are on the line, else 0.
 
-        Those that are reported as stray characters, wrong dashes or text outside a program are left out, and all before
-        the first % are taken together: the leader of a tape.
+        Those reported as stray characters, wrong dashes, text in no parentheses or outside a program are left out,
+        and all before the first % are taken together: the leader of a tape.
         """
         text, spans = self.text, self.text.foreign
         code = text.source.code[spans.start]
@@ -338,6 +351,7 @@ class Written:
         kept = (is_blank | _inside(spans.start, text.comments) | _inside(spans.start, text.names)) & ~_inside(
             spans.start, text.outside
         )
+        kept &= ~_inside(spans.start, text.prose)
         leader = text.tape_marks[0] if len(text.tape_marks) else 0
         line = np.where(spans.start < leader, 0, text.blocks.line[spans.block])
         index = np.flatnonzero(kept)

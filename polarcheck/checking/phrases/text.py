@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
+import re
+
 import numpy as np
 
 from polarcheck.arrays import stretch
@@ -25,6 +28,13 @@ _NUMBER_FAULTS = {
 }
 #: More of a line is not needed to find it.
 _SIGN_LENGTH = 40
+#: Of a text so much is looked at for its first words [characters].
+_LOOKED_AT = 200
+_LINES_AND_BLANKS = " \t-|=:*#"
+_TAG = re.compile(r"</?\w[^<>\n]*+>")
+_TWO_LETTERS = re.compile(r"[^\W\d_]{2}")
+#: Beside so many blocks, text is no remark but a column.
+_DESCRIPTION = 5
 
 
 def number_fault(words: Words, index: int) -> str:
@@ -104,3 +114,20 @@ def characters(written: Written, index: int) -> str:
     """How many characters of the line are foreign."""
     count = int(written.foreign_count[index])
     return "1 character that is" if count == 1 else f"{count} characters that are"
+
+
+def prose(text: Text, written: Written, index: int) -> str:
+    """What stands in no parentheses, beside how many blocks, and what it may be."""
+    places = zip(text.prose.start[index:].tolist(), text.prose.end[index:].tolist(), strict=True)
+    texts = (
+        _TAG.sub(" ", text.source.excerpt(start, min(end, start + _LOOKED_AT))).strip(_LINES_AND_BLANKS)
+        for start, end in itertools.islice(places, _LOOKED_AT)
+    )
+    first = short(" ".join(next(filter(_TWO_LETTERS.search, texts), "").split()))
+    count = int(written.prose_count[index])
+    where = f" in {count} blocks, first" if count > 1 else ":"
+    what = "a description copied with the program: " if count >= _DESCRIPTION else ""
+    return (
+        f"text that stands in no parentheses{where} `{first}`; {what}the control reads each letter as an address and "
+        "stops; put it in parentheses or delete it"
+    )

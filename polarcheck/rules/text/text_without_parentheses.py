@@ -1,0 +1,58 @@
+from __future__ import annotations
+
+from polarcheck.checking.rule import ERROR, Hits, Written, rule
+
+
+@rule(
+    ERROR,
+    "{prose}",
+    over="prose",
+    follows={"block": ("comment-nested", "comment-not-closed")},
+)
+def text_without_parentheses(written: Written) -> Hits:
+    """
+    Text for people that stands in no parentheses.
+
+    Manuals print a program as a table: the blocks, and beside them what they do. Who copies both columns, or types a
+    title or a remark without parentheses, gives the control words to read: each letter is an address, and it stops at
+    the first that has no number, or worse, takes one that has. All such text in a file is one finding. The program is
+    judged as if it stood in parentheses. Words of macro statements and of controls' own languages are no such text.
+
+    Source: FANUC B-63524EN/01, p. 649 (a comment stands between control-out and control-in); alarms 004 to 010.
+
+    Bad:
+
+        O0001
+        T0101
+        G98 G0 X60. C0      MOVE TO THE START          (expect: text-without-parentheses)
+        G12.1               Polar interpolation ON
+        G1 X40. F200        C-axis stays at zero
+        C5.                 Infeed must be smaller than the cutter
+        X60.
+        G13.1               Polar interpolation OFF
+        M30                 End
+
+    Bad:
+
+        O0001 FLANGE, SECOND SIDE      (expect: text-without-parentheses)
+        T0101
+        G98 G0 X60. Z2.
+        M30
+
+    Good:
+
+        %
+        O0001 (FLANGE, SECOND SIDE)
+        T0101
+        #1=40.
+        G98 G0 X60. C0 (MOVE TO THE START)
+        IF[#1GT60.]GOTO 20
+        G12.1
+        G1 X#1 F200
+        X60.
+        G13.1
+        N20 M30
+        %
+    """
+    count = written.prose_count
+    return Hits(count > 0, values={"count": count})
