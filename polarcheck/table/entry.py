@@ -158,7 +158,8 @@ class Entry:
         """
         How far the place where the program has the center of C is known to lie off the spindle axis, as written [mm].
 
-        That is X0, or X beside G12.1, which may name the center where nothing else says where X0 lies. NaN where the program sets what is not known.
+        That is X0, or X beside G12.1, which may name the center where nothing else says where X0 lies. NaN where the
+        program sets what is not known.
         """
         shift, named = self.origin.shift, self.trace.center_shift.real / self.trace.x_factor
         return np.where((named != 0) & (shift == 0), 0.0, shift + named)
