@@ -116,8 +116,6 @@ def test_center_words_follow_the_linear_axis(axis: str, own: str, other: str) ->
     ("program", "changes", "told"),
     [
         (SQUARE.replace("G12.1", "G12.1 P2"), {}, "P beside G12.1 is a linear axis that is not known"),
-        (SQUARE.replace("G12.1", "G12.1 P7"), FOUR, "P beside G12.1 is a linear axis that is not known"),
-        (SQUARE.replace("G12.1", "G12.1 P1.5"), THREE, "P beside G12.1 is a linear axis that is not known"),
         (SQUARE, {"polar": {"linear_axis": 2}}, "2, the number in polar.linear_axis, is a linear axis that is not"),
         (SQUARE, {"control": {"axes": ["U", "Z", "C"]}}, "1, the number in polar.linear_axis, is a linear axis"),
     ],
@@ -127,6 +125,19 @@ def test_a_linear_axis_that_is_not_known(program: str, changes: dict[str, Any], 
     report = report_of(program.replace("F200", "F9000"), "gsk-988", TOOL, changes=changes)
     assert [entry.reason.startswith(told) for entry in report.not_evaluated if entry.matters] == [True]
     assert report.verdict == "unverified"
+
+
+@pytest.mark.parametrize("word", ["P7", "P1.5", "P0", "P4", "Q9", "Q1"])
+def test_a_number_of_no_axis_is_one_finding(word: str) -> None:
+    """After it the axes of the parameters are taken, and the section is judged."""
+    report = report_of(
+        SQUARE.replace("G12.1", f"G12.1 {word}").replace("C-20.\n", "C-20.\nG0 C-20.\nG1\n", 1),
+        "gsk-988",
+        TOOL,
+        changes=FOUR,
+    )
+    assert [rule for _, rule in said(report)] == ["polar-axis-number-wrong", "rapid-in-polar"]
+    assert not [entry for entry in report.not_evaluated if entry.matters]
 
 
 def test_another_rotary_axis_is_told() -> None:

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from polarcheck.arrays import Floats, Mask, States
 from polarcheck.machines.axes import INCREMENTS
 from polarcheck.machines.machine import LinearAddress
+from polarcheck.machines.values import MOST_AXES
 from polarcheck.table.filling import fill_down
 from polarcheck.table.lengths import Lengths
 
@@ -38,17 +39,41 @@ class LinearAxis(Lengths):
         """G13.1."""
         return self.codes(*self.machine.polar.off)
 
+    @property
+    def most_axes(self) -> int:
+        """How many axes the control has: the highest number of one."""
+        return len(self.machine.control.axes) or MOST_AXES
+
+    def _number(self, word: str, own: int, other: int) -> Floats:
+        """
+        Number of the axis that P or Q beside G12.1 means; that of the machine without it, and where the word names no
+        axis or the other one of the plane, which is a finding.
+        """
+        number = self.word(word) if word in self.machine.polar.words_beside_switch else np.full(len(self), np.nan)
+        is_axis = (number >= 1) & (number <= self.most_axes) & (number == np.rint(number)) & (number != other)
+        return np.where(is_axis, number, own)
+
+    @cached_property
+    def linear_number(self) -> Floats:
+        """Number of the linear axis of a G12.1 in the row."""
+        return self._number("P", self.machine.polar.linear_axis, self.machine.polar.rotary_axis)
+
+    @cached_property
+    def rotary_number(self) -> Floats:
+        """Number of the rotary axis of a G12.1 in the row."""
+        return self._number("Q", self.machine.polar.rotary_axis, self.machine.polar.linear_axis)
+
     @cached_property
     def _named_axis(self) -> States:
         """The character of the linear axis, from a G12.1 up to its G13.1; that of X elsewhere, 0 where unknown."""
-        own = _character(self.machine.linear_address)
-        named = self.switches_on & self.has("P") & ("P" in self.machine.polar.words_beside_switch)
-        if own == _X and not named.any():
+        numbers = np.unique(self.linear_number[self.switches_on]).tolist()
+        addresses = {number: self.machine.linear_address_of(number) for number in numbers}
+        if set(addresses.values()) <= {"X"}:
             return np.full(len(self), _X, np.int16)
-        axis = np.where(self.switches_on, own, _X)
-        for number in np.unique(self.word("P")[named]).tolist():
-            axis[named & (self.word("P") == number)] = _character(self.machine.linear_address_of(number))
-        return fill_down(axis.astype(np.int16), self.switches_on | self.switches_off | self.starts, _X)
+        axis = np.full(len(self), _X, np.int16)
+        for number, address in addresses.items():
+            axis[self.switches_on & (self.linear_number == number)] = ord(address) if address else _UNKNOWN
+        return fill_down(axis, self.switches_on | self.switches_off | self.starts, _X)
 
     @cached_property
     def linear_is_known(self) -> Mask:
@@ -134,7 +159,3 @@ class LinearAxis(Lengths):
     def other_center_words(self) -> Mask:
         """Per executed word: one of those."""
         return self._words_of_axis(self._other_center_word)
-
-
-def _character(axis: str) -> int:
-    return ord(axis) if axis else _UNKNOWN

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask
 from polarcheck.machines.modal import Distance
-from polarcheck.machines.values import MOST_AXES
 from polarcheck.reading.words import NumberFault
 from polarcheck.table.infeed import CUT, Infeed
 from polarcheck.table.trace import Trace
@@ -38,12 +36,6 @@ class SwitchWords:
 
     # ---- the axes ----
 
-    @property
-    def most_axes(self) -> int:
-        """How many axes the control has: the highest number of one."""
-        axes: Any = getattr(self.trace.machine.control, "axes", ())
-        return len(axes) or MOST_AXES
-
     @cached_property
     def names_axis(self) -> Mask:
         """Per word: P or Q where both name axes; where G12.1 takes one of them alone it may be anything."""
@@ -51,9 +43,9 @@ class SwitchWords:
 
     @cached_property
     def names_no_axis(self) -> Mask:
-        """Per word: P or Q that is not the number of an axis, a whole one from 1 to most_axes."""
+        """Per word: P or Q that is not the number of an axis, a whole one from 1 to that of the last axis."""
         number = self.trace.run.words.value
-        is_axis = (number >= 1) & (number <= self.most_axes) & (number == np.rint(number))
+        is_axis = (number >= 1) & (number <= self.trace.most_axes) & (number == np.rint(number))
         return np.asarray(self.names_axis & ~is_axis)
 
     @cached_property

@@ -153,11 +153,9 @@ def axes_not_followed(trace: Trace) -> Iterator[tuple[str, int]]:
         (unknown & ~named, f"{mode.linear_axis}, the number in polar.linear_axis,"),
     ):
         yield f"{what} is a linear axis that is not known, nothing of the section is judged: {remedy}", int(rows.sum())
-    if "Q" in mode.words_beside_switch:
-        value, own = trace.word("Q"), mode.rotary_axis
-        rows = trace.enters & ((value < own) | (value > own))
-        effect = "its angle at the switch and its limits are not followed: look at them on the control"
-        yield f"Q names another rotary axis than {own}; {effect}", int(rows.sum())
+    other = trace.enters & (trace.rotary_number != mode.rotary_axis)
+    effect = "its angle at the switch and its limits are not followed: look at them on the control"
+    yield f"Q names another rotary axis than {mode.rotary_axis}; {effect}", int(other.sum())
 
 
 def not_simulated(infeed: Infeed) -> Iterator[tuple[str, int]]:
@@ -179,7 +177,7 @@ def axis_fault(trace: Trace, switch_words: SwitchWords, row: int) -> str:
     if not trace.with_words(switch_words.names_no_axis)[row]:
         both = f"would be both the linear and the rotary axis; without P it is {trace.machine.polar.linear_axis}"
         return f"axis {switch_words.linear_axis[row]:.0f} {both}, without Q {trace.machine.polar.rotary_axis}"
-    return f"no such axis; P and Q take whole numbers from 1 to {switch_words.most_axes}"
+    return f"no such axis; P and Q take whole numbers from 1 to {switch_words.trace.most_axes}"
 
 
 def infeed_fault(trace: Trace, switch_words: SwitchWords, row: int) -> str:
