@@ -122,6 +122,7 @@ def test_a_live_tool_wants_its_speed(wrong: str, block: str) -> None:
         # It may be given in what is not shown, or not executed.
         SAMPLE[SAMPLE.index("G97") : -2].replace("S2000 ", ""),
         SAMPLE.replace("G97 S2000 M33", "M98 P9000\nM33"),
+        "%\nO1\nT0808\nM33\nG98 G0 X1. Z.1\nG1 Z-.5 F3.\nM30\n%\n",  # no section: M33 may be anything
     ],
 )
 def test_a_speed_that_may_be_meant_for_the_live_tool_is_enough(right: str) -> None:

@@ -93,7 +93,7 @@ class Procedure:
     @cached_property
     def live_tool_without_speed(self) -> Mask:
         """
-        The live tool is started, and up to the first move at feed behind that no S was ever given for it.
+        The live tool is started in a program with a section, and up to the first move at feed no S was given for it.
 
         S is for the live tool if that starts next or runs; one that the main spindle starts with is not, nor is the
         limit of G50, a surface speed, or S0. What stands before an excerpt without T may have given it.
@@ -111,7 +111,8 @@ class Procedure:
         given = _happened((trace.has("S") & is_speed & (following | running)) | trace.run.unknown, trace.starts)
         ends = np.isin(trace.motion, _AT_FEED) | trace.codes(*codes.live_tool_off) | trace.ends_program
         until = np.append(np.flatnonzero(ends), len(trace) - 1)[np.searchsorted(np.flatnonzero(ends), rows)]
-        return np.asarray(started & ~given[until] & (trace.whole_program | trace.has_called_tool))
+        known = (trace.whole_program | trace.has_called_tool) & trace.anywhere_in_program(trace.enters)
+        return np.asarray(started & ~given[until] & known)
 
     @cached_property
     def live_tool_runs_on(self) -> Rows:
@@ -120,6 +121,8 @@ class Procedure:
         runs; -1 elsewhere.
         """
         trace, codes = self.trace, self.trace.machine.m_codes
+        if not codes.live_tool_on:
+            return np.full(len(trace), -1)
         ends = trace.changes_tool | trace.ends_program
         starts_tool, stops_tool = trace.codes(*codes.live_tool_on), trace.codes(*codes.live_tool_off)
         begun = starts_tool & ~before(trace.live_tool, trace.starts, False)
