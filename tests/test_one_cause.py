@@ -361,7 +361,7 @@ MISTAKES = [
             ("G90", "incremental-word-of-other-code-system", ("fanuc-16i",)),
             ("G91", "incremental-word-of-other-code-system", ("fanuc-16i",)),
             ("G94", "incremental-word-of-other-code-system", ()),
-            ("G12.1", "polar-entered-twice", ("fanuc-30i",)),
+            ("G112", "polar-switched-in-offset-mode", ("fanuc-30i",)),
             ("G0", "rapid-in-polar", ("fanuc-16i", "fanuc-30i")),
         )
     ),

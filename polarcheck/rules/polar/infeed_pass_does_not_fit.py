@@ -18,6 +18,7 @@ from polarcheck.checking.rule import WARNING, Infeed, Mask, rule
             "inside-arc-smaller-than-radius",
             "interference",
             "no-offset-intersection",
+            "polar-switched-in-offset-mode",
             "side-of-compensation-mirrored",
             "side-changed-in-offset-mode",
             "side-repeated-in-offset-mode",

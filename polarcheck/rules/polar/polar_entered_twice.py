@@ -7,7 +7,7 @@ from polarcheck.checking.rule import WARNING, Mask, Trace, rule
     WARNING,
     "{switch} again: the polar mode is on since line {since}",
     at=("on",),
-    follows={"section": ("polar-never-left",)},
+    follows={"block": ("polar-switched-in-offset-mode",), "section": ("polar-never-left",)},
 )
 def polar_entered_twice(trace: Trace) -> Mask:
     """

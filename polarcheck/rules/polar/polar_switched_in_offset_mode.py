@@ -12,7 +12,9 @@ def polar_switched_in_offset_mode(trace: Trace) -> Mask:
     The control stops with an alarm. Cutter compensation begins and ends inside the mode: G40 on entry, then G41 or G42
     with the move onto the part, then G40 with the move away from it, then G13.1.
 
-    Source: FANUC B-62764EN/01, p. 51; builder's guide to G12.1.
+    A second G12.1 in the mode is no other: it stands in offset mode.
+
+    Source: FANUC B-62764EN/01, p. 51; builder's guide to G12.1; GSK 988, description of G12.1, note to example 2.
 
     Bad, tool 1:radius=4:
 
@@ -40,6 +42,18 @@ def polar_switched_in_offset_mode(trace: Trace) -> Mask:
         G40 X60.
         G13.1
 
+    Bad, tool 1:radius=4:
+
+        T0101
+        G98 G0 X60. C0
+        G12.1
+        G1 G41 X40. F200
+        C-10.
+        G12.1             (expect: polar-switched-in-offset-mode)
+        X30.
+        G40 X60.
+        G13.1
+
     Good, tool 1:radius=4:
 
         T0101
@@ -51,6 +65,6 @@ def polar_switched_in_offset_mode(trace: Trace) -> Mask:
         G13.1
     """
     # A G41 after which nothing has moved is no offset mode yet; that is start-up-shorter-than-radius.
-    leaves_offset_mode = trace.leaves & (trace.side_of_move_before != Side.OFF)
+    in_offset_mode = (trace.leaves | trace.enters_again) & (trace.side_of_move_before != Side.OFF)
     side_in_force = (trace.side_before != Side.OFF) & ~trace.writes_cancel
-    return (trace.enters | leaves_offset_mode) & side_in_force
+    return (trace.enters | in_offset_mode) & side_in_force
