@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import pytest
 from programs import report_of, said, trace_of
 
 from polarcheck.checking.finding import PolarSection
+from polarcheck.commands.job_files import load
 
 MM = "O1\nG21 G40 G97 G98 G18\n"
 #: The sample program of the builder's guide, with blocks before and behind its T word.
@@ -370,3 +372,37 @@ def test_the_size_of_turned_diameters_and_on_other_machines() -> None:
     for machine in ("fanuc", "mitsubishi-m700", "siemens-iso", "haas-lathe"):
         found = report_of(guide("G10 P8 U-.005"), machine, TOOL).findings
         assert "size-by-x-offset" not in [one.rule for one in found]
+
+
+# ---- the wear in X of the job ----
+
+
+@pytest.mark.parametrize(
+    ("table", "block", "expected"),
+    [
+        ("G10 P8 X-.005 Z0 R0 Q0\nG10 P10008 X-5.25 R.375 Q0", "", True),
+        ("G10 P8 X-.005 R.375 Q0", "", True),
+        ("G10 P8 X0 Z-.01 R0 Q0\nG10 P10008 X-5.25 R.375 Q0", "", False),
+        ("G10 P8 X-5.25 R.375 Q0", "", False),
+        ("G10 P9 X-.005 R.1 Q0\nG10 P10008 X-5.25 R.375 Q0", "", False),
+        # The program sets its own.
+        ("G10 P8 X-.005 Z0 R0 Q0\nG10 P10008 X-5.25 R.375 Q0", "G10 P8 X0", False),
+    ],
+)
+def test_the_wear_in_x_of_an_offset_table(tmp_path: Path, table: str, block: str, expected: bool) -> None:
+    (tmp_path / "offsets.txt").write_text(f"%\n{table}\n%\n")
+    (tmp_path / "polarcheck.toml").write_text("offsets = 'offsets.txt'\n")
+    report = report_of(guide(block), "turning-center", job=load(tmp_path / "polarcheck.toml"))
+    message = "the wear in X of the offset table, -0.005 inch, changes X of offset 8"
+    assert [(found.rule, found.line, message in found.message) for found in report.findings] == (
+        [("size-by-x-offset", 7, True)] if expected else []
+    )
+    assert report.polar_sections[0].radius == pytest.approx(9.525)
+
+
+def test_the_wear_in_x_of_a_job() -> None:
+    tools = {"8": {"radius": 9.525, "nose": 0, "x_wear": -0.1}}
+    report = report_of(guide(), "turning-center", job={"units": "mm", "tools": tools})
+    [found] = report.findings
+    assert found.message.startswith("the wear in X of the offset table, -0.0039 inch, changes X of offset 8")
+    assert not report_of(guide(), "fanuc", job={"units": "mm", "tools": tools}).findings

@@ -37,6 +37,9 @@ class Tool(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
         msgspec.Meta(ge=-_LARGEST_CUTTER, le=_LARGEST_CUTTER, description="R of the offset table, with wear"),
     ] = math.nan
     nose: Annotated[int, msgspec.Meta(ge=0, le=9, description="T of the offset table; 0 for a mill")] | None = None
+    x_wear: Annotated[
+        float, msgspec.Meta(ge=-_LARGEST_LATHE, le=_LARGEST_LATHE, description="X of the wear in the offset table")
+    ] = 0.0
     diameter: Annotated[
         float, msgspec.Meta(gt=0, le=2 * _LARGEST_CUTTER, description="of the cutter, where R is not half of it")
     ] = math.nan

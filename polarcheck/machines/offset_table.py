@@ -16,7 +16,7 @@ _LARGEST = 16_000_000
 # A block ends with its line, or where the next one begins; CR is a line end, too, where a transfer took the LF.
 _BLANK = r"[^\S\r\n]*+"
 _OFFSET = re.compile(rf"G10{_BLANK}P{_BLANK}(\d++)((?:{_BLANK}[A-FH-OQ-Z]{_BLANK}[-+]?\d*+\.?\d*+)*+)")
-_VALUE = re.compile(rf"([RQ]){_BLANK}([-+]?(?:\d++\.?\d*+|\.\d++))")
+_VALUE = re.compile(rf"([RQX]){_BLANK}([-+]?(?:\d++\.?\d*+|\.\d++))")
 #: P10001 is the geometry of offset 1, P1 its wear (B-63524EN/01 p. 285).
 _GEOMETRY = 10000
 _DIGITS = 8
@@ -27,6 +27,8 @@ def read(path: Path, title: str, *, pipes: bool = False) -> dict[int, Tool]:
     """
     The offsets of a table (`G10 P10008 X.. Z.. R.. Q..`) by offset number; R of geometry and wear are added.
 
+    X of the wear is kept by itself.
+
     Lengths are in the units of the table. pipes: whether it may be a pipe, as a shell hands over `<(...)`. Raises
     JobError, which names the title, for a file that cannot be read or holds no offset or one that cannot be.
     """
@@ -36,6 +38,7 @@ def read(path: Path, title: str, *, pipes: bool = False) -> dict[int, Tool]:
         raise JobError(f"{title}: {error.strerror}") from None
     radius: dict[int, float] = {}
     nose: dict[int, float] = {}
+    x_wear: dict[int, float] = {}
     for match in _OFFSET.finditer(text):
         written = match[1].lstrip("0")
         if len(written) > _DIGITS:
@@ -44,11 +47,14 @@ def read(path: Path, title: str, *, pipes: bool = False) -> dict[int, Tool]:
         for value in _VALUE.finditer(match[2]):
             if value[1] == "R":
                 radius[number] = radius.get(number, 0.0) + float(value[2])
+            elif value[1] == "X":
+                x_wear.update({} if is_geometry else {number: float(value[2])})
             elif is_geometry or number not in nose:
                 nose[number] = _whole(float(value[2]))
     if not radius and not nose:
         raise JobError(f"{title}: no offsets found; expected blocks such as G10 P10008 R0.375 Q0")
-    return {number: _tool(number, radius, nose, title) for number in sorted(radius.keys() | nose.keys())}
+    values = {"radius": radius, "nose": nose, "x_wear": x_wear}
+    return {number: _tool(number, values, title) for number in sorted(radius.keys() | nose.keys())}
 
 
 def _whole(value: float) -> float:
@@ -56,8 +62,8 @@ def _whole(value: float) -> float:
     return int(value) if value < _GEOMETRY else value
 
 
-def _tool(number: int, radius: Mapping[int, float], nose: Mapping[int, float], title: str) -> Tool:
-    given = {key: values[number] for key, values in (("radius", radius), ("nose", nose)) if number in values}
+def _tool(number: int, values: Mapping[str, Mapping[int, float]], title: str) -> Tool:
+    given = {key: of_key[number] for key, of_key in values.items() if number in of_key}
     try:
         return fitted(given, PunchedTool)
     except MisfitError as misfit:

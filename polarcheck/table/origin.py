@@ -12,7 +12,7 @@ from polarcheck.arrays import Floats, Mask, Rows
 from polarcheck.machines.code_lists import numbers
 from polarcheck.machines.offsets import steps_above
 from polarcheck.table.filling import fill_down, positions
-from polarcheck.table.tool_offsets import Settings, X, in_order, of_list
+from polarcheck.table.offset_settings import Settings, X, in_order, of_list
 from polarcheck.table.trace import Trace
 
 #: Numbers of further work offsets begin here: G54.1 P1 is 1001.

@@ -2,24 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Rows
-from polarcheck.geometry.tolerances import ADJUSTMENT, ROUNDING
 from polarcheck.machines.modal import Units
 from polarcheck.machines.offsets import place_in
-from polarcheck.table.filling import fill_down, positions
+from polarcheck.table.offset_settings import NOSE, RADIUS, RADIUS_WEAR, X_WEAR, Settings, Steps, X, in_order, of_list
 from polarcheck.table.positions import Positions
 
 if TYPE_CHECKING:
     from polarcheck.table.radius_comments import Found
 
-#: What a setting is of.
-RADIUS, RADIUS_WEAR, NOSE, X, X_WEAR = range(5)
 #: R of no cutter: it is a length, which mills give in the same words [mm].
 _LONGEST = 100.0
 #: No cutter of a lathe is larger: what is set is not known [mm].
@@ -28,41 +25,6 @@ _LARGEST = 1000.0
 _LONGEST_NUMBER = 1e9
 #: A larger X of the wear is where the tool has been touched off, likewise [mm].
 _LARGEST_X_WEAR = 5.0
-
-
-class Settings(NamedTuple):
-    """
-    What the program sets of offsets outside the mode, one element each.
-
-    number: of the offset. kind: RADIUS and the like. value: [mm], or the nose type; NaN where it is not known.
-    is_step: it is added.
-    """
-
-    row: Rows
-    number: Rows
-    kind: Rows
-    value: Floats
-    is_step: Mask
-
-    def of(self, chosen: Mask | Rows) -> Settings:
-        """Those at some indices, or of a mask."""
-        row, number, kind, value, is_step = self
-        return Settings(row[chosen], number[chosen], kind[chosen], value[chosen], is_step[chosen])
-
-
-def of_list(found: Sequence[tuple[int, int, int, float, bool]]) -> Settings:
-    """Settings that were found one by one: row, number, kind, value, is_step."""
-    table = np.array(found, np.float64).reshape(-1, 5)
-    row, number, kind = (table[:, column].astype(np.int64) for column in range(3))
-    return Settings(row, number, kind, table[:, 3], table[:, 4].astype(bool))
-
-
-def in_order(parts: Sequence[Settings]) -> Settings:
-    """Settings that were found in several ways, in order of the rows."""
-    row, number, kind, value, is_step = (
-        np.concatenate([part[column] for part in parts]) for column in range(len(Settings._fields))
-    )
-    return Settings(row, number, kind, value, is_step).of(np.argsort(row, kind="stable"))
 
 
 class _Set(NamedTuple):
@@ -123,15 +85,25 @@ class ToolOffsets(Positions):
         """
         X of an offset is changed that a polar section of the program uses: by a step, or as wear.
 
-        X of the geometry is where the tool has been touched off, and so is one that is too large for wear.
+        X of the geometry is where the tool has been touched off, and so is one that is too large for wear. The wear of
+        the job's table stands at the T word that calls the offset, unless the program sets its own.
         """
         found, sizes = self.offset_settings, np.zeros(len(self), bool)
         is_wear = (found.kind == X_WEAR) & ~(np.abs(found.value) > _LARGEST_X_WEAR)
         chosen = found.of((found.kind >= X) & (is_wear | found.is_step) & (found.value != 0))
-        table, most = np.flatnonzero(self.in_polar | self.enters), 10**self.machine.control.offset_digits
-        used = self.program[table] * most + self.offset_number[table]
-        sizes[chosen.row[np.isin(self.program[chosen.row] * most + chosen.number, used)]] = True
+        sizes[chosen.row[self._is_used(chosen.row, chosen.number)]] = True
+        for number, tool in self.job.tools.items():
+            wear = np.abs(tool.x_wear * self.job_scale)
+            if tool.x_wear and not np.any(found.number[found.kind == X_WEAR] == number):
+                called = np.flatnonzero(self.has("T") & (self.offset_number == number) & (wear <= _LARGEST_X_WEAR))
+                sizes[called[self._is_used(called, np.full(len(called), number))][:1]] = True
         return sizes
+
+    def _is_used(self, rows: Rows, numbers: Rows) -> Mask:
+        """Whether offsets that are named in some rows are in force in the polar mode of the same program."""
+        inside, most = self.in_polar | self.enters, 10**self.machine.control.offset_digits
+        used = self.program[inside] * most + self.offset_number[inside]
+        return np.isin(self.program[rows] * most + numbers, used)
 
     @cached_property
     def cutter_diameter(self) -> Floats:
@@ -194,7 +166,7 @@ class ToolOffsets(Positions):
             return []
         offsets, kind, place = self.machine.offsets, self.word("L")[rows], np.nan_to_num(self.word("P")[rows])
         base = offsets.geometry_from
-        plain = np.isnan(kind) & (base > 0)
+        plain = ~self.has("L")[rows] & (base > 0)
         is_geometry = np.where(plain, place > base, np.isin(kind, offsets.geometry))
         known = plain | is_geometry | np.isin(kind, offsets.wear)
         known &= place < _LONGEST_NUMBER
@@ -270,26 +242,15 @@ class ToolOffsets(Positions):
         in_force = set(self.called_offsets)
         return sorted(in_force.intersection(chosen.number.tolist()))
 
-    def _last(self, rows: Rows) -> Rows:
-        """The last of some rows at or above each row of its program; -1 where there is none."""
-        written = self.starts.copy()
-        found = np.full(len(self), -1)
-        written[rows], found[rows] = True, rows
-        return fill_down(found, written, -1)
-
     @cached_property
     def _nose_set(self) -> _Set:
         if not self.sets_offsets:
             return self._nothing_set
         chosen = self.offset_settings.of(self.offset_settings.kind == NOSE)
         row, value = np.full(len(self), -1), np.full(len(self), np.nan)
-        of_row = np.full(len(self), np.nan)
         for number in self._numbers_in_force(chosen):
-            here = self.offset_number == number
-            own = chosen.of(chosen.number == number)
-            of_row[own.row] = own.value
-            last = self._last(own.row)[here]
-            row[here], value[here] = last, np.where(last >= 0, of_row[last], np.nan)
+            here = np.flatnonzero(self.offset_number == number)
+            row[here], value[here] = Steps(self.starts, chosen.of(chosen.number == number), here).last
         return _Set(row, value)
 
     @cached_property
@@ -299,46 +260,25 @@ class ToolOffsets(Positions):
 
     @cached_property
     def _radius_set(self) -> _Set:
-        if not self.sets_offsets:
-            return self._nothing_set
-        chosen = self.offset_settings.of(self.offset_settings.kind <= RADIUS_WEAR)
-        row, value = np.full(len(self), -1), np.full(len(self), np.nan)
-        for number in self._numbers_in_force(chosen):
-            here = self.offset_number == number
-            own = chosen.of(chosen.number == number)
-            is_given = not np.isnan(self._radius_given[here]).any()
-            after, changes = self._radius_after(own, is_given)
-            value[here] = after[here]
-            row[here] = np.where(changes, self._last(own.row), -1)[here]
-        return _Set(row, value)
-
-    def _radius_after(self, settings: Settings, is_given: bool) -> tuple[Floats, Mask]:
         """
-        R of one offset after each row, from what the program sets of it [mm]: the sum of geometry and wear; and whether
-        it is another by it than is given. A wear of 0 changes nothing.
+        R from what the program sets of it: the sum of geometry and wear. A wear of 0 changes nothing of what is given.
 
         The wear alone is added to the R that is given. But one that is too large for a wear is R itself, on a control
         that keeps both in one number; and so is one beside which the nose type is set, where no R is given.
         """
-        row, _, kind, value, is_step = settings
-        is_geometry = (kind == RADIUS) & ~is_step
-        has_geometry = np.zeros(len(self), bool)
-        has_geometry[row[is_geometry]] = True
-        is_whole = self.has("Q")[row] & (not is_given) & ~np.isnan(value)
-        of_both = (kind == RADIUS_WEAR) & ~is_step & (is_whole | (np.abs(value) > ADJUSTMENT + ROUNDING))
-        of_both &= ~self.anywhere_in_program(has_geometry)[row]
-        geometry = self._summed(settings, is_geometry | of_both, (kind == RADIUS) & is_step)
-        of_wear = settings._replace(value=np.where(of_both, 0.0, value))
-        wear = self._summed(of_wear, (kind == RADIUS_WEAR) & ~is_step, (kind == RADIUS_WEAR) & is_step)
-        is_absolute = self._last(row[is_geometry | of_both]) >= 0
-        given = np.where(is_absolute, 0.0, self._radius_given)
-        return given + geometry + wear, is_absolute | (geometry + wear != 0) | np.isnan(given)
-
-    def _summed(self, settings: Settings, absolute: Mask, added: Mask) -> Floats:
-        """What some settings put together make, from 0 on; NaN from one that is not known to the next absolute one."""
-        row, value = settings.row, settings.value
-        at, step = np.full(len(self), np.nan), np.zeros(len(self))
-        at[row[absolute]] = value[absolute]
-        step[row[absolute & np.isnan(value)]] = np.nan
-        np.add.at(step, row[added], value[added])
-        return positions(at, step, self.starts, np.zeros(len(self)))
+        if not self.sets_offsets:
+            return self._nothing_set
+        chosen = self.offset_settings.of(self.offset_settings.kind <= RADIUS_WEAR)
+        has_nose = self.has("Q")
+        rows, values = np.full(len(self), -1), np.full(len(self), np.nan)
+        for number in self._numbers_in_force(chosen):
+            here = np.flatnonzero(self.offset_number == number)
+            given = self._radius_given[here]
+            own = chosen.of(chosen.number == number)
+            is_whole = has_nose[own.row] & np.isnan(given).any() & ~np.isnan(own.value)
+            steps = Steps(self.starts, own, here)
+            geometry, wear, is_absolute = steps.radius(is_whole, self.program[own.row])
+            given = np.where(is_absolute, 0.0, given)
+            changes = is_absolute | (geometry + wear != 0) | np.isnan(given)
+            rows[here], values[here] = np.where(changes, steps.last[0], -1), given + geometry + wear
+        return _Set(rows, values)

@@ -66,16 +66,20 @@ def is_given(trace: Trace, entry: Entry, row: int) -> str:
 
 
 def x_changed_by(trace: Trace, row: int) -> str:
-    """The word or the variable that sets X of a tool offset."""
+    """The word or the variable that sets X of a tool offset; else the wear of the job's table."""
     if row in trace.run.assigned:
         return f"#{trace.run.assigned[row].variable}"
-    return written(trace, row, "X" if trace.has("X")[row] else "U")
+    address = next((address for address in "XU" if trace.has(address)[row]), "")
+    if trace.listed("data_input")[row] and address:
+        return written(trace, row, address)
+    wear = trace.job.tools[int(trace.offset_number[row])].x_wear * np.broadcast_to(trace.job_scale, len(trace))[row]
+    return f"the wear in X of the offset table, {in_row(float(wear), trace, row):length},"
 
 
 def offset_of_block(trace: Trace, row: int) -> int:
-    """The number of the tool offset that a block sets."""
-    settings = trace.offset_settings
-    return int(settings.number[settings.row == row][0])
+    """The number of the tool offset that a block sets, or calls."""
+    numbers = trace.offset_settings.number[trace.offset_settings.row == row]
+    return int(numbers[0] if len(numbers) else trace.offset_number[row])
 
 
 def to_clear(trace: Trace, entry: Entry, row: int) -> str:
