@@ -371,6 +371,22 @@ def test_a_parameter_sets_what_it_stands_for(name: str, parameters: dict[str, An
         assert getattr(getattr(profile.machine, group), last) == value
 
 
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ("A", "own.toml: parameters.1516: mill_ax: name of the rotary axis: A is not followed yet, only C"),
+        ("z", "own.toml: parameters.1516: mill_ax: name of the rotary axis: z is not followed yet, only C"),
+        (5, "own.toml: parameters.1516: expected a letter from A to Z, not 5"),
+        ("AB", "own.toml: parameters.1516: expected a letter from A to Z, not AB"),
+    ],
+)
+def test_a_name_of_the_rotary_axis_that_is_not_followed_is_one_clear_line(given: str | int, said: str) -> None:
+    with pytest.raises(MachineError) as error:
+        load(f"inherits = 'mitsubishi-m700'\n[parameters]\n1516 = {given!r}\n")
+    assert str(error.value) == said
+    assert load("inherits = 'mitsubishi-m700'\n[parameters]\n1516 = 'c'\n").machine.polar.virtual_axis == "C"
+
+
 def test_a_value_beside_a_parameter_counts() -> None:
     own = "inherits = 'fanuc'\n[parameters]\n1422 = 3600\n[limits]\nc_feed = 100\n"
     assert load(own).machine.limits.c_feed == 100

@@ -30,13 +30,15 @@ class Meaning(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
 
     title: what the manual calls it. key, factor: the value of the profile that it is, times the factor. values: for
     settings, each with the values of the profile that it stands for; "= control.x" takes over another value. A number
-    that is not among the values goes to the key.
+    that is not among the values goes to the key. is_letter: the control takes A to Z; of those that are not among the
+    values nothing is known to this check yet.
     """
 
     title: str
     key: str = ""
     factor: float = 1.0
     values: dict[str, dict[str, Any]] = {}
+    is_letter: bool = False
 
 
 def apply(merged: dict[str, Any], table: Mapping[str, Any], profile: str, origins: dict[str, Origin]) -> None:
@@ -84,6 +86,13 @@ def _values(name: str, meaning: Meaning, given: Any, profile: str) -> Mapping[st
     for setting, values in meaning.values.items():
         if setting.upper() == spelled.upper():
             return values
+    if meaning.is_letter:
+        followed = " or ".join(meaning.values)
+        if len(spelled) == 1 and "A" <= spelled.upper() <= "Z":
+            raise MachineError(
+                f"{profile}: parameters.{name}: {meaning.title}: {given} is not followed yet, only {followed}"
+            )
+        raise MachineError(f"{profile}: parameters.{name}: expected a letter from A to Z, not {given}")
     if not meaning.key or not is_number:
         known = " or ".join(meaning.values) or "a number"
         raise MachineError(f"{profile}: parameters.{name}: expected {known}, not {given}")
