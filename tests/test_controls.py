@@ -9,6 +9,7 @@ from programs import machine_of, moves_of, report_of, said, tables_of, trace_of
 from polarcheck.checking.finding import FileReport
 from polarcheck.machines.modal import Motion
 from polarcheck.reading import source, translation
+from polarcheck.reports.pages.executed import rows
 
 M700V = """
 G17 G90 G94 G0 X40. C0 Z0
@@ -141,12 +142,20 @@ PER_MINUTE = {"B": "G94", "A": "G98"}
 PER_REVOLUTION = {"B": "G95", "A": "G99"}
 
 
-def feeds(mode: str, in_mode: str, system: str) -> tuple[float, float, FileReport]:
-    """F at the first cutting move in the mode [mm/min], F in force after it, and the report."""
+def system_of(system: str) -> dict[str, dict[str, str]]:
+    """G-code list 2 of Mitsubishi is system A, with G98 and G99; list 3 is system B, with G94 and G95."""
+    return {"control": {"g_code_system": system}}
+
+
+def table_program(mode: str, in_mode: str, system: str) -> str:
     before = {"per minute": PER_MINUTE, "per revolution": PER_REVOLUTION}[mode][system]
     value = {"per minute": 100, "per revolution": 0.2}[mode]
-    program = f"{before}\nG1 X50. Z5. F{value}\nG0 X40. C0\nG12.1\nG1 X30. {in_mode}\nX20.\nG13.1\nG1 X30.\n"
-    changes = {"control": {"g_code_system": system}}
+    return f"{before}\nG1 X50. Z5. F{value}\nG0 X40. C0\nG12.1\nG1 X30. {in_mode}\nX20.\nG13.1\nG1 X30.\n"
+
+
+def feeds(mode: str, in_mode: str, system: str) -> tuple[float, float, FileReport]:
+    """F at the first cutting move in the mode [mm/min], F in force after it, and the report."""
+    program, changes = table_program(mode, in_mode, system), system_of(system)
     trace = trace_of(program, "mitsubishi-m700", changes=changes)
     return float(trace.feed[4]), float(trace.feed_number[7]), report_of(program, "mitsubishi-m700", changes=changes)
 
@@ -169,6 +178,35 @@ def test_feed_in_the_mode_and_after_it(
     assert behind == after
     found = [(finding.rule, finding.alarm, finding.line) for finding in report.findings if finding.severity == "error"]
     assert found == ([("feed-lost-from-per-revolution", "P62", 5)] if alarm else [])
+
+
+@pytest.mark.parametrize("system", ["A", "B"])
+@pytest.mark.parametrize(
+    ("mode", "in_mode", "inside", "behind"),
+    [
+        ("per minute", "", ("per minute", 100), ("per minute", 100)),
+        ("per revolution", "", ("per minute", None), ("per revolution", 0.2)),
+        ("per minute", "F300", ("per minute", 300), ("per minute", 300)),
+        ("per revolution", "F300", ("per minute", 300), ("per revolution", 0.2)),
+    ],
+)
+def test_the_executed_table_shows_how_f_is_read(
+    mode: str, in_mode: str, inside: tuple[str, float | None], behind: tuple[str, float], system: str
+) -> None:
+    """Each cell of both tables: in the mode F is per minute (note 1), after it what stands in the last column."""
+    tables = tables_of(table_program(mode, in_mode, system), "mitsubishi-m700", changes=system_of(system))
+    table = list(rows(tables["trace"], tables["tool_center"]))
+    assert [(row["feed_mode"], row["f"]) for row in (*table[4:6], table[7])] == [inside, inside, behind]
+    assert [row["feed"] for row in table[4:6]] == [inside[1]] * 2
+
+
+@pytest.mark.parametrize("system", ["A", "B"])
+def test_the_first_move_at_feed_of_z_alone_needs_an_f_in_each_list_of_codes(system: str) -> None:
+    program = table_program("per revolution", "", system).replace("G1 X30. \n", "G1 Z-5.\nX30. F200\n", 1)
+    assert "Z-5." in program
+    report = report_of(program, "mitsubishi-m700", changes=system_of(system))
+    errors = [(found.rule, found.alarm, found.line) for found in report.findings if found.severity == "error"]
+    assert errors == [("feed-lost-from-per-revolution", "P62", 5)]
 
 
 def test_last_of_several_feeds_of_the_mode_stays_after_it() -> None:

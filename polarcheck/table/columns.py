@@ -230,8 +230,8 @@ class Columns:
         return np.where(self.units == Units.INCH, MM_PER_INCH, 1.0)
 
     @cached_property
-    def feed_mode(self) -> States:
-        """FeedMode of each row."""
+    def modal_feed_mode(self) -> States:
+        """FeedMode that the codes say."""
         return self.state("feed_mode")
 
     @cached_property

@@ -212,11 +212,18 @@ class Trace(ToolOffsets):
         return self.machine.feed.carried_into_polar == "per-minute-only"
 
     @cached_property
+    def feed_mode(self) -> States:
+        """FeedMode by which the control moves: per minute in a mode that knows no other (M700V p. 73, note 1)."""
+        mode = self.modal_feed_mode
+        is_other = self.in_polar & (mode == FeedMode.PER_REVOLUTION) & self.takes_over_per_minute_only
+        return np.where(is_other, FeedMode.PER_MINUTE, mode).astype(np.int16)
+
+    @cached_property
     def entered_per_revolution(self) -> Mask:
         """Rows of sections at whose G12.1 feed per revolution is in force."""
         if not len(self.sections):
             return np.zeros(len(self), bool)
-        per_revolution = self.feed_mode[self.sections.enter] == FeedMode.PER_REVOLUTION
+        per_revolution = self.modal_feed_mode[self.sections.enter] == FeedMode.PER_REVOLUTION
         return np.asarray(self.in_polar & per_revolution[self.section])
 
     @cached_property

@@ -115,12 +115,13 @@ def rows(trace: Trace, tool_center: ToolCenter) -> Iterator[dict[str, Any]]:
     """
     The executed table, one row per executed block.
 
-    x [mm, radius], z [mm], c [deg, machine], plane_x and plane_c [mm, radius] inside sections, feed [mm/min],
-    nearest [mm], c_feed [deg/min] of the tool center path.
+    x [mm, radius], z [mm], c [deg, machine], plane_x and plane_c [mm, radius] inside sections, feed [mm/min], f
+    [mm per min or per revolution], nearest [mm], c_feed [deg/min] of the tool center path.
     """
     for row in range(len(trace)):
         in_polar = bool(trace.in_polar[row])
         moving = in_polar and bool(trace.moves_plane[row])
+        mode = FeedMode(int(trace.feed_mode[row]))
         yield {
             "line": int(trace.line_in_file[row]),
             "program": int(trace.program[row]),
@@ -131,8 +132,9 @@ def rows(trace: Trace, tool_center: ToolCenter) -> Iterator[dict[str, Any]]:
             "tool": int(trace.tool[row]),
             "offset_number": int(trace.offset_number[row]),
             "radius": rounded(trace.radius[row]),
-            "feed_mode": _FEED_MODES[FeedMode(int(trace.feed_mode[row]))],
+            "feed_mode": _FEED_MODES[mode],
             "feed": rounded(trace.feed[row]),
+            "f": rounded((trace.feed if mode == FeedMode.PER_MINUTE else trace.feed_number)[row]),
             "x": rounded(trace.x[row]),
             "z": rounded(trace.z[row]),
             "c": rounded(trace.c_angle[row]),

@@ -46,5 +46,4 @@ def feed_per_revolution_in_polar(trace: Trace) -> Mask:
         G13.1
         G99 G0 X60.
     """
-    per_revolution = (trace.feed_mode == FeedMode.PER_REVOLUTION) & (not trace.takes_over_per_minute_only)
-    return trace.first_in_section(trace.cuts & per_revolution)
+    return trace.first_in_section(trace.cuts & (trace.feed_mode == FeedMode.PER_REVOLUTION))
