@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from programs import tables_of
+from programs import report_of, tables_of
 
 PER_MINUTE_ONLY = {"feed": {"carried_into_polar": "per-minute-only"}}
 
@@ -125,3 +125,68 @@ def test_rates_and_times_are_those_of_the_clamped_f(units: str) -> None:
     unclamped = tables_of(asked, changes=NO_CLAMP)["moves"]
     assert unclamped.c_feed == pytest.approx(3 * clamped.c_feed)
     assert unclamped.time == pytest.approx(clamped.time / 3)
+
+
+# ---- F of feed per revolution that is read per minute ----
+
+LEFT_OVER = "feed-of-revolution-per-minute"
+M700 = "mitsubishi-m700"
+
+
+def told(blocks: str, machine: str, system: str = "") -> list[tuple[int, str]]:
+    """Line and message of each finding of the rule."""
+    changes = {"control": {"g_code_system": system}} if system else None
+    report = report_of("\n".join(["O1", *blocks.split("/"), "M30"]), machine, changes=changes)
+    return [(found.line, found.message) for found in report.findings if found.rule == LEFT_OVER]
+
+
+@pytest.mark.parametrize(
+    ("blocks", "machine", "line", "number"),
+    [
+        # The F of before, written again in a mode in which every F is per minute.
+        ("G95 G0 X60. Z2. C0/G1 Z1. F.1/G12.1/G1 X40. F.1/C5./G13.1", M700, 5, "0.1"),
+        ("G95 G0 X60. Z2. C0/G1 Z1. F2./G12.1/G1 X40. F2./C5./G13.1", M700, 5, "2"),
+        ("G95 G0 X60. Z2. C0/G1 Z1. F.1/G12.1/G1 Z-1. F.15/X40. F200/C5./G13.1", M700, 5, "0.15"),
+        # The F of before is taken over, since feed per minute is in force at G12.1.
+        ("G95 G0 X60. Z2. C0/G1 Z1. F.1/G94/G12.1/G1 X40./C5./G13.1", M700, 6, "0.1"),
+        ("G95 G0 X60. Z2. C0/G1 Z1. F.1/G94/G12.1/G1 Z-1./X40./C5./G13.1", M700, 6, "0.1"),
+        # Everywhere: G98 changes what the number means.
+        ("G99 G0 X60. Z2. C0/G1 Z1. F.1/G98/G12.1/G1 X40./C5./G13.1", "fanuc", 6, "0.1"),
+        ("G99 G0 X60. Z2. C0/G1 Z1. F.1/G12.1/G98 G1 X40./C5./G13.1", "fanuc-16i", 5, "0.1"),
+        ("G99 G0 X60. Z2. C0/G1 Z1. F.1/G98/G12.1/G1 X40. F.1/C5./G13.1", "fanuc", 6, "0.1"),
+        ("G99 G0 X60. Z2. C0/G1 Z1. F.1/G98/G0 X60./G12.1/G1 Z-1./X40./G13.1", "fanuc", 7, "0.1"),
+    ],
+)
+def test_f_of_feed_per_revolution_is_read_per_minute(blocks: str, machine: str, line: int, number: str) -> None:
+    ((found, message),) = told(blocks, machine)
+    assert (found, message.startswith(f"{number} mm/min here: F")) == (line, True)
+
+
+def test_the_same_with_g98_and_g99_of_the_other_list_of_codes() -> None:
+    assert len(told("G99 G0 X60. Z2. C0/G1 Z1. F.1/G98/G12.1/G1 X40./C5./G13.1", M700, "A")) == 1
+    assert len(told("G99 G0 X60. Z2. C0/G1 Z1. F.1/G12.1/G1 X40. F.1/C5./G13.1", M700, "A")) == 1
+
+
+@pytest.mark.parametrize(
+    ("blocks", "machine"),
+    [
+        ("G95 G0 X60. Z2. C0/G1 Z1. F.1/G12.1/G1 X40. F100/C5./G13.1/G1 X60.", M700),
+        ("G95 G0 X60. Z2. C0/G1 Z1. F.1/G12.1/G1 X40. F2./C5./G13.1", M700),  # slow, and not the F of before
+        ("G95 G0 X60. Z2. C0/G1 Z1. F.1/G12.1/G1 X40./C5./G13.1", M700),  # P62, and nothing moves
+        ("G94 G0 X60. Z2. C0/G1 Z1. F.5/G12.1/G1 X40./C5./G13.1", M700),  # nothing is per revolution
+        ("G99 G0 X60. Z2. C0/G1 Z1. F200/G98/G12.1/G1 X40./C5./G13.1", "fanuc"),  # G98 forgotten above, put right
+        ("G99 G0 X60. Z2. C0/G1 Z1. F.1/G98 F200/G12.1/G1 X40./C5./G13.1", "fanuc"),
+        ("G99 G0 X60. Z2. C0/G1 Z1. F.1/G12.1/G1 X40./C5./G13.1", "fanuc"),  # per revolution still
+        ("G98 G0 X60. Z2. C0/G12.1/G1 X40. F.5/C5./G13.1", "fanuc"),
+        ("G98 G0 X60. Z2. C0/G12.1/G1 X40. F200/C5./G13.1/G99 G1 X60. F.2", "fanuc"),
+    ],
+)
+def test_f_that_is_meant_as_it_is_read(blocks: str, machine: str) -> None:
+    assert told(blocks, machine) == []
+
+
+def test_a_feed_left_over_that_the_builder_would_not_recommend_is_one_finding() -> None:
+    start = "O1\nM5\nM35\nG28 H0\nG97 S2000 M33\nG99 G0 X3. Z.2 C0\nG1 Z.1 F.008\n"
+    report = report_of(f"{start}G98\nG12.1\nG1 X2.\nC.5\nG13.1\nM30\n", "turning-center")
+    feeds = [(found.rule, [one.rule for one in found.follows]) for found in report.findings if "feed" in found.rule]
+    assert feeds == [(LEFT_OVER, ["feed-outside-recommended-range"])]

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import cached_property
 
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask
-from polarcheck.machines.modal import Units
+from polarcheck.machines.modal import FeedMode, Units
 from polarcheck.table.filling import fill_down
 from polarcheck.table.tool_center import ToolCenter
 from polarcheck.table.trace import Trace
 
 #: From here on F is no feed per revolution [in the units of the program: mm, inch].
 _NOT_PER_REVOLUTION = {Units.MM: 5.0, Units.INCH: 0.2}
+#: Nobody mills so slowly [in the units of the program for each minute].
+_NOT_PER_MINUTE = {Units.MM: 1.0, Units.INCH: 0.04}
 
 
 class Feeds:
@@ -63,10 +66,36 @@ class Feeds:
     @cached_property
     def is_too_high_per_revolution(self) -> Mask:
         """F in force is too high for one per revolution: 5 mm or .2 inch, and more."""
+        return self._is_at_least(_NOT_PER_REVOLUTION)
+
+    def _is_at_least(self, least: Mapping[Units, float]) -> Mask:
         trace = self.trace
-        inch = trace.units == Units.INCH
-        least = np.where(inch, _NOT_PER_REVOLUTION[Units.INCH], _NOT_PER_REVOLUTION[Units.MM])
-        return np.asarray(trace.feed_number / trace.scale >= least)
+        in_units = np.where(trace.units == Units.INCH, least[Units.INCH], least[Units.MM])
+        return np.asarray(trace.feed_number / trace.scale >= in_units)
+
+    @cached_property
+    def is_left_per_revolution(self) -> Mask:
+        """F in force was written for feed per revolution, could be nothing else, and is read per minute now."""
+        trace = self.trace
+        written = trace.has("F") | trace.starts
+        per_revolution = fill_down(trace.feed_mode == FeedMode.PER_REVOLUTION, written, False)
+        return np.asarray(per_revolution & trace.per_minute & ~self.is_too_high_per_revolution)
+
+    @cached_property
+    def looks_per_revolution(self) -> Mask:
+        """
+        F in force is per minute, and as small as one per revolution, of which the program has some.
+
+        Where no code says that it is per minute, but the mode alone, the same F as before it is that up to higher ones.
+        """
+        trace = self.trace
+        written = trace.has("F") & (trace.feed_mode == FeedMode.PER_REVOLUTION)
+        number = fill_down(np.where(written, trace.written_feed, np.nan), written | trace.starts, np.nan)
+        same = np.isclose(trace.feed_number, number, rtol=1e-9, atol=0) & trace.entered_per_revolution
+        same &= trace.takes_over_per_minute_only
+        is_small = ~self._is_at_least(_NOT_PER_MINUTE) & ~np.isnan(number)
+        is_small |= same & ~self.is_too_high_per_revolution
+        return np.asarray(is_small & trace.per_minute & ~self.is_left_per_revolution)
 
     @cached_property
     def begins(self) -> Mask:

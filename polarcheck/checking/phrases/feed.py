@@ -9,6 +9,7 @@ from polarcheck.checking.quantity import in_row
 from polarcheck.machines.machine import Machine
 from polarcheck.table.center import Center
 from polarcheck.table.feed_ranges import FeedRanges
+from polarcheck.table.feeds import Feeds
 from polarcheck.table.tool_center import ToolCenter
 from polarcheck.table.trace import Trace
 
@@ -78,6 +79,16 @@ def _feed_word(trace: Trace, row: int) -> str:
     line = int(trace.line[trace.run.row[at[0]]])
     written = executed_word(trace, int(at[0]))
     return written if line == trace.line[row] else f"{written} of line {line}"
+
+
+def left_over(trace: Trace, feeds: Feeds, row: int) -> str:
+    """Why an F that is one per revolution is read per minute in a row."""
+    written = feed_word(trace, row)
+    if feeds.is_left_per_revolution[row]:
+        return f"{written} was written for feed per revolution and is still in force"
+    if trace.entered_per_revolution[row] and trace.takes_over_per_minute_only:
+        return f"{written} is per minute, as every F of the mode on this control, whatever is in force before it"
+    return f"{written} is per minute now, and as small as one per revolution"
 
 
 def verdict(trace: Trace, tool_center: ToolCenter, row: int) -> str:

@@ -1,0 +1,61 @@
+from __future__ import annotations
+
+from polarcheck.checking.rule import WARNING, Feeds, Mask, Trace, rule
+
+
+@rule(
+    WARNING,
+    "{trace.feed:feed} here: {left_over}; write an F per minute",
+    at=("F", "feed_per_minute", "line", "arc_clockwise", "arc_counterclockwise"),
+    once="feed",
+)
+def feed_of_revolution_per_minute(trace: Trace, feeds: Feeds) -> Mask:
+    """
+    F of feed per revolution, read per minute.
+
+    F is a number, and what it means is modal. After G98 (G94) the number of a feed per revolution stays in force, and
+    F.1 is a tenth of a millimeter for each minute: the cutter rubs at one place for hours. Some controls read every F
+    of the mode per minute, whichever was in force before: there, F.1 written again in the mode is that, too. Told where
+    the F in force was written for feed per revolution, and where the program has such an F and that of the mode is as
+    small.
+
+    Source: Mitsubishi M700V programming manual, p. 73: item 8 and note 1; FANUC B-62764EN/01, p. 51.
+
+    Bad:
+
+        G99 G0 X60. C0
+        G1 Z-5. F.2
+        G12.1
+        G98 X40.          (expect: feed-of-revolution-per-minute)
+        C10.
+        G13.1
+
+    Bad, set feed.carried_into_polar="per-minute-only":
+
+        G99 G0 X60. C0
+        G1 Z-5. F.2
+        G12.1
+        X40. F.2          (expect: feed-of-revolution-per-minute)
+        C10.
+        G13.1
+
+    Good:
+
+        G99 G0 X60. C0
+        G1 Z-5. F.2
+        G12.1
+        G98 X40. F200
+        C10.
+        G13.1
+        G99 G1 X60. F.2
+
+    Good, set feed.carried_into_polar="per-minute-only":
+
+        G99 G0 X60. C0
+        G1 Z-5. F.2
+        G12.1
+        X40. F200
+        C10.
+        G13.1
+    """
+    return trace.moves_at_feed & (feeds.is_left_per_revolution | feeds.looks_per_revolution)
