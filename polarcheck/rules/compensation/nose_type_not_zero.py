@@ -7,7 +7,7 @@ from polarcheck.checking.rule import ERROR, Mask, Trace, rule
     ERROR,
     "offset {trace.offset_number} {has_nose} nose type T{trace.nose:.0f}; for a mill it must be {allowed}",
     at=("compensation_left", "compensation_right"),
-    once="section",
+    once="tool call",
     needs=("trace.nose",),
     where="trace.starts_up",
 )
@@ -30,6 +30,12 @@ def nose_type_not_zero(trace: Trace) -> Mask:
         G98 G0 X60. C0
         G12.1
         G1 G41 X40. F200   (expect: nose-type-not-zero)
+        C-10.
+        G40 X60.
+        G13.1
+        G0 C180.
+        G12.1
+        G1 G41 X40. F200
         C-10.
         G40 X60.
         G13.1

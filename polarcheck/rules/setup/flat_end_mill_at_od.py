@@ -3,7 +3,12 @@ from __future__ import annotations
 from polarcheck.checking.rule import ERROR, Entry, Mask, Trace, rule
 
 
-@rule(ERROR, "offset {trace.offset_number} is a flat end mill that points at the outer diameter", at=("on",))
+@rule(
+    ERROR,
+    "offset {trace.offset_number} is a flat end mill that points at the outer diameter",
+    at=("on",),
+    once="tool call",
+)
 def flat_end_mill_at_od(trace: Trace, entry: Entry) -> Mask:
     """
     Flat end mill that points at the outer diameter of the part.
@@ -20,6 +25,12 @@ def flat_end_mill_at_od(trace: Trace, entry: Entry) -> Mask:
         T0808
         G98 G0 X60. C0
         G12.1             (expect: flat-end-mill-at-od)
+        G1 X40. F200
+        C10.
+        X60.
+        G13.1
+        G0 C180.
+        G12.1
         G1 X40. F200
         C10.
         X60.
