@@ -55,6 +55,8 @@ TEXTS = [
     ("G1 F20. FEED IS AT 20% OF THE USUAL", "FEED IS AT 20% OF THE USUAL"),
     ("N10 (A) RAPID TO START (B)", "RAPID TO START (B)"),
     ("/2 G0 X5. SKIP ME", "SKIP ME"),
+    ("G1 F20. THE FEED IS AT 20%", "THE FEED IS AT 20%"),
+    ("| `M5` | Stop the spindle |", "| `+` | Stop the spindle |"),
     ("F100 MM/MIN", "MM/MIN"),
     ("-------- TOOL CHANGE --------", "-------- TOOL CHANGE --------"),
     ("!!! ACHTUNG !!!", "!!! ACHTUNG !!!"),
@@ -153,6 +155,7 @@ def addresses(text: Text) -> str:
 def test_text_beside_a_block(block: str, expected: str) -> None:
     head = "O0002\n" if not block.startswith("O") else ""
     assert "+".join(part.strip() for part in texts(f"{head}{block}\nM30\n")) == expected.replace(" + ", "+")
+    assert addresses(text_of(f"{head}{block}\nM30\n"))[-1:] == "M"
 
 
 @pytest.mark.parametrize("block", LEFT)

@@ -63,12 +63,13 @@ _STATEMENTS = frozenset(
     b"GOTO GOTOF GOTOB GOTOC GOTOS ENDIF ENDW ENDWHILE ENDFOR ENDLOOP XOR MOD SIN COS TAN ASIN ACOS ATAN SQRT ABS"
     b" BIN BCD FUP POW ADP POPEN PCLOS DPRNT BPRNT SETVN PRM EQ NE GT LT GE LE NOEX RTS MODIN MODOUT MSG NMSG"
     b" LPRINT TRANSMIT TRACYL TRAFOOF TRAFOON TRAOOF TRAANG TRAORI TRACON TRAILON TRAILOF SETMS SPOS SPOSA LIMS"
-    b" ATRANS AROT AROTS ROT ROTS AMIRROR ASCALE DIAMON DIAMOF DIAMCYCOF STOPRE STOPREOF WAITM WAITE WAITS WAITMC"
-    b" EXTERN EXTCALL MCALL PCALL PROC DEF DEFINE RET DISPLOF DISPLON SBLOF SBLON SUPA KONT KONTT KONTC CFC CFTCP"
-    b" CFIN FFWON FFWOF COMPON COMPOF COMPCAD COMPCURV ORIWKS ORIMKS OFFN RND RNDM CHF CHR CIP FGROUP WALIMON"
-    b" WALIMOF REPEATB MASLON COUPON COUPOF COUPDEF SYNFCT POLF LFON LFOF CYCLE POCKET HOLES LONGHOLE WHENEVER IDS"
-    b" ACP ACN GETT TCARR TOFRAME INVFRAME SOFT BRISK DRIVE NORM TRANS MIRROR SCALE AC DC IC CT CC DR FMAX LBL"
-    b" CYCL BLK PGM MEND NLAP NAT NEND".split()
+    b" ATRANS AROT AROTS ROT ROTS AMIRROR ASCALE DIAMON DIAMOF DIAM DIAMCYCOF STOPRE STOPREOF WAITM WAITE WAITS"
+    b" WAITMC EXTERN EXTCALL MCALL PCALL PROC DEF DEFINE RET DISPLOF DISPLON SBLOF SBLON SUPA KONT KONTT KONTC CFC"
+    b" CFTCP CFIN FFWON FFWOF COMPON COMPOF COMPCAD COMPCURV ORIWKS ORIMKS OFFN RND RNDM CHF CHR CIP FGROUP"
+    b" WALIMON WALIMOF REPEATB MASLON COUPON COUPOF COUPDEF SYNFCT POLF LFON LFOF CYCLE POCKET HOLES LONGHOLE"
+    b" WHENEVER IDS ACP ACN GETT ASPLINE BSPLINE CSPLINE POLY CDON CDOF STARTFIFO STOPFIFO NEWCONF WALCS GEOAX"
+    b" MEAS MEAW TOROT PAROT TCARR TOFRAME INVFRAME SOFT BRISK DRIVE NORM TRANS MIRROR SCALE AC DC IC CT CC DR"
+    b" FMAX LBL CYCL BLK PGM MEND NLAP NAT NEND".split()
 )
 #: The same that are also words of every day: alone they say nothing, beside others they are prose. The first of them
 #: stand before names: CALL OFACE.
@@ -113,11 +114,12 @@ def find_prose(source: Source, code: Bytes) -> Ranges:
     kinds = data.translate(_KINDS)
     if b"\1\1" not in kinds and b"\2" not in kinds:
         return _ranges([], [])
-    kind = np.frombuffer(kinds + b"\0", np.uint8)
-    suspects = np.flatnonzero(((kind[1:] == 1) & (kind[:-1] == 1)) | (kind[:-1] == 2))
+    kind = np.frombuffer(kinds + b"\0\0", np.uint8)
+    is_suspect = ((kind[1:] & kind[:-1] & 1) | (kind[:-1] >> 1)).view(bool)
     breaks = np.append(np.flatnonzero((code == LF) | (code == _SEMICOLON)), len(code))
-    index = np.unique(np.searchsorted(breaks, suspects))[:_BLOCK_LIMIT]
-    places = zip(np.append(0, breaks + 1)[index].tolist(), breaks[index].tolist(), strict=True)
+    starts = np.append(0, breaks[:-1] + 1)
+    index = np.flatnonzero(np.logical_or.reduceat(is_suspect, starts))[:_BLOCK_LIMIT]
+    places = zip(starts[index].tolist(), breaks[index].tolist(), strict=True)
     found = array("q")
     for begin, end in places:
         block = data[begin : min(end, begin + _LOOKED_AT)]
@@ -204,9 +206,11 @@ def _in_table_row(block: bytes) -> list[_Found]:
     """A line of a table, | M5 | Stop the spindle |: all of it but the first cell that reads as a block."""
     found, begin, edge = [], 0, 0
     for cell in block.split(b"|"):
-        if _SOUND.fullmatch(cell):
-            found = [_Found(begin, edge, begin, True)]
-            begin = edge + len(cell)
+        code = cell.strip(_BLANKS + b"`*")
+        if _SOUND.fullmatch(code):
+            start = edge + cell.index(code)
+            found = [_Found(begin, start, begin, True)]
+            begin = start + len(code)
             break
         edge += len(cell) + 1
     return [*found, _Found(begin, len(block), begin, True)]

@@ -44,6 +44,11 @@ _TAG = re.compile(
 )
 
 
+#: Before a % that is no tape mark but says how much, in a text: FEED AT 20%; so much of it is looked at [characters].
+_SHARE = re.compile(rb"[A-Z]{2,}[ \t]++\d++\Z", re.IGNORECASE)
+_SHARE_LENGTH = 100
+
+
 class Ranges(msgspec.Struct, frozen=True):
     """Places in a text, from start to end (exclusive), in order."""
 
@@ -205,6 +210,9 @@ def _percents(code: Bytes, lines: Positions) -> tuple[Positions, Positions]:
         return at, at
     line_start = np.append(0, lines + 1)[np.searchsorted(lines, at)]
     is_mark = ~_has_text(code, line_start, at) | ~_has_text(code, at + 1, tails.end)
+    for index in np.flatnonzero(is_mark & np.isin(code[at - 1], list(b"0123456789"))).tolist():
+        begin = max(int(line_start[index]), int(at[index]) - _SHARE_LENGTH)
+        is_mark[index] = _SHARE.search(code[begin : at[index]].tobytes()) is None
     blank(code, tails)
     return at[is_mark], at[~is_mark]
 
