@@ -67,7 +67,7 @@ class Entry:
         A D word outside the mode that can only be meant for the cutter; the program enters the mode with its tool.
 
         It stands alone, or beside T, S, M codes of the lathe, positions, and G codes of modal states; not beside
-        cycles, calls and codes of the builder, which have a D of their own. Alone it may stand right above its T.
+        cycles, calls and codes of the builder, which have a D of their own. Above the first T it may be meant for that.
         """
         trace = self.trace
         if not trace.has("D").any():
@@ -79,7 +79,7 @@ class Entry:
         has_other_code = trace.with_words(np.isin(trace.run.words.address, list(b"GM")) & ~plain)
         calls = trace.has("D") & trace.consists_of("D", *_WORDS_BESIDE_D) & ~has_other_code & ~trace.in_cycle
         ahead = self._is_before_mode
-        above_tool = np.append((trace.changes_tool & ahead)[1:], False) & trace.consists_of("D")
+        above_tool = np.append((trace.changes_tool & ahead)[1:], False) & (trace.tool == 0)
         return np.asarray(calls & (ahead | above_tool))
 
     @property
