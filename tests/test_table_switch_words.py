@@ -108,6 +108,14 @@ def test_the_shift_is_absolute(words: str) -> None:
     )
 
 
+def test_the_shift_of_another_linear_axis_is_absolute() -> None:
+    """Y, of which V is the incremental word, once the profile has it beside G12.1."""
+    changes = {"control": {"axes": ["Y", "X", "C"]}, "polar": {"words_beside_switch": ["Y", "C", "P", "Q", "E"]}}
+    report = report_of("T0202\nG98 G0 Y60. C0\nG12.1 V5.\nG1 Y20. F100\nC5.\nG13.1\n", "gsk-988", TOOL, changes=changes)
+    assert said(report) == [(AT, "polar-shift-incremental")]
+    assert report.findings[0].message.endswith("in absolute words only, Y and C")
+
+
 @pytest.mark.parametrize("words", ["X0", "C0", "X0 C0", "X0 C0 P1 Q3"])
 def test_an_absolute_shift_is_right(words: str) -> None:
     assert found(f"G12.1 {words}") == []

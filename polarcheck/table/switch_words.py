@@ -7,6 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask
+from polarcheck.machines.axes import INCREMENTS
 from polarcheck.machines.modal import Distance
 from polarcheck.reading.words import NumberFault
 from polarcheck.table.infeed import CUT, Infeed
@@ -70,15 +71,19 @@ class SwitchWords:
 
     # ---- the shift of the center ----
 
+    @property
+    def shifts(self) -> dict[str, str]:
+        """The addresses of axes that shift the center beside G12.1, each with that of its incremental word."""
+        mode = self.trace.machine.polar
+        pairs = {**INCREMENTS, mode.virtual_axis: mode.virtual_axis_incremental}
+        return {axis: pairs[axis] for axis in self._taken if axis in pairs}
+
     @cached_property
     def shifts_incrementally(self) -> Mask:
         """Per word: a shift of the center by an incremental word, or by an absolute one while G91 is in force."""
-        mode = self.trace.machine.polar
-        pairs = {"X": "U", mode.virtual_axis: mode.virtual_axis_incremental}
-        axes = [axis for axis in pairs if axis in self._taken]
         is_incremental = self.trace.state("distance") == Distance.INCREMENTAL
-        absolute = self._beside(*axes) & is_incremental[self.trace.run.row]
-        return np.asarray(self._beside(*(pairs[axis] for axis in axes)) | absolute)
+        absolute = self._beside(*self.shifts) & is_incremental[self.trace.run.row]
+        return np.asarray(self._beside(*self.shifts.values()) | absolute)
 
     # ---- the infeed ----
 

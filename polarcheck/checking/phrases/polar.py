@@ -167,9 +167,9 @@ def not_simulated(infeed: Infeed) -> Iterator[tuple[str, int]]:
     )
 
 
-def absolute(machine: Machine) -> str:
-    """The absolute words of a shift, X and the rotary axis."""
-    return f"X and {machine.polar.virtual_axis}"
+def absolute(switch_words: SwitchWords) -> str:
+    """The absolute words of a shift, those of the linear and the rotary axis."""
+    return " and ".join(switch_words.shifts)
 
 
 def axis_fault(trace: Trace, switch_words: SwitchWords, row: int) -> str:
