@@ -384,6 +384,7 @@ def test_the_size_of_turned_diameters_and_on_other_machines() -> None:
         ("G10 P8 X-.005 R.375 Q0", "", True),
         ("G10 P8 X0 Z-.01 R0 Q0\nG10 P10008 X-5.25 R.375 Q0", "", False),
         ("G10 P8 X-5.25 R.375 Q0", "", False),
+        ("G10 P8 X-152400 R.375 Q0\nG10 P9 X99999999999999999999 R.1", "", False),
         ("G10 P9 X-.005 R.1 Q0\nG10 P10008 X-5.25 R.375 Q0", "", False),
         # The program sets its own.
         ("G10 P8 X-.005 Z0 R0 Q0\nG10 P10008 X-5.25 R.375 Q0", "G10 P8 X0", False),

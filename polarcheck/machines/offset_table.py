@@ -19,6 +19,8 @@ _OFFSET = re.compile(rf"G10{_BLANK}P{_BLANK}(\d++)((?:{_BLANK}[A-FH-OQ-Z]{_BLANK
 _VALUE = re.compile(rf"([RQX]){_BLANK}([-+]?(?:\d++\.?\d*+|\.\d++))")
 #: P10001 is the geometry of offset 1, P1 its wear (B-63524EN/01 p. 285).
 _GEOMETRY = 10000
+#: X of no wear, whatever its unit.
+_LARGEST_WEAR = 100.0
 _DIGITS = 8
 _SHOWN = 40
 
@@ -48,7 +50,9 @@ def read(path: Path, title: str, *, pipes: bool = False) -> dict[int, Tool]:
             if value[1] == "R":
                 radius[number] = radius.get(number, 0.0) + float(value[2])
             elif value[1] == "X":
-                x_wear.update({} if is_geometry else {number: float(value[2])})
+                # Wear is small: what is not is where a tool has been touched off, be it in least increments.
+                if not is_geometry and abs(float(value[2])) < _LARGEST_WEAR:
+                    x_wear[number] = float(value[2])
             elif is_geometry or number not in nose:
                 nose[number] = _whole(float(value[2]))
     if not radius and not nose:

@@ -57,4 +57,5 @@ def size_by_x_offset(trace: Trace) -> Mask:
         G40 X2.
         G13.1
     """
+    # Compares nothing: what is set of which offset is a list of settings, and no column.
     return trace.sizes_by_x
