@@ -43,6 +43,15 @@ TEXTS = [
     ("IF[#1EQ2]GOTO 10 SKIP THE ROUGHING", "SKIP THE ROUGHING"),
     ("WHILE[#1LT5]DO1 LOOP OVER PASSES", "LOOP OVER PASSES"),
     ("G1 X#1 MOVE TO START", "MOVE TO START"),
+    ("G0 X#100 Z#101 SAFE", "SAFE"),
+    ("M98 P1000 L2 REPEAT 2 TIMES", "REPEAT 2 TIMES"),
+    ("G50 S3000 MAX RPM", "MAX RPM"),
+    ("M3 S1000 RPM", "RPM"),
+    ("M3 CW", "CW"),
+    ("# Title of the page", "# Title of the page"),
+    ("## M5 Stop the spindle", "## M5 Stop the spindle"),
+    ("PROGRAM: FLANGE", "PROGRAM: FLANGE"),
+    ("G200 DRILLING", "DRILLING"),
     ("12: M5 Stop the main spindle", "Stop the main spindle"),
     ("Stop the main spindle\tM5", "Stop the main spindle"),
     ("RAPID TO START      G0 X50. Z2.", "RAPID TO START"),
@@ -118,6 +127,11 @@ G28 U W
 G28 UW
 G0 XZ
 GXZF
+G2 XCIJ
+G0 UWH
+IF[#1GT5]GOTO 100
+G0 X#1 NEND
+#1=#2 MOD #3
 GO X4O.
 GO X50.
 G1 XO ZO

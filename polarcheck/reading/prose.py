@@ -56,7 +56,7 @@ _COLUMN = re.compile(rb"(?:[ ]*\t[ \t]*|[ ]{3,})(?=[GMNSTXZ]" + _B + _NUMBER + r
 _SWITCH = re.compile(rb"[GMNTS]" + _B + rb"\d", re.IGNORECASE)
 _ASCII = re.compile(rb"[A-Z]{2}", re.IGNORECASE)
 _OTHER_SCRIPT = re.compile(r"[^\W\d_\uff00-\uffef]{2}")
-_MACRO = re.compile(rb"#\s*+[\d\[#<_]|[\[\]=]")
+_MACRO = re.compile(rb"#\s*+[\d\[<_]|[\[\]=]")
 
 #: Words of macro statements and of controls' own languages that are no words of a description.
 _STATEMENTS = frozenset(
@@ -81,7 +81,9 @@ _AMBIGUOUS = _CALLS | frozenset(b"END AND OR FIX ROUND EXP LN OF TO TURN AXIS FR
 #: What of a macro statement may stand behind its last variable.
 _OF_MACRO = frozenset(b"GOTO GO DO END THEN IF WHILE AND OR XOR MOD EQ NE GT LT GE LE".split())
 _ADDRESSES = frozenset(b"XYZUVWABCGMTSNFIJKRHPQD")
-_AXES = frozenset(b"XYZUVWABCH")
+_LINEAR, _ROTARY = frozenset(b"XYZUVW"), frozenset(b"CH")
+#: Short for words, without a vowel.
+_OF_THE_SHOP = frozenset(b"RPM CW CCW".split())
 _VOWELS = frozenset(b"AEIOU")
 #: From so many blocks with text on, their layout says where the text of each begins, and doubtful words are text, too.
 _MANY = 3
@@ -229,7 +231,8 @@ def _single(block: bytes, written: Bytes, runs: Sequence[Match], words: Sequence
     is_name = behind.isdigit() or behind == b":" or (is_alone and word[0][:1] in b"Oo")
     if (is_alone and (is_call or is_name)) or (is_name and word[0][:1] in b"Nn"):
         return []
-    is_certain = not _is_known(runs[0]) and _is_long(word) and (not is_name or _PROGRAM.match(block) is not None)
+    is_certain = bool(words) and _is_long(word) and not (is_alone and _is_known(runs[0]))
+    is_certain &= not is_name or _PROGRAM.match(block) is not None
     if _SWITCHES_ALONE.fullmatch(block, 0, found.code_end) and _SOUND.fullmatch(block, word.end()):
         return [_Found(found.start, word.end(), found.code_end, is_certain)]
     return [_Found(*found[:3], is_certain)]
@@ -243,7 +246,10 @@ def _beside_macro(block: bytes, runs: Sequence[Match], words: Sequence[Match], b
     if len(before) >= needed and any(map(_is_long, before)):
         return begin
     behind = [word for word in words if word.start() >= signs[-1][1]]
-    if len(behind) < (_SENTENCE if _is_statement(runs[0]) else 2) or not any(map(_is_long, behind)):
+    needed = _SENTENCE if _is_statement(runs[0]) else 2
+    if len(behind) == 1 and runs[-1] is behind[0] and b"#" in block and block[behind[0].start()] not in b"NOno":
+        needed = 1
+    if len(behind) < needed or not any(map(_is_long, behind)):
         return None
     first = runs.index(behind[0])
     while first and runs[first - 1].start() >= signs[-1][1] and runs[first - 1][0].upper() not in _OF_MACRO:
@@ -260,17 +266,18 @@ def _is_word(run: bytes) -> bool:
     if b"_" in run or run in _STATEMENTS or run in _AMBIGUOUS:
         return False
     letters = set(run)
-    if not run.isascii():
+    if not run.isascii() or run in _OF_THE_SHOP:
         return True
     if len(letters) == 1:
         return False  # XX stands in manuals for any number
     if len(letters) < len(run) or not letters <= _ADDRESSES:
         return True
-    return not (letters & set(b"XZ") or (letters <= _AXES and letters & set(b"YUW")))
+    return len(letters & _LINEAR) < 2 and not (letters & set(b"XZ") and letters & _ROTARY)
 
 
 def _is_long(run: Match) -> bool:
-    return not run[0].isascii() or (len(run[0]) > 2 and bool(set(run[0].upper()) & _VOWELS))
+    word = run[0].upper()
+    return not word.isascii() or word in _OF_THE_SHOP or (len(word) > 2 and bool(set(word) & _VOWELS))
 
 
 def _is_statement(run: Match) -> bool:
