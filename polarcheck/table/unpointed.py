@@ -8,6 +8,7 @@ import numpy as np
 
 from polarcheck.arrays import Mask, Rows
 from polarcheck.machines.modal import FeedMode, Units
+from polarcheck.table.lengths import MEANT_IN_INCREMENTS
 from polarcheck.table.trace import Trace
 
 
@@ -33,9 +34,9 @@ class Unpointed:
         The numbers without a point of other programs, each by itself.
 
         It is the coordinates of polar sections and of the blocks that position X and C for them, elsewhere only those
-        that are large, and in inch the F of the mode. Where more than half of the coordinates of a section are without,
-        that is one habit, reported at the first of them, and at the first large one, which is read otherwise. Beside a
-        number that cannot be read nothing is: what the others mean is open, too.
+        that are large; in inch the F of the mode; R of a tool offset that G10 sets. Where more than half of the
+        coordinates of a section are without, that is one habit, reported at the first of them, and at the first large
+        one, which is read otherwise. Beside a number that cannot be read nothing is: what the others mean is open, too.
         """
         trace, words = self.trace, self.trace.run.words
         reported = np.zeros(len(trace.text.words), np.int64)
@@ -48,6 +49,7 @@ class Unpointed:
         inch_feed = (words.address == ord("F")) & ~words.has_point & (words.value > 0) & slips
         inch_feed &= ((trace.units == Units.INCH) & (trace.feed_mode == FeedMode.PER_MINUTE))[trace.run.row]
         self._add(reported, inch_feed, section, np.zeros(count, bool))
+        self._add(reported, slips & self._radii_of_offsets, trace.program, np.zeros(int(trace.program[-1]) + 1, bool))
         if trace.is_unpointed.any():
             large, is_habit = trace.is_large_unpointed, trace.writes_no_points(section, count)
             has_section = np.isin(trace.program, trace.program[trace.sections.enter])
@@ -55,6 +57,15 @@ class Unpointed:
             self._add(reported, slips & trace.is_unpointed & ~large, section, is_habit)
             self._add(reported, slips & large, section_or_rest, np.append(is_habit, False))
         return reported
+
+    @cached_property
+    def _radii_of_offsets(self) -> Mask:
+        """Per executed word: R of a tool offset that G10 sets, too small to be meant in least increments."""
+        trace, words = self.trace, self.trace.run.words
+        kinds = trace.machine.g_codes.data_input_tool_offset
+        sets = trace.listed("data_input") & (np.isin(trace.word("L"), kinds) | ~trace.has("L")) & (trace.word("P") > 0)
+        is_small = ~words.has_point & (words.value != 0) & (np.abs(words.value) < MEANT_IN_INCREMENTS)
+        return np.asarray(trace.words_at(trace.word_indices("R")) & is_small & sets[trace.run.row])
 
     @cached_property
     def _sections(self) -> Rows:

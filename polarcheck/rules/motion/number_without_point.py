@@ -71,8 +71,20 @@ def number_without_point(unpointed: Unpointed) -> Hits:
         X-40000
         G13.1
 
+    Bad:
+
+        G10 P1 R4         (expect: number-without-point)
+        T0101
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. F200
+        C20.
+        G13.1
+
     Good:
 
+        G10 P1 R4.
+        T0101
         G98 G0 X60. C0
         G12.1
         G1 X40. F200
