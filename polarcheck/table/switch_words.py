@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from functools import cached_property
 
 import numpy as np
@@ -91,15 +92,20 @@ class SwitchWords:
     def _increments(self) -> Floats:
         return self.infeed.written / self.infeed.least_increment
 
+    @property
+    def _most_increments(self) -> float:
+        # A float holds no number of more digits.
+        return 10.0 ** min(self.trace.machine.control.digit_limit, sys.float_info.max_10_exp - 1) - 1
+
     @cached_property
     def infeed_limit(self) -> Floats:
         """Per row: the largest infeed [mm], as many least increments as have the most digits of a number."""
-        return (10.0**self.trace.machine.control.digit_limit - 1) * self.infeed.least_increment
+        return self._most_increments * self.infeed.least_increment
 
     @cached_property
     def infeed_too_large(self) -> Mask:
         """Per row: the infeed beside G12.1 is beyond what its word can hold."""
-        return np.asarray(self._increments > 10.0**self.trace.machine.control.digit_limit - 0.5)
+        return np.asarray(self._increments > self._most_increments + 0.5)
 
     @cached_property
     def infeed_too_fine(self) -> Mask:
