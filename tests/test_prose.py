@@ -25,6 +25,7 @@ TEXTS = [
     ("M5\tStop", "Stop"),
     ("M5 -- Stop the spindle", "-- Stop the spindle"),
     ("M5Stop the spindle", "Stop the spindle"),
+    ("M5Off, then go", "Off, then go"),
     ("G0X50.RAPID TO START", "RAPID TO START"),
     ("O0001 FLANSCH", "FLANSCH"),
     ("O0001 - FLANSCH 50 MM", "- FLANSCH 50 MM"),

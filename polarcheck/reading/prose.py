@@ -35,7 +35,9 @@ _WORDS_LOOKED_AT = 40
 _BLOCK_LIMIT = 200_000
 
 _B = rb"[\0-\x09\x0b-\x20\x7f\xa0]*+"
-_NUMBER = rb"[-+\x96]?+" + _B + rb"(?:\d[\dO.]*+|\.\d[\dO.]*+)"
+#: An O stands for a digit here, unless a word of the text begins with it, as in M8ON.
+_DIGITS = rb"(?:[\d.]|O(?![A-Z](?![-+.\d])))*+"
+_NUMBER = rb"[-+\x96]?+" + _B + rb"\.?+\d" + _DIGITS
 #: What stands right behind a word; other signs make it a part of the text, as in `A 3/4" END MILL`.
 _BEHIND = rb"(?=[\0-\x20\x7f\xa0-\xfeA-Z,|\-\x96:]|\Z)"
 _WORD = rb",?+[A-Z:]" + _B + _NUMBER + _BEHIND
@@ -179,7 +181,12 @@ def _of_the_file(data: bytes, found: Rows) -> Ranges:
 
 
 def _in_block(block: bytes, written: Bytes) -> list[_Found]:
-    """The text in a block; written: the same before comments were blanked."""
+    """
+    The text in a block; written: the same before comments were blanked.
+
+    It begins where the words of the block end. Of two words and more one must be a word that can be spoken; one by
+    itself may be a name, and is looked at more closely.
+    """
     if block.lstrip(_BLANKS)[:1] == b"|" and block.count(b"|") > 1:
         return _in_table_row(block)
     match = _CODE.match(block)
