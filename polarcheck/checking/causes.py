@@ -13,6 +13,8 @@ END_IN_DOUBT = (
     "arc-radius-too-small",
     "arc-without-center",
 )
+#: What is written for C may be what is wrong, so that an arc that begins there has another start.
+C_IN_DOUBT = (*END_IN_DOUBT, "degrees-in-polar")
 #: An arc that there is not, so that nobody knows the way to its end.
 NO_SUCH_ARC = (
     *END_IN_DOUBT,

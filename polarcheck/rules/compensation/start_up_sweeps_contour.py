@@ -21,6 +21,7 @@ from polarcheck.checking.rule import ERROR, Hits, Slots, rule
             *NO_SUCH_ARC,
             "arc-sense-reversed",
             "contour-not-closed",
+            "degrees-in-polar",
             "number-without-point",
             "overcut",
             "slot-narrower-than-cutter",

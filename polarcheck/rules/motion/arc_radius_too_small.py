@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.causes import END_IN_DOUBT, SECTION_READ_OTHERWISE
+from polarcheck.checking.causes import C_IN_DOUBT, END_IN_DOUBT, SECTION_READ_OTHERWISE
 from polarcheck.checking.rule import ERROR, Arcs, Machine, Mask, rule
 
 
@@ -12,10 +12,10 @@ from polarcheck.checking.rule import ERROR, Arcs, Machine, Mask, rule
     needs=("arcs.chord",),
     where="arcs.by_radius",
     follows={
-        "block": ("arc-off-polar-plane",),
+        "block": ("arc-off-polar-plane", "degrees-in-polar"),
         "loop": ("number-without-point",),
         "X before": END_IN_DOUBT,
-        "C before": END_IN_DOUBT,
+        "C before": C_IN_DOUBT,
         "section": SECTION_READ_OTHERWISE,
     },
 )
