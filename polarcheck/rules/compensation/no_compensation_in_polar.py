@@ -8,6 +8,7 @@ from polarcheck.checking.rule import NOTE, Mask, Sections, Trace, rule
     "this section cuts without G41 or G42, so that R of the tool offset cannot set the size of the part",
     over="sections",
     at=("on",),
+    follows={"section": ("polar-switched-in-offset-mode",)},
 )
 def no_compensation_in_polar(trace: Trace, sections: Sections) -> Mask:
     """
