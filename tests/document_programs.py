@@ -150,10 +150,11 @@ M30
     "fanuc-16i",
     ("1:radius=5", "1:nose=0"),
 )
-#: First example of the description of G12.1 with P, Q, E (GSK type): once round.
+#: First example of the description of G12.1 with P, Q, E (GSK type): once round; the dots are its own.
 GSK_1 = Printed(
     """O0001;
 N10 T0202
+.....;
 N100 G00 X150. C0 Z0;
 N110 G12.1;
 N120 G42 G01 X80. F200;
@@ -169,6 +170,7 @@ N210 G01 C0;
 N220 G40 X150.0;
 N230 G13.1;
 N240 Z100.0;
+.....;
 N500 M30;
 """,
     "gsk-988",

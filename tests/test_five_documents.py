@@ -113,6 +113,15 @@ BY_INCREMENTS = {
 PER_REVOLUTION = {"G17 G90 G94 G40 G97": "G17 G90 G95 G40 G97 F.2"}
 A_MACRO = {"G12.1": "G12.1\nG65 P9010", "M30": "M30\nO9010\nG4 X1.\nM99"}
 
+#: The first E that is too large, in mm and inch, of both increment systems.
+ISC = {"control": {"least_increment": 0.0001, "least_increment_inch": 0.00001}}
+EDGES = [
+    ("003-23", "G21", "1000000.", {}),
+    ("003-24", "G20", "100000.", {}),
+    ("003-25", "G21", "100000.", ISC),
+    ("003-26", "G20", "10000.", ISC),
+]
+
 #: What is worth a note only.
 NOTES = frozenset(
     {
@@ -152,6 +161,8 @@ BROKEN = [
     Case("000-8", RECTANGLE, {"G2 X1. C-.5 R.25": "G3 X1. C-.5 R.25 (expect: arc-sense-reversed)"}),
     Case("000-9", RECTANGLE, RADIUS_X | {"G12.1": "G12.1 (expect: diameter-radius-mixed)"}),
     Case("000-11", SAMPLE, {"G1 C-.5339 (2)": "G1 C-90. (expect: degrees-in-polar)"}),
+    Case("000-11", RECTANGLE, {"C-.25": "C-90. (expect: degrees-in-polar)"}),
+    Case("000-11", RECTANGLE, {"G2 X1. C-.5 R.25": "G2 X1. C-90. R.25 (expect: degrees-in-polar)"}),
     Case("000-12", SAMPLE, {"G12.1": "G17\nG12.1 (expect: plane-wrong-at-entry)"}),
     Case("000-12", SAMPLE, {"G12.1": "G12.1\nG17 (expect: plane-selected-in-polar)"}),
     Case("000-12", RECTANGLE, {"G1 X1.": "G19 (expect: plane-selected-in-polar)\nG1 X1."}),
@@ -183,12 +194,8 @@ BROKEN = [
     Case("000-19", SAMPLE, {"G1 G98 C.5339 F60.": "G98 C.5339 F60. (expect: rapid-in-polar)"}),
     Case("000-20", SAMPLE, {"G1 G98 C.5339 F60.": "G1 G98 C.5339 F100. (expect: feed-outside-recommended-range)"}),
     Case("000-21", SAMPLE, {"G1 G98 C.5339 F60.": "G1 G99 C.5339 F.01 (expect: feed-per-revolution-in-polar)"}),
-    Case(
-        "000-22",
-        RECTANGLE,
-        {"G1 G98 Z-.25 F10.": "G1 G98 Z-.25 F25.", "G41 X1.5": "G41 X1.5 (expect: feed-outside-recommended-range)"},
-    ),
-    Case("000-23", SAMPLE, {"G1 G41 X1.75F7. (1)": "G1 G41 X1.75F12. (expect: feed-outside-recommended-range)"}),
+    Case("000-22", RECTANGLE, {"C-.25": "C-.25 F25. (expect: feed-outside-recommended-range)"}),
+    Case("000-23", SAMPLE, {"G1 C.5339 F7. (4)": "G1 C.5339 F12. (expect: feed-outside-recommended-range)"}),
     Case("000-23", SAMPLE, {"G1 G41 X1.75F7. (1)": "G1 G41 X1.75F.5 (expect: feed-outside-recommended-range)"}),
     Case("000-24", RECTANGLE, {"G1 X-1.": "G1 X-1. (expect: c-feed-above-limit)"}, changes=LIMIT),
     Case("000-26", METHOD_A, {"C-0.4153": "G91 C-.8306 (expect: incremental-word-of-other-code-system)"}),
@@ -216,6 +223,11 @@ BROKEN = [
     ),
     Case("000-42", SAMPLE, {"G12.1": "G41\nG12.1 (expect: polar-switched-in-offset-mode)"}),
     Case("000-43", SAMPLE, {"G12.1": "G42\nG12.1 (expect: polar-switched-in-offset-mode)"}),
+    Case(
+        "000-43",
+        METHOD_A,
+        {"G12.1": "G41\nG12.1 (expect: polar-switched-in-offset-mode)", "G1 G41 X1.0 F5.": "G1 X1.0 F5."},
+    ),
     Case("000-44", METHOD_A, {"G40 X1.8 F20.": "X1.8 F20.", "G13.1": "G13.1 (expect: polar-switched-in-offset-mode)"}),
     Case(
         "000-46",
@@ -285,6 +297,7 @@ BROKEN = [
     Case("000-75", SAMPLE, {"G28 H0": "", "G12.1": "G12.1 (expect: c-axis-not-referenced)"}),
     Case("000-77", METHOD_B, {"G0 Z0.1": "G0 Z0.1\nX-1.8 (expect: rapid-through-center)"}),
     Case("000-78", METHOD_A, {"G40 X1.8 F20.": "G40 X1.8 F20.\nC180. (expect: degrees-in-polar)"}),
+    Case("000-78", METHOD_A, {"C-0.4153": "C180. (expect: degrees-in-polar)"}),
     Case(
         "000-80",
         SAMPLE,
@@ -508,27 +521,27 @@ BROKEN = [
             "N120 G42 G01 X80. F200;": "G42 G1 X80. F200 (expect: start-up-shorter-than-radius)",
         },
     ),
-    Case("003-53", GSK_1, {"N140 G03 X40.0 C40.0 R20.0;": "G3 X40. C40. R10. (expect: arc-radius-too-small)"}),
-    Case("003-53", GSK_1, {"N140 G03 X40.0 C40.0 R20.0;": "G3 X40. C40. I-25. J0 (expect: arc-end-off-circle)"}),
+    Case("003-54", GSK_1, {"N140 G03 X40.0 C40.0 R20.0;": "G3 X40. C40. R10. (expect: arc-radius-too-small)"}),
+    Case("003-54", GSK_1, {"N140 G03 X40.0 C40.0 R20.0;": "G3 X40. C40. I-25. J0 (expect: arc-end-off-circle)"}),
     Case(
-        "003-54",
+        "003-55",
         GSK_1,
         {
             "N120 G42 G01 X80. F200;": "G42 G1 X80. C5. F200",
             "N210 G01 C0;": "N210 G1 C-8. (expect: contour-not-closed)",
         },
     ),
-    Case("003-55", GSK_1, {"N220 G40 X150.0;": "N220 G40 X98. (expect: cancel-shorter-than-radius)"}),
-    Case("003-56", GSK_1, {"N230 G13.1;": "N230 G13.1 Z100. (expect: polar-switch-not-alone)"}),
-    Case("003-58", GSK_1, {"N500 M30;": "", "N240 Z100.0;": "N240 Z100. (expect: program-end-missing)"}),
+    Case("003-56", GSK_1, {"N220 G40 X150.0;": "N220 G40 X98. (expect: cancel-shorter-than-radius)"}),
+    Case("003-57", GSK_1, {"N230 G13.1;": "N230 G13.1 Z100. (expect: polar-switch-not-alone)"}),
+    Case("003-59", GSK_1, {"N500 M30;": "", "N240 Z100.0;": "N240 Z100. (expect: program-end-missing)"}),
     Case(
-        "003-59",
+        "003-60",
         GSK_2,
         {"N110 G12.1 E8;": "N110 G12.1 E8 (expect: diameter-radius-mixed)"},
         changes={"polar": {"x": "radius"}},
     ),
     Case(
-        "003-64",
+        "003-65",
         GSK_2,
         {
             "N110 G12.1 E8;": "N110 G12.1 E8 (expect: contour-open-with-infeed)",
@@ -537,19 +550,19 @@ BROKEN = [
             "N220 G40 X300.0;": "G1 G40 X348.",
         },
     ),
-    Case("003-65", GSK_2, {"N220 G40 X300.0;": "N220 G40 X310. (expect: cancel-shorter-than-radius)"}),
-    Case("003-66", GSK_2, {"N110 G12.1 E8;": "N110 G42\nG12.1 E8 (expect: polar-switched-in-offset-mode)"}),
+    Case("003-66", GSK_2, {"N220 G40 X300.0;": "N220 G40 X310. (expect: cancel-shorter-than-radius)"}),
+    Case("003-67", GSK_2, {"N110 G12.1 E8;": "N110 G42\nG12.1 E8 (expect: polar-switched-in-offset-mode)"}),
     Case(
-        "003-66",
+        "003-67",
         GSK_1,
         {"N220 G40 X150.0;": "N220 X150.", "N230 G13.1;": "N230 G13.1 (expect: polar-switched-in-offset-mode)\nG40"},
     ),
-    Case("003-67", GSK_1, {"N110 G12.1;": "G41\nN110 G12.1 (expect: polar-switched-in-offset-mode)"}),
+    Case("003-68", GSK_1, {"N110 G12.1;": "G41\nN110 G12.1 (expect: polar-switched-in-offset-mode)"}),
     Case(
-        "003-68", GSK_1, {"N130 C20.0;": "N130 C20. (expect: c-feed-above-limit)"}, changes={"limits": {"c_feed": 200}}
+        "003-69", GSK_1, {"N130 C20.0;": "N130 C20. (expect: c-feed-above-limit)"}, changes={"limits": {"c_feed": 200}}
     ),
     Case(
-        "003-69",
+        "003-70",
         GSK_1,
         {
             "N10 T0202": "",
@@ -559,12 +572,12 @@ BROKEN = [
         },
     ),
     Case(
-        "003-70",
+        "003-71",
         GSK_1,
         {"N130 C20.0;": "T0203 (expect: offset-changed-in-polar)\nN130 C20.0;"},
         ("3:radius=10", "3:nose=0"),
     ),
-    Case("003-70", GSK_1, {"N130 C20.0;": "G10 P2 R9. (expect: offset-changed-in-polar)\nN130 C20.0;"}),
+    Case("003-71", GSK_1, {"N130 C20.0;": "G10 P2 R9. (expect: offset-changed-in-polar)\nN130 C20.0;"}),
     # ---- Mitsubishi ----
     Case("004-1", M700V, PER_REVOLUTION | {"G1 G42 X20. F2000": "G1 G42 X20. (expect: feed-lost-from-per-revolution)"}),
     Case(
@@ -678,6 +691,15 @@ KEPT = [
         {"G42 G1 X40. F200": "G42 G1 X40. F179.9"},
         changes={"limits": {"c_feed": float(np.degrees(180 / 25))}},
     ),
+    *(
+        Case(
+            number,
+            GSK_2,
+            {"N000 T0202;": f"{units} T0202", "N110 G12.1 E8;": f"N110 G12.1 E-{int(float(infeed)) - 1}."},
+            changes=changes,
+        )
+        for number, units, infeed, changes in EDGES
+    ),
     Case("003-6", GSK_1, {"N130 C20.0;": "G4 X1.\nN130 C20.0;"}),
     Case("003-8", GSK_1, {"N110 G12.1;": "G12.1\nG65 P9010", "N500 M30;": "M30\nO9010\nG4 X1.\nM99"}),
     Case("003-9", GSK_1, {"N10 T0202": "N10 G98 T0202"}),
@@ -688,6 +710,7 @@ KEPT = [
     Case("004-2", M700V, {"G17 G90 G94 G40 G97": "G17 G90 G94 G40 G97 F2000", "G1 G42 X20. F2000": "G1 G42 X20."}),
     Case("004-16", M700V, PER_REVOLUTION),
     Case("004-16", M700V, PER_REVOLUTION_IN_A, changes={"control": {"g_code_system": "A"}}),
+    Case("004-19", M700V, changes={"parameters": {"1516": "C"}}),
     Case("004-21", M700V, WITH_Y, changes={"parameters": {"1517": 0}}),
     Case("004-23", M700V, changes={"parameters": {"8111": 0, "1019": 0}}),
     Case("004-24", M700V, changes={"parameters": {"8111": 1, "1019": 0}}),
@@ -867,13 +890,13 @@ VALUES = [
     of("003-48", G1, "N140 G03 X40.0 C40.0 R20.0;", "trace.end", 20 + 40j),
     of("003-50", G1, "N100 G00 X150. C0 Z0;", "trace.x", 75),
     of("003-51", G1, "N110 G12.1;", "trace.enters", True),
-    of("003-53", G1, "N160 G03 X-80.0 C20.0 R20.0;", "trace.center", -20 + 20j),
-    of("003-57", G1, "N130 C20.0;", "trace.feed_mode", FeedMode.PER_MINUTE),
-    of("003-60", G2, "N100 G00 X348 C30;", "trace.x", 174),
-    of("003-60", G2, "N130 C80.0;", "path.c_axis", [30, 30 + degrees(160 + 80j)[0]], edits={"N110 G12.1 E8;": "G12.1"}),
-    of("003-61", G2, "N110 G12.1 E8;", "infeed.depth", 8),
+    of("003-54", G1, "N160 G03 X-80.0 C20.0 R20.0;", "trace.center", -20 + 20j),
+    of("003-58", G1, "N130 C20.0;", "trace.feed_mode", FeedMode.PER_MINUTE),
+    of("003-61", G2, "N100 G00 X348 C30;", "trace.x", 174),
+    of("003-61", G2, "N130 C80.0;", "path.c_axis", [30, 30 + degrees(160 + 80j)[0]], edits={"N110 G12.1 E8;": "G12.1"}),
     of("003-62", G2, "N110 G12.1 E8;", "infeed.depth", 8),
-    of("003-63", G2, "N120 G42 G01 X300 C0 F2000;", "trace.starts_up", True),
+    of("003-63", G2, "N110 G12.1 E8;", "infeed.depth", 8),
+    of("003-64", G2, "N120 G42 G01 X300 C0 F2000;", "trace.starts_up", True),
     # ---- F in the mode, and after it at the last block that moves ----
     *(
         of(number, M, block, column, value, edits=before | inside)
@@ -912,6 +935,7 @@ def test_printed_program(printed: Printed) -> None:
     assert {(found.rule, found.severity) for found in report.findings} <= {
         ("feed-outside-recommended-range", "note"),
         ("cancel-shorter-than-radius", "note"),
+        ("omitted-text", "note"),
     }
     assert {entry.rule for entry in report.not_evaluated if entry.matters} <= {"c-feed-above-limit"}
 
