@@ -8,7 +8,7 @@ import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Rows
 from polarcheck.geometry.tolerances import ROUNDING
-from polarcheck.machines.modal import Motion
+from polarcheck.machines.modal import Motion, Side
 from polarcheck.table.ramps import Ramps
 from polarcheck.table.tool_center import ToolCenter
 from polarcheck.table.trace import Trace
@@ -78,7 +78,8 @@ class FeedRanges:
     @cached_property
     def without_contour(self) -> Mask:
         """Moves of sections without compensation, of which nobody knows whether they cut."""
-        return self.trace.cuts & ~self.trace.anywhere_in_section(self.trace.compensates)
+        trace = self.trace
+        return trace.cuts & ~trace.anywhere_in_section(trace.compensates | (trace.state("side") != Side.OFF))
 
     @cached_property
     def too_high_for_cut(self) -> Mask:
