@@ -407,3 +407,22 @@ def test_the_wear_in_x_of_a_job() -> None:
     [found] = report.findings
     assert found.message.startswith("the wear in X of the offset table, -0.0039 inch, changes X of offset 8")
     assert not report_of(guide(), "fanuc", job={"units": "mm", "tools": tools}).findings
+
+
+@pytest.mark.parametrize("setting", ["G10 P#500 R.3", "#[#500+2200]=.3", "G10 L12 P#500 R4."])
+def test_an_offset_whose_number_is_not_known(setting: str) -> None:
+    """It may be the one in force: nobody can say that its R is as the job gives it."""
+    program = f"O1\n{setting}\nT0808\nG98 G0 X60. C0\nG12.1\nG1 G41 X40. F200\nC-10.\nG40 X60.\nG13.1\nM30\n"
+    report = report_of(program, "fanuc", "8:radius=4")
+    (entry,) = [entry for entry in report.not_evaluated if entry.matters]
+    assert entry.reason.startswith(f"which offset {setting} in line 2 sets is not known")
+    assert (report.verdict, report.polar_sections[0].radius) == ("unverified", 4.0)
+    behind = program.replace(f"{setting}\n", "").replace("M30", f"{setting}\nM30")
+    assert not [entry for entry in report_of(behind, "fanuc", "8:radius=4").not_evaluated if entry.matters]
+
+
+def test_a_variable_whose_number_is_known_by_the_job_is_no_question() -> None:
+    program = "O1\n#[#500+2200]=.1\nT0808\nG98 G0 X60. C0\nG12.1\nG1 G41 X40. F200\nC-10.\nG40 X60.\nG13.1\nM30\n"
+    report = report_of(program, "fanuc", "8:radius=4", job={"run": {"variables": {"500": 8}}})
+    assert report.polar_sections[0].radius == pytest.approx(4.1)
+    assert not [entry for entry in report.not_evaluated if entry.matters]

@@ -45,6 +45,7 @@ def unexecuted(tables: Tables) -> Iterator[NotEvaluated]:
     for reason, count in (
         *Counter(map(reason_of, trace.run.remarks)).items(),
         *axes_not_followed(trace),
+        offsets_not_known(trace),
         *not_simulated(tables["infeed"]),
         not_understood(trace, tables["other_mode"]),
         on_cylinder(trace),
@@ -52,6 +53,16 @@ def unexecuted(tables: Tables) -> Iterator[NotEvaluated]:
     ):
         if count:
             yield NotEvaluated(rule="all", reason=reason, blocks=count)
+
+
+def offsets_not_known(trace: Trace) -> tuple[str, int]:
+    """The blocks that set an offset, or a variable that may be one, nobody knows which."""
+    rows = np.flatnonzero(trace.sets_unknown_offset)
+    if not len(rows):
+        return "", 0
+    what = f"which offset {block_and_line(trace, int(rows[0]))} sets is not known"
+    remedy = "give its variables as [run.variables] in polarcheck.toml, or write the number"
+    return f"{what}, those in force are taken as given: {remedy}", len(rows)
 
 
 def unevaluated(tables: Tables, rule: Rule) -> Iterator[NotEvaluated]:

@@ -18,7 +18,7 @@ from polarcheck.execution.library import Shelf
 from polarcheck.execution.listing import Listing
 from polarcheck.execution.macro import Variables, assign, step_of, word_value
 from polarcheck.execution.programs import Program, ProgramName
-from polarcheck.execution.run import Assigned, Remark
+from polarcheck.execution.run import NO_VARIABLE, Assigned, Remark
 from polarcheck.execution.statement import Kind, Statement, Word
 from polarcheck.machines.codes import code_numbers, code_set
 from polarcheck.machines.job import Running
@@ -56,6 +56,7 @@ class Execution(Calls):
         self._of_offsets = (*listing.macro.tool_offset_variables, *listing.macro.work_offset_variables)
         self.stack: list[Level] = []
         self.changes = 0
+        self.assigns_anywhere: set[int] = set()
         self._count = self._total = 0
         self._allowed, self._own = asked.max_statements, _OF_CALL * len(listing.stops)
         self._last_change: dict[tuple[int, int], int] = {}
@@ -229,6 +230,9 @@ class Execution(Calls):
         if is_of_offset:
             value = step if step == step else UNKNOWN if after is None else after
             self.rows.add_assigned(block, Assigned(round(number or 0), value, step == step), len(self.stack) - 1)
+        elif number is not None and number != number and block not in self.assigns_anywhere:
+            self.assigns_anywhere.add(block)
+            self.rows.add_assigned(block, Assigned(NO_VARIABLE, UNKNOWN), len(self.stack) - 1)
         if number in macro.alarm_variables or number in macro.stop_variables:
             self.remark("stops-itself", block, number=int(number or 0))
             if number in macro.alarm_variables:

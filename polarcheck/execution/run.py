@@ -40,9 +40,13 @@ class Remark(msgspec.Struct, frozen=True):
     values: dict[str, str | int | float] = {}
 
 
+#: The number of a variable where nobody knows which is assigned.
+NO_VARIABLE = -1
+
+
 class Assigned(msgspec.Struct, frozen=True):
     """
-    A variable of an offset that a row assigns.
+    A variable of an offset that a row assigns, or one that may be of an offset since its number is not known.
 
     value: in the units of the program; NaN where it is not known. is_step: it is added to what the variable held.
     """

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Rows
+from polarcheck.execution.run import NO_VARIABLE
 from polarcheck.machines.modal import Units
 from polarcheck.machines.offsets import place_in
 from polarcheck.table.offset_settings import NOSE, RADIUS, RADIUS_WEAR, X_WEAR, Settings, Steps, X, in_order, of_list
@@ -224,6 +225,16 @@ class ToolOffsets(Positions):
                     value = assigned.value * (1.0 if of == NOSE else float(self.scale[at]))
                     found.append((at, place, of, value, assigned.is_step))
         return of_list(found)
+
+    @cached_property
+    def sets_unknown_offset(self) -> Mask:
+        """Sets R, nose type or X of an offset whose number is not known, above a polar section of its program."""
+        data = self.listed("data_input") & self.has("P") & np.isnan(self.word("P")) & self.has("R", "C", "Q", "X", "U")
+        found = data & (self.section < 0)
+        found[[row for row, assigned in self.run.assigned.items() if assigned.variable == NO_VARIABLE]] = True
+        ahead = np.searchsorted(self.sections.enter, np.arange(len(self)))
+        program = np.append(self.program[self.sections.enter], -1)[ahead]
+        return np.asarray(found & (program == self.program))
 
     def row_of_unknown_setting(self, number: int, row: int, key: str) -> int:
         """The last row, down to this one, that sets R or the nose type of an offset to what is not known; -1: none."""

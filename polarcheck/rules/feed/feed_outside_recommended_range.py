@@ -8,7 +8,7 @@ from polarcheck.checking.rule import NOTE, FeedRanges, Feeds, Mask, rule
     "{feed_word} is {trace.programmed_feed:feed/feed_ranges.nearest_limit}, {against_ranges}; recommended in the polar "
     "mode: {recommended}",
     at=("F",),
-    follows={"feed": ("feed-of-revolution-per-minute",)},
+    follows={"feed": ("c-feed-above-limit", "feed-of-revolution-per-minute")},
 )
 def feed_outside_recommended_range(feed_ranges: FeedRanges, feeds: Feeds) -> Mask:
     """
