@@ -221,14 +221,18 @@ BROKEN = [
             "G1 G40 X-2.15 F60.": "X-2.15 F60.",
         },
     ),
+    Case("000-41", SAMPLE, {"G28 H0": "G28 H0\nG10 P8 U-.005 (expect: size-by-x-offset)"}),
+    Case("000-58", METHOD_B, {"T0101": "G10 P1 U.005 (expect: size-by-x-offset)\nT0101"}),
+    Case("000-61", SAMPLE, {"G28 H0": "G28 H0\nG10 P8 X-.005 (expect: size-by-x-offset)"}),
     Case("000-42", SAMPLE, {"G12.1": "G41\nG12.1 (expect: polar-switched-in-offset-mode)"}),
     Case("000-43", SAMPLE, {"G12.1": "G42\nG12.1 (expect: polar-switched-in-offset-mode)"}),
     Case(
         "000-43",
-        METHOD_A,
-        {"G12.1": "G41\nG12.1 (expect: polar-switched-in-offset-mode)", "G1 G41 X1.0 F5.": "G1 X1.0 F5."},
+        SAMPLE,
+        {"G12.1": "G41\nG12.1 (expect: polar-switched-in-offset-mode)", "G1 G41 X1.75F7. (1)": "G1 X1.75 F7."},
     ),
     Case("000-44", METHOD_A, {"G40 X1.8 F20.": "X1.8 F20.", "G13.1": "G13.1 (expect: polar-switched-in-offset-mode)"}),
+    Case("000-45", METHOD_A, {"G1 G41 X1.0 F5.": "G41 (expect: start-up-without-move)\nG1 X1.0 F5."}),
     Case(
         "000-46",
         RECTANGLE,
@@ -321,6 +325,7 @@ BROKEN = [
         {"G97 S1000 M33": "G97 S1000", "G1 G98 C0.4153 F20.": "G1 G98 C0.4153 F20. (expect: live-tool-stopped-in-cut)"},
     ),
     Case("000-91", METHOD_A, {"G97 S1000 M33": "G96 S300 M33", "G12.1": "G12.1 (expect: modal-state-wrong-at-entry)"}),
+    Case("000-91", METHOD_A, {"G97 S1000 M33": "G97 M33 (expect: live-tool-without-speed)"}),
     Case("000-92", METHOD_A, WHOLE | {"X1.8": "", "G12.1": "G12.1 (expect: x-unknown-at-entry)"}),
     Case("000-92", METHOD_A, {"X1.8": "X0", "G12.1": "G12.1 (expect: x-not-positive-at-entry)"}),
     Case("000-93", METHOD_A, {"G12.1": "G12.1 M8 (expect: polar-switch-not-alone)"}),
@@ -340,6 +345,7 @@ BROKEN = [
     Case("000-98", METHOD_A, {"G40 X1.8 F20.": "G40 X1.49 F20. (expect: cancel-shorter-than-radius)"}),
     Case("000-99", METHOD_A, {"G12.1": "G12.1 (expect: polar-never-left)", "G13.1": ""}),
     Case("000-99", METHOD_A, {"G13.1": "G13.1 M9 (expect: polar-switch-not-alone)"}),
+    Case("000-102", METHOD_A, {"G0 X5. Z5. M35": "G0 X5. Z5.\nT0303 (expect: live-tool-never-stopped)"}),
     Case("000-106", METHOD_B, {"G40 X-1.8": "G40 X1.8 (expect: start-up-sweeps-contour)"}),
     Case("000-107", SAMPLE, {"": "G97 S500 M3", "M5": "", "G12.1": "G12.1 (expect: main-spindle-running-at-entry)"}),
     Case("000-108", SAMPLE, {"M35": "M35\nM34", "G12.1": "G12.1 (expect: c-axis-not-engaged)"}),
@@ -375,6 +381,16 @@ BROKEN = [
         {"G1 G40 X-2.15 F60.": "G1 G40 X-1.755 F60. (expect: cancel-shorter-than-radius)"},
         ("8:radius=.005",),
     ),
+    Case(
+        "000-127",
+        SAMPLE,
+        {
+            "G99 G0 X2.5": "G0 X2.5",
+            "M1": "T0303\nG97 S500 M3\nG0 X1. Z.1\nG1 Z-.5 F.008 (expect: turning-feed-not-restored)\nM1",
+        },
+    ),
+    Case("000-128", SAMPLE, {"Z.1 M35": "Z.1", "M1": "T0303 (expect: live-tool-never-stopped)\nM1"}),
+    Case("000-130", SAMPLE, {"M5": "M5\tStop the main spindle (expect: text-without-parentheses)"}),
     Case(
         "000-133",
         RECTANGLE,
@@ -453,6 +469,20 @@ BROKEN = [
         changes={"limits": {"c_feed": float(np.degrees(180 / 25))}},
     ),
     # ---- the GSK type ----
+    Case("003-13", GSK_1, {"N110 G12.1;": "N110 G12.1 U5. (expect: polar-shift-incremental)"}),
+    *(
+        Case("003-22", GSK_1, {"N110 G12.1;": f"N110 G12.1 {words} (expect: polar-axis-number-wrong)"})
+        for words in ("P0", "P1 Q99", "P3 Q3", "P1.5")
+    ),
+    *(
+        Case(
+            number,
+            GSK_2,
+            {"N000 T0202;": f"{units} T0202", "N110 G12.1 E8;": f"N110 G12.1 E{infeed} (expect: infeed-out-of-range)"},
+            changes=changes,
+        )
+        for number, units, infeed, changes in EDGES
+    ),
     Case("003-3", GSK_1, {"N110 G12.1;": "N110 G12.1 M8; (expect: polar-switch-not-alone)"}),
     Case(
         "003-9", GSK_1, {"N120 G42 G01 X80. F200;": "N120 G99 G42 G01 X80. F.2 (expect: feed-per-revolution-in-polar)"}
@@ -600,6 +630,11 @@ BROKEN = [
             "G17 G90 G94 G40 G97": "G17 G99 G40 G97 F.2",
         },
         changes={"control": {"g_code_system": "A"}},
+    ),
+    Case(
+        "004-17",
+        M700V,
+        PER_REVOLUTION | {"G1 G42 X20. F2000": "G1 G42 X20. F.2 (expect: feed-of-revolution-per-minute)"},
     ),
     Case("004-21", M700V, {"C10.": "C10. (expect: wrong-axis-address-in-polar)"}, changes={"parameters": {"1517": 0}}),
     Case("004-22", M700V, {"C10.": "Y10. (expect: wrong-axis-address-in-polar)"}, changes={"parameters": {"1517": 1}}),
