@@ -194,3 +194,30 @@ def test_a_shift_beside_the_switch_may_take_back_another(beside: str, told: list
     found = [finding.message for finding in report.findings if finding.rule == "origin-off-center"]
     assert len(found) == len(told)
     assert all(length in message for message, length in zip(found, told, strict=True))
+
+
+@pytest.mark.parametrize(
+    ("blocks", "x"),
+    [
+        ("G52 X2.", 58),
+        ("G52 X2.\nG52 X5.", 55),
+        ("G52 X2.\nG52 X0", 60),
+        ("G52 X2.\nG52 Z5.", 58),
+        ("G52 X-2.\nU1.", 63),
+        ("G52 X2.\nG0 X60.", 60),
+        ("G52 X#500", np.nan),
+        ("G52 X#500\nG0 X40.", 40),
+        ("G52 X#500\nG52 X0\nG0 X40.\nU1.", 41),
+    ],
+)
+def test_a_place_has_other_coordinates_after_g52(blocks: str, x: float) -> None:
+    """X0 is farther by the shift, so that the coordinate of where the tool stands is less."""
+    trace = trace_of(f"G98 G0 X60. C0\n{blocks}\nM30\n", "fanuc")
+    assert trace.x[-1] == pytest.approx(x / 2, nan_ok=True)
+
+
+def test_g52_before_the_mode_is_one_finding() -> None:
+    """Where the tool stands is known after it, so that nothing else is left open."""
+    report = report_of(SQUARE.replace("G12.1", "G52 X2.\nG12.1").replace("M30", "G52 X0\nM30"), "fanuc", TOOL)
+    assert said(report) == [(5, "origin-off-center")]
+    assert not [entry for entry in report.not_evaluated if entry.matters]

@@ -184,14 +184,6 @@ class Origin:
     # ---- G52, G50 ----
 
     @cached_property
-    def local(self) -> Floats:
-        """X of the G52 in force."""
-        trace = self.trace
-        written = trace.listed("local_shift") & trace.has("X")
-        shift = np.where(written, trace.length_of("X"), 0.0)
-        return fill_down(shift, written | trace.starts | self._is_preset, 0.0).astype(np.float64)
-
-    @cached_property
     def _is_preset(self) -> Mask:
         """X is that of the work offset again: what G52 and G50 (G92) have moved is taken back."""
         return self.trace.listed("coordinate_preset") & self.trace.has("X", "U")
@@ -235,7 +227,7 @@ class Origin:
         offsets = (self.work_offset, self.external, self.work_shift)
         return (
             *((x, functools.partial(self._of_offset, setter)) for x, setter in offsets),
-            (self.local, lambda row: self._code("local_shift")),
+            (self.trace.local_shift, lambda row: self._code("local_shift")),
             (self.coordinate_setting, lambda row: self._code("coordinate_setting")),
         )
 

@@ -201,8 +201,9 @@ class Positions(LinearAxis):
     def _forgets(self, axis: str, increment: str) -> Mask:
         """Rows after which an axis is not where its words say: references, shifts, cycles, blocks not executed."""
         named = self.has(axis, increment)
-        lost = self.listed("data_input", "reference_return", "local_shift", "machine_coordinates", "coordinate_preset")
-        lost = (lost | self.sets_coordinates) & named
+        lost = self.listed("data_input", "reference_return", "machine_coordinates", "coordinate_preset")
+        lost |= self.sets_coordinates | (self.listed("local_shift") & (axis != "X"))
+        lost &= named
         work_offset = self.state("work_offset")
         lost |= self.sets("work_offset") & (work_offset != before(work_offset, self.starts, 0))
         if axis in "XZ":
@@ -264,10 +265,24 @@ class Positions(LinearAxis):
     def _linear_coordinates(self) -> tuple[Floats, Floats]:
         """The linear axis of each row as _programmed gives an axis; X outside the mode."""
         absolute, steps = self._programmed("X", "U", self.x_factor, ~self.enters & (self.linear_axis == ord("X")))
+        shifted = np.diff(self.local_shift, prepend=0.0) * self.x_factor
+        # In the mode that is a finding, and changes nothing of what is meant.
+        steps = steps - np.where(self._shifts & (self.section < 0), shifted, 0.0)
         for axis in self.other_linear_axes:
             other = self._programmed(axis, INCREMENTS[axis], 1.0, self.in_polar & (self.linear_axis == ord(axis)))
             absolute, steps = np.where(np.isnan(absolute), other[0], absolute), steps + other[1]
         return absolute, steps
+
+    @cached_property
+    def local_shift(self) -> Floats:
+        """X of the G52 in force, as written [mm], by which the coordinate of a place is less; NaN where not known."""
+        shift = np.where(self.listed("local_shift"), self.length_of("X"), 0.0)
+        return fill_down(shift, self._shifts | self.starts, 0.0).astype(np.float64)
+
+    @cached_property
+    def _shifts(self) -> Mask:
+        """G52 with X, and what takes it back."""
+        return (self.listed("local_shift") & self.has("X")) | (self.listed("coordinate_preset") & self.has("X", "U"))
 
     def _alone(self, axis: str) -> Floats:
         """An axis after each row [mm] by what stands outside the mode."""
