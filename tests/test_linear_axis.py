@@ -127,7 +127,7 @@ def test_a_linear_axis_that_is_not_known(program: str, changes: dict[str, Any], 
     assert report.verdict == "unverified"
 
 
-@pytest.mark.parametrize("word", ["P7", "P1.5", "P0", "P4", "Q9", "Q1"])
+@pytest.mark.parametrize("word", ["P7", "P1.5", "P0", "P4", "Q9", "Q1", "P4 Q1", "P2 Q3", "P4 Q4", "P2 Q2", "P9 Q1"])
 def test_a_number_of_no_axis_is_one_finding(word: str) -> None:
     """After it the axes of the parameters are taken, and the section is judged."""
     report = report_of(
@@ -137,6 +137,31 @@ def test_a_number_of_no_axis_is_one_finding(word: str) -> None:
         changes=FOUR,
     )
     assert [rule for _, rule in said(report)] == ["polar-axis-number-wrong", "rapid-in-polar"]
+    assert not [entry for entry in report.not_evaluated if entry.matters]
+
+
+@pytest.mark.parametrize("words", ["P4 Q1", "P2 Q3", "P4", "Q1"])
+def test_an_axis_of_the_other_kind_is_none(words: str) -> None:
+    """5460 and 5461: the first must be a linear axis, the second a rotary one; what names them must be, too."""
+    report = report_of(SQUARE.replace("G12.1", f"G12.1 {words}"), "gsk-988", TOOL, changes=FOUR)
+    told = "P is the number of a linear axis and Q that of a rotary one, of 1 X, 2 Y, 3 Z, 4 C"
+    assert [finding.message.partition(": ")[2] for finding in report.findings] == [told]
+
+
+def test_numbers_of_axes_that_nobody_knows_are_not_those_of_the_machine() -> None:
+    """P3 Q1 may be right where control.axes is not given, and X and C are not its plane."""
+    report = report_of(SQUARE.replace("G12.1", "G12.1 P3 Q1"), "gsk-988", TOOL)
+    reasons = [entry.reason for entry in report.not_evaluated if entry.matters]
+    assert said(report) == []
+    assert [reason.partition(";")[0] for reason in reasons[1:]] == ["Q names another rotary axis than 3"]
+    assert reasons[0].startswith("P beside G12.1 is a linear axis that is not known")
+
+
+def test_p_alone_names_no_axis_of_the_plane() -> None:
+    """On a lathe whose G12.1 takes P and no Q it is the spindle: the section is judged as without it."""
+    program = SQUARE.replace("G98 ", "G98 G40 M200 ").replace("G12.1", "G12.1 P2").replace("F200", "F90000")
+    report = report_of(program, "mazak-eia", TOOL, changes={"limits": {"c_feed": 3600}})
+    assert "c-feed-above-limit" in [rule for _, rule in said(report)]
     assert not [entry for entry in report.not_evaluated if entry.matters]
 
 

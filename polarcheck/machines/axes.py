@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from polarcheck.machines.values import MOST_AXES
+
 #: Linear axes that are followed in the polar mode, and the addresses of their incremental words (B-62754EN/01).
 INCREMENTS = {"X": "U", "Y": "V", "Z": "W"}
-_LINEAR = frozenset("XYZUVW")
-_ROTARY = frozenset("ABC")
+#: Names of axes by their kind.
+_NAMES = {"linear": frozenset("XYZUVW"), "rotary": frozenset("ABC")}
 
 
 def check_axes(axes: Sequence[str], linear: int, rotary: int) -> None:
@@ -20,12 +22,19 @@ def check_axes(axes: Sequence[str], linear: int, rotary: int) -> None:
         return
     if len(set(axes)) < len(axes):
         raise ValueError(f"control.axes names {next(name for name in axes if axes.count(name) > 1)} twice")
-    for kind, number, names in (("linear", linear, _LINEAR), ("rotary", rotary, _ROTARY)):
+    for kind, number in (("linear", linear), ("rotary", rotary)):
         name = axis_of(axes, number)
         if not name:
             raise ValueError(f"polar.{kind}_axis is {number}, but control.axes names no more than {listed(axes)}")
-        if name not in names:
+        if name not in _NAMES[kind]:
             raise ValueError(f"polar.{kind}_axis is {number}, but {name} is no {kind} axis: axes are {listed(axes)}")
+
+
+def numbers_of(axes: Sequence[str], kind: str) -> list[int]:
+    """The numbers that an axis of a kind, linear or rotary, can have; those of every axis where no names are known."""
+    if not axes:
+        return list(range(1, MOST_AXES + 1))
+    return [number for number, name in enumerate(axes, 1) if name in _NAMES[kind]]
 
 
 def axis_of(axes: Sequence[str], number: float) -> str:

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from polarcheck.arrays import Floats, Mask, States
-from polarcheck.machines.axes import INCREMENTS
+from polarcheck.machines.axes import INCREMENTS, numbers_of
 from polarcheck.machines.machine import LinearAddress
 from polarcheck.machines.values import MOST_AXES
 from polarcheck.table.filling import fill_down
@@ -44,24 +44,35 @@ class LinearAxis(Lengths):
         """How many axes the control has: the highest number of one."""
         return len(self.machine.control.axes) or MOST_AXES
 
-    def _number(self, word: str, own: int, other: int) -> Floats:
-        """
-        Number of the axis that P or Q beside G12.1 means; that of the machine without it, and where the word names no
-        axis or the other one of the plane, which is a finding.
-        """
-        number = self.word(word) if word in self.machine.polar.words_beside_switch else np.full(len(self), np.nan)
-        is_axis = (number >= 1) & (number <= self.most_axes) & (number == np.rint(number)) & (number != other)
-        return np.where(is_axis, number, own)
+    @property
+    def takes_axes(self) -> bool:
+        """P and Q beside G12.1 name both axes; where it takes one of them alone that may be anything, as a spindle."""
+        return {"P", "Q"} <= set(self.machine.polar.words_beside_switch)
 
     @cached_property
+    def _axis_numbers(self) -> tuple[Floats, Floats]:
+        """
+        Numbers of the linear and of the rotary axis that a G12.1 in the row means by P and Q; those of the machine
+        without them, and where one of them gives no such axis, or both give one, which is a finding.
+        """
+        mode, axes = self.machine.polar, self.machine.control.axes
+        number = [np.full(len(self), float(axis)) for axis in (mode.linear_axis, mode.rotary_axis)]
+        if not self.takes_axes:
+            return number[0], number[1]
+        written = self.word("P"), self.word("Q")
+        p, q = (np.where(np.isnan(word), own, word) for word, own in zip(written, number, strict=True))
+        is_pair = np.isin(p, numbers_of(axes, "linear")) & np.isin(q, numbers_of(axes, "rotary")) & (p != q)
+        return np.where(is_pair, p, number[0]), np.where(is_pair, q, number[1])
+
+    @property
     def linear_number(self) -> Floats:
         """Number of the linear axis of a G12.1 in the row."""
-        return self._number("P", self.machine.polar.linear_axis, self.machine.polar.rotary_axis)
+        return self._axis_numbers[0]
 
-    @cached_property
+    @property
     def rotary_number(self) -> Floats:
         """Number of the rotary axis of a G12.1 in the row."""
-        return self._number("Q", self.machine.polar.rotary_axis, self.machine.polar.linear_axis)
+        return self._axis_numbers[1]
 
     @cached_property
     def _named_axis(self) -> States:

@@ -8,14 +8,14 @@ from functools import cached_property
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask
-from polarcheck.machines.axes import INCREMENTS
+from polarcheck.machines.axes import INCREMENTS, numbers_of
 from polarcheck.machines.modal import Distance
 from polarcheck.reading.words import NumberFault
 from polarcheck.table.infeed import CUT, Infeed
 from polarcheck.table.trace import Trace
 
-#: The words that name the linear and the rotary axis.
-_AXES = ("P", "Q")
+#: The words that name axes, each with the kind of its axis.
+_KINDS = {"P": "linear", "Q": "rotary"}
 
 
 class SwitchWords:
@@ -40,8 +40,8 @@ class SwitchWords:
 
     @cached_property
     def names_axis(self) -> Mask:
-        """Per word: P or Q where both name axes; where G12.1 takes one of them alone it may be anything."""
-        return self._beside(*_AXES) if set(_AXES) <= set(self._taken) else self._beside()
+        """Per word: P or Q where both name axes."""
+        return self._beside(*_KINDS) if self.trace.takes_axes else self._beside()
 
     @cached_property
     def names_no_axis(self) -> Mask:
@@ -65,9 +65,19 @@ class SwitchWords:
         return np.where(np.isnan(number), without, number)
 
     @cached_property
+    def names_axis_of_other_kind(self) -> Mask:
+        """Per word: P that names no linear axis, or Q that names no rotary one, by the names of the axes."""
+        words, axes = self.trace.run.words, self.trace.machine.control.axes
+        found = self.names_axis & ~self.names_no_axis
+        for address, kind in _KINDS.items():
+            found &= (words.address != ord(address)) | ~np.isin(words.value, numbers_of(axes, kind))
+        return np.asarray(found)
+
+    @cached_property
     def names_axis_twice(self) -> Mask:
         """Per word: P and Q of a G12.1 that makes one axis both linear and rotary."""
-        is_one = (self.linear_axis == self.rotary_axis) & ~self.trace.with_words(self.names_no_axis)
+        other_fault = self.names_no_axis | self.names_axis_of_other_kind
+        is_one = (self.linear_axis == self.rotary_axis) & ~self.trace.with_words(other_fault)
         return np.asarray(self.names_axis & is_one[self.trace.run.row])
 
     # ---- the shift of the center ----

@@ -9,6 +9,7 @@ from polarcheck.checking.other_machine import NAMED, OtherMachine
 from polarcheck.checking.phrases.common import codes, executed_word, outside, switch_off, written
 from polarcheck.checking.places import block_in_line
 from polarcheck.checking.quantity import in_row
+from polarcheck.machines.axes import listed
 from polarcheck.machines.codes import spelled
 from polarcheck.machines.machine import Machine
 from polarcheck.machines.modal import Motion, Side
@@ -174,6 +175,8 @@ def absolute(switch_words: SwitchWords) -> str:
 
 def axis_fault(trace: Trace, switch_words: SwitchWords, row: int) -> str:
     """Why P or Q of a G12.1 are no pair of axes."""
+    if trace.with_words(switch_words.names_axis_of_other_kind)[row]:
+        return f"P is the number of a linear axis and Q that of a rotary one, of {listed(trace.machine.control.axes)}"
     if not trace.with_words(switch_words.names_no_axis)[row]:
         both = f"would be both the linear and the rotary axis; without P it is {trace.machine.polar.linear_axis}"
         return f"axis {switch_words.linear_axis[row]:.0f} {both}, without Q {trace.machine.polar.rotary_axis}"

@@ -10,7 +10,8 @@ def polar_axis_number_wrong(trace: Trace, switch_words: SwitchWords) -> Hits:
 
     Beside G12.1 some controls take the number of the linear axis in P and that of the rotary axis in Q; without them
     those of the parameters count, polar.linear_axis and polar.rotary_axis of the profile. Both are whole numbers from 1
-    to the number of axes, and one axis cannot be both.
+    to the number of axes, and one axis cannot be both. Where control.axes gives the names of the axes, P must be one of
+    X, Y, Z, U, V, W, and Q one of A, B, C.
 
     Source: GSK 988, description of G12.1 IP P Q E, table of ranges; parameters 5460 and 5461.
 
@@ -32,6 +33,15 @@ def polar_axis_number_wrong(trace: Trace, switch_words: SwitchWords) -> Hits:
         X60.
         G13.1
 
+    Bad, machine gsk-988, set control.axes=["X", "Z", "C"]:
+
+        G98 G0 X60. C0
+        G12.1 P3 Q1       (expect: polar-axis-number-wrong)
+        G1 X40. F200
+        C10.
+        X60.
+        G13.1
+
     Good, machine gsk-988:
 
         G98 G0 X60. C0
@@ -41,5 +51,5 @@ def polar_axis_number_wrong(trace: Trace, switch_words: SwitchWords) -> Hits:
         X60.
         G13.1
     """
-    found = switch_words.names_no_axis | switch_words.names_axis_twice
+    found = switch_words.names_no_axis | switch_words.names_axis_of_other_kind | switch_words.names_axis_twice
     return Hits(trace.with_words(found), at=found)
