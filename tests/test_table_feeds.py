@@ -147,6 +147,9 @@ def told(blocks: str, machine: str, system: str = "") -> list[tuple[int, str]]:
         ("G95 G0 X60. Z2. C0/G1 Z1. F.1/G12.1/G1 X40. F.1/C5./G13.1", M700, 5, "0.1"),
         ("G95 G0 X60. Z2. C0/G1 Z1. F2./G12.1/G1 X40. F2./C5./G13.1", M700, 5, "2"),
         ("G95 G0 X60. Z2. C0/G1 Z1. F.1/G12.1/G1 Z-1. F.15/X40. F200/C5./G13.1", M700, 5, "0.15"),
+        # A code of feed per revolution in the mode, and an F that could be nothing else.
+        ("G94 G0 X60. Z2. C0/G12.1/G95 G1 X40. F.2/C5./G13.1", M700, 4, "0.2"),
+        ("G95 G0 X60. Z2. C0/G12.1/G1 X40. F.2/C5./G13.1", M700, 4, "0.2"),
         # The F of before is taken over, since feed per minute is in force at G12.1.
         ("G95 G0 X60. Z2. C0/G1 Z1. F.1/G94/G12.1/G1 X40./C5./G13.1", M700, 6, "0.1"),
         ("G95 G0 X60. Z2. C0/G1 Z1. F.1/G94/G12.1/G1 Z-1./X40./C5./G13.1", M700, 6, "0.1"),
@@ -174,6 +177,8 @@ def test_the_same_with_g98_and_g99_of_the_other_list_of_codes() -> None:
         ("G95 G0 X60. Z2. C0/G1 Z1. F.1/G12.1/G1 X40. F2./C5./G13.1", M700),  # slow, and not the F of before
         ("G95 G0 X60. Z2. C0/G1 Z1. F.1/G12.1/G1 X40./C5./G13.1", M700),  # P62, and nothing moves
         ("G94 G0 X60. Z2. C0/G1 Z1. F.5/G12.1/G1 X40./C5./G13.1", M700),  # nothing is per revolution
+        ("G94 G0 X60. Z2. C0/G12.1/G95 G1 X40. F200/C5./G13.1", M700),  # as every F of the mode
+        ("G94 G0 X60. Z2. C0/G12.1/G1 X40. F.5/C5./G13.1/G95 G1 X60. F100", M700),
         ("G99 G0 X60. Z2. C0/G1 Z1. F200/G98/G12.1/G1 X40./C5./G13.1", "fanuc"),  # G98 forgotten above, put right
         ("G99 G0 X60. Z2. C0/G1 Z1. F.1/G98 F200/G12.1/G1 X40./C5./G13.1", "fanuc"),
         ("G99 G0 X60. Z2. C0/G1 Z1. F.1/G12.1/G1 X40./C5./G13.1", "fanuc"),  # per revolution still

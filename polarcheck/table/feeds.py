@@ -84,7 +84,8 @@ class Feeds:
     @cached_property
     def looks_per_revolution(self) -> Mask:
         """
-        F in force is per minute, and as small as one per revolution, of which the program has some.
+        F in force is per minute, and as small as one per revolution, of which the program has some, or of which a code
+        in force in the mode speaks, to a control that reads every F of the mode per minute.
 
         Where no code says that it is per minute, but the mode alone, the same F as before it is that up to higher ones.
         """
@@ -93,7 +94,8 @@ class Feeds:
         number = fill_down(np.where(written, trace.written_feed, np.nan), written | trace.starts, np.nan)
         same = np.isclose(trace.feed_number, number, rtol=1e-9, atol=0) & trace.entered_per_revolution
         same &= trace.takes_over_per_minute_only
-        is_small = ~self._is_at_least(_NOT_PER_MINUTE) & ~np.isnan(number)
+        says = trace.in_polar & (trace.modal_feed_mode == FeedMode.PER_REVOLUTION)
+        is_small = ~self._is_at_least(_NOT_PER_MINUTE) & (~np.isnan(number) | says)
         is_small |= same & ~self.is_too_high_per_revolution
         return np.asarray(is_small & trace.per_minute & ~self.is_left_per_revolution)
 

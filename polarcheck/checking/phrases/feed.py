@@ -7,6 +7,7 @@ import numpy as np
 from polarcheck.checking.phrases.common import code_of, executed_word
 from polarcheck.checking.quantity import in_row
 from polarcheck.machines.machine import Machine
+from polarcheck.machines.modal import FeedMode
 from polarcheck.table.center import Center
 from polarcheck.table.feed_ranges import FeedRanges
 from polarcheck.table.feeds import Feeds
@@ -86,8 +87,9 @@ def left_over(trace: Trace, feeds: Feeds, row: int) -> str:
     written = feed_word(trace, row)
     if feeds.is_left_per_revolution[row]:
         return f"{written} was written for feed per revolution and is still in force"
-    if trace.entered_per_revolution[row] and trace.takes_over_per_minute_only:
-        return f"{written} is per minute, as every F of the mode on this control, whatever is in force before it"
+    is_asked = trace.entered_per_revolution[row] or trace.modal_feed_mode[row] == FeedMode.PER_REVOLUTION
+    if is_asked and trace.takes_over_per_minute_only:
+        return f"{written} is per minute, as every F of the mode on this control, whatever code is in force"
     return f"{written} is per minute now, and as small as one per revolution"
 
 
