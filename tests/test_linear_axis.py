@@ -181,6 +181,31 @@ def test_x_beside_another_linear_axis_moves_by_itself() -> None:
     )
 
 
+@pytest.mark.parametrize("entry", ["C0 Z2.", "C0 Y75. Z2.", "C0 Z75."])
+@pytest.mark.parametrize("axis", ["Y", "Z"])
+@pytest.mark.parametrize("control", ["gsk-988", "mitsubishi-m700", "fanuc-30i"])
+def test_a_section_in_x_beside_another_linear_axis_is_one_mistake(control: str, axis: str, entry: str) -> None:
+    """P2, 5460 = 2 or 1533 = Y, and every word of the contour is one of X."""
+    program = SQUARE.replace("C0 Z0", entry)
+    changes = changed(FOUR, {"limits": {"c_feed": 20}})
+    if control == "gsk-988":
+        program = program.replace("G12.1", f"G12.1 P{'XYZ'.index(axis) + 1}")
+    elif control == "fanuc-30i":
+        changes = changed(changes, {"parameters": {"5460": "XYZ".index(axis) + 1}})
+    else:
+        program, changes = program.replace("G98", "G94 G90"), {"parameters": {"1533": axis}}
+    (finding,) = report_of(program, control, TOOL, changes=changes).findings
+    assert (finding.rule, finding.line, finding.alarm) == ("linear-axis-never-programmed", 4, None)
+    assert finding.message.startswith(f"no {axis} word in this section, whose linear axis is {axis}: X moves beside")
+
+
+def test_one_word_of_the_linear_axis_tells_that_it_is_meant() -> None:
+    """C alone, X alone to the depth, and a section that moves nothing are no contour in X."""
+    program = "O1\nT0202\nG98 G0 Y75. X150. C0\nG12.1 P2\nG1 {} F200\n{}\nG13.1\nM30\n"
+    for words in (("Y70.", "X140. C5."), ("X140.", "X150."), ("C5.", "C0")):
+        assert said(report_of(program.format(*words), "gsk-988", TOOL, changes=FOUR)) == []
+
+
 def test_after_the_shift_x_stands_where_the_program_has_it() -> None:
     """G13.1 leaves X as far from the center of C as it is, in the coordinates of the program."""
     trace = trace_of("G98 G0 X60. C0\nG12.1 X10. C5.\nG1 X50. C20. F100\nX-10.\nG13.1\nU2.\n", "gsk-988")

@@ -5,6 +5,7 @@ SECTION_READ_OTHERWISE = (
     "wrong-axis-address-in-polar",
     "diameter-radius-mixed",
     "second-axis-never-programmed",
+    "linear-axis-never-programmed",
 )
 #: An arc whose end may be what is wrong, and then what begins there is, too.
 END_IN_DOUBT = (

@@ -208,6 +208,11 @@ def misfit_of_pass(trace: Trace, infeed: Infeed, row: int) -> str:
     return f"already {in_row(offset, trace, row):length} off it{tool} there is no way along {where}"
 
 
+def first_axis(trace: Trace, index: int) -> str:
+    """The linear axis of a section."""
+    return chr(int(trace.linear_axis[trace.sections.enter[index]]))
+
+
 def what(trace: Trace, arcs: Arcs, index: int) -> str:
     """What becomes of a section without the second axis."""
     off = int(trace.count_in_section(arcs.is_no_circle)[index])

@@ -3,7 +3,11 @@ from __future__ import annotations
 from polarcheck.checking.rule import ERROR, Arcs, Hits, Trace, rule
 
 
-@rule(ERROR, "{word} is not of the polar plane; the center is {center}", follows={"block": ("arc-off-polar-plane",)})
+@rule(
+    ERROR,
+    "{word} is not of the polar plane; the center is {center}",
+    follows={"block": ("arc-off-polar-plane",), "section": ("linear-axis-never-programmed",)},
+)
 def arc_word_of_other_plane(trace: Trace, arcs: Arcs) -> Hits:
     """
     Center of an arc with K.

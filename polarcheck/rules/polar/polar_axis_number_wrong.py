@@ -33,15 +33,6 @@ def polar_axis_number_wrong(trace: Trace, switch_words: SwitchWords) -> Hits:
         X60.
         G13.1
 
-    Bad, machine gsk-988, set control.axes=["X", "Z", "C"]:
-
-        G98 G0 X60. C0
-        G12.1 P3 Q1       (expect: polar-axis-number-wrong)
-        G1 X40. F200
-        C10.
-        X60.
-        G13.1
-
     Good, machine gsk-988:
 
         G98 G0 X60. C0

@@ -1,0 +1,44 @@
+from __future__ import annotations
+
+from polarcheck.checking.rule import ERROR, Mask, Sections, Trace, rule
+
+
+@rule(
+    ERROR,
+    "no {first_axis} word in this section, whose linear axis is {first_axis}: X moves beside the polar plane, not on "
+    "it; write {first_axis}, or make X the linear axis",
+    over="sections",
+    at=("on",),
+)
+def linear_axis_never_programmed(trace: Trace, sections: Sections) -> Mask:
+    """
+    Section whose linear axis is another than X, written in X.
+
+    P beside G12.1, or a parameter (5460, on Mitsubishi 1533), makes Y or Z the linear axis of the polar plane. X is one
+    of the other axes then: it moves by itself, and the rotary axis turns about a linear axis that stands still. Write
+    the contour in the linear axis that is named, or name X. One finding stands for all that is wrong with the path.
+
+    Source: GSK 988, description of G12.1 IP P Q E; B-62764EN/01, p. 51: axes that are not in the plane move normally.
+
+    Bad, machine gsk-988, set polar.linear_address="Y":
+
+        G98 G0 X60. Y40. C0
+        G12.1             (expect: linear-axis-never-programmed)
+        G1 X40. F200
+        C10.
+        X60.
+        G13.1
+
+    Good, machine gsk-988, set polar.linear_address="Y":
+
+        G98 G0 X60. Y40. C0
+        G12.1
+        G1 Y20. F200
+        C10.
+        X58.
+        Y40.
+        G13.1
+    """
+    beside = trace.has("X", "U") & trace.uses_axes & trace.in_polar & (trace.linear_axis != ord("X"))
+    is_meant = trace.anywhere_in_section(beside) & trace.anywhere_in_section(trace.programs_virtual_axis)
+    return (is_meant & ~trace.anywhere_in_section(trace.programs_linear_axis))[sections.enter]
