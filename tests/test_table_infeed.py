@@ -38,6 +38,24 @@ def test_depth_in_inch() -> None:
     assert table("G20\n" + SQUARE.format("E.1", "C0")).depth[ENTRY + 1] == pytest.approx(2.54)
 
 
+@pytest.mark.parametrize(
+    ("number", "written", "depth", "is_told"),
+    [
+        ("least-increment", "E4000", 4.0, True),
+        ("least-increment", "E4", 4.0, True),
+        ("least-increment", "E4.", 4.0, False),
+        ("whole-unit", "E4", 4.0, False),
+    ],
+)
+def test_depth_without_a_point(number: str, written: str, depth: float, is_told: bool) -> None:
+    """As X and C: a large number counts least increments, a small one is a slip, each with its finding."""
+    program = SQUARE.format(written, "C0.").replace("C0\n", "C0.\n", 1)
+    changes = {"control": {"number_without_point": number}}
+    infeed = tables_of(program, "gsk-988", changes=changes)["infeed"]
+    assert infeed.depth[ENTRY] == pytest.approx(depth)
+    assert said(report_of(program, "gsk-988", changes=changes)) == [(2, "number-without-point")] * is_told
+
+
 def test_depth_is_that_of_the_section_beginning() -> None:
     infeed = table("E1.\nG12.1\nG1 X10. E2.\nG13.1 E3.\n")
     assert not infeed.depth.any()

@@ -69,9 +69,13 @@ class Unpointed:
 
     @cached_property
     def _sections(self) -> Rows:
-        """The section of each row of the mode and of the rows that position X and C for it; -1 of all others."""
+        """
+        The section of each row of the mode and of the rows that position X and C for it, and of its G12.1 where the
+        control takes words beside it; -1 of all others.
+        """
         trace = self.trace
-        column = np.where(trace.in_polar, trace.section, -1)
+        takes_words = bool(trace.machine.polar.words_beside_switch)
+        column = np.where(trace.in_polar | (trace.enters & takes_words), trace.section, -1)
         enter = trace.sections.enter
         for addresses in (("X", "U"), ("C", "H")):
             rows = np.append(-1, np.flatnonzero(trace.uses_axes & trace.has(*addresses) & ~trace.in_polar))
