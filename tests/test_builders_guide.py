@@ -84,10 +84,25 @@ def test_an_arc_of_c_belongs_into_the_mode(between: str) -> None:
         "O1\nG98 T0101\nG0 X60. C0\nG1 X50. F50\nC90. F500\nC0\nX60.\nG40 G13.1\nM30\n",
         "O1\nG98 T0101\nG0 X60. C0\nG1 X50. F50\nC90. F500\nC0\nX60.\nT0202\nG13.1\nM30\n",
         "O1\nG98 T0101\nG0 X60. C0\nG1 C90. F500\nC0\nZ1.\nG13.1\nM30\n",
+        # So is one that the tool leaves at feed, a helix, a spiral on the face: as lengths these C lie far outside.
+        "O1\nG98 T0101\nG0 X62. C0\nG1 X58. F50\nC45. F800.\nC-45.\nX62.\nG13.1\nM30\n",
+        "O1\nG98 T0101\nG0 X62. C0\nG1 X58. F50\nH-90. F800.\nH90.\nX62.\nG13.1\nM30\n",
+        "O1\nG20 G98 T0101\nG0 X1.5 C0\nG1 X1.2 F4.\nC90. F300.\nC0\nX1.5 F40.\nG13.1\nM30\n",
+        "O1\nG98 T0101\nG0 X62. C0\nG1 X58. F50\nZ-30. C360. F800.\nC720.\nX62.\nG13.1\nM30\n",
+        "O1\nG98 T0101\nG0 X62. Z2. C0\nG1 Z-.2 F50\nX20. C3600. F800.\nC3960.\nX62.\nG13.1\nM30\n",
     ],
 )
 def test_what_is_no_contour_needs_no_g12_1(program: str) -> None:
     assert "polar-never-entered" not in [rule for _, rule in said(report_of(program, "fanuc"))]
+
+
+@pytest.mark.parametrize(("x", "c"), [("100.", "45."), ("80.", "55."), ("40.", "30.")])
+def test_a_rectangle_longer_than_its_approach_is_a_contour(x: str, c: str) -> None:
+    """C of a narrow one may pass X; no angle does so where X goes below 0."""
+    contour = f"G1 C{c} F500.\nX20. F200.\nC-{c}\nX-20.\nC{c}\nX{x} F500.\nG13.1\nM30\n"
+    program = f"O1\nG98 T0101\nG0 X{x} Z2. C0\n{contour}"
+    assert errors_and_warnings(program, "1:radius=0", machine="fanuc") == [("G13.1", "polar-never-entered")]
+    assert errors_and_warnings(program.replace("G1 C", "G12.1\nG1 C"), "1:radius=0", machine="fanuc") == []
 
 
 # ---- the live tool ----

@@ -15,6 +15,8 @@ from polarcheck.table.trace import Trace
 _ROTARY = "C"
 #: So many moves of C at feed, with one of X among them, are a contour; one alone is a groove or a position.
 _MOVES_OF_CONTOUR = 2
+#: C of a contour hardly passes the X from which it is approached; as a length, an angle of the C axis does. Its share.
+_FARTHEST_C = 1.25
 #: Below these F is no feed per minute but one per revolution: without the live tool, and with it [mm].
 _LEAST_OF_TURNING, _LEAST_OF_LIVE_TOOL = 5.0, 1.0
 _AT_FEED = (Motion.LINE, Motion.CW, Motion.CCW)
@@ -34,8 +36,8 @@ class Procedure:
         The first row above in which C moves at feed as on a contour, outside the mode and known to be so; -1 for none.
 
         It is a contour with G41 or G42, on an arc, or where at least two moves of C and one of X lead at feed right up
-        to the row. Looked for back to the last tool change, G12.1 or G13.1, and only if a G13.1 stands outside
-        sections. Beside G7.1 C is the radius of a cylinder, on which offset mode may move C.
+        to the row, and C may be a length there. Looked for back to the last tool change, G12.1 or G13.1, and only if a
+        G13.1 stands outside sections. Beside G7.1 C is the radius of a cylinder, on which offset mode may move C.
         """
         trace = self.trace
         if not np.any(trace.switches_off & ~trace.leaves):
@@ -86,7 +88,24 @@ class Procedure:
         along_x = np.isin(trace.motion, _AT_FEED) & trace.has("X", "U")
         turning, moving = (before(_count(mask, stops), trace.starts, 0) for mask in (plane, along_x))
         first = _first(plane, stops, trace.starts)
-        return np.where((turning >= _MOVES_OF_CONTOUR) & (moving > 0), first, -1)
+        is_contour = (turning >= _MOVES_OF_CONTOUR) & (moving > 0) & ~self._is_angle(plane, stops)
+        return np.where(is_contour, first, -1)
+
+    def _is_angle(self, plane: Mask, stops: Mask) -> Mask:
+        """
+        C of the stretch up to the row above would lie far outside the part as a length: it is meant in degrees.
+
+        Not where X goes below 0, as it does in the mode alone.
+        """
+        trace, mode = self.trace, self.trace.machine.polar
+        stretch = np.cumsum(stops)
+        longest, farthest = np.zeros((2, len(trace) + 1))
+        for address in (mode.virtual_axis, mode.virtual_axis_incremental):
+            rows = np.flatnonzero(plane & trace.has(address))
+            np.fmax.at(longest, stretch[rows], np.abs(trace.length_of(address)[rows]))
+        np.fmax.at(farthest, stretch, np.where(trace.x < 0, np.inf, trace.x))
+        is_angle = (farthest > 0) & (longest > _FARTHEST_C * farthest)
+        return before(is_angle[stretch], trace.starts, False)
 
     # ---- the live tool ----
 

@@ -15,8 +15,9 @@ def polar_never_entered(trace: Trace, procedure: Procedure) -> Mask:
 
     Cutter compensation and moves of C at feed belong into the polar mode. Without its G12.1 the control takes C as an
     angle, and compensates in another plane or stops: the shape is not cut. Write G12.1 before G41 or G42. Without them
-    an arc of C tells the same, and so do moves of X and C at feed that lead right up to the G13.1. A G13.1 for safety,
-    at the head of a program or of a tool, ends nothing and is right.
+    an arc of C tells the same, and so do moves of X and C at feed that lead right up to the G13.1, unless C would lie
+    far outside X as a length, as in a groove round the diameter. A G13.1 for safety, at the head of a program or of a
+    tool, ends nothing and is right.
 
     Source: FANUC B-62764EN/01, p. 50; builder's guide to G12.1, cutter compensation in the mode.
 
@@ -70,6 +71,18 @@ def polar_never_entered(trace: Trace, procedure: Procedure) -> Mask:
         C180.
         X60.
         G0 X100. Z50.
+        G13.1
+        M30
+
+    Good:
+
+        O1
+        T0101
+        G98 G0 X62. Z-20. C0
+        G1 X58. F50
+        C45. F800
+        C-45.
+        X62.
         G13.1
         M30
 
