@@ -144,6 +144,17 @@ def test_a_speed_that_may_be_meant_for_the_live_tool_is_enough(right: str) -> No
     assert "live-tool-without-speed" not in [rule for _, rule, _ in found(right, "8:radius=0", "1:radius=.25")]
 
 
+@pytest.mark.parametrize(
+    ("old", "new", "follows"),
+    [("S2000", "S#100", "live-tool-without-speed"), ("C.5339 F60.", "C.5339 F#100", "feed-missing-in-polar")],
+)
+def test_a_variable_that_was_never_set_is_one_finding(old: str, new: str, follows: str) -> None:
+    """What the control drops is missing: S of the live tool, F of the first move."""
+    report = report_of(SAMPLE.replace(old, new, 1), MACHINE, "8:radius=0")
+    [finding] = [one for one in report.findings if one.severity != "note"]
+    assert (finding.rule, [one.rule for one in finding.follows]) == ("vacant-variable", [follows])
+
+
 NEXT_TOOL = "M1\nT0202\nM35\nG0 X5. Z5.\nM30\n"
 
 
@@ -214,7 +225,7 @@ def test_it_is_carried_within_the_work_of_the_mill_too() -> None:
     wrong = CARRIED.replace("G0 X2.5\n", "G0 X2.5\nG1 Z-.5 F.008\nG0\n")
     assert errors_and_warnings(wrong, "8:radius=0") == [("G1 Z-.5 F.008", "turning-feed-not-restored")]
     said_of_it = message(wrong, "turning-feed-not-restored", "8:radius=0")
-    assert said_of_it.startswith("F.008 is 0.008 inch a minute in this turning move: G98 of line 14 is still in force")
+    assert said_of_it.startswith("F.008 is 0.008 inch a minute in this move: G98 of line 14 is still in force")
 
 
 def test_a_program_in_mm_is_judged_alike() -> None:
@@ -393,6 +404,23 @@ def test_g41_belongs_beside_the_move_that_begins_the_offset(program: str, old: s
     assert "start-up-without-move" not in {
         rule for _, rule, _ in found(program.replace(old, new, 1), "8:radius=0", "1:radius=.25", machine="fanuc")
     }
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "reason"),
+    [
+        ("X2.15\n", "X2.15\nG10 P8 U-.005\n", "G10 P8 U-.005 in line 12 leaves open where X stands"),
+        ("X2.15\n", "X2.15\nG55\n", "G55 in line 12 leaves open where X stands"),
+        ("X2.15\n", "X2.15\nG28 U0\n", "G28 U0 in line 12 leaves open where X stands"),
+        ("X2.15\n", "X#500\n", "X#500 in line 11 leaves open where X stands"),
+        ("X2.15\n", "", "X was not programmed before the polar mode"),
+    ],
+)
+def test_what_leaves_the_position_open_is_named(old: str, new: str, reason: str) -> None:
+    program = SAMPLE.replace("G30 U0 W0\n", "", 1).replace(old, new, 1)
+    reasons = {one.reason for one in report_of(program, MACHINE, "8:radius=.05", "8:nose=0").not_evaluated}
+    remedy = "before it" if "not programmed" in reason else "after it"
+    assert f"the position is not known: {reason}; write G0 X... {remedy}" in reasons
 
 
 def test_a_start_up_that_is_too_short_is_one_finding() -> None:

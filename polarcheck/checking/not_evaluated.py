@@ -232,6 +232,11 @@ def _position(trace: Trace, row: int) -> str:
     lost = np.flatnonzero((trace.run.unknown & (trace.program == trace.program[row]))[: row + 1])
     if not len(lost):
         axis = chr(trace.linear_axis[row])
+        loses = np.isnan(trace.x) & (~np.isnan(trace.x_before) | (trace.uses_axes & trace.has(axis)))
+        loses &= trace.program == trace.program[row]
+        if loses[: row + 1].any():
+            setting = block_and_line(trace, int(np.flatnonzero(loses[: row + 1])[-1]))
+            return f"the position is not known: {setting} leaves open where {axis} stands; write G0 {axis}... after it"
         return (
             f"the position is not known: {axis} was not programmed before the polar mode; write G0 {axis}... before it"
         )

@@ -3,7 +3,12 @@ from __future__ import annotations
 from polarcheck.checking.rule import ERROR, Feeds, Mask, Trace, rule
 
 
-@rule(ERROR, "cutting move without F: none is in force", at=("line", "arc_clockwise", "arc_counterclockwise", "F"))
+@rule(
+    ERROR,
+    "cutting move without F: none is in force",
+    at=("line", "arc_clockwise", "arc_counterclockwise", "F"),
+    follows={"block": ("vacant-variable",)},
+)
 def feed_missing_in_polar(trace: Trace, feeds: Feeds) -> Mask:
     """
     Cutting move without a feed.

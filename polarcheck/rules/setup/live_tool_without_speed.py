@@ -5,8 +5,10 @@ from polarcheck.checking.rule import WARNING, Hits, Machine, Procedure, Trace, r
 
 @rule(
     WARNING,
-    "{word} starts the live tool, and no S was given for it: it turns as it did last, or not at all; write S before it",
+    "{word} starts the live tool, and no S above 0 was given for it: it turns as it did last, or not at all; "
+    "write S before it",
     once="program",
+    follows={"block": ("vacant-variable",)},
 )
 def live_tool_without_speed(trace: Trace, procedure: Procedure, machine: Machine) -> Hits:
     """
