@@ -109,6 +109,8 @@ def test_a_rectangle_longer_than_its_approach_is_a_contour(x: str, c: str) -> No
 
 TURNED = "T0101\nG50 S3000\n{}\nG99 G0 X1. Z.1\nG1 Z-1. F.01\nG0 X5. Z5.\nM5\nM35\n"
 
+AGAIN = SAMPLE.replace("%\nO0001\n", "M34\n{}").replace("S2000 ", "")
+
 
 @pytest.mark.parametrize(
     ("wrong", "block"),
@@ -119,6 +121,9 @@ TURNED = "T0101\nG50 S3000\n{}\nG99 G0 X1. Z.1\nG1 Z-1. F.01\nG0 X5. Z5.\nM5\nM3
         # What was given was for the main spindle, or is a limit of its speed.
         (SAMPLE.replace("S2000 ", "").replace("M5\nM35\n", TURNED.format("G96 S200 M3"), 1), "G97 M33"),
         (SAMPLE.replace("S2000 ", "").replace("M5\nM35\n", TURNED.format("G97 S800\nM3"), 1), "G97 M33"),
+        # It had its own before the main spindle took its.
+        (METHOD_A.replace("M30\n%\n", "") + AGAIN.format(TURNED.format("G97 S800 M3")), "G97 M33"),
+        (METHOD_A.replace("M30\n%\n", "") + AGAIN.format(TURNED.format("G96 S200 M3")), "G97 M33"),
     ],
 )
 def test_a_live_tool_wants_its_speed(wrong: str, block: str) -> None:

@@ -112,10 +112,11 @@ class Procedure:
     @cached_property
     def live_tool_without_speed(self) -> Mask:
         """
-        The live tool is started in a program with a section, and up to the first move at feed no S was given for it.
+        The live tool is started in a program with a section, and up to the first move at feed no S in force is for it.
 
-        S is for the live tool if that starts next or runs; one that the main spindle starts with is not, nor is the
-        limit of G50, a surface speed, or S0. What stands before an excerpt without T may have given it.
+        S is for the live tool if that starts next or runs; one that the main spindle starts with is not, and takes the
+        place of what was, nor is a surface speed, or S0. The limit of G50 is no speed. What stands before an excerpt
+        without T may have given it.
         """
         trace, codes = self.trace, self.trace.machine.m_codes
         started = trace.codes(*codes.live_tool_on)
@@ -126,8 +127,10 @@ class Procedure:
         rows = np.arange(len(trace))
         following = of_live_tool[np.searchsorted(begins, rows)]
         running = of_live_tool[np.searchsorted(begins, rows, side="right") - 1]
-        is_speed = ~(trace.word("S") == 0) & ~trace.sets_coordinates & (started | (trace.state("speed") == 0))
-        given = _happened((trace.has("S") & is_speed & (following | running)) | trace.run.unknown, trace.starts)
+        is_speed = ~(trace.word("S") == 0) & (started | (trace.state("speed") == 0))
+        takes = (trace.has("S") & ~trace.sets_coordinates) | trace.run.unknown
+        is_own = (is_speed & (following | running)) | trace.run.unknown
+        given = fill_down(takes & is_own, takes | trace.starts, False).astype(bool)
         ends = np.isin(trace.motion, _AT_FEED) | trace.codes(*codes.live_tool_off) | trace.ends_program
         until = np.append(np.flatnonzero(ends), len(trace) - 1)[np.searchsorted(np.flatnonzero(ends), rows)]
         known = (trace.whole_program | trace.has_called_tool) & trace.anywhere_in_program(trace.enters)

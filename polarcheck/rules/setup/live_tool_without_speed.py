@@ -5,8 +5,8 @@ from polarcheck.checking.rule import WARNING, Hits, Machine, Procedure, Trace, r
 
 @rule(
     WARNING,
-    "{word} starts the live tool, and no S above 0 was given for it: it turns as it did last, or not at all; "
-    "write S before it",
+    "{word} starts the live tool, and no S above 0 that was given for it is in force: it turns at another speed, or "
+    "not at all; write S before it",
     once="program",
     follows={"block": ("vacant-variable",)},
 )
@@ -16,7 +16,8 @@ def live_tool_without_speed(trace: Trace, procedure: Procedure, machine: Machine
 
     The code that starts the live tool takes the S in force. Where the program gives none for it, that is the speed of
     the job before, or 0, and the cutter is pressed into the part without turning. An S with which the main spindle was
-    started is not meant for it, nor is the limit of G50. Write S beside the code: `G97 S2000 M33`.
+    started is not meant for it, and takes the place of what was; nor is the limit of G50. Write S beside the code:
+    `G97 S2000 M33`.
 
     Source: builder's guide to G12.1, sample program: live tool spindle ON.
 
