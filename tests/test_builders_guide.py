@@ -419,6 +419,7 @@ def test_g41_belongs_beside_the_move_that_begins_the_offset(program: str, old: s
         ("X2.15\n", "X2.15\nG28 U0\n", "G28 U0 in line 12 leaves open where X stands"),
         ("X2.15\n", "X#500\n", "X#500 in line 11 leaves open where X stands"),
         ("X2.15\n", "", "X was not programmed before the polar mode"),
+        ("X2.15\nG12.1\n", "G12.1 X2.15\n", "X was not programmed before the polar mode"),
     ],
 )
 def test_what_leaves_the_position_open_is_named(old: str, new: str, reason: str) -> None:

@@ -233,7 +233,7 @@ def _position(trace: Trace, row: int) -> str:
     if not len(lost):
         axis = chr(trace.linear_axis[row])
         loses = np.isnan(trace.x) & (~np.isnan(trace.x_before) | (trace.uses_axes & trace.has(axis)))
-        loses &= trace.program == trace.program[row]
+        loses &= (trace.program == trace.program[row]) & ~trace.in_polar & ~trace.enters
         if loses[: row + 1].any():
             setting = block_and_line(trace, int(np.flatnonzero(loses[: row + 1])[-1]))
             return f"the position is not known: {setting} leaves open where {axis} stands; write G0 {axis}... after it"
