@@ -39,6 +39,24 @@ def test_depth_in_inch() -> None:
 
 
 @pytest.mark.parametrize(
+    ("second", "entry", "reasons"),
+    [
+        ("", "E4.", 0),
+        ("G42 X50.\nC25.\nX-50.\nC-25.\nX50.\nC0\nG40 X100.\n", "E4.", 1),
+        ("G42 X50.\nC25.\nX-50.\nC-25.\nX50.\nC0\nG40 X100.\n", "", 0),
+        ("X120.\nX100.\n", "E4.", 0),
+    ],
+)
+def test_a_second_contour_of_a_cycle_is_told(second: str, entry: str, reasons: int) -> None:
+    """What the control makes of it the description does not say, so that nobody has looked at its passes."""
+    contour = "G42 G1 X60. F200\nC30.\nX-60.\nC-30.\nX60.\nC0\nG40 X100.\n"
+    program = f"T0202\nG98 G0 X100. C0\nG12.1 {entry}\n{contour}{second}G13.1\n"
+    report = report_of(program, "gsk-988", "2:radius=5")
+    told = [one for one in report.not_evaluated if one.matters and "for its first contour only" in one.reason]
+    assert (len(told), said(report)) == (reasons, [])
+
+
+@pytest.mark.parametrize(
     ("number", "written", "depth", "is_told"),
     [
         ("least-increment", "E4000", 4.0, True),

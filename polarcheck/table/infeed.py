@@ -295,6 +295,17 @@ class Infeed:
         return bool((self.trace.side[contour] != Side.OFF).any())
 
     @cached_property
+    def has_further_contour(self) -> Mask:
+        """G12.1 with an E behind whose contour, offset cancel included, another is cut with compensation."""
+        trace, found = self.trace, np.zeros(len(self.trace), bool)
+        for row, (contour, _) in self._contours.items():
+            if not len(contour) or trace.side[contour[0]] == Side.OFF:
+                continue
+            side = trace.side[contour[-1] : trace.sections.leave[trace.section[row]]]
+            found[row] = bool((side[int(np.argmax(side == Side.OFF)) :] != Side.OFF).any() and (side == Side.OFF).any())
+        return found
+
+    @cached_property
     def is_simulated_in_part(self) -> Mask:
         """G12.1 with an E of which only the passes next to the contour are simulated."""
         rows = np.zeros(len(self.trace), bool)

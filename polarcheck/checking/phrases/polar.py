@@ -166,6 +166,11 @@ def not_simulated(infeed: Infeed) -> Iterator[tuple[str, int]]:
         "of an infeed cycle only the passes next to the contour are simulated: look at the others on the control",
         partly,
     )
+    yield (
+        "the infeed cycle of a section is simulated for its first contour only: program each contour in a section of "
+        "its own",
+        int(infeed.has_further_contour.sum()),
+    )
 
 
 def absolute(switch_words: SwitchWords) -> str:
