@@ -77,6 +77,7 @@ def changed(*tables: Mapping[str, Mapping[str, Any]]) -> dict[str, dict[str, Any
         (along("Y", "JK"), "fanuc-30i", changed(FOUR, {"parameters": {"5460": 2, "5461": 4}, "polar": {}})),
         (along("Z", "KI"), "gsk-988", changed(THREE, {"polar": {"linear_axis": 2}})),
         (SQUARE.replace("G12.1", "G12.1 P1"), "gsk-988", changed(FOUR, {"polar": {"linear_axis": 2}})),
+        (along("Y", "JK", shifted(20, 5)).replace("G12.1", "G12.1 P2"), "gsk-988", FOUR),
         (shifted(20, 5), "gsk-988", {}),
         (shifted(-7, 0.25), "gsk-988", {}),
         (shifted(20, 5), "fanuc-30i", {"parameters": {"5450#2": 1}}),

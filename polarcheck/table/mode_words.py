@@ -138,7 +138,9 @@ class ModeWords:
         of_address[[ord(name) for name in ("N", "O", "/")]] = True
         of_begin[[ord(name) for name in polar.words_beside_switch if len(name) == 1]] = True
         of_code = self.codes(*polar.on, *polar.off, *(name for name in polar.words_beside_switch if len(name) > 1))
-        begins = of_begin[words.address] & ~self.in_rows(self.trace.leaves)
+        # X stands for the linear axis, whichever that is.
+        of_linear = (words.address == self.trace.linear_axis[self.trace.run.row]) & of_begin[ord("X")]
+        begins = (of_begin[words.address] | of_linear) & ~self.in_rows(self.trace.leaves)
         return np.asarray(of_address[words.address] | begins | of_code | (words.fault != NumberFault.NONE))
 
     # ---- the virtual axis ----

@@ -250,14 +250,15 @@ class Positions(LinearAxis):
         """
         shift = np.zeros(len(self), np.complex128)
         own, takes = self.machine.polar, set(self.machine.polar.words_beside_switch)
-        if not len(self.sections) or not takes & {*INCREMENTS, own.virtual_axis}:
+        if not len(self.sections) or not takes & {"X", own.virtual_axis}:
             return shift
-        enter, axis = self.sections.enter, self.linear_axis
-        linear = self._of_axis(lambda axis: self.length_of(axis)) * self.x_factor
-        virtual = self.length_of(own.virtual_axis) * _FACTOR[own.virtual_axis_programming]
-        is_taken = np.isin(axis[enter], [ord(address) for address in takes])
-        of_section = np.append(np.where(is_taken, np.nan_to_num(linear[enter]), 0.0), 0.0).astype(np.complex128)
+        enter = self.sections.enter
+        of_section = np.zeros(len(enter) + 1, np.complex128)
+        if "X" in takes:
+            linear = self._of_axis(lambda axis: self.length_of(axis)) * self.x_factor
+            of_section[:-1] += np.nan_to_num(linear[enter])
         if own.virtual_axis in takes:
+            virtual = self.length_of(own.virtual_axis) * _FACTOR[own.virtual_axis_programming]
             of_section[:-1] += 1j * np.nan_to_num(virtual[enter])
         return of_section[self.section]
 
