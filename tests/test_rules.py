@@ -60,14 +60,15 @@ def test_a_constant_mask_fails(rule: Rule, value: bool) -> None:
         return replace(hits, mask=np.full_like(hits.mask, value), severity=None, at=None)
 
     changed = replace(rule, function=constant, follows={})
-    verdicts = []
-    for example in examples(rule.page):
+
+    def is_right(example: Example) -> bool:
         expected = sorted(place for place in example.expected if place[1] == rule.name)
         try:
-            verdicts.append(said(report_of_example(example, only=[changed])) == expected)
+            return said(report_of_example(example, only=[changed])) == expected
         except (ValueError, TypeError, IndexError, KeyError, OverflowError):
-            verdicts.append(False)  # a message about a row that has nothing to say
-    assert not all(verdicts)
+            return False  # a message about a row that has nothing to say
+
+    assert not all(map(is_right, examples(rule.page)))
 
 
 @functools.cache
@@ -99,9 +100,8 @@ def named_severities(rule: Rule) -> Iterator[str]:
 
 @pytest.mark.parametrize("rule", RULES.values(), ids=list(RULES))
 def test_each_severity_of_a_rule_is_seen_in_its_examples(rule: Rule) -> None:
-    seen = {severity for found in own_severities(rule.name) for severity in found}
     graded = set(named_severities(rule)) - {rule.severity.name.lower()}
-    assert graded <= seen
+    assert not graded or graded <= {severity for found in own_severities(rule.name) for severity in found}
 
 
 def test_every_alarm_and_severity_of_a_machine_names_a_rule() -> None:
