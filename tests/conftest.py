@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Mapping, Set
+import sys
+from collections import Counter
+from collections.abc import Generator, Mapping, Set
 from enum import Enum
 from pathlib import Path
 from typing import Any
@@ -13,12 +15,35 @@ import pytest
 
 #: Characters of one value in the name of a test.
 LONGEST = 50
+#: Cases of one test that count for the coverage: more of them add next to nothing, and take twice the time measured.
+MEASURED = 10
+IS_MEASURED = pytest.StashKey[bool]()
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption(
         "--accept", action="store_true", dest="update_snapshots", help="take the present outcomes as golden ones"
     )
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    cases: Counter[str] = Counter()
+    for item in items:
+        test = item.nodeid.partition("[")[0]
+        cases[test] += 1
+        item.stash[IS_MEASURED] = cases[test] <= MEASURED
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_call(item: pytest.Item) -> Generator[None, Any, Any]:
+    """The mark no_cover of pytest-cov has no effect in the processes of pytest-xdist."""
+    tracer = sys.gettrace()
+    if not item.stash[IS_MEASURED]:
+        sys.settrace(None)
+    try:
+        return (yield)
+    finally:
+        sys.settrace(tracer)
 
 
 @pytest.fixture

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from programs import job_of, machine_of, tables_of
 
@@ -150,7 +150,7 @@ def written(
 
 
 def read(name: str, program: str, radius: float, **given: Any) -> tuple[Moves, set[tuple[str, str]], str]:
-    """The path of the tool, what is found, and the verdict."""
+    """The path of the tool, what is found, also as following from another finding, and the verdict."""
     unit = 25.4 if given.pop("inch", False) else 1.0
     stock = {"stock": {"diameter": given.pop("bar", 90) / unit}}
     job = {"program_units": "mm" if unit == 1.0 else "inch", **stock}
@@ -159,7 +159,8 @@ def read(name: str, program: str, radius: float, **given: Any) -> tuple[Moves, s
     work = job_of(tool, job=job)
     found = check.read(program.encode(), machine, work)
     report = check.check_runs(found, list(load_all().values()))
-    return found[0][1]["moves"], {(found.rule, found.severity) for found in report.findings}, report.verdict
+    findings = {(each.rule, each.severity) for told in report.findings for each in (told, *told.follows)}
+    return found[0][1]["moves"], findings, report.verdict
 
 
 def assert_same_path(ours: Moves, theirs: Moves) -> None:
@@ -265,6 +266,7 @@ def test_radius_zero_gives_the_programmed_path(name: str, part: Part) -> None:
 
 @every_machine
 @given(part=parts, radius=st.integers(1, 9), limit=st.floats(100, 5000), more=st.floats(1, 9))
+@example(part=Part(9.0, 300.0), radius=1, limit=100.0, more=6.0)
 @settings(max_examples=EXAMPLES, deadline=None)
 def test_raising_a_limit_adds_no_finding(name: str, part: Part, radius: int, limit: float, more: float) -> None:
     program = written(part, HANDS[name])
