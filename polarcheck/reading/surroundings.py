@@ -37,15 +37,14 @@ _READS_AS_BLOCKS = re.compile(
 
 
 #: Marks of HTML, as they come with a page that was copied; behind O or P such a name is that of a program.
-_TAG = re.compile(
-    rb"(?<![OP])(?<![OP] )</?(?:b|i|p|u|a|em|strong|td|tr|th|br|hr|table|thead|tbody|span|div|code|pre|html|head|title"
-    rb"|body|li|ul|ol|sup|sub|h\d)(?:[ \t][^<>\n]{0,200})?/?>",
-    re.IGNORECASE,
+_TAG = (
+    rb"(?i)(?<![OP])(?<![OP] )</?(?:b|i|p|u|a|em|strong|td|tr|th|br|hr|table|thead|tbody|span|div|code|pre|html|head"
+    rb"|title|body|li|ul|ol|sup|sub|h\d)(?:[ \t][^<>\n]{0,200})?/?>"
 )
 
 
 #: Before a % that is no tape mark but says how much, in a text: FEED AT 20%; so much of it is looked at [characters].
-_SHARE = re.compile(rb"[A-Z]{2,}[ \t]++\d++\Z", re.IGNORECASE)
+_SHARE = rb"(?i)[A-Z]{2,}[ \t]++\d++\Z"
 _SHARE_LENGTH = 100
 
 
@@ -212,7 +211,7 @@ def _percents(code: Bytes, lines: Positions) -> tuple[Positions, Positions]:
     is_mark = ~_has_text(code, line_start, at) | ~_has_text(code, at + 1, tails.end)
     for index in np.flatnonzero(is_mark & np.isin(code[at - 1], list(b"0123456789"))).tolist():
         begin = max(int(line_start[index]), int(at[index]) - _SHARE_LENGTH)
-        is_mark[index] = _SHARE.search(code[begin : at[index]].tobytes()) is None
+        is_mark[index] = re.search(_SHARE, code[begin : at[index]].tobytes()) is None
     blank(code, tails)
     return at[is_mark], at[~is_mark]
 
@@ -253,7 +252,7 @@ def _outside(code: Bytes, marks: Positions) -> Ranges:
 def _tags(code: Bytes) -> Ranges:
     """Marks of HTML in a file that has closing ones: `<b>` alone would be the name of a program."""
     data = code.tobytes()
-    spans = [tag.span() for tag in _TAG.finditer(data)] if b"</" in data else []
+    spans = [tag.span() for tag in re.finditer(_TAG, data)] if b"</" in data else []
     start, end = np.array(spans, np.int64).reshape(-1, 2).T
     found = Ranges(start, end)
     blank(code, found)
