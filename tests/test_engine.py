@@ -10,6 +10,7 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
+import msgspec
 import numpy as np
 import pytest
 from programs import machine_of, report_of, said, tables_of
@@ -388,8 +389,20 @@ def test_each_rule_is_asked_once(monkeypatch: pytest.MonkeyPatch) -> None:
 
     monkeypatch.setattr(Rule, "hits", noted)
     report_of("G98 G0 X60. C0\nG12.1\nG1 X40. F100\nG13.1\n")
-    off = {name for name, level in machine_of().severities.items() if level == "off"}
+    off = {name for name, rule in RULES.items() if rule.level(machine_of().severities) == "off"}
     assert sorted(order) == sorted(set(RULES) - off)
+
+
+def test_advice_is_given_where_somebody_names_its_severity() -> None:
+    program = "G98 G0 X60. C0\nG12.1\nG1 X40. F100\nC10.\nX-40.\nG13.1\n"
+    for severities, expected in (({}, []), ({"no-compensation-in-polar": "warning"}, ["warning"])):
+        own = msgspec.structs.replace(machine_of(), severities=severities)
+        found = [one.severity for one in report_of(program, own).findings if one.rule == "no-compensation-in-polar"]
+        assert found == expected
+    assert sorted(one.name for one in RULES.values() if one.is_advice) == [
+        "live-tool-without-speed", "no-compensation-in-polar", "size-by-x-offset", "start-up-without-move",
+        "turning-feed-not-restored",
+    ]  # fmt: skip
 
 
 def test_a_rule_names_what_it_is_over() -> None:

@@ -72,7 +72,7 @@ def engine_of(
     machine: Machine = tables["machine"]
     levels = {**machine.severities, **(severities or {})}
     tables.give("other_machine", OtherMachine(tables))
-    asked = [rule for rule in rules if levels.get(rule.name) != "off"]
+    asked = [rule for rule in rules if rule.level(levels) != "off"]
     of_dialect = [rule for rule in asked if "dialect" in rule.parameters]
     if of_dialect and tables["dialect"].recognised is not None:
         # Where that is told, nothing that the words of another language seem to say is worth telling.

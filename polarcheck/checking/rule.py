@@ -134,6 +134,7 @@ class Rule(msgspec.Struct, frozen=True):
     follows: what it follows from: by how far that reaches (SPANS) the rules that report the cause. Where one of them
     fires within the same block, section or the like, the finding is listed under that one.
     worst: of those that one finding stands for, the one with the highest value of this column is reported.
+    is_advice: off where neither the machine nor the user names a severity for it.
     """
 
     name: str
@@ -148,12 +149,17 @@ class Rule(msgspec.Struct, frozen=True):
     once: str
     follows: Mapping[str, tuple[str, ...]]
     worst: str
+    is_advice: bool
     parameters: tuple[str, ...]
 
     @property
     def of_text(self) -> bool:
         """Whether it hangs on the text alone, and not on how the program runs."""
         return OF_TEXT.issuperset(self.parameters)
+
+    def level(self, severities: Mapping[str, str]) -> str:
+        """error, warning, note or off, where a machine and a job name these severities by rule."""
+        return severities.get(self.name, "off" if self.is_advice else self.severity.name.lower())
 
     def hits(self, tables: Mapping[str, Any]) -> Hits:
         """What the rule finds in some tables."""
@@ -190,6 +196,7 @@ def rule(
     once: str = "",
     follows: Mapping[str, tuple[str, ...]] = MappingProxyType({}),
     worst: str = "",
+    is_advice: bool = False,
 ) -> Callable[[Callable[..., Any]], Rule]:
     """Make a rule of a function; see Rule. Its parameters name the tables that it compares."""
 
@@ -214,6 +221,7 @@ def rule(
             once,
             follows,
             worst,
+            is_advice,
             parameters,
         )
 

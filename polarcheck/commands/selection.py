@@ -83,7 +83,7 @@ def severities(
     changed = of_job | asked
     for name in selected:
         rule = known.get(name.strip().lower().replace("_", "-"))
-        if rule and rule.name not in asked and changed.get(rule.name, machine.severities.get(rule.name)) == "off":
+        if rule and rule.name not in asked and rule.level({**machine.severities, **changed}) == "off":
             changed[rule.name] = rule.severity.name.lower()
     return changed
 

@@ -33,7 +33,7 @@ def pages(rules: Iterable[Rule], machine: Machine) -> str:
 
 def _page(rule: Rule, machine: Machine) -> str:
     alarm = visible(machine.alarms.get(rule.name, ""))
-    facts = [rule.group, machine.severities.get(rule.name, rule.severity.name.lower())]
+    facts = [rule.group, rule.level(machine.severities)]
     facts += [f"alarm {alarm} on {visible(machine.title)}"] if alarm else []
     head = f"{rule.name} ({', '.join(facts)})"
     return "\n\n".join([f"{head}\n{'=' * len(head)}", *_other_words(rule, machine), rule.page.strip()])

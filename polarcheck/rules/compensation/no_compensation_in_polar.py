@@ -9,6 +9,7 @@ from polarcheck.checking.rule import NOTE, Mask, Sections, Trace, rule
     over="sections",
     at=("on",),
     follows={"section": ("polar-switched-in-offset-mode",)},
+    is_advice=True,
 )
 def no_compensation_in_polar(trace: Trace, sections: Sections) -> Mask:
     """

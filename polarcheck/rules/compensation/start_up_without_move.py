@@ -16,6 +16,7 @@ from polarcheck.checking.rule import NOTE, Mask, Ramps, rule
             "nose-type-not-zero",
         )
     },
+    is_advice=True,
 )
 def start_up_without_move(ramps: Ramps) -> Mask:
     """

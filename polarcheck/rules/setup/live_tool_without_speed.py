@@ -9,6 +9,7 @@ from polarcheck.checking.rule import WARNING, Hits, Machine, Procedure, Trace, r
     "not at all; write S before it",
     once="program",
     follows={"block": ("vacant-variable",)},
+    is_advice=True,
 )
 def live_tool_without_speed(trace: Trace, procedure: Procedure, machine: Machine) -> Hits:
     """

@@ -7,6 +7,7 @@ from polarcheck.checking.rule import NOTE, Mask, Trace, rule
     NOTE,
     "{x_changed_by} changes X of offset {offset_of_block}, which shifts the shape and leaves its size: change R",
     at=("X", "U", "T"),
+    is_advice=True,
 )
 def size_by_x_offset(trace: Trace) -> Mask:
     """

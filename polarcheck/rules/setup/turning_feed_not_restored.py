@@ -9,6 +9,7 @@ from polarcheck.checking.rule import WARNING, Mask, Procedure, rule
     "the polar mode; write {per_revolution} after it",
     at=("F",),
     once="feed mode",
+    is_advice=True,
 )
 def turning_feed_not_restored(procedure: Procedure) -> Mask:
     """
