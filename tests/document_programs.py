@@ -37,9 +37,7 @@ class Printed(NamedTuple):
         return "\n".join(lines)
 
 
-#: Builder's guide to G12.1 on turning centers, method A. The guide leaves the last position open: G0 X_ Z_ M35.
-METHOD_A = Printed(
-    """N100 (MILL TWO FLATS)
+_HEAD = """N100 (MILL TWO FLATS)
 G40 G13.1
 T0101
 M5
@@ -48,53 +46,24 @@ G28 H0
 G97 S1000 M33
 G0 Z.1 C0
 X1.8
-G12.1
+"""
+_FLAT = """G12.1
 G1 G98 C0.4153 F20.
 G1 G41 X1.0 F5.
 Z - .375 (depth of cut)
 C-0.4153
-G40 X1.8 F20.
-G13.1
-G0 Z0.1
-G0 C180.
-G12.1
-G1 G98 C0.4153 F20.
-G1 G41 X1.0 F5.
-Z - .375 (depth of cut)
-C-0.4153
-G40 X1.8 F20.
-G13.1
-G0 Z0.1
-G0 X5. Z5. M35
-M1
-""",
+"""
+_RETRACT = "G13.1\nG0 Z0.1\n"
+_END = "G0 X5. Z5. M35\nM1\n"
+#: Builder's guide to G12.1 on turning centers, method A. The guide leaves the last position open: G0 X_ Z_ M35.
+METHOD_A = Printed(
+    f"{_HEAD}{_FLAT}G40 X1.8 F20.\n{_RETRACT}G0 C180.\n{_FLAT}G40 X1.8 F20.\n{_RETRACT}{_END}",
     "turning-center",
     ("1:radius=.25", "1:nose=0"),
 )
 #: Method B of the same guide.
 METHOD_B = Printed(
-    """N100 (MILL TWO FLATS)
-G40 G13.1
-T0101
-M5
-M35
-G28 H0
-G97 S1000 M33
-G0 Z.1 C0
-X1.8
-G12.1
-G1 G98 C0.4153 F20.
-G1 G41 X1.0 F5.
-Z - .375 (depth of cut)
-C-0.4153
-G2 X-1.0 R.650 F60.
-G1 C0.4153 F5.
-G40 X-1.8
-G13.1
-G0 Z0.1
-G0 X5. Z5. M35
-M1
-""",
+    f"{_HEAD}{_FLAT}G2 X-1.0 R.650 F60.\nG1 C0.4153 F5.\nG40 X-1.8\n{_RETRACT}{_END}",
     "turning-center",
     ("1:radius=.25", "1:nose=0"),
 )

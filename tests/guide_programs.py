@@ -9,55 +9,12 @@ from __future__ import annotations
 
 import re
 
-SAMPLE = """%
-O0001
-M5
-M35
-G40
-G13.1
-G30 U0 W0
-G28 H0
-T0808 (3/4" DIA. CUTTER)
-G97 S2000 M33
-G0Z.1 C0 M8
-X2.15
-G12.1
-G1 G98 C.5339 F60.
-G1 G41 X1.75F7. (1)
-Z-.88
-G1 C-.5339 (2)
-G2 X-1.75 R1.025 F60. (3)
-G1 C.5339 F7. (4)
-G1 G40 X-2.15 F60.
-G13.1
-G99 G0 X2.5
-Z.1 M35
-G30 U0 W0. M9
-M1
-M30
-%
-"""
-_HEAD = """%
-O0002
-N100 (MILL TWO FLATS)
-G40 G13.1
-T0101
-M5
-M35
-G28 H0
-G97 S1000 M33
-G0 Z.1 C0
-X1.8
-"""
-_FLAT = """G12.1
-G1 G98 C0.4153 F20.
-G1 G41 X1.0 F5.
-Z-.375 (depth of cut)
-C-0.4153
-"""
-_END = "G0 X5. Z5. M35\nM1\nM30\n%\n"
-METHOD_A = f"{_HEAD}{_FLAT}G40 X1.8 F20.\nG13.1\nG0 Z0.1\nG0 C180.\n{_FLAT}G40 X1.8 F20.\nG13.1\nG0 Z0.1\n{_END}"
-METHOD_B = f"{_HEAD}{_FLAT}G2 X-1.0 R.650 F60.\nG1 C0.4153 F5.\nG40 X-1.8\nG13.1\nG0 Z0.1\n{_END}"
+import document_programs
+
+SAMPLE = f"%\nO0001\n{document_programs.SAMPLE.text}M30\n%\n"
+METHOD_A, METHOD_B = (
+    f"%\nO0002\n{printed.text}M30\n%\n" for printed in (document_programs.METHOD_A, document_programs.METHOD_B)
+)
 
 #: Each with the cutter that it was written for.
 PROGRAMS = {

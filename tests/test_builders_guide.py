@@ -434,7 +434,7 @@ def test_a_start_up_that_is_too_short_is_one_finding() -> None:
     [finding] = [one for one in report_of(program, MACHINE, "1:radius=.25").findings if one.severity == "error"]
     assert finding.rule == "start-up-shorter-than-radius"
     assert [one.rule for one in finding.follows] == ["start-up-without-move"]
-    never = METHOD_A.replace("G1 G41 X1.0 F5.\nZ-.375 (depth of cut)\nC-0.4153\nG40", "G41\nG40", 1)
+    never = METHOD_A.replace("G1 G41 X1.0 F5.\nZ - .375 (depth of cut)\nC-0.4153\nG40", "G41\nG40", 1)
     assert [rule for _, rule, _ in found(never, "1:radius=.25")].count("start-up-without-move") == 0
 
 

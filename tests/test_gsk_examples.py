@@ -9,86 +9,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+from document_programs import GSK_1, GSK_2
 from programs import moves_of, report_of, said, tables_of, trace_of
 
 from polarcheck.machines.modal import FeedMode
 
-SINGLE = """
-O0001;
-
-N10 T0202
-
-.....;
-
-N100 G00 X150. C0 Z0;
-
-N110 G12.1;
-
-N120 G42 G01 X80. F200;
-
-N130 C20.0;
-
-N140 G03 X40.0 C40.0 R20.0;
-
-N150 G01 X-40.0;
-
-N160 G03 X-80.0 C20.0 R20.0;
-
-N170 G01 C-20.0;
-
-N180 G03 X-40.0 C-40.0 R20.0;
-
-N190 G01 X40.0;
-
-N200 G03 X80.0 C-20.0 R20.0;
-
-N210 G01 C0;
-
-N220 G40 X150.0;
-
-N230 G13.1;
-
-N240 Z100.0;
-
-.....;
-
-N500 M30;
-"""
-CYCLE = """
-O0002;
-
-N000 T0202;
-
-N100 G00 X348 C30;
-
-N110 G12.1 E8;
-
-N120 G42 G01 X300 C0 F2000;
-
-N130 C80.0;
-
-N140 G03 X220.0 C120.0 R40.0;
-
-N150 G01 X-220.0;
-
-N160 G03 X-300.0 C80.0 R40.0;
-
-N170 G01 C-80.0;
-
-N180 G03 X-220.0 C-120.0 R40.0
-
-N190 G01 X220.0;
-
-N200 G03 X300.0 C-80.0 R40.0;
-
-N210 G01 C0;
-
-N220 G40 X300.0;
-
-N230 G13.1;
-
-N240 M30
-"""
+SINGLE, CYCLE = GSK_1.text, GSK_2.text
 TOOL = "2:radius=5,nose=0"
 NOTES = {SINGLE: ["omitted-text", "omitted-text"], CYCLE: ["cancel-shorter-than-radius"]}
 """What is a note in the examples as printed: blocks left out; a cancel that moves nothing."""
@@ -182,7 +108,7 @@ def test_the_alarm_text_of_a_switch_in_offset_mode_is_that_of_the_control() -> N
     [
         ("N210 G01 C0;", "N210 G01 C-10.;"),
         ("N210 G01 C0;", ""),
-        ("N200 G03 X300.0 C-80.0 R40.0;\n\nN210 G01 C0;", ""),
+        ("N200 G03 X300.0 C-80.0 R40.0;\nN210 G01 C0;", ""),
     ],
 )
 @pytest.mark.parametrize("infeed", ["E8", "E-8", "E30"])

@@ -11,7 +11,7 @@ import numpy as np
 from polarcheck.arrays import Floats, Mask, Rows
 from polarcheck.checking.finding import NotEvaluated
 from polarcheck.checking.macro_faults import reason_of
-from polarcheck.checking.phrases.common import block_and_line
+from polarcheck.checking.phrases.common import block_and_line, linear
 from polarcheck.checking.phrases.polar import axes_not_followed, extrudes, not_simulated, not_understood, on_cylinder
 from polarcheck.checking.places import block_in_line
 from polarcheck.checking.rule import Rule
@@ -25,6 +25,8 @@ _OF_OFFSETS = ("trace.radius", "trace.cutter_diameter", "trace.nose")
 _OF_MOVES = ("tool_center.c_feed", "tool_center.c_acceleration")
 #: Columns without which a finding may be missing, but hardly is: lists of offsets have T for turning tools alone.
 _WITHOUT_WEIGHT = ("trace.nose",)
+#: What to give where a value of the program is not known.
+_OF_VARIABLES = "give its variables as [run.variables] in polarcheck.toml, or write the number"
 #: Causes, beside the offset numbers, for which a move is not known.
 _POSITION, _NO_FEED, _FEED_OF_SPINDLE = -3, -2, -1
 #: Contours that are named one by one; a hostile file has any number of them.
@@ -61,8 +63,7 @@ def offsets_not_known(trace: Trace) -> tuple[str, int]:
     if not len(rows):
         return "", 0
     what = f"which offset {block_and_line(trace, int(rows[0]))} sets is not known"
-    remedy = "give its variables as [run.variables] in polarcheck.toml, or write the number"
-    return f"{what}, those in force are taken as given: {remedy}", len(rows)
+    return f"{what}, those in force are taken as given: {_OF_VARIABLES}", len(rows)
 
 
 def unevaluated(tables: Tables, rule: Rule) -> Iterator[NotEvaluated]:
@@ -221,8 +222,9 @@ def _not_known_from_program(trace: Trace, number: int, setter: int, what: str, k
     """Why what the program itself sets of an offset is not known: by which block, and what to give."""
     unknown = trace.row_of_unknown_setting(number, setter, key)
     if unknown >= 0:
-        remedy = "give its variables as [run.variables] in polarcheck.toml, or write the number"
-        return f"no {what} for offset {number}: {block_and_line(trace, unknown)} sets what is not known; {remedy}"
+        return (
+            f"no {what} for offset {number}: {block_and_line(trace, unknown)} sets what is not known; {_OF_VARIABLES}"
+        )
     setting = block_and_line(trace, setter)
     remedy = f"give --tool {number}:{key}=... or [tools.{number}] {key} in polarcheck.toml"
     return f"no {what} for offset {number}: {setting} sets wear or a difference alone; {remedy}"
@@ -231,7 +233,7 @@ def _not_known_from_program(trace: Trace, number: int, setter: int, what: str, k
 def _position(trace: Trace, row: int) -> str:
     lost = np.flatnonzero((trace.run.unknown & (trace.program == trace.program[row]))[: row + 1])
     if not len(lost):
-        axis = chr(trace.linear_axis[row])
+        axis = linear(trace, row)
         loses = np.isnan(trace.x) & (~np.isnan(trace.x_before) | (trace.uses_axes & trace.has(axis)))
         loses &= (trace.program == trace.program[row]) & ~trace.in_polar & ~trace.enters
         if loses[: row + 1].any():
@@ -248,8 +250,7 @@ def _position(trace: Trace, row: int) -> str:
 
 def _origin(trace: Trace, row: int) -> str:
     causes = " and ".join(Origin(trace).unknown_causes(row))
-    remedy = "give its variables as [run.variables] in polarcheck.toml, or write the number"
-    return f"where X0 lies is not known: {causes} sets X to what is not known; {remedy}"
+    return f"where X0 lies is not known: {causes} sets X to what is not known; {_OF_VARIABLES}"
 
 
 def _feed(trace: Trace, row: int) -> str:

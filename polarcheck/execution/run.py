@@ -55,6 +55,11 @@ class Assigned(msgspec.Struct, frozen=True):
     value: float
     is_step: bool = False
 
+    @property
+    def name(self) -> str:
+        """As it is written: #2001."""
+        return f"#{self.variable}"
+
 
 class Run(msgspec.Struct, frozen=True):
     """

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 #: What the arithmetic may shift a point by [mm]; a thousandth of the least increment.
 ROUNDING = 1e-6
+#: Values that differ by no more than this share are the same: what the last bits of their formulas make.
+SHARE = 1e-9
 #: R up to this [mm], of either sign, is no cutter: it adjusts the path of one's center (builder's guide to G12.1).
 ADJUSTMENT = 0.254
 #: A length below this [mm] is no movement.

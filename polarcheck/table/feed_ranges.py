@@ -7,14 +7,11 @@ from functools import cached_property
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Rows
-from polarcheck.geometry.tolerances import ROUNDING
+from polarcheck.geometry.tolerances import ROUNDING, SHARE
 from polarcheck.machines.modal import Motion, Side
 from polarcheck.table.ramps import Ramps
 from polarcheck.table.tool_center import ToolCenter
 from polarcheck.table.trace import Trace
-
-#: F that differs from a limit by this share is the limit: 1524 mm is 60 inch.
-_SAME = 1e-9
 
 
 class FeedRanges:
@@ -52,7 +49,7 @@ class FeedRanges:
     @cached_property
     def too_low(self) -> Mask:
         """Moves on the plane below the range for cutting."""
-        return np.asarray(self.trace.cuts & (self.trace.programmed_feed < self.limits.cutting_minimum * (1 - _SAME)))
+        return np.asarray(self.trace.cuts & (self.trace.programmed_feed < self.limits.cutting_minimum * (1 - SHARE)))
 
     @cached_property
     def too_high(self) -> Mask:
@@ -62,16 +59,16 @@ class FeedRanges:
     @cached_property
     def between(self) -> Mask:
         """F above the range for cutting and below that for positioning."""
-        below = self.trace.programmed_feed < self.limits.positioning_minimum * (1 - _SAME)
+        below = self.trace.programmed_feed < self.limits.positioning_minimum * (1 - SHARE)
         return np.asarray(self._above(self.limits.cutting_maximum) & below)
 
     @cached_property
     def is_for_cutting(self) -> Mask:
         """F at most the highest for cutting."""
-        return np.asarray(self.trace.programmed_feed <= self.limits.cutting_maximum * (1 + _SAME))
+        return np.asarray(self.trace.programmed_feed <= self.limits.cutting_maximum * (1 + SHARE))
 
     def _above(self, limit: float) -> Mask:
-        return np.asarray(self.trace.programmed_feed > limit * (1 + _SAME))
+        return np.asarray(self.trace.programmed_feed > limit * (1 + SHARE))
 
     # ---- what cuts ----
 

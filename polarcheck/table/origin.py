@@ -166,7 +166,7 @@ class Origin:
         if setter < 0:
             return self._name(number)
         if setter in self.trace.run.assigned:
-            return f"#{self.trace.run.assigned[setter].variable}"
+            return self.trace.run.assigned[setter].name
         own = self._settings.number[self._settings.row == setter]
         on = f"on {self._name(number)}" if own[-1] > 0 else "P0"
         return f"{self._code('data_input')} {on}"

@@ -12,6 +12,7 @@ import numpy as np
 from polarcheck.arrays import Floats, Mask, Points, Rows
 from polarcheck.geometry.compensation import Path, ToolPath
 from polarcheck.geometry.rounding import kept_ends, may_turn_back
+from polarcheck.geometry.tolerances import SHARE
 from polarcheck.machines.modal import Motion, Side
 from polarcheck.table.infeed import Infeed
 from polarcheck.table.last_digit import half_of_last_digit
@@ -20,8 +21,6 @@ from polarcheck.table.trace import Trace
 
 #: The share of R that must fit beside a stretch of many blocks for their rounding to be what is wrong.
 _SURELY = 7 / 8
-#: Rates that differ by no more than this share are the same: what the last bits of their formulas make.
-_SAME = 1e-9
 
 
 class ToolCenter:
@@ -162,7 +161,7 @@ class ToolCenter:
     @cached_property
     def exceeds_c_feed_limit(self) -> Mask:
         """C would turn faster than its limit."""
-        return np.asarray(self.c_feed > self.c_feed_limit * (1 + _SAME))
+        return np.asarray(self.c_feed > self.c_feed_limit * (1 + SHARE))
 
     @cached_property
     def is_at_c_feed_limit(self) -> Mask:
@@ -170,7 +169,7 @@ class ToolCenter:
         limits = self.trace.machine.limits
         if np.isnan(limits.c_feed) or limits.automatic_override:
             return np.zeros(len(self.trace), bool)
-        return np.asarray(np.abs(self.c_feed - self.c_feed_limit) <= self.c_feed_limit * _SAME)
+        return np.asarray(np.abs(self.c_feed - self.c_feed_limit) <= self.c_feed_limit * SHARE)
 
     @cached_property
     def feed_allowed(self) -> Floats:

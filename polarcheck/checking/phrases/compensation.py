@@ -49,7 +49,7 @@ def before(trace: Trace, row: int) -> str:
 def changed_by(trace: Trace, row: int) -> str:
     """T0808, G10 or #2001."""
     if row in trace.run.assigned:
-        return f"#{trace.run.assigned[row].variable}"
+        return trace.run.assigned[row].name
     if trace.has("T")[row]:
         return f"T{int(trace.tool[row]):02d}{int(trace.offset_number[row]):02d}"
     return trace.machine.codes("data_input")[0]

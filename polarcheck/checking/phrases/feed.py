@@ -6,6 +6,7 @@ import numpy as np
 
 from polarcheck.checking.phrases.common import code_of, executed_word
 from polarcheck.checking.quantity import in_row
+from polarcheck.geometry.tolerances import SHARE
 from polarcheck.machines.machine import Machine
 from polarcheck.machines.modal import FeedMode
 from polarcheck.table.center import Center
@@ -13,9 +14,6 @@ from polarcheck.table.feed_ranges import FeedRanges
 from polarcheck.table.feeds import Feeds
 from polarcheck.table.tool_center import ToolCenter
 from polarcheck.table.trace import Trace
-
-#: What the arithmetic may add to a limit, as a share of it.
-_DUST = 1e-9
 
 
 def recommended(trace: Trace, row: int) -> str:
@@ -32,8 +30,8 @@ def _range(trace: Trace, row: int, least: float, most: float) -> str:
     """Rounded to what lies within."""
     shown = in_row(least, trace, row)
     places = 10.0 ** (4 if shown.inch else 3)
-    low = np.ceil(shown.length(least) * places * (1 - _DUST)) / places
-    high = np.floor(shown.length(most) * places * (1 + _DUST)) / places
+    low = np.ceil(shown.length(least) * places * (1 - SHARE)) / places
+    high = np.floor(shown.length(most) * places * (1 + SHARE)) / places
     return f"{low:.10g} to {high:.10g} {shown.unit}/min"
 
 

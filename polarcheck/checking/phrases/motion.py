@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from polarcheck.checking.other_machine import OtherMachine
+from polarcheck.checking.phrases.common import linear
 from polarcheck.checking.quantity import in_row
 from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.machines.modal import MM_PER_INCH, Units
@@ -28,7 +29,7 @@ def least_radius(trace: Trace, arcs: Arcs, row: int) -> str:
 def center(trace: Trace, row: int) -> str:
     """`I along X and J along C`."""
     along, across = trace.center_words(row)
-    return f"{along} along {chr(trace.linear_axis[row])} and {across} along {trace.machine.polar.virtual_axis}"
+    return f"{along} along {linear(trace, row)} and {across} along {trace.machine.polar.virtual_axis}"
 
 
 def reading(trace: Trace, row: int) -> str:

@@ -256,7 +256,7 @@ def on_cylinder(trace: Trace) -> tuple[str, int]:
 
 def shifted_by(trace: Trace, row: int, at: list[int]) -> str:
     """What shifts the origin: codes, as in G55, or the variable of a work offset."""
-    return codes(trace, at) if at else f"#{trace.run.assigned[row].variable}"
+    return codes(trace, at) if at else trace.run.assigned[row].name
 
 
 def where(trace: Trace, row: int) -> str:

@@ -68,7 +68,7 @@ def is_given(trace: Trace, entry: Entry, row: int) -> str:
 def x_changed_by(trace: Trace, row: int) -> str:
     """The word or the variable that sets X of a tool offset; else the wear of the job's table."""
     if row in trace.run.assigned:
-        return f"#{trace.run.assigned[row].variable}"
+        return trace.run.assigned[row].name
     address = next((address for address in "XU" if trace.has(address)[row]), "")
     if trace.listed("data_input")[row] and address:
         return written(trace, row, address)
