@@ -15,7 +15,7 @@ from polarcheck.machines.codes import code, code_numbers, code_set, modal_tables
 from polarcheck.machines.job import Job
 from polarcheck.machines.machine import Machine
 from polarcheck.machines.modal import MM_PER_INCH, NO_FEED, NO_MOVE, STATES, Distance, FeedMode, Motion, Side, Units
-from polarcheck.table.filling import before, fill_down
+from polarcheck.table.filling import before, fill_down, happened
 
 Column = TypeVar("Column")
 
@@ -302,8 +302,7 @@ class Columns:
         return self._column(f"switched {on} {off}", lambda: self._switched(on, off))
 
     def _switched(self, on: list[str], off: list[str]) -> Mask:
-        switches_on, switches_off = self.codes(*on), self.codes(*off)
-        return fill_down(switches_on, switches_on | switches_off | self.starts, False).astype(bool)
+        return happened(self.codes(*on), self.codes(*off) | self.starts)
 
     @cached_property
     def spindle(self) -> Mask:

@@ -11,7 +11,7 @@ from polarcheck.arrays import Floats, Mask
 from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.machines.codes import code_set
 from polarcheck.machines.modal import STATES
-from polarcheck.table.filling import before, fill_down
+from polarcheck.table.filling import before, happened
 from polarcheck.table.origin import Origin
 from polarcheck.table.trace import Trace
 
@@ -31,9 +31,7 @@ class Entry:
     def happened(self, mask: Mask, since: Mask | None = None) -> Mask:
         """Whether a row at or above is in the mask or of unknown effect, from the program head or the last `since`."""
         trace = self.trace
-        happened = mask | trace.run.unknown
-        written = happened | trace.starts if since is None else happened | trace.starts | since
-        return fill_down(happened, written, False).astype(bool)
+        return happened(mask | trace.run.unknown, trace.starts if since is None else trace.starts | since)
 
     @cached_property
     def loses_x(self) -> Mask:
@@ -98,7 +96,7 @@ class Entry:
     def after_section(self) -> Mask:
         """A G13.1 has ended a section of the tool in force."""
         trace = self.trace
-        return fill_down(trace.leaves, trace.leaves | trace.changes_tool | trace.starts, False).astype(bool)
+        return happened(trace.leaves, trace.changes_tool | trace.starts)
 
     # ---- the C axis ----
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from polarcheck.arrays import Floats, Mask
 from polarcheck.machines.modal import FeedMode, Units
-from polarcheck.table.filling import fill_down
+from polarcheck.table.filling import fill_down, happened
 from polarcheck.table.tool_center import ToolCenter
 from polarcheck.table.trace import Trace
 
@@ -32,16 +32,14 @@ class Feeds:
     def missing(self) -> Mask:
         """No F was ever given, or F0 is in force. What stands before an excerpt may have given one."""
         trace = self.trace
-        written = trace.has("F") | trace.run.unknown
-        given = fill_down(written, written | trace.starts, False).astype(bool)
+        given = happened(trace.has("F") | trace.run.unknown, trace.starts)
         return np.asarray((~given & ~self._in_excerpt) | (trace.feed_number == 0))
 
     @cached_property
     def _in_excerpt(self) -> Mask:
         """Rows of sections before which nothing moves, in a program without its head."""
         trace = self.trace
-        shown = trace.whole_program | trace.moves
-        begun = fill_down(shown, shown | trace.starts, False).astype(bool)
+        begun = happened(trace.whole_program | trace.moves, trace.starts)
         if not len(trace.sections):
             return ~begun
         return np.asarray(trace.in_polar & ~begun[trace.sections.enter][trace.section])
@@ -60,8 +58,7 @@ class Feeds:
         systems = (machine.g_code_system_a, machine.g_code_system_b, machine.g_code_system_c)
         codes = [code for system in systems for code in (*system.feed_per_minute, *system.feed_per_revolution)]
         says = trace.codes(*codes) | trace.sets("feed_mode") | trace.run.unknown
-        said = fill_down(says, says | trace.starts, False).astype(bool)
-        return np.asarray(trace.whole_program & ~said)
+        return np.asarray(trace.whole_program & ~happened(says, trace.starts))
 
     @cached_property
     def is_too_high_per_revolution(self) -> Mask:

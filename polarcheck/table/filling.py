@@ -7,7 +7,7 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from polarcheck.arrays import Floats, Mask
+from polarcheck.arrays import Floats, Mask, Rows
 
 Scalar = TypeVar("Scalar", bound=np.generic)
 
@@ -17,6 +17,16 @@ def fill_down(values: NDArray[Scalar], written: Mask, before: object) -> NDArray
     last = np.maximum.accumulate(np.where(written, np.arange(1, len(values) + 1), 0))
     filled: NDArray[Scalar] = np.concatenate((np.array([before], values.dtype), values))[last]
     return filled
+
+
+def happened(mask: Mask, ends: Mask) -> Mask:
+    """Whether a row of the mask stands at or above each row, back to the last row of `ends`."""
+    return fill_down(mask, mask | ends, False).astype(bool)
+
+
+def last_row(mask: Mask, ends: Mask) -> Rows:
+    """The last row of the mask at or above each row, back to the last row of `ends`; -1 for none."""
+    return fill_down(np.where(mask, np.arange(len(mask)), -1), mask | ends, -1)
 
 
 def positions(absolute: Floats, increment: Floats, resets: Mask, values: Floats) -> Floats:

@@ -17,7 +17,7 @@ from polarcheck.machines.modal import Motion
 from polarcheck.machines.profiles import Profile
 from polarcheck.reading.translation import spans
 from polarcheck.reading.words import NumberFault, Words
-from polarcheck.table.filling import fill_down
+from polarcheck.table.filling import happened
 from polarcheck.table.trace import Trace
 
 #: Axes whose words, beside a code that has another meaning here, say that this is what is meant.
@@ -131,7 +131,7 @@ class OtherMode:
         """Rows in the mode of the other control: until its end, the next tool, or a section of this control."""
         trace = self.trace
         ends = ends | trace.changes_tool | trace.ends_program | trace.enters | trace.starts
-        return fill_down(begins, begins | ends, False).astype(bool)
+        return happened(begins, ends)
 
     def machines(self, row: int) -> tuple[Profile, ...]:
         """

@@ -8,7 +8,7 @@ import numpy as np
 
 from polarcheck.arrays import Mask, Rows
 from polarcheck.machines.modal import FeedMode, Motion, Side
-from polarcheck.table.filling import before, fill_down
+from polarcheck.table.filling import before, fill_down, happened, last_row
 from polarcheck.table.trace import Trace
 
 #: The rotary axis, as FANUC and others name it.
@@ -43,7 +43,7 @@ class Procedure:
         if not np.any(trace.switches_off & ~trace.leaves):
             return np.full(len(trace), -1)
         since = trace.changes_tool | trace.switches_off | trace.starts
-        turns = self._turns & ~_happened(self._may_begin, since | trace.starts)
+        turns = self._turns & ~happened(self._may_begin, since)
         turns &= trace.whole_program | trace.has_called_tool
         compensated = turns & ((trace.side != Side.OFF) | self._is_arc)
         stops = since | self._may_begin | self._leaves_work
@@ -147,11 +147,12 @@ class Procedure:
             return np.full(len(trace), -1)
         ends = trace.changes_tool | trace.ends_program
         starts_tool, stops_tool = trace.codes(*codes.live_tool_on), trace.codes(*codes.live_tool_off)
-        begun = starts_tool & ~before(trace.live_tool, trace.starts, False)
+        ran = before(trace.live_tool, trace.starts, False)
+        begun = starts_tool & ~ran
         since = begun | stops_tool | trace.run.unknown | trace.changes_tool | trace.starts
-        has_cut = before(_happened(trace.cuts & trace.live_tool, since), trace.starts, False)
-        still = before(trace.live_tool, trace.starts, False) & ~stops_tool & has_cut
-        row = fill_down(np.where(begun, np.arange(len(trace)), -1), begun | trace.starts, -1)
+        has_cut = before(happened(trace.cuts & trace.live_tool, since), trace.starts, False)
+        still = ran & ~stops_tool & has_cut
+        row = last_row(begun, trace.starts)
         return np.where(ends & still, before(row, trace.starts, -1), -1)
 
     # ---- what a section leaves ----
@@ -160,8 +161,7 @@ class Procedure:
     def section_before(self) -> Rows:
         """The row in which the last section above ended, -1 without one; of the same program."""
         trace = self.trace
-        rows = np.where(trace.leaves, np.arange(len(trace)), -1)
-        return fill_down(rows, trace.leaves | trace.enters | trace.starts, -1)
+        return last_row(trace.leaves, trace.enters | trace.starts)
 
     @cached_property
     def turns_at_feed_of_mill(self) -> Mask:
@@ -172,12 +172,10 @@ class Procedure:
         spindle runs. F of threads is a lead in either mode.
         """
         trace = self.trace
-        rows = np.arange(len(trace))
-        of_mode = fill_down(np.where(trace.sets("feed_mode"), rows, -1), trace.sets("feed_mode") | trace.starts, -1)
-        known = ~_happened(trace.run.unknown, trace.leaves | trace.starts)
+        of_mode = last_row(trace.sets("feed_mode"), trace.starts)
+        known = ~happened(trace.run.unknown, trace.leaves | trace.starts)
         carried = (of_mode >= 0) & (of_mode < self.section_before) & (trace.feed_mode == FeedMode.PER_MINUTE) & known
-        takes_feed = trace.has("F") | trace.starts
-        is_own = fill_down(np.where(trace.has("F"), rows, -1), takes_feed, -1) > self.section_before
+        is_own = last_row(trace.has("F"), trace.starts) > self.section_before
         least = np.where(trace.live_tool, _LEAST_OF_LIVE_TOOL, _LEAST_OF_TURNING)
         is_small = np.abs(trace.feed_number) < least
         of_section = ~is_own & ~trace.live_tool & trace.spindle
@@ -188,15 +186,10 @@ class Procedure:
         """Moves of X and Z at feed outside the mode, and cycles, but no threads."""
         trace = self.trace
         leads = trace.listed("thread_cutting", "threading_cycle", "feed_is_lead")
-        threads = _happened(leads, trace.sets("motion") | trace.starts)
+        threads = happened(leads, trace.sets("motion") | trace.starts)
         at_feed = np.isin(trace.motion, _AT_FEED) & (trace.moves_plane | trace.moves_z) & ~self._turns
         cycle = (trace.motion == Motion.CYCLE) | (trace.listed("repetitive_cycle") & trace.has("F"))
         return np.asarray((trace.section < 0) & (at_feed | cycle) & ~threads)
-
-
-def _happened(mask: Mask, ends: Mask) -> Mask:
-    """Whether a row at or above is in the mask, back to the last row of `ends`."""
-    return fill_down(mask, mask | ends, False).astype(bool)
 
 
 def _count(mask: Mask, ends: Mask) -> Rows:
@@ -207,6 +200,6 @@ def _count(mask: Mask, ends: Mask) -> Rows:
 
 def _first(mask: Mask, ends: Mask, starts: Mask) -> Rows:
     """The first row of the mask above each row, back to the last row of `ends`; -1 for none."""
-    happened = before(_happened(mask, ends), starts, False)
-    first = mask & (~happened | before(ends, starts, True))
-    return before(fill_down(np.where(first, np.arange(len(mask)), -1), first | ends, -1), starts, -1)
+    has_begun = before(happened(mask, ends), starts, False)
+    first = mask & (~has_begun | before(ends, starts, True))
+    return before(last_row(first, ends), starts, -1)

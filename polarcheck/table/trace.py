@@ -15,7 +15,7 @@ from polarcheck.execution.programs import find_programs
 from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.machines.modal import FeedMode, Motion, Side
 from polarcheck.reading.words import NumberFault
-from polarcheck.table.filling import before, fill_down
+from polarcheck.table.filling import before, fill_down, happened
 from polarcheck.table.tool_offsets import ToolOffsets
 
 #: Addresses that name the rotary axis of a cylinder with its radius, or the radius itself.
@@ -83,8 +83,7 @@ class Trace(ToolOffsets):
     @cached_property
     def has_called_tool(self) -> Mask:
         """A T word stands in the row or above it in its program."""
-        written = self.has("T")
-        return fill_down(written, written | self.starts, False).astype(bool)
+        return happened(self.has("T"), self.starts)
 
     @cached_property
     def nose_is_of_mill(self) -> Mask:
@@ -203,8 +202,7 @@ class Trace(ToolOffsets):
 
     def given_in_section(self, rows: Mask) -> Mask:
         """Whether one of these rows is the present one or above it in the same section."""
-        inside = rows & self.in_polar
-        return np.asarray(fill_down(inside, inside | self.enters, False).astype(bool) & self.in_polar)
+        return np.asarray(happened(rows & self.in_polar, self.enters) & self.in_polar)
 
     @cached_property
     def takes_over_per_minute_only(self) -> bool:
