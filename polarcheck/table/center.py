@@ -6,8 +6,8 @@ from functools import cached_property
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask
-from polarcheck.machines.modal import MM_PER_INCH, Side, Units
+from polarcheck.arrays import Mask
+from polarcheck.machines.modal import Side
 from polarcheck.table.arcs import Arcs
 from polarcheck.table.moves import any_in_row
 from polarcheck.table.tool_center import ToolCenter
@@ -23,24 +23,17 @@ class Center:
         self.arcs = arcs
 
     @cached_property
-    def least_increment(self) -> Floats:
-        """The smallest step that the control takes [mm]."""
-        control = self.trace.machine.control
-        inch = control.least_increment_inch * MM_PER_INCH
-        return np.where(self.trace.units == Units.INCH, inch, control.least_increment)
-
-    @cached_property
     def cuts_off_center(self) -> Mask:
         """Cutting moves that stay away from the center of C, be it by little; what is not known counts as away."""
         trace = self.trace
-        return np.asarray(trace.cuts & ~(self.tool_center.nearest < self.least_increment) & ~self.arcs.is_no_circle)
+        return np.asarray(trace.cuts & ~(self.tool_center.nearest < self.trace.least_step) & ~self.arcs.is_no_circle)
 
     @cached_property
     def stops_at_center(self) -> Mask:
         """Per move of the tool center: it ends at the center of C. Without compensation that is the programmed end."""
         trace, moves = self.trace, self.tool_center.moves
         known = moves.known | (trace.side[moves.row] == Side.OFF)
-        return np.asarray((np.abs(moves.end) < self.least_increment[moves.row]) & known)
+        return np.asarray((np.abs(moves.end) < self.trace.least_step[moves.row]) & known)
 
     @cached_property
     def meets_center(self) -> Mask:
@@ -50,7 +43,7 @@ class Center:
         Of a move that only leaves it, the one before says so; except for the first of which anything is known.
         """
         moves, stops = self.tool_center.moves, self.stops_at_center
-        least = self.least_increment[moves.row]
+        least = self.trace.least_step[moves.row]
         leaves = np.abs(moves.start) < least
         follows = np.zeros(len(moves), bool)
         follows[1:] = (moves.known | stops)[:-1] & (moves.section[1:] == moves.section[:-1])

@@ -28,7 +28,7 @@ from msgspec.structs import replace
 from polarcheck.arrays import Floats, Mask, Points, Rows, States
 from polarcheck.geometry import enclosed, polar
 from polarcheck.geometry.compensation import ToolPath
-from polarcheck.machines.modal import Motion, Side, Units
+from polarcheck.machines.modal import Motion, Side
 from polarcheck.table.moves import Moves, compensation_path, joined, of_tool, tool_center_path
 from polarcheck.table.trace import Trace
 
@@ -77,20 +77,13 @@ class Infeed:
         return np.where(trace.enters, np.abs(trace.length_of(word)), np.nan)
 
     @cached_property
-    def least_increment(self) -> Floats:
-        """Least input increment of lengths [mm]."""
-        trace, control = self.trace, self.trace.machine.control
-        inch = trace.units == Units.INCH
-        return np.where(inch, control.least_increment_inch, control.least_increment) * trace.scale
-
-    @cached_property
     def depth(self) -> Floats:
         """
         E of the section that each G12.1 begins [mm, radius], without its sign; 0 where there is none.
 
         The control drops what is finer than its least increment, so that an E below that is none.
         """
-        return np.nan_to_num(np.floor(self.written / self.least_increment + CUT) * self.least_increment)
+        return np.nan_to_num(np.floor(self.written / self.trace.least_step + CUT) * self.trace.least_step)
 
     @cached_property
     def _begins(self) -> list[int]:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from polarcheck.arrays import Floats, Points, Rows
-from polarcheck.machines.modal import Units
 from polarcheck.table.trace import Trace
 
 #: Nobody means a coarser digit than this many least increments: X20. is 20, and no number between 19.5 and 20.5.
@@ -19,18 +18,15 @@ def half_of_last_digit(trace: Trace) -> Points:
     It is that of the number with the most decimals in the section, since posts leave out zeros at the end. Numbers
     without any are taken as exact to the least increment.
     """
-    control = trace.machine.control
-    inch = trace.units == Units.INCH
-    least = np.where(inch, control.least_increment_inch, control.least_increment)
-    x = _last_digit(trace, trace.word_indices("X", "U"), least) * trace.x_factor
-    virtual = _last_digit(trace, trace.virtual_words, least)
+    x = _last_digit(trace, trace.word_indices("X", "U")) * trace.x_factor
+    virtual = _last_digit(trace, trace.virtual_words)
     return np.asarray(np.where(trace.section >= 0, (x + 1j * virtual) * trace.scale / 2, complex("nan+nanj")))
 
 
-def _last_digit(trace: Trace, words: Rows, least: Floats) -> Floats:
+def _last_digit(trace: Trace, words: Rows) -> Floats:
     """Of these words the finest digit in each section, per row."""
     section = trace.section[trace.run.row[words]]
     decimals = np.zeros(len(trace.sections) + 1, np.int64)
     np.maximum.at(decimals, section, np.where(section >= 0, trace.run.words.decimals[words], 0))
-    written = decimals[trace.section]
+    written, least = decimals[trace.section], trace.least_increment
     return np.where(written > 0, np.minimum(10.0**-written, _COARSEST * least), least)

@@ -111,9 +111,19 @@ class Lengths(Columns):
         return self._column(f"length {address}", lambda: self._scatter(address, self._lengths) * self.scale)
 
     @cached_property
+    def least_increment(self) -> Floats:
+        """Per row: least input increment of lengths, in the units in force [mm or inch]."""
+        control = self.machine.control
+        return np.where(self.units == Units.INCH, control.least_increment_inch, control.least_increment)
+
+    @cached_property
+    def least_step(self) -> Floats:
+        """Per row: the same [mm]."""
+        return self.least_increment * self.scale
+
+    @cached_property
     def _lengths(self) -> Floats:
-        control, inch = self.machine.control, self.units[self.run.row] == Units.INCH
-        return self._meant(np.where(inch, control.least_increment_inch, control.least_increment))
+        return self._meant(self.least_increment[self.run.row])
 
     def angle_of(self, address: str) -> Floats:
         """A word as an angle [deg]."""

@@ -100,7 +100,7 @@ class SwitchWords:
 
     @property
     def _increments(self) -> Floats:
-        return self.infeed.written / self.infeed.least_increment
+        return self.infeed.written / self.trace.least_step
 
     @property
     def _most_increments(self) -> float:
@@ -110,7 +110,7 @@ class SwitchWords:
     @cached_property
     def infeed_limit(self) -> Floats:
         """Per row: the largest infeed [mm], as many least increments as have the most digits of a number."""
-        return self._most_increments * self.infeed.least_increment
+        return self._most_increments * self.trace.least_step
 
     @cached_property
     def infeed_too_large(self) -> Mask:

@@ -10,7 +10,6 @@ import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Rows
 from polarcheck.execution.run import NO_VARIABLE
-from polarcheck.machines.modal import Units
 from polarcheck.machines.offsets import place_in
 from polarcheck.table.offset_settings import NOSE, RADIUS, RADIUS_WEAR, X_WEAR, Settings, Steps, X, in_order, of_list
 from polarcheck.table.positions import Positions
@@ -199,13 +198,12 @@ class ToolOffsets(Positions):
 
     def _data(self, address: str) -> Floats:
         """A word of data input as a length [mm]: without a point the control takes it in least increments."""
-        control, at = self.machine.control, self.word_indices(address)
+        at = self.word_indices(address)
         words, row = self.run.words, self.run.row[at]
-        least = np.where(self.units[row] == Units.INCH, control.least_increment_inch, control.least_increment)
-        counts = ~words.has_point[at] & (control.number_without_point == "least-increment")
+        counts = ~words.has_point[at] & (self.machine.control.number_without_point == "least-increment")
         column = np.full(len(self), np.nan)
         value = np.clip(words.value[at], -_LONGEST_NUMBER, _LONGEST_NUMBER)
-        column[row] = value * np.where(counts, least, 1.0) * self.scale[row]
+        column[row] = value * np.where(counts, self.least_increment[row], 1.0) * self.scale[row]
         return column
 
     def _set_by_variables(self) -> Settings:

@@ -125,7 +125,7 @@ def _on_pass(tool_center: ToolCenter, row: int) -> str:
 
 def meeting(center: Center, tool_center: ToolCenter, row: int) -> str:
     """How the tool center meets the center of C in a row that does."""
-    moves, stops, least = tool_center.moves, center.stops_at_center, center.least_increment[row]
+    moves, stops, least = tool_center.moves, center.stops_at_center, trace.least_step[row]
     at = np.flatnonzero((moves.row == row) & (stops | (moves.nearest < least)))[-1]
     if stops[at]:
         return "stops at the center of the C axis, where C has no angle"

@@ -193,7 +193,7 @@ def infeed_fault(trace: Trace, switch_words: SwitchWords, row: int) -> str:
     infeed = switch_words.infeed
     if switch_words.infeed_too_large[row]:
         return f"is too large: {_every_digit(switch_words.infeed_limit, trace, row)} is the most"
-    least, taken = (_every_digit(column, trace, row) for column in (infeed.least_increment, infeed.depth))
+    least, taken = (_every_digit(column, trace, row) for column in (trace.least_step, infeed.depth))
     once = "" if infeed.depth[row] > 0 else ", which is a single pass"
     return f"is finer than the least increment, {least}: {taken} is taken{once}"
 
