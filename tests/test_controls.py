@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from document_programs import GSK_1, M700V
 from programs import machine_of, moves_of, report_of, said, tables_of, trace_of
 
 from polarcheck.checking.finding import FileReport
@@ -11,37 +12,6 @@ from polarcheck.machines.modal import Motion
 from polarcheck.reading import source, translation
 from polarcheck.reports.pages.executed import rows
 
-M700V = """
-G17 G90 G94 G0 X40. C0 Z0
-G12.1
-G1 G42 X20. F2000
-C10.
-G3 X10. C20. R10.
-G1 X-20.
-C-10.
-G3 X-10. C-20. I10. J0
-G1 X20.
-C0
-G40 X40.
-G13.1
-"""
-GSK_SINGLE = """
-T0202
-G0 X150. C0 Z0
-G12.1
-G42 G1 X80. F200
-C20.
-G3 X40. C40. R20.
-G1 X-40.
-G3 X-80. C20. R20.
-G1 C-20.
-G3 X-40. C-40. R20.
-G1 X40.
-G3 X80. C-20. R20.
-G1 C0
-G40 X150.
-G13.1
-"""
 GSK_CYCLE = """
 T0202
 G0 X348. C30.
@@ -85,8 +55,8 @@ G113
 @pytest.mark.parametrize(
     ("program", "name", "right"),
     [
-        (M700V, "mitsubishi-m700", "radius"),
-        (GSK_SINGLE, "gsk-988", "diameter"),
+        (M700V.text, "mitsubishi-m700", "radius"),
+        (GSK_1.text, "gsk-988", "diameter"),
         (GSK_CYCLE, "gsk-988", "diameter"),
     ],
     ids=["M700V", "GSK, once round", "GSK, infeed cycle"],
@@ -122,7 +92,7 @@ def test_the_lsis_example_is_a_quarter_of_a_circle_with_x_as_a_radius() -> None:
 
 @pytest.mark.parametrize("name", ["gsk-988", "fanuc-16i", "turning-center"])
 def test_the_m700v_example_is_wrong_where_x_is_a_diameter(name: str) -> None:
-    rules = {finding.rule for finding in report_of(M700V, name).findings}
+    rules = {finding.rule for finding in report_of(M700V.text, name).findings}
     assert rules & {"arc-end-off-circle", "diameter-radius-mixed"}
 
 
@@ -453,14 +423,19 @@ def other(program: str, name: str) -> str:
 
 
 def test_a_program_for_another_machine_is_known() -> None:
-    assert "--machine mitsubishi-m700" in other(M700V, "fanuc")
-    assert "X is a radius" in other(M700V, "fanuc")
+    assert "--machine mitsubishi-m700" in other(M700V.text, "fanuc")
+    assert "X is a radius" in other(M700V.text, "fanuc")
     assert "--machine haas-lathe" in other(HAAS, "fanuc")
     assert "Y is the second axis" in other(HAAS, "fanuc")
 
 
 def test_a_program_under_its_own_machine_is_left_alone() -> None:
-    for program, name in ((M700V, "mitsubishi-m700"), (GSK_SINGLE, "gsk-988"), (LSIS, "lsis"), (HAAS, "haas-lathe")):
+    for program, name in (
+        (M700V.text, "mitsubishi-m700"),
+        (GSK_1.text, "gsk-988"),
+        (LSIS, "lsis"),
+        (HAAS, "haas-lathe"),
+    ):
         assert not other(program, name)
 
 

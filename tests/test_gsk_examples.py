@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from document_programs import GSK_1, GSK_2
-from programs import moves_of, report_of, said, tables_of, trace_of
+from programs import moves_of, report_of, said, trace_of
 
 from polarcheck.machines.modal import FeedMode
 
@@ -204,10 +204,11 @@ def test_axes_by_number_hold_for_one_section() -> None:
     twice = SINGLE.replace("N110 G12.1", "N110 G12.1 P3 Q1").replace(
         "N240 Z100.0;", "N250 G12.1 P1;\nG01 X140. C5. F100;\nX150. C0;\nN260 G13.1;\nN270 G12.1 P3;\nN280 G13.1;"
     )
-    words = tables_of(twice, "gsk-988", TOOL)["switch_words"]
-    enters = np.flatnonzero(words.trace.enters)
-    assert words.linear_axis[enters].tolist() == [3, 1, 3]
-    assert words.rotary_axis[enters].tolist() == [1, 3, 3]
+    trace = trace_of(twice, "gsk-988", TOOL)
+    enters = np.flatnonzero(trace.enters)
+    linear, rotary = trace.axes_written
+    assert linear[enters].tolist() == [3, 1, 3]
+    assert rotary[enters].tolist() == [1, 3, 3]
     assert (block(twice, "N270"), "polar-axis-number-wrong") in judged(twice)
 
 

@@ -131,12 +131,18 @@ class Infeed:
 
     def offsets(self, row: int) -> Floats:
         """How far the passes before the last lie off the contour [mm], the farthest first."""
+        return np.asarray(self.depth[row] * np.arange(self._counts_before_last[row], 0, -1.0))
+
+    @cached_property
+    def _counts_before_last(self) -> dict[int, int]:
+        """Of each G12.1 with an E, how many passes come before the last."""
+        return {row: self._count_before_last(row) for row in self._begins}
+
+    def _count_before_last(self, row: int) -> int:
         contour, closed = self._contours[row]
         if not closed:
-            return np.zeros(0)
-        depth = float(self.depth[row])
-        count = int(min(np.ceil((self._room(contour) - CLOSED) / depth) - 1, 1e6))
-        return depth * np.arange(max(count, 0), 0, -1.0)
+            return 0
+        return max(int(min(np.ceil((self._room(contour) - CLOSED) / self.depth[row]) - 1, 1e6)), 0)
 
     def _seen_from(self, point: complex, contour: Rows) -> tuple[Points, Points, Points, States]:
         """start, end, center, kind of the contour, from a point instead of the center of C."""
@@ -302,7 +308,8 @@ class Infeed:
     def is_simulated_in_part(self) -> Mask:
         """G12.1 with an E of which only the passes next to the contour are simulated."""
         rows = np.zeros(len(self.trace), bool)
-        rows[[row for row in self._begins if len(self.offsets(row)) > len(self._simulated(row, MOST_MOVES))]] = True
+        before_last = self._counts_before_last
+        rows[[row for row in self._begins if before_last[row] > len(self._simulated(row, MOST_MOVES))]] = True
         return rows
 
 

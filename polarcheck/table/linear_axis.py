@@ -50,19 +50,26 @@ class LinearAxis(Lengths):
         return {"P", "Q"} <= set(self.machine.polar.words_beside_switch)
 
     @cached_property
+    def axes_written(self) -> tuple[Floats, Floats]:
+        """Numbers that P and Q in the row give the linear and the rotary axis; those of the machine without them."""
+        mode = self.machine.polar
+        linear, rotary = (
+            np.where(np.isnan(word), float(own), word)
+            for word, own in ((self.word("P"), mode.linear_axis), (self.word("Q"), mode.rotary_axis))
+        )
+        return linear, rotary
+
+    @cached_property
     def _axis_numbers(self) -> tuple[Floats, Floats]:
         """
         Numbers of the linear and of the rotary axis that a G12.1 in the row means by P and Q; those of the machine
-        without them, and where one of them gives no such axis, or both give one, which is a finding.
+        where one of them gives no such axis, or both give one, which is a finding.
         """
         mode, axes = self.machine.polar, self.machine.control.axes
-        number = [np.full(len(self), float(axis)) for axis in (mode.linear_axis, mode.rotary_axis)]
-        if not self.takes_axes:
-            return number[0], number[1]
-        written = self.word("P"), self.word("Q")
-        p, q = (np.where(np.isnan(word), own, word) for word, own in zip(written, number, strict=True))
+        p, q = self.axes_written
         is_pair = np.isin(p, numbers_of(axes, "linear")) & np.isin(q, numbers_of(axes, "rotary")) & (p != q)
-        return np.where(is_pair, p, number[0]), np.where(is_pair, q, number[1])
+        is_pair &= self.takes_axes
+        return np.where(is_pair, p, mode.linear_axis), np.where(is_pair, q, mode.rotary_axis)
 
     @property
     def linear_number(self) -> Floats:

@@ -184,11 +184,6 @@ class Origin:
     # ---- G52, G50 ----
 
     @cached_property
-    def _is_preset(self) -> Mask:
-        """X is that of the work offset again: what G52 and G50 (G92) have moved is taken back."""
-        return self.trace.listed("coordinate_preset") & self.trace.has("X", "U")
-
-    @cached_property
     def coordinate_setting(self) -> Floats:
         """
         How far G50 (G92) has moved X0: by the difference of where X stands and what it is said to be, or by U.
@@ -204,7 +199,7 @@ class Origin:
         moved = np.where(is_step, step, trace.x_before / trace.x_factor + step)
         # How far X0 moves is not known where the word is not; elsewhere it is where X stands that is not known.
         by_unknown = sets & np.isnan(step) & (is_step | ~np.isnan(trace.x_before))
-        forgets = trace.changes_tool | trace.run.unknown | self._is_preset | (sets & np.isnan(moved) & ~by_unknown)
+        forgets = trace.changes_tool | trace.run.unknown | trace.presets_x | (sets & np.isnan(moved) & ~by_unknown)
         steps = np.where(sets & ~forgets, moved, 0.0)
         return positions(np.full(len(trace), np.nan), steps, forgets | trace.starts, np.zeros(len(trace)))
 

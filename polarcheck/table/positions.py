@@ -283,7 +283,12 @@ class Positions(LinearAxis):
     @cached_property
     def _shifts(self) -> Mask:
         """G52 with X, and what takes it back."""
-        return (self.listed("local_shift") & self.has("X")) | (self.listed("coordinate_preset") & self.has("X", "U"))
+        return np.asarray((self.listed("local_shift") & self.has("X")) | self.presets_x)
+
+    @cached_property
+    def presets_x(self) -> Mask:
+        """X is that of the work offset again: what G52 and G50 (G92) have moved is taken back."""
+        return np.asarray(self.listed("coordinate_preset") & self.has("X", "U"))
 
     def _alone(self, axis: str) -> Floats:
         """An axis after each row [mm] by what stands outside the mode."""

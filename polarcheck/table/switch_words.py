@@ -51,20 +51,6 @@ class SwitchWords:
         return np.asarray(self.names_axis & ~is_axis)
 
     @cached_property
-    def linear_axis(self) -> Floats:
-        """Per row: number of the linear axis that a G12.1 in it takes, that of P or, without it, of the machine."""
-        return self._axis("P", self.trace.machine.polar.linear_axis)
-
-    @cached_property
-    def rotary_axis(self) -> Floats:
-        """Per row: number of the rotary axis likewise, that of Q."""
-        return self._axis("Q", self.trace.machine.polar.rotary_axis)
-
-    def _axis(self, word: str, without: int) -> Floats:
-        number = self.trace.word(word)
-        return np.where(np.isnan(number), without, number)
-
-    @cached_property
     def names_axis_of_other_kind(self) -> Mask:
         """Per word: P that names no linear axis, or Q that names no rotary one, by the names of the axes."""
         words, axes = self.trace.run.words, self.trace.machine.control.axes
@@ -77,7 +63,8 @@ class SwitchWords:
     def names_axis_twice(self) -> Mask:
         """Per word: P and Q of a G12.1 that makes one axis both linear and rotary."""
         other_fault = self.names_no_axis | self.names_axis_of_other_kind
-        is_one = (self.linear_axis == self.rotary_axis) & ~self.trace.with_words(other_fault)
+        linear, rotary = self.trace.axes_written
+        is_one = (linear == rotary) & ~self.trace.with_words(other_fault)
         return np.asarray(self.names_axis & is_one[self.trace.run.row])
 
     # ---- the shift of the center ----

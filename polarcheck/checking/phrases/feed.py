@@ -123,7 +123,7 @@ def _on_pass(tool_center: ToolCenter, row: int) -> str:
     return f", on the pass {in_row(allowance, tool_center.trace, row):length} off the contour" if allowance > 0 else ""
 
 
-def meeting(center: Center, tool_center: ToolCenter, row: int) -> str:
+def meeting(trace: Trace, center: Center, tool_center: ToolCenter, row: int) -> str:
     """How the tool center meets the center of C in a row that does."""
     moves, stops, least = tool_center.moves, center.stops_at_center, trace.least_step[row]
     at = np.flatnonzero((moves.row == row) & (stops | (moves.nearest < least)))[-1]

@@ -184,7 +184,7 @@ def axis_fault(trace: Trace, switch_words: SwitchWords, row: int) -> str:
         return f"P is the number of a linear axis and Q that of a rotary one, of {listed(trace.machine.control.axes)}"
     if not trace.with_words(switch_words.names_no_axis)[row]:
         both = f"would be both the linear and the rotary axis; without P it is {trace.machine.polar.linear_axis}"
-        return f"axis {switch_words.linear_axis[row]:.0f} {both}, without Q {trace.machine.polar.rotary_axis}"
+        return f"axis {trace.axes_written[0][row]:.0f} {both}, without Q {trace.machine.polar.rotary_axis}"
     return f"no such axis; P and Q take whole numbers from 1 to {switch_words.trace.most_axes}"
 
 
