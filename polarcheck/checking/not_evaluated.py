@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterator
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -17,8 +17,10 @@ from polarcheck.checking.places import block_in_line
 from polarcheck.checking.rule import Rule
 from polarcheck.checking.tables import Tables
 from polarcheck.geometry.tolerances import CHORDS, CROSSINGS, FARTHEST
-from polarcheck.table.origin import Origin
 from polarcheck.table.trace import Trace
+
+#: Why a column is not known in a row.
+_Reason: TypeAlias = Callable[[Tables, int], str]
 
 #: Columns that hang on the offset in force, and those that hang on the whole move.
 _OF_OFFSETS = ("trace.radius", "trace.cutter_diameter", "trace.nose")
@@ -80,7 +82,7 @@ def unevaluated(tables: Tables, rule: Rule) -> Iterator[NotEvaluated]:
         reasons: dict[str, int] = {}
         first, counts = _groups(_cause(trace, name, rows))
         for row, count in sorted(zip(rows[first].tolist(), counts.tolist(), strict=True)):
-            reason = _REASONS.get(name, _plain(name))(trace, row)
+            reason = _REASONS.get(name, _plain(name))(tables, row)
             reasons[reason] = reasons.get(reason, 0) + count
         for reason, count in reasons.items():
             yield NotEvaluated(rule=rule.name, reason=reason, blocks=count, matters=name not in _WITHOUT_WEIGHT)
@@ -106,12 +108,12 @@ def _cause(trace: Trace, name: str, rows: Any) -> Any:
     return np.zeros(len(rows), np.int64)
 
 
-def _of_move(trace: Trace, row: int) -> str:
+def _of_move(tables: Tables, row: int) -> str:
     """Why the tool center path or the speed along it is not known."""
-    cause = int(_cause(trace, "tool_center.c_feed", np.array([row]))[0])
+    cause = int(_cause(tables["trace"], "tool_center.c_feed", np.array([row]))[0])
     if cause >= 0:
-        return _REASONS["trace.radius"](trace, row)
-    return _position(trace, row) if cause == _POSITION else _feed(trace, row)
+        return _REASONS["trace.radius"](tables, row)
+    return _position(tables, row) if cause == _POSITION else _feed(tables, row)
 
 
 def _nothing(tables: Tables, rule: Rule) -> Iterator[NotEvaluated]:
@@ -202,10 +204,11 @@ def _loops_given_up(
         yield NotEvaluated(rule=rule.name, reason=told, blocks=int(counts[order[_LISTED:]].sum()), matters=matters)
 
 
-def _no_offset(what: str, key: str, of_program: Callable[[Trace], Rows] | None = None) -> Callable[[Trace, int], str]:
+def _no_offset(what: str, key: str, of_program: Callable[[Trace], Rows] | None = None) -> _Reason:
     """of_program: gives the row in which the program has set it, -1 where it has not."""
 
-    def reason(trace: Trace, row: int) -> str:
+    def reason(tables: Tables, row: int) -> str:
+        trace: Trace = tables["trace"]
         number = int(trace.offset_number[row])
         if not number:
             return f"no {what}: no tool offset is in force; call one before the polar mode, as in T0808"
@@ -230,7 +233,8 @@ def _not_known_from_program(trace: Trace, number: int, setter: int, what: str, k
     return f"no {what} for offset {number}: {setting} sets wear or a difference alone; {remedy}"
 
 
-def _position(trace: Trace, row: int) -> str:
+def _position(tables: Tables, row: int) -> str:
+    trace: Trace = tables["trace"]
     lost = np.flatnonzero((trace.run.unknown & (trace.program == trace.program[row]))[: row + 1])
     if not len(lost):
         axis = linear(trace, row)
@@ -248,23 +252,24 @@ def _position(trace: Trace, row: int) -> str:
     return f"the position is not known after {written}, which is not executed; {remedy}"
 
 
-def _origin(trace: Trace, row: int) -> str:
-    causes = " and ".join(Origin(trace).unknown_causes(row))
+def _origin(tables: Tables, row: int) -> str:
+    causes = " and ".join(tables["entry"].origin.unknown_causes(row))
     return f"where X0 lies is not known: {causes} sets X to what is not known; {_OF_VARIABLES}"
 
 
-def _feed(trace: Trace, row: int) -> str:
+def _feed(tables: Tables, row: int) -> str:
+    trace: Trace = tables["trace"]
     if trace.per_minute[row]:
         return "the feed is not known: no F is in force; write one before the cutting move"
     codes = " or ".join(trace.machine.codes("feed_per_minute"))
     return f"the feed is not known: F is per revolution of a spindle; write feed per minute before it, {codes}"
 
 
-def _plain(name: str) -> Callable[[Trace, int], str]:
-    return lambda trace, row: f"{name.rpartition('.')[2].replace('_', ' ')} is not known"
+def _plain(name: str) -> _Reason:
+    return lambda tables, row: f"{name.rpartition('.')[2].replace('_', ' ')} is not known"
 
 
-_REASONS: dict[str, Callable[[Trace, int], str]] = {
+_REASONS: dict[str, _Reason] = {
     "trace.radius": _no_offset("radius", "radius", lambda trace: trace.radius_set_in),
     "trace.cutter_diameter": _no_offset("cutter diameter", "diameter"),
     "trace.nose": _no_offset("nose type", "nose", lambda trace: trace.nose_set_in),

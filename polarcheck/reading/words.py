@@ -182,7 +182,8 @@ def read_words(source: Source, line_comments: str = "") -> Text:
     def spans(ranges: Ranges) -> Spans:
         return Spans(ranges.start, ranges.end, _block_of(ranges.start, starts))
 
-    strays = np.append(table.strays[_is_told(table, code, is_macro, starts)], _before(around.strays, prose, starts))
+    told = table.strays[_is_told(table, code, is_macro, starts)]
+    strays = np.sort(np.append(told, _before(around.strays, prose, starts)))
     outside = around.outside
     if data[end_of_data + 1 :].translate(None, BLANKS + b"\n"):
         outside = Ranges(np.append(outside.start, end_of_data), np.append(outside.end, len(data)))
@@ -194,7 +195,7 @@ def read_words(source: Source, line_comments: str = "") -> Text:
         unclosed=around.unclosed,
         nested=around.nested,
         names=spans(around.names),
-        strays=spans(Ranges(np.sort(strays), np.sort(strays) + 1)),
+        strays=spans(Ranges(strays, strays + 1)),
         foreign=spans(foreign(stored)),
         prose=spans(prose),
         dots=spans(table.dots),

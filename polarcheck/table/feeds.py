@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask
+from polarcheck.geometry.tolerances import SHARE
 from polarcheck.machines.modal import FeedMode, Units
 from polarcheck.table.filling import fill_down, happened
 from polarcheck.table.tool_center import ToolCenter
@@ -89,7 +90,7 @@ class Feeds:
         trace = self.trace
         written = trace.has("F") & (trace.feed_mode == FeedMode.PER_REVOLUTION)
         number = fill_down(np.where(written, trace.written_feed, np.nan), written | trace.starts, np.nan)
-        same = np.isclose(trace.feed_number, number, rtol=1e-9, atol=0) & trace.entered_per_revolution
+        same = np.isclose(trace.feed_number, number, rtol=SHARE, atol=0) & trace.entered_per_revolution
         same &= trace.takes_over_per_minute_only
         says = trace.in_polar & (trace.modal_feed_mode == FeedMode.PER_REVOLUTION)
         is_small = ~self._is_at_least(_NOT_PER_MINUTE) & (~np.isnan(number) | says)

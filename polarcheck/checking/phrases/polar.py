@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from polarcheck.arrays import Floats
 from polarcheck.checking.other_machine import NAMED, OtherMachine
-from polarcheck.checking.phrases.common import codes, executed_word, outside, switch_off, written
+from polarcheck.checking.phrases.common import codes, executed_word, linear, outside, switch_off, written
 from polarcheck.checking.places import block_in_line
 from polarcheck.checking.quantity import in_row
 from polarcheck.machines.axes import listed
@@ -215,7 +215,7 @@ def misfit_of_pass(trace: Trace, infeed: Infeed, row: int) -> str:
 
 def first_axis(trace: Trace, index: int) -> str:
     """The linear axis of a section."""
-    return chr(int(trace.linear_axis[trace.sections.enter[index]]))
+    return linear(trace, int(trace.sections.enter[index]))
 
 
 def what(trace: Trace, arcs: Arcs, index: int) -> str:
