@@ -65,6 +65,8 @@ _OTHERS: dict[str, tuple[str, str, list[int]]] = {
 FAULTS = {kind: (statement, "", [3]) for kind, statement in _ONE_STATEMENT.items()} | _OTHERS
 #: Kinds that no rule reports.
 UNREPORTED = {"word-format": "G0 X[20] Z--5.", "stray-character": "G0 X[20] ? Y5."}
+#: Kinds of the languages of other controls.
+OF_LANGUAGES = {"label-not-found"}
 #: Bounds that some of them reach, and limits of the control.
 RUNNING: dict[str, dict[str, Any]] = {
     "too-many-repeats": {"max_blocks": 100},
@@ -76,7 +78,7 @@ CHANGES = {"loop-levels": {"macro": {"loop_levels": 1}}}
 
 
 def test_the_table_has_all_kinds_and_only_rules_that_there_are() -> None:
-    assert set(RULES) == KINDS == set(FAULTS) | set(UNREPORTED)
+    assert set(RULES) == KINDS == set(FAULTS) | set(UNREPORTED) | OF_LANGUAGES
     macro = {name for name, rule in load_all().items() if rule.group == "macro"}
     assert set(RULES.values()) == macro | {""}
 

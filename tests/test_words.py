@@ -217,7 +217,7 @@ def test_comments() -> None:
 
 def test_comments_of_other_dialects() -> None:
     text = text_of("G1 X1 ' Z5 ( no\n(it's) Z2\nG0 (a % b) Y1 % c ( d", "'%")
-    assert in_text(text, text.comments) == ["(it's)", "(a % b)", "' Z5 ( no", "% c ( d"]
+    assert in_text(text, text.comments) == ["' Z5 ( no", "(it's)", "(a % b)", "% c ( d"]
     assert not text.unclosed.any()
     assert addresses(text) == "GXZGY"
     assert not len(text.tape_marks)

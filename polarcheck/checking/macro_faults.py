@@ -51,6 +51,7 @@ RULES: Final[Mapping[FaultKind, str]] = {
     "program-not-found": "subprogram-missing",
     "sequence-number-not-found": "jump-target-missing",
     "sequence-number-vacant": "jump-target-missing",
+    "label-not-found": "jump-target-missing",
     "return-target-not-found": "jump-target-missing",
     "loop-without-end": "loop-unbalanced",
     "end-without-loop": "loop-unbalanced",
@@ -106,6 +107,7 @@ _REASONS: Final[Mapping[FaultKind, str]] = {
     ),
     "sequence-number-not-found": "there is no N{number:.15g} in this program",
     "sequence-number-vacant": "the number to go to is a vacant variable",
+    "label-not-found": "there is no label {label} {where} this block in this program",
     "return-target-not-found": "there is no N{number:.15g} in the calling program",
     "loop-without-end": "DO{number} has no END{number} behind it",
     "end-without-loop": "END{number} has no DO{number} before it",
@@ -134,6 +136,7 @@ _REMARKS: Final[Mapping[RemarkKind, str]] = {
         "the condition depends on a value that is not known, and is taken as not fulfilled{variables}"
     ),
     "program-unknown": "which program is called depends on a value that is not known{variables}",
+    "not-simulated": "{name} is not simulated",
     "return-jumps": "{code} P in the main program jumps and is taken as the end: check what follows it yourself",
 }
 

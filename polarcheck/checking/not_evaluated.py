@@ -46,8 +46,10 @@ def unexecuted(tables: Tables) -> Iterator[NotEvaluated]:
             rule="all", reason=f"the file is written for {language.title}: convert it for this lathe", blocks=len(trace)
         )
         return
+    remarks = Counter((reason_of(remark), bool(remark.values.get("matters", True))) for remark in trace.run.remarks)
+    for (reason, matters), count in remarks.items():
+        yield NotEvaluated(rule="all", reason=reason, blocks=count, matters=matters)
     for reason, count in (
-        *Counter(map(reason_of, trace.run.remarks)).items(),
         *axes_not_followed(trace),
         offsets_not_known(trace),
         *not_simulated(tables["infeed"]),

@@ -116,12 +116,17 @@ def _switch_is_not_alone(tables: Tables) -> bool:
     return bool(np.any(words.in_rows(words.switches) & ~words.may_stand_beside_switch))
 
 
+def _language(machine: Machine) -> tuple[object, ...]:
+    """What of a machine makes it find other words in a text than another."""
+    return machine.control.native_words, machine.control.line_comments, machine.macro.language
+
+
 def _read_by(tables: Tables, machine: Machine) -> Tables:
     """The program as another machine reads it."""
     trace: Trace = tables["trace"]
-    ours, theirs = trace.machine.control, machine.control
-    if (ours.native_words, ours.line_comments) == (theirs.native_words, theirs.line_comments):
+    theirs = machine.control
+    if _language(trace.machine) == _language(machine):
         return Tables(trace.run, machine, trace.job)
     found = source.read(trace.text.source.data, trace.text.source.path)
-    text = read_words(translated(found, theirs.native_words), theirs.line_comments)
+    text = read_words(translated(found, theirs.native_words), theirs.line_comments, machine.macro.language)
     return Tables(straight(text, machine.m_codes.program_end), machine, trace.job)

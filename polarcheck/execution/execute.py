@@ -19,7 +19,7 @@ from polarcheck.execution.listing import Listing
 from polarcheck.execution.macro import Variables, assign, step_of, word_value
 from polarcheck.execution.programs import Program, ProgramName
 from polarcheck.execution.run import NO_VARIABLE, Assigned, Remark
-from polarcheck.execution.statement import Kind, Statement, Word
+from polarcheck.execution.statement import Kind, Search, Statement, Word
 from polarcheck.machines.codes import code_numbers, code_set
 from polarcheck.machines.job import Running
 from polarcheck.time_limit import seconds_for
@@ -191,7 +191,15 @@ class Execution(Calls):
             self.found(statement.fault, block)
         if self.skip and any(skip.start < statement.start for skip in statement.skips):
             return block + 1
-        return self.execute(statement, block)
+        for unread in statement.unread:
+            self.remark("not-simulated", block, name=unread.name, matters=unread.matters)
+        for part in (statement, *statement.more):
+            goes_on = self.execute(part, block)
+            if goes_on != block + 1:
+                return goes_on
+        if any(unread.moves for unread in statement.unread):
+            self.rows.mark_unknown()
+        return block + 1
 
     def execute(self, statement: Statement, block: int) -> int:
         match statement.kind:
@@ -250,6 +258,8 @@ class Execution(Calls):
         return result
 
     def go_to(self, statement: Statement, block: int) -> int:
+        if statement.label:
+            return self.go_to_label(statement, block)
         if statement.jump is None:
             return block + 1
         number, fault = evaluate(statement.jump, self.variables, self.listing.arithmetic)
@@ -263,6 +273,17 @@ class Execution(Calls):
         target = self.listing.programs.jump(self.stack[-1].program, round(number), block)
         if target is None:
             self.fault("sequence-number-not-found", block, statement.jump, number=round(number))
+            return block + 1
+        if target <= block:
+            self.goes_back(block)
+        return target
+
+    def go_to_label(self, statement: Statement, block: int) -> int:
+        program, search = self.stack[-1].program, statement.search
+        target = self.listing.programs.labelled(program, statement.label, block, search)
+        if target is None:
+            where = {Search.FORWARD: "behind", Search.BACKWARD: "before"}.get(search, "beside")
+            self.fault("label-not-found", block, statement, label=statement.label, where=where)
             return block + 1
         if target <= block:
             self.goes_back(block)

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import msgspec
 import numpy as np
+from numpy.typing import NDArray
 
 from polarcheck.arrays import Mask, Rows, stretch
 from polarcheck.execution.run import Assigned, FlowFault, Remark, Run, is_code
@@ -147,8 +148,10 @@ class ExecutedRows:
             for pieces in (self.words, self.row, self.block, self.depth):
                 pieces.pop()
 
-    def run(self, faults: tuple[FlowFault, ...], remarks: tuple[Remark, ...]) -> Run:
-        """All rows as a table."""
+    def run(
+        self, faults: tuple[FlowFault, ...], remarks: tuple[Remark, ...], names: Mapping[int, str] | None = None
+    ) -> Run:
+        """All rows as a table; names: of tools, by the number that T has instead."""
         none = np.zeros(0, np.int64)
         index = np.concatenate((none, *self.words))
         table = _joined(self.text.words, self.text.blocks, self.computed)
@@ -166,7 +169,16 @@ class ExecutedRows:
             faults,
             remarks,
             {row: assigned for row, assigned in self.assigned.items() if row < self.count},
+            self._distance(index),
+            names or {},
         )
+
+    def _distance(self, index: Rows) -> NDArray[np.int16] | None:
+        """Per executed word what it says of itself; index: among the words of the text and the computed ones."""
+        if all(word.distance is None for _, word, _ in self.computed):
+            return None
+        own = [word.distance or 0 for _, word, _ in self.computed]
+        return np.concatenate((np.zeros(len(self.text.words), np.int16), np.array(own, np.int16)))[index]
 
 
 def _kept(words: Words) -> Mask:

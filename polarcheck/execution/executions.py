@@ -45,7 +45,8 @@ def executed(text: Text, machine: Machine, job: Job, states: Sequence[str]) -> l
 def _with_text(execution: Execution, text: Text) -> Run:
     """The rows of an execution as a run of the text that holds no other files than those it used."""
     listing = execution.listing
-    run = execution.rows.run(execution.faults.all(), execution.remarks)
+    names = {number: name for name, number in listing.names.tools.items()}
+    run = execution.rows.run(execution.faults.all(), execution.remarks, names)
     if len(execution.used) == len(listing.files):
         return msgspec.structs.replace(run, text=text)
     blocks, characters = _shifts(listing, execution.used)

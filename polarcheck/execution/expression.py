@@ -45,6 +45,13 @@ class Characters:
         self.places = [found.start() for found in re.finditer(r"[^\s\0]", block)]
         self.text = "".join([block[place] for place in self.places]).translate(_CAPITALS)
 
+    @classmethod
+    def read_as(cls, text: str, places: list[int]) -> Characters:
+        """Characters that a block is read as, each with the place of the one in the block that it stands for."""
+        characters = cls("")
+        characters.text, characters.places = text, places
+        return characters
+
     def span(self, start: int, end: int) -> tuple[int, int]:
         """Where the characters from start to end stand in the block; the last character where start is past the end."""
         if not self.places:

@@ -46,6 +46,7 @@ FaultKind: TypeAlias = Literal[
     # ---- jumps and loops ----
     "sequence-number-not-found",  # 128
     "sequence-number-vacant",  # 128
+    "label-not-found",
     "return-target-not-found",  # 078
     "loop-without-end",  # 124
     "end-without-loop",  # 124, PS1124
@@ -73,4 +74,5 @@ RemarkKind: TypeAlias = Literal[
     "condition-unknown",
     "program-unknown",  # which program is called
     "return-jumps",  # M99 P in the main program
+    "not-simulated",  # a statement of the control's own language
 ]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import bisect
+import functools
 import itertools
 from collections.abc import Iterable, Sequence
 
@@ -11,6 +12,7 @@ import numpy as np
 from polarcheck.execution.arithmetic import Arithmetic
 from polarcheck.execution.loops import Loops, find_loops
 from polarcheck.execution.macro import Variables, called_program
+from polarcheck.execution.names import Names
 from polarcheck.execution.programs import Program, ProgramName, block_text, find_programs, first_blocks, turns
 from polarcheck.execution.statement import Statement, read_statement
 from polarcheck.machines.machine import Machine
@@ -41,6 +43,7 @@ class Listing:
         self.first_blocks = [*first_blocks(self.text), len(self.text.blocks)]
         self._flow_codes, self._call_codes = self.macro.flow_codes, self.macro.call_codes
         self.stops: list[int] = np.flatnonzero(turns(self.text, self._flow_codes | self.ends)).tolist()
+        self.names = Names()
         self._statements: dict[int, Statement] = {}
         self._loops: dict[int, Loops] = {}
         self._calls: dict[int, dict[ProgramName, bool]] = {}
@@ -52,19 +55,29 @@ class Listing:
         indices = dict(zip(files, itertools.count(len(self.files)), strict=False))
         grown = Listing([*self.files, *files.values()], self.machine, self.found | indices)
         grown._statements, grown._loops, grown._calls = self._statements, self._loops, self._calls
+        grown.names = self.names
         return grown
 
     def statement(self, block: int) -> Statement:
         """The statement of a block."""
         if block not in self._statements:
-            self._statements[block] = read_statement(
-                block_text(self.text, block),
-                calls=self._flow_codes,
-                loops=self.macro.loop_numbers,
-                levels=self.macro.bracket_levels,
-                size=_SIZE,
-            )
+            self._statements[block] = self._read(block)
         return self._statements[block]
+
+    def _read(self, block: int) -> Statement:
+        text, macro = block_text(self.text, block), self.macro
+        read = functools.partial(
+            read_statement,
+            calls=self._flow_codes,
+            loops=macro.loop_numbers,
+            levels=macro.bracket_levels,
+            size=_SIZE,
+        )
+        if macro.language == "custom-macro" or not self.text.blocks.is_macro[block]:
+            return read(text)
+        from polarcheck.execution import languages  # few files need it
+
+        return languages.READERS[macro.language](text, self.machine, self.names, read)
 
     def turns_at(self, block: int) -> bool:
         """Whether the flow can turn at a block."""

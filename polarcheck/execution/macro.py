@@ -15,6 +15,7 @@ from typing import Final
 from polarcheck.execution.arithmetic import UNKNOWN, Arithmetic, Value, round_to
 from polarcheck.execution.expression import DEFAULT, Fault, evaluate
 from polarcheck.execution.kinds import FaultKind
+from polarcheck.execution.names import FIRST_VARIABLE
 from polarcheck.execution.programs import ProgramName
 from polarcheck.execution.statement import Statement, Word
 from polarcheck.machines.macro_keys import Macro
@@ -120,6 +121,8 @@ def _whole(number: float) -> int:
 
 
 def _kind(number: int, macro: Macro) -> VariableKind:
+    if macro.language != "custom-macro" and number >= FIRST_VARIABLE:
+        return VariableKind.COMMON
     ranges = (
         (VariableKind.READ_ONLY, macro.read_only_variables),
         (VariableKind.CLOCK, macro.clock_variables),

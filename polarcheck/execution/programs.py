@@ -17,6 +17,7 @@ import numpy as np
 
 from polarcheck.arrays import Mask, stretch
 from polarcheck.execution.run import begins_program, is_code
+from polarcheck.execution.statement import Search
 from polarcheck.machines.machine import Machine
 from polarcheck.reading.source import Source
 from polarcheck.reading.translation import translated
@@ -25,6 +26,11 @@ from polarcheck.reading.words import Text, read_words
 #: No control has a program or sequence number of so many digits; beyond it, values are only about right.
 _NUMBER_LIMIT = 1e15
 _SEQUENCE_NUMBER = re.compile(r"[\s/]*(?:/\s*\d\s*)?(?:[O:]\s*\d+\s*)?N\s*(\d+)", re.IGNORECASE)
+#: A label: ANF: at the head of a block or behind its number, or a sequence name, N with letters.
+_LABEL = re.compile(
+    r"[\s/]*(?:/\s*\d\s*)?(?:N\s*\d+\s*)?(?:([A-Z_][A-Z0-9_]+)\s*:(?!=)|(N(?=[0-9]*[A-Z])[A-Z0-9]{1,4})(?![A-Z0-9=]))",
+    re.IGNORECASE,
+)
 
 
 class ProgramName(NamedTuple):
@@ -94,6 +100,32 @@ class Programs:
         at = bisect.bisect_right(targets, block)
         return targets[at] if at < len(targets) else targets[0] if targets else None
 
+    def labelled(self, program: Program, label: str, block: int, search: Search) -> int | None:
+        """The block of a label of a program, in capitals, from another block on; None where there is none."""
+        targets = self._labels.get(program.first, {}).get(label, [])
+        behind = bisect.bisect_right(targets, block)
+        ahead, back = targets[behind:], targets[:behind]
+        if search is Search.FORWARD:
+            return ahead[0] if ahead else None
+        if search is Search.BACKWARD:
+            return back[-1] if back else None
+        return next(iter(ahead or targets), None)
+
+    @cached_property
+    def _labels(self) -> dict[int, dict[str, list[int]]]:
+        """The blocks of each label, by the first block of its program."""
+        labels: dict[int, dict[str, list[int]]] = {}
+        for block in np.flatnonzero(self.text.blocks.is_macro).tolist():
+            found = _LABEL.match(block_text(self.text, block))
+            if found:
+                label = (found[1] or found[2]).upper()
+                labels.setdefault(self._first_of(block), {}).setdefault(label, []).append(block)
+        return labels
+
+    def _first_of(self, block: int) -> int:
+        """The first block of the program in which a block stands."""
+        return self._firsts[max(bisect.bisect_right(self._firsts, block) - 1, 0)]
+
     def targets(self, program: Program) -> dict[int, list[int]]:
         """The blocks of each N number of a program, in order."""
         return self._targets.get(program.first, {})
@@ -114,14 +146,14 @@ class Programs:
                 places.append((block, int(found[1])))
         targets: dict[int, dict[int, list[int]]] = {}
         for block, number in sorted(places):
-            first = self._firsts[max(bisect.bisect_right(self._firsts, block) - 1, 0)]
-            targets.setdefault(first, {}).setdefault(number, []).append(block)
+            targets.setdefault(self._first_of(block), {}).setdefault(number, []).append(block)
         return targets
 
 
 def read_text(source: Source, machine: Machine) -> Text:
     """The words of a source as this control reads them."""
-    return read_words(translated(source, machine.control.native_words), machine.control.line_comments)
+    control = machine.control
+    return read_words(translated(source, control.native_words), control.line_comments, machine.macro.language)
 
 
 def find_programs(text: Text) -> Programs:

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping
 
 import msgspec
 import numpy as np
+from numpy.typing import NDArray
 
 from polarcheck.arrays import Mask, Rows
 from polarcheck.execution.kinds import FaultKind, RemarkKind
@@ -68,7 +69,8 @@ class Run(msgspec.Struct, frozen=True):
     words: in order of execution. row: the row of each word, ascending. block: the index into text.blocks of each row.
     starts: rows at which a program begins, so that nothing before them counts. unknown: rows whose effect is not known.
     depth: of calls. faults: what macro and flow found. remarks: what was not evaluated. assigned: row -> the variable
-    of an offset that it assigns, with its value.
+    of an offset that it assigns, with its value. distance: per word what it says of itself (modal.Distance), 0 where it
+    says nothing; None where no word does. names: of tools that T calls by name, by the number that stands for them.
     """
 
     text: Text
@@ -81,6 +83,8 @@ class Run(msgspec.Struct, frozen=True):
     faults: tuple[FlowFault, ...] = ()
     remarks: tuple[Remark, ...] = ()
     assigned: Mapping[int, Assigned] = {}
+    distance: NDArray[np.int16] | None = None
+    names: Mapping[int, str] = {}
 
     def __len__(self) -> int:
         return len(self.block)

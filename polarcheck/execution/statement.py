@@ -16,6 +16,7 @@ from typing import Final, NamedTuple, TypeAlias
 
 from polarcheck.execution.expression import NUMBER, Characters, Expression, Fault, Step, read_expression
 from polarcheck.execution.kinds import FaultKind
+from polarcheck.machines.modal import Distance
 
 Place: TypeAlias = tuple[int, int]
 
@@ -49,7 +50,8 @@ class Word:
     An address and its value.
 
     address: a letter, ",C" with its comma, "O" also for ":", "<" for a program's name. written: the number as it stands
-    in the program, sign and point included, or the name; None where the value is a variable or an expression.
+    in the program, sign and point included, or the name; None where the value is a variable or an expression. distance:
+    whether the value is a coordinate or a distance, where the word itself says it: X=AC(10), X=IC(10).
     """
 
     address: str
@@ -57,6 +59,7 @@ class Word:
     written: str | None
     start: int
     end: int
+    distance: Distance | None = None
 
     @property
     def code(self) -> str:
@@ -69,6 +72,28 @@ class Word:
         return self.written is None or "." in self.written
 
 
+class Search(enum.Enum):
+    """Where a jump looks for its target: from the next N number or label on, then from the head of the program."""
+
+    ROUND = enum.auto()
+    FORWARD = enum.auto()
+    BACKWARD = enum.auto()
+
+
+class Unread(NamedTuple):
+    """
+    What a block says and this check does not simulate, by the name that a message gives it, and its characters.
+
+    moves: nobody knows where the axes stand after it. matters: a finding may be missing for it.
+    """
+
+    name: str
+    start: int
+    end: int
+    moves: bool = False
+    matters: bool = True
+
+
 @dataclass(frozen=True, slots=True)
 class Statement:
     """
@@ -77,7 +102,9 @@ class Statement:
     start, end: the statement, without block skip and sequence number. skips: one within the block skips what follows.
     target: the number of the variable to assign, None for a variable by name. jump: the N to go to. then: what IF ..
     THEN does. call: the code that makes the block a call, "" in others. fault: the first one; what could not be read
-    is None or not among the words, and with "bracket-levels" nothing is lost.
+    is None or not among the words, and with "bracket-levels" nothing is lost. label: the name to go to, where it is no
+    number; search: where it is looked for. more: what the block says beside it, in order. unread: what is not
+    simulated.
     """
 
     kind: Kind
@@ -94,6 +121,10 @@ class Statement:
     words: tuple[Word, ...] = ()
     call: str = ""
     fault: Fault | None = None
+    label: str = ""
+    search: Search = Search.ROUND
+    more: tuple[Statement, ...] = ()
+    unread: tuple[Unread, ...] = ()
 
 
 _OUTPUTS: Final = ("BPRNT", "DPRNT", "POPEN", "PCLOS", "SETVN")
@@ -115,10 +146,12 @@ _ALONE: Final[dict[str, FaultKind]] = {"[": "format", "]": "missing-open-bracket
 
 
 class _Reader:
-    """Reads one block. at: index of the next character; fault: the first so far."""
+    """Reads one block, empty where it is read as other characters. at: index of the next; fault: the first so far."""
 
-    def __init__(self, block: str, calls: frozenset[str], loops: int, levels: int, size: int) -> None:
-        self.block, self.characters = block, Characters(block)
+    def __init__(
+        self, block: str, characters: Characters, calls: frozenset[str], loops: int, levels: int, size: int
+    ) -> None:
+        self.block, self.characters = block, characters
         self.text, self.at = self.characters.text, 0
         self.calls, self.loops, self.levels, self.size = calls, loops, levels, size
         self.skips: list[Number] = []
@@ -311,7 +344,8 @@ class _Reader:
             return []
         self.at = end + 1
         place = self.characters.span(start, self.at)
-        return [Word("<", Expression((), *place), self.block[place[0] + 1 : place[1] - 1].strip(), *place)]
+        written = self.block[place[0] + 1 : place[1] - 1].strip() if self.block else self.text[start + 1 : end]
+        return [Word("<", Expression((), *place), written, *place)]
 
     def word(self) -> list[Word]:
         """One word, or none where its value cannot be read; then what may be its number is passed over."""
@@ -346,11 +380,15 @@ class _Reader:
         return value
 
 
-def read_statement(block: str, *, calls: frozenset[str], loops: int, levels: int, size: int = 20_000) -> Statement:
+def read_statement(
+    block: str | Characters, *, calls: frozenset[str], loops: int, levels: int, size: int = 20_000
+) -> Statement:
     """
-    Read one block, given without comments; blanks and small letters are allowed anywhere.
+    Read one block, given without comments, or what it is read as; blanks and small letters are allowed anywhere.
 
     calls: the codes that call a program or return from one, in the spelling of `Word.code`. loops: the highest number
     of DO and END. levels: of brackets, in each expression. size: bound of words, and of the steps of an expression.
     """
-    return _Reader(block, calls, loops, levels, size).block_statement()
+    if isinstance(block, Characters):
+        return _Reader("", block, calls, loops, levels, size).block_statement()
+    return _Reader(block, Characters(block), calls, loops, levels, size).block_statement()

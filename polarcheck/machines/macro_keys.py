@@ -1,7 +1,7 @@
 """Custom macro and calls as a lathe knows them: the keys of [macro]."""
 
 import re
-from typing import Annotated
+from typing import Annotated, Literal
 
 import msgspec
 
@@ -14,6 +14,7 @@ class Macro(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     """
     Custom macro and calls.
 
+    language: of statements: custom-macro (#1), high-level (R1, X=R1, IF .. GOTOF NAME) or user-task (VC1, IF [..] NAME)
     local_variables: ranges, first and last number, of local variables, of which each macro call has its own
     common_variables: ranges of common variables that are vacant at power-on
     retained_variables: ranges of common variables that outlive the power-off: not known until a program assigns them
@@ -43,6 +44,7 @@ class Macro(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     given: variable -> its value, as the job or the machine knows it
     """
 
+    language: Literal["custom-macro", "high-level", "user-task"]
     local_variables: Ranges
     common_variables: Ranges
     retained_variables: Ranges

@@ -57,8 +57,8 @@ class Ranges(msgspec.Struct, frozen=True):
     def __len__(self) -> int:
         return len(self.start)
 
-    def only(self, chosen: Mask) -> Ranges:
-        """Some of them."""
+    def only(self, chosen: Mask | Positions) -> Ranges:
+        """Some of them, by a mask or in another order."""
         return Ranges(self.start[chosen], self.end[chosen])
 
 
@@ -99,12 +99,14 @@ def read_surroundings(code: Bytes, line_comments: str = "") -> Surroundings:
     kept = ~_within(comments, outside)
     found = [comments.only(kept), *(remark.only(~_within(remark, outside)) for remark in remarks if len(remark))]
     count = sum(map(len, found[1:]))
+    every = _joined(found)
+    order = np.argsort(every.start, kind="stable")
     return Surroundings(
         tape_marks=marks,
         outside=outside,
-        comments=_joined(found),
-        unclosed=np.append(unclosed[kept], np.zeros(count, bool)),
-        nested=np.append(nested[kept], np.zeros(count, bool)),
+        comments=every.only(order),
+        unclosed=np.append(unclosed[kept], np.zeros(count, bool))[order],
+        nested=np.append(nested[kept], np.zeros(count, bool))[order],
         names=names,
         strays=strays,
         tags=tags.only(~_within(tags, outside)),

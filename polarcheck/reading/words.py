@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import enum
 import re
 from typing import Any
 
@@ -11,45 +10,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from polarcheck.arrays import Floats, Mask
+from polarcheck.reading.characters import KINDS, Character
+from polarcheck.reading.language_blocks import take_out
 from polarcheck.reading.letters import read_as_digits
 from polarcheck.reading.numbers import NumberFault, Numbers, read_numbers
 from polarcheck.reading.prose import find_prose
-from polarcheck.reading.source import CTRL_Z, DASH, LF, Bytes, Positions, Source
+from polarcheck.reading.source import CTRL_Z, LF, Bytes, Positions, Source
 from polarcheck.reading.surroundings import BLANKS, Ranges, foreign, narrow, read_surroundings, united
 
 __all__ = ["Blocks", "NumberFault", "Spans", "Text", "Words", "read_words"]
 
 
-class Character(enum.IntEnum):
-    """What a character is to the reader; above COMMA what is no part of a word."""
-
-    BLANK = 0
-    LETTER = 1
-    BREAK = 2
-    DIGIT = 3
-    POINT = 4
-    SIGN = 5
-    COMMA = 6
-    MACRO = 7
-    STRAY = 8
-
-
-def _kinds() -> Bytes:
-    table = np.full(256, Character.STRAY, np.uint8)
-    table[list(BLANKS)] = Character.BLANK
-    for kind, characters in (
-        (Character.LETTER, b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz/"),
-        (Character.DIGIT, b"0123456789"),
-        (Character.POINT, b"."),
-        (Character.SIGN, bytes([*b"+-", DASH])),
-        (Character.BREAK, b"\n;"),
-        (Character.MACRO, b"#[]=*"),
-    ):
-        table[list(characters)] = kind
-    return table
-
-
-_KINDS = _kinds().tobytes()
 _COMMA, _COLON, _SLASH, _STAR = b",:/*"
 _UPPER = np.arange(256, dtype=np.uint8)
 _UPPER[97:123] -= 32
@@ -152,8 +123,12 @@ class Text(msgspec.Struct, frozen=True):
     letters: Positions
 
 
-def read_words(source: Source, line_comments: str = "") -> Text:
-    """The table of words of a file; line_comments: characters that this control reads as start of a comment."""
+def read_words(source: Source, line_comments: str = "", language: str = "custom-macro") -> Text:
+    """
+    The table of words of a file.
+
+    line_comments: characters that this control reads as start of a comment. language: of its statements.
+    """
     data = source.code.tobytes()
     end_of_data = data.find(CTRL_Z)  # ends a file of old DOS transfers
     if end_of_data < 0:
@@ -161,6 +136,7 @@ def read_words(source: Source, line_comments: str = "") -> Text:
     stored = data[:end_of_data]
     lines_end_at_cr = data.find(b"\n") < 0
     code = np.frombuffer(bytearray(stored.replace(b"\r", b"\n") if lines_end_at_cr else stored), np.uint8)
+    in_language = take_out(code, language)
     around = read_surroundings(code, line_comments)
     letters = read_as_digits(code)
     prose = find_prose(source, code)
@@ -175,6 +151,7 @@ def read_words(source: Source, line_comments: str = "") -> Text:
     line = np.cumsum(np.append(True, code[breaks] == LF), dtype=breaks.dtype)
     is_macro = np.zeros(len(starts), bool)
     is_macro[_block_of(table.macro, starts)] = True
+    is_macro[_block_of(in_language, starts)] = True
     is_macro[table.words.block[_begins_statement(table.words)]] = True
     words = _only(table.words, ~is_macro[table.words.block])
     blocks = Blocks(starts, np.append(breaks, len(code)), np.minimum(line, len(source.line_starts)), is_macro)
@@ -273,10 +250,10 @@ def _columns(table: Words | Ranges | Numbers) -> tuple[NDArray[Any], ...]:
 def _read_piece(text: bytes, offset: np.signedinteger[Any], blocks: np.signedinteger[Any]) -> _Table:
     """One piece; blanks mean nothing to a control and are left out first. A break more at its head saves many ifs."""
     text = b"\n" + text + b"\n"
-    at = np.flatnonzero(np.frombuffer(text.translate(_KINDS), np.uint8) != Character.BLANK).astype(type(offset))
+    at = np.flatnonzero(np.frombuffer(text.translate(KINDS), np.uint8) != Character.BLANK).astype(type(offset))
     at += offset - type(offset)(1)
     text = text.translate(None, BLANKS)
-    marks = _Marks(np.frombuffer(text, np.uint8), np.frombuffer(text.translate(_KINDS), np.uint8), at, at, at[:0])
+    marks = _Marks(np.frombuffer(text, np.uint8), np.frombuffer(text.translate(KINDS), np.uint8), at, at, at[:0])
     strays = macro = at[:0]
     is_last_stray = np.zeros(0, bool)
     if marks.kind.max() > Character.COMMA:

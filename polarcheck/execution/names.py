@@ -1,0 +1,29 @@
+"""Names in programs that stand where a control has numbers: variables, and tools that T calls."""
+
+from __future__ import annotations
+
+from typing import Final
+
+#: Variables that have a name stand above all that have a number.
+FIRST_VARIABLE: Final = 20_000_000
+_FIRST_TOOL: Final = 2_000_000_000
+
+
+class Names:
+    """
+    A number for each name, in the order in which they are met; names are told in capitals.
+
+    variables: numbers of variables of a name. tools: numbers of tools of a name, for T.
+    """
+
+    def __init__(self) -> None:
+        self.variables: dict[str, int] = {}
+        self.tools: dict[str, int] = {}
+
+    def variable(self, name: str) -> int:
+        """The number that stands for a variable."""
+        return self.variables.setdefault(name.upper(), FIRST_VARIABLE + len(self.variables))
+
+    def tool(self, name: str) -> int:
+        """The number that stands for a tool."""
+        return self.tools.setdefault(name.upper(), _FIRST_TOOL + len(self.tools))
