@@ -48,8 +48,15 @@ def renumbered(value: NDArray[np.int32], meant: Mapping[str, str]) -> NDArray[np
 
 def code_set(words: Iterable[str]) -> Mask:
     """A table over code numbers: whether it is one of the words (`G27-G39` is a range). Its last element is NO_CODE."""
+    return _code_set(tuple(words))
+
+
+@functools.lru_cache(1000)
+def _code_set(words: tuple[str, ...]) -> Mask:
+    """The same, once for each of the lists of a machine."""
     table = np.zeros(CODE_LIMIT + 1, bool)
     table[numbers(words)] = True
+    table.setflags(write=False)
     return table
 
 

@@ -184,8 +184,9 @@ class Written:
     def unknown_code_count(self) -> Rows:
         """Per word: at the first of an unknown G code in the file how often the code stands there, else 0."""
         machine = self.machine
-        known = code_set([*machine.control.known_codes, *machine.control.motion_codes, *machine.listed_codes])
-        known |= code_set([*machine.polar.on, *machine.polar.off, *machine.polar.allowed_codes])
+        polar = machine.polar
+        listed = (*machine.control.known_codes, *machine.control.motion_codes, *machine.listed_codes)
+        known = code_set((*listed, *polar.on, *polar.off, *polar.allowed_codes))
         wrong = ~known[self._g_codes] & (self.words.fault[self._g_words] == NumberFault.NONE)
         words = self._g_words[wrong]
         counts = np.zeros(len(self.words), np.int64)
