@@ -151,6 +151,14 @@ def before(*blocks: str) -> str:
     return "O1\nG98 G0 X60. C0 Z5.\n" + "\n".join(blocks) + "\nG12.1\nG1 X40. F200\nC10.\nX60.\nG13.1\nM30\n"
 
 
+TWO_SPINDLES = {
+    "m_codes": {
+        "c_axis_on": ["M35"],
+        "sub_c_axis_on": ["M135"],
+    }
+}
+CLAMPED_SUB = {"m_codes": {"sub_c_axis_on": ["M135"], "sub_c_axis_clamp": ["M310"]}}
+RUNNING_SUB = {"m_codes": {"sub_c_axis_on": ["M135"], "sub_spindle_on": ["M103"]}}
 USES = {
     "title": Use("lathe of ours", FLAT.replace("F200", "F9000"), also={"limits": {"c_feed": 100}}),
     "control.g_code_system": Use("B", FLAT.replace("G98", "G99")),
@@ -279,6 +287,14 @@ USES = {
     "m_codes.live_tool_off": Use(["M32"], before("M33", "M32"), also={"m_codes": {"live_tool_on": ["M33"]}}),
     "m_codes.spindle_on": Use([], before("M3")),
     "m_codes.spindle_off": Use([], before("M3", "M5")),
+    "m_codes.c_axis_clamp": Use(["M210"], before("M210")),
+    "m_codes.c_axis_unclamp": Use(["M212"], before("M210", "M212"), also={"m_codes": {"c_axis_clamp": ["M210"]}}),
+    "m_codes.sub_c_axis_on": Use(["M135"], before("M135"), also={"m_codes": {"c_axis_on": ["M35"]}}),
+    "m_codes.sub_c_axis_off": Use(["M134"], before("M135", "M134"), also=TWO_SPINDLES),
+    "m_codes.sub_c_axis_clamp": Use(["M310"], before("M135", "M310"), also=TWO_SPINDLES),
+    "m_codes.sub_c_axis_unclamp": Use(["M312"], before("M135", "M310", "M312"), also=CLAMPED_SUB),
+    "m_codes.sub_spindle_on": Use(["M103"], before("M135", "M103"), also=TWO_SPINDLES),
+    "m_codes.sub_spindle_off": Use(["M105"], before("M135", "M103", "M105"), also=RUNNING_SUB),
     "m_codes.tool_change": Use([], ENDED.format("M6")),
     "m_codes.optional_stop": Use([], ENDED.format("G28 U0\nM1")),
     "m_codes.program_end": Use(["M30"], FLAT.replace("M30", "M2")),

@@ -48,6 +48,7 @@ if TYPE_CHECKING:
     from polarcheck.table.sections import Sections as Sections
     from polarcheck.table.senses import Senses as Senses
     from polarcheck.table.slots import Slots as Slots
+    from polarcheck.table.spindles import Spindles as Spindles
     from polarcheck.table.switch_words import SwitchWords as SwitchWords
     from polarcheck.table.tool_center import ToolCenter as ToolCenter
     from polarcheck.table.trace import Trace as Trace

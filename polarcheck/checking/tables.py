@@ -26,6 +26,7 @@ MAKERS = {
     "entry": "polarcheck.table.entry:Entry",
     "procedure": "polarcheck.table.procedure:Procedure",
     "since": "polarcheck.table.since:Since",
+    "spindles": "polarcheck.table.spindles:Spindles",
     "ramps": "polarcheck.table.ramps:Ramps",
     "overcuts": "polarcheck.table.overcuts:Overcuts",
     "fitting": "polarcheck.table.fitting:Fitting",

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 from polarcheck.errors import MachineError, RuleError
 from polarcheck.machines.code_lists import GCodes, GCodeSystem, is_code, numbers
-from polarcheck.machines.machine import Machine, MCodes
+from polarcheck.machines.machine import PLAIN_M_CODES, Machine, MCodes
 from polarcheck.machines.modal import STATES
 from polarcheck.machines.parameters import Origin
 
@@ -24,7 +24,9 @@ _RANGES = {
 _MIXED = {"polar": ("words_beside_switch",)}
 _WORDS = {"polar": ("on_of_other_controls", "on_of_other_meaning")}
 #: Lists of G and M codes, each written by itself.
-_SINGLE = {"polar": ("on", "off", "plane_before"), "m_codes": MCodes.__struct_fields__}
+_SINGLE = {"polar": ("on", "off", "plane_before"), "m_codes": PLAIN_M_CODES}
+#: Lists of M codes, of which some are told apart by a word beside them: M3 P11, M3 P12.
+_WITH_WORDS = {"m_codes": tuple(key for key in MCodes.__struct_fields__ if key not in PLAIN_M_CODES)}
 
 
 def check_codes(machine: Machine, origins: Mapping[str, Origin], chain: Sequence[str]) -> None:
@@ -33,7 +35,7 @@ def check_codes(machine: Machine, origins: Mapping[str, Origin], chain: Sequence
 
     chain: the profiles, the nearest first; of two lists with the same code that of the nearer one is named.
     """
-    for lists, is_one in ((_RANGES, is_code), (_SINGLE, _is_single), (_MIXED, _is_address_or_code), (_WORDS, _is_word)):
+    for lists, is_one in _FORMS:
         for table, keys in lists.items():
             for key in keys:
                 for code in getattr(getattr(machine, table), key):
@@ -65,6 +67,14 @@ def _is_single(text: str) -> bool:
     return is_code(text, "GM") and "-" not in text
 
 
+def _is_switch(text: str) -> bool:
+    """`M3`, or `M3 P12`."""
+    first, _, word = text.partition(" ")
+    return _is_single(first) and (
+        text == first or re.fullmatch(r"[A-FH-LO-Z]-?\d{1,8}(\.\d{1,4})?", word, re.ASCII) is not None
+    )
+
+
 def _is_address_or_code(text: str) -> bool:
     return re.fullmatch("[A-Z]", text) is not None or is_code(text, "GM")
 
@@ -72,6 +82,15 @@ def _is_address_or_code(text: str) -> bool:
 def _is_word(text: str) -> bool:
     """TRANSMIT is one; what looks like a code must be one."""
     return bool(text) and (_is_single(text) or not re.match("[GM][0-9.-]", text))
+
+
+_FORMS: tuple[tuple[Mapping[str, Sequence[str]], Callable[[str], bool]], ...] = (
+    (_RANGES, is_code),
+    (_SINGLE, _is_single),
+    (_WITH_WORDS, _is_switch),
+    (_MIXED, _is_address_or_code),
+    (_WORDS, _is_word),
+)
 
 
 def _is_list(machine: Machine, name: str) -> bool:

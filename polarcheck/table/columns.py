@@ -128,13 +128,34 @@ class Columns:
         return code_numbers(self.run.words.value[self.m_words])
 
     def code_indices(self, *words: str) -> Rows:
-        """The executed words that are any of these G or M codes (`G54-G59` is a range)."""
+        """
+        The executed words that are any of these G or M codes (`G54-G59` is a range).
+
+        `M3 P12` asks for the word beside the code, too. What the machine lists so is not the M code alone.
+        """
         found = [np.zeros(0, np.int64)]
         for letter, indices, numbers in (("G", self.g_words, self.g_codes), ("M", self.m_words, self.m_codes)):
-            asked = [word for word in words if word[0] == letter]
+            asked = [word for word in words if word[0] == letter and " " not in word]
             if asked:
-                found.append(indices[code_set(asked)[numbers]])
+                is_asked = code_set(asked)[numbers]
+                found.append(indices[is_asked & ~self._with_own_word if letter == "M" else is_asked])
+            found += [
+                indices[self._beside(word, indices, numbers)] for word in words if word[0] == letter and " " in word
+            ]
         return np.concatenate(found)
+
+    def _beside(self, word: str, indices: Rows, numbers: NDArray[np.int32]) -> Mask:
+        """Per G or M word: it is the code of `M3 P12`, and that other word stands in its row."""
+        first, _, other = word.partition(" ")
+        return np.asarray((numbers == code(first)) & (self.word(other[0])[self.run.row[indices]] == float(other[1:])))
+
+    @cached_property
+    def _with_own_word(self) -> Mask:
+        """Per M word: the machine lists it with a word that stands beside it."""
+        found = np.zeros(len(self.m_words), bool)
+        for word in self.machine.m_codes.with_words:
+            found |= self._beside(word, self.m_words, self.m_codes)
+        return found
 
     def codes(self, *words: str) -> Mask:
         """Whether a row has any of these G or M codes."""
@@ -313,11 +334,6 @@ class Columns:
     def live_tool(self) -> Mask:
         """The live tool runs; always False where the profile names no code."""
         return self.switched(self.machine.m_codes.live_tool_on, self.machine.m_codes.live_tool_off)
-
-    @cached_property
-    def c_axis(self) -> Mask:
-        """The spindle is engaged as C axis; always False where the profile names no code."""
-        return self.switched(self.machine.m_codes.c_axis_on, self.machine.m_codes.c_axis_off)
 
     # ---- what the axis words are for ----
 

@@ -1,4 +1,4 @@
-"""The state of the lathe where the polar mode is entered: spindle, live tool, C axis, offsets, positions, stock."""
+"""The state of the lathe where the polar mode is entered: plane, offsets, positions, stock."""
 
 from __future__ import annotations
 
@@ -9,9 +9,8 @@ import numpy as np
 
 from polarcheck.arrays import Floats, Mask
 from polarcheck.geometry.tolerances import ROUNDING
-from polarcheck.machines.codes import code_set
 from polarcheck.machines.modal import STATES
-from polarcheck.table.filling import before, happened
+from polarcheck.table.filling import happened
 from polarcheck.table.origin import Origin
 from polarcheck.table.trace import Trace
 
@@ -98,14 +97,6 @@ class Entry:
         trace = self.trace
         return happened(trace.leaves, trace.changes_tool | trace.starts)
 
-    # ---- the C axis ----
-
-    @cached_property
-    def engages_c_axis(self) -> Mask:
-        """The C axis is engaged here and was not before."""
-        trace = self.trace
-        return np.asarray(trace.c_axis & ~before(trace.c_axis, trace.starts, False).astype(bool))
-
     # ---- the plane ----
 
     @cached_property
@@ -124,25 +115,6 @@ class Entry:
             rows = np.flatnonzero(selects)
             right[trace.sections.enter[trace.section[rows[rows <= first[trace.section[rows]]]]]] = True
         return np.asarray(right)
-
-    # ---- spindle and live tool ----
-
-    @cached_property
-    def _of_spindle(self) -> Mask:
-        """Over code numbers: of the main spindle or its C axis, and not of the live tool."""
-        codes = self.trace.machine.m_codes
-        of_live_tool = code_set([*codes.live_tool_on, *codes.live_tool_off])
-        return code_set([*codes.spindle_on, *codes.spindle_off, *codes.c_axis_on, *codes.c_axis_off]) & ~of_live_tool
-
-    @cached_property
-    def spindle_words(self) -> Mask:
-        """Per executed word: a code of the main spindle or of its C axis."""
-        return self.trace.words_at(self.trace.m_words[self._of_spindle[self.trace.m_codes]])
-
-    @cached_property
-    def spindle_code(self) -> Mask:
-        """Rows with a code of the main spindle or of its C axis."""
-        return self.trace.with_words(self.spindle_words)
 
     # ---- tool offset, origin ----
 

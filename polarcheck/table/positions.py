@@ -6,7 +6,6 @@ Columns are made when they are first asked for. Inside everything is mm, deg, mi
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from functools import cached_property
 
 import numpy as np
@@ -228,19 +227,10 @@ class Positions(LinearAxis):
         factor[self.linear_axis != ord("X")] = 1.0
         if not (control.x_radius_words or control.x_diameter_words):
             return factor
-        radius, diameter = self._with(control.x_radius_words), self._with(control.x_diameter_words)
+        radius, diameter = self.codes(*control.x_radius_words), self.codes(*control.x_diameter_words)
         switched = radius | diameter | self.starts
         chosen = fill_down(np.where(radius, 1.0, np.where(diameter, 0.5, np.nan)), switched, np.nan)
         return np.asarray(np.where(np.isnan(chosen), factor, chosen), np.float64)
-
-    def _with(self, words: Iterable[str]) -> Mask:
-        """Rows with one of the codes and, where it asks for another word too, with that: `G10.9 X0`."""
-        rows = np.zeros(len(self), bool)
-        for word in words:
-            code, _, other = word.partition(" ")
-            found = self.codes(code)
-            rows |= found & (self.word(other[0]) == float(other[1:])) if other else found
-        return rows
 
     @cached_property
     def center_shift(self) -> Points:

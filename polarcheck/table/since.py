@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property
+from itertools import chain
 
 import numpy as np
 
@@ -83,15 +84,17 @@ class Since:
 
     @cached_property
     def spindle_code(self) -> Rows:
-        """Of the main spindle."""
+        """Of a spindle."""
         codes = self.trace.machine.m_codes
-        return self._last(self.trace.codes(*codes.spindle_on, *codes.spindle_off))
+        of_both = (codes.spindle_on, codes.spindle_off, codes.sub_spindle_on, codes.sub_spindle_off)
+        return self._last(self.trace.codes(*chain.from_iterable(of_both)))
 
     @cached_property
     def c_axis_code(self) -> Rows:
         """Of the C axis."""
         codes = self.trace.machine.m_codes
-        return self._last(self.trace.codes(*codes.c_axis_on, *codes.c_axis_off))
+        of_both = (codes.c_axis_on, codes.c_axis_off, codes.sub_c_axis_on, codes.sub_c_axis_off)
+        return self._last(self.trace.codes(*chain.from_iterable(of_both)))
 
     @cached_property
     def live_tool_code(self) -> Rows:

@@ -10,6 +10,7 @@ from polarcheck.checking.quantity import in_row
 from polarcheck.machines.machine import Machine
 from polarcheck.table.entry import Entry
 from polarcheck.table.procedure import Procedure
+from polarcheck.table.spindles import Spindles
 from polarcheck.table.trace import Trace
 
 
@@ -122,6 +123,28 @@ def started(trace: Trace, procedure: Procedure, row: int) -> str:
 def stop(machine: Machine) -> str:
     """The code that stops the live tool."""
     return next(iter(machine.m_codes.live_tool_off), "the code")
+
+
+def spindle_codes(spindles: Spindles, machine: Machine, row: int) -> str:
+    """The codes that start the spindle whose C axis a section has."""
+    codes = machine.m_codes
+    return " or ".join(codes.sub_spindle_on if spindles.on_sub_spindle[row] else codes.spindle_on)
+
+
+def spindle_remedy(spindles: Spindles, machine: Machine, row: int) -> str:
+    """How that is stopped before a section; where it may be the live tool, that it is asked about."""
+    codes = machine.m_codes
+    if not spindles.are_no_live_tool[row] and not machine.polar.main_spindle_must_stop:
+        return ": if that is the main spindle, stop it"
+    off = codes.sub_spindle_off if spindles.on_sub_spindle[row] else codes.spindle_off
+    return f"; write {next(iter(off), 'the code that stops it')} before the C axis is engaged"
+
+
+def release(spindles: Spindles, machine: Machine, row: int) -> str:
+    """The code that releases the clamp of the C axis of a section."""
+    codes = machine.m_codes
+    off = codes.sub_c_axis_unclamp if spindles.on_sub_spindle[row] else codes.c_axis_unclamp
+    return next(iter(off), "the code that releases it")
 
 
 def carried_mode(trace: Trace, row: int) -> str:

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Entry, Mask, Trace, rule
+from polarcheck.checking.rule import WARNING, Entry, Mask, Spindles, Trace, rule
 
 
 @rule(
@@ -9,7 +9,7 @@ from polarcheck.checking.rule import WARNING, Entry, Mask, Trace, rule
     at=("on",),
     follows={"block": ("c-axis-not-engaged", "c-axis-not-referenced", "x-unknown-at-entry")},
 )
-def c_angle_unknown_at_entry(trace: Trace, entry: Entry) -> Mask:
+def c_angle_unknown_at_entry(trace: Trace, entry: Entry, spindles: Spindles) -> Mask:
     """
     C never positioned before the polar mode.
 
@@ -56,4 +56,4 @@ def c_angle_unknown_at_entry(trace: Trace, entry: Entry) -> Mask:
         M30
     """
     positioned = trace.has("C", "H") & (trace.section < 0)
-    return trace.enters & trace.whole_program & ~entry.happened(positioned, since=entry.engages_c_axis)
+    return trace.enters & trace.whole_program & ~entry.happened(positioned, since=spindles.engages_c_axis)

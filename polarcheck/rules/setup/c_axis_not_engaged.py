@@ -1,17 +1,17 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Entry, Hits, Machine, Trace, rule
+from polarcheck.checking.rule import WARNING, Entry, Hits, Machine, Spindles, Trace, rule
 
 
 @rule(WARNING, "the C axis is not engaged; {codes} is missing before {switch}", at=("on",), once="c axis code")
-def c_axis_not_engaged(trace: Trace, entry: Entry, machine: Machine) -> Hits:
+def c_axis_not_engaged(trace: Trace, entry: Entry, spindles: Spindles, machine: Machine) -> Hits:
     """
     Polar mode without the spindle as C axis.
 
     The spindle has to be switched to C axis by an M code of the builder before it can be positioned. Without it the
     control stops at the first C, or the spindle is not held at all. Stop the spindle, engage the C axis, then go to its
     reference point: M5, M35, G28 H0. Nothing is said where the machine profile names no such code, nor in an excerpt
-    that has none.
+    that has none. A sub-spindle with codes of its own is engaged by those.
 
     Source: builder's guide to G12.1, sample program.
 
@@ -41,6 +41,29 @@ def c_axis_not_engaged(trace: Trace, entry: Entry, machine: Machine) -> Hits:
         X60.
         G13.1
 
+    Bad, set m_codes.c_axis_on=["M35"], set m_codes.sub_c_axis_on=["M135"], set m_codes.sub_c_axis_off=["M134"]:
+
+        M135
+        G28 H0
+        M134
+        G98 G0 X60. C0
+        M33
+        G12.1             (expect: c-axis-not-engaged)
+        G1 C10. F1500
+        X60.
+        G13.1
+
+    Good, set m_codes.c_axis_on=["M35"], set m_codes.sub_c_axis_on=["M135"]:
+
+        M135
+        G28 H0
+        G98 G0 X60. C0
+        M33
+        G12.1
+        G1 C10. F1500
+        X60.
+        G13.1
+
     Good, set m_codes.c_axis_on=["M35"], set m_codes.c_axis_off=["M34"]:
 
         O0001
@@ -57,6 +80,7 @@ def c_axis_not_engaged(trace: Trace, entry: Entry, machine: Machine) -> Hits:
         G13.1
         M30
     """
-    codes = machine.m_codes
-    expected = entry.expects(codes.c_axis_on and [*codes.c_axis_on, *codes.c_axis_off])
-    return Hits(trace.enters & ~trace.c_axis & expected, values={"codes": " or ".join(codes.c_axis_on)})
+    codes, engaging = machine.m_codes, spindles.c_axis_codes
+    # A sub-spindle alone does not tell by which code the main spindle is engaged.
+    expected = entry.expects(codes.c_axis_on and [*engaging, *codes.c_axis_off, *codes.sub_c_axis_off])
+    return Hits(trace.enters & ~spindles.c_axis & expected, values={"codes": " or ".join(engaging)})

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Entry, Mask, Trace, rule
+from polarcheck.checking.rule import WARNING, Entry, Mask, Spindles, Trace, rule
 
 
 @rule(
@@ -9,7 +9,7 @@ from polarcheck.checking.rule import WARNING, Entry, Mask, Trace, rule
     at=("on",),
     once="c axis code",
 )
-def c_axis_not_referenced(trace: Trace, entry: Entry) -> Mask:
+def c_axis_not_referenced(trace: Trace, entry: Entry, spindles: Spindles) -> Mask:
     """
     C axis engaged but not referenced.
 
@@ -51,5 +51,7 @@ def c_axis_not_referenced(trace: Trace, entry: Entry) -> Mask:
         X60.
         G13.1
     """
-    referenced = trace.listed("c_axis_reference") & trace.has("C", "H")
-    return trace.enters & trace.c_axis & ~entry.happened(referenced, since=entry.engages_c_axis)
+    # C of a sub-spindle has another name on many lathes.
+    named = trace.has("C", "H") | (trace.has("A", "B") & spindles.on_sub_spindle)
+    referenced = trace.listed("c_axis_reference") & named
+    return trace.enters & spindles.c_axis & ~entry.happened(referenced, since=spindles.engages_c_axis)

@@ -1,16 +1,16 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, NOTE, Hits, Machine, Trace, rule
+from polarcheck.checking.rule import ERROR, Hits, Machine, Spindles, Trace, graded, rule
 
 
-@rule(ERROR, "M3 or M4 is in force at {switch}{what}", at=("on",), once="spindle code")
-def main_spindle_running_at_entry(trace: Trace, machine: Machine) -> Hits:
+@rule(ERROR, "{spindle_codes} is in force at {switch}{spindle_remedy}", at=("on",), once="spindle code")
+def main_spindle_running_at_entry(trace: Trace, spindles: Spindles, machine: Machine) -> Hits:
     """
     Main spindle not stopped before the polar mode.
 
     The main spindle is the C axis in the mode. It has to be stopped, M5, before it can be engaged and positioned. Many
     lathes start the live tool with M3, too; where the machine profile does not name codes of its own for the live tool,
-    this is a note.
+    this is a note. In a section on the sub-spindle that is the spindle which has to stand.
 
     Source: builder's guide to G12.1, sample program.
 
@@ -45,7 +45,6 @@ def main_spindle_running_at_entry(trace: Trace, machine: Machine) -> Hits:
         X60.
         G13.1
     """
-    of_main_spindle = machine.polar.main_spindle_must_stop or machine.m_codes.live_tool_on
-    severity = ERROR if of_main_spindle else NOTE
-    what = "; write M5 before the C axis is engaged" if of_main_spindle else ": if that is the main spindle, stop it"
-    return Hits(trace.enters & trace.spindle, severity, values={"what": what})
+    running = trace.enters & spindles.runs
+    must_stop = spindles.are_no_live_tool | machine.polar.main_spindle_must_stop
+    return graded(error=running & must_stop, note=running & ~must_stop)

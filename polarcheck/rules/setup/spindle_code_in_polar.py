@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Entry, Hits, Machine, Trace, graded, rule
+from polarcheck.checking.rule import WARNING, Hits, Machine, Spindles, Trace, graded, rule
 
 
 @rule(
@@ -8,7 +8,7 @@ from polarcheck.checking.rule import WARNING, Entry, Hits, Machine, Trace, grade
     "{codes} in the polar mode; the spindle is the C axis here",
     follows={"section": ("polar-never-left",)},
 )
-def spindle_code_in_polar(trace: Trace, entry: Entry, machine: Machine) -> Hits:
+def spindle_code_in_polar(trace: Trace, spindles: Spindles, machine: Machine) -> Hits:
     """
     Main spindle started or stopped, or the C axis released, in the polar mode.
 
@@ -55,6 +55,6 @@ def spindle_code_in_polar(trace: Trace, entry: Entry, machine: Machine) -> Hits:
         M5
     """
     codes = machine.m_codes
-    in_mode = trace.in_polar & entry.spindle_code
-    of_main_spindle = trace.codes(*codes.c_axis_on, *codes.c_axis_off) | bool(codes.live_tool_on)
-    return graded(warning=in_mode & of_main_spindle, note=in_mode & ~of_main_spindle, at=entry.spindle_words)
+    in_mode = trace.in_polar & spindles.has_code
+    is_known = spindles.are_no_live_tool | trace.codes(*codes.c_axis_on, *codes.c_axis_off)
+    return graded(warning=in_mode & is_known, note=in_mode & ~is_known, at=spindles.words)

@@ -1,0 +1,54 @@
+from __future__ import annotations
+
+from polarcheck.checking.rule import WARNING, Mask, Spindles, rule
+
+
+@rule(WARNING, "the C axis is clamped here; write {release} before {switch}", once="section")
+def c_axis_clamped_in_polar(spindles: Spindles) -> Mask:
+    """
+    Contour with the C axis clamped.
+
+    The brake holds the spindle for drilling. In the polar mode C turns with every move: against the brake the drive
+    stops with an alarm for excess error, or the contour is cut with a C axis that lags behind. Release the brake before
+    G12.1. Nothing is said where the machine profile names no code that clamps.
+
+    Source: C-axis clamp and unclamp codes of turning centers, as public posts for Mazak and Okuma write them.
+
+    Bad, set m_codes.c_axis_clamp=["M210"], set m_codes.c_axis_unclamp=["M212"]:
+
+        M210
+        G98 G0 X60. C0
+        G12.1
+        G1 C10. F200      (expect: c-axis-clamped-in-polar)
+        X40.
+        C-10.
+        X60.
+        G13.1
+
+    Bad, set m_codes.c_axis_clamp=["M210"], set m_codes.c_axis_unclamp=["M212"]:
+
+        G98 G0 X60. C0
+        M212
+        G12.1
+        G1 C10. F200
+        M210
+        X40.              (expect: c-axis-clamped-in-polar)
+        C-10.
+        X60.
+        G13.1
+
+    Good, set m_codes.c_axis_clamp=["M210"], set m_codes.c_axis_unclamp=["M212"]:
+
+        M210
+        G98 G0 X60. C0
+        M212
+        G12.1
+        G1 C10. F200
+        X40.
+        C-10.
+        X60.
+        G13.1
+        M210
+    """
+    # A slot along X alone is cut with the clamp on.
+    return spindles.turns & spindles.clamped

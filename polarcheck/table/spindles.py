@@ -1,0 +1,119 @@
+"""Main spindle and sub-spindle: which of them is the C axis of a section, what they do there, whether C is clamped."""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+
+from polarcheck.arrays import Mask
+from polarcheck.geometry.tolerances import ROUNDING
+from polarcheck.table.filling import before, happened, last_row
+from polarcheck.table.trace import Trace
+
+
+class Spindles:
+    """Columns of one trace, one value per row. A lathe whose profile names no code of a sub-spindle has none."""
+
+    def __init__(self, trace: Trace) -> None:
+        self.trace = trace
+        self._codes = trace.machine.m_codes
+
+    # ---- the C axis ----
+
+    @cached_property
+    def c_axis_codes(self) -> list[str]:
+        """The codes that engage the C axis, of either spindle."""
+        return [*self._codes.c_axis_on, *self._codes.sub_c_axis_on]
+
+    @cached_property
+    def _main_c_axis(self) -> Mask:
+        return self.trace.switched(self._codes.c_axis_on, self._codes.c_axis_off)
+
+    @cached_property
+    def _sub_c_axis(self) -> Mask:
+        return self.trace.switched(self._codes.sub_c_axis_on, self._codes.sub_c_axis_off)
+
+    @property
+    def c_axis(self) -> Mask:
+        """A spindle is engaged as C axis; always False where the profile names no code."""
+        return np.asarray(self._main_c_axis | self._sub_c_axis)
+
+    @cached_property
+    def engages_c_axis(self) -> Mask:
+        """A C axis is engaged here and was not before."""
+        return self._begins(self._main_c_axis) | self._begins(self._sub_c_axis)
+
+    def _begins(self, state: Mask) -> Mask:
+        return np.asarray(state & ~before(state, self.trace.starts, False).astype(bool))
+
+    @cached_property
+    def on_sub_spindle(self) -> Mask:
+        """
+        The sub-spindle is the C axis: in a section that which was so at its G12.1.
+
+        Where both spindles are engaged, it is the one that was engaged last.
+        """
+        trace, sub = self.trace, self._sub_c_axis
+        if not sub.any():
+            return sub
+        engaged = [last_row(self._begins(state), trace.starts) for state in (self._main_c_axis, sub)]
+        is_sub = sub & (~self._main_c_axis | (engaged[1] > engaged[0]))
+        if not len(trace.sections):
+            return is_sub
+        at_entry = is_sub[trace.sections.enter][trace.section]
+        return np.asarray(np.where(trace.section >= 0, at_entry, is_sub))
+
+    @property
+    def turns(self) -> Mask:
+        """A move at feed in the mode that turns C: any but those along a line through the center."""
+        trace = self.trace
+        area = np.abs((np.conj(trace.start) * trace.end).imag)
+        return np.asarray(trace.cuts & (trace.is_arc | (area > ROUNDING)))
+
+    @cached_property
+    def clamped(self) -> Mask:
+        """
+        The C axis is known to be clamped: a code has clamped it, and none has released it since.
+
+        What becomes of a clamp when the spindle is engaged or disengaged, or in blocks of unknown effect, is not known.
+        """
+        codes, ends = self._codes, self.trace.starts | self.trace.run.unknown
+        main, sub = (
+            happened(self.trace.codes(*on), self.trace.codes(*off) | ends)
+            for on, off in (
+                (codes.c_axis_clamp, [*codes.c_axis_unclamp, *codes.c_axis_on, *codes.c_axis_off]),
+                (codes.sub_c_axis_clamp, [*codes.sub_c_axis_unclamp, *codes.sub_c_axis_on, *codes.sub_c_axis_off]),
+            )
+        )
+        return np.where(self.on_sub_spindle, sub, main)
+
+    # ---- the spindle itself ----
+
+    @cached_property
+    def runs(self) -> Mask:
+        """The spindle whose C axis it is runs as a spindle; on many lathes M3 and M4 start the live tool, too."""
+        sub = self.trace.switched(self._codes.sub_spindle_on, self._codes.sub_spindle_off)
+        return np.where(self.on_sub_spindle, sub, self.trace.spindle)
+
+    @property
+    def are_no_live_tool(self) -> Mask:
+        """The codes that start and stop that spindle are known to be none of the live tool, which has its own."""
+        return self.on_sub_spindle | bool(self._codes.live_tool_on)
+
+    @cached_property
+    def words(self) -> Mask:
+        """Per executed word: a code of the spindle whose C axis it is, or of that axis, and not of the live tool."""
+        trace, codes = self.trace, self._codes
+        of_main = (*codes.spindle_on, *codes.spindle_off, *codes.c_axis_on, *codes.c_axis_off)
+        of_sub = (*codes.sub_spindle_on, *codes.sub_spindle_off, *codes.sub_c_axis_on, *codes.sub_c_axis_off)
+        main, sub, live = (
+            trace.words_at(trace.code_indices(*of_one))
+            for of_one in (of_main, of_sub, (*codes.live_tool_on, *codes.live_tool_off))
+        )
+        return np.where(self.on_sub_spindle[trace.run.row], sub, main) & ~live
+
+    @cached_property
+    def has_code(self) -> Mask:
+        """Rows with such a code."""
+        return self.trace.with_words(self.words)
