@@ -237,6 +237,10 @@ USES = {
     "polar.on_of_other_controls": Use([], "O1\nG98 G0 X60. C0\nG137 C0\nG1 X40. Y0 F200\nY10.\nG136\nM30\n"),
     "polar.on_of_other_meaning": Use(["G137"], "O1\nG98 G0 X60. C0\nG137 X50.\nG1 Y10. F200\nG136\nM30\n"),
     "polar.words_beside_switch": Use(["X"], FLAT.replace("G12.1", "G12.1 X0")),
+    "polar.not_simulated_beside": Use(
+        ["K"], FLAT.replace("G12.1", "G12.1 K1"), also={"polar": {"words_beside_switch": ["K"]}}
+    ),
+    "polar.virtual_axis_by_word": Use({"D1": ["Y", "V"]}, FLAT.replace("G12.1", "G12.1 D1")),
     "polar.virtual_axis": Use("Y", FLAT),
     "polar.virtual_axis_incremental": Use("V", inside("H5.")),
     "polar.virtual_axis_of_other_controls": Use([], inside("Y5.")),

@@ -77,8 +77,8 @@ def unevaluated(tables: Tables, rule: Rule) -> Iterator[NotEvaluated]:
         where: Mask = tables.column(rule.where)
         if not where.any():
             continue
-        # Of sections whose linear axis is not known one entry speaks for all.
-        rows = np.flatnonzero(np.isnan(tables.column(name)) & where & trace.linear_is_known)
+        # Of sections that are not followed one entry speaks for all.
+        rows = np.flatnonzero(np.isnan(tables.column(name)) & where & trace.is_followed)
         if name in _OF_MOVES:
             rows = rows[~(tables["feeds"].missing | tables["feeds"].lost)[rows]]  # a finding says so
         reasons: dict[str, int] = {}

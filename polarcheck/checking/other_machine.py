@@ -80,7 +80,7 @@ def _find(tables: Tables) -> Fit | None:
 def _reads(machine: Machine) -> tuple[object, ...]:
     """What of a machine makes it read a program otherwise than another."""
     control, mode = machine.control, machine.polar
-    return mode.on, mode.virtual_axis, mode.x, machine.arcs.radius_word, control.native_words, control.motion_codes
+    return mode.on, mode.virtual_axes, mode.x, machine.arcs.radius_word, control.native_words, control.motion_codes
 
 
 def _reasons(tables: Tables, machine: Machine) -> tuple[str, ...]:
@@ -96,7 +96,7 @@ def _reasons(tables: Tables, machine: Machine) -> tuple[str, ...]:
     if arcs.is_no_circle.any() or arcs.x_is_misread.any() or _switch_is_not_alone(there):
         return ()
     reasons = []
-    if mode.virtual_axis != own.virtual_axis and np.any(other.has(mode.virtual_axis) & other.in_polar):
+    if mode.virtual_axis not in own.virtual_axes and np.any(other.has(mode.virtual_axis) & other.in_polar):
         reasons.append(f"{mode.virtual_axis} is the second axis of the polar plane there")
     if mode.x != own.x and np.any(tables["arcs"].x_is_misread):
         reasons.append(f"all arcs close there, where X is a {mode.x} in the polar mode")

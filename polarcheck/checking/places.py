@@ -207,8 +207,7 @@ def squeezed(text: str) -> str:
 
 def _is_named(trace: Trace, index: int, names: tuple[str, ...]) -> bool:
     address = chr(int(trace.run.words.address[index]))
-    polar = trace.machine.polar
-    if address in (polar.virtual_axis, polar.virtual_axis_incremental) and "C" in names:
+    if address in trace.virtual_addresses(int(trace.run.row[index])) and "C" in names:
         return True
     if address in names or (address.islower() and f",{address.upper()}" in names):
         return True

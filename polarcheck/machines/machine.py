@@ -26,6 +26,7 @@ from polarcheck.machines.values import (
     Count,
     Length,
     NotNegative,
+    NumberedWord,
     Plain,
     Positive,
     SwitchWord,
@@ -102,8 +103,10 @@ class Polar(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     on_of_other_controls: codes and words that begin the mode on any control, which tell programs for another one
     on_of_other_meaning: those of them that mean something else here, where axis words stand beside them
     words_beside_switch: addresses and codes that may stand in one block with those that switch; N may always
+    not_simulated_beside: those of these addresses that make another mode of it, which is not simulated
     virtual_axis: address of the virtual axis (hypothetical axis), a length
     virtual_axis_incremental: address of its incremental words
+    virtual_axis_by_word: word beside G12.1 -> the addresses, absolute and incremental, that it gives the virtual axis
     virtual_axis_of_other_controls: addresses, absolute and incremental, that it has elsewhere and that are wrong here
     other_controls: the controls on which it has those addresses, as a message names them
     x: diameter or radius: what X words are in the mode
@@ -124,8 +127,10 @@ class Polar(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     on_of_other_controls: list[Plain] = []
     on_of_other_meaning: list[Plain] = []
     words_beside_switch: list[str]
+    not_simulated_beside: list[Address] = []
     virtual_axis: Address
     virtual_axis_incremental: AddressOrNone
+    virtual_axis_by_word: dict[NumberedWord, tuple[Address, AddressOrNone]] = {}
     virtual_axis_of_other_controls: list[Address]
     other_controls: str = ""
     x: Literal["diameter", "radius"]
@@ -146,6 +151,11 @@ class Polar(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
         missing = [axis for axis in INCREMENTS if axis not in self.center_words]
         if missing:
             raise ValueError(f"center_words has no words for the linear axis {missing[0]}")
+
+    @property
+    def virtual_axes(self) -> list[str]:
+        """The addresses that the virtual axis can have: of the machine, and those that a word beside G12.1 chooses."""
+        return list(dict.fromkeys((self.virtual_axis, *(pair[0] for pair in self.virtual_axis_by_word.values()))))
 
 
 class CircularInterpolation(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

@@ -29,6 +29,9 @@ SwitchWord: TypeAlias = Annotated[
         extra={EXPECTED: "a code, a code with a word as in G10.9 X0, or a native word"},
     ),
 ]
+NumberedWord: TypeAlias = Annotated[
+    str, msgspec.Meta(pattern="^[A-Z][0-9]{1,4}$(?!\\n)", extra={EXPECTED: "a letter and a whole number, as in D0"})
+]
 Address: TypeAlias = Annotated[str, msgspec.Meta(pattern="^[A-Z]$(?!\\n)", extra={EXPECTED: "an address, one letter"})]
 AddressOrNone: TypeAlias = Annotated[
     str, msgspec.Meta(pattern="^[A-Z]?$(?!\\n)", extra={EXPECTED: "an address, one letter, or none"})

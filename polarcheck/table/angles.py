@@ -25,7 +25,7 @@ class Angles:
     def _written(self) -> Floats:
         """Value of the virtual axis as written in the mode, else NaN."""
         trace = self.trace
-        return np.where(trace.in_polar & trace.uses_axes, trace.word(trace.machine.polar.virtual_axis), np.nan)
+        return np.where(trace.in_polar & trace.uses_axes, trace.of_virtual_axis(trace.word), np.nan)
 
     @cached_property
     def is_usual(self) -> Mask:
@@ -64,7 +64,7 @@ class Angles:
     @cached_property
     def virtual_length(self) -> Floats:
         """The virtual axis as a length [mm], without its sign; NaN where it is not written."""
-        return np.abs(self.trace.length_of(self.trace.machine.polar.virtual_axis))
+        return np.abs(self.trace.of_virtual_axis(self.trace.length_of))
 
     @cached_property
     def farthest(self) -> Floats:

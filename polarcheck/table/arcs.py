@@ -93,8 +93,8 @@ class Arcs:
 
         Where one fits, the axis that stays where it is was left out, and Z makes a helix of it.
         """
-        trace, polar = self.trace, self.trace.machine.polar
-        one_axis = trace.programs_linear_axis ^ trace.has(polar.virtual_axis, polar.virtual_axis_incremental)
+        trace = self.trace
+        one_axis = trace.programs_linear_axis ^ trace.has_virtual_word
         to_start = self.by_radius & self.ends_at_start
         fits_none = ~self.has_word_of_plane | (one_axis & (self._misses_circle | to_start))
         return np.asarray(self.in_force & trace.moves_z & fits_none)

@@ -149,5 +149,4 @@ class ModeWords:
     def of_other_axis(self) -> Mask:
         """A coordinate under the address that other controls give the virtual axis."""
         trace = self.trace
-        named = trace.words_at(trace.word_indices(*trace.machine.polar.virtual_axis_of_other_controls))
-        return named & ~trace.linear_words & self.in_rows(trace.uses_axes)
+        return trace.foreign_virtual_words & ~trace.linear_words & self.in_rows(trace.uses_axes)

@@ -114,7 +114,7 @@ class OtherMode:
         """Rows from a beginning on to the next one, or to the next program, in which something belongs to the mode."""
         begins = self.trace.mask_of(switch.rows)
         ends = self._ends(switch)
-        axes = {profile.machine.polar.virtual_axis for profile in switch.known_by}
+        axes = {axis for profile in switch.known_by for axis in profile.machine.polar.virtual_axes}
         at_feed = np.isin(self.trace.motion, (Motion.LINE, Motion.CW, Motion.CCW))
         at_feed |= self._has(code for profile in switch.known_by for code in profile.machine.control.motion_codes)
         cuts = at_feed & self.trace.has(*axes) & self._within(begins, ends)
@@ -146,7 +146,7 @@ class OtherMode:
             return not is_code(switch.name) or beside <= {*"GNO/", *profile.machine.polar.words_beside_switch}
 
         def moves(profile: Profile) -> bool:
-            return bool(np.any(within & self.trace.has(profile.machine.polar.virtual_axis)))
+            return bool(np.any(within & self.trace.has(*profile.machine.polar.virtual_axes)))
 
         found = switch.known_by
         for fits in (reads, moves):
@@ -245,4 +245,4 @@ def _meant(profile: Profile, name: str) -> str:
 def _reading(profile: Profile) -> tuple[object, ...]:
     """What of a machine makes it read a section otherwise than another."""
     mode = profile.machine.polar
-    return mode.virtual_axis, mode.x, tuple(mode.words_beside_switch), profile.machine.arcs.radius_word
+    return tuple(mode.virtual_axes), mode.x, tuple(mode.words_beside_switch), profile.machine.arcs.radius_word

@@ -17,15 +17,15 @@ from polarcheck.machines.axes import INCREMENTS
 from polarcheck.machines.code_lists import numbers
 from polarcheck.machines.modal import Distance, Motion
 from polarcheck.table.filling import before, fill_down, positions
-from polarcheck.table.linear_axis import LinearAxis
 from polarcheck.table.sections import Marks, Sections, find_sections, section_column
+from polarcheck.table.virtual_axis import VirtualAxis
 
 _FACTOR = {"diameter": 0.5, "radius": 1.0}
 _NOWHERE = complex("nan+nanj")
 _PASSES = 8
 
 
-class Positions(LinearAxis):
+class Positions(VirtualAxis):
     """The columns of where the tool is programmed to be; see the properties."""
 
     # ---- motion ----
@@ -41,24 +41,6 @@ class Positions(LinearAxis):
     def moves_z(self) -> Mask:
         """Programs Z, where that is not the linear axis."""
         return self.uses_axes & self.programs_z
-
-    @cached_property
-    def _virtual(self) -> tuple[tuple[str, str], ...]:
-        """The addresses of the virtual axis, absolute and incremental; after them those that it has elsewhere."""
-        mode = self.machine.polar
-        elsewhere = mode.virtual_axis_of_other_controls
-        return (mode.virtual_axis, mode.virtual_axis_incremental), *zip(elsewhere[::2], elsewhere[1::2], strict=False)
-
-    @cached_property
-    def virtual_words(self) -> Rows:
-        """The words of the virtual axis, be it under the address of another control."""
-        words = self.word_indices(*(address for pair in self._virtual for address in pair))
-        return words[~self.linear_words[words]] if self.other_linear_axes else words
-
-    @cached_property
-    def programs_virtual_axis(self) -> Mask:
-        """Has a word of the virtual axis, be it under the address of another control."""
-        return self.with_words(self.virtual_words)
 
     @cached_property
     def motion(self) -> States:
@@ -188,13 +170,11 @@ class Positions(LinearAxis):
         A row that names it by the address of another control has a finding for that, and means it nevertheless.
         """
         factor = _FACTOR[self.machine.polar.virtual_axis_programming]
-        own, *elsewhere = self._virtual
-        absolute, steps = self._programmed(*own, factor, self.in_polar)
-        for pair in elsewhere:
-            meant = self.has(*pair) & ~self.has(*own) & (self.linear_axis != ord(pair[0]))
-            if meant.any():
-                other = self._programmed(*pair, factor, self.in_polar & meant)
-                absolute, steps = np.where(meant, other[0], absolute), np.where(meant, other[1], steps)
+        absolute, steps = np.full(len(self), np.nan), np.zeros(len(self))
+        for pair, rows in self.virtual_pairs:
+            if rows.any():
+                found = self._programmed(*pair, factor, self.in_polar & rows)
+                absolute, steps = np.where(rows, found[0], absolute), np.where(rows, found[1], steps)
         return absolute, steps
 
     def _forgets(self, axis: str, increment: str) -> Mask:
@@ -240,16 +220,17 @@ class Positions(LinearAxis):
         """
         shift = np.zeros(len(self), np.complex128)
         own, takes = self.machine.polar, set(self.machine.polar.words_beside_switch)
-        if not len(self.sections) or not takes & {"X", own.virtual_axis}:
+        if not len(self.sections) or not takes:
             return shift
         enter = self.sections.enter
         of_section = np.zeros(len(enter) + 1, np.complex128)
         if "X" in takes:
             linear = self._of_axis(lambda axis: self.length_of(axis)) * self.x_factor
             of_section[:-1] += np.nan_to_num(linear[enter])
-        if own.virtual_axis in takes:
-            virtual = self.length_of(own.virtual_axis) * _FACTOR[own.virtual_axis_programming]
-            of_section[:-1] += 1j * np.nan_to_num(virtual[enter])
+        shifts = np.array([self.virtual_axis_of(row) in takes for row in enter.tolist()])
+        if shifts.any():
+            virtual = self.of_virtual_axis(self.length_of) * _FACTOR[own.virtual_axis_programming]
+            of_section[:-1] += np.where(shifts, 1j * np.nan_to_num(virtual[enter]), 0)
         return of_section[self.section]
 
     @cached_property
@@ -315,7 +296,7 @@ class Positions(LinearAxis):
             values[leave] = np.nan  # sections that hang on each other by increments alone, one after another
             x = positions(*x_words, resets, values)
         end = np.empty(len(self), np.complex128)
-        end.real, end.imag = np.where(self.linear_is_known, x, np.nan), c
+        end.real, end.imag = np.where(self.is_followed, x, np.nan), c
         end -= shift
         return end, before(end, self.starts, _NOWHERE)
 

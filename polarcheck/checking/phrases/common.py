@@ -70,6 +70,11 @@ def linear(trace: Trace, row: int) -> str:
     return chr(trace.linear_axis[row])
 
 
+def virtual(trace: Trace, row: int) -> str:
+    """The address of the virtual axis: C."""
+    return trace.virtual_axis_of(row)
+
+
 def switch(trace: Trace, row: int) -> str:
     """The code in this row that switches the polar mode on or off, as in G12.1 or G113."""
     return shown(trace.machine.control.native_words, _switch(trace, row))

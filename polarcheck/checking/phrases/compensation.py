@@ -102,7 +102,7 @@ def _along(trace: Trace, row: int, length: float, other: float) -> str:
     start, end = trace.start[row], trace.end[row]
     if start.imag == end.imag and start != end and shown.diameter:
         return f"{shown.beside(beside, 'diameter')} in X on the diameter"
-    virtual = f" in {trace.machine.polar.virtual_axis}" if start.real == end.real and start != end else ""
+    virtual = f" in {trace.virtual_axis_of(row)}" if start.real == end.real and start != end else ""
     return f"{shown.beside(beside, 'length')}{virtual}"
 
 
@@ -242,4 +242,4 @@ def left(trace: Trace, coverage: Coverage, row: int) -> str:
 
 
 def _point(trace: Trace, point: complex, row: int) -> str:
-    return f"{in_row(point, trace, row):point}".replace("C", trace.machine.polar.virtual_axis)
+    return f"{in_row(point, trace, row):point}".replace("C", trace.virtual_axis_of(row))

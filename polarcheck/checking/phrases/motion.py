@@ -29,7 +29,7 @@ def least_radius(trace: Trace, arcs: Arcs, row: int) -> str:
 def center(trace: Trace, row: int) -> str:
     """`I along X and J along C`."""
     along, across = trace.center_words(row)
-    return f"{along} along {linear(trace, row)} and {across} along {trace.machine.polar.virtual_axis}"
+    return f"{along} along {linear(trace, row)} and {across} along {trace.virtual_axis_of(row)}"
 
 
 def reading(trace: Trace, row: int) -> str:

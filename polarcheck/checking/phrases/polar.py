@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator
 
 from polarcheck.arrays import Floats
@@ -116,9 +117,14 @@ def meaning(trace: Trace, at: list[int]) -> str:
     return f"{name} is no incremental word of G-code system {system}, where G91 makes X and C incremental"
 
 
-def taken_by(machine: Machine, other_machine: OtherMachine) -> str:
-    """Which machines read the whole program well; where none does, which controls take the address."""
-    controls = machine.polar.other_controls
+def taken_by(trace: Trace, other_machine: OtherMachine, at: list[int], row: int) -> str:
+    """Which machines read the whole program well; where none does, which word beside G12.1 or controls take it."""
+    mode = trace.machine.polar
+    address = chr(int(trace.run.words.address[at[0]]))
+    choosing = next((word for word, pair in mode.virtual_axis_by_word.items() if address in pair), "")
+    if choosing:
+        return f"; beside {choosing} it would be"
+    controls = mode.other_controls
     return other_machine.text or (f"; {controls} would take it" if controls else "")
 
 
@@ -154,6 +160,10 @@ def axes_not_followed(trace: Trace) -> Iterator[tuple[str, int]]:
         (unknown & ~named, f"{mode.linear_axis}, the number in polar.linear_axis,"),
     ):
         yield f"{what} is a linear axis that is not known, nothing of the section is judged: {remedy}", int(rows.sum())
+    beside = [int(index) for index in trace.words_not_simulated.nonzero()[0] if trace.enters[trace.run.row[index]]]
+    for name, indices in itertools.groupby(beside, lambda index: executed_word(trace, index)):
+        effect = "makes another mode of it, which is not simulated: look at the section on the control"
+        yield f"{name} beside {mode.on[0]} {effect}", len(list(indices))
     other = trace.enters & (trace.rotary_number != mode.rotary_axis)
     effect = "its angle at the switch and its limits are not followed: look at them on the control"
     yield f"Q names another rotary axis than {mode.rotary_axis}; {effect}", int(other.sum())

@@ -5,7 +5,7 @@ from polarcheck.checking.rule import ERROR, Arcs, Mask, rule
 
 @rule(
     ERROR,
-    "arc along Z; in the polar mode arcs lie in the plane of {linear} and {machine.polar.virtual_axis}",
+    "arc along Z; in the polar mode arcs lie in the plane of {linear} and {virtual}",
     at=("arc_clockwise", "arc_counterclockwise", "Z", "W"),
 )
 def arc_off_polar_plane(arcs: Arcs) -> Mask:

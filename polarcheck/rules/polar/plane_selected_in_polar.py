@@ -5,8 +5,7 @@ from polarcheck.checking.rule import ERROR, Machine, Mask, ModeWords, rule
 
 @rule(
     ERROR,
-    "{plane} in the polar mode: its plane is always that of {linear} and {machine.polar.virtual_axis}; "
-    "delete it or write it {outside}",
+    "{plane} in the polar mode: its plane is always that of {linear} and {virtual}; delete it or write it {outside}",
     at=("plane_xy", "plane_zx", "plane_yz"),
 )
 def plane_selected_in_polar(mode_words: ModeWords, machine: Machine) -> Mask:

@@ -8,8 +8,8 @@ _SEVERAL = 2
 
 @rule(
     ERROR,
-    "no {machine.polar.virtual_axis} word in this section: the tool moves along X alone, {what}; "
-    "write {machine.polar.virtual_axis} in every block that moves it",
+    "no {virtual} word in this section: the tool moves along X alone, {what}; "
+    "write {virtual} in every block that moves it",
     over="sections",
     at=("on",),
 )

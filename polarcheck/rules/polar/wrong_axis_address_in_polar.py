@@ -5,7 +5,7 @@ from polarcheck.checking.rule import ERROR, Hits, ModeWords, Trace, rule
 
 @rule(
     ERROR,
-    "{word} is no coordinate of the polar plane: its second axis is {machine.polar.virtual_axis} here{taken_by}",
+    "{word} is no coordinate of the polar plane: its second axis is {virtual} here{taken_by}",
     once="section",
     follows={"block": ("polar-entered-twice",)},
 )

@@ -69,5 +69,5 @@ def x_unknown_at_entry(trace: Trace, entry: Entry) -> Mask:
         M99
     """
     positioned = trace.has("X", "U") & (trace.uses_axes | trace.sets_coordinates)
-    by_x = trace.linear_is_known & (trace.linear_axis == ord("X"))
+    by_x = trace.is_followed & (trace.linear_axis == ord("X"))
     return trace.enters & by_x & trace.whole_program & ~entry.happened(positioned, since=entry.loses_x)

@@ -1,0 +1,23 @@
+O0004
+G98 G40 G97
+T0101
+G0 X60. C0 Z5.
+G12.1 D1 E=C
+G17
+G1 G42 X14. C0 F200
+Y5.               (expect: wrong-axis-address-in-polar)
+G3 X9. C10. R5.
+G1 X-9.
+G3 X-14. C5. R5.
+G1 C-10.
+X14.
+C0
+G40 X30.
+G13.1
+G12.1 D0 E=C
+G1 X20. Y0 F200
+Y5.
+X30.
+G13.1
+G0 Z100.
+M30
