@@ -35,10 +35,10 @@ from polarcheck.checking.rule import load_all
 from polarcheck.commands import main
 from polarcheck.errors import PolarcheckError
 from polarcheck.execution.arithmetic import Arithmetic
+from polarcheck.execution.custom_macro import read_statement
 from polarcheck.execution.expression import evaluate
 from polarcheck.execution.macro import Variables, assign
 from polarcheck.execution.programs import read_text
-from polarcheck.execution.statement import read_statement
 from polarcheck.machines import offset_table, profiles
 from polarcheck.machines.job import Job, check_work_offsets, from_table
 from polarcheck.reading import source

@@ -7,7 +7,7 @@ from typing import Any
 import msgspec
 from programs import machine_of
 
-from polarcheck.execution import macro, statement
+from polarcheck.execution import custom_macro, macro
 from polarcheck.execution.arithmetic import Value
 from polarcheck.execution.expression import Characters, Expression, evaluate, read_expression
 from polarcheck.execution.macro import Arguments, ProgramCall
@@ -33,7 +33,7 @@ def variables(**values: float | None) -> Variables:
 
 def read_statement(block: str, **bounds: int) -> Statement:
     limits = {"loops": MACRO.loop_numbers, "levels": MACRO.bracket_levels, **bounds}
-    return statement.read_statement(block, calls=MACRO.flow_codes, **limits)
+    return custom_macro.read_statement(block, calls=MACRO.flow_codes, **limits)
 
 
 def assign_arguments(statement: Statement, given: Variables, **options: Any) -> Arguments:

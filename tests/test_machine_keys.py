@@ -232,6 +232,7 @@ USES = {
     "g_code_system_a.coordinate_preset": Use([], before("G52 X1.", "G50.3 X0")),
     "g_code_system_a.feed_is_lead": Use([], before("G76 X50. F100").replace(" F200", "")),
     "control.axes": Use(["Y", "X", "C"], FLAT),
+    "control.named_axes": Use({"C1": ""}, inside("C1=5.")),
     "polar.on": Use(["G112"], FLAT),
     "polar.off": Use(["G113"], FLAT),
     "polar.on_of_other_controls": Use([], "O1\nG98 G0 X60. C0\nG137 C0\nG1 X40. Y0 F200\nY10.\nG136\nM30\n"),

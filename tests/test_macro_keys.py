@@ -14,6 +14,7 @@ from polarcheck.machines.macro_keys import Macro
 _SUB = "M30\nO2\nG0 X#24 Z#4 U#7\nM99\n"
 #: Key -> what it is changed to, and the program; X, Z and U of its rows, or what is said, are no longer the same.
 KEYS: dict[str, tuple[Any, str]] = {
+    "language": ("high-level", "R1=5\nG0 X=R1\nM30\n"),
     "local_variables": ([[1, 26]], "#27=5.\nG0 X#27\nM30\n"),
     "common_variables": ([[100, 149]], "#150=5.\nG0 X#150\nM30\n"),
     "retained_variables": ([[500, 531]], "#600=5.\nG0 X#600\nM30\n"),

@@ -12,7 +12,15 @@ from polarcheck.arrays import Floats, Mask, Rows
 from polarcheck.checking.finding import NotEvaluated
 from polarcheck.checking.macro_faults import reason_of
 from polarcheck.checking.phrases.common import block_and_line, linear
-from polarcheck.checking.phrases.polar import axes_not_followed, extrudes, not_simulated, not_understood, on_cylinder
+from polarcheck.checking.phrases.polar import (
+    axes_not_followed,
+    extrudes,
+    names_not_followed,
+    names_not_known,
+    not_simulated,
+    not_understood,
+    on_cylinder,
+)
 from polarcheck.checking.places import block_in_line
 from polarcheck.checking.rule import Rule
 from polarcheck.checking.tables import Tables
@@ -51,6 +59,8 @@ def unexecuted(tables: Tables) -> Iterator[NotEvaluated]:
         yield NotEvaluated(rule="all", reason=reason, blocks=count, matters=matters)
     for reason, count in (
         *axes_not_followed(trace),
+        *names_not_known(trace),
+        *names_not_followed(trace),
         offsets_not_known(trace),
         *not_simulated(tables["infeed"]),
         not_understood(trace, tables["other_mode"]),

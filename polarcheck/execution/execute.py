@@ -10,7 +10,7 @@ import numpy as np
 
 from polarcheck.execution.arithmetic import UNKNOWN
 from polarcheck.execution.calls import Again, Calls, Level, ModalCall, Resolver, Stop
-from polarcheck.execution.executed_rows import AXES, ExecutedRows
+from polarcheck.execution.executed_rows import ExecutedRows
 from polarcheck.execution.expression import Fault, decide, evaluate
 from polarcheck.execution.fault_list import FaultList, HasPlace
 from polarcheck.execution.kinds import FaultKind, RemarkKind
@@ -334,7 +334,7 @@ class Execution(Calls):
         if self.rows.add_computed(block, words, len(self.stack) - 1):
             raise Stop
         modal = self.modal_call()
-        if modal is not None and any(word.address in AXES for word, _ in words):
+        if modal is not None and self.rows.moves(words):
             return self.call(modal.program, block + 1, modal.repeats, modal.arguments)
         return block + 1
 

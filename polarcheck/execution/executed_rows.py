@@ -38,7 +38,7 @@ class ExecutedRows:
     """
 
     def __init__(self, text: Text, machine: Machine, *, skip: bool, inch_at_first: bool) -> None:
-        self.text = text
+        self.text, self.machine = text, machine
         self.inch = self._inch_at_first = inch_at_first
         words, ends = text.words, machine.m_codes.program_end
         inch, mm = machine.codes("inch"), machine.codes("mm")
@@ -70,6 +70,10 @@ class ExecutedRows:
     def mark_unknown(self) -> None:
         """The effect of the last row is not known."""
         self.unknown.append(self.count - 1)
+
+    def moves(self, words: Sequence[tuple[Word, float]]) -> bool:
+        """Whether any of these words moves an axis."""
+        return any(word.is_named or word.address in AXES for word, _ in words)
 
     def ends(self, block: int) -> bool:
         """Whether a plain block ends the program."""
@@ -154,7 +158,7 @@ class ExecutedRows:
         """All rows as a table; names: of tools, by the number that T has instead."""
         none = np.zeros(0, np.int64)
         index = np.concatenate((none, *self.words))
-        table = _joined(self.text.words, self.text.blocks, self.computed)
+        table = _joined(self.text.words, self.text.blocks, self.computed, self.machine)
         starts, unknown = np.zeros(self.count, bool), np.zeros(self.count, bool)
         starts[[at for at in self.starts if at < self.count]] = True
         unknown[[at for at in self.unknown if at < self.count]] = True
@@ -192,14 +196,15 @@ def _kept(words: Words) -> Mask:
     return kept
 
 
-def _joined(words: Words, blocks: Blocks, computed: Sequence[tuple[int, Word, float]]) -> Words:
+def _joined(words: Words, blocks: Blocks, computed: Sequence[tuple[int, Word, float]], machine: Machine) -> Words:
     """The words of the file, and behind them those that were computed."""
     if not computed:
         return words
     count = len(computed)
+    number = {address: machine.address_number(address) for address in {word.address for _, word, _ in computed}}
     begin = blocks.start[[block for block, _, _ in computed]]
     more: tuple[Any, ...] = (
-        np.array([ord(word.address[-1]) + 32 * (word.address[0] == ",") for _, word, _ in computed], np.uint8),
+        np.array([number[word.address] for _, word, _ in computed], np.uint8),
         np.array([value for _, _, value in computed], np.float64),
         np.zeros(count, np.int64),
         np.zeros(count, np.int64),

@@ -10,11 +10,12 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from polarcheck.execution.arithmetic import Arithmetic
+from polarcheck.execution.custom_macro import read_statement
 from polarcheck.execution.loops import Loops, find_loops
 from polarcheck.execution.macro import Variables, called_program
 from polarcheck.execution.names import Names
 from polarcheck.execution.programs import Program, ProgramName, block_text, find_programs, first_blocks, turns
-from polarcheck.execution.statement import Statement, read_statement
+from polarcheck.execution.statement import Statement
 from polarcheck.machines.machine import Machine
 from polarcheck.reading.joining import joined
 from polarcheck.reading.words import Text
@@ -72,6 +73,7 @@ class Listing:
             loops=macro.loop_numbers,
             levels=macro.bracket_levels,
             size=_SIZE,
+            names=self.machine.control.named_axes,
         )
         if macro.language == "custom-macro" or not self.text.blocks.is_macro[block]:
             return read(text)

@@ -11,7 +11,7 @@ from typing import Annotated, Literal, TypeAlias
 import msgspec
 
 from polarcheck.errors import RuleError
-from polarcheck.machines.axes import INCREMENTS, axis_of, check_axes
+from polarcheck.machines.axes import INCREMENTS, MOST_NAMED, address_number, axis_of, check_axes
 from polarcheck.machines.code_lists import GCodes, GCodeSystem, expanded, is_code
 from polarcheck.machines.fitting import MOST
 from polarcheck.machines.macro_keys import Macro
@@ -20,6 +20,7 @@ from polarcheck.machines.parameters import Meaning
 from polarcheck.machines.values import (
     Address,
     AddressOrNone,
+    AxisName,
     AxisNumber,
     CharacterOrNone,
     Codes,
@@ -59,6 +60,7 @@ class Control(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     unknown_codes_are_errors: whether the control stops at a G code that is not among the known codes
     x: diameter or radius: what X words are outside the polar mode
     axes: names of the axes in the order of their numbers, which P, Q and parameters count; none where it is not known
+    named_axes: axes that are written with = (C2=10.), by the address that each is here; empty where it is not followed
     known_codes: G codes of the control, from the whole list of it; G27-G80 is a range of whole numbers
     motion_codes: codes that move but have another number here, by what they mean: G101 = "G1"
     native_words: words of the control's own language, by the code or address that they are read as: TRANSMIT = "G12.1"
@@ -79,6 +81,7 @@ class Control(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     unknown_codes_are_errors: bool
     x: Literal["diameter", "radius"]
     axes: list[Address] = []
+    named_axes: dict[AxisName, AddressOrNone] = {}
     known_codes: list[str]
     motion_codes: dict[str, str] = {}
     native_words: dict[Plain, Plain] = {}
@@ -89,6 +92,8 @@ class Control(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
         for word, text in self.native_words.items():
             if not word or len(text) > len(word):
                 raise ValueError(f"native_words: {text!r} has no room in the place of {word!r}")
+        if len(self.named_axes) > MOST_NAMED:
+            raise ValueError(f"named_axes: expected {MOST_NAMED} names at most")
         for name, meant in self.motion_codes.items():
             if not is_code(name) or "-" in name or meant not in ("G0", "G1", "G2", "G3"):
                 raise ValueError(f"motion_codes: {name} = {meant!r}: expected a G code and one of G0, G1, G2, G3")
@@ -360,6 +365,16 @@ class Machine(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     def linear_address(self) -> str:
         """The address of the linear axis where no P beside G12.1 says otherwise; empty where that is not known."""
         return self.linear_address_of(self.polar.linear_axis)
+
+    def address_number(self, address: str) -> int:
+        """
+        What the table of executed words has for an address, be it the name of an axis that is written with =: that of
+        the address that the axis is here, NOT_NAMED for a name that control.named_axes does not have.
+        """
+        if len(address) == 1:
+            return ord(address)
+        named = self.control.named_axes
+        return address_number(named.get(address) or address, sorted(named))
 
     @property
     def system_table(self) -> str:

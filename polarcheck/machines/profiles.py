@@ -97,10 +97,12 @@ def load(name: str, changes: Mapping[str, Any] | Sequence[Change] | None = None)
     chain = tuple(title for title, _ in tables)
     tables = [*((title, dict(table)) for title, table in over), *tables]
     for title, table in reversed(tables):
+        named = _value(merged, "control.named_axes")
         _replace(merged, table.pop("replaces", []), title, origins)
         _merge(merged, table, title, origins)
         if title in chain:
             _forget(merged, table)
+        _keep(merged, "control.named_axes", named)
         if isinstance(table.get("parameters"), Mapping):
             # After the values of farther profiles, before those of nearer ones: the nearest word counts.
             parameters.apply(merged, table, title, origins)
@@ -189,6 +191,21 @@ def _merge(into: dict[str, Any], table: Mapping[str, Any], profile: str, origins
                 dotted = f"{group}.{key}"
                 refuse(dotted, profile)
                 target[key] = _unwrapped(value, dotted, origin, origins)
+
+
+def _value(merged: Mapping[str, Any], key: str) -> Any:
+    """The value of a key; None where there is none, or no table for it."""
+    group, _, last = key.partition(".")
+    values = merged.get(group)
+    return values.get(last) if isinstance(values, Mapping) else None
+
+
+def _keep(merged: dict[str, Any], key: str, inherited: Any) -> None:
+    """Have what a nearer profile gives of a table beside what is inherited of it: it names what differs or is new."""
+    own = _value(merged, key)
+    if isinstance(own, Mapping) and isinstance(inherited, Mapping):
+        group, _, last = key.partition(".")
+        merged[group][last] = {**inherited, **own}
 
 
 def _unwrapped(value: Any, key: str, origin: Origin, origins: dict[str, Origin]) -> Any:

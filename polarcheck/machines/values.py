@@ -36,6 +36,11 @@ Address: TypeAlias = Annotated[str, msgspec.Meta(pattern="^[A-Z]$(?!\\n)", extra
 AddressOrNone: TypeAlias = Annotated[
     str, msgspec.Meta(pattern="^[A-Z]?$(?!\\n)", extra={EXPECTED: "an address, one letter, or none"})
 ]
+#: An axis that is written with `=`: by a letter and a number, as C2=10.
+AxisName: TypeAlias = Annotated[
+    str,
+    msgspec.Meta(pattern="^[A-Z][A-Z0-9]{1,7}$(?!\\n)", extra={EXPECTED: "the name of an axis with a number, as C2"}),
+]
 Variable: TypeAlias = Annotated[int, msgspec.Meta(ge=1, extra={EXPECTED: "the number of a variable, 100 for #100"})]
 #: No control of a lathe has more axes in a path.
 MOST_AXES = 24

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from polarcheck.arrays import Floats, Mask, Rows, States
 from polarcheck.execution.run import Run
+from polarcheck.machines.axes import FIRST_NAMED, NOT_NAMED
 from polarcheck.machines.codes import code, code_numbers, code_set, modal_tables, renumbered
 from polarcheck.machines.job import Job
 from polarcheck.machines.machine import Machine
@@ -53,10 +54,28 @@ class Columns:
         order, ends = self._by_address
         if not address:  # of a machine that has none for it
             return order[:0]
-        number = ord(address[1].lower()) if address[0] == "," else ord(address)
+        number = self.machine.address_number(address)
         found = order[ends[number - 1] : ends[number]]
         # H beside G43 is the number of an offset, and no increment of C.
         return found[~self.switches_length_offset[self.run.row[found]]] if address == "H" and len(found) else found
+
+    @cached_property
+    def words_not_named(self) -> Rows:
+        """The words of axes that control.named_axes does not have, in order."""
+        return np.flatnonzero(self.run.words.address == NOT_NAMED)
+
+    @cached_property
+    def moves_unnamed(self) -> Mask:
+        """Has a word of an axis that control.named_axes does not have: it may be any axis of the lathe."""
+        return self.with_words(self.words_not_named)
+
+    @cached_property
+    def words_not_followed(self) -> Rows:
+        """The words of axes that are not followed, by control.named_axes or since it does not have them, in order."""
+        address = self.run.words.address
+        return np.flatnonzero(
+            (address >= FIRST_NAMED) & (address != self.machine.address_number(self.machine.polar.virtual_axis))
+        )
 
     def words_at(self, indices: Rows) -> Mask:
         """Per executed word: whether it is one of these."""

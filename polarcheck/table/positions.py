@@ -191,6 +191,20 @@ class Positions(VirtualAxis):
         return (lost & (self.section < 0)) | self.run.unknown | self.starts
 
     @cached_property
+    def is_followed(self) -> Mask:
+        """
+        Where the tool goes on the plane is followed: its linear axis is known, the mode is simulated, and both axes are
+        followed. Where another axis stands in a section that does not program both of its own, it may be that of the
+        plane.
+        """
+        known = self.linear_is_known & self.is_simulated
+        if not len(self.words_not_followed):
+            return known
+        beside = self.anywhere_in_section(self.with_words(self.words_not_followed))
+        own = self.anywhere_in_section(self.programs_linear_axis) & self.anywhere_in_section(self.programs_virtual_axis)
+        return np.asarray(known & (~beside | own))
+
+    @cached_property
     def sets_coordinates(self) -> Mask:
         """G50 (G92): axis words say where the tool stands, or with S how fast the spindle may turn."""
         return self.listed("coordinate_setting")
@@ -368,23 +382,3 @@ class Positions(VirtualAxis):
 
     def _move(self, rows: Mask) -> tuple[Points, Points, Points, States]:
         return self.start[rows], self.end[rows], self.center[rows], self.motion[rows]
-
-    @cached_property
-    def c_angle(self) -> Floats:
-        """C angle of the machine after the row [deg], continuous along a section; NaN while unknown."""
-        moving = self.uses_axes & (self.section < 0)
-        written, stepped = self.has("C") & moving, self.has("H") & moving
-        absolute = np.where(written & ~self.incremental, self.angle_of("C"), np.nan)
-        turn = np.where(written & self.incremental, self.angle_of("C"), 0.0)
-        turn += np.where(stepped, self.angle_of("H"), 0.0)
-        on_plane = self.in_polar & self.moves_plane
-        turn[on_plane] = polar.c_sweep(*self._move(on_plane))
-        # G28 H0 takes C to its reference point, the zero of its angle (builder's guide: "zero return C-axis").
-        referenced = self.listed("c_axis_reference") & self.has("C", "H")
-        values = np.where(referenced, 0.0, np.where(self.sets_coordinates, self.angle_of("C"), np.nan))
-        return positions(absolute, turn, self._forgets("C", "H"), values)
-
-    @cached_property
-    def section_entry(self) -> Floats:
-        """C angle of each section at its G12.1 [deg]; 0 where it is not known."""
-        return np.nan_to_num(self.c_angle[self.sections.enter])

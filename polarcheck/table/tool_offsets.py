@@ -12,7 +12,7 @@ from polarcheck.arrays import Floats, Mask, Rows
 from polarcheck.execution.run import NO_VARIABLE
 from polarcheck.machines.offsets import place_in
 from polarcheck.table.offset_settings import NOSE, RADIUS, RADIUS_WEAR, X_WEAR, Settings, Steps, X, in_order, of_list
-from polarcheck.table.positions import Positions
+from polarcheck.table.rotary_axis import RotaryAxis
 
 if TYPE_CHECKING:
     from polarcheck.table.radius_comments import Found
@@ -34,8 +34,8 @@ class _Set(NamedTuple):
     value: Floats
 
 
-class ToolOffsets(Positions):
-    """What the tool offset in force holds; the columns of Positions besides."""
+class ToolOffsets(RotaryAxis):
+    """What the tool offset in force holds; the columns of RotaryAxis besides."""
 
     # ---- R and nose type ----
 

@@ -140,8 +140,3 @@ class VirtualAxis(LinearAxis):
             return np.ones(len(self), bool)
         begins = self.with_words(self.words_not_simulated)
         return ~fill_down(begins, self.switches_on | self.switches_off | self.starts, False).astype(bool)
-
-    @cached_property
-    def is_followed(self) -> Mask:
-        """Where the tool goes on the plane is followed: its linear axis is known, and the mode is simulated."""
-        return self.linear_is_known & self.is_simulated

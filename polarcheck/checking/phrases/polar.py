@@ -5,12 +5,12 @@ from __future__ import annotations
 import itertools
 from collections.abc import Iterator
 
-from polarcheck.arrays import Floats
+from polarcheck.arrays import Floats, Rows
 from polarcheck.checking.other_machine import NAMED, OtherMachine
 from polarcheck.checking.phrases.common import codes, executed_word, linear, outside, switch_off, written
 from polarcheck.checking.places import block_in_line
 from polarcheck.checking.quantity import in_row
-from polarcheck.machines.axes import listed
+from polarcheck.machines.axes import NOT_NAMED, listed
 from polarcheck.machines.codes import spelled
 from polarcheck.machines.machine import Machine
 from polarcheck.machines.modal import Motion, Side
@@ -38,6 +38,8 @@ _OF_Z = {
 }
 #: More words of a block are counted, not listed.
 _LISTED = 6
+#: Names of axes that are told one by one; a hostile file has any number of them.
+_NAMES = 20
 #: Of a block that is named; more is cut off [characters].
 _BLOCK_LENGTH = 60
 #: Modal groups that must have ended at G12.1, by the list of the codes that begin them.
@@ -167,6 +169,35 @@ def axes_not_followed(trace: Trace) -> Iterator[tuple[str, int]]:
     other = trace.enters & (trace.rotary_number != mode.rotary_axis)
     effect = "its angle at the switch and its limits are not followed: look at them on the control"
     yield f"Q names another rotary axis than {mode.rotary_axis}; {effect}", int(other.sum())
+
+
+def names_not_known(trace: Trace) -> Iterator[tuple[str, int]]:
+    """The names of axes that the machine does not have, as in C5=10., and in how many blocks each stands."""
+    remedy = 'add it to control.named_axes with the address that it is, or with "" for an axis that does not matter'
+    yield from _by_name(trace, trace.words_not_named, f"is an axis that this lathe is not known to have: {remedy}")
+
+
+def names_not_followed(trace: Trace) -> Iterator[tuple[str, int]]:
+    """The axes of the machine that stand in sections and are not followed, and in how many of their blocks."""
+    words = trace.words_not_followed
+    words = words[trace.section[trace.run.row[words]] >= 0]
+    words = words[trace.run.words.address[words] != NOT_NAMED]
+    is_judged = trace.is_followed[trace.run.row[words]]
+    remedy = "look at it on the control"
+    yield from _by_name(trace, words[is_judged], f"is not followed, its section is judged without it: {remedy}")
+    yield from _by_name(trace, words[~is_judged], f"is not followed, nothing of its section is judged: {remedy}")
+
+
+def _by_name(trace: Trace, words: Rows, what: str) -> Iterator[tuple[str, int]]:
+    """What is said of each name of an axis among some words, from the line where it stands first; and its blocks."""
+    blocks: dict[str, list[int]] = {}
+    for index in words.tolist():
+        name = executed_word(trace, index).partition("=")[0].upper()
+        blocks.setdefault(name, []).append(int(trace.run.row[index]))
+    for name, rows in list(blocks.items())[:_NAMES]:
+        yield f"{name}, from line {int(trace.line[rows[0]])} on, {what}", len(set(rows))
+    more = [row for rows in list(blocks.values())[_NAMES:] for row in rows]
+    yield f"each of {len(blocks) - _NAMES} more axes {what}", len(set(more))
 
 
 def not_simulated(infeed: Infeed) -> Iterator[tuple[str, int]]:

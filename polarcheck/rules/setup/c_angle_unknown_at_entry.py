@@ -55,5 +55,10 @@ def c_angle_unknown_at_entry(trace: Trace, entry: Entry, spindles: Spindles) -> 
         G13.1
         M30
     """
-    positioned = trace.has("C", "H") & (trace.section < 0)
-    return trace.enters & trace.whole_program & ~entry.happened(positioned, since=spindles.engages_c_axis)
+    positioned = (trace.has("C", "H") & (trace.section < 0)) | trace.moves_unnamed
+    return (
+        trace.enters
+        & trace.is_followed
+        & trace.whole_program
+        & ~entry.happened(positioned, since=spindles.engages_c_axis)
+    )

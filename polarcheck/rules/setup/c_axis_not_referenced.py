@@ -52,6 +52,7 @@ def c_axis_not_referenced(trace: Trace, entry: Entry, spindles: Spindles) -> Mas
         G13.1
     """
     # C of a sub-spindle has another name on many lathes.
-    named = trace.has("C", "H") | (trace.has("A", "B") & spindles.on_sub_spindle)
+    named = trace.has("C", "H") | (trace.has("A", "B") & spindles.on_sub_spindle) | trace.moves_unnamed
     referenced = trace.listed("c_axis_reference") & named
-    return trace.enters & spindles.c_axis & ~entry.happened(referenced, since=spindles.engages_c_axis)
+    entered = trace.enters & trace.is_followed & spindles.c_axis
+    return entered & ~entry.happened(referenced, since=spindles.engages_c_axis)

@@ -68,6 +68,6 @@ def x_unknown_at_entry(trace: Trace, entry: Entry) -> Mask:
         G13.1
         M99
     """
-    positioned = trace.has("X", "U") & (trace.uses_axes | trace.sets_coordinates)
+    positioned = (trace.has("X", "U") & (trace.uses_axes | trace.sets_coordinates)) | trace.moves_unnamed
     by_x = trace.is_followed & (trace.linear_axis == ord("X"))
     return trace.enters & by_x & trace.whole_program & ~entry.happened(positioned, since=entry.loses_x)
