@@ -106,7 +106,6 @@ def test_the_unit_is_that_of_the_job_where_the_program_says_none() -> None:
 @pytest.mark.parametrize(
     ("key", "value", "said_of_it"),
     [
-        ("subprogram_calls", ["M098"], "leading zeros"),
         ("macro_calls", ["CALL"], "expected a G or M code"),
         ("computed_increments", {"G": 0}, "above 0"),
         ("local_variables", [[1]], "length 2"),

@@ -7,6 +7,15 @@ import msgspec
 
 from polarcheck.machines.values import Address, Count, Positive, Ranges, Variable
 
+#: The lists of codes among the keys.
+CODE_LISTS = (
+    "subprogram_calls",
+    "macro_calls",
+    "modal_macro_calls",
+    "modal_macro_calls_each_block",
+    "modal_macro_cancel",
+    "program_returns",
+)
 _FLOW_CODE = re.compile(r"[GM](?:0|[1-9]\d{0,2})(?:\.[1-9])?", re.ASCII)
 
 

@@ -12,7 +12,7 @@ from typing import Any, get_origin
 import msgspec
 
 from polarcheck.errors import MachineError, suggestion
-from polarcheck.machines import parameters, toml_text
+from polarcheck.machines import parameters, toml_text, written_codes
 from polarcheck.machines.fitting import MisfitError, fitted
 from polarcheck.machines.machine import Machine
 from polarcheck.machines.parameters import Origin
@@ -190,7 +190,14 @@ def _merge(into: dict[str, Any], table: Mapping[str, Any], profile: str, origins
             if key not in ("source", "doubtful"):
                 dotted = f"{group}.{key}"
                 refuse(dotted, profile)
-                target[key] = _unwrapped(value, dotted, origin, origins)
+                target[key] = _taken(dotted, _unwrapped(value, dotted, origin, origins), target.get(key), profile)
+
+
+def _taken(key: str, value: Any, inherited: Any, profile: str) -> Any:
+    try:
+        return written_codes.taken(key, value, inherited)
+    except written_codes.ListError as error:
+        raise MachineError(f"{profile}: {key}: {error}") from None
 
 
 def _value(merged: Mapping[str, Any], key: str) -> Any:
