@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 from polarcheck.errors import MachineError, RuleError
 from polarcheck.machines.code_lists import GCodes, GCodeSystem, is_code, numbers
-from polarcheck.machines.machine import PLAIN_M_CODES, Machine, MCodes
+from polarcheck.machines.machine import PLAIN_M_CODES, Machine, MCodes, PowerOn
 from polarcheck.machines.modal import STATES
 from polarcheck.machines.parameters import Origin
 
@@ -42,6 +42,13 @@ def check_codes(machine: Machine, origins: Mapping[str, Origin], chain: Sequence
                     if isinstance(code, str) and not is_one(code):
                         raise MachineError(f"{origins[f'{table}.{key}'].profile}: {table}.{key}: {code!r} is no code")
 
+    for group in PowerOn.__struct_fields__:
+        selected = getattr(machine.power_on, group)
+        listed = [code for key in STATES[group] for code in machine.codes(key)]
+        if selected and selected not in listed:
+            has = ", ".join(listed) or "none"
+            key = f"power_on.{group}"
+            raise MachineError(f"{origins[key].profile}: {key}: {selected} selects no {group}; codes are {has}")
     for alarm, names in machine.alarm_codes.items():
         for name in names:
             if not is_code(name) and not _is_list(machine, name):

@@ -23,6 +23,7 @@ from polarcheck.machines.values import (
     AxisName,
     AxisNumber,
     CharacterOrNone,
+    CodeOrNone,
     Codes,
     Count,
     Length,
@@ -260,6 +261,24 @@ class Feed(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
         ascend(self, ("cutting_minimum", "cutting_maximum"), ("positioning_minimum", "positioning_maximum"))
 
 
+class PowerOn(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """
+    G codes that are in force when a program begins, as parameters set them; empty where that is not known.
+
+    Of an excerpt nothing is known before its first block. Units are those of control.units.
+
+    motion: rapid traverse or linear interpolation
+    plane: plane that is selected
+    feed_mode: feed per minute or per revolution
+    distance: coordinates or distances, in G-code systems B and C
+    """
+
+    motion: CodeOrNone = ""
+    plane: CodeOrNone = ""
+    feed_mode: CodeOrNone = ""
+    distance: CodeOrNone = ""
+
+
 class MCodes(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """
     M codes, most of them the builder's; empty where the profile does not know them.
@@ -335,6 +354,7 @@ class Machine(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     compensation: Compensation
     limits: Limits
     feed: Feed
+    power_on: PowerOn
     m_codes: MCodes
     g_codes: GCodes
     g_code_system_a: GCodeSystem

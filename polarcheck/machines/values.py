@@ -32,6 +32,9 @@ SwitchWord: TypeAlias = Annotated[
 NumberedWord: TypeAlias = Annotated[
     str, msgspec.Meta(pattern="^[A-Z][0-9]{1,4}$(?!\\n)", extra={EXPECTED: "a letter and a whole number, as in D0"})
 ]
+CodeOrNone: TypeAlias = Annotated[
+    str, msgspec.Meta(pattern="^(G[0-9]{1,3}([.][0-9])?)?$(?!\\n)", extra={EXPECTED: "a G code, or none"})
+]
 Address: TypeAlias = Annotated[str, msgspec.Meta(pattern="^[A-Z]$(?!\\n)", extra={EXPECTED: "an address, one letter"})]
 AddressOrNone: TypeAlias = Annotated[
     str, msgspec.Meta(pattern="^[A-Z]?$(?!\\n)", extra={EXPECTED: "an address, one letter, or none"})

@@ -81,6 +81,8 @@ def taken(key: str, value: Any, inherited: Any) -> Any:
 
     inherited: of the same key. What is no list of codes stays as it is. Raises ListError.
     """
+    if key.startswith("power_on.") and isinstance(value, str):
+        return plain(value)
     if key in _ADDRESSES:
         return _in_capitals(value)
     if key in _PAIRS and isinstance(value, Mapping):

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from polarcheck.arrays import Floats, Mask, Rows, States
+from polarcheck.execution.programs import find_programs
 from polarcheck.execution.run import Run
 from polarcheck.machines.axes import FIRST_NAMED, NOT_NAMED
 from polarcheck.machines.codes import code, code_numbers, code_set, modal_tables, renumbered
@@ -209,7 +210,7 @@ class Columns:
     def _filled(self, group: str) -> tuple[States, Mask]:
         names, group_of, state_of = self._modal
         written = np.zeros(len(self), bool)
-        values = np.full(len(self), _BEFORE.get(group, 0), np.int16)
+        values = self._at_power_on(group)
         if group in names:
             chosen = group_of[self.g_codes] == names.index(group) + 1
             rows = self.run.row[self.g_words[chosen]]
@@ -219,6 +220,14 @@ class Columns:
         self._columns[f"sets {group}"] = written
         self._columns[f"state {group}"] = state
         return state.astype(np.int16), written
+
+    def _at_power_on(self, group: str) -> States:
+        """The state that holds before a program has selected one, per row; of an excerpt it is what is usual."""
+        states = np.full(len(self), _BEFORE.get(group, 0), np.int16)
+        known = getattr(self.machine.power_on, group, "")
+        if known:
+            states[self.whole_program] = self._modal[2][code(known)]
+        return states
 
     # ---- place in the file ----
 
@@ -243,6 +252,22 @@ class Columns:
     def program(self) -> Rows:
         """Number of the program in the file, from 0."""
         return np.cumsum(self.starts) - 1
+
+    @cached_property
+    def whole_program(self) -> Mask:
+        """
+        The row belongs to a main program that is there from its head on: with O number, <name> or %, not left by M99.
+
+        Of an excerpt, and of a subprogram, it is not known what was in force before its first block.
+        """
+        programs = find_programs(self.text).programs
+        first = np.array([program.first for program in programs], np.int64)
+        has_head = np.array([program.has_head for program in programs], bool)
+        start = self.run.block[np.flatnonzero(self.starts)]
+        whole = has_head[np.maximum(np.searchsorted(first, start, side="right") - 1, 0)]
+        whole |= len(self.text.tape_marks) > 0
+        whole[self.program[self.codes(*self.machine.macro.program_returns) & (self.run.depth == 0)]] = False
+        return whole[self.program]
 
     def anywhere_in_program(self, mask: Mask) -> Mask:
         """Rows of programs in which any row is in the mask."""

@@ -54,12 +54,15 @@ class Feeds:
 
     @cached_property
     def mode_is_unknown(self) -> Mask:
-        """No code of feed per minute or per revolution, of whichever G-code system, stands above in a whole program."""
+        """
+        No code of feed per minute or per revolution, of whichever G-code system, stands above in a whole program, and
+        the profile does not say which is in force at its beginning.
+        """
         trace, machine = self.trace, self.trace.machine
         systems = (machine.g_code_system_a, machine.g_code_system_b, machine.g_code_system_c)
         codes = [code for system in systems for code in (*system.feed_per_minute, *system.feed_per_revolution)]
         says = trace.codes(*codes) | trace.sets("feed_mode") | trace.run.unknown
-        return np.asarray(trace.whole_program & ~happened(says, trace.starts))
+        return np.asarray(trace.whole_program & ~happened(says, trace.starts) & (not machine.power_on.feed_mode))
 
     @cached_property
     def is_too_high_per_revolution(self) -> Mask:

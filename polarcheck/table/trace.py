@@ -11,7 +11,6 @@ from functools import cached_property
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Rows, States
-from polarcheck.execution.programs import find_programs
 from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.machines.modal import FeedMode, Motion, Side
 from polarcheck.reading.words import NumberFault
@@ -26,22 +25,6 @@ class Trace(ToolOffsets):
     """The table of one file on one machine for one job; see the properties for its columns, and those it inherits."""
 
     # ---- what is known of the program ----
-
-    @cached_property
-    def whole_program(self) -> Mask:
-        """
-        The row belongs to a main program that is there from its head on: with O number, <name> or %, not left by M99.
-
-        Of an excerpt, and of a subprogram, it is not known what was in force before its first block.
-        """
-        programs = find_programs(self.text).programs
-        first = np.array([program.first for program in programs], np.int64)
-        has_head = np.array([program.has_head for program in programs], bool)
-        start = self.run.block[np.flatnonzero(self.starts)]
-        whole = has_head[np.maximum(np.searchsorted(first, start, side="right") - 1, 0)]
-        whole |= len(self.text.tape_marks) > 0
-        whole[self.program[self.codes(*self.machine.macro.program_returns) & (self.run.depth == 0)]] = False
-        return whole[self.program]
 
     @cached_property
     def line_in_file(self) -> Rows:
