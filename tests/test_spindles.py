@@ -76,6 +76,12 @@ def test_a_list_may_hold_codes_with_and_without_a_word(before: str, rules: list[
     assert broken(before, live_tool_on=["M3 P12", "M33"], live_tool_off=["M5 P12"]) == rules
 
 
+def test_a_code_of_the_live_tool_is_none_of_the_main_spindle() -> None:
+    """A lathe on which M3 starts what is selected lists it for the live tool beside the inherited M3 of the spindle."""
+    assert broken("M35 / M3 S2000", live_tool_on=["M3"], live_tool_off=["M5"]) == []
+    assert broken("M35 / M4 S2000 / M3", live_tool_on=["M3"], live_tool_off=["M5"]) == ["main-spindle-running-at-entry"]
+
+
 def test_a_message_names_the_code_with_its_word() -> None:
     program = PROGRAM.format("M35\nM3 P11 S500", "")
     report = report_of(program, "fanuc-30i", changes={"m_codes": BY_P}, only=SETUP)

@@ -1,4 +1,4 @@
-"""Whether the code lists of a machine hold codes, and no code stands for two modal states."""
+"""Whether the code lists of a machine hold codes, and no code stands for two states."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 from polarcheck.errors import MachineError, RuleError
 from polarcheck.machines.code_lists import GCodes, GCodeSystem, is_code, numbers
-from polarcheck.machines.machine import PLAIN_M_CODES, Machine, MCodes, PowerOn
+from polarcheck.machines.machine import PLAIN_M_CODES, SWITCHED, Machine, MCodes, PowerOn
 from polarcheck.machines.modal import STATES
 from polarcheck.machines.parameters import Origin
 
@@ -42,13 +42,7 @@ def check_codes(machine: Machine, origins: Mapping[str, Origin], chain: Sequence
                     if isinstance(code, str) and not is_one(code):
                         raise MachineError(f"{origins[f'{table}.{key}'].profile}: {table}.{key}: {code!r} is no code")
 
-    for group in PowerOn.__struct_fields__:
-        selected = getattr(machine.power_on, group)
-        listed = [code for key in STATES[group] for code in machine.codes(key)]
-        if selected and selected not in listed:
-            has = ", ".join(listed) or "none"
-            key = f"power_on.{group}"
-            raise MachineError(f"{origins[key].profile}: {key}: {selected} selects no {group}; codes are {has}")
+    _check_power_on(machine, origins)
     for alarm, names in machine.alarm_codes.items():
         for name in names:
             if not is_code(name) and not _is_list(machine, name):
@@ -59,6 +53,11 @@ def check_codes(machine: Machine, origins: Mapping[str, Origin], chain: Sequence
         profile = origins[key].profile
         return chain.index(profile) if profile in chain else -1
 
+    for on, off in SWITCHED:
+        both = [word for word in getattr(machine.m_codes, on) if word in getattr(machine.m_codes, off)]
+        if both:
+            nearer, other = sorted((f"m_codes.{on}", f"m_codes.{off}"), key=distance)
+            raise MachineError(f"{origins[nearer].profile}: {nearer}: {both[0]} is in {other}, too")
     list_of: dict[int, str] = {}
     for states in STATES.values():
         for key in states:
@@ -68,6 +67,16 @@ def check_codes(machine: Machine, origins: Mapping[str, Origin], chain: Sequence
                     nearer, other = sorted((full, list_of[number]), key=distance)
                     code = f"G{number / 10:g}"
                     raise MachineError(f"{origins[nearer].profile}: {nearer}: {code} is in {other}, too")
+
+
+def _check_power_on(machine: Machine, origins: Mapping[str, Origin]) -> None:
+    for group in PowerOn.__struct_fields__:
+        selected = getattr(machine.power_on, group)
+        listed = [code for key in STATES[group] for code in machine.codes(key)]
+        if selected and selected not in listed:
+            has = ", ".join(listed) or "none"
+            key = f"power_on.{group}"
+            raise MachineError(f"{origins[key].profile}: {key}: {selected} selects no {group}; codes are {has}")
 
 
 def _is_single(text: str) -> bool:

@@ -330,6 +330,16 @@ class MCodes(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
         return [code for codes in msgspec.structs.astuple(self) for code in codes if " " in code]
 
 
+#: Lists of M codes that begin and end a state.
+SWITCHED = (
+    ("c_axis_on", "c_axis_off"),
+    ("c_axis_clamp", "c_axis_unclamp"),
+    ("live_tool_on", "live_tool_off"),
+    ("spindle_on", "spindle_off"),
+    ("sub_c_axis_on", "sub_c_axis_off"),
+    ("sub_c_axis_clamp", "sub_c_axis_unclamp"),
+    ("sub_spindle_on", "sub_spindle_off"),
+)
 #: Lists of M codes that end a program or a block by themselves, whatever stands beside them.
 PLAIN_M_CODES = ("tool_change", "optional_stop", "program_end", "stops_reading_ahead")
 

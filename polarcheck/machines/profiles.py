@@ -25,6 +25,9 @@ _LONGEST_CHAIN = 10
 #: Tables that a profile can leave behind.
 _REPLACED = ("alarms", "alarm_codes", "known_parameters", "severities", "notes")
 
+#: Keys of a file that are none of the machine.
+_OF_FILES = ("inherits", "replaces")
+
 
 class UnknownMachineError(MachineError):
     """There is no machine and no file of a name."""
@@ -181,7 +184,8 @@ def _merge(into: dict[str, Any], table: Mapping[str, Any], profile: str, origins
             into[group] = _unwrapped(values, group, Origin(profile, ""), origins)
             continue
         if group not in Machine.__struct_fields__:
-            raise MachineError(f"{profile}: unknown table [{group}]{suggestion(group, Machine.__struct_fields__)}")
+            near = suggestion(group, Machine.__struct_fields__) or _of_job(group)
+            raise MachineError(f"{profile}: unknown table [{group}]{near}")
         target = into.setdefault(group, {})
         if not isinstance(target, dict):
             raise MachineError(f"{profile}: {group}: expected a text, found a table")
@@ -275,11 +279,29 @@ def _objection(misfit: MisfitError, origins: Mapping[str, Origin], titles: Seque
     given = [f"parameters.{origin.parameter}" for origin in of_fault if origin.parameter and origin.profile == title]
     if given:
         return f"{title}: {' and '.join(given)}: {text}"
-    group, _, key = misfit.key.rpartition(".")
-    if text.startswith("unknown key") and group in Machine.__struct_fields__:
-        elsewhere = [f"{other}.{key}" for other in Machine.__struct_fields__ if key in _names(other)]
-        text = f"unknown key {misfit.key}; did you mean {elsewhere[0]}?" if elsewhere else text
+    if text.startswith("unknown key"):
+        text = _unknown_key(misfit.key, origins) or text
     return f"{title}: {text}"
+
+
+def _unknown_key(written: str, origins: Mapping[str, Origin]) -> str:
+    """What is told of a key that stands in another table, or is the number of a parameter."""
+    key = written.rpartition(".")[2]
+    if f"known_parameters.{key}" in origins:
+        return f"unknown key {written}; it is a parameter of the control: write it under [parameters]"
+    elsewhere = [f"{other}.{key}" for other in Machine.__struct_fields__ if key in _names(other)]
+    if elsewhere:
+        return f"unknown key {written}; did you mean {elsewhere[0]}?"
+    if key != written:
+        return ""
+    near = suggestion(key, (*Machine.__struct_fields__, *_OF_FILES)) or _of_job(key)
+    return f"unknown key {written}{near}"
+
+
+def _of_job(key: str) -> str:
+    from polarcheck.machines.job import Job
+
+    return "; it belongs to the job, polarcheck.toml" if key in Job.__struct_fields__ else ""
 
 
 def _fields(group: str) -> tuple[msgspec.structs.FieldInfo, ...]:

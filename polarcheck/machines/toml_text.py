@@ -27,6 +27,9 @@ _STRING_OR_COMMENT = re.compile(
 _LONG_KEY = re.compile(rf"(?<![\w-])[\w-]++(?:[ \t]*+\.[ \t]*+[\w-]++){{{_LEVELS}}}", re.ASCII)
 _LONG_NUMBER = re.compile(r"(?<![\d_])\d[\d_]{1000,}+")
 
+#: 3401#0, the bit of a parameter, as a key without quotes.
+_BIT = re.compile(r"^[ \t]*+(\w{1,20}#\w{1,20})[ \t]*+=", re.MULTILINE)
+
 
 def read(path: str | PathLike[str], what: str, *, pipes: bool = False) -> dict[str, Any]:
     """
@@ -56,8 +59,10 @@ def parsed(text: str) -> dict[str, Any]:
         table = tomllib.loads(text)
     except RecursionError:
         raise ValueError(_too_deep("")) from None
-    except tomllib.TOMLDecodeError:
-        raise
+    except tomllib.TOMLDecodeError as error:
+        bit = _BIT.search(text)
+        hint = f'; write "{bit[1]}" in quotes: # begins a comment' if bit else ""
+        raise ValueError(f"{error}{hint}") from None
     except ValueError as error:  # a number that Python does not read: its own text means nothing to a setter
         raise ValueError(_long_number(text) or str(error)) from None
     for key, value, level in _values(table):

@@ -371,8 +371,9 @@ class Columns:
 
     @cached_property
     def spindle(self) -> Mask:
-        """The main spindle (on many lathes the live tool too) runs: M3, M4."""
-        return self.switched(self.machine.m_codes.spindle_on, self.machine.m_codes.spindle_off)
+        """The main spindle (on many lathes the live tool too) runs: M3, M4; not by a code listed for the live tool."""
+        codes = self.machine.m_codes
+        return self.switched([word for word in codes.spindle_on if word not in codes.live_tool_on], codes.spindle_off)
 
     @cached_property
     def live_tool(self) -> Mask:
