@@ -218,7 +218,8 @@ def test_what_reads_no_program_loads_no_numpy(arguments: list[str]) -> None:
 
 def test_no_control_is_named_in_code() -> None:
     """A difference between controls is data; only comments and docstrings name a control, as their source."""
-    controls = ("fanuc", "haas", "gsk", "mitsubishi", "okuma", "mazak", "siemens", "citizen", "doosan", "lsis")
+    controls = ("fanuc", "haas", "gsk", "mitsubishi", "okuma", "mazak", "siemens", "citizen", "doosan", "lsis", "hurco")
+    controls += ("fagor", "takisawa", "colchester")
     for path in PACKAGE.rglob("*.py"):
         tree = tree_of(path.read_text("utf-8"))
         documents = {

@@ -29,7 +29,7 @@ class Hand:
 
     head: before the approach. on, off: of the mode, with what belongs there. axis: of the virtual axis. factor,
     outside: of X in the mode and outside of it, 2 for diameters. steps: addresses of incremental words; empty: by G91.
-    arc: address of the radius. codes: line, G2, G3.
+    arc: address of the radius. codes: line, G2, G3. turns: whether C at the switch turns the plane.
     """
 
     head: str
@@ -42,6 +42,7 @@ class Hand:
     arc: str = "R"
     codes: tuple[str, str, str] = ("G1", "G2", "G3")
     comment: str = "(COMMENT G0 X1.)"
+    turns: bool = True
 
 
 FANUC = Hand("O1\nG40 G97 G98\nT0101")
@@ -77,11 +78,22 @@ HANDS = {
         comment="; COMMENT G0 X1.",
     ),
     "doosan": Hand("O1\nG40 G97 G98\nM35\nG28 H0\nT0101"),
+    "hurco": Hand("O1\nG90 G94 G40 G97\nT0101\nM5\nM33 S3000\nG7", "G101", "G109", "Y", 1, 1, "", turns=False),
+    "fagor-8055t": Hand(
+        "G90 G94 G40 G97 G18\nT1 D1 M6\nM51\nG15",
+        "G16 XC",
+        "G18",
+        factor=1,
+        steps="",
+        comment=";(COMMENT G0 X1.)",
+        turns=False,
+    ),
     "lsis": Hand("O1\nG40 G97 G98\nT0101", "G112", "G113", factor=1, outside=1),
 }
 #: Where the program itself says whether X is a diameter, not the lathe alone: how it says the other.
 OTHERWISE: dict[str, dict[str, Any]] = {
     "siemens-transmit": {"on": "DIAMON\nTRANSMIT"},
+    "hurco": {"head": HANDS["hurco"].head.replace("G7", "G8"), "outside": 2},
     "mazak-eia": {"head": HANDS["mazak-eia"].head.replace("G10.9 X1", "G10.9 X0"), "outside": 1},
 }
 every_machine = pytest.mark.parametrize("name", sorted(HANDS))
@@ -229,7 +241,7 @@ def test_twins_have_the_same_path(name: str, part: Part, radius: int) -> None:
         assert (findings, verdict) == (same, result), options
 
 
-@every_machine
+@pytest.mark.parametrize("name", sorted(name for name, hand in HANDS.items() if hand.turns))
 @given(part=parts, radius=st.integers(1, 9), angle=st.integers(-179, 180))
 @settings(max_examples=EXAMPLES, deadline=None)
 def test_turning_shifts_only_c(name: str, part: Part, radius: int, angle: int) -> None:
@@ -241,6 +253,22 @@ def test_turning_shifts_only_c(name: str, part: Part, radius: int, angle: int) -
     for before, after in zip(ours.c_angles, theirs.c_angles, strict=True):
         np.testing.assert_allclose(after - before, angle, atol=1e-9)
     assert (findings, verdict) == (same, other)
+
+
+@pytest.mark.parametrize("name", sorted(name for name, hand in HANDS.items() if not hand.turns))
+@given(part=parts, radius=st.integers(1, 9), angle=st.integers(-179, 180))
+@settings(max_examples=EXAMPLES, deadline=None)
+def test_where_the_plane_stays_with_the_part_only_the_way_to_it_changes(
+    name: str, part: Part, radius: int, angle: int
+) -> None:
+    hand = HANDS[name]
+    ours, *_ = read(name, written(part, hand), radius)
+    theirs, *_ = read(name, written(part, hand, entry=angle), radius)
+    np.testing.assert_allclose(theirs.start[0], (HALF + 30) * np.exp(1j * np.radians(angle)), atol=1e-9)
+    np.testing.assert_allclose(theirs.end[1:], ours.end[1:], atol=1e-9)
+    np.testing.assert_allclose(theirs.c_angles[0][0], angle, atol=1e-9)
+    turns = (theirs.c_angles[1][1:] - ours.c_angles[1][1:]) / 360
+    np.testing.assert_allclose(turns, np.round(turns), atol=1e-9)
 
 
 @every_machine

@@ -235,8 +235,10 @@ USES = {
     "control.named_axes": Use({"C1": ""}, inside("C1=5.")),
     "polar.on": Use(["G112"], FLAT),
     "polar.off": Use(["G113"], FLAT),
+    "polar.ended_by": Use(["G18"], FLAT.replace("G13.1", "G18")),
     "polar.on_of_other_controls": Use([], "O1\nG98 G0 X60. C0\nG137 C0\nG1 X40. Y0 F200\nY10.\nG136\nM30\n"),
     "polar.on_of_other_meaning": Use(["G137"], "O1\nG98 G0 X60. C0\nG137 X50.\nG1 Y10. F200\nG136\nM30\n"),
+    "polar.on_of_macros": Use([], "O1\nG98 G0 X60. C0\nG101\nG1 Y10. F200\nM30\n"),
     "polar.words_beside_switch": Use(["X"], FLAT.replace("G12.1", "G12.1 X0")),
     "polar.not_simulated_beside": Use(
         ["K"], FLAT.replace("G12.1", "G12.1 K1"), also={"polar": {"words_beside_switch": ["K"]}}
@@ -248,6 +250,7 @@ USES = {
     "polar.other_controls": Use("lathes of ours", inside("Y5.")),
     "polar.x": Use("radius", FLAT),
     "polar.virtual_axis_programming": Use("diameter", FLAT),
+    "polar.zero_angle": Use("at-c0", FLAT.replace("C0", "C30.")),
     "polar.other_axes": Use("forbidden", inside("X50. Z1.")),
     "polar.center_words": Use({"X": ["J", "K"], "Y": ["J", "K"], "Z": ["K", "I"]}, ARC.format("I-10. J0")),
     "polar.linear_address": Use("Y", FLAT),

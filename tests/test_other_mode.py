@@ -223,3 +223,35 @@ def test_cylindrical_interpolation_is_not_simulated(code: str, blocks: int, name
 @pytest.mark.parametrize("code", ["G7.1 C0\n", "G107\n", ""])
 def test_a_program_that_only_cancels_it_is_simulated(code: str) -> None:
     assert report_of(TURNING.format(code)).verdict == "pass"
+
+
+MAPPED = "O1\nG94 G0 X40. C0\n{}\nG17\nG1 X20. Y5. F300\nY-5.\n{}\nM30\n"
+
+
+@pytest.mark.parametrize("name", ["fanuc", "haas-lathe", "okuma-osp", "doosan", "siemens-transmit"])
+@pytest.mark.parametrize(("on", "off"), [("G101", "G109"), ("G105", "G110"), ("N9 G101", "N20 G109"), ("G101", "G103")])
+def test_a_map_with_its_moves_and_its_end_is_the_mode_of_another_control(on: str, off: str, name: str) -> None:
+    report = report_of(MAPPED.format(on, off), name)
+    told = [found for found in report.findings if found.rule == RULE]
+    if off == "G103":  # which does something else on each of them
+        assert not told
+    else:
+        assert [found.severity for found in told] == ["error"]
+        assert "--machine hurco" in told[0].message
+
+
+@pytest.mark.parametrize("name", ["fanuc", "haas-lathe", "doosan"])
+@pytest.mark.parametrize(
+    ("on", "off"),
+    [
+        ("G101", "G80"),  # a macro of the builder, and a real Y axis
+        ("G105 X10. P1", "G109"),  # the bar feeder
+        ("G101 X0", "G100 X0"),  # mirror image
+        ("G101 A1. B2.", "G109"),
+        ("G1 G101", "G110"),
+    ],
+)
+def test_a_macro_of_the_builder_is_no_map(on: str, off: str, name: str) -> None:
+    report = report_of(MAPPED.format(on, off), name)
+    assert RULE not in {found.rule for found in report.findings}
+    assert not [reason for reason in report.not_evaluated if "polar mode on another" in reason.reason]

@@ -14,6 +14,8 @@ FIRST_NAMED = 128
 NOT_NAMED = 255
 #: Most names that can be in it.
 MOST_NAMED = NOT_NAMED - FIRST_NAMED
+#: The addresses of all of them.
+AXES = (*INCREMENTS, *INCREMENTS.values())
 #: Names of axes by their kind.
 _NAMES = {"linear": frozenset("XYZUVW"), "rotary": frozenset("ABC")}
 

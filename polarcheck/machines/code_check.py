@@ -22,9 +22,9 @@ _RANGES = {
 }
 #: Lists of addresses and codes, and of words of which some are codes.
 _MIXED = {"polar": ("words_beside_switch",)}
-_WORDS = {"polar": ("on_of_other_controls", "on_of_other_meaning")}
+_WORDS = {"polar": ("on_of_other_controls", "on_of_other_meaning", "on_of_macros")}
 #: Lists of G and M codes, each written by itself.
-_SINGLE = {"polar": ("on", "off", "plane_before"), "m_codes": PLAIN_M_CODES}
+_SINGLE = {"polar": ("on", "off", "ended_by", "plane_before"), "m_codes": PLAIN_M_CODES}
 #: Lists of M codes, of which some are told apart by a word beside them: M3 P11, M3 P12.
 _WITH_WORDS = {"m_codes": tuple(key for key in MCodes.__struct_fields__ if key not in PLAIN_M_CODES)}
 
@@ -96,8 +96,10 @@ def _is_address_or_code(text: str) -> bool:
 
 
 def _is_word(text: str) -> bool:
-    """TRANSMIT is one; what looks like a code must be one."""
-    return bool(text) and (_is_single(text) or not re.match("[GM][0-9.-]", text))
+    """TRANSMIT is one; what looks like a code must be one, but for letters behind it (G16 XC)."""
+    first, _, letters = text.partition(" ")
+    is_one = _is_single(first) and (first == text or letters.isalpha())
+    return bool(text) and (is_one or not re.match("[GM][0-9.-]", text))
 
 
 _FORMS: tuple[tuple[Mapping[str, Sequence[str]], Callable[[str], bool]], ...] = (

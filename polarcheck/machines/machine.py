@@ -91,7 +91,7 @@ class Control(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
 
     def __post_init__(self) -> None:
         for word, text in self.native_words.items():
-            if not word or len(text) > len(word):
+            if not word or len(text) > len(word.replace(" ", "")):
                 raise ValueError(f"native_words: {text!r} has no room in the place of {word!r}")
         if len(self.named_axes) > MOST_NAMED:
             raise ValueError(f"named_axes: expected {MOST_NAMED} names at most")
@@ -106,8 +106,10 @@ class Polar(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
 
     on: codes that switch it on
     off: codes that switch it off, in the order of those that switch it on
+    ended_by: further codes that end it beside what they do elsewhere, as those of other planes
     on_of_other_controls: codes and words that begin the mode on any control, which tell programs for another one
     on_of_other_meaning: those of them that mean something else here, where axis words stand beside them
+    on_of_macros: those of them that are builders' macros, too: told where a move in the mode and its end follow
     words_beside_switch: addresses and codes that may stand in one block with those that switch; N may always
     not_simulated_beside: those of these addresses that make another mode of it, which is not simulated
     virtual_axis: address of the virtual axis (hypothetical axis), a length
@@ -117,6 +119,7 @@ class Polar(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     other_controls: the controls on which it has those addresses, as a message names them
     x: diameter or radius: what X words are in the mode
     virtual_axis_programming: radius or diameter: what words of the virtual axis are
+    zero_angle: where the linear axis of the plane points: to where C stands at G12.1 (at-switch), or to C0 (at-c0)
     other_axes: what Z does in one block with X or C: independent of them, together with them, or forbidden
     center_words: addresses of arc centers, along the linear and along the virtual axis, by the linear axis
     linear_address: address of the axis with the number 1, where control.axes does not say it: the linear axis
@@ -130,8 +133,10 @@ class Polar(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
 
     on: Codes
     off: Codes
+    ended_by: list[str] = []
     on_of_other_controls: list[Plain] = []
     on_of_other_meaning: list[Plain] = []
+    on_of_macros: list[Plain] = []
     words_beside_switch: list[str]
     not_simulated_beside: list[Address] = []
     virtual_axis: Address
@@ -141,6 +146,7 @@ class Polar(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     other_controls: str = ""
     x: Literal["diameter", "radius"]
     virtual_axis_programming: Literal["radius", "diameter"]
+    zero_angle: Literal["at-switch", "at-c0"]
     other_axes: Literal["independent", "together", "forbidden"]
     center_words: dict[LinearAddress, tuple[Address, Address]]
     linear_address: LinearAddress

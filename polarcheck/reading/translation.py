@@ -12,9 +12,15 @@ from msgspec.structs import replace
 from polarcheck.machines.code_lists import is_code
 from polarcheck.reading.source import Positions, Source
 
+_BLANKS = re.compile(rb"[ \t]+")
+
 
 def translated(source: Source, native_words: Mapping[str, str]) -> Source:
-    """The source with its own words (TRANSMIT) read as others (G12.1); what is shown stays as it is written."""
+    """
+    The source with its own words (TRANSMIT) read as others (G12.1); what is shown stays as it is written.
+
+    A blank in such a word stands for any number of them, or none: `G17 XC` is `G17XC`, too.
+    """
     if not native_words:
         return source
     pattern, put = _translation(tuple(native_words.items()))
@@ -25,11 +31,12 @@ def translated(source: Source, native_words: Mapping[str, str]) -> Source:
 @functools.cache
 def _translation(words: tuple[tuple[str, str], ...]) -> tuple[re.Pattern[bytes], Callable[[re.Match[bytes]], bytes]]:
     """Longer words are looked for first; a word ends where its last letter is not followed by another one."""
-    meant = {word.upper().encode("latin-1"): text.encode("latin-1") for word, text in words}
-    found = [_pattern(word) for word in sorted(meant, key=len, reverse=True)]
+    own = {word.upper().encode("latin-1"): text.encode("latin-1") for word, text in words}
+    meant = {_BLANKS.sub(b"", word): text for word, text in own.items()}
+    found = [_pattern(word) for word in sorted(own, key=len, reverse=True)]
 
     def put(match: re.Match[bytes]) -> bytes:
-        return _filled(meant[match[0].upper()], len(match[0]))
+        return _filled(meant[_BLANKS.sub(b"", match[0].upper())], len(match[0]))
 
     return re.compile(b"|".join(found), re.IGNORECASE), put
 
@@ -45,7 +52,7 @@ def spans(source: Source, word: str) -> tuple[Positions, Positions]:
 def _pattern(word: bytes) -> bytes:
     begins = rb"(?<![A-Z_])" if word[:1].isalpha() else b""
     ends = rb"(?![A-Z0-9_])" if word[-1:].isalpha() else b""
-    return begins + re.escape(word) + ends
+    return begins + rb"[ \t]*".join(map(re.escape, _BLANKS.split(word))) + ends
 
 
 def _filled(text: bytes, length: int) -> bytes:

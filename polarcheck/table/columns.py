@@ -388,6 +388,11 @@ class Columns:
         return ~self.listed(*NO_MOVE) & ~self.run.unknown
 
     @cached_property
+    def presets_x(self) -> Mask:
+        """X is that of the work offset again: what G52 and G50 (G92) have moved is taken back."""
+        return np.asarray(self.listed("coordinate_preset") & self.has("X", "U"))
+
+    @cached_property
     def in_cycle(self) -> Mask:
         """A turning or drilling cycle is in force."""
         return np.asarray((self.state("motion") == Motion.CYCLE) | (self.drilling != 0))

@@ -82,7 +82,8 @@ class Lengths(Columns):
             np.bincount(self.written_once(words, program)[1], minlength=count)
             for words in (self.is_unpointed, self.is_large_unpointed)
         )
-        on, off = self.codes(*self.machine.polar.on), self.codes(*self.machine.polar.off)
+        mode = self.machine.polar
+        on, off = self.codes(*mode.on), self.codes(*mode.off, *mode.ended_by)
         inside = fill_down(on & ~off, on | off | self.starts, False)
         in_the_mode = self.writes_no_points(np.where(inside, program, -1), count)
         without_points = self.writes_no_points(program, count) | in_the_mode

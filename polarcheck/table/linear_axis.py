@@ -13,15 +13,19 @@ from typing import TypeVar, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from polarcheck.arrays import Floats, Mask, States
-from polarcheck.machines.axes import INCREMENTS, numbers_of
+from polarcheck.arrays import Floats, Mask, Points, States
+from polarcheck.geometry import polar
+from polarcheck.machines.axes import AXES, INCREMENTS, numbers_of
 from polarcheck.machines.machine import LinearAddress
+from polarcheck.machines.modal import Distance
 from polarcheck.machines.values import MOST_AXES
 from polarcheck.table.filling import fill_down
 from polarcheck.table.lengths import Lengths
 
 _X = ord("X")
 _UNKNOWN = 0
+#: So that a quarter of a turn is one.
+_DIGITS = 15
 
 Element = TypeVar("Element", bound=np.generic)
 
@@ -31,13 +35,46 @@ class LinearAxis(Lengths):
 
     @cached_property
     def switches_on(self) -> Mask:
-        """G12.1."""
-        return self.codes(*self.machine.polar.on)
+        """G12.1; none of a code that means something else beside axis words."""
+        mode = self.machine.polar
+        elsewhere = [name for name in mode.on if name in mode.on_of_other_meaning]
+        found = self.codes(*mode.on)
+        return found & ~(self.codes(*elsewhere) & self.has(*AXES)) if elsewhere else found
 
     @cached_property
     def switches_off(self) -> Mask:
         """G13.1."""
         return self.codes(*self.machine.polar.off)
+
+    @cached_property
+    def ends_mode(self) -> Mask:
+        """G13.1, or what ends the mode beside what it does elsewhere: the code of another plane."""
+        mode = self.machine.polar
+        return self.switches_off | self.codes(*mode.ended_by) if mode.ended_by else self.switches_off
+
+    @cached_property
+    def c_direction(self) -> Points:
+        """
+        Where C, as the program has last positioned it outside the mode, turns the linear axis to, as a number of length
+        1 on the polar plane; NaN where it has not, or by steps alone.
+        """
+        referenced = self.listed("c_axis_reference") & self.has("C", "H")
+        positioned = self.has("C") & self.uses_axes & (self.state("distance") == Distance.ABSOLUTE)
+        angle = np.where(referenced, 0.0, np.where(positioned, self.angle_of("C"), np.nan))
+        angle = fill_down(angle, self.has("C", "H") | self.ends_mode | self.run.unknown | self.starts, np.nan)
+        return np.round(polar.to_plane(np.ones(len(self)), angle, 0.0), _DIGITS)
+
+    @cached_property
+    def kept_angle(self) -> Floats:
+        """
+        How far C stands from where the linear axis of the plane points in the row of a switch [deg].
+
+        0 on its negative side, too, where a section begins with C as it is (polar.c_angles).
+        """
+        if self.machine.polar.zero_angle != "at-c0":
+            return np.zeros(len(self))
+        direction = np.nan_to_num(self.c_direction)
+        return np.where(direction.imag == 0, 0.0, np.degrees(np.angle(direction)))
 
     @property
     def most_axes(self) -> int:
@@ -91,7 +128,7 @@ class LinearAxis(Lengths):
         axis = np.full(len(self), _X, np.int16)
         for number, address in addresses.items():
             axis[self.switches_on & (self.linear_number == number)] = ord(address) if address else _UNKNOWN
-        return fill_down(axis, self.switches_on | self.switches_off | self.starts, _X)
+        return fill_down(axis, self.switches_on | self.ends_mode | self.starts, _X)
 
     @cached_property
     def linear_is_known(self) -> Mask:

@@ -43,7 +43,7 @@ class ModeWords:
         row = trace.run.row
         found, told = np.zeros(len(row), bool), np.zeros(len(trace), bool)
         for name in names:
-            is_named = trace.words_at(trace.word_indices(name)) if len(name) == 1 else self.codes(name)
+            is_named = self.codes(name) if len(name) > 1 else trace.words_at(trace.word_indices(name))
             at = np.flatnonzero(is_named)
             at = at[~told[row[at]]]
             found[at] = True
@@ -125,7 +125,8 @@ class ModeWords:
     @cached_property
     def switches(self) -> Mask:
         """Per row: a G12.1, or the G13.1 of a section; one outside the mode, as at the head of a program, is none."""
-        return self.trace.enters | self.trace.enters_again | self.trace.leaves
+        trace = self.trace
+        return trace.enters | trace.enters_again | (trace.leaves & trace.switches_off)
 
     @cached_property
     def may_stand_beside_switch(self) -> Mask:

@@ -11,6 +11,7 @@ import numpy as np
 
 from polarcheck.arrays import Mask, Rows
 from polarcheck.machines import profiles
+from polarcheck.machines.axes import AXES
 from polarcheck.machines.code_lists import is_code
 from polarcheck.machines.codes import CODE_LIMIT, code, code_numbers, code_set
 from polarcheck.machines.modal import Motion
@@ -19,9 +20,6 @@ from polarcheck.reading.translation import spans
 from polarcheck.reading.words import NumberFault, Words
 from polarcheck.table.filling import happened
 from polarcheck.table.trace import Trace
-
-#: Axes whose words, beside a code that has another meaning here, say that this is what is meant.
-_AXES = ("X", "Y", "Z", "U", "V", "W")
 
 
 class Switch(NamedTuple):
@@ -50,7 +48,9 @@ class OtherMode:
         for name in self._in_text:
             rows = np.flatnonzero(trace.with_words(self._of_name(name, words)) & ~trace.in_polar)
             if name in trace.machine.polar.on_of_other_meaning:
-                rows = rows[~trace.has(*_AXES)[rows]]
+                rows = rows[~trace.has(*AXES)[rows]]
+            if name in trace.machine.polar.on_of_macros:
+                rows = rows[self._is_certain(Switch(name, rows, known_by(name)))[rows]]
             if len(rows):
                 found.append(Switch(name, rows, known_by(name)))
         return tuple(found)
@@ -65,8 +65,16 @@ class OtherMode:
 
     def _stands_in_text(self, name: str) -> bool:
         if is_code(name):
-            return bool(self._codes_in_text[code(name)])
+            stands = bool(self._codes_in_text[code(name)])
+            return stands and (name not in self.trace.machine.polar.on_of_macros or self._stands_alone(name))
         return any(self._of_word(name, words).any() for words in self._tables)
+
+    def _stands_alone(self, name: str) -> bool:
+        """The code stands somewhere in a block of its own."""
+        words = self.trace.text.words
+        with_name = words.block[self._of_name(name, words)]
+        others = words.block[(words.address != ord("N")) & (words.address != ord("O"))]
+        return bool(np.any(np.searchsorted(others, with_name, "right") - np.searchsorted(others, with_name) == 1))
 
     @cached_property
     def _codes_in_text(self) -> Mask:
@@ -110,18 +118,32 @@ class OtherMode:
             return self.begins
         return self.begins & ~self.trace.anywhere_in_program(self.is_meant)
 
+    def _is_certain(self, switch: Switch) -> Mask:
+        """Per row: the code stands alone, and behind it a move in the mode and the code that ends it."""
+        _, cuts, ends = self._marks(switch)
+        alone = self.trace.consists_of("G", "O") & ~self.trace.has("X", "C")
+        stretch = np.cumsum(self.trace.mask_of(switch.rows) | self.trace.starts)
+        found = np.zeros((2, len(self.trace) + 1), bool)
+        found[0, stretch[cuts]] = True
+        found[1, stretch[ends]] = True
+        return np.asarray(alone & (found[0] & found[1])[stretch])
+
     def _is_followed(self, switch: Switch) -> Mask:
         """Rows from a beginning on to the next one, or to the next program, in which something belongs to the mode."""
+        begins, cuts, ends = self._marks(switch)
+        stretch = np.cumsum(begins | self.trace.starts)
+        found = np.zeros(len(self.trace) + 1, bool)
+        found[stretch[ends | cuts]] = True
+        return found[stretch]
+
+    def _marks(self, switch: Switch) -> tuple[Mask, Mask, Mask]:
+        """Rows with the switch, with moves of the virtual axis at feed in its mode, and with what ends it."""
         begins = self.trace.mask_of(switch.rows)
         ends = self._ends(switch)
         axes = {axis for profile in switch.known_by for axis in profile.machine.polar.virtual_axes}
         at_feed = np.isin(self.trace.motion, (Motion.LINE, Motion.CW, Motion.CCW))
         at_feed |= self._has(code for profile in switch.known_by for code in profile.machine.control.motion_codes)
-        cuts = at_feed & self.trace.has(*axes) & self._within(begins, ends)
-        stretch = np.cumsum(begins | self.trace.starts)
-        found = np.zeros(len(self.trace) + 1, bool)
-        found[stretch[ends | cuts]] = True
-        return found[stretch]
+        return begins, at_feed & self.trace.has(*axes) & self._within(begins, ends), ends
 
     def _ends(self, switch: Switch) -> Mask:
         """Rows with what ends the mode on any of the machines that know the switch."""
@@ -172,7 +194,8 @@ class OtherMode:
         """
         words = self.trace.text.words
         found = np.zeros(len(words), bool)
-        of_other_meaning = [] if self.switches else self.trace.machine.polar.on_of_other_meaning
+        mode = self.trace.machine.polar
+        of_other_meaning = [] if self.switches else [*mode.on_of_other_meaning, *mode.on_of_macros]
         for name in self._in_text:
             for profile in known_by(name) if name not in of_other_meaning else ():
                 control, polar = profile.machine.control, profile.machine.polar

@@ -62,8 +62,8 @@ class Positions(VirtualAxis):
         m_codes = self.machine.m_codes
         cutting = np.isin(self.motion, (Motion.LINE, Motion.CW, Motion.CCW))
         marks = Marks(
-            on=self.switches_on & ~self.switches_off,
-            off=self.switches_off,
+            on=self.switches_on & ~self.ends_mode,
+            off=self.ends_mode,
             starts=self.starts,
             outside=self.listed("reference_check", "reference_return", "machine_coordinates"),
             tool_ends=self.changes_tool | self.ends_program | self.codes(*m_codes.tool_change),
@@ -270,11 +270,6 @@ class Positions(VirtualAxis):
         """G52 with X, and what takes it back."""
         return np.asarray((self.listed("local_shift") & self.has("X")) | self.presets_x)
 
-    @cached_property
-    def presets_x(self) -> Mask:
-        """X is that of the work offset again: what G52 and G50 (G92) have moved is taken back."""
-        return np.asarray(self.listed("coordinate_preset") & self.has("X", "U"))
-
     def _alone(self, axis: str) -> Floats:
         """An axis after each row [mm] by what stands outside the mode."""
         where = self.section < 0
@@ -284,33 +279,36 @@ class Positions(VirtualAxis):
     @cached_property
     def _plane(self) -> tuple[Points, Points]:
         """Plane points after and before each row; the virtual coordinate is NaN outside the mode."""
-        shift = self.center_shift
-        c = positions(*self._virtual_coordinates, self.enters, shift.imag)
-        c = np.where(self.section >= 0, c, np.nan)
+        shift, c_words = self.center_shift, self._virtual_coordinates
         leave = self.sections.leave[self.sections.leave < len(self)]
-        resets = self._forgets("X", "U") | self.mask_of(leave)
-        values = self._set_by("X") * self.x_factor
+        enter = self.sections.enter if self.machine.polar.zero_angle == "at-c0" else leave[:0]
+        resets = self._forgets("X", "U") | self.mask_of(leave) | self.mask_of(enter)
+        values, c_values = self._set_by("X") * self.x_factor, shift.imag.copy()
         # Outside its section nobody asks where another linear axis is but at G12.1, and X is not followed within.
         for axis in self.other_linear_axes:
             begins = self.enters & (self.linear_axis == ord(axis))
             resets, values = resets | begins, np.where(begins, self._alone(axis), values)
         leave = leave[(self.linear_axis == ord("X"))[leave - 1]]
-        x_words = self._linear_coordinates
+        x_words, rows = self._linear_coordinates, np.concatenate((leave, enter))
+        settled = values[rows].astype(np.complex128)
+        c = positions(*c_words, self.enters, c_values)
         for _ in range(_PASSES):
             x = positions(*x_words, resets, values)
-            if not len(leave):
-                break
             # The control leaves the mode with X where the machine stands: never negative (B-62764EN/01 p. 51).
             last = leave - 1
-            found = np.hypot(x[last] - shift.real[last], c[last] - shift.imag[last]) + shift.real[last]
-            if np.array_equal(found, values[leave], equal_nan=True):
+            left = np.hypot(x[last] - shift.real[last], c[last] - shift.imag[last]) + shift.real[last]
+            found = np.concatenate((left, before(x, self.starts, np.nan)[enter] * self.c_direction[enter]))
+            if np.array_equal(found, settled, equal_nan=True):
                 break
-            values[leave] = found
+            settled, values[rows] = found, found.real
+            if len(enter):
+                c_values[enter] = found.imag[len(leave) :]
+                c = positions(*c_words, self.enters, c_values)
         else:
             values[leave] = np.nan  # sections that hang on each other by increments alone, one after another
             x = positions(*x_words, resets, values)
         end = np.empty(len(self), np.complex128)
-        end.real, end.imag = np.where(self.is_followed, x, np.nan), c
+        end.real, end.imag = np.where(self.is_followed, x, np.nan), np.where(self.section >= 0, c, np.nan)
         end -= shift
         return end, before(end, self.starts, _NOWHERE)
 
@@ -327,7 +325,7 @@ class Positions(VirtualAxis):
     @cached_property
     def x(self) -> Floats:
         """X after the row as a radius [mm]; the programmed one, so that it may be negative in the mode."""
-        return self._plane[0].real
+        return np.where(self.enters, self._plane[1].real, self._plane[0].real)
 
     @cached_property
     def x_before(self) -> Floats:

@@ -7,6 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from polarcheck.arrays import Mask, Rows
+from polarcheck.machines.code_lists import is_code
 from polarcheck.machines.modal import FeedMode, Motion, Side
 from polarcheck.table.filling import before, fill_down, happened, last_row
 from polarcheck.table.trace import Trace
@@ -42,7 +43,7 @@ class Procedure:
         trace = self.trace
         if not np.any(trace.switches_off & ~trace.leaves):
             return np.full(len(trace), -1)
-        since = trace.changes_tool | trace.switches_off | trace.starts
+        since = trace.changes_tool | trace.ends_mode | trace.starts
         turns = self._turns & ~happened(self._may_begin, since)
         turns &= trace.whole_program | trace.has_called_tool
         compensated = turns & ((trace.side != Side.OFF) | self._is_arc)
@@ -66,10 +67,10 @@ class Procedure:
 
     @cached_property
     def _may_begin(self) -> Mask:
-        """Rows that begin the mode, that of another control, a cylinder, or nobody knows what."""
+        """Rows that begin the mode, that of another control, another plane, a cylinder, or nobody knows what."""
         trace, mode = self.trace, self.trace.machine.polar
-        foreign = [code for code in mode.on_of_other_controls if code[1:2].isdigit()]
-        begins = trace.switches_on | trace.codes(*foreign) | trace.run.unknown
+        foreign = [name for name in mode.on_of_other_controls if is_code(name) and name not in mode.on_of_macros]
+        begins = trace.switches_on | trace.codes(*foreign, *mode.ended_by) | trace.run.unknown
         return np.asarray(begins | trace.listed("cylindrical_interpolation"))
 
     @property

@@ -32,5 +32,5 @@ class RotaryAxis(Positions):
 
     @cached_property
     def section_entry(self) -> Floats:
-        """C angle of each section at its G12.1 [deg]; 0 where it is not known."""
-        return np.nan_to_num(self.c_angle[self.sections.enter])
+        """C angle [deg] of the linear axis of each section's plane: that at its G12.1, or C0; 0 where not known."""
+        return np.nan_to_num(self.c_angle[self.sections.enter]) - self.kept_angle[self.sections.enter]

@@ -48,7 +48,7 @@ class VirtualAxis(LinearAxis):
             form[self.switches_on & (self.word(word[0]) == float(word[1:]))] = self._forms.index(pair)
         if not form.any():
             return form
-        return fill_down(form, self.switches_on | self.switches_off | self.starts, 0).astype(np.int64)
+        return fill_down(form, self.switches_on | self.ends_mode | self.starts, 0).astype(np.int64)
 
     def _of_form(self, column: Callable[[Pair], NDArray[Element]]) -> NDArray[Element]:
         """Of a column for each form the values of the one of each row."""
@@ -139,4 +139,4 @@ class VirtualAxis(LinearAxis):
         if not self.words_not_simulated.any():
             return np.ones(len(self), bool)
         begins = self.with_words(self.words_not_simulated)
-        return ~fill_down(begins, self.switches_on | self.switches_off | self.starts, False).astype(bool)
+        return ~fill_down(begins, self.switches_on | self.ends_mode | self.starts, False).astype(bool)

@@ -186,7 +186,7 @@ class Written:
         machine = self.machine
         polar = machine.polar
         listed = (*machine.control.known_codes, *machine.control.motion_codes, *machine.listed_codes)
-        known = code_set((*listed, *polar.on, *polar.off, *polar.allowed_codes))
+        known = code_set((*listed, *polar.on, *polar.off, *polar.ended_by, *polar.allowed_codes))
         wrong = ~known[self._g_codes] & (self.words.fault[self._g_words] == NumberFault.NONE)
         words = self._g_words[wrong]
         counts = np.zeros(len(self.words), np.int64)
