@@ -325,7 +325,9 @@ class Positions(VirtualAxis):
     @cached_property
     def x(self) -> Floats:
         """X after the row as a radius [mm]; the programmed one, so that it may be negative in the mode."""
-        return np.where(self.enters, self._plane[1].real, self._plane[0].real)
+        after, ahead = self._plane
+        # A plane that does not turn with C has another X there than the lathe, which has not moved.
+        return np.where(self.enters, ahead.real, after.real) if self.machine.polar.zero_angle == "at-c0" else after.real
 
     @cached_property
     def x_before(self) -> Floats:
