@@ -418,6 +418,37 @@ def test_a_new_profile_can_be_read_empty_and_filled_in(name: str) -> None:
     assert max(map(len, text.splitlines())) < 200
 
 
+@pytest.mark.parametrize("name", ["fanuc-30i", "siemens-transmit", "okuma-osp"])
+def test_each_answer_of_a_new_profile_can_be_taken_alone(name: str) -> None:
+    lines = new_machine.text("NL2000", name).splitlines()
+    answers = [index for index, line in enumerate(lines) if re.match(r"#[\w\"]", line)]
+    of_rules = [index for index in answers if lines[index][1:].partition(" = ")[0] in load_all()]
+    assert len(of_rules) >= 2 * len(load_all())
+    for index in (*(index for index in answers if index not in of_rules), *of_rules[::17]):
+        load("\n".join([*lines[:index], lines[index][1:], *lines[index + 1 :]]))
+
+
+@pytest.mark.parametrize(
+    "answer",
+    [
+        *(
+            "#c_feed = 3600 ",
+            '#c_axis_on = ["M35"]  # the spindle',
+            '#c_axis_clamp = ["M210"]',
+            '#sub_c_axis_on = ["M135"]',
+        ),
+        *('#spindle_on = ["M3","M4"]', '#motion = "G0"', '#plane = "G18"', '#feed_mode = "G99"', '#virtual_axis = "C"'),
+        *('#allowed_codes = ["+G93","-G80"]', '#known_codes = ["+G150"]', '#rapid-in-polar = "PS0146"', "#axes = []"),
+        *('#rapid-in-polar = "error"', '#"1430" = 3600 ', "#main_spindle_must_stop = false", '#units = "mm"'),
+    ],
+)
+def test_a_new_profile_asks_what_a_shop_has_to_say(answer: str) -> None:
+    text = new_machine.text("NL2000", "fanuc-30i")
+    assert f"\n{answer}" in text
+    assert 'live_tool_on = ["M3 P12"]' in text
+    assert "[tools.8]" in text
+
+
 def test_a_profile_of_ones_own_checks() -> None:
     profile = load("inherits = 'fanuc-16i'\n[parameters]\n1422 = 3600\n")
     program = "G98 G0 X60. C0\nG12.1\nG1 X4. C5. F100\nC-5. F500\nG13.1\n"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tomllib
 from pathlib import Path
 from typing import Any
 
@@ -169,3 +170,15 @@ def test_what_means_nothing_is_one_line(values: str, told: str) -> None:
 )
 def test_changes_that_change_nothing_are_known(changes: Any, inherited: Any, idle: list[str]) -> None:
     assert written_codes.without_effect(changes, inherited) == idle
+
+
+@pytest.mark.parametrize("path", sorted(profiles.FOLDER.glob("*.toml")), ids=lambda path: path.stem)
+def test_our_own_files_hold_the_plain_form(path: Path) -> None:
+    """They are taken as they are: every run of a check reads them."""
+    tables = tomllib.loads(path.read_text("utf-8"))
+    for table, values in tables.items():
+        for key, said_of_it in values.items() if isinstance(values, dict) else ():
+            value = said_of_it["value"] if isinstance(said_of_it, dict) and "value" in said_of_it else said_of_it
+            if isinstance(value, list) and any(map(written_codes.is_change, value)):
+                value = [change[1:] for change in value]
+            assert written_codes.taken(f"{table}.{key}", value, None) == value, f"{table}.{key}"

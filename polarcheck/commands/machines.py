@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
@@ -11,6 +12,9 @@ from polarcheck.commands import options
 from polarcheck.commands.options import option
 from polarcheck.commands.output import show
 from polarcheck.errors import UsageError
+
+if TYPE_CHECKING:
+    from polarcheck.machines.profiles import Profile
 
 
 @click.command
@@ -24,29 +28,50 @@ def machines(name: str | None, lathe: str | None, inherits: str | None) -> None:
 
     \b
     polarcheck machines fanuc-30i
+    polarcheck machines check NL2000.toml              whether the file is sound, and what is still to be answered
     polarcheck machines new NL2000 --from fanuc-30i    write NL2000.toml for a lathe of your own
     """
     from polarcheck.machines import profiles
     from polarcheck.reports.pages import manual
 
-    if name == "new" and lathe:
-        path = _write(lathe, inherits or profiles.DEFAULT)
+    if name in ("new", "check") and not lathe:
+        raise click.UsageError(f"machines {name}: expected the {'NAME of the new lathe' if name == 'new' else 'FILE'}")
+    if inherits and name != "new":
+        raise click.UsageError("--from is for `machines new LATHE`")
+    if name == "check":
+        show(_checked(str(lathe)))
+        return
+    if name == "new":
+        path = _write(str(lathe), inherits or profiles.DEFAULT)
         show(f"{path} written; check with --machine {path}\n")
         return
     if lathe:
-        raise click.UsageError(f"{lathe}: a second name is for `machines new LATHE --from NAME`")
+        raise click.UsageError(f"{lathe}: a second name is for `machines new LATHE` and `machines check FILE`")
     show(_profile(name) if name else manual.machine_list())
 
 
 def _profile(name: str) -> str:
+    from polarcheck.reports.pages import manual
+
+    return manual.profile_text(_loaded(name))
+
+
+def _checked(name: str) -> str:
+    from polarcheck.checking.rule import load_all
+    from polarcheck.reports.pages import machine_check
+
+    return machine_check.text(_loaded(name), load_all())
+
+
+def _loaded(name: str) -> Profile:
+    """Raises MachineError for what cannot be used, names of rules included."""
     from polarcheck.checking.rule import load_all
     from polarcheck.commands import selection
     from polarcheck.machines import profiles
-    from polarcheck.reports.pages import manual
 
     profile = profiles.load(name)
     selection.check_names(profile, load_all())
-    return manual.profile_text(profile)
+    return profile
 
 
 def _write(name: str, inherits: str) -> Path:
@@ -54,6 +79,7 @@ def _write(name: str, inherits: str) -> Path:
     from polarcheck.reading import files
     from polarcheck.reports.pages import new_machine
 
+    _loaded(inherits)
     path = Path(name if name.endswith(".toml") else f"{name}.toml")
     if os.path.lexists(path):
         raise UsageError(f"{path} is there already")

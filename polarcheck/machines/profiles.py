@@ -36,7 +36,8 @@ class UnknownMachineError(MachineError):
 class Profile(msgspec.Struct, frozen=True):
     """
     A machine with the name it was asked for by, its chain of inheritance, and the origin of each value. written: the
-    machine in the words of its files, where words of the control's own language are no codes yet.
+    machine in the words of its files, where words of the control's own language are no codes yet. told: what the file
+    itself says, by table. inherited: what it says that of, merged, as it stands in the files.
     """
 
     name: str
@@ -44,6 +45,8 @@ class Profile(msgspec.Struct, frozen=True):
     written: Machine
     chain: tuple[str, ...]
     origins: Mapping[str, Origin]
+    told: Mapping[str, Any]
+    inherited: Mapping[str, Any]
 
 
 def names() -> list[str]:
@@ -74,6 +77,7 @@ def load(name: str, changes: Mapping[str, Any] | Sequence[Change] | None = None)
     asked: str | None = name
     folder = Path()
     seen: set[str] = set()
+    ours: set[str] = set()
     own = any(group != "limits" for _, table in over for group in table)
     while asked is not None:
         try:
@@ -88,7 +92,11 @@ def load(name: str, changes: Mapping[str, Any] | Sequence[Change] | None = None)
                 f"{tables[0][0]}: inherits from more than {_LONGEST_CHAIN - 1} files, one behind the other"
             )
         seen.add(real)
-        table = _read(path, title) if path.parent != FOLDER else dict(_built_in(path))
+        if path.parent == FOLDER:
+            table = dict(_built_in(path))
+            ours.add(title)
+        else:
+            table = _read(path, title)
         tables.append((title, table))
         folder = path.parent
         own |= folder != FOLDER
@@ -99,10 +107,15 @@ def load(name: str, changes: Mapping[str, Any] | Sequence[Change] | None = None)
     origins: dict[str, Origin] = {}
     chain = tuple(title for title, _ in tables)
     tables = [*((title, dict(table)) for title, table in over), *tables]
+    inherited: dict[str, Any] = {}
     for title, table in reversed(tables):
+        if title == chain[0]:
+            inherited = {
+                group: dict(values) if isinstance(values, dict) else values for group, values in merged.items()
+            }
         named = _value(merged, "control.named_axes")
         _replace(merged, table.pop("replaces", []), title, origins)
-        _merge(merged, table, title, origins)
+        _merge(merged, table, title, origins, in_plain_form=title in ours)
         if title in chain:
             _forget(merged, table)
         _keep(merged, "control.named_axes", named)
@@ -122,7 +135,7 @@ def load(name: str, changes: Mapping[str, Any] | Sequence[Change] | None = None)
         from polarcheck.machines.code_check import check_codes
 
         check_codes(machine, origins, chain)
-    return Profile(name, machine, written, chain, origins)
+    return Profile(name, machine, written, chain, origins, tables[len(over)][1], inherited)
 
 
 def is_meant(path: Path, name: str) -> bool:
@@ -172,9 +185,13 @@ def _replace(merged: dict[str, Any], groups: Any, profile: str, origins: dict[st
             del origins[key]
 
 
-def _merge(into: dict[str, Any], table: Mapping[str, Any], profile: str, origins: dict[str, Origin]) -> None:
+def _merge(
+    into: dict[str, Any], table: Mapping[str, Any], profile: str, origins: dict[str, Origin], *, in_plain_form: bool
+) -> None:
     """
     Values of a nearer profile replace those of a farther one; tables are merged key by key.
+
+    in_plain_form: its codes are written as they are compared, which a test says of our own files.
 
     `source` and `doubtful` of a table hold for those of its values that do not say otherwise.
     """
@@ -194,7 +211,10 @@ def _merge(into: dict[str, Any], table: Mapping[str, Any], profile: str, origins
             if key not in ("source", "doubtful"):
                 dotted = f"{group}.{key}"
                 refuse(dotted, profile)
-                target[key] = _taken(dotted, _unwrapped(value, dotted, origin, origins), target.get(key), profile)
+                given = _unwrapped(value, dotted, origin, origins)
+                if not in_plain_form or (isinstance(given, list) and given and written_codes.is_change(given[0])):
+                    given = _taken(dotted, given, target.get(key), profile)
+                target[key] = given
 
 
 def _taken(key: str, value: Any, inherited: Any, profile: str) -> Any:

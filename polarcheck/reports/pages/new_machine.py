@@ -9,12 +9,13 @@ from typing import Any
 
 import msgspec
 
+from polarcheck.checking.rule import load_all
 from polarcheck.machines.machine import meanings
 from polarcheck.machines.parameters import Meaning
 from polarcheck.machines.profiles import Profile, load
 from polarcheck.reading.excerpt import visible
 
-#: What no control's manual can know, each key with an answer as it may look.
+#: What a shop may have to say of its lathe, by table, each key with an answer as it may look where nothing is known.
 _ASKED: dict[str, dict[str, Any]] = {
     "limits": {
         "c_feed": 3600,
@@ -22,20 +23,75 @@ _ASKED: dict[str, dict[str, Any]] = {
         "polar_feed": 2000,
         "polar_feed_clamps": True,
         "automatic_override": True,
+        "override_share": 90,
         "keep_out": 0.1,
         "x_minimum": -10.0,
         "x_maximum": 200.0,
         "z_minimum": -500.0,
         "z_maximum": 300.0,
     },
-    "m_codes": {"c_axis_on": ["M35"], "c_axis_off": ["M34"], "live_tool_on": ["M33"], "live_tool_off": ["M5"]},
+    "m_codes": {
+        "c_axis_on": ["M35"],
+        "c_axis_off": ["M34"],
+        "c_axis_clamp": ["M210"],
+        "c_axis_unclamp": ["M212"],
+        "live_tool_on": ["M33"],
+        "live_tool_off": ["M5"],
+        "spindle_on": ["M3", "M4"],
+        "spindle_off": ["M5"],
+        "sub_c_axis_on": ["M135"],
+        "sub_c_axis_off": ["M134"],
+        "sub_c_axis_clamp": ["M310"],
+        "sub_c_axis_unclamp": ["M312"],
+        "sub_spindle_on": ["M103", "M104"],
+        "sub_spindle_off": ["M105"],
+        "tool_change": ["M6"],
+        "optional_stop": ["M1"],
+        "program_end": ["M2", "M30"],
+        "stops_reading_ahead": ["M0", "M1"],
+    },
+    # The answer is the first code of a list of the machine.
+    "power_on": {
+        "motion": "rapid",
+        "plane": "plane_zx",
+        "feed_mode": "feed_per_revolution",
+        "distance": "absolute",
+    },
     "feed": {
         "cutting_minimum": 25,
         "cutting_maximum": 250,
         "positioning_minimum": 750,
         "positioning_maximum": 1500,
+        "carried_into_polar": "modal",
     },
+    "polar": {
+        **dict.fromkeys(("on", "off", "virtual_axis", "virtual_axis_incremental", "x", "virtual_axis_programming")),
+        "allowed_codes": ["+G93", "-G80"],
+        **dict.fromkeys(("words_beside_switch", "plane_before", "other_axes", "linear_axis", "rotary_axis")),
+        "main_spindle_must_stop": None,
+    },
+    "control": {
+        **dict.fromkeys(("g_code_system", "units", "x", "number_without_point", "m_code_limit", "offset_digits")),
+        "axes": [],
+        "known_codes": ["+G150"],
+    },
+    "arcs": dict.fromkeys(("tolerance", "sweep_limit")),
+    "compensation": dict.fromkeys(("start_up", "start_up_with_move", "read_ahead", "interference", "leaving_cancels")),
 }
+#: Lists that are written by what differs, whatever is inherited.
+_DIFFERING = ("allowed_codes", "known_codes")
+#: What is told before the keys of a table.
+_HEADS = {
+    "m_codes": 'Where a word beside it tells one M code apart, write both: live_tool_on = ["M3 P12"]. The keys with'
+    " sub_ are those of a sub-spindle with codes of its own.",
+    "power_on": "G codes that are in force when a program begins and selects none",
+    "polar": 'Lists of codes may say what differs from the inherited one, + or - before each code: ["+G93", "-G80"].',
+}
+_TOOLS = (
+    "The tools of the turret, and which are radial or axial, flat or ball, belong to the job: [tools.8] with radius,"
+    " mount and shape in polarcheck.toml beside the programs, where machine = names this file. Lists of G codes by what"
+    " they do, macro variables and offsets are shown by `polarcheck machines`, and may be given here, too."
+)
 _COLUMNS = 100
 
 
@@ -49,25 +105,50 @@ def text(name: str, inherits: str) -> str:
     lines = [
         *_prose(
             f"{name}: a lathe of our own. All that is not said here is as on {profile.machine.title}. Take the # away"
-            " from a line to answer it; give a source with { value = ..., source = ... } if you like.",
+            " from a line to answer it; give a source with { value = ..., source = ... } if you like. Then"
+            " `polarcheck machines check` with this file tells whether it is sound, and what is still to be answered.",
         ),
         f"inherits = {_toml(inherits)}",
         f"title = {_toml(name)}",
-        *_limits(profile),
+        *_asked(profile),
         *_doubtful(profile),
         *_parameters(profile),
+        *_of_rules(profile),
+        "",
+        *_prose(_TOOLS),
     ]
     # What comes from another file is data here, too: a line end in it would end the comment.
     return "\n".join(map(visible, lines)) + "\n"
 
 
-def _limits(profile: Profile) -> Iterator[str]:
+def _asked(profile: Profile) -> Iterator[str]:
     for group, keys in _ASKED.items():
-        yield from ("", f"[{group}]")
-        meaning = meanings(type(getattr(profile.written, group)))
+        yield from ("", f"[{group}]", *_prose(_HEADS.get(group, "")))
+        table = getattr(profile.written, group)
+        meaning = meanings(type(table))
+        said = ""
         for key, answer in keys.items():
-            yield from _answer(key, answer, meaning[key])
+            if group == "power_on":
+                answer = next(iter(profile.machine.codes(answer)), "")
+            value = getattr(table, key)
+            is_known = value not in ([], "") and value == value and key not in _DIFFERING
+            origin = profile.origins.get(f"{group}.{key}")
+            if origin and origin.doubtful and origin.source != said:
+                said = origin.source
+                yield from _prose(f"in doubt: {said}")
+            yield from _answer(key, value if is_known or answer is None else answer, meaning[key])
         yield from _in_doubt(profile, group, set(keys))
+
+
+def _of_rules(profile: Profile) -> Iterator[str]:
+    """The alarm and the severity of each rule, as they are without this file."""
+    rules, machine = load_all(), profile.machine
+    yield from ("", "[alarms]", *_prose("what the control shows, by rule; empty where it shows nothing"))
+    for rule in rules.values():
+        yield f"#{rule.name} = {_toml(machine.alarms.get(rule.name, ''))}  # {rule.title}"
+    yield from ("", "[severities]", *_prose("error, warning, note or off, by rule"))
+    for rule in rules.values():
+        yield f"#{rule.name} = {_toml(rule.level(machine.severities))}  # {rule.title}"
 
 
 def _doubtful(profile: Profile) -> Iterator[str]:
@@ -75,7 +156,7 @@ def _doubtful(profile: Profile) -> Iterator[str]:
     table = msgspec.to_builtins(profile.written)
     for group, values in table.items():
         of_other_system = group.startswith("g_code_system_") and group != profile.machine.system_table
-        asked_elsewhere = (*_ASKED, "known_parameters", "parameters", "alarms")
+        asked_elsewhere = (*_ASKED, "known_parameters", "parameters", "alarms", "severities")
         if isinstance(values, dict) and group not in asked_elsewhere and not of_other_system:
             found = list(_in_doubt(profile, group, set()))
             if found:
