@@ -22,9 +22,11 @@ from polarcheck.checking.phrases.polar import (
     on_cylinder,
 )
 from polarcheck.checking.places import block_in_line
+from polarcheck.checking.remedies import option_or_place, place, unlisted_codes
 from polarcheck.checking.rule import Rule
 from polarcheck.checking.tables import Tables
 from polarcheck.geometry.tolerances import CHORDS, CROSSINGS, FARTHEST
+from polarcheck.machines.machine import OwnMachine
 from polarcheck.table.trace import Trace
 
 #: Why a column is not known in a row.
@@ -149,8 +151,31 @@ def _c_axis_without_limit(tables: Tables, rule: Rule) -> Iterator[NotEvaluated]:
     at = int(rows[np.argmax(c_feed[rows])])
     line, rate = int(trace.line[at]), float(c_feed[at])
     reason = f"{trace.machine.title} gives no limit of the C axis; highest rate found {rate:.0f} deg/min, line {line}"
-    remedy = "give the lathe's own, --set limits.c_feed=..."
+    remedy = f"give the lathe's own, {option_or_place(trace.machine, 'limits.c_feed')}"
     yield NotEvaluated(rule=rule.name, reason=f"{reason}: {remedy}", blocks=len(rows))
+
+
+def _codes_not_named(key: str, what: str) -> Callable[[Tables, Rule], Iterator[NotEvaluated]]:
+    """
+    On a lathe of the user's own whose file names no code of a list, though the program has some that may be one: where
+    to add it. Of our own machines nobody expects to know the codes of each builder.
+    """
+
+    def found(tables: Tables, rule: Rule) -> Iterator[NotEvaluated]:
+        trace: Trace = tables["trace"]
+        if not isinstance(trace.machine, OwnMachine) or getattr(trace.machine.m_codes, key):
+            return
+        rows = np.flatnonzero(trace.enters)
+        codes = [unlisted_codes(trace, tables["spindles"], int(row)) for row in rows]
+        if any(codes):
+            file, first = trace.machine.file, next(filter(None, codes))
+            remedy = f"if {first} does, add it to {place(trace.machine, f'm_codes.{key}')}"
+            count = sum(map(bool, codes))
+            yield NotEvaluated(
+                rule=rule.name, reason=f"{file} names no code that {what}: {remedy}", blocks=count, matters=False
+            )
+
+    return found
 
 
 def _ramps_of_center(tables: Tables, rule: Rule) -> Iterator[NotEvaluated]:
@@ -299,6 +324,8 @@ _REASONS: dict[str, _Reason] = {
 
 _SAID_OF: dict[str, Callable[[Tables, Rule], Iterator[NotEvaluated]]] = {
     "c-feed-above-limit": _c_axis_without_limit,
+    "c-axis-not-engaged": _codes_not_named("c_axis_on", "engages the C axis"),
+    "live-tool-stopped-in-cut": _codes_not_named("live_tool_on", "starts the live tool"),
     "start-up-shorter-than-radius": _ramps_of_center,
     "overcut": _contours_given_up,
     "slot-narrower-than-cutter": _contours_beside,

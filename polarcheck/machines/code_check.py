@@ -7,7 +7,8 @@ from collections.abc import Callable, Mapping, Sequence
 
 from polarcheck.errors import MachineError, RuleError
 from polarcheck.machines.code_lists import GCodes, GCodeSystem, is_code, numbers
-from polarcheck.machines.machine import PLAIN_M_CODES, SWITCHED, Machine, MCodes, PowerOn
+from polarcheck.machines.m_codes import PLAIN_M_CODES, SWITCHED, MCodes, PowerOn
+from polarcheck.machines.machine import Machine
 from polarcheck.machines.modal import STATES
 from polarcheck.machines.parameters import Origin
 

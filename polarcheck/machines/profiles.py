@@ -14,7 +14,7 @@ import msgspec
 from polarcheck.errors import MachineError, suggestion
 from polarcheck.machines import parameters, toml_text, written_codes
 from polarcheck.machines.fitting import MisfitError, fitted
-from polarcheck.machines.machine import Machine
+from polarcheck.machines.machine import Machine, OwnMachine
 from polarcheck.machines.parameters import Origin
 from polarcheck.machines.renamed import RENAMED, refuse
 
@@ -135,6 +135,8 @@ def load(name: str, changes: Mapping[str, Any] | Sequence[Change] | None = None)
         from polarcheck.machines.code_check import check_codes
 
         check_codes(machine, origins, chain)
+    if chain[0] not in ours:
+        machine = OwnMachine(file=chain[0], **msgspec.structs.asdict(machine))
     return Profile(name, machine, written, chain, origins, tables[len(over)][1], inherited)
 
 

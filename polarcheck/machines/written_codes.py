@@ -10,7 +10,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from polarcheck.machines.code_lists import is_code, numbers
-from polarcheck.machines.machine import MCodes
+from polarcheck.machines.m_codes import MCodes
 from polarcheck.machines.macro_keys import CODE_LISTS as OF_MACRO
 
 #: Tables, and keys of others, that hold lists of codes.

@@ -5,11 +5,16 @@ from __future__ import annotations
 from functools import cached_property
 
 import numpy as np
+from msgspec.structs import astuple
 
-from polarcheck.arrays import Mask
+from polarcheck.arrays import Mask, Rows
 from polarcheck.geometry.tolerances import ROUNDING
+from polarcheck.machines.codes import NO_CODE
 from polarcheck.table.filling import before, happened, last_row
 from polarcheck.table.trace import Trace
+
+#: Stops, ends, coolant and the tool change have these numbers everywhere (ISO 6983).
+_OF_EVERY_LATHE = ("M0-M2", "M6-M9", "M30", "M98", "M99")
 
 
 class Spindles:
@@ -87,6 +92,19 @@ class Spindles:
             )
         )
         return np.where(self.on_sub_spindle, sub, main)
+
+    # ---- codes that the profile does not know ----
+
+    @cached_property
+    def unlisted(self) -> Rows:
+        """The M words that are in no list of the machine and do not mean the same on every lathe."""
+        trace, machine = self.trace, self.trace.machine
+        listed = [word for words in astuple(self._codes) for word in words]
+        listed += [
+            word for word in (*machine.macro.flow_codes, *machine.polar.on, *machine.polar.off) if word[0] == "M"
+        ]
+        known = trace.words_at(trace.code_indices(*_OF_EVERY_LATHE, *listed))
+        return np.asarray(trace.m_words[~known[trace.m_words] & (trace.m_codes != NO_CODE)])
 
     # ---- the spindle itself ----
 

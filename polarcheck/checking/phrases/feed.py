@@ -6,6 +6,7 @@ import numpy as np
 
 from polarcheck.checking.phrases.common import code_of, executed_word
 from polarcheck.checking.quantity import in_row
+from polarcheck.checking.remedies import option_or_place
 from polarcheck.geometry.tolerances import SHARE
 from polarcheck.machines.machine import Machine
 from polarcheck.machines.modal import FeedMode
@@ -111,7 +112,7 @@ def advice(trace: Trace, tool_center: ToolCenter, row: int, count: int) -> str:
     """The highest F, or what to give to learn it."""
     where = (f"for its {count} blocks" if count > 1 else "here") + _on_pass(tool_center, row)
     if np.isnan(trace.machine.limits.c_feed):
-        return f"--set limits.c_feed=... would give the highest F {where}"
+        return f"{option_or_place(trace.machine, 'limits.c_feed')} would give the highest F {where}"
     return f"highest F {where}: {in_row(float(tool_center.feed_allowed[row]), trace, row):below}"
 
 

@@ -10,6 +10,7 @@ from polarcheck.checking.other_machine import NAMED, OtherMachine
 from polarcheck.checking.phrases.common import codes, executed_word, linear, outside, switch_off, written
 from polarcheck.checking.places import block_in_line
 from polarcheck.checking.quantity import in_row
+from polarcheck.checking.remedies import place
 from polarcheck.machines.axes import NOT_NAMED, listed
 from polarcheck.machines.codes import spelled
 from polarcheck.machines.machine import Machine
@@ -156,7 +157,8 @@ def axes_not_followed(trace: Trace) -> Iterator[tuple[str, int]]:
     mode, axes = trace.machine.polar, trace.machine.control.axes
     unknown = trace.enters & ~trace.linear_is_known
     named = unknown & trace.has("P") & ("P" in mode.words_beside_switch)
-    remedy = "look at it on the control" if axes else 'give their names in order, as control.axes = ["X", "Z", "C"]'
+    names = place(trace.machine, 'control.axes = ["X", "Z", "C"]')
+    remedy = "look at it on the control" if axes else f"give their names in order, as {names}"
     for rows, what in (
         (named, f"P beside {mode.on[0]}"),
         (unknown & ~named, f"{mode.linear_axis}, the number in polar.linear_axis,"),

@@ -7,6 +7,7 @@ import numpy as np
 from polarcheck.checking.phrases.common import block_and_line, code_of, executed_word, short, written
 from polarcheck.checking.phrases.feed import feed_word as feed_word
 from polarcheck.checking.quantity import in_row
+from polarcheck.checking.remedies import place, unlisted_codes
 from polarcheck.machines.machine import Machine
 from polarcheck.table.entry import Entry
 from polarcheck.table.procedure import Procedure
@@ -123,6 +124,20 @@ def started(trace: Trace, procedure: Procedure, row: int) -> str:
 def stop(machine: Machine) -> str:
     """The code that stops the live tool."""
     return next(iter(machine.m_codes.live_tool_off), "the code")
+
+
+def or_engaged_by(trace: Trace, spindles: Spindles, machine: Machine, row: int) -> str:
+    """Where to add an M code that may have engaged the C axis; empty where the program has none that is not known."""
+    return _or_by(unlisted_codes(trace, spindles, row), "engages it", machine, "m_codes.c_axis_on")
+
+
+def or_started_by(trace: Trace, spindles: Spindles, machine: Machine, row: int) -> str:
+    """The same of the live tool."""
+    return _or_by(unlisted_codes(trace, spindles, row), "starts it", machine, "m_codes.live_tool_on")
+
+
+def _or_by(codes: str, what: str, machine: Machine, key: str) -> str:
+    return f"; if {codes} {what}, add that to {place(machine, key)}" if codes else ""
 
 
 def spindle_codes(spindles: Spindles, machine: Machine, row: int) -> str:

@@ -10,12 +10,16 @@ import numpy as np
 from polarcheck.arrays import stretch
 from polarcheck.checking.phrases.common import short
 from polarcheck.checking.places import Place, squeezed
+from polarcheck.checking.remedies import place as place_of_key
 from polarcheck.machines.codes import code_numbers, spelled
+from polarcheck.machines.machine import Machine, OwnMachine
 from polarcheck.reading.numbers import NumberFault
 from polarcheck.reading.words import Text, Words
 from polarcheck.table.dialect import Dialect
 from polarcheck.table.written import Written
 
+#: From here on G codes call macros of the builder.
+_MACROS_BEGIN = 100
 #: Of many words of one address so many are listed, and the last.
 _LISTED = 3
 _NUMBER_FAULTS = {
@@ -40,6 +44,14 @@ _DESCRIPTION = 5
 def number_fault(words: Words, index: int) -> str:
     """What is wrong with the number of a word."""
     return _NUMBER_FAULTS[NumberFault(int(words.fault[index]))]
+
+
+def or_known(words: Words, machine: Machine, index: int) -> str:
+    """Where to add a code that the lathe has, be it a macro of its builder; nothing for what can only be a slip."""
+    is_own = isinstance(machine, OwnMachine) and float(words.value[index] * 10).is_integer() and words.value[index] >= 0
+    if not is_own and words.value[index] < _MACROS_BEGIN:
+        return ""
+    return f"; if the lathe has it, add it to {place_of_key(machine, 'control.known_codes')}"
 
 
 def letter(text: Text, place: Place) -> str:

@@ -8,7 +8,8 @@ from itertools import combinations
 from typing import TYPE_CHECKING, Any
 
 from polarcheck.machines.code_lists import expanded, is_code
-from polarcheck.machines.machine import SWITCHED, Machine, meanings
+from polarcheck.machines.m_codes import SWITCHED
+from polarcheck.machines.machine import Machine, meanings
 from polarcheck.machines.profiles import Profile, names
 from polarcheck.machines.written_codes import is_list, without_effect
 from polarcheck.reading.excerpt import visible

@@ -3,7 +3,12 @@ from __future__ import annotations
 from polarcheck.checking.rule import WARNING, Entry, Hits, Machine, Spindles, Trace, rule
 
 
-@rule(WARNING, "the C axis is not engaged; {codes} is missing before {switch}", at=("on",), once="c axis code")
+@rule(
+    WARNING,
+    "the C axis is not engaged; {codes} is missing before {switch}{or_engaged_by}",
+    at=("on",),
+    once="c axis code",
+)
 def c_axis_not_engaged(trace: Trace, entry: Entry, spindles: Spindles, machine: Machine) -> Hits:
     """
     Polar mode without the spindle as C axis.

@@ -5,7 +5,7 @@ from polarcheck.checking.rule import ERROR, Entry, Hits, Machine, Trace, rule
 
 @rule(
     ERROR,
-    "the live tool is not running in this cutting move; {codes} is missing",
+    "the live tool is not running in this cutting move; {codes} is missing{or_started_by}",
     at=("line", "arc_clockwise", "arc_counterclockwise"),
     once="live tool code",
 )

@@ -8,7 +8,7 @@ OWN_CODES_END = 100
 
 @rule(
     ERROR,
-    "{code} is no code of this control{times}",
+    "{code} is no code of this control{times}{or_known}",
     over="words",
     follows={"file": ("polar-code-of-another-control",)},
 )

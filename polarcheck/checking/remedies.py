@@ -1,0 +1,34 @@
+"""Where a value that the machine lacks is to be given: in the file of the user's own lathe, or in a new one."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from polarcheck.machines.machine import Machine, OwnMachine
+from polarcheck.table.spindles import Spindles
+from polarcheck.table.trace import Trace
+
+#: M codes that are named where any of them may be the one.
+_NAMED = 3
+
+
+def place(machine: Machine, key: str) -> str:
+    """`m_codes.c_axis_on in lathe.toml`; for a machine of ours, in a file that is still to be made."""
+    file = machine.file if isinstance(machine, OwnMachine) else "a file of your own (polarcheck machines new)"
+    return f"{key} in {file}"
+
+
+def option_or_place(machine: Machine, key: str) -> str:
+    """The same for a single number: for a machine of ours the option that gives it is shorter."""
+    return place(machine, key) if isinstance(machine, OwnMachine) else f"--set {key}=..."
+
+
+def unlisted_codes(trace: Trace, spindles: Spindles, row: int) -> str:
+    """`M76 of line 3 or M70 of line 5`: the M codes above a row of its program that are in no list; empty for none."""
+    words = spindles.unlisted
+    words = words[(trace.run.row[words] <= row) & (trace.program[trace.run.row[words]] == trace.program[row])]
+    numbers = trace.run.words.value[words]
+    first = np.sort([np.flatnonzero(numbers == number)[0] for number in dict.fromkeys(numbers.tolist())]).astype(int)
+    return " or ".join(
+        f"M{numbers[index]:g} of line {int(trace.line[trace.run.row[words[index]]])}" for index in first[:_NAMED]
+    )
