@@ -170,6 +170,8 @@ USES = {
     "control.word_limit": Use(3, FLAT),
     "control.m_code_limit": Use(1, FLAT.replace("G98", "G98 M8 M9")),
     "control.line_comments": Use(";", inside("; G0 X1.")),
+    "control.channel_mark": Use("", FLAT.replace("G98", "$1\nG98").replace("M30", "M30\n$2\nG0 X5.\nM30")),
+    "control.wait_mark": Use("", inside("!2L10")),
     "control.offset_digits": Use(1, FLAT.replace("G98", "T0112\nG98"), tools=("12:radius=3", "2:radius=4")),
     "control.unknown_codes_are_errors": Use(False, before("G150")),
     "control.x": Use("radius", FLAT),

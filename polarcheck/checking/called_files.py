@@ -1,4 +1,7 @@
-"""Findings in a called program of another file, shown at the block of this file that calls it."""
+"""
+Findings in a called program of another file, shown at the block of this file that calls it; those in a program of
+another channel of this file, where they are.
+"""
 
 from __future__ import annotations
 
@@ -40,6 +43,8 @@ def _shown(finding: Finding, trace: Trace) -> Finding | None:
     line, block = call
     text = source.line_text(line)
     section_line = finding.section_line
+    if source.is_own(part):
+        return _at(finding, part[1], source.part_of(section_line) if section_line else None)
     return msgspec.structs.replace(
         finding,
         message=f"in {part[0]}, line {part[1]}, {finding.block}: {finding.message}",
@@ -50,6 +55,13 @@ def _shown(finding: Finding, trace: Trace) -> Finding | None:
         block=block,
         section_line=None if section_line and source.part_of(section_line) else section_line,
     )
+
+
+def _at(finding: Finding, line: int, section: tuple[str, int] | None) -> Finding:
+    """A finding at a line of the file itself, with the line of its G12.1."""
+    end_line = line + finding.end_line - finding.line
+    section_line = section[1] if section else finding.section_line
+    return msgspec.structs.replace(finding, line=line, end_line=end_line, section_line=section_line)
 
 
 def _call_of(trace: Trace, line: int) -> tuple[int, str] | None:

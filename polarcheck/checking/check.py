@@ -5,10 +5,12 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from itertools import groupby
 
 import msgspec
 
 from polarcheck.checking.called_files import in_the_file
+from polarcheck.checking.channels import united
 from polarcheck.checking.engine import Engine, in_order, too_hard, with_following
 from polarcheck.checking.finding import ERROR, SEVERITIES, FileReport, Finding, NotEvaluated, PolarSection, Undecided
 from polarcheck.checking.not_evaluated import unevaluated, unexecuted
@@ -21,6 +23,7 @@ from polarcheck.execution.runs import runs
 from polarcheck.machines.job import Job
 from polarcheck.machines.machine import Machine
 from polarcheck.reading import source
+from polarcheck.reading.words import Text
 
 #: At what is looked in any program.
 LOOKED_AT = ("text", "flow", "position")
@@ -29,7 +32,11 @@ LOOKED_AT = ("text", "flow", "position")
 def read(
     data: bytes, machine: Machine, job: Job, path: str = "-", encoding: str | None = None
 ) -> list[tuple[str, Tables]]:
-    """The tables of each run of a file, with the state of block skip ("" where that makes no difference)."""
+    """
+    The tables of each run of a file, with the state of block skip ("" where that makes no difference).
+
+    The runs of a channel stand together; `text.source.channel` names it, where the file has several.
+    """
     found = runs(source.read(data, path, encoding), machine, job)
     return [(state, Tables(run, machine, job)) for state, run in found]
 
@@ -50,7 +57,26 @@ def check_file(
 def check_runs(
     found: Sequence[tuple[str, Tables]], rules: Sequence[Rule], severities: Mapping[str, str] | None = None
 ) -> FileReport:
-    """All findings of the rules in the runs of one file; what hangs on its text alone is looked for once."""
+    """All findings of the rules in the runs of one file, of each of its channels."""
+    channels = [list(runs_of_one) for _, runs_of_one in groupby(found, lambda run: _source(run[1]).channel)]
+    reports = [(_source(one[0][1]), _check_channel(one, rules, severities)) for one in channels]
+    if len(reports) == 1:
+        return reports[0][1]
+    report = united(reports)
+    findings = in_order(report.findings)
+    return msgspec.structs.replace(report, findings=findings, verdict=verdict(findings, report.not_evaluated))
+
+
+def _source(tables: Tables) -> source.Source:
+    """The file of a run, or the view of its channel."""
+    text: Text = tables["text"]
+    return text.source
+
+
+def _check_channel(
+    found: Sequence[tuple[str, Tables]], rules: Sequence[Rule], severities: Mapping[str, str] | None
+) -> FileReport:
+    """The findings in the runs of one channel; what hangs on its text alone is looked for once."""
     (state, tables), *more = found
     engine = engine_of(tables, rules, severities)
     first = report_of(engine)

@@ -6,6 +6,7 @@ import enum
 from typing import Any
 
 import msgspec
+from msgspec import UNSET, UnsetType
 
 
 class Severity(enum.IntEnum):
@@ -44,7 +45,8 @@ class Finding(msgspec.Struct, frozen=True, kw_only=True):
     """
     One reported fault. Lines and columns count from 1, columns in characters; end_column is behind the last one.
 
-    follows: the findings that would not be there without this one; they count nowhere.
+    follows: the findings that would not be there without this one; they count nowhere. channel: as `$2`, where the file
+    has several, and this is of one of them.
     """
 
     rule: str
@@ -64,6 +66,7 @@ class Finding(msgspec.Struct, frozen=True, kw_only=True):
     fingerprint: str = ""
     fix: Fix | None = None
     follows: list[Finding] = []
+    channel: str | UnsetType = UNSET
 
 
 class Undecided(Finding, frozen=True, kw_only=True):
@@ -81,6 +84,7 @@ class NotEvaluated(msgspec.Struct, frozen=True, kw_only=True):
     reason: str
     blocks: int
     matters: bool = True
+    channel: str | UnsetType = UNSET
 
 
 class PolarSection(msgspec.Struct, frozen=True, kw_only=True):
@@ -106,6 +110,7 @@ class PolarSection(msgspec.Struct, frozen=True, kw_only=True):
     c_feed_limit: float | None
     ramp_used: float | None
     time: float | None
+    channel: str | UnsetType = UNSET
 
 
 class FileReport(msgspec.Struct, frozen=True, kw_only=True):

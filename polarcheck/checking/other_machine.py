@@ -14,6 +14,7 @@ from polarcheck.machines import profiles
 from polarcheck.machines.machine import Machine
 from polarcheck.machines.profiles import Profile
 from polarcheck.reading import source
+from polarcheck.reading.channels import channel_like
 from polarcheck.reading.translation import translated
 from polarcheck.reading.words import read_words
 from polarcheck.table.mode_words import ModeWords
@@ -124,9 +125,11 @@ def _language(machine: Machine) -> tuple[object, ...]:
 def _read_by(tables: Tables, machine: Machine) -> Tables:
     """The program as another machine reads it."""
     trace: Trace = tables["trace"]
-    theirs = machine.control
+    ours, theirs = trace.machine.control, machine.control
     if _language(trace.machine) == _language(machine):
         return Tables(trace.run, machine, trace.job)
     found = source.read(trace.text.source.data, trace.text.source.path)
-    text = read_words(translated(found, theirs.native_words), theirs.line_comments, machine.macro.language)
+    found = channel_like(found, trace.text.source, ours.channel_mark, ours.line_comments)
+    found = translated(found, theirs.native_words)
+    text = read_words(found, theirs.line_comments, ours.channel_mark, ours.wait_mark, machine.macro.language)
     return Tables(straight(text, machine.m_codes.program_end), machine, trace.job)

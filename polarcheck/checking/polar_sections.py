@@ -46,15 +46,15 @@ def _polar_sections(trace: Trace, tool_center: ToolCenter, center: Center, ramps
     ):
         found.append(
             PolarSection(
-                line=int(trace.line[enter]),
-                end_line=int(trace.line[min(end, len(trace) - 1)]),
+                line=int(trace.line_in_file[enter]),
+                end_line=int(trace.line_in_file[min(end, len(trace) - 1)]),
                 units="inch" if trace.units[enter] == Units.INCH else "mm",
                 offset=int(trace.offset_number[row]) or None,
                 radius=rounded(trace.radius[row]),
                 radius_source=_radius_source(trace, row),
                 nearest=rounded(nearest[index]),
                 c_feed=rounded(highest[index]),
-                c_feed_line=int(trace.line[fast]) if fast >= 0 else None,
+                c_feed_line=int(trace.line_in_file[fast]) if fast >= 0 else None,
                 c_feed_limit=limit,
                 ramp_used=rounded(ramp[index]),
                 time=rounded(time[index]),

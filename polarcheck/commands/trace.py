@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -35,7 +36,8 @@ def trace(
     """
     Show what FILE does, block by block or, with --path, move by move inside polar sections.
 
-    Lengths are mm, X as a radius, angles deg, feeds mm/min. --path tool is the path of the tool center. What is run
+    Lengths are mm, X as a radius, angles deg, feeds mm/min. Of a file with several channels one follows the other, and
+    each line names its own. --path tool is the path of the tool center. What is run
     with G41 or G42 while the radius is not known is shown as programmed: those moves have "programmed" under path, and
     a line on standard error says what to give.
     """
@@ -48,12 +50,14 @@ def trace(
     found = settings.in_folders(settings.Options(use_config=not no_config, **asked))(Path(path).parent)
     data = files.read(path, max_size)
     with time_limit(seconds_for(len(data), found.job.run.max_seconds)):
-        tables = check.read(data, found.machine, found.job, files.shown(path), encoding)[0][1]
-        of_path = (tables["trace"], tables["tool_center"])
-        items = executed.moves(*of_path, which) if which else executed.rows(*of_path)
-        unknown = executed.without_radius(*of_path) if which == "tool" else ""
-        if unknown:
-            warn(unknown)
+        # One run for each channel: --block-skip asks for one state.
+        runs = check.read(data, found.machine, found.job, files.shown(path), encoding)
+        paths = [(tables["trace"], tables["tool_center"]) for _, tables in runs]
+        for of_path in paths if which == "tool" else ():
+            unknown = executed.without_radius(*of_path)
+            if unknown:
+                warn(unknown)
+        items = chain.from_iterable(executed.moves(*one, which) if which else executed.rows(*one) for one in paths)
         for line in (executed.as_csv if form == "csv" else executed.as_jsonl)(items):
             if not show(line.encode()):
                 break

@@ -20,14 +20,15 @@ from polarcheck.reading.joining import joined
 from polarcheck.reading.words import Text
 
 
-def executed(text: Text, machine: Machine, job: Job, states: Sequence[str]) -> list[Run]:
+def executed(text: Text, machine: Machine, job: Job, states: Sequence[str], others: Sequence[Text] = ()) -> list[Run]:
     """
     The run of a file in each state of block skip ("off", "on").
 
-    Called files that no call came to are no part of its text.
+    others: texts beside it whose programs it can call, as those of the other channels of a lathe. Called files that no
+    call came to are no part of its text.
     """
     inch = (job.program_units or machine.control.units) == "inch"
-    shelf = Shelf(text, machine, job.run.subprograms)
+    shelf = Shelf(text, machine, job.run.subprograms, others)
     texts: dict[frozenset[int], Text] = {}
     found = []
     for state in states:

@@ -1,4 +1,7 @@
-"""The called programs that lie in the folders of the job: each is looked for and read once, whoever calls it."""
+"""
+The called programs that lie beside the file, in other channels or in folders of the job: each is looked for and read
+once, whoever calls it.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +16,7 @@ import msgspec
 
 from polarcheck import bounded
 from polarcheck.execution.listing import Listing
-from polarcheck.execution.programs import ProgramName, read_text
+from polarcheck.execution.programs import ProgramName, Programs, find_programs, read_text
 from polarcheck.machines.machine import Machine
 from polarcheck.reading.source import Source, read
 from polarcheck.reading.words import Text
@@ -29,9 +32,10 @@ _TAPE_MARK = re.compile(r"[\s\0]*+%[^\n]*+\n")
 
 
 class Library:
-    """The folders of a job, and what has been looked for in them."""
+    """The other channels of a file, the folders of a job, and what has been looked for in them."""
 
-    def __init__(self, folders: Sequence[str], machine: Machine) -> None:
+    def __init__(self, folders: Sequence[str], machine: Machine, channels: Sequence[Text] = ()) -> None:
+        self._channels = list(channels)
         self._folders = [Path(os.path.realpath(folder)) for folder in folders]
         self._machine = machine
         self._texts: dict[ProgramName, Text | None] = {}
@@ -45,9 +49,17 @@ class Library:
                 found.append((folder, sorted(folder.iterdir())))
         return found
 
+    @cached_property
+    def _programs(self) -> list[Programs]:
+        """The programs of each of the other channels."""
+        return [find_programs(text) for text in self._channels]
+
     def text(self, called: ProgramName) -> Text | None:
-        """The program of a call, read; None where no folder has it, or too many have been looked for."""
+        """The text with the program of a call; None where there is none, or too many have been looked for."""
         if called not in self._texts:
+            for programs in self._programs:
+                if programs.named(called):
+                    return programs.text
             if len(self._texts) > _MOST_LOOKED_FOR:
                 return None
             source = self.find(called)
@@ -105,8 +117,8 @@ class Shelf:
     From the start it holds the files of all programs that are named literally, and that those name in turn.
     """
 
-    def __init__(self, text: Text, machine: Machine, folders: Sequence[str]) -> None:
-        self._library = Library(folders, machine)
+    def __init__(self, text: Text, machine: Machine, folders: Sequence[str], channels: Sequence[Text] = ()) -> None:
+        self._library = Library(folders, machine, channels)
         self.listing = Listing([text], machine)
         self._add([called for called in self.listing.calls(0) if not self.listing.programs.named(called)])
 

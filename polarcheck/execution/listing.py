@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import bisect
 import functools
-import itertools
 from collections.abc import Iterable, Sequence
 
 import numpy as np
@@ -52,9 +51,16 @@ class Listing:
         self._nothing_known.forget()
 
     def with_files(self, files: dict[ProgramName, Text]) -> Listing:
-        """The listing with more called files behind it; what was read of the others is kept."""
-        indices = dict(zip(files, itertools.count(len(self.files)), strict=False))
-        grown = Listing([*self.files, *files.values()], self.machine, self.found | indices)
+        """The listing with more called files behind it, each once; what was read of the others is kept."""
+        texts = [*self.files]
+        place = {id(text): number for number, text in enumerate(texts)}
+        indices = {}
+        for called, text in files.items():
+            if id(text) not in place:
+                place[id(text)] = len(texts)
+                texts.append(text)
+            indices[called] = place[id(text)]
+        grown = Listing(texts, self.machine, self.found | indices)
         grown._statements, grown._loops, grown._calls = self._statements, self._loops, self._calls
         grown.names = self.names
         return grown

@@ -153,7 +153,9 @@ class Programs:
 def read_text(source: Source, machine: Machine) -> Text:
     """The words of a source as this control reads them."""
     control = machine.control
-    return read_words(translated(source, control.native_words), control.line_comments, machine.macro.language)
+    found = translated(source, control.native_words)
+    marks = control.channel_mark, control.wait_mark
+    return read_words(found, control.line_comments, *marks, machine.macro.language)
 
 
 def find_programs(text: Text) -> Programs:

@@ -74,5 +74,6 @@ def _joined_sources(sources: Sequence[Source]) -> tuple[Source, list[int]]:
         offsets.append(offsets[-1] + len(codes[-1]))
     data = "".join(texts).encode("utf-8", "surrogatepass")
     first = sources[0]
-    whole = Source(first.path, data, "utf-8", b"", np.concatenate(codes), np.concatenate(starts), tuple(parts[1:]))
+    code, line_starts = np.concatenate(codes), np.concatenate(starts)
+    whole = Source(first.path, data, "utf-8", b"", code, line_starts, tuple(parts[1:]), channel=first.channel)
     return whole, offsets

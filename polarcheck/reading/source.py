@@ -40,6 +40,7 @@ class Source(msgspec.Struct, frozen=True, dict=True):
 
     code: uint8[n], Latin-1 where the character has one. line_starts: int64[lines], character positions.
     parts: the called programs that were read behind the file. added_lines: at the head, that the file does not have.
+    channel: the one whose programs alone are in `code`, as `$2`; empty where a file has no more than one.
     """
 
     path: str
@@ -50,6 +51,7 @@ class Source(msgspec.Struct, frozen=True, dict=True):
     line_starts: Positions
     parts: tuple[Part, ...] = ()
     added_lines: int = 0
+    channel: str = ""
 
     @cached_property
     def text(self) -> str:
@@ -74,6 +76,10 @@ class Source(msgspec.Struct, frozen=True, dict=True):
         """The called program that a line belongs to, and its line there; None for lines of the file itself."""
         found = [part for part in self.parts if line >= part.first_line]
         return (found[-1].name, max(line - found[-1].first_line + 1 - found[-1].added_lines, 1)) if found else None
+
+    def is_own(self, part: tuple[str, int]) -> bool:
+        """Whether what part_of gives is a line of the file itself: of another of its channels."""
+        return bool(self.channel) and part[0] == self.path
 
     def line_text(self, line: int) -> str:
         """A line (from 1) without its line end."""

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import itertools
 import re
+from collections.abc import Iterator
 from typing import Any
 
 import msgspec
@@ -41,6 +42,14 @@ _TAG = (
     rb"(?i)(?<![OP])(?<![OP] )</?(?:b|i|p|u|a|em|strong|td|tr|th|br|hr|table|thead|tbody|span|div|code|pre|html|head"
     rb"|title|body|li|ul|ol|sup|sub|h\d)(?:[ \t][^<>\n]{0,200})?/?>"
 )
+
+
+#: The number of a channel; no lathe has more.
+_CHANNEL = rb"[ \t]*+[1-9](?![\d.])"
+#: What may stand before the mark of a channel in its block: the head of a program, a sequence number.
+_HEAD = rb"(?:(?:[O:]" + _BLANK + rb"\d++|O?<[^<>\n]{1,%d}>|N" % _NAME_LENGTH + _BLANK + rb"\d++)" + _BLANK + rb")?+"
+#: A wait for other channels: them, and the number of the wait, or one of both.
+_WAIT = rb"[ \t]*+(?:\d++[ \t]*+(?:L[ \t]*+\d++)?+|L[ \t]*+\d++)"
 
 
 #: Before a % that is no tape mark but says how much, in a text: FEED AT 20%; so much of it is looked at [characters].
@@ -86,11 +95,19 @@ def narrow(size: int) -> type[np.signedinteger[Any]]:
     return np.int32 if size < 2**31 - 8 else np.int64
 
 
-def read_surroundings(code: Bytes, line_comments: str = "") -> Surroundings:
-    """Find all that is not words and blank it in `code`; line_comments: characters that begin a comment."""
+def read_surroundings(
+    code: Bytes, line_comments: str = "", channel_mark: str = "", wait_mark: str = ""
+) -> Surroundings:
+    """
+    Find all that is not words and blank it in `code`.
+
+    line_comments: characters that begin a comment. channel_mark, wait_mark: those before the number of a channel and
+    before a wait for another one, which are no words either.
+    """
     lines = np.append(np.flatnonzero(code == LF), len(code))
     remarks = _line_comments(code, lines, line_comments)
     comments, unclosed, nested = _comments(code)
+    remarks += _marks_of_channels(code, channel_mark, wait_mark)
     tags = _tags(code)
     marks, strays = _percents(code, lines)
     outside = _outside(code, marks)
@@ -98,19 +115,59 @@ def read_surroundings(code: Bytes, line_comments: str = "") -> Surroundings:
     remarks += [_semicolon_remarks(code, lines)]
     kept = ~_within(comments, outside)
     found = [comments.only(kept), *(remark.only(~_within(remark, outside)) for remark in remarks if len(remark))]
-    count = sum(map(len, found[1:]))
     every = _joined(found)
+    no = np.zeros(len(every) - len(found[0]), bool)
     order = np.argsort(every.start, kind="stable")
     return Surroundings(
         tape_marks=marks,
         outside=outside,
         comments=every.only(order),
-        unclosed=np.append(unclosed[kept], np.zeros(count, bool))[order],
-        nested=np.append(nested[kept], np.zeros(count, bool))[order],
+        unclosed=np.append(unclosed[kept], no)[order],
+        nested=np.append(nested[kept], no)[order],
         names=names,
         strays=strays,
         tags=tags.only(~_within(tags, outside)),
     )
+
+
+def without_comments(code: Bytes, line_comments: str = "") -> Bytes:
+    """A copy of the codes of a text with its comments blanked; every line end is LF."""
+    blanked = code.copy()
+    _line_comments(blanked, np.append(np.flatnonzero(code == LF), len(code)), line_comments)
+    _comments(blanked)
+    return blanked
+
+
+def find_channel_marks(code: Bytes, mark: str) -> list[tuple[int, int]]:
+    """
+    The marks of channels in a text without comments: where the block of each begins, and the number of its channel.
+
+    A mark stands at the head of a line, or behind the number of a program there, or in a block of its own behind `;`.
+    """
+    return [(found.start(), int(found[found.lastgroup or 0][-1:])) for found in _find_channel_marks(code, mark)]
+
+
+def _find_channel_marks(code: Bytes, mark: str) -> Iterator[re.Match[bytes]]:
+    sign = re.escape(mark.encode("latin-1"))
+    at_head = rb"^" + _BLANK + _HEAD + rb"(?P<mark>" + sign + _CHANNEL + rb")"
+    alone = rb"(?<=;)" + _BLANK + rb"(?P<alone>" + sign + _CHANNEL + rb")(?=" + _BLANK + rb"(?:;|$))"
+    return re.finditer(at_head + rb"|" + alone, code.tobytes(), re.MULTILINE | re.IGNORECASE)
+
+
+def _marks_of_channels(code: Bytes, channel_mark: str, wait_mark: str) -> list[Ranges]:
+    """The marks of channels and the waits, blanked; none where the characters do not occur."""
+    spans: list[tuple[int, int]] = []
+    if channel_mark and np.any(code == ord(channel_mark)):
+        spans += [found.span(found.lastgroup or 0) for found in _find_channel_marks(code, channel_mark)]
+    if wait_mark and np.any(code == ord(wait_mark)):
+        wait = re.compile(re.escape(wait_mark.encode("latin-1")) + _WAIT, re.IGNORECASE)
+        spans += [found.span() for found in wait.finditer(code.tobytes())]
+    if not spans:
+        return []
+    start, end = np.array(sorted(spans), np.int64).T
+    found = Ranges(start, end)
+    blank(code, found)
+    return [found]
 
 
 def _joined(parts: list[Ranges]) -> Ranges:

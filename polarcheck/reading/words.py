@@ -123,11 +123,13 @@ class Text(msgspec.Struct, frozen=True):
     letters: Positions
 
 
-def read_words(source: Source, line_comments: str = "", language: str = "custom-macro") -> Text:
+def read_words(
+    source: Source, line_comments: str = "", channel_mark: str = "", wait_mark: str = "", language: str = "custom-macro"
+) -> Text:
     """
-    The table of words of a file.
+    The table of words of a file, or of a channel of it.
 
-    line_comments: characters that this control reads as start of a comment. language: of its statements.
+    What the marks of a control are: read_surroundings. language: of its statements (language_blocks).
     """
     data = source.code.tobytes()
     end_of_data = data.find(CTRL_Z)  # ends a file of old DOS transfers
@@ -137,7 +139,7 @@ def read_words(source: Source, line_comments: str = "", language: str = "custom-
     lines_end_at_cr = data.find(b"\n") < 0
     code = np.frombuffer(bytearray(stored.replace(b"\r", b"\n") if lines_end_at_cr else stored), np.uint8)
     in_language = take_out(code, language)
-    around = read_surroundings(code, line_comments)
+    around = read_surroundings(code, line_comments, channel_mark, wait_mark)
     letters = read_as_digits(code)
     prose = find_prose(source, code)
     if len(prose):

@@ -21,5 +21,7 @@ def line(file: FileReport, found: Finding, color: bool = False) -> str:
     """The line of a finding, with its severity in color where that is asked for."""
     severity = visible(found.severity)
     severity = painted(found.severity, severity) if color else severity
-    place, message = visible(f"{file.path}:{found.line}:{found.column}"), visible(f"{found.message} [{found.rule}]")
+    channel = f"{found.channel}: " if found.channel else ""
+    place = visible(f"{file.path}:{found.line}:{found.column}")
+    message = visible(f"{channel}{found.message} [{found.rule}]")
     return f"{place}: {severity}: {message}"

@@ -100,6 +100,8 @@ def _finding(
 ) -> Iterator[str]:
     yield from page.heading(found.severity, found.message)
     place = f"{file.path}:{found.line}:{found.column}"
+    if found.channel:
+        place += f", channel {found.channel}"
     if found.program and len(file.programs) > 1:
         place += f", program {found.program}"
     if found.count > 1 and not (rule and rule.once):
@@ -149,7 +151,8 @@ def _not_evaluated(files: Sequence[FileReport], page: _Page) -> Iterator[str]:
     reasons: dict[str, list[tuple[str, NotEvaluated]]] = {}
     for file in files:
         for missing in (one for one in file.not_evaluated if one.matters):
-            reasons.setdefault(missing.reason, []).append((file.path, missing))
+            channel = f", channel {missing.channel}" if missing.channel else ""
+            reasons.setdefault(missing.reason, []).append((f"{file.path}{channel}", missing))
     for reason, group in reasons.items():
         yield from page.heading("not evaluated", reason)
         paths = list(dict.fromkeys(path for path, _ in group))

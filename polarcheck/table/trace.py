@@ -7,6 +7,7 @@ Columns are made when they are first asked for. Inside everything is mm, deg, mi
 from __future__ import annotations
 
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 
@@ -29,8 +30,16 @@ class Trace(ToolOffsets):
     @cached_property
     def line_in_file(self) -> Rows:
         """Line of the file itself; in a program that is called from another file, that of the call."""
-        parts = self.text.source.parts
-        return fill_down(self.line, self.line < parts[0].first_line, 1) if parts else self.line
+        source = self.text.source
+        if not source.parts:
+            return self.line
+        line, is_own = self.line.copy(), self.line < source.parts[0].first_line
+        for first, until in pairwise([*(part.first_line for part in source.parts), len(source.line_starts) + 1]):
+            if source.is_own(source.part_of(first) or ("", 0)):  # of another channel
+                rows = (self.line >= first) & (self.line < until)
+                line[rows] -= first - 1
+                is_own |= rows
+        return fill_down(line, is_own, 1)
 
     @cached_property
     def on_cylinder(self) -> Mask:

@@ -9,6 +9,7 @@ from typing import Any
 
 import msgspec
 import numpy as np
+from msgspec import UNSET, UnsetType
 
 from polarcheck.checking.quantity import rounded
 from polarcheck.machines.modal import FeedMode, Motion, Side
@@ -31,7 +32,8 @@ class Move(msgspec.Struct, frozen=True):
     force [mm], whether it is used or not. x_axis: X of the machine as a radius [mm], never negative. c_axis: C of the
     machine [deg], continuous along the section. feed [mm/min], time [s]; of the tool center nearest [mm], c_feed
     [deg/min], x_feed [mm/min], c_acceleration [deg/s2], x_acceleration [mm/s2]: the highest on the way. null is
-    unknown; a rate is null where it has no bound, too, through the center of C.
+    unknown; a rate is null where it has no bound, too, through the center of C. channel: as `$2`, where the file has
+    several; the sections of each are counted from 0.
     """
 
     line: int
@@ -52,6 +54,7 @@ class Move(msgspec.Struct, frozen=True):
     c_acceleration: float | None
     x_acceleration: float | None
     time: float | None
+    channel: str | UnsetType = UNSET
 
 
 def _point(value: complex) -> list[float | None]:
@@ -84,6 +87,7 @@ def moves(trace: Trace, tool_center: ToolCenter, path: str) -> Iterator[Move]:
             c_acceleration=rounded(table.c_acceleration[index]),
             x_acceleration=rounded(table.x_acceleration[index]),
             time=rounded(table.time[index]),
+            channel=trace.text.source.channel or UNSET,
         )
 
 
@@ -116,8 +120,10 @@ def rows(trace: Trace, tool_center: ToolCenter) -> Iterator[dict[str, Any]]:
     The executed table, one row per executed block.
 
     x [mm, radius], z [mm], c [deg, machine], plane_x and plane_c [mm, radius] inside sections, feed [mm/min], f
-    [mm per min or per revolution], nearest [mm], c_feed [deg/min] of the tool center path.
+    [mm per min or per revolution], nearest [mm], c_feed [deg/min] of the tool center path. channel: as `$2`, where the
+    file has several.
     """
+    channel = {"channel": trace.text.source.channel} if trace.text.source.channel else {}
     for row in range(len(trace)):
         in_polar = bool(trace.in_polar[row])
         moving = in_polar and bool(trace.moves_plane[row])
@@ -142,6 +148,7 @@ def rows(trace: Trace, tool_center: ToolCenter) -> Iterator[dict[str, Any]]:
             "plane_c": rounded(trace.end[row].imag),
             "nearest": rounded(tool_center.nearest[row]) if moving else None,
             "c_feed": rounded(tool_center.c_feed[row]) if moving else None,
+            **channel,
         }
 
 
@@ -166,6 +173,8 @@ def as_csv(items: Iterator[Any]) -> Iterator[str]:
 def _flat(move: Move) -> dict[str, Any]:
     flat: dict[str, Any] = {}
     for name, value in msgspec.structs.asdict(move).items():
+        if value is UNSET:
+            continue
         if name in _PAIRS:
             flat |= {f"{name}_{end}": part for end, part in zip(_PAIRS[name], value or (None, None), strict=True)}
         else:

@@ -43,7 +43,8 @@ def _section(section: PolarSection) -> str:
         facts.append(f"ramps used up to {100 * section.ramp_used:.0f} %")
     if section.time is not None:
         facts.append(f"{section.time:.0f} s")
-    return f"section of line {section.line}: {', '.join(fact for fact in facts if fact)}"
+    channel = f" in channel {section.channel}" if section.channel else ""
+    return f"section of line {section.line}{channel}: {', '.join(fact for fact in facts if fact)}"
 
 
 def _radius(section: PolarSection) -> str:

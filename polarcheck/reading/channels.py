@@ -1,0 +1,63 @@
+"""
+A file that holds the programs of several channels: of a lathe whose turrets or slides run programs of their own.
+
+Each channel is a view of the file in which the others are blank, so that every position and line stays.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from msgspec.structs import replace
+
+from polarcheck.arrays import Mask
+from polarcheck.reading.source import CR, CTRL_Z, LF, Bytes, Source
+from polarcheck.reading.surroundings import find_channel_marks, without_comments
+
+_SPACE = 32
+#: What stays in a channel of the others: where lines and the file end.
+_STAYS = (LF, CR, CTRL_Z)
+
+
+def channels(source: Source, mark: str, line_comments: str = "") -> list[Source]:
+    """
+    The channels of a file, by their numbers; a file without marks of channels is one, and stays as it is.
+
+    mark: the character before the number of a channel; empty where there are none. What stands before the first mark is
+    in all of them.
+    """
+    data = source.code.tobytes()
+    if not mark or mark.encode("latin-1") not in data:
+        return [source]
+    stored = data[: data.find(CTRL_Z)] if CTRL_Z in data else data
+    code = np.frombuffer(bytearray(stored if b"\n" in stored else stored.replace(b"\r", b"\n")), np.uint8)
+    marks = find_channel_marks(without_comments(code, line_comments), mark)
+    numbers = sorted({number for _, number in marks})
+    if len(numbers) < 2:
+        return [source]
+    owner = _owners(marks, len(data))
+    every = np.isin(source.code, _STAYS) | (owner == 0)
+    return [replace(source, code=_only(source.code, every | (owner == n)), channel=f"{mark}{n}") for n in numbers]
+
+
+def channel_like(source: Source, other: Source, mark: str, line_comments: str) -> Source:
+    """Of a file that is read anew the channel that another reading of it is; itself where it has no such channel."""
+    found = channels(source, mark, line_comments) if other.channel else []
+    return next((one for one in found if one.channel == other.channel), source)
+
+
+def stands_in(channel: Source, line: int) -> bool:
+    """Whether anything of a line, from 1, stands in a channel."""
+    start, *end = channel.line_starts[line - 1 : line + 1].tolist()
+    return bool(channel.code[start : end[0] if end else None].tobytes().strip())
+
+
+def _owners(marks: Sequence[tuple[int, int]], size: int) -> Bytes:
+    """Per character the number of its channel, 0 before the first mark."""
+    begins = [0, *(start for start, _ in marks), size]
+    return np.repeat(np.array([0, *(number for _, number in marks)], np.uint8), np.diff(begins))
+
+
+def _only(code: Bytes, kept: Mask) -> Bytes:
+    return np.where(kept, code, np.uint8(_SPACE))
