@@ -1,0 +1,26 @@
+O0006
+$1
+G98 G40 G97
+T0101
+G0 X60. C0 Z5.
+!2L1
+G12.1 D0 E=C      (expect: polar-never-left)
+G1 X10. Y0 F200
+Y5.
+X30.
+G0 Z100.
+!2L2
+M99
+$2
+G98 G40 G97
+T0202
+!1L1
+G0 X60. C0 Z5.
+G12.1 D0 E=C
+G1 X10. Y0 F200
+Y5.
+X30.
+G13.1
+G0 Z100.
+!1L2
+M99
