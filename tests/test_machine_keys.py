@@ -246,6 +246,8 @@ USES = {
         ["K"], FLAT.replace("G12.1", "G12.1 K1"), also={"polar": {"words_beside_switch": ["K"]}}
     ),
     "polar.virtual_axis_by_word": Use({"D1": ["Y", "V"]}, FLAT.replace("G12.1", "G12.1 D1")),
+    "polar.rotary_address": Use("A", FLAT),
+    "polar.rotary_incremental": Use("E", before("G28 H0", "G0 H5.")),
     "polar.virtual_axis": Use("Y", FLAT),
     "polar.virtual_axis_incremental": Use("V", inside("H5.")),
     "polar.virtual_axis_of_other_controls": Use([], inside("Y5.")),

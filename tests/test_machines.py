@@ -126,7 +126,7 @@ def test_alarms_of_another_control_are_not_inherited(name: str) -> None:
 def test_parameters_set_what_there_is(name: str) -> None:
     """Every setting of every parameter gives a machine that can be loaded."""
     for parameter, meaning in profiles.load(name).machine.known_parameters.items():
-        for setting in (*meaning.values, *([12] if meaning.key else [])):
+        for setting in (*meaning.values, *(["B" if meaning.is_letter else 12] if meaning.key else [])):
             number = int(setting) if str(setting).isdecimal() else setting
             changed = profiles.load(name, {"parameters": {parameter: number}})
             for key in meaning.values.get(str(setting), {meaning.key: None} if meaning.key else {}):
@@ -251,7 +251,7 @@ def test_what_is_wrong_is_said_in_one_line(text: str, said: str) -> None:
         ("[m_codes]\nlive_tool_on = ['M3 P12']\nlive_tool_off = ['M3P12']", "m_codes.live_tool_on: M3 P12 is in m_co"),
         ("[polar]\nc_feed = 1", "unknown key polar.c_feed; did you mean limits.c_feed?"),
         ("[polar]\non = []", "polar.on: expected a list of codes, at least one, found []"),
-        ("[polar]\nvirtual_axis = 'Y1'", "polar.virtual_axis: expected an address, one letter, found 'Y1'"),
+        ("[polar]\nvirtual_axis = 'Y-1'", "polar.virtual_axis: expected an address, one letter or the name of"),
         ("[polar]\ncenter_words = ['I']", "polar.center_words: expected a table, found ['I']"),
         ("[compensation]\nread_ahead = -3", "compensation.read_ahead: expected a whole number of 2 or more, found -3"),
         ("[compensation]\nnose_types = [12]", "compensation.nose_types: expected a whole number from 0 to 9, found 12"),
@@ -382,16 +382,19 @@ def test_a_parameter_sets_what_it_stands_for(name: str, parameters: dict[str, An
         assert getattr(getattr(profile.machine, group), last) == value
 
 
+_NO_ROTARY = "own.toml: parameters.1516: polar.rotary_address: expected A, B, C or H, or the name of an axis as C2"
+
+
 @pytest.mark.parametrize(
     ("given", "said"),
     [
-        ("A", "own.toml: parameters.1516: mill_ax: name of the rotary axis: A is not followed yet, only C"),
-        ("z", "own.toml: parameters.1516: mill_ax: name of the rotary axis: z is not followed yet, only C"),
+        ("z", f"{_NO_ROTARY}, found 'Z'"),
+        ("F", f"{_NO_ROTARY}, found 'F'"),
         (5, "own.toml: parameters.1516: expected a letter from A to Z, not 5"),
         ("AB", "own.toml: parameters.1516: expected a letter from A to Z, not AB"),
     ],
 )
-def test_a_name_of_the_rotary_axis_that_is_not_followed_is_one_clear_line(given: str | int, said: str) -> None:
+def test_a_name_that_no_rotary_axis_has_is_one_clear_line(given: str | int, said: str) -> None:
     with pytest.raises(MachineError) as error:
         load(f"inherits = 'mitsubishi-m700'\n[parameters]\n1516 = {given!r}\n")
     assert str(error.value) == said

@@ -149,8 +149,10 @@ def _c_axis_without_limit(tables: Tables, rule: Rule) -> Iterator[NotEvaluated]:
     ):
         return
     at = int(rows[np.argmax(c_feed[rows])])
-    line, rate = int(trace.line[at]), float(c_feed[at])
-    reason = f"{trace.machine.title} gives no limit of the C axis; highest rate found {rate:.0f} deg/min, line {line}"
+    line, rate, axis = int(trace.line[at]), float(c_feed[at]), trace.machine.polar.rotary_address
+    reason = (
+        f"{trace.machine.title} gives no limit of the {axis} axis; highest rate found {rate:.0f} deg/min, line {line}"
+    )
     remedy = f"give the lathe's own, {option_or_place(trace.machine, 'limits.c_feed')}"
     yield NotEvaluated(rule=rule.name, reason=f"{reason}: {remedy}", blocks=len(rows))
 
@@ -285,7 +287,8 @@ def _position(tables: Tables, row: int) -> str:
         )
     at = int(lost[-1])
     written = f"line {int(trace.line[at])}, {block_in_line(trace, at, _BLOCK_LENGTH)}"
-    remedy = "--subprograms FOLDER says where called programs lie, or program X and C after it"
+    axes = f"X and {trace.machine.polar.rotary_address}"
+    remedy = f"--subprograms FOLDER says where called programs lie, or program {axes} after it"
     return f"the position is not known after {written}, which is not executed; {remedy}"
 
 

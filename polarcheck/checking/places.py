@@ -168,8 +168,8 @@ def words_at_fault(tables: Tables, row: int, names: tuple[str, ...], at: Mask | 
     """
     The executed words of a row that are at fault: those of the mask, or those of the names; empty where there are none.
 
-    names: addresses (X, `,R`; C is the virtual axis, too, whatever its address), lists of G codes of the machine
-    (rapid), "on" and "off" for the codes of the mode.
+    names: addresses (X, `,R`; C is the virtual and the rotary axis, whatever their addresses), lists of G codes of the
+    machine (rapid), "on" and "off" for the codes of the mode.
     """
     if row < 0:
         return []
@@ -206,13 +206,17 @@ def squeezed(text: str) -> str:
 
 
 def _is_named(trace: Trace, index: int, names: tuple[str, ...]) -> bool:
-    address = chr(int(trace.run.words.address[index]))
-    if address in trace.virtual_addresses(int(trace.run.row[index])) and "C" in names:
-        return True
+    number = int(trace.run.words.address[index])
+    address = chr(number)
+    if "C" in names:
+        own = (*trace.virtual_addresses(int(trace.run.row[index])), *trace.machine.polar.rotary_words)
+        if number in map(trace.machine.address_number, filter(None, own)):
+            return True
+        names = tuple(name for name in names if name not in "CH")
     if address in names or (address.islower() and f",{address.upper()}" in names):
         return True
-    number = int(code_numbers(trace.run.words.value[index : index + 1])[0])
-    return address in "GM" and number >= 0 and any(number in _codes(trace, name) for name in names if name.islower())
+    code = int(code_numbers(trace.run.words.value[index : index + 1])[0])
+    return address in "GM" and code >= 0 and any(code in _codes(trace, name) for name in names if name.islower())
 
 
 def _codes(trace: Trace, name: str) -> list[int]:

@@ -15,8 +15,6 @@ from polarcheck.execution.statement import Statement, Word
 from polarcheck.machines.machine import Machine
 from polarcheck.reading.words import Blocks, Text, Words
 
-#: Words that move an axis.
-AXES = "XYZUVWCH"
 #: What is kept of a run that would never end: enough to judge what it does.
 _KEPT_ROWS = 10_000
 
@@ -47,7 +45,7 @@ class ExecutedRows:
         self.kept = _kept(words) if skip else np.ones(len(words), bool)
         self.ending = set(words.block[is_code(words, ends) & self.kept].tolist())
         self._units = np.flatnonzero(is_code(words, (*inch, *mm)) & self.kept)
-        self.moving = np.unique(words.block[np.isin(words.address, list(AXES.encode())) & self.kept])
+        self.moving = np.unique(words.block[np.isin(words.address, list(map(ord, machine.axis_words))) & self.kept])
         self.ranges: dict[tuple[int, int], _Range] = {}
         self.words: list[Rows] = []
         self.row: list[Rows] = []
@@ -73,7 +71,7 @@ class ExecutedRows:
 
     def moves(self, words: Sequence[tuple[Word, float]]) -> bool:
         """Whether any of these words moves an axis."""
-        return any(word.is_named or word.address in AXES for word, _ in words)
+        return any(word.is_named or word.address in self.machine.axis_words for word, _ in words)
 
     def ends(self, block: int) -> bool:
         """Whether a plain block ends the program."""

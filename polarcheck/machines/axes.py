@@ -17,7 +17,7 @@ MOST_NAMED = NOT_NAMED - FIRST_NAMED
 #: The addresses of all of them.
 AXES = (*INCREMENTS, *INCREMENTS.values())
 #: Names of axes by their kind.
-_NAMES = {"linear": frozenset("XYZUVW"), "rotary": frozenset("ABC")}
+_NAMES = {"linear": frozenset("XYZUVW"), "rotary": frozenset("ABCH")}
 
 
 def address_number(address: str, names: Sequence[str]) -> int:
@@ -34,9 +34,15 @@ def address_number(address: str, names: Sequence[str]) -> int:
     return FIRST_NAMED + names.index(address) if address in names else NOT_NAMED
 
 
-def check_axes(axes: Sequence[str], linear: int, rotary: int) -> None:
+def is_rotary(name: str) -> bool:
+    """Whether an axis of that name is a rotary one: A, B, C, H, or with a number as C2."""
+    return name[:1] in _NAMES["rotary"] and bool(name)
+
+
+def check_axes(axes: Sequence[str], linear: int, rotary: int, rotary_address: str) -> None:
     """
-    Raises ValueError where two axes have one name, or a number names no axis or one of the other kind.
+    Raises ValueError where two axes have one name, or a number names no axis, one of the other kind, or another rotary
+    axis than the address of that.
 
     axes: their names in the order of their numbers, from 1; nothing is checked where there are none.
     """
@@ -48,15 +54,17 @@ def check_axes(axes: Sequence[str], linear: int, rotary: int) -> None:
         name = axis_of(axes, number)
         if not name:
             raise ValueError(f"polar.{kind}_axis is {number}, but control.axes names no more than {listed(axes)}")
-        if name not in _NAMES[kind]:
+        if name[0] not in _NAMES[kind]:
             raise ValueError(f"polar.{kind}_axis is {number}, but {name} is no {kind} axis: axes are {listed(axes)}")
+    if (name := axis_of(axes, rotary)) != rotary_address:
+        raise ValueError(f"polar.rotary_axis is {rotary}, {name}, but polar.rotary_address is {rotary_address}")
 
 
 def numbers_of(axes: Sequence[str], kind: str) -> list[int]:
     """The numbers that an axis of a kind, linear or rotary, can have; those of every axis where no names are known."""
     if not axes:
         return list(range(1, MOST_AXES + 1))
-    return [number for number, name in enumerate(axes, 1) if name in _NAMES[kind]]
+    return [number for number, name in enumerate(axes, 1) if name[0] in _NAMES[kind]]
 
 
 def axis_of(axes: Sequence[str], number: float) -> str:

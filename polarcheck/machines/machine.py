@@ -21,6 +21,8 @@ from polarcheck.machines.parameters import Meaning
 from polarcheck.machines.values import (
     Address,
     AddressOrNone,
+    AxisAddress,
+    AxisAddressOrNone,
     AxisName,
     AxisNumber,
     CharacterOrNone,
@@ -31,6 +33,7 @@ from polarcheck.machines.values import (
     NumberedWord,
     Plain,
     Positive,
+    RotaryAddress,
     SwitchWord,
     ascend,
 )
@@ -85,7 +88,7 @@ class Control(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     offset_digits: Annotated[int, msgspec.Meta(ge=1, le=4)]
     unknown_codes_are_errors: bool
     x: Literal["diameter", "radius"]
-    axes: list[Address] = []
+    axes: list[AxisAddress] = []
     named_axes: dict[AxisName, AddressOrNone] = {}
     known_codes: list[str]
     motion_codes: dict[str, str] = {}
@@ -116,6 +119,8 @@ class Polar(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     on_of_macros: those of them that are builders' macros, too: told where a move in the mode and its end follow
     words_beside_switch: addresses and codes that may stand in one block with those that switch; N may always
     not_simulated_beside: those of these addresses that make another mode of it, which is not simulated
+    rotary_address: address of the rotary axis outside the mode: A, B, C, H, or a name that is written with =, as C2
+    rotary_incremental: address of its incremental words; empty where it has none
     virtual_axis: address of the virtual axis (hypothetical axis), a length
     virtual_axis_incremental: address of its incremental words
     virtual_axis_by_word: word beside G12.1 -> the addresses, absolute and incremental, that it gives the virtual axis
@@ -143,10 +148,12 @@ class Polar(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     on_of_macros: list[Plain] = []
     words_beside_switch: list[str]
     not_simulated_beside: list[Address] = []
-    virtual_axis: Address
+    rotary_address: RotaryAddress
+    rotary_incremental: AddressOrNone
+    virtual_axis: AxisAddress
     virtual_axis_incremental: AddressOrNone
-    virtual_axis_by_word: dict[NumberedWord, tuple[Address, AddressOrNone]] = {}
-    virtual_axis_of_other_controls: list[Address]
+    virtual_axis_by_word: dict[NumberedWord, tuple[AxisAddress, AddressOrNone]] = {}
+    virtual_axis_of_other_controls: list[AxisAddressOrNone]
     other_controls: str = ""
     x: Literal["diameter", "radius"]
     virtual_axis_programming: Literal["radius", "diameter"]
@@ -160,6 +167,18 @@ class Polar(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     allowed_codes: list[str]
     plane_before: list[str]
     main_spindle_must_stop: bool
+
+    @property
+    def rotary_words(self) -> tuple[str, str]:
+        """The addresses of the rotary axis outside the mode, absolute and incremental."""
+        return self.rotary_address, self.rotary_incremental
+
+    @property
+    def axis_addresses(self) -> tuple[str, ...]:
+        """The addresses of the rotary axis, and of the virtual one in all its forms; absolute and incremental."""
+        own = self.virtual_axis, self.virtual_axis_incremental
+        pairs = (self.rotary_words, own, *self.virtual_axis_by_word.values())
+        return tuple(dict.fromkeys(address for pair in pairs for address in pair if address))
 
     def __post_init__(self) -> None:
         if self.linear_axis == self.rotary_axis:
@@ -307,14 +326,20 @@ class Machine(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     parameters: dict[str, int | float | str] = {}
 
     def __post_init__(self) -> None:
-        check_axes(self.control.axes, self.polar.linear_axis, self.polar.rotary_axis)
+        check_axes(self.axes, self.polar.linear_axis, self.polar.rotary_axis, self.polar.rotary_address)
+
+    @property
+    def axes(self) -> list[str]:
+        """The axes in the order of their numbers, by the addresses that they are here; none where it is not known."""
+        named = self.control.named_axes
+        return [named.get(name) or name for name in self.control.axes]
 
     def linear_address_of(self, number: float) -> str:
         """
         The address of the linear axis with a number, as P beside G12.1 has it; empty where that is not known, or where
         the virtual axis has the same one.
         """
-        axes = self.control.axes or [self.polar.linear_address]
+        axes = self.axes or [self.polar.linear_address]
         name = axis_of(axes, number)
         return name if name in INCREMENTS and name != self.polar.virtual_axis else ""
 
@@ -322,6 +347,11 @@ class Machine(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     def linear_address(self) -> str:
         """The address of the linear axis where no P beside G12.1 says otherwise; empty where that is not known."""
         return self.linear_address_of(self.polar.linear_axis)
+
+    @property
+    def axis_words(self) -> tuple[str, ...]:
+        """The addresses that move an axis, absolute and incremental; without those that are written with =."""
+        return (*"XYZUVW", *(address for address in self.polar.rotary_words if len(address) == 1))
 
     def address_number(self, address: str) -> int:
         """

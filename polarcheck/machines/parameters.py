@@ -30,8 +30,7 @@ class Meaning(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
 
     title: what the manual calls it. key, factor: the value of the profile that it is, times the factor. values: for
     settings, each with the values of the profile that it stands for; "= control.x" takes over another value. A number
-    that is not among the values goes to the key. is_letter: the control takes A to Z; of those that are not among the
-    values nothing is known to this check yet.
+    that is not among the values goes to the key. is_letter: it is a letter from A to Z instead of a number.
     """
 
     title: str
@@ -87,11 +86,8 @@ def _values(name: str, meaning: Meaning, given: Any, profile: str) -> Mapping[st
         if setting.upper() == spelled.upper():
             return values
     if meaning.is_letter:
-        followed = " or ".join(meaning.values)
         if len(spelled) == 1 and "A" <= spelled.upper() <= "Z":
-            raise MachineError(
-                f"{profile}: parameters.{name}: {meaning.title}: {given} is not followed yet, only {followed}"
-            )
+            return {meaning.key: spelled.upper()}
         raise MachineError(f"{profile}: parameters.{name}: expected a letter from A to Z, not {given}")
     if not meaning.key or not is_number:
         known = " or ".join(meaning.values) or "a number"

@@ -12,7 +12,7 @@ from typing import Any, get_origin
 import msgspec
 
 from polarcheck.errors import MachineError, suggestion
-from polarcheck.machines import parameters, toml_text, written_codes
+from polarcheck.machines import axis_names, parameters, toml_text, written_codes
 from polarcheck.machines.fitting import MisfitError, fitted
 from polarcheck.machines.machine import Machine, OwnMachine
 from polarcheck.machines.parameters import Origin
@@ -114,6 +114,7 @@ def load(name: str, changes: Mapping[str, Any] | Sequence[Change] | None = None)
                 group: dict(values) if isinstance(values, dict) else values for group, values in merged.items()
             }
         named = _value(merged, "control.named_axes")
+        axes = axis_names.axis_names(merged)
         _replace(merged, table.pop("replaces", []), title, origins)
         _merge(merged, table, title, origins, in_plain_form=title in ours)
         if title in chain:
@@ -122,6 +123,8 @@ def load(name: str, changes: Mapping[str, Any] | Sequence[Change] | None = None)
         if isinstance(table.get("parameters"), Mapping):
             # After the values of farther profiles, before those of nearer ones: the nearest word counts.
             parameters.apply(merged, table, title, origins)
+        if axes is not None and axis_names.axis_names(merged) is not None:
+            axis_names.follow(merged, table, title, origins, axes)
     written = _convert(merged, origins, [title for title, _ in tables])
     machine = written
     if written.control.x_radius_words or written.control.x_diameter_words:

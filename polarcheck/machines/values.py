@@ -44,6 +44,28 @@ AxisName: TypeAlias = Annotated[
     str,
     msgspec.Meta(pattern="^[A-Z][A-Z0-9]{1,7}$(?!\\n)", extra={EXPECTED: "the name of an axis with a number, as C2"}),
 ]
+#: An axis by one letter, or by such a name.
+AxisAddress: TypeAlias = Annotated[
+    str,
+    msgspec.Meta(
+        pattern="^[A-Z]([A-Z]{0,5}[0-9]{1,2})?$(?!\\n)",
+        extra={EXPECTED: "an address, one letter or the name of an axis as C2"},
+    ),
+]
+AxisAddressOrNone: TypeAlias = Annotated[
+    str,
+    msgspec.Meta(
+        pattern="^([A-Z]([A-Z]{0,5}[0-9]{1,2})?)?$(?!\\n)",
+        extra={EXPECTED: "an address, one letter or the name of an axis as C2, or none"},
+    ),
+]
+RotaryAddress: TypeAlias = Annotated[
+    str,
+    msgspec.Meta(
+        pattern="^([ABCH]|[A-Z]{1,6}[0-9]{1,2})$(?!\\n)",
+        extra={EXPECTED: "A, B, C or H, or the name of an axis as C2"},
+    ),
+]
 Variable: TypeAlias = Annotated[int, msgspec.Meta(ge=1, extra={EXPECTED: "the number of a variable, 100 for #100"})]
 #: No control of a lathe has more axes in a path.
 MOST_AXES = 24

@@ -74,9 +74,9 @@ class Columns:
     def words_not_followed(self) -> Rows:
         """The words of axes that are not followed, by control.named_axes or since it does not have them, in order."""
         address = self.run.words.address
-        return np.flatnonzero(
-            (address >= FIRST_NAMED) & (address != self.machine.address_number(self.machine.polar.virtual_axis))
-        )
+        found = np.flatnonzero(address >= FIRST_NAMED)
+        own = [*map(self.machine.address_number, self.machine.polar.axis_addresses)]
+        return found[~np.isin(address[found], own)] if len(found) else found
 
     def words_at(self, indices: Rows) -> Mask:
         """Per executed word: whether it is one of these."""
@@ -101,7 +101,8 @@ class Columns:
     def consists_of(self, *addresses: str) -> Mask:
         """Whether a row has words of these addresses and no others; N and block skip may stand beside them."""
         beside = np.zeros(256, bool)
-        beside[[ord(address) for address in (*addresses, "N", "/")]] = True
+        named = [self.machine.address_number(address) for address in (*addresses, "N", "/") if address]
+        beside[named] = True
         return self.has(*addresses) & ~self.with_words(~beside[self.run.words.address])
 
     def _scatter(self, address: str, values: Floats) -> Floats:

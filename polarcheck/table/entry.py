@@ -15,7 +15,7 @@ from polarcheck.table.origin import Origin
 from polarcheck.table.trace import Trace
 
 #: What may stand beside a D that is meant for the cutter: words, and modal groups of G codes.
-_WORDS_BESIDE_D = ("T", "S", "M", "G", "F", "X", "U", "Z", "W", "C", "H")
+_WORDS_BESIDE_D = ("T", "S", "M", "G", "F", "X", "U", "Z", "W")
 _BESIDE_D = ("motion", "side", "units", "plane", "feed_mode", "speed")
 
 
@@ -74,7 +74,12 @@ class Entry:
         codes += [code for name in m_codes.__struct_fields__ for code in getattr(m_codes, name)]
         plain = trace.words_at(trace.code_indices(*codes))
         has_other_code = trace.with_words(np.isin(trace.run.words.address, list(b"GM")) & ~plain)
-        calls = trace.has("D") & trace.consists_of("D", *_WORDS_BESIDE_D) & ~has_other_code & ~trace.in_cycle
+        calls = (
+            trace.has("D")
+            & trace.consists_of("D", *_WORDS_BESIDE_D, *machine.polar.rotary_words)
+            & ~has_other_code
+            & ~trace.in_cycle
+        )
         ahead = self._is_before_mode
         above_tool = np.append((trace.changes_tool & ahead)[1:], False) & (trace.tool == 0)
         return np.asarray(calls & (ahead | above_tool))

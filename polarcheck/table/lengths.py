@@ -24,13 +24,14 @@ class Lengths(Columns):
     def is_coordinate(self) -> Mask:
         """Per word: the end, the center or the radius of a move, or the infeed beside G12.1."""
         words = self.run.words
-        is_length = np.isin(words.address, list(b"XYZCUVWHIJKR"))
+        mode = self.machine.polar
+        is_length = np.isin(words.address, [*b"XYZUVWIJKR", *map(self.machine.address_number, mode.axis_addresses)])
         is_offset_number = (words.address == ord("H")) & self.switches_length_offset[self.run.row]
         moves = self.uses_axes & ~self.in_cycle
         found = np.asarray(is_length & ~is_offset_number & moves[self.run.row])
-        if self.machine.polar.infeed_word:
-            is_infeed = words.address == ord(self.machine.polar.infeed_word)
-            found |= is_infeed & self.codes(*self.machine.polar.on)[self.run.row]
+        if mode.infeed_word:
+            is_infeed = words.address == ord(mode.infeed_word)
+            found |= is_infeed & self.codes(*mode.on)[self.run.row]
         return found
 
     @cached_property

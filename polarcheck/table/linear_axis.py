@@ -58,10 +58,11 @@ class LinearAxis(Lengths):
         Where C, as the program has last positioned it outside the mode, turns the linear axis to, as a number of length
         1 on the polar plane; NaN where it has not, or by steps alone.
         """
-        referenced = self.listed("c_axis_reference") & self.has("C", "H")
-        positioned = self.has("C") & self.uses_axes & (self.state("distance") == Distance.ABSOLUTE)
-        angle = np.where(referenced, 0.0, np.where(positioned, self.angle_of("C"), np.nan))
-        angle = fill_down(angle, self.has("C", "H") | self.ends_mode | self.run.unknown | self.starts, np.nan)
+        axis, words = self.machine.polar.rotary_address, self.machine.polar.rotary_words
+        referenced = self.listed("c_axis_reference") & self.has(*words)
+        positioned = self.has(axis) & self.uses_axes & (self.state("distance") == Distance.ABSOLUTE)
+        angle = np.where(referenced, 0.0, np.where(positioned, self.angle_of(axis), np.nan))
+        angle = fill_down(angle, self.has(*words) | self.ends_mode | self.run.unknown | self.starts, np.nan)
         return np.round(polar.to_plane(np.ones(len(self)), angle, 0.0), _DIGITS)
 
     @cached_property

@@ -7,12 +7,11 @@ from functools import cached_property
 import numpy as np
 
 from polarcheck.arrays import Mask
+from polarcheck.machines.code_lists import is_code
 from polarcheck.machines.codes import NO_CODE, code_set
 from polarcheck.reading.words import NumberFault
 from polarcheck.table.filling import before
 from polarcheck.table.trace import Trace
-
-_AXES = ("X", "Y", "Z", "C", "U", "V", "W", "H")
 
 
 class ModeWords:
@@ -106,7 +105,7 @@ class ModeWords:
         sets = self.sets_coordinates
         shifts = self.listed("local_shift", "machine_coordinates", "work_offset", "work_offset_extended")
         shifts |= self.listed("coordinate_preset")
-        shifts |= sets & self.in_rows(trace.has(*_AXES))
+        shifts |= sets & self.in_rows(trace.has(*trace.machine.axis_words, *trace.machine.control.named_axes))
         shifts |= self.listed("data_input") & self.in_rows(is_work_offset)
         shifts &= self.not_allowed
         return shifts | (sets & self.not_allowed & self.in_rows(self.rows(shifts)))
@@ -137,8 +136,10 @@ class ModeWords:
         words, polar = self.trace.run.words, self.trace.machine.polar
         of_address, of_begin = np.zeros((2, 256), bool)
         of_address[[ord(name) for name in ("N", "O", "/")]] = True
-        of_begin[[ord(name) for name in polar.words_beside_switch if len(name) == 1]] = True
-        of_code = self.codes(*polar.on, *polar.off, *(name for name in polar.words_beside_switch if len(name) > 1))
+        codes = [name for name in polar.words_beside_switch if is_code(name, "GM")]
+        addresses = [name for name in polar.words_beside_switch if name not in codes]
+        of_begin[[self.trace.machine.address_number(name) for name in addresses]] = True
+        of_code = self.codes(*polar.on, *polar.off, *codes)
         # X stands for the linear axis, whichever that is.
         of_linear = (words.address == self.trace.linear_axis[self.trace.run.row]) & of_begin[ord("X")]
         begins = (of_begin[words.address] | of_linear) & ~self.in_rows(self.trace.leaves)

@@ -45,7 +45,9 @@ class Positions(VirtualAxis):
     @cached_property
     def motion(self) -> States:
         """What the row does with its axis words (Motion); NONE without axis words."""
-        moving = self.moves_plane | self.moves_z | (self.uses_axes & self.has("C", "H", "Y", "V"))
+        moving = (
+            self.moves_plane | self.moves_z | (self.uses_axes & self.has(*self.machine.polar.rotary_words, "Y", "V"))
+        )
         motion = np.where(self.in_cycle, Motion.CYCLE, self.state("motion"))
         return np.where(moving, motion, Motion.NONE).astype(np.int16)
 

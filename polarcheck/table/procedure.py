@@ -12,8 +12,6 @@ from polarcheck.machines.modal import FeedMode, Motion, Side
 from polarcheck.table.filling import before, fill_down, happened, last_row
 from polarcheck.table.trace import Trace
 
-#: The rotary axis, as FANUC and others name it.
-_ROTARY = "C"
 #: So many moves of C at feed, with one of X among them, are a contour; one alone is a groove or a position.
 _MOVES_OF_CONTOUR = 2
 #: C of a contour hardly passes the X from which it is approached; as a length, an angle of the C axis does. Its share.
@@ -62,8 +60,13 @@ class Procedure:
     @property
     def _is_arc(self) -> Mask:
         """Arcs, where the virtual axis is the rotary one: a Y axis that moves on arcs is a real one."""
-        is_rotary = self.trace.machine.polar.virtual_axis == _ROTARY
-        return np.isin(self.trace.motion, (Motion.CW, Motion.CCW)) & is_rotary
+        return np.isin(self.trace.motion, (Motion.CW, Motion.CCW)) & self._is_rotary
+
+    @property
+    def _is_rotary(self) -> bool:
+        """Whether the virtual axis has the address of the rotary one."""
+        mode = self.trace.machine.polar
+        return mode.virtual_axis == mode.rotary_address
 
     @cached_property
     def _may_begin(self) -> Mask:
@@ -83,7 +86,7 @@ class Procedure:
     def _stretch(self, turns: Mask, stops: Mask) -> Rows:
         """The first row of C at feed of a stretch of moves at feed up to the row, if it is a contour; else -1."""
         trace = self.trace
-        if trace.machine.polar.virtual_axis != _ROTARY:
+        if not self._is_rotary:
             return np.full(len(trace), -1)
         plane = turns & ~self._is_arc
         along_x = np.isin(trace.motion, _AT_FEED) & trace.has("X", "U")

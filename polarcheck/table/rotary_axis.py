@@ -1,4 +1,4 @@
-"""The rotary axis: the angle of C outside the polar mode, and what the polar plane makes of it inside."""
+"""The rotary axis, C on most lathes: its angle outside the polar mode, and what the polar plane makes of it inside."""
 
 from __future__ import annotations
 
@@ -18,17 +18,18 @@ class RotaryAxis(Positions):
     @cached_property
     def c_angle(self) -> Floats:
         """C angle of the machine after the row [deg], continuous along a section; NaN while unknown."""
+        axis, increment = self.machine.polar.rotary_words
         moving = self.uses_axes & (self.section < 0)
-        written, stepped = self.has("C") & moving, self.has("H") & moving
-        absolute = np.where(written & ~self.incremental, self.angle_of("C"), np.nan)
-        turn = np.where(written & self.incremental, self.angle_of("C"), 0.0)
-        turn += np.where(stepped, self.angle_of("H"), 0.0)
+        written, stepped = self.has(axis) & moving, self.has(increment) & moving
+        absolute = np.where(written & ~self.incremental, self.angle_of(axis), np.nan)
+        turn = np.where(written & self.incremental, self.angle_of(axis), 0.0)
+        turn += np.where(stepped, self.angle_of(increment), 0.0)
         on_plane = self.in_polar & self.moves_plane
         turn[on_plane] = polar.c_sweep(*self._move(on_plane))
         # G28 H0 takes C to its reference point, the zero of its angle (builder's guide: "zero return C-axis").
-        referenced = self.listed("c_axis_reference") & self.has("C", "H")
-        values = np.where(referenced, 0.0, np.where(self.sets_coordinates, self.angle_of("C"), np.nan))
-        return positions(absolute, turn, self._forgets("C", "H"), values)
+        referenced = self.listed("c_axis_reference") & self.has(axis, increment)
+        values = np.where(referenced, 0.0, np.where(self.sets_coordinates, self.angle_of(axis), np.nan))
+        return positions(absolute, turn, self._forgets(axis, increment), values)
 
     @cached_property
     def section_entry(self) -> Floats:

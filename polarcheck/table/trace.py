@@ -18,7 +18,7 @@ from polarcheck.reading.words import NumberFault
 from polarcheck.table.filling import before, fill_down, happened
 from polarcheck.table.tool_offsets import ToolOffsets
 
-#: Addresses that name the rotary axis of a cylinder with its radius, or the radius itself.
+#: Addresses that name the rotary axis of a cylinder with its radius, or the radius itself; beside that of the machine.
 _CYLINDER_WORDS = ("A", "B", "C", "H", "Q", "R")
 
 
@@ -47,7 +47,8 @@ class Trace(ToolOffsets):
         written = self.listed("cylindrical_interpolation")
         if not written.any():
             return written
-        radius = np.array([self.has(address) & ~(self.word(address) == 0) for address in _CYLINDER_WORDS])
+        names = dict.fromkeys((*_CYLINDER_WORDS, self.machine.polar.rotary_address))
+        radius = np.array([self.has(address) & ~(self.word(address) == 0) for address in names])
         ends = self.changes_tool | self.ends_program | self.starts
         return fill_down(written & radius.any(axis=0), written | ends, False).astype(bool)
 

@@ -129,7 +129,8 @@ class UncompensatedCuts:
         moves = np.flatnonzero(trace.moves | trace.enters | trace.starts | trace.listed("reference_return"))
         row = np.append(moves, -1)[np.searchsorted(moves, last, side="right")]
         last, row = last[row >= 0], row[row >= 0]
-        alone = (trace.motion == Motion.RAPID) & trace.has("X", "U") & ~trace.has("Z", "W", "C", "H", "Y", "V", "B")
+        others = ("Z", "W", "Y", "V", "B", *trace.machine.polar.rotary_words)
+        alone = (trace.motion == Motion.RAPID) & trace.has("X", "U") & ~trace.has(*others)
         alone &= self._has_contour & (trace.section < 0) & (trace.side == trace.side_before)
         last, row = last[alone[row]], row[alone[row]]
         place = trace.end[last]

@@ -77,7 +77,7 @@ class Unpointed:
         takes_words = bool(trace.machine.polar.words_beside_switch)
         column = np.where(trace.in_polar | (trace.enters & takes_words), trace.section, -1)
         enter = trace.sections.enter
-        for addresses in (("X", "U"), ("C", "H")):
+        for addresses in (("X", "U"), trace.machine.polar.rotary_words):
             rows = np.append(-1, np.flatnonzero(trace.uses_axes & trace.has(*addresses) & ~trace.in_polar))
             last = rows[np.searchsorted(rows, enter) - 1]
             own = (last >= 0) & (trace.program[last] == trace.program[enter])

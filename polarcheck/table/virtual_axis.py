@@ -90,7 +90,7 @@ class VirtualAxis(LinearAxis):
             named |= rows
             pairs.append((pair, rows))
         for pair in dict.fromkeys((*self._forms, *self._foreign)):
-            rows = self.has(*pair) & ~named & (self.linear_axis != ord(pair[0]))
+            rows = self.has(*pair) & ~named & (self.linear_axis != self.machine.address_number(pair[0]))
             named |= rows
             pairs.append((pair, rows))
         return pairs

@@ -75,6 +75,11 @@ def virtual(trace: Trace, row: int) -> str:
     return trace.virtual_axis_of(row)
 
 
+def rotary(machine: Machine) -> str:
+    """The address of the rotary axis: C."""
+    return machine.polar.rotary_address
+
+
 def switch(trace: Trace, row: int) -> str:
     """The code in this row that switches the polar mode on or off, as in G12.1 or G113."""
     return shown(trace.machine.control.native_words, _switch(trace, row))

@@ -242,4 +242,5 @@ def left(trace: Trace, coverage: Coverage, row: int) -> str:
 
 
 def _point(trace: Trace, point: complex, row: int) -> str:
-    return f"{in_row(point, trace, row):point}".replace("C", trace.virtual_axis_of(row))
+    axis = trace.virtual_axis_of(row)
+    return f"{in_row(point, trace, row):point}".replace("C", f"{axis}=" if len(axis) > 1 else axis)

@@ -97,7 +97,8 @@ def verdict(trace: Trace, tool_center: ToolCenter, row: int) -> str:
     limits = trace.machine.limits
     if np.isnan(limits.c_feed):
         turns, most = float(tool_center.c_feed[row]) / 360, limits.c_feed_suspicious / 360
-        return f"which is {turns:.0f} turns a minute, and no C axis is known to cut with more than {most:.0f}"
+        known = f"no {trace.machine.polar.rotary_address} axis is known to cut with more than {most:.0f}"
+        return f"which is {turns:.0f} turns a minute, and {known}"
     if tool_center.is_at_c_feed_limit[row]:
         return f"the limit of {trace.machine.title}, below which it must stay"
     rate, limit = (in_row(float(value), trace, row) for value in (tool_center.c_feed[row], limits.c_feed))
@@ -128,11 +129,12 @@ def meeting(trace: Trace, center: Center, tool_center: ToolCenter, row: int) -> 
     """How the tool center meets the center of C in a row that does."""
     moves, stops, least = tool_center.moves, center.stops_at_center, trace.least_step[row]
     at = np.flatnonzero((moves.row == row) & (stops | (moves.nearest < least)))[-1]
+    axis = trace.machine.polar.rotary_address
     if stops[at]:
-        return "stops at the center of the C axis, where C has no angle"
+        return f"stops at the center of the {axis} axis, where {axis} has no angle"
     if abs(moves.start[at]) < least:
-        return "starts at the center of the C axis, where C has no angle"
-    return "passes through the center of the C axis, where C would have to turn by 180 deg at once"
+        return f"starts at the center of the {axis} axis, where {axis} has no angle"
+    return f"passes through the center of the {axis} axis, where {axis} would have to turn by 180 deg at once"
 
 
 def per_minute(machine: Machine) -> str:

@@ -123,8 +123,10 @@ def meaning(trace: Trace, at: list[int]) -> str:
 def taken_by(trace: Trace, other_machine: OtherMachine, at: list[int], row: int) -> str:
     """Which machines read the whole program well; where none does, which word beside G12.1 or controls take it."""
     mode = trace.machine.polar
-    address = chr(int(trace.run.words.address[at[0]]))
-    choosing = next((word for word, pair in mode.virtual_axis_by_word.items() if address in pair), "")
+    number, of_address = int(trace.run.words.address[at[0]]), trace.machine.address_number
+    choosing = next(
+        (word for word, pair in mode.virtual_axis_by_word.items() if number in map(of_address, filter(None, pair))), ""
+    )
     if choosing:
         return f"; beside {choosing} it would be"
     controls = mode.other_controls
@@ -264,7 +266,11 @@ def first_axis(trace: Trace, index: int) -> str:
 def what(trace: Trace, arcs: Arcs, index: int) -> str:
     """What becomes of a section without the second axis."""
     off = int(trace.count_in_section(arcs.is_no_circle)[index])
-    return f"and {off} arcs are no circles" if off > 1 else "through the center of the C axis"
+    return (
+        f"and {off} arcs are no circles"
+        if off > 1
+        else f"through the center of the {trace.machine.polar.rotary_address} axis"
+    )
 
 
 def not_understood(trace: Trace, other_mode: OtherMode) -> tuple[str, int]:
@@ -305,7 +311,8 @@ def shifted_by(trace: Trace, row: int, at: list[int]) -> str:
 def where(trace: Trace, row: int) -> str:
     """Where a code belongs that the mode does not take; beside a drilling cycle C is an angle there."""
     is_cycle = trace.listed("drilling_cycle")[row]
-    return outside(trace, row) + (", where its C is an angle again" if is_cycle else "")
+    axis = trace.machine.polar.rotary_address
+    return outside(trace, row) + (f", where its {axis} is an angle again" if is_cycle else "")
 
 
 def begins(angles: Angles, row: int) -> str:

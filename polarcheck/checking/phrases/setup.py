@@ -95,9 +95,16 @@ def to_clear(trace: Trace, entry: Entry, row: int) -> str:
     return f"stock {stock} and cutter {cutter} need"
 
 
+def to_reference(machine: Machine) -> str:
+    """What takes the rotary axis to its reference point: G28 H0, G28 A0, or G28 C2=0."""
+    mode = machine.polar
+    address = mode.rotary_incremental or f"{mode.rotary_address}{'=' * (len(mode.rotary_address) > 1)}"
+    return f"{code_of(machine, 'c_axis_reference')} {address}0"
+
+
 def axes(trace: Trace, row: int) -> str:
     """What is to be positioned: X, and C where that is not known either."""
-    return "X and C" if np.isnan(trace.c_angle[row]) else "it"
+    return f"X and {trace.machine.polar.rotary_address}" if np.isnan(trace.c_angle[row]) else "it"
 
 
 def unknown_since(trace: Trace, entry: Entry, row: int) -> str:

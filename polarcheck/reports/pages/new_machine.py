@@ -201,6 +201,8 @@ def _present(profile: Profile, meaning: Meaning) -> str:
     """What a parameter would be on the machine as its profile is; empty where that is not one number."""
     group, _, key = meaning.key.partition(".")
     value = getattr(getattr(profile.machine, group, None), key, None) if key else None
+    if meaning.is_letter:
+        return str(value)
     if isinstance(value, bool) or not isinstance(value, int | float) or not meaning.factor or math.isnan(value):
         return ""
     return f"{value / meaning.factor:g}"

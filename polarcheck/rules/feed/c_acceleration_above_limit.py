@@ -6,9 +6,9 @@ from polarcheck.checking.rule import WARNING, Center, Feeds, Mask, Trace, rule
 
 @rule(
     WARNING,
-    "C axis would need {tool_center.c_acceleration:whole/machine.limits.c_acceleration} deg/s2, {machine.title} has "
-    "{machine.limits.c_acceleration:whole/tool_center.c_acceleration}; nearest distance {tool_center.nearest:length}, "
-    "highest F here: {feeds.allowed_by_acceleration:highest}",
+    "{rotary} axis would need {tool_center.c_acceleration:whole/machine.limits.c_acceleration} deg/s2, {machine.title} "
+    "has {machine.limits.c_acceleration:whole/tool_center.c_acceleration}; "
+    "nearest distance {tool_center.nearest:length}, highest F here: {feeds.allowed_by_acceleration:highest}",
     at=("F",),
     needs=("tool_center.c_acceleration",),
     where="feeds.is_limited_in_acceleration",

@@ -6,8 +6,8 @@ from polarcheck.checking.rule import ERROR, WARNING, Center, Hits, Machine, Tool
 
 @rule(
     ERROR,
-    "C axis would turn at {tool_center.c_feed:whole/tool_center.c_feed_limit} deg/min with {feed_word}, {verdict}; "
-    "nearest distance {tool_center.nearest:length}; {advice}",
+    "{rotary} axis would turn at {tool_center.c_feed:whole/tool_center.c_feed_limit} deg/min with {feed_word}, "
+    "{verdict}; nearest distance {tool_center.nearest:length}; {advice}",
     at=("F",),
     needs=("tool_center.c_feed",),
     where="trace.cuts",

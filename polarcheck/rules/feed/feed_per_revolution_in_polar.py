@@ -6,7 +6,7 @@ from polarcheck.machines.modal import FeedMode
 
 @rule(
     NOTE,
-    "feed per revolution of a spindle that turns as the C axis now; write feed per minute",
+    "feed per revolution of a spindle that turns as the {rotary} axis now; write feed per minute",
     at=("feed_per_revolution", "line", "arc_clockwise", "arc_counterclockwise"),
     follows={"block": ("feed-missing-in-polar",)},
 )

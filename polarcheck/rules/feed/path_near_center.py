@@ -6,7 +6,7 @@ from polarcheck.checking.rule import WARNING, Center, Hits, Machine, ToolCenter,
 
 @rule(
     WARNING,
-    "tool center comes within {tool_center.nearest:length/keep_out} of the center of the C axis; "
+    "tool center comes within {tool_center.nearest:length/keep_out} of the center of the {rotary} axis; "
     "keep {keep_out:length/tool_center.nearest} away",
     at=("X", "U", "C", "H"),
     follows={"block": ("c-feed-above-limit", *NO_SUCH_ARC), "section": SECTION_READ_OTHERWISE},

@@ -61,7 +61,8 @@ def incremental_word_of_other_code_system(trace: Trace, mode_words: ModeWords, m
     """
     in_system_a = machine.control.g_code_system == "A"
     mode, of_b = machine.polar, machine.g_code_system_b
-    increments = ("U", "W", mode.virtual_axis_incremental, *(pair[1] for pair in mode.virtual_axis_by_word.values()))
+    of_axis = (mode.virtual_axis_incremental, *(pair[1] for pair in mode.virtual_axis_by_word.values()))
+    increments = ("U", "W", *filter(None, of_axis))
     codes = (*of_b.absolute, *of_b.incremental, *of_b.feed_per_minute, *of_b.feed_per_revolution)
     # The address of another control has a rule of its own: wrong-axis-address-in-polar.
     wrong = mode_words.first_of(*(codes if in_system_a else increments)) & ~mode_words.of_other_axis

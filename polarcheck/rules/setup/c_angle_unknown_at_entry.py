@@ -5,7 +5,7 @@ from polarcheck.checking.rule import WARNING, Entry, Mask, Spindles, Trace, rule
 
 @rule(
     WARNING,
-    "C has not been positioned before {switch}; the shape stands wherever the spindle stopped",
+    "{rotary} has not been positioned before {switch}; the shape stands wherever the spindle stopped",
     at=("on",),
     follows={"block": ("c-axis-not-engaged", "c-axis-not-referenced", "x-unknown-at-entry")},
 )
@@ -55,7 +55,7 @@ def c_angle_unknown_at_entry(trace: Trace, entry: Entry, spindles: Spindles) -> 
         G13.1
         M30
     """
-    positioned = (trace.has("C", "H") & (trace.section < 0)) | trace.moves_unnamed
+    positioned = (trace.has(*trace.machine.polar.rotary_words) & (trace.section < 0)) | trace.moves_unnamed
     return (
         trace.enters
         & trace.is_followed

@@ -5,7 +5,7 @@ from polarcheck.checking.rule import WARNING, Entry, Hits, Machine, Spindles, Tr
 
 @rule(
     WARNING,
-    "the C axis is not engaged; {codes} is missing before {switch}{or_engaged_by}",
+    "the {rotary} axis is not engaged; {codes} is missing before {switch}{or_engaged_by}",
     at=("on",),
     once="c axis code",
 )

@@ -5,7 +5,7 @@ from polarcheck.checking.rule import WARNING, Entry, Mask, Spindles, Trace, rule
 
 @rule(
     WARNING,
-    "C has not gone to its reference point since it was engaged; write G28 H0 before {switch}",
+    "{rotary} has not gone to its reference point since it was engaged; write {to_reference} before {switch}",
     at=("on",),
     once="c axis code",
 )
@@ -52,7 +52,8 @@ def c_axis_not_referenced(trace: Trace, entry: Entry, spindles: Spindles) -> Mas
         G13.1
     """
     # C of a sub-spindle has another name on many lathes.
-    named = trace.has("C", "H") | (trace.has("A", "B") & spindles.on_sub_spindle) | trace.moves_unnamed
+    of_sub_spindle = trace.has("A", "B") & spindles.on_sub_spindle
+    named = trace.has(*trace.machine.polar.rotary_words) | of_sub_spindle | trace.moves_unnamed
     referenced = trace.listed("c_axis_reference") & named
     entered = trace.enters & trace.is_followed & spindles.c_axis
     return entered & ~entry.happened(referenced, since=spindles.engages_c_axis)

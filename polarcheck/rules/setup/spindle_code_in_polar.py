@@ -5,7 +5,7 @@ from polarcheck.checking.rule import WARNING, Hits, Machine, Spindles, Trace, gr
 
 @rule(
     WARNING,
-    "{codes} in the polar mode; the spindle is the C axis here",
+    "{codes} in the polar mode; the spindle is the {rotary} axis here",
     follows={"section": ("polar-never-left",)},
 )
 def spindle_code_in_polar(trace: Trace, spindles: Spindles, machine: Machine) -> Hits:
