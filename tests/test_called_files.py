@@ -139,6 +139,19 @@ def test_what_one_state_of_block_skip_calls_is_no_part_of_the_other(folder: Path
     assert [len(text.source.parts) for text in (off, on)] == [1, 0]
 
 
+@pytest.mark.parametrize(
+    ("block", "rule"), [("(A (B)", ""), ("g0 x5.", "lower-case-word"), ("G0 X1. X2.", "word-repeated"), ("(AB", "")]
+)
+def test_what_is_wrong_in_a_text_that_one_state_of_block_skip_calls(folder: Path, block: str, rule: str) -> None:
+    # What the rules of the text have found in one text was taken for what is in the other, shorter one.
+    write(folder, O0002=f"G0 X5. Z1.\n{block}\nM99\n")
+    for program in ("O1\n/M98 P2\nM30\n", "O1\nx5.\n/M98 P2\nM30\n"):
+        found = [finding.rule for finding in report_of(program, job=with_folder(folder)).findings]
+        assert [name for name in found if name != "program-end-missing"] == sorted(
+            {*(["lower-case-word"] * ("x" in program)), rule} - {""}
+        )
+
+
 def test_places_move_with_the_files_that_are_left_out(folder: Path) -> None:
     """O2 is never called, O3 behind it is: its faults stand at its own lines, with what is written there."""
     write(folder, O0002="(MANY)\n" * 7 + SUB.format(2), O0003="G0 X3.\nG0 Z#50\nG0 X[5/0]\nIF[#500 EQ 1]GOTO 9\nM99\n")

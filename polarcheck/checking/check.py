@@ -82,9 +82,11 @@ def _check_channel(
     first = report_of(engine)
     if not more:
         return first
-    ((other, tables),) = more
+    ((other, others),) = more
     of_text = {rule.name: engine.hits(rule) for rule in engine.rules.values() if rule.of_text}
-    second = report_of(engine_of(tables, rules, severities, of_text))
+    # A program that one run alone calls stands in the text of that run alone.
+    known = of_text if others["text"] is tables["text"] else None
+    second = report_of(engine_of(others, rules, severities, known))
     return _merged((state, first), (other, second), of_text)
 
 
