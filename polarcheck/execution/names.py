@@ -7,6 +7,8 @@ from typing import Final
 #: Variables that have a name stand above all that have a number.
 FIRST_VARIABLE: Final = 20_000_000
 _FIRST_TOOL: Final = 2_000_000_000
+#: A longer name is none of a number of a tool.
+_DIGITS: Final = 9
 
 
 class Names:
@@ -25,5 +27,7 @@ class Names:
         return self.variables.setdefault(name.upper(), FIRST_VARIABLE + len(self.variables))
 
     def tool(self, name: str) -> int:
-        """The number that stands for a tool."""
+        """The number that stands for a tool; a name of digits is that number, as T="8" is T8."""
+        if name.isdecimal() and len(name) < _DIGITS and name[:1] != "0":
+            return int(name)
         return self.tools.setdefault(name.upper(), _FIRST_TOOL + len(self.tools))
