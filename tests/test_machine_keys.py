@@ -104,6 +104,7 @@ ARC = "O1\nG98 G0 X60. C0\nG12.1\nG1 X40. F200\nG3 X20. C10. {}\nG1 X60.\nG13.1\
 RAMPS = "O1\nT0101\nG98 G0 X100. C0\nG12.1\n{}G1 G42 X40. F200\n{}C20.\nX10.\nC-20.\nX60.\n{}G40 X100.\nG13.1\nM30\n"
 CUTTER = ("1:radius=4",)
 SETS = "O1\n{}\nT0101\nG98 G0 X100. C0\nG12.1\nG1 G42 X60. F200\nC20.\nG40 X100.\nG13.1\nM30\n"
+EDGES = "T8 D2\nG94 G0 X60 Y0\nDIAMOF\nTRANSMIT\nG17\nG1 G41 X40 F200\nY-20\nG40 X60\nTRAFOOF\nM30\n"
 CORNERS = "O1\nT0101\nG98 G0 X100. C0\nG12.1\nG1 C{}. F500\nG41 {}\nG1 G40 X120.\nG13.1\nM30\n"
 REVERSED = CORNERS.format(20, "X60. F200\nG3 X58. C10. R6.\nG1 X68. C5.\nX66. C8.")
 OUTSIDE = CORNERS.format(20, "X60. F200\nG3 X70. C25. R5.\nG1 X72. C30.")
@@ -315,6 +316,9 @@ USES = {
     "m_codes.optional_stop": Use([], ENDED.format("G28 U0\nM1")),
     "m_codes.program_end": Use(["M30"], FLAT.replace("M30", "M2")),
     "m_codes.stops_reading_ahead": Use([], RAMPS.format("", "M1\n", ""), tools=CUTTER),
+    "offsets.called_by": Use("last-digits", EDGES, "siemens-transmit", ("8/2:radius=2",)),
+    "offsets.edge_after_tool": Use(2, EDGES.replace(" D2", ""), "siemens-transmit", ("8/2:radius=2",)),
+    "offsets.called_in_polar": Use("never", EDGES.replace("G17", "D1"), "siemens-transmit", ("8/2:radius=2",)),
     "offsets.geometry_from": Use(20000, SETS.format("G10 P10001 R4.")),
     "offsets.geometry": Use([11], SETS.format("G10 L10 P1 R4.")),
     "offsets.wear": Use([], SETS.format("G10 L10 P1 R4.\nG10 L11 P1 R-.1")),

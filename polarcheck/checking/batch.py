@@ -36,13 +36,13 @@ class Checked(msgspec.Struct, frozen=True):
     """
     The reports of the files that could be read, and by path and number the lines that their findings stand in.
 
-    called: offset numbers that any of the programs calls, where it has a job with tools. stopped: by what the check was
-    interrupted; the files that were finished before that are here.
+    called: keys of the offsets that any of the programs calls, where it has a job with tools. stopped: by what the
+    check was interrupted; the files that were finished before that are here.
     """
 
     files: list[FileReport]
     lines: dict[str, dict[int, str]]
-    called: set[int]
+    called: set[str]
     stopped: KeyboardInterrupt | None = None
 
 
@@ -93,7 +93,7 @@ def check_files(
     """
     reports: list[FileReport] = []
     lines: dict[str, dict[int, str]] = {}
-    called: set[int] = set()
+    called: set[str] = set()
     stopped = None
     try:
         for number, task in enumerate(tasks):
@@ -121,8 +121,8 @@ def check_files(
     return Checked(reports, lines, called, stopped)
 
 
-def _check(task: Task, data: bytes, encoding: str | None) -> tuple[FileReport, Source, set[int]]:
-    """The report, the text, and the offset numbers that are called, where the job has any."""
+def _check(task: Task, data: bytes, encoding: str | None) -> tuple[FileReport, Source, set[str]]:
+    """The report, the text, and the keys of the offsets that are called, where the job has any."""
     path, settings = files.shown(task.path), task.settings
     with time_limit(seconds_for(len(data), settings.job.run.max_seconds)):
         found = check.read(data, settings.machine, settings.job, path, encoding)
@@ -131,8 +131,12 @@ def _check(task: Task, data: bytes, encoding: str | None) -> tuple[FileReport, S
         return report, text.source, _offsets(found) if settings.job.tools else set()
 
 
-def _offsets(found: Sequence[tuple[str, Tables]]) -> set[int]:
-    return {number for _, tables in found for number in tables["trace"].called_offsets}
+def _offsets(found: Sequence[tuple[str, Tables]]) -> set[str]:
+    return {
+        trace.offset_key(number)
+        for trace in (tables["trace"] for _, tables in found)
+        for number in trace.called_offsets
+    }
 
 
 def _lines(text: Source, found: FileReport) -> dict[int, str]:

@@ -91,17 +91,18 @@ class PolarSection(msgspec.Struct, frozen=True, kw_only=True):
     """
     What the verdict rests on in one polar section.
 
-    Lines: of its G12.1 and of its end. units: of the program there. offset: the number whose radius counts; null for
-    none. radius [mm] and where it comes from: command line, job, offset table, program, comment, none. nearest: the
-    smallest distance of the tool center to the center of C in a cutting move [mm]. c_feed: highest rate of C [deg/min],
-    its line and the limit of the machine. ramp_used: how much of a start-up or offset cancel its radius needs, the
-    highest; 1 at the limit. time: of all moves on the plane [s]. null is not known, or not there.
+    Lines: of its G12.1 and of its end. units: of the program there. offset: the number whose radius counts, or tool
+    and edge (MILL_8/1); null for none. radius [mm] and where it comes from: command line, job, offset table,
+    program, comment, none. nearest: the smallest distance of the tool center to the center of C in a cutting move
+    [mm]. c_feed: highest rate of C [deg/min], its line and the limit of the machine. ramp_used: how much of a
+    start-up or offset cancel its radius needs, the highest; 1 at the limit. time: of all moves on the plane [s].
+    null is not known, or not there.
     """
 
     line: int
     end_line: int
     units: str
-    offset: int | None
+    offset: int | str | None
     radius: float | None
     radius_source: str
     nearest: float | None

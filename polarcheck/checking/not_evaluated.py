@@ -12,6 +12,7 @@ from polarcheck.arrays import Floats, Mask, Rows
 from polarcheck.checking.finding import NotEvaluated
 from polarcheck.checking.macro_faults import reason_of
 from polarcheck.checking.phrases.common import block_and_line, linear
+from polarcheck.checking.phrases.offsets import called_tool, example, offset, to_give
 from polarcheck.checking.phrases.polar import (
     axes_not_followed,
     extrudes,
@@ -186,10 +187,9 @@ def _ramps_of_center(tables: Tables, rule: Rule) -> Iterator[NotEvaluated]:
     ramps = np.flatnonzero((trace.starts_up | trace.cancels) & trace.is_path_of_center)
     first, counts = _groups(trace.offset_number[ramps])
     for row, count in sorted(zip(ramps[first].tolist(), counts.tolist(), strict=True)):
-        number = int(trace.offset_number[row])
         reason = (
-            f"R of offset {number} is taken as 0, since every ramp is shorter than the radius of its comment; whether "
-            f"they are too short is open: give --tool {number}:radius=... or [tools.{number}] radius in polarcheck.toml"
+            f"R of offset {offset(trace, row)} is taken as 0, since every ramp is shorter than the radius of its "
+            f"comment; whether they are too short is open: {to_give(trace, row, 'radius')}"
         )
         yield NotEvaluated(rule=rule.name, reason=reason, blocks=count)
 
@@ -250,26 +250,24 @@ def _no_offset(what: str, key: str, of_program: Callable[[Trace], Rows] | None =
         trace: Trace = tables["trace"]
         number = int(trace.offset_number[row])
         if not number:
-            return f"no {what}: no tool offset is in force; call one before the polar mode, as in T0808"
-        tool = f"T{int(trace.tool[row]):02d}{number:02d}"
+            how = example(trace.machine)
+            return f"no {what}: no tool offset is in force; call one before the polar mode, as in {how}"
         setter = int(of_program(trace)[row]) if of_program else -1
         if setter >= 0:
-            return _not_known_from_program(trace, number, setter, what, key)
-        return f"no {what} for {tool}: give --tool {number}:{key}=... or [tools.{number}] {key} in polarcheck.toml"
+            return _not_known_from_program(trace, row, setter, what, key)
+        return f"no {what} for {called_tool(trace, row)}: {to_give(trace, row, key)}"
 
     return reason
 
 
-def _not_known_from_program(trace: Trace, number: int, setter: int, what: str, key: str) -> str:
+def _not_known_from_program(trace: Trace, row: int, setter: int, what: str, key: str) -> str:
     """Why what the program itself sets of an offset is not known: by which block, and what to give."""
-    unknown = trace.row_of_unknown_setting(number, setter, key)
+    unknown = trace.row_of_unknown_setting(int(trace.offset_number[row]), setter, key)
+    missing = f"no {what} for offset {offset(trace, row)}"
     if unknown >= 0:
-        return (
-            f"no {what} for offset {number}: {block_and_line(trace, unknown)} sets what is not known; {_OF_VARIABLES}"
-        )
+        return f"{missing}: {block_and_line(trace, unknown)} sets what is not known; {_OF_VARIABLES}"
     setting = block_and_line(trace, setter)
-    remedy = f"give --tool {number}:{key}=... or [tools.{number}] {key} in polarcheck.toml"
-    return f"no {what} for offset {number}: {setting} sets wear or a difference alone; {remedy}"
+    return f"{missing}: {setting} sets wear or a difference alone; {to_give(trace, row, key)}"
 
 
 def _position(tables: Tables, row: int) -> str:

@@ -6,6 +6,7 @@ import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Rows
 from polarcheck.checking.finding import PolarSection
+from polarcheck.checking.phrases.offsets import key_of
 from polarcheck.checking.quantity import rounded
 from polarcheck.checking.tables import Tables
 from polarcheck.errors import TooHardError
@@ -49,7 +50,7 @@ def _polar_sections(trace: Trace, tool_center: ToolCenter, center: Center, ramps
                 line=int(trace.line_in_file[enter]),
                 end_line=int(trace.line_in_file[min(end, len(trace) - 1)]),
                 units="inch" if trace.units[enter] == Units.INCH else "mm",
-                offset=int(trace.offset_number[row]) or None,
+                offset=key_of(trace, int(trace.offset_number[row])),
                 radius=rounded(trace.radius[row]),
                 radius_source=_radius_source(trace, row),
                 nearest=rounded(nearest[index]),
@@ -76,7 +77,7 @@ def _radius_source(trace: Trace, row: int) -> str:
         return "none"
     if trace.radius_set_in[row] >= 0:
         return "program"
-    tool = trace.job.tools.get(int(trace.offset_number[row]))
+    tool = trace.tools.get(int(trace.offset_number[row]))
     if trace.radius_is_from_comment[row] or tool is None:
         return "comment"
     return tool.source

@@ -172,7 +172,7 @@ def _check(
     from polarcheck.commands.memory import keep_within_memory
     from polarcheck.commands.progress import watched
     from polarcheck.machines import profiles
-    from polarcheck.machines.job import offset_number
+    from polarcheck.machines.job import key_of_option
     from polarcheck.reading import files
 
     keep_within_memory()
@@ -198,8 +198,9 @@ def _check(
         status, how = signals.told(checked.stopped)
         say(f"{how} after {len(checked.files)} of {len(tasks)} files; these are reported")
     else:
-        for number in sorted({offset_number(tool) for tool in applies.tools} - checked.called):
-            warn(f"--tool {number}: no program of this run calls offset {number}")
+        for key in dict.fromkeys(map(key_of_option, applies.tools)):
+            if key not in checked.called:
+                warn(f"--tool {key}: no program of this run calls offset {key}")
     form = form or ("text" if len(report.files) <= _LONG else "short")
     plain = reports.Background(checked.lines, rule.load_all(), COLUMNS, False, quiet, command, following)
     for kind, path in outputs:

@@ -95,7 +95,13 @@ machine = option(
 changes = option(
     "--set", "changes", multiple=True, metavar="KEY=VALUE", help="A value of the machine: limits.c_feed=3600."
 )
-tools = option("--tool", "tools", multiple=True, metavar="N:KEY=VALUE", help="Tool offset N: 8:radius=0.375,nose=0.")
+tools = option(
+    "--tool",
+    "tools",
+    multiple=True,
+    metavar="N:KEY=VALUE",
+    help="Tool offset N: 8:radius=0.375,nose=0; or an edge: MILL_8/1:radius=4.",
+)
 offsets = option(
     "--offsets", type=click.Path(exists=True, dir_okay=False, path_type=Path), help="Offset table from the control."
 )

@@ -16,7 +16,7 @@ from polarcheck.commands.job_files import JobFile
 from polarcheck.commands.selection import Rules
 from polarcheck.errors import MachineError, UsageError
 from polarcheck.machines import profiles, toml_text
-from polarcheck.machines.job import Job, Running, check_work_offsets, with_tool
+from polarcheck.machines.job import Job, Running, check_tools, check_work_offsets, with_tool
 from polarcheck.machines.machine import Machine
 
 
@@ -103,6 +103,7 @@ def _settings(options: Options, found: JobFile, known: Rules) -> Settings:
     over = [("--set", changes(options.changes)), (str(found.path), of_job)]
     profile = _profile(name, over, known, "" if options.machine else f"{found.path}: machine: ")
     machine = profile.machine
+    check_tools(found.job, options.tools, machine, str(found.path))
     check_work_offsets(found.job, machine, str(found.path))
     levels = selection.severities(options.severities, options.select, found, known, machine)
     rules = selection.chosen(options.select, options.ignore, found, known, machine)

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Annotated, Any, ClassVar, Literal
 
 import msgspec
 
 from polarcheck.errors import JobError, UsageError, suggestion
-from polarcheck.machines.fitting import EXPECTED, MisfitError, fitted
+from polarcheck.machines.fitting import MisfitError, fitted
 from polarcheck.machines.machine import Machine
+from polarcheck.machines.offset_keys import OffsetKey, canonical, is_plain_number
 from polarcheck.machines.values import Variable
 
 #: Lengths in the units of the file, mm or inch: no lathe and no cutter is larger.
@@ -19,11 +20,6 @@ _LARGEST_CUTTER, _LARGEST_LATHE = 1000, 20_000
 
 #: Blocks and statements that anybody waits for.
 _MOST = 10**12
-
-#: T has eight digits at most.
-OffsetNumber = Annotated[
-    int, msgspec.Meta(ge=1, le=99_999_999, extra={EXPECTED: "the number of a tool offset, 8 for T0808"})
-]
 
 
 class Tool(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -90,7 +86,7 @@ class Running(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
 
 
 class Job(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A job. tools: by offset number (T0808: 8). work_offsets: by name (G54)."""
+    """A job. tools: by the keys of their offsets (offset_keys.canonical). work_offsets: by name (G54)."""
 
     machine: Annotated[str, msgspec.Meta(description="name or TOML file of the lathe")] | None = None
     units: (
@@ -102,7 +98,7 @@ class Job(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True)
     program_units: (
         Annotated[Literal["mm", "inch"], msgspec.Meta(description="of programs with neither G20 nor G21")] | None
     ) = None
-    tools: dict[OffsetNumber, Tool] = {}
+    tools: dict[OffsetKey, Tool] = {}
     stock: Stock = Stock()
     run: Running = Running()
     radius_from_comments: Annotated[
@@ -118,6 +114,16 @@ class Job(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True)
     extensions: list[str] = []
     limits: dict[str, float | bool] = {}
 
+    def __post_init__(self) -> None:
+        tools: dict[str, Tool] = {}
+        written: dict[str, str] = {}
+        for name, tool in self.tools.items():
+            key = canonical(name)
+            if key in tools:
+                raise ValueError(f"tools.{written[key]} and tools.{name} are one tool offset")
+            tools[key], written[key] = tool, name
+        msgspec.structs.force_setattr(self, "tools", tools)
+
 
 def from_table(table: Any, title: str) -> Job:
     """A job from the values of a file. Raises JobError that names the title and the key."""
@@ -129,11 +135,11 @@ def from_table(table: Any, title: str) -> Job:
 
 def with_tool(job: Job, option: str) -> Job:
     """
-    The job with one `--tool 8:radius=0.375,nose=0` merged in; T8 is the offset number 8, too.
+    The job with one `--tool 8:radius=0.375,nose=0` merged in; T8 is the offset number 8, too, MILL_8/1 a tool's edge.
 
     Raises UsageError that says what was meant.
     """
-    number, (_, _, pairs) = offset_number(option), option.partition(":")
+    name, pairs = _parts_of_tool(option)
     values: dict[str, Any] = {}
     for pair in pairs.split(","):
         key, equals, value = (part.strip() for part in pair.partition("="))
@@ -144,34 +150,53 @@ def with_tool(job: Job, option: str) -> Job:
             meant = suggestion(key, Tool.__struct_fields__).removeprefix("; ")
             raise UsageError(f"--tool {option}: {key or 'no key'}: {meant or f'keys are {_KEYS_OF_TOOL}'}")
         values[key] = _number(value)
-    known = job.tools.get(number, Tool())
+    known = job.tools.get(canonical(name), Tool())
     kind = AskedTool if "radius" in values else type(known)
     try:
         table = {**_given(msgspec.to_builtins(known)), **values}
-        tool = kind(**msgspec.structs.asdict(fitted({"tools": {number: table}}, Job).tools[number]))
+        (given,) = fitted({"tools": {name: table}}, Job).tools.values()
     except MisfitError as misfit:
-        text = re.sub(rf"^tools\.{number}(\.|: )", "", str(misfit))
+        text = re.sub(rf"^tools\.{re.escape(name)}(\.|: )", "", str(misfit))
         raise UsageError(f"--tool {option}: {text}") from None
-    return msgspec.structs.replace(job, tools={**job.tools, number: tool})
+    tool = kind(**msgspec.structs.asdict(given))
+    return msgspec.structs.replace(job, tools={**job.tools, canonical(name): tool})
 
 
 _KEYS_OF_TOOL = ", ".join(Tool.__struct_fields__)
 
 
-def offset_number(option: str) -> int:
+def key_of_option(option: str) -> str:
     """
-    The 8 of `--tool 8:radius=0.375` or T8; of T0808 it hangs on the control which digits are the offset.
+    The key of the offset of a `--tool` option; of T0808 it hangs on the control which digits are the offset.
 
     Raises UsageError that says what was meant.
     """
-    written, colon, _ = option.partition(":")
-    number = _number_in(written.strip(), option) if colon else None
-    if number is None:
-        raise UsageError(f"--tool {option}: expected NUMBER:KEY=VALUE as in 8:radius=0.375")
-    return number
+    return canonical(_parts_of_tool(option)[0])
 
 
-def _number_in(written: str, option: str) -> int | None:
+def _parts_of_tool(option: str) -> tuple[str, str]:
+    """What stands before the colon, and the keys behind it: a name may hold colons, blanks, and stand in quotes."""
+    first, colon, rest = option.partition(":")
+    name = _plain_number(first.strip(), option) if colon else None
+    if name is not None:
+        return name, rest
+    written, colon, rest = option.rpartition(":")
+    quoted = _QUOTED.fullmatch(written.strip())
+    name = f"{quoted[1]}{quoted[2] or '/1'}" if quoted else written.strip()
+    if not name or _LIKE_NUMBER.fullmatch(name):
+        raise UsageError(_expected_number(option))
+    return name, rest
+
+
+def _expected_number(option: str) -> str:
+    return f"--tool {option}: expected NUMBER:KEY=VALUE as in 8:radius=0.375"
+
+
+_QUOTED = re.compile(r'"([^"]+)"(/[0-9]+)?')
+_LIKE_NUMBER = re.compile(r"[-+.]+[0-9.]*|[0-9.]+")
+
+
+def _plain_number(written: str, option: str) -> str | None:
     digits = written[1:] if written[:1] in ("T", "t") else written
     if not digits.isascii() or not digits.isdecimal():
         return None
@@ -179,13 +204,28 @@ def _number_in(written: str, option: str) -> int | None:
         raise UsageError(
             f"--tool {option}: expected the offset number alone, as in {int(digits[-_DIGITS_OF_OFFSET:])}:radius=0.375"
         )
-    # Longer numbers are cut: they are too large all the same, and Python reads none of thousands of digits.
-    return int(digits.lstrip("0")[: _DIGITS_OF_T + 1] or "0")
+    # Longer numbers are cut: they are too large all the same.
+    return digits.lstrip("0")[: _DIGITS_OF_T + 1] or "0"
 
 
 _DIGITS_OF_T = 8
 #: T8 and T08 can only be read in one way.
 _DIGITS_OF_OFFSET = 2
+
+
+def check_tools(job: Job, options: Iterable[str], machine: Machine, title: str) -> None:
+    """
+    Raises UsageError or JobError, which names the option, or the title and the key, for a tool by its name or edge on
+    a machine that has offset numbers alone.
+    """
+    if machine.has_edges:
+        return
+    for option in options:
+        if not is_plain_number(key_of_option(option)):
+            raise UsageError(_expected_number(option))
+    for key in job.tools:
+        if not is_plain_number(key):
+            raise JobError(f"{title}: tools.{key}: expected the number of a tool offset, 8 for T0808, found {key}")
 
 
 def check_work_offsets(job: Job, machine: Machine, title: str) -> None:

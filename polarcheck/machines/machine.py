@@ -364,6 +364,11 @@ class Machine(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
         return address_number(named.get(address) or address, sorted(named))
 
     @property
+    def has_edges(self) -> bool:
+        """Whether tools may be called by a name, or by number and edge."""
+        return self.offsets.called_by == "edge" or self.macro.language == "high-level"
+
+    @property
     def system_table(self) -> str:
         """The table of the G-code system in force."""
         return f"g_code_system_{self.control.g_code_system.lower()}"

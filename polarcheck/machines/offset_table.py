@@ -25,7 +25,7 @@ _DIGITS = 8
 _SHOWN = 40
 
 
-def read(path: Path, title: str, *, pipes: bool = False) -> dict[int, Tool]:
+def read(path: Path, title: str, *, pipes: bool = False) -> dict[str, Tool]:
     """
     The offsets of a table (`G10 P10008 X.. Z.. R.. Q..`) by offset number; R of geometry and wear are added.
 
@@ -58,7 +58,7 @@ def read(path: Path, title: str, *, pipes: bool = False) -> dict[int, Tool]:
     if not radius and not nose:
         raise JobError(f"{title}: no offsets found; expected blocks such as G10 P10008 R0.375 Q0")
     values = {"radius": radius, "nose": nose, "x_wear": x_wear}
-    return {number: _tool(number, values, title) for number in sorted(radius.keys() | nose.keys())}
+    return {str(number): _tool(number, values, title) for number in sorted(radius.keys() | nose.keys())}
 
 
 def _whole(value: float) -> float:

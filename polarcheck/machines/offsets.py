@@ -1,6 +1,6 @@
-"""Offsets that a program sets by itself, as data: which P, L and variables are R, nose type and X of which offset."""
+"""Offsets as data: how a program calls those of tools, which P, L and variables are R, nose type and X of which."""
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 import msgspec
 
@@ -9,8 +9,12 @@ from polarcheck.machines.values import Ranges
 
 class Offsets(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """
-    Offsets that a program sets by itself: by data input, whose lists stand in [g_codes], and by system variables.
+    How tool offsets are called, and offsets that a program sets by itself: by data input, whose lists stand in
+    [g_codes], and by system variables.
 
+    called_by: last-digits of T, or edge: T is the tool alone, and D the edge of it whose offset is in force
+    edge_after_tool: edge that a T without D calls: its number, 0 for none, -1 for the number that was in force
+    called_in_polar: where a program may call another one in the polar mode: never, or without-compensation
     geometry_from: P of data input without L above which it is geometry, and wear below; 0 where L must stand there
     geometry: numbers of L by which data input sets the geometry of a tool
     wear: numbers of L by which data input sets the wear of a tool
@@ -26,6 +30,9 @@ class Offsets(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     work_offset_step: how much higher the variable of each following work offset is
     """
 
+    called_by: Literal["last-digits", "edge"]
+    edge_after_tool: Annotated[int, msgspec.Meta(ge=-1, le=99_999)]
+    called_in_polar: Literal["never", "without-compensation"]
     geometry_from: Annotated[int, msgspec.Meta(ge=0)]
     geometry: list[int]
     wear: list[int]

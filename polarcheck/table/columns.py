@@ -1,4 +1,4 @@
-"""The columns that a row has by itself or from the rows above it: words, codes, modal states, units, feed, tool."""
+"""The columns that a row has by itself or from the rows above it: words, codes, modal states, units, feed."""
 
 from __future__ import annotations
 
@@ -17,11 +17,10 @@ from polarcheck.machines.codes import code, code_numbers, code_set, modal_tables
 from polarcheck.machines.job import Job
 from polarcheck.machines.machine import Machine
 from polarcheck.machines.modal import MM_PER_INCH, NO_FEED, NO_MOVE, STATES, Distance, FeedMode, Motion, Side, Units
-from polarcheck.table.filling import before, fill_down, happened
+from polarcheck.table.filling import fill_down, happened
 
 Column = TypeVar("Column")
 
-_LONGEST_TOOL_NUMBER = 1e15
 _BEFORE = {"motion": Motion.NONE, "side": Side.OFF, "feed_mode": FeedMode.PER_MINUTE, "distance": Distance.ABSOLUTE}
 
 
@@ -281,7 +280,7 @@ class Columns:
         """M02, M30."""
         return self.codes(*self.machine.m_codes.program_end)
 
-    # ---- units, feed, tool ----
+    # ---- units, feed ----
 
     @cached_property
     def units(self) -> States:
@@ -326,35 +325,6 @@ class Columns:
     @cached_property
     def _takes_feed(self) -> Mask:
         return ~self.listed(*NO_FEED)
-
-    @cached_property
-    def tool_called(self) -> Rows:
-        """What T calls in each row, tool and offset as one number: 808 for T0808; 0 before the first."""
-        written, called = self.has("T"), self.word("T")
-        # A longer number calls nothing (too-many-digits), and none that a whole number could hold.
-        value = np.where(np.abs(called) < _LONGEST_TOOL_NUMBER, called, 0).astype(np.int64)
-        return fill_down(value, written | self.starts, 0)
-
-    @cached_property
-    def tool(self) -> Rows:
-        """Tool number in force, 0 before the first."""
-        return np.asarray(self.tool_called // 10**self.machine.control.offset_digits)
-
-    @cached_property
-    def offset_number(self) -> Rows:
-        """Offset number in force, 0 for none."""
-        return np.asarray(self.tool_called % 10**self.machine.control.offset_digits)
-
-    @property
-    def called_offsets(self) -> list[int]:
-        """The offset numbers that T calls anywhere."""
-        # As NumPy's unique, which would load its masked arrays.
-        return np.flatnonzero(np.bincount(np.abs(self.offset_number[self.has("T")]), minlength=1)).tolist()
-
-    @cached_property
-    def changes_tool(self) -> Mask:
-        """A T word that names another tool than the one in force."""
-        return np.asarray(self.has("T") & (self.tool != before(self.tool, self.starts, 0)) & (self.tool > 0))
 
     @cached_property
     def job_scale(self) -> Floats | float:

@@ -67,7 +67,7 @@ class Entry:
         cycles, calls and codes of the builder, which have a D of their own. Above the first T it may be meant for that.
         """
         trace = self.trace
-        if not trace.has("D").any():
+        if not trace.means_cutter_by_d.any():
             return np.zeros(len(trace), bool)
         machine, m_codes = trace.machine, trace.machine.m_codes
         codes = [code for group in _BESIDE_D for key in STATES[group] for code in machine.codes(key)]
@@ -75,7 +75,7 @@ class Entry:
         plain = trace.words_at(trace.code_indices(*codes))
         has_other_code = trace.with_words(np.isin(trace.run.words.address, list(b"GM")) & ~plain)
         calls = (
-            trace.has("D")
+            trace.means_cutter_by_d
             & trace.consists_of("D", *_WORDS_BESIDE_D, *machine.polar.rotary_words)
             & ~has_other_code
             & ~trace.in_cycle
@@ -152,15 +152,15 @@ class Entry:
     @cached_property
     def radius_in_mode(self) -> Floats:
         """
-        R of an offset in the mode, given by the job or set by the program [mm], at the first T word that calls it.
+        R of an offset in the mode, given by the job or set by the program [mm], at the first word that calls it.
 
         Else NaN, and where R is that of a comment.
         """
         trace = self.trace
         radius = np.full(len(trace), np.nan)
-        if not (trace.job.tools or trace.sets_offsets) or not len(trace.sections):
+        if not (trace.tools or trace.sets_offsets) or not len(trace.sections):
             return radius
-        called = np.flatnonzero(trace.has("T"))
+        called = np.flatnonzero(trace.calls_offset)
         for number, first in zip(*np.unique(trace.offset_number[called], return_index=True), strict=True):
             row = self.first_in_mode.get(int(number))
             if row is not None and not trace.radius_is_from_comment[row]:
@@ -169,7 +169,7 @@ class Entry:
 
     @cached_property
     def radius_told(self) -> Floats:
-        """R that a comment tells of an offset whose R is given or set [mm], at the same T word; else NaN."""
+        """R that a comment tells of an offset whose R is given or set [mm], at the same word; else NaN."""
         told = np.full(len(self.trace), np.nan)
         for row in np.flatnonzero(~np.isnan(self.radius_in_mode)).tolist():
             found = self.trace.radius_told.get(int(self.trace.offset_number[row]))
@@ -210,5 +210,5 @@ class Entry:
     @cached_property
     def is_flat_and_radial(self) -> Mask:
         """The job says of the tool in force that it is a flat end mill that points at the outer diameter."""
-        wrong = [n for n, tool in self.trace.job.tools.items() if tool.mount == "radial" and tool.shape == "flat"]
+        wrong = [n for n, tool in self.trace.tools.items() if tool.mount == "radial" and tool.shape == "flat"]
         return np.isin(self.trace.offset_number, wrong)

@@ -8,7 +8,7 @@ import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Rows
 from polarcheck.machines.modal import Units
-from polarcheck.table.columns import Columns
+from polarcheck.table.called_tools import CalledTools
 from polarcheck.table.filling import fill_down
 
 #: Without a point, a length of this many units can only be meant in least increments: no lathe moves a meter.
@@ -17,7 +17,7 @@ MEANT_IN_INCREMENTS = 1000.0
 _FARTHEST = 1e7
 
 
-class Lengths(Columns):
+class Lengths(CalledTools):
     """What the coordinates of the rows are, in mm and degrees."""
 
     @cached_property

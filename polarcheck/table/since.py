@@ -46,8 +46,8 @@ class Since:
 
     @cached_property
     def tool_call(self) -> Rows:
-        """From T to T."""
-        return self._last(self.trace.has("T"))
+        """From one call of a tool offset to the next: T, and D where tools have edges."""
+        return self._last(self.trace.calls_offset)
 
     @cached_property
     def modal_state(self) -> Rows:

@@ -47,7 +47,7 @@ class ToolOffsets(RotaryAxis):
     @cached_property
     def nose(self) -> Floats:
         """T of the tool offset in force (nose type); NaN unknown."""
-        given = self._offset_column({n: t.nose for n, t in self.job.tools.items() if t.nose is not None})
+        given = self._offset_column({n: t.nose for n, t in self.tools.items() if t.nose is not None})
         return np.where(self.nose_set_in >= 0, self._nose_set.value, given)
 
     @property
@@ -69,11 +69,11 @@ class ToolOffsets(RotaryAxis):
     @cached_property
     def sets_radius_after_call(self) -> Mask:
         """
-        Between the T word in force and the next, the program sets R of its offset before the mode needs it.
+        Between the call of the offset in force and the next, the program sets R of its offset before the mode needs it.
 
         What a comment tells of R is not taken there.
         """
-        call = np.cumsum(self.has("T") | self.starts)
+        call = np.cumsum(self.calls_offset | self.starts)
         sets, needs = (
             np.bincount(call[rows], minlength=int(call[-1]) + 1 if len(call) else 1) > 0
             for rows in (self.radius_set_in == np.arange(len(self)), self.in_polar & self.radius_is_from_comment)
@@ -86,38 +86,37 @@ class ToolOffsets(RotaryAxis):
         X of an offset is changed that a polar section of the program uses: by a step, or as wear.
 
         X of the geometry is where the tool has been touched off, and so is one that is too large for wear. The wear of
-        the job's table stands at the T word that calls the offset, unless the program sets its own.
+        the job's table stands at the word that calls the offset, unless the program sets its own.
         """
         found, sizes = self.offset_settings, np.zeros(len(self), bool)
         is_wear = (found.kind == X_WEAR) & ~(np.abs(found.value) > _LARGEST_X_WEAR)
         chosen = found.of((found.kind >= X) & (is_wear | found.is_step) & (found.value != 0))
         sizes[chosen.row[self._is_used(chosen.row, chosen.number)]] = True
-        for number, tool in self.job.tools.items():
+        for number, tool in self.tools.items():
             wear = np.abs(tool.x_wear * self.job_scale)
             if tool.x_wear and not np.any(found.number[found.kind == X_WEAR] == number):
-                called = np.flatnonzero(self.has("T") & (self.offset_number == number) & (wear <= _LARGEST_X_WEAR))
+                called = np.flatnonzero(self.calls_offset & (self.offset_number == number) & (wear <= _LARGEST_X_WEAR))
                 sizes[called[self._is_used(called, np.full(len(called), number))][:1]] = True
         return sizes
 
     def _is_used(self, rows: Rows, numbers: Rows) -> Mask:
         """Whether offsets that are named in some rows are in force in the polar mode of the same program."""
-        inside, most = self.in_polar | self.enters, 10**self.machine.control.offset_digits
+        inside, most = self.in_polar | self.enters, self.offset_count
         used = self.program[inside] * most + self.offset_number[inside]
         return np.isin(self.program[rows] * most + numbers, used)
 
     @cached_property
     def cutter_diameter(self) -> Floats:
         """Diameter of the cutter in force [mm], twice R where the job gives no other; NaN unknown."""
-        given = self._offset_column({n: tool.diameter for n, tool in self.job.tools.items()}) * self.job_scale
+        given = self._offset_column({n: tool.diameter for n, tool in self.tools.items()}) * self.job_scale
         return np.where(np.isnan(given) & (self.radius_of_offset > 0), 2 * self.radius_of_offset, given)
 
     # ---- what is given ----
 
     def _offset_column(self, values: Mapping[int, float]) -> Floats:
-        table = np.full(10**self.machine.control.offset_digits, np.nan)
+        table = np.full(self.offset_count, np.nan)
         for number, value in values.items():
-            if number < len(table):
-                table[number] = value
+            table[number] = value
         return table[self.offset_number]
 
     @cached_property
@@ -126,7 +125,7 @@ class ToolOffsets(RotaryAxis):
 
     @cached_property
     def _radius_of_job(self) -> Floats:
-        return self._offset_column({n: tool.radius for n, tool in self.job.tools.items()}) * self.job_scale
+        return self._offset_column({n: tool.radius for n, tool in self.tools.items()}) * self.job_scale
 
     @cached_property
     def _radius_of_comments(self) -> Floats:
@@ -137,7 +136,7 @@ class ToolOffsets(RotaryAxis):
         """What the comments say of R by offset number."""
         from polarcheck.table.radius_comments import Called, radii
 
-        rows = np.flatnonzero(self.has("T"))
+        rows = np.flatnonzero(self.calls_offset)
         called = Called(self.run.block[rows], self.offset_number[rows], self.tool[rows], self.scale[rows] != 1.0)
         return radii(self.text, called)
 

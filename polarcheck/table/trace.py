@@ -74,9 +74,17 @@ class Trace(ToolOffsets):
         return before(self.tool_called, self.starts, 0)
 
     @cached_property
+    def calls_other_offset_in_polar(self) -> Mask:
+        """Another offset than the one in force is called in the mode, where this control allows none."""
+        calls = self.in_polar & self.calls_offset & (self.tool_called != self.tool_called_before)
+        if self.machine.offsets.called_in_polar == "never":
+            return np.asarray(calls)
+        return np.asarray(calls & ((self.side != Side.OFF) | (self.side_before != Side.OFF)))
+
+    @cached_property
     def has_called_tool(self) -> Mask:
-        """A T word stands in the row or above it in its program."""
-        return happened(self.has("T"), self.starts)
+        """A tool or its offset has been called in the row or above it in its program."""
+        return happened(self.calls_offset, self.starts)
 
     @cached_property
     def nose_is_of_mill(self) -> Mask:

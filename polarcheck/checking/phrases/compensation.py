@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from polarcheck.checking.phrases.common import block_and_line, code_of
+from polarcheck.checking.phrases.offsets import called_tool
+from polarcheck.checking.phrases.offsets import offset as offset
 from polarcheck.checking.quantity import in_row
 from polarcheck.errors import TooHardError
 from polarcheck.machines.machine import Machine
@@ -47,11 +49,11 @@ def before(trace: Trace, row: int) -> str:
 
 
 def changed_by(trace: Trace, row: int) -> str:
-    """T0808, G10 or #2001."""
+    """T0808, `T8 edge 2`, G10 or #2001."""
     if row in trace.run.assigned:
         return trace.run.assigned[row].name
-    if trace.has("T")[row]:
-        return f"T{int(trace.tool[row]):02d}{int(trace.offset_number[row]):02d}"
+    if trace.calls_offset[row]:
+        return called_tool(trace, row)
     return trace.machine.codes("data_input")[0]
 
 

@@ -6,6 +6,8 @@ import numpy as np
 
 from polarcheck.checking.phrases.common import block_and_line, code_of, executed_word, short, written
 from polarcheck.checking.phrases.feed import feed_word as feed_word
+from polarcheck.checking.phrases.offsets import offset as offset
+from polarcheck.checking.phrases.offsets import option, shown_offset
 from polarcheck.checking.quantity import in_row
 from polarcheck.checking.remedies import place, unlisted_codes
 from polarcheck.machines.machine import Machine
@@ -22,7 +24,7 @@ def name(entry: Entry, row: int) -> str:
 
 def _sections_of_center(trace: Trace, row: int) -> tuple[list[int], bool]:
     """Lines of the G12.1 of the sections of a T word in which R is taken as 0; whether it has no others with ramps."""
-    called = np.flatnonzero(trace.has("T"))
+    called = np.flatnonzero(trace.calls_offset)
     until = int(np.append(called, len(trace))[np.searchsorted(called, row, side="right")])
     has_ramps = trace.enters & trace.anywhere_in_section(trace.starts_up | trace.cancels)
     enters = row + np.flatnonzero(has_ramps[row:until])
@@ -44,7 +46,7 @@ def origin(trace: Trace, row: int) -> str:
         return f"from the comment: {comment}"
     radius = f"{in_row(float(trace.radius_of_offset[row]), trace, row):length}"
     shorter = "every ramp is shorter there, as on a path of the tool center"
-    remedy = f"give --tool {int(trace.offset_number[row])}:radius=..."
+    remedy = f"give {option(trace, row, 'radius')}"
     if are_all:
         return f"in place of {radius} of the comment {comment}: {shorter}; {remedy}"
     sections = f"{'line' if len(lines) == 1 else 'lines'} {', '.join(map(str, lines))}"
@@ -61,9 +63,9 @@ def is_given(trace: Trace, entry: Entry, row: int) -> str:
     number = int(trace.offset_number[row])
     setter = int(trace.radius_set_in[entry.first_in_mode[number]])
     return (
-        f"is set for offset {number} by {block_and_line(trace, setter)}"
+        f"is set for offset {offset(trace, row)} by {block_and_line(trace, setter)}"
         if setter >= 0
-        else f"is given for offset {number}"
+        else f"is given for offset {offset(trace, row)}"
     )
 
 
@@ -74,14 +76,14 @@ def x_changed_by(trace: Trace, row: int) -> str:
     address = next((address for address in "XU" if trace.has(address)[row]), "")
     if trace.listed("data_input")[row] and address:
         return written(trace, row, address)
-    wear = trace.job.tools[int(trace.offset_number[row])].x_wear * np.broadcast_to(trace.job_scale, len(trace))[row]
+    wear = trace.tools[int(trace.offset_number[row])].x_wear * np.broadcast_to(trace.job_scale, len(trace))[row]
     return f"the wear in X of the offset table, {in_row(float(wear), trace, row):length},"
 
 
-def offset_of_block(trace: Trace, row: int) -> int:
-    """The number of the tool offset that a block sets, or calls."""
+def offset_of_block(trace: Trace, row: int) -> int | str:
+    """The tool offset that a block sets, or calls."""
     numbers = trace.offset_settings.number[trace.offset_settings.row == row]
-    return int(numbers[0] if len(numbers) else trace.offset_number[row])
+    return shown_offset(trace, int(numbers[0] if len(numbers) else trace.offset_number[row]))
 
 
 def to_clear(trace: Trace, entry: Entry, row: int) -> str:

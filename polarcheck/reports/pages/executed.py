@@ -11,6 +11,7 @@ import msgspec
 import numpy as np
 from msgspec import UNSET, UnsetType
 
+from polarcheck.checking.phrases.offsets import called_tool, key_of, option
 from polarcheck.checking.quantity import rounded
 from polarcheck.machines.modal import FeedMode, Motion, Side
 from polarcheck.table.moves import Moves, programmed_moves, z_along
@@ -96,9 +97,12 @@ def without_radius(trace: Trace, tool_center: ToolCenter) -> str:
     table = tool_center.moves
     unknown = table.row[~table.is_of_tool & np.isnan(trace.radius_of_move[table.row])]
     offsets = trace.offset_number[unknown]
-    tools = {int(number): int(trace.tool[row]) for number, row in zip(offsets, unknown, strict=True) if number}
-    causes = [f"no radius for {', '.join(f'T{tool:02d}{number:02d}' for number, tool in tools.items())}"] * bool(tools)
-    remedies = [f"give {' '.join(f'--tool {number}:radius=...' for number in tools)} or --offsets FILE"] * bool(tools)
+    rows = list(
+        {int(number): int(row) for number, row in zip(offsets[::-1], unknown[::-1], strict=True) if number}.values()
+    )[::-1]
+    causes = [f"no radius for {', '.join(called_tool(trace, row) for row in rows)}"] * bool(rows)
+    given = " ".join(option(trace, row, "radius") for row in rows)
+    remedies = [f"give {given} or --offsets FILE"] * bool(rows)
     if not offsets.all():
         line = int(trace.line_in_file[unknown[offsets == 0][0]])
         causes.append(f"no tool offset is in force at line {line}")
@@ -135,8 +139,8 @@ def rows(trace: Trace, tool_center: ToolCenter) -> Iterator[dict[str, Any]]:
             "section": int(trace.section[row]),
             "motion": Motion(int(trace.motion[row])).name.lower(),
             "side": _SIDES[Side(int(trace.side[row]))],
-            "tool": int(trace.tool[row]),
-            "offset_number": int(trace.offset_number[row]),
+            "tool": trace.run.names.get(int(trace.tool[row]), int(trace.tool[row])),
+            "offset_number": key_of(trace, int(trace.offset_number[row])) or 0,
             "radius": rounded(trace.radius[row]),
             "feed_mode": _FEED_MODES[mode],
             "feed": rounded(trace.feed[row]),

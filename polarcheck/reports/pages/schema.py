@@ -40,7 +40,6 @@ def _report() -> Schema:
 def _job() -> Schema:
     made: Schema = _without_nan(msgspec.json.schema(Job))
     job = made["$defs"]["Job"]["properties"]
-    job["tools"]["propertyNames"] = {"pattern": "^0*[1-9][0-9]*$"}
     job["limits"] = {"$ref": "#/$defs/Limits"}
     limits = _without_nan(msgspec.json.schema(Machine))["$defs"]["Limits"]
     made["$defs"]["Limits"] = {**limits, "required": []}

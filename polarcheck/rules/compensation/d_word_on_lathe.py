@@ -51,4 +51,4 @@ def d_word_on_lathe(trace: Trace, entry: Entry) -> Mask:
         G40 X60.
         G13.1
     """
-    return (trace.in_polar & trace.uses_axes & trace.has("D")) | entry.calls_d_before_mode
+    return (trace.in_polar & trace.uses_axes & trace.means_cutter_by_d) | entry.calls_d_before_mode

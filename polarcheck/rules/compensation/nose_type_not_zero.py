@@ -5,7 +5,7 @@ from polarcheck.checking.rule import ERROR, Mask, Trace, rule
 
 @rule(
     ERROR,
-    "offset {trace.offset_number} {has_nose} nose type T{trace.nose:.0f}; for a mill it must be {allowed}",
+    "offset {offset} {has_nose} nose type T{trace.nose:.0f}; for a mill it must be {allowed}",
     at=("compensation_left", "compensation_right"),
     once="tool call",
     needs=("trace.nose",),

@@ -3,7 +3,7 @@ from __future__ import annotations
 from polarcheck.checking.rule import ERROR, Machine, Mask, ModeWords, Trace, rule
 
 
-@rule(ERROR, "tool offset changed in the polar mode by {changed_by}; write it {outside}", at=("T", "data_input"))
+@rule(ERROR, "tool offset changed in the polar mode by {changed_by}; write it {outside}", at=("T", "D", "data_input"))
 def offset_changed_in_polar(trace: Trace, mode_words: ModeWords, machine: Machine) -> Mask:
     """
     Tool offset changed in the polar mode.
@@ -41,7 +41,7 @@ def offset_changed_in_polar(trace: Trace, mode_words: ModeWords, machine: Machin
         G13.1
         T0111
     """
-    calls_another = trace.in_polar & trace.has("T") & (trace.tool_called != trace.tool_called_before)
+    calls_another = trace.calls_other_offset_in_polar
     writes_one = mode_words.rows(mode_words.changes_tool_offset & mode_words.not_allowed)
     assigns_one = trace.in_polar & trace.assigns(machine.macro.tool_offset_variables)
     return calls_another | writes_one | assigns_one

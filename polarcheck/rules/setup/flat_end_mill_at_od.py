@@ -5,7 +5,7 @@ from polarcheck.checking.rule import ERROR, Entry, Mask, Trace, rule
 
 @rule(
     ERROR,
-    "offset {trace.offset_number} is a flat end mill that points at the outer diameter",
+    "offset {offset} is a flat end mill that points at the outer diameter",
     at=("on",),
     once="tool call",
 )

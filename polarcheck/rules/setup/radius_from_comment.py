@@ -69,4 +69,4 @@ def radius_from_comment(trace: Trace) -> Mask:
         X60.
         G13.1
     """
-    return trace.has("T") & trace.radius_is_from_comment & ~trace.sets_radius_after_call
+    return trace.calls_offset & trace.radius_is_from_comment & ~trace.sets_radius_after_call
