@@ -38,6 +38,8 @@ def messages(values: str, before: str, feed: str = "200") -> dict[str, str]:
         ("[m_codes]\nc_axis_on = ['M35']", "M8 / M9", "c-axis-not-engaged", "M35 is missing before G12.1"),
         ("[m_codes]\nlive_tool_on = ['M33']", "M76", "live-tool-stopped-in-cut",
          "; if M76 of line 3 starts it, add that to m_codes.live_tool_on in lathe.toml"),
+        ("[m_codes]\nspindle_on = ['M3 P11']\nlive_tool_on = ['M3 P12']", "M3 P14", "live-tool-stopped-in-cut",
+         "; if M3 P14 of line 3 starts it, add that to m_codes.live_tool_on in lathe.toml"),
         ("", "G245", "unknown-code", "; if the lathe has it, add it to control.known_codes in lathe.toml"),
         ("", "G4.7", "unknown-code", "; if the lathe has it, add it to control.known_codes in lathe.toml"),
         ("", "G4.75", "unknown-code", "G4.75 is no code of this control"),

@@ -29,6 +29,14 @@ def unlisted_codes(trace: Trace, spindles: Spindles, row: int) -> str:
     words = words[(trace.run.row[words] <= row) & (trace.program[trace.run.row[words]] == trace.program[row])]
     numbers = trace.run.words.value[words]
     first = np.sort([np.flatnonzero(numbers == number)[0] for number in dict.fromkeys(numbers.tolist())]).astype(int)
-    return " or ".join(
-        f"M{numbers[index]:g} of line {int(trace.line[trace.run.row[words[index]]])}" for index in first[:_NAMED]
-    )
+    return " or ".join(_code_and_line(trace, int(words[index])) for index in first[:_NAMED])
+
+
+def _code_and_line(trace: Trace, word: int) -> str:
+    """`M76 of line 3`, and `M3 P14` where the machine tells M3 by what P is."""
+    row = int(trace.run.row[word])
+    code = f"M{trace.run.words.value[word]:g}"
+    listed = (one.partition(" ") for one in trace.machine.m_codes.with_words)
+    beside = sorted({other[0] for first, _, other in listed if first == code})
+    told = [f"{letter}{trace.word(letter)[row]:g}" for letter in beside if trace.has(letter)[row]]
+    return f"{' '.join((code, *told))} of line {int(trace.line[row])}"

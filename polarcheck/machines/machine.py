@@ -254,14 +254,14 @@ class Limits(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     c_feed: Positive = math.nan
     c_feed_harmless: Positive
     c_feed_suspicious: Positive
-    c_acceleration: NotNegative = math.nan
+    c_acceleration: Positive = math.nan
     polar_feed: Positive = math.nan
     polar_feed_clamps: bool = True
     automatic_override: bool = False
     override_share: Positive
     keep_out: NotNegative = math.nan
     x_minimum: Length = math.nan
-    x_maximum: NotNegative = math.nan
+    x_maximum: Positive = math.nan
     z_minimum: Length = math.nan
     z_maximum: Length = math.nan
 

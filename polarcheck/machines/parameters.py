@@ -82,16 +82,17 @@ def _known(merged: Mapping[str, Any], profile: str) -> dict[str, Meaning]:
 def _values(name: str, meaning: Meaning, given: Any, profile: str) -> Mapping[str, Any]:
     is_number = isinstance(given, int | float)
     spelled = f"{given:g}" if is_number else str(given)
+    told = given if spelled and spelled.isprintable() else repr(given)
     for setting, values in meaning.values.items():
         if setting.upper() == spelled.upper():
             return values
     if meaning.is_letter:
         if len(spelled) == 1 and "A" <= spelled.upper() <= "Z":
             return {meaning.key: spelled.upper()}
-        raise MachineError(f"{profile}: parameters.{name}: expected a letter from A to Z, not {given}")
+        raise MachineError(f"{profile}: parameters.{name}: expected a letter from A to Z, not {told}")
     if not meaning.key or not is_number:
         known = " or ".join(meaning.values) or "a number"
-        raise MachineError(f"{profile}: parameters.{name}: expected {known}, not {given}")
+        raise MachineError(f"{profile}: parameters.{name}: expected {known}, not {told}")
     return {meaning.key: given if meaning.factor == 1 else given * meaning.factor}
 
 
