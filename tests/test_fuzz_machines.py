@@ -160,6 +160,7 @@ def test_any_value_of_any_key_is_taken_or_refused_in_one_line() -> None:
         '[polar]\nallowed_codes = []',
         '[polar]\nallowed_codes = [[]]',
         '[limits]\nc_feed = nan',
+        '[polar]\nvirtual_axis_incremental = ""',
         '[power_on]\nplane = "G18"\nmotion = "g00"',
         '"5460" = 2',
         '[parameters]\n5460 = 2',

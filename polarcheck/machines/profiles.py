@@ -12,7 +12,7 @@ from typing import Any, get_origin
 import msgspec
 
 from polarcheck.errors import MachineError, suggestion
-from polarcheck.machines import axis_names, parameters, toml_text, written_codes
+from polarcheck.machines import axis_names, parameters, toml_text
 from polarcheck.machines.fitting import MisfitError, fitted
 from polarcheck.machines.machine import Machine, OwnMachine
 from polarcheck.machines.parameters import Origin
@@ -217,12 +217,18 @@ def _merge(
                 dotted = f"{group}.{key}"
                 refuse(dotted, profile)
                 given = _unwrapped(value, dotted, origin, origins)
-                if not in_plain_form or (isinstance(given, list) and given and written_codes.is_change(given[0])):
+                if not in_plain_form or _says_what_differs(given):
                     given = _taken(dotted, given, target.get(key), profile)
                 target[key] = given
 
 
+def _says_what_differs(value: Any) -> bool:
+    return isinstance(value, list) and bool(value) and str(value[0]).startswith(("+", "-"))
+
+
 def _taken(key: str, value: Any, inherited: Any, profile: str) -> Any:
+    from polarcheck.machines import written_codes
+
     try:
         return written_codes.taken(key, value, inherited)
     except written_codes.ListError as error:

@@ -28,7 +28,7 @@ _LONG_KEY = re.compile(rf"(?<![\w-])[\w-]++(?:[ \t]*+\.[ \t]*+[\w-]++){{{_LEVELS
 _LONG_NUMBER = re.compile(r"(?<![\d_])\d[\d_]{1000,}+")
 
 #: 3401#0, the bit of a parameter, as a key without quotes.
-_BIT = re.compile(r"^[ \t]*+(\w{1,20}#\w{1,20})[ \t]*+=", re.MULTILINE)
+_BIT = r"^[ \t]*+(\w{1,20}#\w{1,20})[ \t]*+="
 
 
 def read(path: str | PathLike[str], what: str, *, pipes: bool = False) -> dict[str, Any]:
@@ -60,7 +60,7 @@ def parsed(text: str) -> dict[str, Any]:
     except RecursionError:
         raise ValueError(_too_deep("")) from None
     except tomllib.TOMLDecodeError as error:
-        bit = _BIT.search(text)
+        bit = re.search(_BIT, text, re.MULTILINE)
         hint = f'; write "{bit[1]}" in quotes: # begins a comment' if bit else ""
         raise ValueError(f"{error}{hint}") from None
     except ValueError as error:  # a number that Python does not read: its own text means nothing to a setter

@@ -37,7 +37,7 @@ class ModeWords:
         return self.codes(*(code for key in keys for code in self.trace.machine.codes(key)))
 
     def first_of(self, *names: str) -> Mask:
-        """Of the code or address that is named first of those in its row; `G91` is a code, `U` an address."""
+        """Of the code or address that is named first of those in its row; `G91` is a code, `U` an address, or none."""
         trace = self.trace
         row = trace.run.row
         found, told = np.zeros(len(row), bool), np.zeros(len(trace), bool)
