@@ -65,6 +65,10 @@ HANDS = {
         codes=("G101", "G102", "G103"),
     ),
     "mazak-eia": Hand("O1\nG90 G94 G40 G97\nT0101\nM200\nG10.9 X1\nG17 XC", steps=""),
+    "mazak-quick-turn": Hand("O1\nG40 G97 G98\nT0101\nM5\nM200\nM203 S3000\nG17 XC"),
+    "mazak-integrex": Hand(
+        "O1\nG90 G94 G40 G97\nT0101\nM205\nM200\nM3 S3000\nG10.9 X0\nG17 XC", factor=1, outside=1, steps=""
+    ),
     "citizen": Hand("O1\nG40 G97 G98\nT0101", "G12.1 D0 E=C", axis="Y", factor=1, steps="UV"),
     "siemens-iso": Hand("O1\nG17 G90 G94 G40 G97\nT0101", steps=""),
     "siemens-transmit": Hand(
@@ -78,6 +82,8 @@ HANDS = {
         comment="; COMMENT G0 X1.",
     ),
     "doosan": Hand("O1\nG40 G97 G98\nM35\nG28 H0\nT0101"),
+    "takisawa": Hand("O1\nG40 G97 G98\nM5\nM76\nG28 H0\nT0101\nM70 S3000"),
+    "colchester": Hand("O1\nG40 G97 G98\nM109\nG28 H0\nT0101"),
     "hurco": Hand("O1\nG90 G94 G40 G97\nT0101\nM5\nM33 S3000\nG7", "G101", "G109", "Y", 1, 1, "", turns=False),
     "fagor-8055t": Hand(
         "G90 G94 G40 G97 G18\nT1 D1 M6\nM51\nG15",
@@ -94,6 +100,7 @@ HANDS = {
 OTHERWISE: dict[str, dict[str, Any]] = {
     "siemens-transmit": {"on": "DIAMON\nTRANSMIT"},
     "hurco": {"head": HANDS["hurco"].head.replace("G7", "G8"), "outside": 2},
+    "mazak-integrex": {"head": HANDS["mazak-integrex"].head.replace("G10.9 X0", "G10.9 X1"), "outside": 2},
     "mazak-eia": {"head": HANDS["mazak-eia"].head.replace("G10.9 X1", "G10.9 X0"), "outside": 1},
 }
 every_machine = pytest.mark.parametrize("name", sorted(HANDS))

@@ -160,7 +160,7 @@ def test_numbers_of_axes_that_nobody_knows_are_not_those_of_the_machine() -> Non
 
 def test_p_alone_names_no_axis_of_the_plane() -> None:
     """On a lathe whose G12.1 takes P and no Q it is the spindle: the section is judged as without it."""
-    program = SQUARE.replace("G98 ", "G98 G40 M200 ").replace("G12.1", "G12.1 P2").replace("F200", "F90000")
+    program = SQUARE.replace("G98 ", "G98 G40 M200 ").replace("G12.1", "G12.1 P3").replace("F200", "F90000")
     report = report_of(program, "mazak-eia", TOOL, changes={"limits": {"c_feed": 3600}})
     assert "c-feed-above-limit" in [rule for _, rule in said(report)]
     assert not [entry for entry in report.not_evaluated if entry.matters]

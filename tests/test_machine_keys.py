@@ -213,6 +213,13 @@ USES = {
     "g_codes.data_input_tool_offset": Use([], inside("G10 L10 P1 R1.")),
     "g_codes.reference_check": Use([], before("G27 X0")),
     "g_codes.reference_return": Use([], before("G28 U0")),
+    "g_codes.sub_spindle": Use(["G150"], RAMPS.format("", "", "").replace("T0101", "T0101\nG150"), tools=CUTTER),
+    "g_codes.sub_spindle_off": Use(
+        ["G15"],
+        RAMPS.format("", "", "").replace("T0101", "T0101\nG14\nG15"),
+        tools=CUTTER,
+        also={"g_codes": {"sub_spindle": ["G14"]}},
+    ),
     "g_codes.c_axis_reference": Use([], before("M35", "G28 H0"), also={"m_codes": {"c_axis_on": ["M35"]}}),
     "g_codes.local_shift": Use([], before("G52 X1.")),
     "g_codes.machine_coordinates": Use([], before("G53 X0")),
@@ -242,6 +249,12 @@ USES = {
     "polar.on_of_other_controls": Use([], "O1\nG98 G0 X60. C0\nG137 C0\nG1 X40. Y0 F200\nY10.\nG136\nM30\n"),
     "polar.on_of_other_meaning": Use(["G137"], "O1\nG98 G0 X60. C0\nG137 X50.\nG1 Y10. F200\nG136\nM30\n"),
     "polar.on_of_macros": Use([], "O1\nG98 G0 X60. C0\nG101\nG1 Y10. F200\nM30\n"),
+    "polar.sub_spindle_plane": Use(
+        "as-main",
+        RAMPS.format("", "", "").replace("T0101", "T0101\nG14").replace("12.1", "112").replace("13.1", "113"),
+        "haas-lathe",
+        ("1:radius=4,nose=0",),
+    ),
     "polar.words_beside_switch": Use(["X"], FLAT.replace("G12.1", "G12.1 X0")),
     "polar.not_simulated_beside": Use(
         ["K"], FLAT.replace("G12.1", "G12.1 K1"), also={"polar": {"words_beside_switch": ["K"]}}

@@ -114,7 +114,7 @@ def test_what_is_in_doubt_makes_no_error(name: str) -> None:
     "name",
     [
         *("gsk-988", "mitsubishi-m700", "haas-lathe", "okuma-osp", "mazak-eia", "citizen", "lsis"),
-        *("siemens-iso", "siemens-transmit", "hurco", "fagor-8055t"),
+        *("siemens-iso", "siemens-transmit", "mazak-quick-turn", "mazak-integrex", "hurco", "fagor-8055t"),
     ],
 )
 def test_alarms_of_another_control_are_not_inherited(name: str) -> None:

@@ -21,6 +21,7 @@ from polarcheck.checking.phrases.polar import (
     not_simulated,
     not_understood,
     on_cylinder,
+    on_sub_spindle,
 )
 from polarcheck.checking.places import block_in_line
 from polarcheck.checking.remedies import option_or_place, place, unlisted_codes
@@ -64,6 +65,7 @@ def unexecuted(tables: Tables) -> Iterator[NotEvaluated]:
         *axes_not_followed(trace),
         *names_not_known(trace),
         *names_not_followed(trace),
+        *on_sub_spindle(trace),
         offsets_not_known(trace),
         *not_simulated(tables["infeed"]),
         not_understood(trace, tables["other_mode"]),
@@ -91,7 +93,7 @@ def unevaluated(tables: Tables, rule: Rule) -> Iterator[NotEvaluated]:
         if not where.any():
             continue
         # Of sections that are not followed one entry speaks for all.
-        rows = np.flatnonzero(np.isnan(tables.column(name)) & where & trace.is_followed)
+        rows = np.flatnonzero(np.isnan(tables.column(name)) & where & trace.is_followed & ~trace.sides_are_open)
         if name in _OF_MOVES:
             rows = rows[~(tables["feeds"].missing | tables["feeds"].lost)[rows]]  # a finding says so
         reasons: dict[str, int] = {}

@@ -43,6 +43,8 @@ class GCodes(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     data_input_tool_offset: numbers of L by which data input sets tool offsets
     reference_check: reference position return check
     reference_return: return to the reference position; the axes named with it are there afterwards
+    sub_spindle: behind them the program is for the sub-spindle
+    sub_spindle_off: behind them it is for the main spindle again
     c_axis_reference: codes that, with C or H, take the C axis to its reference point, the zero of its angle
     local_shift: local coordinate system
     machine_coordinates: move in machine coordinates
@@ -82,6 +84,8 @@ class GCodes(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     data_input_tool_offset: list[int]
     reference_check: list[str]
     reference_return: list[str]
+    sub_spindle: list[str]
+    sub_spindle_off: list[str]
     c_axis_reference: list[str]
     local_shift: list[str]
     machine_coordinates: list[str]

@@ -117,6 +117,7 @@ class Polar(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     on_of_other_controls: codes and words that begin the mode on any control, which tell programs for another one
     on_of_other_meaning: those of them that mean something else here, where axis words stand beside them
     on_of_macros: those of them that are builders' macros, too: told where a move in the mode and its end follow
+    sub_spindle_plane: as on the main spindle (as-main), sides not known (unknown), axes not followed (not-followed)
     words_beside_switch: addresses and codes that may stand in one block with those that switch; N may always
     not_simulated_beside: those of these addresses that make another mode of it, which is not simulated
     rotary_address: address of the rotary axis outside the mode: A, B, C, H, or a name that is written with =, as C2
@@ -146,6 +147,7 @@ class Polar(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     on_of_other_controls: list[Plain] = []
     on_of_other_meaning: list[Plain] = []
     on_of_macros: list[Plain] = []
+    sub_spindle_plane: Literal["as-main", "unknown", "not-followed"]
     words_beside_switch: list[str]
     not_simulated_beside: list[Address] = []
     rotary_address: RotaryAddress

@@ -19,7 +19,7 @@ from polarcheck.machines.axes import AXES, INCREMENTS, numbers_of
 from polarcheck.machines.machine import LinearAddress
 from polarcheck.machines.modal import Distance
 from polarcheck.machines.values import MOST_AXES
-from polarcheck.table.filling import fill_down
+from polarcheck.table.filling import fill_down, happened
 from polarcheck.table.lengths import Lengths
 
 _X = ord("X")
@@ -77,6 +77,25 @@ class LinearAxis(Lengths):
         direction = np.nan_to_num(self.c_direction)
         return np.where(direction.imag == 0, 0.0, np.degrees(np.angle(direction)))
 
+    @cached_property
+    def on_sub_spindle(self) -> Mask:
+        """The C axis is that of the sub-spindle, by the last code that says so."""
+        codes, main = self.machine.m_codes, [*self.machine.m_codes.sub_c_axis_off, *self.machine.m_codes.c_axis_on]
+        engaged = happened(self.codes(*codes.sub_c_axis_on), self.codes(*main) | self.starts)
+        return engaged | happened(self.listed("sub_spindle"), self.listed("sub_spindle_off") | self.starts)
+
+    @cached_property
+    def enters_other_axes(self) -> Mask:
+        """Rows that switch the mode on for a spindle whose axes are not followed, and where no own one follows."""
+        mode = self.machine.polar
+        enters = self.switches_on & self.on_sub_spindle & (mode.sub_spindle_plane == "not-followed")
+        if not enters.any():
+            return enters
+        stretch = np.cumsum(self.switches_on | self.ends_mode | self.starts)
+        has_own = np.zeros(int(stretch[-1]) + 1, bool)
+        has_own[stretch[self.has(mode.virtual_axis)]] = True
+        return enters & ~has_own[stretch]
+
     @property
     def most_axes(self) -> int:
         """How many axes the control has: the highest number of one."""
@@ -124,11 +143,13 @@ class LinearAxis(Lengths):
         """The character of the linear axis, from a G12.1 up to its G13.1; that of X elsewhere, 0 where unknown."""
         numbers = np.unique(self.linear_number[self.switches_on]).tolist()
         addresses = {number: self.machine.linear_address_of(number) for number in numbers}
-        if set(addresses.values()) <= {"X"}:
+        other = self.enters_other_axes
+        if set(addresses.values()) <= {"X"} and not other.any():
             return np.full(len(self), _X, np.int16)
         axis = np.full(len(self), _X, np.int16)
         for number, address in addresses.items():
             axis[self.switches_on & (self.linear_number == number)] = ord(address) if address else _UNKNOWN
+        axis[other] = _UNKNOWN
         return fill_down(axis, self.switches_on | self.ends_mode | self.starts, _X)
 
     @cached_property

@@ -190,9 +190,18 @@ class Trace(ToolOffsets):
         return np.asarray(self.anywhere_in_section(short) & ~self.anywhere_in_section(ramps & ~short))
 
     @cached_property
+    def sides_are_open(self) -> Mask:
+        """Rows of sections on the sub-spindle of which the machine does not say on which side G41 and G42 are there."""
+        if self.machine.polar.sub_spindle_plane == "as-main" or not len(self.sections):
+            return np.zeros(len(self), bool)
+        is_open = (self.on_sub_spindle & ~self.enters_other_axes)[self.sections.enter]
+        return np.asarray((self.section >= 0) & is_open[self.section])
+
+    @cached_property
     def radius(self) -> Floats:
         """R with which the rows are compensated [mm]; NaN where it is not known."""
-        return np.where(self.is_path_of_center, 0.0, self.radius_of_offset)
+        radius = np.where(self.is_path_of_center, 0.0, self.radius_of_offset)
+        return np.where(self.sides_are_open, np.nan, radius) if self.sides_are_open.any() else radius
 
     @property
     def stock_diameter(self) -> Floats:

@@ -157,7 +157,8 @@ def else_a_macro(other_mode: OtherMode, row: int) -> str:
 def axes_not_followed(trace: Trace) -> Iterator[tuple[str, int]]:
     """Which axes of the polar plane are not followed, and in how many blocks."""
     mode, axes = trace.machine.polar, trace.machine.control.axes
-    unknown = trace.enters & ~trace.linear_is_known
+    other = trace.enters & trace.enters_other_axes
+    unknown = trace.enters & ~trace.linear_is_known & ~other
     named = unknown & trace.has("P") & ("P" in mode.words_beside_switch)
     names = place(trace.machine, 'control.axes = ["X", "Z", "C"]')
     remedy = "look at it on the control" if axes else f"give their names in order, as {names}"
@@ -202,6 +203,23 @@ def _by_name(trace: Trace, words: Rows, what: str) -> Iterator[tuple[str, int]]:
         yield f"{name}, from line {int(trace.line[rows[0]])} on, {what}", len(set(rows))
     more = [row for rows in list(blocks.values())[_NAMES:] for row in rows]
     yield f"each of {len(blocks) - _NAMES} more axes {what}", len(set(more))
+
+
+def on_sub_spindle(trace: Trace) -> Iterator[tuple[str, int]]:
+    """Which sections stand on the sub-spindle, of which the machine does not say how it is programmed."""
+    other, open_sides = trace.enters & trace.enters_other_axes, trace.sides_are_open & trace.compensates
+    title = trace.machine.title
+    for rows, what in (
+        (other, f"whose axes have other addresses on {title}; nothing of it is judged: look at it on the control"),
+        (
+            open_sides,
+            'and on which side G41 and G42 are there is not known: polar.sub_spindle_plane = "as-main" in a file '
+            "of your own says that it is programmed as the main spindle is",
+        ),
+    ):
+        if rows.any():
+            line = int(trace.line[trace.sections.enter[trace.section[rows.argmax()]]])
+            yield f"the section of line {line} is on the sub-spindle, {what}", int(rows.sum())
 
 
 def not_simulated(infeed: Infeed) -> Iterator[tuple[str, int]]:

@@ -66,6 +66,6 @@ def incremental_word_of_other_code_system(trace: Trace, mode_words: ModeWords, m
     codes = (*of_b.absolute, *of_b.incremental, *of_b.feed_per_minute, *of_b.feed_per_revolution)
     # The address of another control has a rule of its own: wrong-axis-address-in-polar.
     wrong = mode_words.first_of(*(codes if in_system_a else increments)) & ~mode_words.of_other_axis
-    # U is no increment beside a code that takes it for something else, such as G4.
-    is_meant = in_system_a | trace.uses_axes
+    # U is no increment beside a code that takes it for something else, such as G4, nor where it is an axis.
+    is_meant = (in_system_a | trace.uses_axes) & trace.linear_is_known
     return Hits(trace.in_polar & mode_words.rows(wrong) & is_meant, at=wrong)

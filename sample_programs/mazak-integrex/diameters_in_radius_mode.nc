@@ -1,0 +1,25 @@
+%
+O0003 (G10.9 X0 IS FORGOTTEN)
+G21 G90 G94 G40 G97
+T0101
+M205
+M200
+M3 S3000
+G0 X120. Z5.
+G0 C0
+G17 XC
+G12.1             (expect: diameter-radius-mixed)
+G1 X20. C10. F300
+G3 X10. C20. I-10. J0
+G1 X-10.
+G3 X-20. C10. I0 J-10.
+G1 C0
+X20.
+C10.
+X60.
+G13.1
+M5
+M202
+G0 Z100.
+M30
+%

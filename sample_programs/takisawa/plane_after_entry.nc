@@ -1,0 +1,21 @@
+%
+O0002
+G21 G40 G97 G98
+T0101
+M5
+M76
+G28 H0
+M70 S3000
+G0 X60. Z5.
+G0 C0
+G12.1
+G18               (expect: plane-selected-in-polar)
+G1 X40. F1500
+C10. F200
+X60.
+G13.1
+M72
+M75
+G0 Z100.
+M30
+%
