@@ -10,7 +10,7 @@ from msgspec.structs import astuple
 from polarcheck.arrays import Mask, Rows
 from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.machines.codes import NO_CODE
-from polarcheck.table.filling import before, happened, last_row
+from polarcheck.table.filling import before, happened
 from polarcheck.table.trace import Trace
 
 #: Stops, ends, coolant and the tool change have these numbers everywhere (ISO 6983).
@@ -57,13 +57,11 @@ class Spindles:
         """
         The sub-spindle is the C axis: in a section that which was so at its G12.1.
 
-        Where both spindles are engaged, it is the one that was engaged last.
+        Where both spindles are engaged, it is the one that was engaged last (LinearAxis.on_sub_spindle).
         """
-        trace, sub = self.trace, self._sub_c_axis
-        if not sub.any():
-            return sub
-        engaged = [last_row(self._begins(state), trace.starts) for state in (self._main_c_axis, sub)]
-        is_sub = sub & (~self._main_c_axis | (engaged[1] > engaged[0]))
+        trace, is_sub = self.trace, self.trace.on_sub_spindle
+        if not is_sub.any():
+            return is_sub
         if not len(trace.sections):
             return is_sub
         at_entry = is_sub[trace.sections.enter][trace.section]
