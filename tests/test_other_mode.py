@@ -21,8 +21,9 @@ TURNING = "O1\nG98 G0 X60. Z2.\n{}G1 Z-10. F200\nG0 X80.\nM30\n"
 
 
 def programs() -> Iterator[tuple[str, str]]:
-    """Each sample program with the machine that it is for."""
-    for path in sorted(SAMPLES.rglob("*.[nm]*")):
+    """Each sample program with the machine that it is for; those for a lathe of a shop lie beside its file."""
+    of_machines = (path for path in sorted(SAMPLES.rglob("*.[nm]*")) if not (path.parent / "lathe.toml").exists())
+    for path in of_machines:
         own = path.parent.name if path.parent != SAMPLES else profiles.DEFAULT
         yield path.relative_to(SAMPLES).as_posix(), own
 

@@ -230,3 +230,40 @@ def test_a_named_axis_beside_the_switch(words: str) -> None:
         assert said(report_of(program, "fanuc", TOOL, changes=changes)) == []
     trace = trace_of(program, "fanuc", TOOL, changes=changes)
     assert trace.center_shift[trace.sections.enter[0]] == (5j if "5." in words else 0)
+
+
+@pytest.mark.parametrize(("name", "number"), [("A", 4), ("C2", 5)])
+def test_q_names_another_rotary_axis(name: str, number: int) -> None:
+    """Its words are lengths in its section, where C moves by itself; what angle it enters at is not followed."""
+    changes = {"control": {"axes": ["X", "Z", "C", "A", "C2"]}}
+    usual = CONTOUR.replace("A", "C").replace("M35\n", "").replace("M34\n", "").replace("G28 C0\n", "")
+    usual = usual.replace("G98 ", "").replace("C30.", "C0").replace("G12.1", "G12.1 P1 Q3")
+    other = renamed(usual, name).replace("Q3", f"Q{number}")
+    one, two = (trace_of(program, "gsk-988", TOOL, changes=changes) for program in (usual, other))
+    assert np.array_equal(one.end, two.end, equal_nan=True)
+    reports = [report_of(program, "gsk-988", TOOL, changes=changes) for program in (usual, other)]
+    assert [said(report) for report in reports] == [[], []]
+    reasons = [[missing.reason for missing in report.not_evaluated if missing.matters] for report in reports]
+    assert reasons[0] == []
+    assert len(reasons[1]) == 1
+    assert reasons[1][0].startswith("Q names another rotary axis than 3")
+    beside = other.replace("X-20.\n", "X-20. C5.\n")
+    assert said(report_of(beside, "gsk-988", TOOL, changes=changes)) == []
+    assert np.array_equal(trace_of(beside, "gsk-988", TOOL, changes=changes).end, two.end, equal_nan=True)
+
+
+def test_sections_on_two_rotary_axes() -> None:
+    """Each takes its own words; without names of the axes Q tells nothing of them."""
+    changes = {"control": {"axes": ["X", "Z", "C", "A"]}}
+    head, section, end = (
+        "%\nO1\nG0 X60. C0\n",
+        "G12.1 P1 Q{}\nG1 X40. F200\n{}10.\nX60.\n{}0\nG13.1\nG0 X60. C0\n",
+        "M30\n%\n",
+    )
+    program = head + section.format(3, "C", "C") + section.format(4, "A", "A") + section.format(3, "C", "C") + end
+    trace = trace_of(program, "gsk-988", changes=changes)
+    ends = [trace.end[trace.in_polar & (trace.section == number)] for number in range(3)]
+    assert np.array_equal(ends[0], ends[1])
+    assert np.array_equal(ends[0], ends[2])
+    assert [trace.virtual_axis_of(row) for row in trace.sections.enter.tolist()] == ["C", "A", "C"]
+    assert said(report_of(program.replace("G0 X60. C0\n", "T0101\nG0 X60. C0\n", 1), "gsk-988", changes=changes)) == []

@@ -28,13 +28,17 @@ def settings(path: Path) -> dict[str, Any]:
     assert found is not None
     work = job_files.load(found)
     assert work.machine is not None
-    return {"machine": work.machine, "changes": {"limits": work.limits} if work.limits else None, "job": work}
+    own = found.parent / work.machine
+    machine = str(own) if own.is_file() else work.machine
+    return {"machine": machine, "changes": {"limits": work.limits} if work.limits else None, "job": work}
 
 
 @cache
 def report_of_sample(path: Path) -> FileReport:
     given = settings(path)
-    return msgspec.structs.replace(report_of(path.read_bytes(), **given, path=path.name), machine=given["machine"])
+    return msgspec.structs.replace(
+        report_of(path.read_bytes(), **given, path=path.name), machine=Path(given["machine"]).name
+    )
 
 
 @pytest.mark.parametrize("path", SAMPLES, ids=NAMES)

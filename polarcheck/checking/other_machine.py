@@ -96,6 +96,9 @@ def _reasons(tables: Tables, machine: Machine) -> tuple[str, ...]:
         return ()
     if arcs.is_no_circle.any() or arcs.x_is_misread.any() or _switch_is_not_alone(there):
         return ()
+    unread = other.run.unknown | other.with_words(other.words_not_followed)
+    if np.any(unread & (other.section >= 0)):
+        return ()  # nobody knows how it reads there
     reasons = []
     if mode.virtual_axis not in own.virtual_axes and np.any(other.has(mode.virtual_axis) & other.in_polar):
         reasons.append(f"{mode.virtual_axis} is the second axis of the polar plane there")

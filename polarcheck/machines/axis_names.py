@@ -80,16 +80,22 @@ def follow(
 
 def _rotary_by(merged: Mapping[str, Any], told: set[str]) -> list[tuple[str, str]]:
     """The rotary axis as the names of all axes or the virtual axis tell it, and which key does; the first counts."""
-    control, polar = merged.get("control"), merged["polar"]
+    polar, axes = merged["polar"], _axes(merged)
     found = []
-    axes = control.get("axes", []) if isinstance(control, Mapping) else []
     number, virtual = polar.get("rotary_axis"), polar.get("virtual_axis")
-    if _is_texts(axes) and isinstance(number, int) and told & {"control.axes", "polar.rotary_axis"}:
+    if isinstance(number, int) and told & {"control.axes", "polar.rotary_axis"}:
         cause = "control.axes" if "control.axes" in told else "polar.rotary_axis"
         found.append((_followed(axis_of(axes, number), _named(merged)), cause))
     if isinstance(virtual, str) and "polar.virtual_axis" in told:
         found.append((virtual, "polar.virtual_axis"))
     return [(name, cause) for name, cause in found if is_rotary(name)][:1]
+
+
+def _axes(merged: Mapping[str, Any]) -> list[str]:
+    """The names of all axes, as far as they are texts."""
+    control = merged.get("control")
+    axes = control.get("axes") if isinstance(control, Mapping) else None
+    return axes if _is_texts(axes) else []
 
 
 def _named(merged: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -137,8 +143,7 @@ def _of_virtual(
     virtual, cause = names.virtual[0], "polar.virtual_axis"
     increment = names.rotary[1] if virtual == names.rotary[0] else INCREMENTS.get(virtual, "")
     put("polar.virtual_axis_incremental", increment, cause)
-    control = merged.get("control")
-    axes = control.get("axes", []) if isinstance(control, Mapping) else []
+    axes = _axes(merged)
     is_rotary_no_more = inherited.virtual == inherited.rotary and virtual != names.rotary[0]
     former = names.rotary if is_rotary_no_more else inherited.virtual
     # An axis of the lathe that has the address moves by it.
@@ -149,10 +154,11 @@ def _of_virtual(
 
 
 def _enter(merged: dict[str, Any]) -> None:
-    """Axes of the mode that are written with = belong to the named ones."""
+    """Axes that are written with = belong to the named ones."""
     control, polar = merged.get("control"), merged["polar"]
     named = _named(merged)
-    names = [polar[key] for key in ("rotary_address", "virtual_axis") if _NAME.fullmatch(polar[key])]
+    told = (polar["rotary_address"], polar["virtual_axis"], *_axes(merged))
+    names = [name for name in told if _NAME.fullmatch(name)]
     if isinstance(control, dict) and any(name not in named for name in names):
         control["named_axes"] = {**dict.fromkeys(names, ""), **named}
 

@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from polarcheck.arrays import Floats
+from polarcheck.arrays import Floats, Mask
 from polarcheck.geometry import polar
 from polarcheck.table.filling import positions
 from polarcheck.table.positions import Positions
@@ -30,6 +30,11 @@ class RotaryAxis(Positions):
         referenced = self.listed("c_axis_reference") & self.has(axis, increment)
         values = np.where(referenced, 0.0, np.where(self.sets_coordinates, self.angle_of(axis), np.nan))
         return positions(absolute, turn, self._forgets(axis, increment), values)
+
+    @cached_property
+    def rotary_is_followed(self) -> Mask:
+        """The section is followed, and is one of the rotary axis of the machine: Q may name another one."""
+        return np.asarray(self.is_followed & (self.rotary_number == self.machine.polar.rotary_axis))
 
     @cached_property
     def section_entry(self) -> Floats:

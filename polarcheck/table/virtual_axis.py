@@ -1,7 +1,8 @@
 """
 The virtual axis of the polar plane: which addresses it has in each section.
 
-They are those of the machine, unless a word beside G12.1 chooses others: D0 makes it Y, D1 the rotary axis.
+They are those of the machine, unless a word beside G12.1 chooses others: D0 makes it Y, D1 the rotary axis, and Q names
+the rotary axis by its number.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from polarcheck.arrays import Mask, Rows
+from polarcheck.machines.axes import axis_of
 from polarcheck.table.filling import fill_down
 from polarcheck.table.linear_axis import LinearAxis
 
@@ -35,6 +37,16 @@ class VirtualAxis(LinearAxis):
         return list(dict.fromkeys((own, *mode.virtual_axis_by_word.values())))
 
     @cached_property
+    def _by_number(self) -> list[Pair]:
+        """The addresses of other rotary axes than that of the machine, which Q beside a G12.1 of this file names."""
+        mode, axes = self.machine.polar, self.machine.axes
+        if mode.virtual_axis != mode.rotary_address or not axes or not self.takes_axes:
+            return []
+        numbers = np.unique(self.rotary_number[self.switches_on]).tolist()
+        names = [axis_of(axes, number) for number in numbers if number != mode.rotary_axis]
+        return [(name, "") for name in names if name]
+
+    @cached_property
     def _foreign(self) -> list[Pair]:
         """The addresses that it has on other controls."""
         elsewhere = self.machine.polar.virtual_axis_of_other_controls
@@ -46,6 +58,11 @@ class VirtualAxis(LinearAxis):
         form = np.zeros(len(self), np.int64)
         for word, pair in self.machine.polar.virtual_axis_by_word.items():
             form[self.switches_on & (self.word(word[0]) == float(word[1:]))] = self._forms.index(pair)
+        names = (
+            [axis_of(self.machine.axes, number) for number in self.rotary_number.tolist()] if self._by_number else []
+        )
+        for number, (name, _) in enumerate(self._by_number, len(self._forms)):
+            form[self.switches_on & (np.array(names) == name)] = number
         if not form.any():
             return form
         return fill_down(form, self.switches_on | self.ends_mode | self.starts, 0).astype(np.int64)
@@ -53,7 +70,7 @@ class VirtualAxis(LinearAxis):
     def _of_form(self, column: Callable[[Pair], NDArray[Element]]) -> NDArray[Element]:
         """Of a column for each form the values of the one of each row."""
         found = column(self._forms[0])
-        for number, pair in enumerate(self._forms[1:], 1):
+        for number, pair in enumerate((*self._forms[1:], *self._by_number), 1):
             if (self._form == number).any():
                 found = np.where(self._form == number, column(pair), found)
         return found
@@ -64,7 +81,7 @@ class VirtualAxis(LinearAxis):
 
     def virtual_addresses(self, row: int) -> Pair:
         """The addresses of the virtual axis in a row, absolute and incremental."""
-        return self._forms[int(self._form[row])]
+        return [*self._forms, *self._by_number][int(self._form[row])]
 
     def of_virtual_axis(self, column: Callable[[str], NDArray[Element]]) -> NDArray[Element]:
         """Of a column for each address the values of the virtual axis of each row."""
@@ -85,12 +102,13 @@ class VirtualAxis(LinearAxis):
         """
         named = np.zeros(len(self), bool)
         pairs = []
-        for number, pair in enumerate(self._forms):
+        for number, pair in enumerate((*self._forms, *self._by_number)):
             rows = (self._form == number) & self.has(*pair)
             named |= rows
             pairs.append((pair, rows))
         for pair in dict.fromkeys((*self._forms, *self._foreign)):
             rows = self.has(*pair) & ~named & (self.linear_axis != self.machine.address_number(pair[0]))
+            rows &= ~self._moves_itself(pair)
             named |= rows
             pairs.append((pair, rows))
         return pairs
@@ -98,15 +116,29 @@ class VirtualAxis(LinearAxis):
     @cached_property
     def virtual_words(self) -> Rows:
         """The words of the virtual axis, be it under the address of another form or control."""
-        every = dict.fromkeys(address for pair in (*self._forms, *self._foreign) for address in pair)
-        words = self.word_indices(*every)
+        if self._by_number:
+            every = [self._words_of_pair(pair, rows) for pair, rows in self.virtual_pairs]
+            words = np.sort(np.concatenate(every))
+        else:
+            words = self.word_indices(
+                *dict.fromkeys(address for pair in (*self._forms, *self._foreign) for address in pair)
+            )
         return words[~self.linear_words[words]] if self.other_linear_axes else words
+
+    def _moves_itself(self, pair: Pair) -> Mask:
+        """Rows of sections on another rotary axis, in which an axis of the lathe of these addresses moves by itself."""
+        is_other = self._form >= len(self._forms)
+        return is_other if pair[0] in self.machine.axes else np.zeros(len(self), bool)
+
+    def _words_of_pair(self, pair: Pair, rows: Mask) -> Rows:
+        at = self.word_indices(*pair)
+        return at[rows[self.run.row[at]]]
 
     @cached_property
     def foreign_virtual_words(self) -> Mask:
         """Per executed word: of the virtual axis of a simulated mode, under an address of another form or control."""
         own = np.zeros(len(self.run.words), bool)
-        for number, pair in enumerate(self._forms):
+        for number, pair in enumerate((*self._forms, *self._by_number)):
             at = self.word_indices(*pair)
             own[at[self._form[self.run.row[at]] == number]] = True
         return self.words_at(self.virtual_words) & ~own & self.is_simulated[self.run.row]

@@ -26,10 +26,10 @@ from polarcheck.table.trace import Trace
 
 #: What the codes of a list of G-code system B are in system A, and what stands for them there.
 _IN_SYSTEM_A = {
-    "absolute": "a turning cycle in G-code system A, where X and C are absolute and U and H incremental",
-    "incremental": "no code of G-code system A, where U and H are incremental",
-    "feed_per_minute": "a facing cycle in G-code system A, where {} is feed per minute",
-    "feed_per_revolution": "no code of G-code system A, where {} is feed per revolution",
+    "absolute": "a turning cycle in G-code system A, where {axes} are absolute and {increments} incremental",
+    "incremental": "no code of G-code system A, where {increments} incremental",
+    "feed_per_minute": "a facing cycle in G-code system A, where {codes} is feed per minute",
+    "feed_per_revolution": "no code of G-code system A, where {codes} is feed per revolution",
 }
 #: What Z does in one block with axes of the plane, by polar.other_axes.
 _OF_Z = {
@@ -113,11 +113,14 @@ def meaning(trace: Trace, at: list[int]) -> str:
     machine, word = trace.machine, trace.run.words
     address = chr(int(word.address[at[0]]))
     name = spelled("G", round(float(word.value[at[0]]) * 10)) if address == "G" else address
+    axis, increment = machine.polar.rotary_words
+    both = f"U and {increment} are" if increment else "U is"
+    of_axes = {"axes": f"X and {axis}", "increments": both}
     for key, text in _IN_SYSTEM_A.items():
         if name in getattr(machine.g_code_system_b, key):
-            return f"{name} is {text.format(*machine.codes(key))}"
-    system = machine.control.g_code_system
-    return f"{name} is no incremental word of G-code system {system}, where G91 makes X and C incremental"
+            return f"{name} is {text.format_map(of_axes | {'codes': next(iter(machine.codes(key)), '')})}"
+    system, axes = machine.control.g_code_system, of_axes["axes"]
+    return f"{name} is no incremental word of G-code system {system}, where G91 makes {axes} incremental"
 
 
 def taken_by(trace: Trace, other_machine: OtherMachine, at: list[int], row: int) -> str:
@@ -186,9 +189,9 @@ def names_not_followed(trace: Trace) -> Iterator[tuple[str, int]]:
     """The axes of the machine that stand in sections and are not followed, and in how many of their blocks."""
     words = trace.words_not_followed
     words = words[trace.section[trace.run.row[words]] >= 0]
-    words = words[trace.run.words.address[words] != NOT_NAMED]
+    words = words[(trace.run.words.address[words] != NOT_NAMED) & ~trace.words_at(trace.virtual_words)[words]]
     is_judged = trace.is_followed[trace.run.row[words]]
-    remedy = "look at it on the control"
+    remedy = "look at it on the control, or give it as polar.rotary_address where it is the axis of the mode"
     yield from _by_name(trace, words[is_judged], f"is not followed, its section is judged without it: {remedy}")
     yield from _by_name(trace, words[~is_judged], f"is not followed, nothing of its section is judged: {remedy}")
 

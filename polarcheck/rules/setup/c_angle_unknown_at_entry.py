@@ -58,7 +58,7 @@ def c_angle_unknown_at_entry(trace: Trace, entry: Entry, spindles: Spindles) -> 
     positioned = (trace.has(*trace.machine.polar.rotary_words) & (trace.section < 0)) | trace.moves_unnamed
     return (
         trace.enters
-        & trace.is_followed
+        & trace.rotary_is_followed
         & trace.whole_program
         & ~entry.happened(positioned, since=spindles.engages_c_axis)
     )

@@ -88,4 +88,5 @@ def c_axis_not_engaged(trace: Trace, entry: Entry, spindles: Spindles, machine: 
     codes, engaging = machine.m_codes, spindles.c_axis_codes
     # A sub-spindle alone does not tell by which code the main spindle is engaged.
     expected = entry.expects(codes.c_axis_on and [*engaging, *codes.c_axis_off, *codes.sub_c_axis_off])
-    return Hits(trace.enters & trace.is_followed & ~spindles.c_axis & expected, values={"codes": " or ".join(engaging)})
+    missing = trace.enters & trace.rotary_is_followed & ~spindles.c_axis & expected
+    return Hits(missing, values={"codes": " or ".join(engaging)})

@@ -55,5 +55,5 @@ def c_axis_not_referenced(trace: Trace, entry: Entry, spindles: Spindles) -> Mas
     of_sub_spindle = trace.has("A", "B") & spindles.on_sub_spindle
     named = trace.has(*trace.machine.polar.rotary_words) | of_sub_spindle | trace.moves_unnamed
     referenced = trace.listed("c_axis_reference") & named
-    entered = trace.enters & trace.is_followed & spindles.c_axis
+    entered = trace.enters & trace.rotary_is_followed & spindles.c_axis
     return entered & ~entry.happened(referenced, since=spindles.engages_c_axis)
