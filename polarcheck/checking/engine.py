@@ -256,7 +256,7 @@ def program_heads(trace: Trace) -> list[tuple[int, str]]:
     heads = list(zip(table.block[numbered], table.start[numbered], table.end[numbered], strict=True))
     bare = set(table.block[is_head & np.isnan(table.value)].tolist())
     for start, end, block in zip(text.names.start, text.names.end, text.names.block, strict=True):
-        if int(block) in bare:
+        if int(block) in bare or text.source.excerpt(int(start), int(start) + 1) != "<":
             heads.append((block, start, end))
     return [
         (int(block), shortened(places.squeezed(text.source.excerpt(int(start), int(end))), _NAME_LENGTH))

@@ -28,7 +28,9 @@ _NAME = re.compile(r"[A-Za-z0-9+_.-]{1,64}")
 #: In one line, and nothing of it read again: a file of blank lines is no reason to wait.
 _OWN_NAME = re.compile(r"^[^\S\n]*+[O:][^\S\n]*+(\d{1,15}(?!\d)|<[^>\n]*+>)", re.MULTILINE | re.IGNORECASE | re.ASCII)
 #: The line that begins a tape. Behind a head it would end the program.
-_TAPE_MARK = re.compile(r"[\s\0]*+%[^\n]*+\n")
+_TAPE_MARK = re.compile(r"[\s\0]*+(?:\$[^%\n]*+)?%[^\n]*+\n")
+#: A name that stands at the head as the call has it: OFACE.
+_BARE_NAME = re.compile(r"O[A-Z][A-Z0-9]*+", re.IGNORECASE | re.ASCII)
 
 
 class Library:
@@ -102,6 +104,8 @@ def _with_head(data: bytes, file: str, called: ProgramName) -> Source:
     own = _OWN_NAME.search(text)
     right = own is not None and (own[1].isdigit() and number is not None and int(own[1]) == number)
     if right or (own and name is not None and own[1].strip("<>").upper() == name.upper()):
+        return source
+    if name is not None and _BARE_NAME.fullmatch(name) and re.search(rf"(?im)^[^\S\n]*+{name}[^\S\n]*+(?:\(|$)", text):
         return source
     head = f"O{number:04d}" if number is not None else f"O<{name}>"
     mark = _TAPE_MARK.match(text)

@@ -28,7 +28,7 @@ _NUMBER_LIMIT = 1e15
 _SEQUENCE_NUMBER = re.compile(r"[\s/]*(?:/\s*\d\s*)?(?:[O:]\s*\d+\s*)?N\s*(\d+)", re.IGNORECASE)
 #: A label: ANF: at the head of a block or behind its number, or a sequence name, N with letters.
 _LABEL = re.compile(
-    r"[\s/]*(?:/\s*\d\s*)?(?:N\s*\d+\s*)?(?:([A-Z_][A-Z0-9_]+)\s*:(?!=)|(N(?=[0-9]*[A-Z])[A-Z0-9]{1,4})(?![A-Z0-9=]))",
+    r"[\s/]*(?:/\s*\d\s*)?(?:N\s*\d+\s*)?(?:([A-Z_][A-Z0-9_]+)\s*:(?!=)|(N(?!OEX\b)[A-Z][A-Z0-9]{0,3})(?![A-Z0-9=]))",
     re.IGNORECASE,
 )
 
@@ -114,12 +114,16 @@ class Programs:
     @cached_property
     def _labels(self) -> dict[int, dict[str, list[int]]]:
         """The blocks of each label, by the first block of its program."""
-        labels: dict[int, dict[str, list[int]]] = {}
+        names = self.text.labels
+        columns = (names.block.tolist(), names.start.tolist(), names.end.tolist())
+        places = [(block, self.text.source.excerpt(*place).upper()) for block, *place in zip(*columns, strict=True)]
         for block in np.flatnonzero(self.text.blocks.is_macro).tolist():
             found = _LABEL.match(block_text(self.text, block))
             if found:
-                label = (found[1] or found[2]).upper()
-                labels.setdefault(self._first_of(block), {}).setdefault(label, []).append(block)
+                places.append((block, (found[1] or found[2]).upper()))
+        labels: dict[int, dict[str, list[int]]] = {}
+        for block, label in sorted(places):
+            labels.setdefault(self._first_of(block), {}).setdefault(label, []).append(block)
         return labels
 
     def _first_of(self, block: int) -> int:
@@ -169,7 +173,8 @@ def find_programs(text: Text) -> Programs:
     has_words = set(words.block[np.isin(words.block, text.names.block) & (words.address != ord("O"))].tolist())
     for start, end, block in zip(text.names.start, text.names.end, text.names.block, strict=True):
         if int(block) not in has_words and int(block) not in heads and not text.blocks.is_macro[block]:
-            heads[int(block)] = (None, text.source.excerpt(int(start) + 1, int(end) - 1).strip())
+            written = text.source.excerpt(int(start), int(end))
+            heads[int(block)] = (None, written[1:-1].strip() if written.startswith("<") else written)
     filled = np.concatenate((words.block, np.flatnonzero(text.blocks.is_macro)))
     programs: list[Program] = []
     for file, (begin, limit) in enumerate(itertools.pairwise([*first_blocks(text), len(text.blocks)])):

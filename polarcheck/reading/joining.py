@@ -57,6 +57,7 @@ def joined(files: Sequence[Text]) -> Text:
         outside=table(Spans, [file.outside for file in files]),
         tape_marks=moved([file.tape_marks for file in files], characters),
         letters=moved([file.letters for file in files], characters),
+        labels=table(Spans, [file.labels for file in files]),
     )
 
 

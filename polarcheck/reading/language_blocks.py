@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from polarcheck.reading.source import LF, Bytes, Positions
+from polarcheck.reading.surroundings import Ranges
 
 
 class _Signs(NamedTuple):
@@ -21,37 +22,62 @@ class _Signs(NamedTuple):
     How blocks of a language are told from blocks of words.
 
     alone: characters that no block of words has. has_arguments: parentheses behind a name or a sign hold arguments,
-    else they are comments everywhere. line_comment: begins a comment, as a pattern that matches it whole.
+    else they are comments everywhere. line_comment: begins a comment, as a pattern that matches it whole. has_names:
+    N and O take names; $ heads a file or goes on with the block of the line above.
     """
 
     alone: bytes
     has_arguments: bool
     line_comment: bytes
+    has_names: bool
+
+
+class Taken(NamedTuple):
+    """
+    What was taken out of a text.
+
+    statements: the place of the first sign of each line with statements. labels: sequence names (NLAP1) at the heads of
+    blocks that are words otherwise. programs: the names of programs (OFACE) in blocks of their own. is_joined: lines go
+    on with the block of the line above.
+    """
+
+    statements: Positions
+    labels: Ranges
+    programs: Ranges
+    is_joined: bool
 
 
 _SIGNS = {
-    "high-level": _Signs(b'="[$', True, rb";[^\n]*+"),
-    "user-task": _Signs(b"=[", False, rb"(?!)"),
+    "high-level": _Signs(b'="[$', True, rb";[^\n]*+", False),
+    "user-task": _Signs(b"=[$", False, rb"(?!)", True),
 }
 _NAME_CHARACTERS = np.isin(np.arange(256), list(b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz_"))
 #: A name has two letters at least; the letters O and I behind an address are digits that somebody mistyped.
 _NAME = rb"(?![A-Z][OI]++(?![A-Z0-9_]))[A-Z_$][A-Z_][A-Z0-9_$]*+"
 _LABEL = rb"[A-Z_][A-Z0-9_]++[ \t]*+:"
 _BLANK = b" \t\r\0"
+_HEAD_OF_FILE = re.compile(rb"[ \t\r\0]*+\$[^%\n]*+%[ \t\r\0]*+")
+_GOES_ON = re.compile(rb"\n[ \t\r\0]*+\$(?![^%\n]*+%)")
+_PROGRAM = re.compile(rb"[ \t\r\0]*+(O[A-Z][A-Z0-9]{0,15}+)[ \t\r\0]*+")
+#: A sequence name: N and up to four letters and digits. NOEX runs a block without stopping at it.
+_SEQUENCE_NAME = re.compile(rb"(?<![A-Z0-9_$])N(?!OEX(?![A-Z0-9]))[A-Z][A-Z0-9]{0,3}+(?![A-Z0-9_.=\[])")
+_BEFORE_LABEL = re.compile(rb"[ \t\r\0]*+(?:/[ \t]*+\d?+[ \t\r\0]*+)?+")
 #: A parenthesis that belongs to what stands before it: a name, a sign; so much before it is looked at [characters].
 _BEFORE_ARGUMENTS = re.compile(rb"(?:[=+\-*/,<>]|[A-Z_$][A-Z_][A-Z0-9_$]*+)[ \t]*+\(\Z")
 _NEAR = 64
 
 
-def take_out(code: Bytes, language: str) -> Positions:
+def take_out(code: Bytes, language: str) -> Taken:
     """
-    The place of the first sign of each line with statements of a language; all of the line but its comments is blanked.
+    Find the lines with statements of a language, and its names; all of them but their comments is blanked.
 
     Lines that begin with % hold none. A line is looked at only where two letters adjoin or such a sign stands.
     """
     signs = _SIGNS.get(language)
+    none = np.zeros(0, np.int64)
     if signs is None or not len(code):
-        return np.zeros(0, np.int64)
+        return Taken(none, Ranges(none, none), Ranges(none, none), False)
+    is_joined = signs.has_names and _join(code)
     is_name = _NAME_CHARACTERS[code]
     alone = b":" + signs.alone
     suspects = np.isin(code, list(alone))
@@ -61,20 +87,60 @@ def take_out(code: Bytes, language: str) -> Positions:
     index = np.unique(np.searchsorted(breaks, at))
     starts = np.append(0, breaks + 1)[index]
     pattern = _pattern(signs)
-    found = []
+    found: list[int] = []
+    labels: list[tuple[int, int]] = []
+    programs: list[tuple[int, int]] = []
     for start, end in zip(starts.tolist(), breaks[index].tolist(), strict=True):
         line = code[start:end].tobytes().upper()
         if line.lstrip(_BLANK)[:1] == b"%":
             continue
+        if signs.has_names and (head := _HEAD_OF_FILE.fullmatch(line)):
+            code[start : start + line.rindex(b"%")] = _BLANK[0]
+            continue
         comments, first = _parts(line, pattern, signs)
         if first < 0:
             continue
+        if signs.has_names:
+            bare = _without(line, comments)
+            if head := _PROGRAM.fullmatch(bare):
+                programs.append((start + head.start(1), start + head.end(1)))
+                code[start + head.start(1) : start + head.end(1)] = _BLANK[0]
+                continue
+            names = [name.span() for name in _SEQUENCE_NAME.finditer(bare)]
+            if names and _parts(_without(bare, names), pattern, signs)[1] < 0:
+                lead = _BEFORE_LABEL.match(bare)
+                labels += [(start + first, start + end) for first, end in names[:1] if lead and first == lead.end()]
+                for first, end in names:
+                    code[start + first : start + end] = _BLANK[0]
+                continue
         found.append(start + first)
         begin = 0
         for comment, after in [*comments, (len(line), len(line))]:
             code[start + begin : start + comment] = _BLANK[0]
             begin = after
-    return np.array(found, np.int64)
+    return Taken(np.array(found, np.int64), _ranges(labels), _ranges(programs), is_joined)
+
+
+def _ranges(places: list[tuple[int, int]]) -> Ranges:
+    start, end = np.array(places, np.int64).reshape(-1, 2).T
+    return Ranges(start, end)
+
+
+def _join(code: Bytes) -> bool:
+    """Blank the line end before each $ with which a line goes on with the block above, and the $; whether any does."""
+    data = code.tobytes()
+    found = [match.span() for match in _GOES_ON.finditer(data)] if b"$" in data else []
+    for start, end in found:
+        code[start] = code[end - 1] = _BLANK[0]
+    return bool(found)
+
+
+def _without(line: bytes, places: list[tuple[int, int]]) -> bytes:
+    """A line with these places of it blanked."""
+    bare = bytearray(line)
+    for start, end in places:
+        bare[start:end] = b" " * (end - start)
+    return bytes(bare)
 
 
 def _pattern(signs: _Signs) -> re.Pattern[bytes]:

@@ -104,7 +104,8 @@ class Text(msgspec.Struct, frozen=True):
     unclosed, nested: per comment. names: of programs, <...>. strays: characters that are no part of any word. foreign:
     runs of characters outside the ISO set, in comments too. prose: text in no parentheses, read as a comment. dots:
     lines of points, for blocks left out. outside: text before and after the programs. tape_marks: positions of % at a
-    line's head or end. letters: positions of letters O and I that are read as the digits 0 and 1.
+    line's head or end. letters: positions of letters O and I that are read as the digits 0 and 1. labels: names at
+    the heads of blocks, for jumps (NEND).
     """
 
     source: Source
@@ -121,6 +122,7 @@ class Text(msgspec.Struct, frozen=True):
     outside: Spans
     tape_marks: Positions
     letters: Positions
+    labels: Spans
 
 
 def read_words(
@@ -138,7 +140,7 @@ def read_words(
     stored = data[:end_of_data]
     lines_end_at_cr = data.find(b"\n") < 0
     code = np.frombuffer(bytearray(stored.replace(b"\r", b"\n") if lines_end_at_cr else stored), np.uint8)
-    in_language = take_out(code, language)
+    taken = take_out(code, language)
     around = read_surroundings(code, line_comments, channel_mark, wait_mark)
     letters = read_as_digits(code)
     prose = find_prose(source, code)
@@ -151,9 +153,11 @@ def read_words(
     starts = np.append(breaks[:0], 0)
     starts = np.append(starts, breaks + 1).astype(breaks.dtype)
     line = np.cumsum(np.append(True, code[breaks] == LF), dtype=breaks.dtype)
+    if taken.is_joined:
+        line = np.searchsorted(source.line_starts, starts, side="right").astype(breaks.dtype)
     is_macro = np.zeros(len(starts), bool)
     is_macro[_block_of(table.macro, starts)] = True
-    is_macro[_block_of(in_language, starts)] = True
+    is_macro[_block_of(taken.statements, starts)] = True
     is_macro[table.words.block[_begins_statement(table.words)]] = True
     words = _only(table.words, ~is_macro[table.words.block])
     blocks = Blocks(starts, np.append(breaks, len(code)), np.minimum(line, len(source.line_starts)), is_macro)
@@ -173,7 +177,7 @@ def read_words(
         comments=spans(around.comments),
         unclosed=around.unclosed,
         nested=around.nested,
-        names=spans(around.names),
+        names=spans(united(around.names, taken.programs)),
         strays=spans(Ranges(strays, strays + 1)),
         foreign=spans(foreign(stored)),
         prose=spans(prose),
@@ -181,6 +185,7 @@ def read_words(
         outside=spans(outside),
         tape_marks=around.tape_marks,
         letters=letters,
+        labels=spans(taken.labels),
     )
 
 

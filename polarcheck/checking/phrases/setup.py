@@ -161,7 +161,9 @@ def spindle_remedy(spindles: Spindles, machine: Machine, row: int) -> str:
     if not spindles.are_no_live_tool[row] and not machine.polar.main_spindle_must_stop:
         return ": if that is the main spindle, stop it"
     off = codes.sub_spindle_off if spindles.on_sub_spindle[row] else codes.spindle_off
-    return f"; write {next(iter(off), 'the code that stops it')} before the {trace.machine.polar.rotary_address} axis is engaged"
+    return (
+        f"; write {next(iter(off), 'the code that stops it')} before the {machine.polar.rotary_address} axis is engaged"
+    )
 
 
 def release(spindles: Spindles, machine: Machine, row: int) -> str:
