@@ -173,6 +173,7 @@ USES = {
     "control.line_comments": Use(";", inside("; G0 X1.")),
     "control.channel_mark": Use("", FLAT.replace("G98", "$1\nG98").replace("M30", "M30\n$2\nG0 X5.\nM30")),
     "control.wait_mark": Use("", inside("!2L10")),
+    "control.radius_offset_digits": Use(2, FLAT.replace("G98", "T020101\nG98"), tools=("1:radius=3", "2:radius=4")),
     "control.offset_digits": Use(1, FLAT.replace("G98", "T0112\nG98"), tools=("12:radius=3", "2:radius=4")),
     "control.unknown_codes_are_errors": Use(False, before("G150")),
     "control.x": Use("radius", FLAT),

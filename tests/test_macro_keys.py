@@ -14,7 +14,8 @@ from polarcheck.machines.macro_keys import Macro
 _SUB = "M30\nO2\nG0 X#24 Z#4 U#7\nM99\n"
 #: Key -> what it is changed to, and the program; X, Z and U of its rows, or what is said, are no longer the same.
 KEYS: dict[str, tuple[Any, str]] = {
-    "language": ("high-level", "R1=5\nG0 X=R1\nM30\n"),
+    "language": ("user-task", "VC1=5\nG0 X=VC1\nM30\n"),
+    "named_words": ({"QX": "X"}, "G0 QX=5.\nM30\n"),
     "local_variables": ([[1, 26]], "#27=5.\nG0 X#27\nM30\n"),
     "common_variables": ([[100, 149]], "#150=5.\nG0 X#150\nM30\n"),
     "retained_variables": ([[500, 531]], "#600=5.\nG0 X#600\nM30\n"),
@@ -59,7 +60,8 @@ def test_no_key_is_forgotten() -> None:
 @pytest.mark.parametrize("key", KEYS)
 def test_changing_a_key_changes_a_result(key: str) -> None:
     value, program = KEYS[key]
-    assert outcome(program, {}) != outcome(program, {"macro": {key: value}})
+    others = {"language": "user-task"} if key == "named_words" else {}
+    assert outcome(program, {"macro": others}) != outcome(program, {"macro": {**others, key: value}})
 
 
 def test_program_ends_are_those_of_the_machine() -> None:

@@ -137,6 +137,7 @@ _OPERATIONS: Final[Mapping[str, Callable[..., float | FaultKind]]] = {
     "SQRT": lambda a: math.sqrt(max(a, 0.0)) if a >= -_NOISE else "negative-square-root",
     "ABS": abs,
     "FIX": lambda a: float(math.trunc(a)),
+    "@ROUND": lambda a: round_to(a, 1),
     "FUP": lambda a: float(math.ceil(a) if a > 0 else math.floor(a)),
     "LN": lambda a: math.log(a) if a > 0 else "logarithm-not-positive",
     "EXP": math.exp,

@@ -22,12 +22,17 @@ Resolver = Callable[[ProgramName], bool]
 
 @dataclass(slots=True)
 class Level:
-    """One level of calls: the program that runs, where its caller goes on, and how often it runs again."""
+    """
+    One level of calls: the program that runs, where its caller goes on, and how often it runs again.
+
+    passed: the variables that the call has set, which have no value behind the return.
+    """
 
     program: Program
     back: int = 0
     repeats: int = 1
     is_macro: bool = False
+    passed: tuple[int, ...] = ()
 
 
 @dataclass(slots=True)
@@ -173,7 +178,8 @@ class Calls:
             return back
         if repeats <= 0:
             return back
-        self.stack.append(Level(program, back, repeats, arguments is not None))
+        passed = statement.passed if statement is not None else ()
+        self.stack.append(Level(program, back, repeats, arguments is not None, passed))
         if arguments is not None:
             self.variables.enter(arguments)
             self.changes += 1
@@ -190,6 +196,8 @@ class Calls:
         self.stack.pop()
         if level.is_macro:
             self.variables.leave()
+        for number in level.passed:
+            self.variables.write(number, None)
         if not self.stack:
             if target is not None:
                 self.remark("return-jumps", block, code=statement.call if statement else "")

@@ -22,6 +22,7 @@ from polarcheck.execution.run import NO_VARIABLE, Assigned, Remark
 from polarcheck.execution.statement import Kind, Search, Statement, Word
 from polarcheck.machines.codes import code_numbers, code_set
 from polarcheck.machines.job import Running
+from polarcheck.machines.macro_keys import Macro
 from polarcheck.time_limit import seconds_for
 
 #: So many endless programs of a file get all the statements that are asked for, those behind them so many each.
@@ -118,7 +119,10 @@ class Execution(Calls):
         inside = (words.block >= program.first) & (words.block < program.end) & (words.address == ord("M"))
         codes = code_numbers(words.value[inside])
         returns, ends = code_set(self.listing.macro.program_returns), code_set(self.listing.ends)
-        return program.has_head and bool(np.any(returns[codes])) and not bool(np.any(ends[codes]))
+        if not program.has_head or np.any(ends[codes]):
+            return False
+        statements = self.listing.macro_statements(program)
+        return bool(np.any(returns[codes])) or any(_returns(one, self.listing.macro) for _, one in statements)
 
     def step(self, block: int) -> int:
         """Run up to the next block at which the flow can turn, and that block; give the block to go on with."""
@@ -357,6 +361,10 @@ class Execution(Calls):
                 continue
             words.append((word, value))
         return words
+
+
+def _returns(statement: Statement, macro: Macro) -> bool:
+    return any(part.call in macro.program_returns for part in (statement, *statement.more))
 
 
 def _is_within(number: float, ranges: Iterable[tuple[int, int]]) -> bool:

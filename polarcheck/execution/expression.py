@@ -106,7 +106,9 @@ def ambiguous(expression: Expression) -> tuple[int, int] | None:
 
 NUMBER: Final = r"[0-9]++\.?+[0-9]*+|\.[0-9]++"
 _ANGLES: Final = ["SIN", "COS", "TAN", "ASIN", "ACOS", "ATAN"]
-_FUNCTIONS: Final = [*_ANGLES, "SQRT", "ABS", "ROUND", "FIX", "FUP", "LN", "EXP", "BIN", "BCD", "POW", "ADP"]
+#: No program writes @ROUND: what other languages than custom macro call ROUND, which rounds to whole numbers anywhere.
+_WHOLE: Final = "@ROUND"
+_FUNCTIONS: Final = [*_ANGLES, "SQRT", "ABS", "ROUND", "FIX", "FUP", "LN", "EXP", "BIN", "BCD", "POW", "ADP", _WHOLE]
 _COMPARISONS: Final = ["EQ", "NE", "GT", "LT", "GE", "LE"]
 _ORDER: Final = {
     **dict.fromkeys(_COMPARISONS, 1),
@@ -116,7 +118,7 @@ _ORDER: Final = {
 }
 _LOGICAL: Final = {"AND": "BOTH", "OR": "EITHER", "XOR": "ONE"}
 # The control takes the first two letters of a name for the whole; POW has no short form, since PO is POPEN.
-_SHORT: Final = {name[:2]: name for name in [*_FUNCTIONS, "AND", "XOR"] if name != "POW"}
+_SHORT: Final = {name[:2]: name for name in [*_FUNCTIONS, "AND", "XOR"] if name not in ("POW", _WHOLE)}
 _NAMES: Final = sorted([*_FUNCTIONS, *_COMPARISONS, "AND", "OR", "XOR", "MOD", *_SHORT], key=len, reverse=True)
 _TOKEN: Final = re.compile(rf"({NUMBER})|#([0-9]+)|(#_[A-Z0-9_]+)|({'|'.join(_NAMES)})|([-+*/,#\[\]])")
 _SUM, _PRODUCT, _OR, _AND = 1, 2, 4, 8

@@ -131,8 +131,9 @@ class Listing:
 
     def _named_in(self, block: int) -> ProgramName | None:
         statement = self.statement(block)
-        call = statement if statement.then is None else statement.then
-        if call.call not in self._call_codes:
+        parts = (statement if statement.then is None else statement.then, *statement.more)
+        call = next((part for part in parts if part.call in self._call_codes), None)
+        if call is None:
             return None
         called = called_program(call, self._nothing_known, self.macro, self.arithmetic).program
         return None if called == ProgramName(None, None) else called

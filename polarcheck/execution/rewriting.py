@@ -25,6 +25,10 @@ class Rewriting:
         self._text += [text[place].upper() for place in shown]
         self._places += [min(start + place, max(end - 1, start)) for place in shown]
 
+    def before(self, other: Rewriting) -> Characters:
+        """What has been put here and, behind it, there."""
+        return Characters.read_as("".join((*self._text, *other._text)), [*self._places, *other._places])
+
     @property
     def characters(self) -> Characters:
         """What has been put, to be read."""

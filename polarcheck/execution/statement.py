@@ -104,7 +104,7 @@ class Statement:
     THEN does. call: the code that makes the block a call, "" in others. fault: the first one; what could not be read
     is None or not among the words, and with "bracket-levels" nothing is lost. label: the name to go to, where it is no
     number; search: where it is looked for. more: what the block says beside it, in order. unread: what is not
-    simulated.
+    simulated. passed: the variables that a call sets for its program, which have no value behind its return.
     """
 
     kind: Kind
@@ -125,3 +125,4 @@ class Statement:
     search: Search = Search.ROUND
     more: tuple[Statement, ...] = ()
     unread: tuple[Unread, ...] = ()
+    passed: tuple[int, ...] = ()

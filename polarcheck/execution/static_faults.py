@@ -77,4 +77,5 @@ def _ends_flow(listing: Listing, execution: Execution, block: int) -> bool:
     if not listing.turns_at(block):
         return False
     statement = listing.statement(block)
-    return statement.kind is Kind.GOTO or statement.call in listing.macro.program_returns
+    returns = listing.macro.program_returns
+    return any(part.kind is Kind.GOTO or part.call in returns for part in (statement, *statement.more))

@@ -63,6 +63,7 @@ class Control(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     channel_mark: character before the number of a channel, which parts a file in channels: $ in $2; or empty
     wait_mark: character that begins a wait for another channel, which is a comment: ! in !2L10; or empty
     offset_digits: how many of the last digits of T are the offset number: 2 where T0808 is tool 8 with offset 8
+    radius_offset_digits: digits of T before those of the tool that number the offset with R; 0: the tool offset has it
     unknown_codes_are_errors: whether the control stops at a G code that is not among the known codes
     x: diameter or radius: what X words are outside the polar mode
     axes: names of the axes in the order of their numbers, which P, Q and parameters count; none where it is not known
@@ -86,6 +87,7 @@ class Control(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     channel_mark: CharacterOrNone
     wait_mark: CharacterOrNone
     offset_digits: Annotated[int, msgspec.Meta(ge=1, le=4)]
+    radius_offset_digits: Annotated[int, msgspec.Meta(ge=0, le=3)]
     unknown_codes_are_errors: bool
     x: Literal["diameter", "radius"]
     axes: list[AxisAddress] = []

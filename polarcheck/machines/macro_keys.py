@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 
 import msgspec
 
-from polarcheck.machines.values import Address, Count, Positive, Ranges, Variable
+from polarcheck.machines.values import Address, AddressOrNone, Count, Plain, Positive, Ranges, Variable
 
 #: The lists of codes among the keys.
 CODE_LISTS = (
@@ -24,6 +24,7 @@ class Macro(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     Custom macro and calls.
 
     language: of statements: custom-macro (#1), high-level (R1, X=R1, IF .. GOTOF NAME) or user-task (VC1, IF [..] NAME)
+    named_words: words of several letters with = in such a language, by the address that each is read as; empty: none
     local_variables: ranges, first and last number, of local variables, of which each macro call has its own
     common_variables: ranges of common variables that are vacant at power-on
     retained_variables: ranges of common variables that outlive the power-off: not known until a program assigns them
@@ -54,6 +55,7 @@ class Macro(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     """
 
     language: Literal["custom-macro", "high-level", "user-task"]
+    named_words: dict[Plain, AddressOrNone] = {}
     local_variables: Ranges
     common_variables: Ranges
     retained_variables: Ranges

@@ -13,6 +13,8 @@ from polarcheck.table.columns import Columns
 from polarcheck.table.filling import before, fill_down, happened
 
 _LONGEST_TOOL_NUMBER = 1e15
+#: Of T, where digits of their own say which offset has R.
+_TOOL_DIGITS = 2
 #: As many edges a tool may have, and as large its number may be where it has some.
 _EDGES = 100_000
 _LARGEST_TOOL = 10**13
@@ -75,7 +77,32 @@ class CalledTools(Columns):
     @cached_property
     def tool(self) -> Rows:
         """Tool number in force, 0 before the first; one with a name has a number of its own (run.names)."""
-        return np.where(self.has_edges, self._t, self._t // self._most_plain)
+        number = self._t // self._most_plain
+        plain = np.where(self._names_radius_offset, number % 10**_TOOL_DIGITS, number)
+        return np.where(self.has_edges, self._t, plain)
+
+    @cached_property
+    def _names_radius_offset(self) -> Mask:
+        """T has digits of its own for the offset with R: T010203 is R of offset 1, tool 2, offset 3."""
+        control, words = self.machine.control, self.run.words
+        found, short = np.zeros(len(self), bool), _TOOL_DIGITS + control.offset_digits
+        if not control.radius_offset_digits:
+            return found
+        at = self.word_indices("T")
+        is_long = (words.digits[at] > short) | (np.nan_to_num(words.value[at]) >= 10**short)
+        found[self.run.row[at]] = is_long
+        return fill_down(found, self.has("T") | self.starts, False).astype(bool)
+
+    @cached_property
+    def _plain_offset(self) -> Rows:
+        """Number of the offset with R as the digits of T name it, which is that of the tool unless T names another."""
+        own = self._t // (10**_TOOL_DIGITS * self._most_plain) % self._most_plain
+        return np.where(self._names_radius_offset, own, self._t % self._most_plain)
+
+    @cached_property
+    def tool_offset_number(self) -> Rows:
+        """Number of the tool offset in force, 0 for none; R may be that of another one."""
+        return np.where(self.has_edges, self.offset_number, self._t % self._most_plain)
 
     @property
     def _most_plain(self) -> int:
@@ -93,9 +120,9 @@ class CalledTools(Columns):
     def offset_number(self) -> Rows:
         """Offset number in force, 0 for none; an edge of a tool has one of its own, beyond those of the control."""
         if not len(self._edges_called):
-            return np.where(self.has_edges, 0, self._t % self._most_plain)
+            return np.where(self.has_edges, 0, self._plain_offset)
         of_edge = self._most_plain + np.searchsorted(self._edges_called, self.tool_called)
-        plain = np.where(self.has_edges, 0, self._t % self._most_plain)
+        plain = np.where(self.has_edges, 0, self._plain_offset)
         return np.where(self.has_edges & (self.tool_called > 0), of_edge, plain)
 
     @property

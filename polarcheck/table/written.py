@@ -31,7 +31,8 @@ _UNSURE_GROUPS = ("scaling", "rotation", "mirror")
 _OF_OTHER_SYSTEMS = ("turning_cycle", "threading_cycle", "facing_cycle")
 _COMMENT = re.compile(rb"\([^)\n]*+\)?")
 _LETTER_OR_DIGIT = re.compile(rb"[0-9A-Za-z\x80-\xff]")
-_JUMP = r"GOTO|GO\s*\d"
+#: RTS returns in user tasks.
+_JUMP = r"GOTO|GO\s*\d|(?<![A-Z0-9])RTS(?![A-Z0-9])"
 
 
 class Written:

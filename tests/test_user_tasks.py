@@ -1,0 +1,314 @@
+"""Programs with statements of user tasks: each construct is simulated, told as not evaluated by name, or harmless."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+import pytest
+from programs import moves_of, report_of, said, tables_of, trace_of
+
+from polarcheck.checking.finding import FileReport
+from polarcheck.execution.programs import Program, find_programs
+from polarcheck.table.trace import Trace
+
+LATHE = "okuma-osp"
+CUTTER = "1:radius=0,nose=0"
+HEAD = "$PART.MIN%\nO1\nG97 G40 G94 G50 S2000\nM110\nT0101\nG0 X100. C0 Z5.\n"
+HEAD += "SB=2000 M13\nG137 C0\nG17\nG101 X40. Y0 F500\n"
+TAIL = "\nG101 X30. Y5. F200\nG136\nG0 Z100.\nM12\nM109\nM2\nOSUB\nG101 Y=5+LX\nRTS\nO2000\nG101 Y8.\nRTS\n%\n"
+FIRST = HEAD.count("\n") + 1
+
+
+def run(body: str) -> tuple[FileReport, Trace]:
+    program = HEAD + body + TAIL
+    return report_of(program, LATHE, CUTTER), trace_of(program, LATHE, CUTTER)
+
+
+def path(trace: Trace) -> list[tuple[float, float]]:
+    """The points of the polar section between its first move and its last."""
+    ends = trace.end[trace.in_polar & trace.moves_plane]
+    return [(round(point.real, 3), round(point.imag, 3)) for point in ends[1:-1].tolist()]
+
+
+SIMULATED = {
+    "X=20": [(20, 0)],
+    "X = 20 Y=2": [(20, 2)],
+    "VC1=20\nX=VC1": [(20, 0)],
+    "vc1=20\nx=vc1": [(20, 0)],
+    "V1=2 VC1=20\nX=VC1 Y=-V1": [(20, -2)],
+    "NOEX VC1=20\nNOEX X=VC1": [(20, 0)],
+    "N10 VC1=20\nN20 X=VC1": [(20, 0)],
+    "DIA=20\nX=DIA": [(20, 0)],
+    "DIA=20\nX[DIA]": [(20, 0)],
+    "DIA=20 LX=2\nX=DIA/LX Y3.": [(10, 3)],
+    "VC1=5\nX=10+VC1*2": [(20, 0)],
+    "VC1=2 VC2=3\nX=[VC1+VC2]*4": [(20, 0)],
+    "VC1=3\nX=VC1*[VC1+3]+[2]": [(20, 0)],
+    "X=-[-20]": [(20, 0)],
+    "X=SQRT[400]": [(20, 0)],
+    "X=ABS[-20]": [(20, 0)],
+    "X=MOD[23,20]+17": [(20, 0)],
+    "X=17+23 MOD 20": [(20, 0)],
+    "X=ROUND[19.6]": [(20, 0)],
+    "VC1=ROUND[19.5]\nX=VC1": [(20, 0)],
+    "Y=ROUND[-2.6]": [(40, -3)],
+    "X=FIX[20.9]": [(20, 0)],
+    "X=FUP[19.2]": [(20, 0)],
+    "X=SIN[30]*40": [(20, 0)],
+    "X=COS[60]*40": [(20, 0)],
+    "X=TAN[45]*20": [(20, 0)],
+    "X=ATAN[1]": [(45, 0)],
+    "Y=ATAN2[-1,1]": [(40, -45)],
+    "GOTO NEND\nX99.\nNEND X20.": [(20, 0)],
+    "GOTO N100\nX99.\nN100 X20.": [(20, 0)],
+    "GOTO 100\nX99.\nN100 X20.": [(20, 0)],
+    "VC1=1\nIF [VC1 EQ 1] NEND\nX99.\nNEND X20.": [(20, 0)],
+    "VC1=1\nIF[VC1 NE 2] GOTO NEND\nX99.\nNEND X20.": [(20, 0)],
+    "VC1=1\nIF VC1 LT 2 GOTO NEND\nX99.\nNEND X=20": [(20, 0)],
+    "VC1=1\nIF [VC1 GE 1] N100\nX99.\nN100 X20.": [(20, 0)],
+    "VC1=1 VC2=2\nIF [VC1 EQ 1 AND VC2 EQ 2] NEND\nX99.\nNEND X20.": [(20, 0)],
+    "VC1=1 VC2=2\nIF [[VC1 EQ 1] AND [VC2 GT 2]] NEND\nX20.\nNEND": [(20, 0)],
+    "VC1=1\nIF [VC1 EQ 2] OR [VC1 LE 1] NEND\nX99.\nNEND X20.": [(20, 0)],
+    "VC1=1\nIF [VC1 EQ 1 EOR VC1 EQ 1] NEND\nX20.\nNEND": [(20, 0)],
+    "LX=1\nIF LX NEND\nX99.\nNEND X20.": [(20, 0)],
+    "IF LX NEND\nX20.\nNEND": [(20, 0)],
+    "VC1=0\nNLP Y=VC1+1\nVC1=VC1+1\nIF [VC1 LT 3] NLP": [(40, 1), (40, 2), (40, 3)],
+    "CALL O2000": [(40, 8)],
+    "CALL O2000 Q2": [(40, 8), (40, 8)],
+    "CALL OSUB LX=3": [(40, 8)],
+    "CALL OSUB Q2 LX=3": [(40, 8), (40, 8)],
+    "CALL OSUB\n$ LX=3": [(40, 8)],
+    "MODIN O2000\nX20.\nMODOUT\nX10.": [(20, 0), (20, 8), (10, 8)],
+    "X20.\n$ Y3.": [(20, 3)],
+    "NLAB X20. (X=5)": [(20, 0)],
+    "/NLAB VC1=20\nX20.": [(20, 0)],
+}
+
+
+@pytest.mark.parametrize("body", SIMULATED)
+def test_it_is_simulated(body: str) -> None:
+    report, trace = run(body)
+    assert path(trace) == SIMULATED[body]
+    assert {rule for _, rule in said(report)} <= {"unreachable-block", "path-through-center"}
+    assert [entry.reason for entry in report.not_evaluated if entry.rule == "all"] == []
+
+
+def test_values_of_a_call_are_calculated_before_it_and_gone_behind_it() -> None:
+    assert path(run("VC1=1\nCALL OSUB LX=VC1+2\nX=VC1*20")[1]) == [(40, 8), (20, 8)]
+    assert said(run("CALL OSUB LX=3\nX=LX")[0]) == [(FIRST + 1, "vacant-variable")]
+    assert path(run("LX=3\nCALL OSUB\nX=LX*10")[1]) == [(40, 8), (30, 8)]
+
+
+#: Construct -> how it is named, and whether the verdict waits for it.
+NAMED = {
+    "VZOFX=10": ("VZOFX=10", True),
+    "VZOFZ=10": ("VZOFZ=10", False),
+    "VTOFX[5]=VTOFX[5]+.2": ("VTOFX[5]=VTOFX[5]+.2", True),
+    "VZSHZ=VZSHZ+1": ("VZSHZ=VZSHZ+1", False),
+    "VRSTT=1": ("VRSTT=1", True),
+    "X=DROUND[20.12]": ("DROUND", True),
+    "X=DFIX[20.12] Y3.": ("DFIX", True),
+    "X=BIN[20]": ("BIN", True),
+    "VC1=1\nIF [NOT[VC1] EQ 0] NEND\nNEND": ("NOT", True),
+    "CALL O=VC1": ("CALL O=VC1", True),
+    "GET VC1": ("GET VC1", True),
+    "PUT 'A'": ("PUT 'A'", True),
+    "READ 1": ("READ 1", True),
+    "WRITE LX": ("WRITE LX", True),
+    "PSELECT O1": ("PSELECT O1", True),
+    "WHILE [VC1 LT 2]": ("WHILE", True),
+    "TURN": ("TURN", True),
+    "X20. TURN": ("TURN", True),
+    "CALRG X20. Y5. L30.": ("CALRG", True),
+    "SB2000": ("SB2000", True),
+    "X=": ("X=", True),
+    "X==2": ("X=", True),
+    "Y=VC1 X=": ("X=", True),
+    "X=#1": ("X=", True),
+    "IF [VC1 EQ 1]": ("IF [VC1 EQ 1]", True),
+    "IF NEND": ("IF NEND", True),
+    "GOTO VC1": ("GOTO VC1", True),
+    "CALL": ("CALL", True),
+    "DIA": ("DIA", True),
+}
+
+
+@pytest.mark.parametrize("body", NAMED)
+def test_it_is_named_where_it_is_not_simulated(body: str) -> None:
+    report, _ = run(body)
+    name, matters = NAMED[body]
+    told = {entry.reason: entry.matters for entry in report.not_evaluated if entry.rule == "all"}
+    assert told.get(f"{name} is not simulated") is matters
+    assert report.verdict == ("unverified" if matters else "pass")
+
+
+#: Words that belong to cycles, or that the control itself looks after.
+@pytest.mark.parametrize("body", ["DA=1 X20.", "X20. QA=5", "SA=20 X20.", "SB=3000 X20.", "NAT03\nX20.", "NOEX X20."])
+def test_it_is_harmless(body: str) -> None:
+    report, trace = run(body)
+    assert path(trace) == [(20, 0)]
+    assert (report.verdict, said(report)) == ("pass", [])
+
+
+@pytest.mark.parametrize(
+    "body",
+    ["X=VC1", "X=VZOFX", "VC1=VTOFX[2]\nX=VC1", "X=V5+1", "VC1=1\nX=VC1*VSIOZ"],
+)
+def test_what_is_not_known_is_not_evaluated(body: str) -> None:
+    report, trace = run(body)
+    assert said(report) == []
+    assert report.verdict == "unverified"
+    assert re.search("nan", str(path(trace)))
+
+
+@pytest.mark.parametrize(
+    ("body", "rule"),
+    [
+        ("X=1/0", "arithmetic-error"),
+        ("X=SQRT[-4]", "arithmetic-error"),
+        ("X=[VC1+2", "macro-syntax"),
+        ("X=LX", "vacant-variable"),
+        ("GOTO NFAR", "jump-target-missing"),
+        ("GOTO N77", "jump-target-missing"),
+        ("IF [1 EQ 1] NFAR", "jump-target-missing"),
+        ("CALL O77", "subprogram-missing"),
+        ("CALL OFAR", "subprogram-missing"),
+    ],
+)
+def test_a_fault_is_one_finding_in_its_block(body: str, rule: str) -> None:
+    assert said(run(body)[0])[0] == (FIRST, rule)
+    assert {other for _, other in said(run(body)[0])} <= {rule, "unreachable-block", "polar-never-left"}
+
+
+def test_six_digits_of_t_are_offset_of_r_tool_and_tool_offset() -> None:
+    trace = trace_of("O1\nT020105\nM1\nT010203\nM1\nT000304\nM1\nT0405\nM2\n", LATHE, "2:radius=3")
+    rows = trace.has("T")
+    assert trace.tool[rows].tolist() == [1, 2, 3, 4]
+    assert trace.offset_number[rows].tolist() == [2, 1, 0, 5]
+    assert trace.tool_offset_number[rows].tolist() == [5, 3, 4, 5]
+    assert trace.radius[rows].tolist()[0] == 3
+    assert trace_of("O1\nT020105\nM30\n").offset_number.tolist()[1:] == [5, 5]
+
+
+def test_names_are_those_of_programs_and_blocks() -> None:
+    """They are no bad numbers, wherever they stand, and a block with a name keeps its words."""
+    tables = tables_of("$A.MIN%\nOFACE\nNAT01 G81\nG85 NAT01 D4 F.35 U.4 W.1\nNEND M2\n%\n", LATHE)
+    assert not tables["words"].is_unreadable.any()
+    assert tables["trace"].run.words.address.tobytes() == b"GGDFUWM"
+    assert [program.name for program in tables_names("OFACE (TOP)\nM2\nO12\nM2\n")] == ["OFACE", None]
+    assert tables_names("$A.MIN%\nO1\nM2\n%\n")[0].has_head
+
+
+def tables_names(program: str) -> list[Program]:
+    return find_programs(trace_of(program, LATHE).text).programs
+
+
+# ---- the same part in both languages ----
+
+CONTOUR = """{head}
+G0 X120. C0 Z5.
+{on}
+{line} X{x60} {axis}0 F1500
+{line} {side} X{x20} {axis}0 F200
+{line} {axis}{ten}
+{ccw} X{x10} {axis}{twenty} {arc}10.
+{line} X-{x20}
+{call}
+{line} {axis}0
+{line} G40 X{x60}
+{off}
+G0 Z100.
+M5
+{end}
+"""
+OWN = CONTOUR.format(
+    head="$TWIN.MIN%\nO1\nVC1=10 VC2=VC1*2\nHALF=[VC2+20]/2\nG97 G40 G94\nM110\nT010101\nSB=1000 M13",
+    on="G137 C0\nG17",
+    off="G136",
+    line="G101",
+    ccw="G103",
+    axis="Y",
+    arc="L",
+    side="{side}",
+    x60="60.",
+    x20="=VC2 ",
+    x10="=VC1 ",
+    ten="=VC1",
+    twenty="=HALF",
+    call="VC5=0\nNLP CALL ODOWN LX=VC2\nVC5=VC5+1\nIF [VC5 LT 1] NLP\nIF [VC5 EQ 1] NEND\nX99.\nNEND",
+    end="M12\nM109\nM2\nODOWN\nIF [LX GT 100] NSKP\nG101 Y=-LX\nG101 X=LX\nNSKP RTS",
+).replace("X-=VC2 ", "X=-VC2 ")
+FANUC = CONTOUR.format(
+    head="O1\nG97 G40 G98\nT0101\nM3 S1000",
+    on="G12.1",
+    off="G13.1",
+    line="G1",
+    ccw="G3",
+    axis="C",
+    arc="R",
+    side="{side}",
+    x60="120.",
+    x20="40.",
+    x10="20.",
+    ten="10.",
+    twenty="20.",
+    call="M98 P2",
+    end="M30\nO2\nG1 C-20.\nG1 X40.\nM99",
+)
+
+
+@pytest.mark.parametrize("side", ["G41", "G42"])
+@pytest.mark.parametrize("radius", ["0", "4"])
+def test_a_program_and_its_twin_have_one_tool_center_path(side: str, radius: str) -> None:
+    tool, changes = f"1:radius={radius},nose=0", {"compensation": {"read_ahead": 10}}
+    own = moves_of(OWN.replace("{side}", side), LATHE, tool)
+    twin = moves_of(FANUC.replace("{side}", side), "fanuc", tool, changes=changes)
+    assert len(own.start) == len(twin.start) > 7
+    for column in ("start", "end", "kind", "feed"):
+        np.testing.assert_allclose(getattr(own, column), getattr(twin, column), atol=1e-9)
+    np.testing.assert_allclose(np.nan_to_num(own.center), np.nan_to_num(twin.center), atol=1e-9)
+    assert said(report_of(OWN.replace("{side}", "G42"), LATHE, tool)) == []
+
+
+def test_the_direction_of_the_new_axis_turns_the_whole_plane() -> None:
+    plain, turned = (
+        trace_of(OWN.replace("{side}", "G42").replace("G137 C0", on), LATHE, CUTTER) for on in ("G137 C0", "G137 C90.")
+    )
+    inside = plain.in_polar & plain.moves_plane
+    np.testing.assert_allclose(turned.c_angle[inside], plain.c_angle[inside] + 90)
+
+
+# ---- hostile files ----
+
+
+@pytest.mark.parametrize(
+    "program",
+    [
+        "VC1=VC1+1\n" * 3_000,
+        "X=" + "[" * 200_000 + "\n",
+        "X=" + "[" * 10_000 + "1" + "]" * 10_000 + "\n",
+        "X=" + "1+" * 200_000 + "1\n",
+        "IF [" + "1 EQ 1 AND " * 50_000 + "1 EQ 1] NEND\n",
+        "N" * 1_000_000 + "\n",
+        "X=" + "A" * 1_000_000 + "\n",
+        "CALL O" + "A" * 1_000_000 + "\n",
+        "NLP GOTO NLP\n" * 1000,
+        "NA GOTO NB\nNB GOTO NA\n",
+        "VC1=0\nNA VC1=VC1+1\nGOTO NA\n",
+        "OA1\nCALL OA1\nRTS\n",
+        "$" * 100_000 + "\n" + "\n$" * 100_000,
+        "NAT01 " * 100_000 + "\n",
+        "X=VC1 " * 100_000 + "\n",
+        "=" * 100_000 + "\n",
+    ],
+    ids=range(16),
+)
+def test_it_ends_in_bounded_time(program: str) -> None:
+    report = report_of(HEAD + program + "G136\nM2\n", LATHE, CUTTER)
+    assert max((len(entry.reason) for entry in report.not_evaluated), default=0) < 1000
+    assert max((len(found.message) for found in report.findings), default=0) < 2000
+
+
+def test_a_jump_to_itself_is_one_endless_loop() -> None:
+    assert said(report_of("O1\nNBAC GOTO NBAC\nM2\n", LATHE))[0] == (2, "endless-loop")
