@@ -67,7 +67,8 @@ class Positions(VirtualAxis):
             on=self.switches_on & ~self.ends_mode,
             off=self.ends_mode,
             starts=self.starts,
-            outside=self.listed("reference_check", "reference_return", "machine_coordinates"),
+            outside=self.listed("reference_check", "reference_return", "machine_coordinates")
+            | self.codes(*m_codes.c_axis_off),
             tool_ends=self.changes_tool | self.ends_program | self.codes(*m_codes.tool_change),
             stops=self.codes(*m_codes.optional_stop),
             rapid=self.listed("rapid"),
@@ -224,6 +225,8 @@ class Positions(VirtualAxis):
         if not (control.x_radius_words or control.x_diameter_words):
             return factor
         radius, diameter = self.codes(*control.x_radius_words), self.codes(*control.x_diameter_words)
+        if set(self.machine.polar.off) & set(control.x_diameter_words):
+            diameter |= self.mask_of(self.sections.leave)  # be it that the code is missing there
         switched = radius | diameter | self.starts
         chosen = fill_down(np.where(radius, 1.0, np.where(diameter, 0.5, np.nan)), switched, np.nan)
         return np.asarray(np.where(np.isnan(chosen), factor, chosen), np.float64)
