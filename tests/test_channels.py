@@ -166,6 +166,14 @@ def test_a_channel_without_a_program_is_none() -> None:
     assert report.polar_sections[0].channel is msgspec.UNSET
 
 
+@pytest.mark.parametrize("rest", ["", "\n", "(NOT USED)\n", "!1L1\n", "%\n"])
+def test_nor_is_one_with_what_stands_before_all_of_them_alone(rest: str) -> None:
+    report = report_of(f"%\nO1\n#500=1\n$1\n{FIRST}$2\n{rest}", "fanuc", *TOOLS)
+    assert said(report) == []
+    assert report.polar_sections[0].channel is msgspec.UNSET
+    assert list(traces_of(f"O1\n$1\n{FIRST}$2\n{rest}$3\n")) == [""]
+
+
 def test_what_stands_before_the_first_channel_is_in_all_of_them() -> None:
     head = "O1\nG98 G40\nT0101\nG0 X60. C0\n"
     body = "G12.1\nG1 X40. F200\nC10.\nX60.\nG13.1\nM30\n"
@@ -208,6 +216,20 @@ def test_a_fault_in_a_program_that_two_channels_call_is_told_once() -> None:
     assert found.program == "O2000"
     lines = {number: trace.line_in_file[trace.leaves].tolist() for number, trace in traces_of(file).items()}
     assert lines == {"$1": [19], "$2": [19]}
+
+
+@pytest.mark.parametrize("channel", [1, 2])
+def test_a_program_that_another_channel_calls_runs_there_alone(channel: int) -> None:
+    # By itself it would lack the F and the tool of its caller.
+    program = f"O2000\n{SUBPROGRAM.replace(' F200', '')}"
+    caller = CALLS.format(1).replace("M98", "G98 G1 X61. F100\nM98")
+    regions = {1: caller, 2: FIRST.replace("T0101", "T0202")}
+    regions[channel] += program
+    report = report_of(f"O1\n$1\n{regions[1]}$2\n{regions[2]}", "fanuc", *TOOLS)
+    assert said(report) == []
+    assert report.sections == 2
+    wrong = f"O1\n$1\n{regions[1]}$2\n{regions[2]}".replace("\nC10.\nX60.\nG13.1\nM99", "\nG0 C10.\nX60.\nG13.1\nM99")
+    assert places(report_of(wrong, "fanuc", *TOOLS))[0][1:] == ("rapid-in-polar", f"${channel}")
 
 
 def test_many_calls_of_another_channel_read_it_once() -> None:

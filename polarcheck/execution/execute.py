@@ -5,6 +5,7 @@ from __future__ import annotations
 import bisect
 import time
 from collections.abc import Iterable
+from collections.abc import Set as AbstractSet
 
 import numpy as np
 
@@ -36,7 +37,8 @@ class Execution(Calls):
     """
     One execution of all programs of a file, with one state of block skip.
 
-    used: the files of which a program was called. rows, faults, remarks: what came out of it. visited: per block,
+    used: the files of which a program was called. called_beside: the numbers and names of programs that other channels
+    call, so that they run there. rows, faults, remarks: what came out of it. visited: per block,
     whether it was run. stopped: it was broken off at a bound.
     """
 
@@ -45,6 +47,7 @@ class Execution(Calls):
     ) -> None:
         self.listing, self.asked, self.resolve, self.skip = listing, asked, resolve, skip
         self.used = used
+        self.called_beside: frozenset[int | str] = frozenset()
         self.passed: set[int] = set()
         self.resolved: dict[ProgramName, Program | None] = {}
         self.rows = ExecutedRows(listing.text, listing.machine, skip=skip, inch_at_first=inch)
@@ -76,7 +79,7 @@ class Execution(Calls):
         listing, every = self.listing, range(len(self.listing.files))
         own = [program for program in listing.programs.programs if not program.file]
         named = listing.named_by(every, by_number_only=False)
-        called = listing.named_by(self.used, by_number_only=True)
+        called = self._called()
         ran = False
         for program in sorted(own, key=lambda program: not named.isdisjoint(program.keys)):
             if not self._was_run(program) and called.isdisjoint(program.keys):
@@ -84,11 +87,15 @@ class Execution(Calls):
                 self._run_program(program)
                 ran = True
                 if len(self.used) > known:
-                    called = listing.named_by(self.used, by_number_only=True)
+                    called = self._called()
         if not ran:
             self._run_program(own[0])
         if self.passed & self.used:
             raise Again
+
+    def _called(self) -> AbstractSet[int | str]:
+        """The numbers and names of the programs that run in their callers."""
+        return self.called_beside | self.listing.named_by(self.used, by_number_only=True)
 
     def _was_run(self, program: Program) -> bool:
         return bool(self.visited[program.first : program.end].any())
@@ -382,6 +389,7 @@ def execute(shelf: Shelf, asked: Running, *, skip: bool, inch: bool) -> Executio
     used = {0}
     while True:
         execution = Execution(shelf.listing, asked, shelf.add, used, skip=skip, inch=inch)
+        execution.called_beside = shelf.beside.called
         try:
             execution.run()
         except Again:

@@ -12,7 +12,7 @@ from polarcheck.arrays import Rows
 from polarcheck.execution.execute import Execution, execute
 from polarcheck.execution.library import Shelf
 from polarcheck.execution.listing import Listing
-from polarcheck.execution.run import FlowFault, Remark, Run
+from polarcheck.execution.run import Beside, FlowFault, Remark, Run
 from polarcheck.execution.static_faults import add_static_faults
 from polarcheck.machines.job import Job
 from polarcheck.machines.machine import Machine
@@ -20,15 +20,14 @@ from polarcheck.reading.joining import joined
 from polarcheck.reading.words import Text
 
 
-def executed(text: Text, machine: Machine, job: Job, states: Sequence[str], others: Sequence[Text] = ()) -> list[Run]:
+def executed(text: Text, machine: Machine, job: Job, states: Sequence[str], beside: Beside | None = None) -> list[Run]:
     """
     The run of a file in each state of block skip ("off", "on").
 
-    others: texts beside it whose programs it can call, as those of the other channels of a lathe. Called files that no
-    call came to are no part of its text.
+    beside: the other channels of the file. Called files that no call came to are no part of its text.
     """
     inch = (job.program_units or machine.control.units) == "inch"
-    shelf = Shelf(text, machine, job.run.subprograms, others)
+    shelf = Shelf(text, machine, job.run.subprograms, beside)
     texts: dict[frozenset[int], Text] = {}
     found = []
     for state in states:

@@ -17,6 +17,7 @@ import msgspec
 from polarcheck import bounded
 from polarcheck.execution.listing import Listing
 from polarcheck.execution.programs import ProgramName, Programs, find_programs, read_text
+from polarcheck.execution.run import Beside
 from polarcheck.machines.machine import Machine
 from polarcheck.reading.source import Source, read
 from polarcheck.reading.words import Text
@@ -121,8 +122,9 @@ class Shelf:
     From the start it holds the files of all programs that are named literally, and that those name in turn.
     """
 
-    def __init__(self, text: Text, machine: Machine, folders: Sequence[str], channels: Sequence[Text] = ()) -> None:
-        self._library = Library(folders, machine, channels)
+    def __init__(self, text: Text, machine: Machine, folders: Sequence[str], beside: Beside | None = None) -> None:
+        self.beside = beside or Beside()
+        self._library = Library(folders, machine, self.beside.texts)
         self.listing = Listing([text], machine)
         self._add([called for called in self.listing.calls(0) if not self.listing.programs.named(called)])
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 
 import msgspec
 import numpy as np
@@ -60,6 +60,15 @@ class Assigned(msgspec.Struct, frozen=True):
     def name(self) -> str:
         """As it is written: #2001."""
         return f"#{self.variable}"
+
+
+class Beside(msgspec.Struct, frozen=True):
+    """
+    The other channels of a file: their texts, whose programs can be called; and what they call, by numbers and names.
+    """
+
+    texts: Sequence[Text] = ()
+    called: frozenset[int | str] = frozenset()
 
 
 class Run(msgspec.Struct, frozen=True):

@@ -7,19 +7,22 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
+from itertools import chain
 
 import msgspec
 import numpy as np
 
 from polarcheck.execution.arithmetic import UNKNOWN
 from polarcheck.execution.programs import block_text, needs_flow, read_text
-from polarcheck.execution.run import Run, straight
+from polarcheck.execution.run import Beside, Run, straight
 from polarcheck.machines.job import Job
 from polarcheck.machines.machine import Machine
 from polarcheck.reading.channels import channels
 from polarcheck.reading.source import Source
 from polarcheck.reading.words import Text
 
+#: What stands in a channel for the text of the others.
+_BLANK = 32
 #: An assignment of a variable by its number.
 _ASSIGNED = re.compile(rb"#[ \t]*+(\d{1,6})[ \t]*+=")
 
@@ -35,19 +38,46 @@ def runs(source: Source, machine: Machine, job: Job) -> list[tuple[str, Run]]:
     """
     control = machine.control
     texts = [read_text(one, machine) for one in channels(source, control.channel_mark, control.line_comments)]
-    texts = [text for text in texts if _has_program(text)] or texts[:1]
+    if len(texts) > 1:
+        texts = _with_programs(texts)
+    called = [_called(text, machine) for text in texts] if len(texts) > 1 else [frozenset[int | str]()]
     found = []
     for number, text in enumerate(texts):
-        found += _runs(text, machine, job, [*texts[:number], *texts[number + 1 :]])
+        others = range(len(texts))[:number], range(len(texts))[number + 1 :]
+        at = list(chain(*others))
+        beside = Beside([texts[one] for one in at], frozenset[int | str]().union(*(called[one] for one in at)))
+        found += _runs(text, machine, job, beside)
     return found
 
 
-def _has_program(text: Text) -> bool:
-    return bool(len(text.words) or np.any(text.blocks.is_macro))
+def _with_programs(channels: Sequence[Text]) -> list[Text]:
+    """The channels that have more than what stands before the first mark of one; a single one is the file itself."""
+
+    def has_own(text: Text) -> bool:
+        other = next(one for one in channels if one is not text).source.code
+        own = np.flatnonzero(text.source.code != other)
+        own = own[text.source.code[own] != _BLANK]
+        blocks = np.searchsorted(text.blocks.start, own, side="right") - 1
+        return bool(np.isin(text.words.start, own).any() or text.blocks.is_macro[blocks].any())
+
+    found = [text for text in channels if has_own(text)] or [channels[0]]
+    if len(found) > 1:
+        return found
+    (only,) = found
+    return [msgspec.structs.replace(only, source=msgspec.structs.replace(only.source, channel=""))]
 
 
-def _runs(text: Text, machine: Machine, job: Job, others: Sequence[Text]) -> list[tuple[str, Run]]:
-    """The runs of one channel; others: the texts of the other channels."""
+def _called(text: Text, machine: Machine) -> frozenset[int | str]:
+    """The numbers and names of the programs that a channel calls."""
+    if not needs_flow(text, machine.macro.flow_codes):
+        return frozenset()
+    from polarcheck.execution.listing import Listing  # most files need none of it
+
+    return frozenset(Listing([text], machine).named_by([0], by_number_only=True))
+
+
+def _runs(text: Text, machine: Machine, job: Job, beside: Beside) -> list[tuple[str, Run]]:
+    """The runs of one channel; beside: the others."""
     if not needs_flow(text, machine.macro.flow_codes):
         return [("", straight(text, machine.m_codes.program_end))]
     from polarcheck.execution.executions import executed  # most files need none of it
@@ -55,7 +85,7 @@ def _runs(text: Text, machine: Machine, job: Job, others: Sequence[Text]) -> lis
     states: tuple[str, ...] = ("off", "on") if job.run.block_skip == "both" else (job.run.block_skip,)
     if not (np.any(text.words.address == ord("/")) or _skips_macro(text)):
         states = ("off",)
-    found = executed(text, machine, _without_values(job, machine, others), states, others)
+    found = executed(text, machine, _without_values(job, machine, beside.texts), states, beside)
     return list(zip(states, found, strict=True)) if len(found) > 1 else [("", found[0])]
 
 
