@@ -157,3 +157,19 @@ def test_names_that_cannot_be_are_one_line(names: object) -> None:
     """The key is named."""
     with pytest.raises(profiles.MachineError, match=r"control\.named_axes"):
         profiles.load("fanuc", {"control": {"named_axes": names}})
+
+
+@pytest.mark.parametrize("block", ["R1=5.", "R1=R2*2", "r1=R2*2 X5.", "M2=70", "S3=2000 F5.", "L1=AC(10)"])
+def test_a_word_of_another_language_is_told_and_is_no_mistake(block: str) -> None:
+    """It is read as no code, and as no axis of the lathe."""
+    report = report_of(PLAIN.replace("G50 S2000", block), "fanuc", TOOL)
+    assert said(report) == []
+    (missing,) = [one for one in report.not_evaluated if one.matters]
+    assert missing.reason.startswith(f"{block[:2].upper()}, from line 5 on, is no word of this lathe")
+
+
+def test_a_modal_macro_is_called_where_a_named_axis_moves() -> None:
+    """G66 calls behind blocks that move an axis; a variable of another language moves none."""
+    program = "%\nO1\nG66 P2\n{}\nG67\nM30\nO2\nG4 X1.\nM99\n%\n"
+    rows = [len(trace_of(program.format(block))) for block in ("C1=5.", "B9=5.", "R1=5.", "F1=5.")]
+    assert rows[0] == rows[1] > rows[2] == rows[3]

@@ -9,6 +9,7 @@ Source: FANUC B-62754EN/01, chapter 16; the short forms and external output from
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Collection
 from dataclasses import replace
@@ -17,6 +18,7 @@ from typing import Final
 from polarcheck.execution.expression import NUMBER, Characters, Expression, Fault, Step, read_expression
 from polarcheck.execution.kinds import FaultKind
 from polarcheck.execution.statement import Kind, Number, Place, Statement, Word
+from polarcheck.machines.axes import AXIS_LETTERS
 
 _OUTPUTS: Final = ("BPRNT", "DPRNT", "POPEN", "PCLOS", "SETVN")
 _SHORT: Final = {"WH": "WHILE", "GO": "GOTO", "EN": "END", "TH": "THEN"} | {name[:2]: name for name in _OUTPUTS[:4]}
@@ -29,6 +31,8 @@ _WRITTEN: Final = re.compile(rf"[-+]?+(?:{NUMBER})(?![-+.0-9])")
 _CALCULATED: Final = re.compile(r"[-+]*+(?:[#\[]|[A-Z]{2,5}\[)")
 #: A name with a number before =, be it that the machine has no such axis; N and O take no names, and G is a code.
 _NAMED: Final = re.compile(r"([A-FH-MP-Z][0-9]{1,2})=")
+#: What a number or an expression begins with.
+_VALUE: Final = re.compile(r"[-+]*+[.0-9#\[]")
 _NO_VALUE: Final = re.compile("[-+.0-9]*")
 _JOINS: Final = re.compile("AN|OR|XO")
 # After X#1: X#1+#2 lacks its brackets. X#1/2 does too, but in X#1/2Y5. the / skips the rest.
@@ -286,6 +290,12 @@ class _Reader:
         if self.at >= len(self.text):
             self.wrong("word-format", start, self.at)
             return []
+        if name[0] not in AXIS_LETTERS and not _VALUE.match(self.text, begin):
+            # A word of another language, as R1=R2*2: it is told by its name, and nothing here is wrong.
+            place = self.characters.span(begin, len(self.text))
+            self.at = len(self.text)
+            unknown = Expression((Step("number", math.nan, *place),), *place)
+            return [Word(name, unknown, None, *self.characters.span(start, self.at))]
         found = _WRITTEN.match(self.text, begin)
         value = self.expression(whole=True)
         written = found[0] if found and found.end() == self.at else None

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from polarcheck.arrays import Mask, Rows, stretch
 from polarcheck.execution.run import Assigned, FlowFault, Remark, Run, is_code
 from polarcheck.execution.statement import Statement, Word
+from polarcheck.machines.axes import AXIS_LETTERS
 from polarcheck.machines.machine import Machine
 from polarcheck.reading.words import Blocks, Text, Words
 
@@ -71,7 +72,8 @@ class ExecutedRows:
 
     def moves(self, words: Sequence[tuple[Word, float]]) -> bool:
         """Whether any of these words moves an axis."""
-        return any(word.is_named or word.address in self.machine.axis_words for word, _ in words)
+        letters = self.machine.axis_words
+        return any(word.address[0] in AXIS_LETTERS if word.is_named else word.address in letters for word, _ in words)
 
     def ends(self, block: int) -> bool:
         """Whether a plain block ends the program."""

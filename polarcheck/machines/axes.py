@@ -8,12 +8,14 @@ from polarcheck.machines.values import MOST_AXES
 
 #: Linear axes that are followed in the polar mode, and the addresses of their incremental words (B-62754EN/01).
 INCREMENTS = {"X": "U", "Y": "V", "Z": "W"}
+#: What the names of axes begin with.
+AXIS_LETTERS = "ABCHUVWXYZ"
 #: What a table of words has for an address that is longer than a letter: so much and the place of the name in a list.
 FIRST_NAMED = 128
-#: The same for a name that is in no list.
-NOT_NAMED = 255
+#: The same for the name of an axis that is in no list, and for a name that no axis has, as R1.
+NOT_NAMED, NO_AXIS = 255, 254
 #: Most names that can be in it.
-MOST_NAMED = NOT_NAMED - FIRST_NAMED
+MOST_NAMED = NO_AXIS - FIRST_NAMED
 #: The addresses of all of them.
 AXES = (*INCREMENTS, *INCREMENTS.values())
 #: Names of axes by their kind.
@@ -25,13 +27,15 @@ def address_number(address: str, names: Sequence[str]) -> int:
     What a table of words has for an address: the character of a letter, in lower case where a comma stands before it;
     a number above all characters for the name of an axis.
 
-    names: of axes, in order; NOT_NAMED stands for one that is not among them.
+    names: of axes, in order; NOT_NAMED or NO_AXIS stands for one that is not among them.
     """
     if len(address) == 1:
         return ord(address)
     if address[0] == ",":
         return ord(address[1].lower())
-    return FIRST_NAMED + names.index(address) if address in names else NOT_NAMED
+    if address in names:
+        return FIRST_NAMED + names.index(address)
+    return NOT_NAMED if address[0] in AXIS_LETTERS else NO_AXIS
 
 
 def is_rotary(name: str) -> bool:

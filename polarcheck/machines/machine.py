@@ -360,7 +360,7 @@ class Machine(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     def address_number(self, address: str) -> int:
         """
         What the table of executed words has for an address, be it the name of an axis that is written with =: that of
-        the address that the axis is here, NOT_NAMED for a name that control.named_axes does not have.
+        the address that the axis is here, NOT_NAMED or NO_AXIS for a name that control.named_axes does not have.
         """
         if len(address) == 1:
             return ord(address)

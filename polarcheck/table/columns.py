@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from polarcheck.arrays import Floats, Mask, Rows, States
 from polarcheck.execution.programs import find_programs
 from polarcheck.execution.run import Run
-from polarcheck.machines.axes import FIRST_NAMED, NOT_NAMED
+from polarcheck.machines.axes import FIRST_NAMED, NO_AXIS, NOT_NAMED
 from polarcheck.machines.codes import code, code_numbers, code_set, modal_tables, renumbered
 from polarcheck.machines.job import Job
 from polarcheck.machines.machine import Machine
@@ -65,6 +65,11 @@ class Columns:
         return np.flatnonzero(self.run.words.address == NOT_NAMED)
 
     @cached_property
+    def words_of_no_axis(self) -> Rows:
+        """The words with = whose names no axis has, as in R1=5, in order."""
+        return np.flatnonzero(self.run.words.address == NO_AXIS)
+
+    @cached_property
     def moves_unnamed(self) -> Mask:
         """Has a word of an axis that control.named_axes does not have: it may be any axis of the lathe."""
         return self.with_words(self.words_not_named)
@@ -73,7 +78,7 @@ class Columns:
     def words_not_followed(self) -> Rows:
         """The words of axes that are not followed, by control.named_axes or since it does not have them, in order."""
         address = self.run.words.address
-        found = np.flatnonzero(address >= FIRST_NAMED)
+        found = np.flatnonzero((address >= FIRST_NAMED) & (address != NO_AXIS))
         own = [*map(self.machine.address_number, self.machine.polar.axis_addresses)]
         return found[~np.isin(address[found], own)] if len(found) else found
 

@@ -183,6 +183,8 @@ def names_not_known(trace: Trace) -> Iterator[tuple[str, int]]:
     """The names of axes that the machine does not have, as in C5=10., and in how many blocks each stands."""
     remedy = 'add it to control.named_axes with the address that it is, or with "" for an axis that does not matter'
     yield from _by_name(trace, trace.words_not_named, f"is an axis that this lathe is not known to have: {remedy}")
+    other = trace.words_of_no_axis
+    yield from _by_name(trace, other, "is no word of this lathe, and not read: give --machine, or mend it")
 
 
 def names_not_followed(trace: Trace) -> Iterator[tuple[str, int]]:
