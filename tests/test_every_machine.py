@@ -80,6 +80,7 @@ HANDS = {
         steps="",
         arc="CR=",
         comment="; COMMENT G0 X1.",
+        turns=False,
     ),
     "doosan": Hand("O1\nG40 G97 G98\nM35\nG28 H0\nT0101"),
     "takisawa": Hand("O1\nG40 G97 G98\nM5\nM76\nG28 H0\nT0101\nM70 S3000"),

@@ -104,6 +104,7 @@ ARC = "O1\nG98 G0 X60. C0\nG12.1\nG1 X40. F200\nG3 X20. C10. {}\nG1 X60.\nG13.1\
 RAMPS = "O1\nT0101\nG98 G0 X100. C0\nG12.1\n{}G1 G42 X40. F200\n{}C20.\nX10.\nC-20.\nX60.\n{}G40 X100.\nG13.1\nM30\n"
 CUTTER = ("1:radius=4",)
 SETS = "O1\n{}\nT0101\nG98 G0 X100. C0\nG12.1\nG1 G42 X60. F200\nC20.\nG40 X100.\nG13.1\nM30\n"
+OTHERS = ["SCALE", "ASCALE", "MIRROR", "AMIRROR"]
 EDGES = "T8 D2\nG94 G0 X60 Y0\nDIAMOF\nTRANSMIT\nG17\nG1 G41 X40 F200\nY-20\nG40 X60\nTRAFOOF\nM30\n"
 CORNERS = "O1\nT0101\nG98 G0 X100. C0\nG12.1\nG1 C{}. F500\nG41 {}\nG1 G40 X120.\nG13.1\nM30\n"
 REVERSED = CORNERS.format(20, "X60. F200\nG3 X58. C10. R6.\nG1 X68. C5.\nX66. C8.")
@@ -200,6 +201,11 @@ USES = {
     "g_codes.work_offset_extended": Use([], before("G54.1 P1")),
     "g_codes.drilling_cycle": Use([], before("G83 Z1. R2.")),
     "g_codes.drilling_cycle_off": Use([], before("G83 Z1. R2.", "G80")),
+    "g_codes.frame_shift": Use(["TRANS", "MOVED"], EDGES.replace("G17", "MOVED X1 Y2"), "siemens-transmit"),
+    "g_codes.frame_shift_added": Use(["ATRANS", "MOVED"], EDGES.replace("G17", "MOVED X1 Y2"), "siemens-transmit"),
+    "g_codes.frame_rotation": Use(["ROT", "TURNED"], EDGES.replace("G17", "TURNED RPL=30"), "siemens-transmit"),
+    "g_codes.frame_rotation_added": Use(["AROT", "TURNED"], EDGES.replace("G17", "TURNED RPL=30"), "siemens-transmit"),
+    "g_codes.frame_not_simulated": Use([*OTHERS, "SHEAR"], EDGES.replace("G17", "SHEAR X0"), "siemens-transmit"),
     "g_codes.scaling": Use([], before("G51 P2")),
     "g_codes.scaling_off": Use([], before("G51 P2", "G50")),
     "g_codes.rotation": Use([], before("G68.1 R5.")),
@@ -333,6 +339,7 @@ USES = {
     "offsets.called_by": Use("last-digits", EDGES, "siemens-transmit", ("8/2:radius=2",)),
     "offsets.edge_after_tool": Use(2, EDGES.replace(" D2", ""), "siemens-transmit", ("8/2:radius=2",)),
     "offsets.called_in_polar": Use("never", EDGES.replace("G17", "D1"), "siemens-transmit", ("8/2:radius=2",)),
+    "offsets.allowance_word": Use("", EDGES.replace("G41", "G41 OFFN=1"), "siemens-transmit", ("8/2:radius=2",)),
     "offsets.geometry_from": Use(20000, SETS.format("G10 P10001 R4.")),
     "offsets.geometry": Use([11], SETS.format("G10 L10 P1 R4.")),
     "offsets.wear": Use([], SETS.format("G10 L10 P1 R4.\nG10 L11 P1 R-.1")),
@@ -346,6 +353,8 @@ USES = {
     "offsets.work_offset_variable": Use(5301, SETS.format("#5221=1.")),
     "offsets.work_offset_extended_variable": Use(14001, SETS.format("#7001=1.\nG54.1 P1")),
     "offsets.work_offset_step": Use(40, SETS.format("#5221=1.")),
+    "frames.angle_word": Use("P", EDGES.replace("G17", "ROT RPL=30"), "siemens-transmit"),
+    "frames.ended_by_switch": Use(False, EDGES.replace("DIAMOF", "TRANS X5"), "siemens-transmit"),
     "alarms": Use({"rapid-in-polar": "A1"}, inside("G0 X50.")),
     "severities": Use({"rapid-in-polar": "note"}, inside("G0 X50.")),
     "parameters": Use({"3410": 1000}, ARC.format("I-10.1 J0")),

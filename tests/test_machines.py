@@ -196,7 +196,7 @@ def test_tables_of_another_control_can_be_left_behind() -> None:
         ("inherits = 'fanuc'\n[parameters]\n1422 = 'much'", "own.toml: parameters.1422: expected a number, not much"),
         ("inherits = 'fanuc'\n[known_parameters]\n1 = 1\n[parameters]\n1 = 1", "own.toml: known_parameters.1: expect"),
         ("inherits = 'fanuc'\n[control]\nnative_words = { AB = 'G12.1' }", "own.toml: control: native_words: 'G12"),
-        ("inherits = 'fanuc'\n[control]\nx_radius_words = ['RAD']", "own.toml: control: native_words: 'G0.1' has no"),
+        ("inherits = 'fanuc'\n[control]\nx_radius_words = ['RA']", "own.toml: control: native_words: 'G.1' has no"),
         (f"inherits = 'fanuc'\n[control]\nx_radius_words = {list('ABCDEFGHIJ')}", "own.toml: control: no more than 9"),
         ("inherits = 'fanuc'\n[control]\nmotion_codes = { G101 = 'M3' }", "own.toml: control: motion_codes: G101 ="),
         ("inherits = 'fanuc'\n[g_codes]\nrapid = ['GO']", "own.toml: g_codes.rapid: 'GO' is no code"),

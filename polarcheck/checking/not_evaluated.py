@@ -29,6 +29,7 @@ from polarcheck.checking.rule import Rule
 from polarcheck.checking.tables import Tables
 from polarcheck.geometry.tolerances import CHORDS, CROSSINGS, FARTHEST
 from polarcheck.machines.machine import OwnMachine
+from polarcheck.table.filling import before
 from polarcheck.table.trace import Trace
 
 #: Why a column is not known in a row.
@@ -67,6 +68,7 @@ def unexecuted(tables: Tables) -> Iterator[NotEvaluated]:
         *names_not_followed(trace),
         *on_sub_spindle(trace),
         offsets_not_known(trace),
+        *frames_not_simulated(trace),
         *not_simulated(tables["infeed"]),
         not_understood(trace, tables["other_mode"]),
         on_cylinder(trace),
@@ -74,6 +76,22 @@ def unexecuted(tables: Tables) -> Iterator[NotEvaluated]:
     ):
         if count:
             yield NotEvaluated(rule="all", reason=reason, blocks=count)
+
+
+def frames_not_simulated(trace: Trace) -> Iterator[tuple[str, int]]:
+    """The blocks that begin a frame which is not simulated, where the mode uses it, or an allowance changes in it."""
+    frames = trace.frames
+    if frames is not None:
+        in_force = ~frames.is_known & (trace.in_polar | trace.enters)
+        for row in np.flatnonzero(in_force & ~before(in_force, trace.starts, False))[:_LISTED].tolist():
+            begins = np.flatnonzero(frames.is_known[: row + 1])
+            first = int(begins[-1]) + 1 if len(begins) else 0
+            what = f"{block_and_line(trace, first)} is not simulated"
+            yield f"{what}: where the tool goes in that frame is not known", int(np.count_nonzero(in_force))
+    changed = np.flatnonzero(trace.changes_allowance_in_offset_mode)
+    if len(changed):
+        what = f"{block_and_line(trace, int(changed[0]))} changes what is added to R in offset mode"
+        yield f"{what}: the way from one to the other is not simulated; change it where G40 is in force", len(changed)
 
 
 def offsets_not_known(trace: Trace) -> tuple[str, int]:
@@ -274,6 +292,8 @@ def _not_known_from_program(trace: Trace, row: int, setter: int, what: str, key:
 
 def _position(tables: Tables, row: int) -> str:
     trace: Trace = tables["trace"]
+    if trace.frames is not None and not trace.frames.is_known[row]:
+        return "the position is not known: the frame in force is not simulated"
     lost = np.flatnonzero((trace.run.unknown & (trace.program == trace.program[row]))[: row + 1])
     if not len(lost):
         axis = linear(trace, row)

@@ -51,7 +51,7 @@ def _polar_sections(trace: Trace, tool_center: ToolCenter, center: Center, ramps
                 end_line=int(trace.line_in_file[min(end, len(trace) - 1)]),
                 units="inch" if trace.units[enter] == Units.INCH else "mm",
                 offset=key_of(trace, int(trace.offset_number[row])),
-                radius=rounded(trace.radius[row]),
+                radius=rounded(trace.radius[row] - trace.allowance[row]),
                 radius_source=_radius_source(trace, row),
                 nearest=rounded(nearest[index]),
                 c_feed=rounded(highest[index]),

@@ -35,6 +35,11 @@ class GCodes(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     rotation_off: what ends it, in the order of the codes that begin it
     mirror_image: mirror image, that of two turrets included
     mirror_image_off: what ends it, in the order of the codes that begin it
+    frame_shift: begins a frame that the axis words beside it shift; without any it is none
+    frame_shift_added: shifts the frame in force further, along its own axes
+    frame_rotation: begins a frame that the angle beside it turns; without any it is none
+    frame_rotation_added: turns the frame in force further
+    frame_not_simulated: frames whose way is not simulated: scaling, mirror image
     tool_length_offset: tool length offset; H beside it is an offset number
     tool_length_offset_off: tool length offset cancel
     dwell: dwell; X, P and F beside it are a time
@@ -76,6 +81,11 @@ class GCodes(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     rotation_off: list[str]
     mirror_image: list[str]
     mirror_image_off: list[str]
+    frame_shift: list[str]
+    frame_shift_added: list[str]
+    frame_rotation: list[str]
+    frame_rotation_added: list[str]
+    frame_not_simulated: list[str]
     tool_length_offset: list[str]
     tool_length_offset_off: list[str]
     dwell: list[str]
@@ -91,6 +101,10 @@ class GCodes(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     machine_coordinates: list[str]
     cylindrical_interpolation: list[str]
     axis_words_no_move: list[str]
+
+
+#: Lists of GCodes that may hold words of a control's own language.
+FRAME_LISTS = ("frame_shift", "frame_shift_added", "frame_rotation", "frame_rotation_added", "frame_not_simulated")
 
 
 class GCodeSystem(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

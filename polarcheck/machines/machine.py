@@ -14,6 +14,7 @@ from polarcheck.errors import RuleError
 from polarcheck.machines.axes import INCREMENTS, MOST_NAMED, address_number, axis_of, check_axes
 from polarcheck.machines.code_lists import GCodes, GCodeSystem, expanded, is_code
 from polarcheck.machines.fitting import MOST
+from polarcheck.machines.frames import Frames
 from polarcheck.machines.m_codes import MCodes, PowerOn
 from polarcheck.machines.macro_keys import Macro
 from polarcheck.machines.offsets import Offsets
@@ -131,7 +132,7 @@ class Polar(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     other_controls: the controls on which it has those addresses, as a message names them
     x: diameter or radius: what X words are in the mode
     virtual_axis_programming: radius or diameter: what words of the virtual axis are
-    zero_angle: where the linear axis of the plane points: to where C stands at G12.1 (at-switch), or to C0 (at-c0)
+    zero_angle: where the linear axis points: to C as it is at G12.1 (at-switch) or to C0 (at-c0, or at-c0-reversed)
     other_axes: what Z does in one block with X or C: independent of them, together with them, or forbidden
     center_words: addresses of arc centers, along the linear and along the virtual axis, by the linear axis
     linear_address: address of the axis with the number 1, where control.axes does not say it: the linear axis
@@ -161,7 +162,7 @@ class Polar(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     other_controls: str = ""
     x: Literal["diameter", "radius"]
     virtual_axis_programming: Literal["radius", "diameter"]
-    zero_angle: Literal["at-switch", "at-c0"]
+    zero_angle: Literal["at-switch", "at-c0", "at-c0-reversed"]
     other_axes: Literal["independent", "together", "forbidden"]
     center_words: dict[LinearAddress, tuple[Address, Address]]
     linear_address: LinearAddress
@@ -322,6 +323,7 @@ class Machine(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     g_code_system_c: GCodeSystem
     macro: Macro
     offsets: Offsets
+    frames: Frames
     alarms: dict[str, str] = {}
     alarm_codes: dict[str, list[str]] = {}
     severities: dict[str, Literal["error", "warning", "note", "off"]] = {}

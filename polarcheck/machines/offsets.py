@@ -4,7 +4,7 @@ from typing import Annotated, Literal
 
 import msgspec
 
-from polarcheck.machines.values import Ranges
+from polarcheck.machines.values import AddressOrNone, Ranges
 
 
 class Offsets(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -15,6 +15,7 @@ class Offsets(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     called_by: last-digits of T, or edge: T is the tool alone, and D the edge of it whose offset is in force
     edge_after_tool: edge that a T without D calls: its number, 0 for none, -1 for the number that was in force
     called_in_polar: where a program may call another one in the polar mode: never, or without-compensation
+    allowance_word: address of what is added to R while cutter compensation is in force; or none
     geometry_from: P of data input without L above which it is geometry, and wear below; 0 where L must stand there
     geometry: numbers of L by which data input sets the geometry of a tool
     wear: numbers of L by which data input sets the wear of a tool
@@ -33,6 +34,7 @@ class Offsets(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     called_by: Literal["last-digits", "edge"]
     edge_after_tool: Annotated[int, msgspec.Meta(ge=-1, le=99_999)]
     called_in_polar: Literal["never", "without-compensation"]
+    allowance_word: AddressOrNone
     geometry_from: Annotated[int, msgspec.Meta(ge=0)]
     geometry: list[int]
     wear: list[int]

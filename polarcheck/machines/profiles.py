@@ -13,6 +13,7 @@ import msgspec
 
 from polarcheck.errors import MachineError, suggestion
 from polarcheck.machines import axis_names, parameters, toml_text
+from polarcheck.machines.code_lists import FRAME_LISTS
 from polarcheck.machines.fitting import MisfitError, fitted
 from polarcheck.machines.machine import Machine, OwnMachine
 from polarcheck.machines.parameters import Origin
@@ -127,7 +128,8 @@ def load(name: str, changes: Mapping[str, Any] | Sequence[Change] | None = None)
             axis_names.follow(merged, table, title, origins, axes)
     written = _convert(merged, origins, [title for title, _ in tables])
     machine = written
-    if written.control.x_radius_words or written.control.x_diameter_words:
+    frames = (getattr(written.g_codes, key) for key in FRAME_LISTS)
+    if any((written.control.x_radius_words, written.control.x_diameter_words, *frames)):
         from polarcheck.machines import own_language
 
         try:

@@ -55,15 +55,20 @@ class LinearAxis(Lengths):
     @cached_property
     def c_direction(self) -> Points:
         """
-        Where C, as the program has last positioned it outside the mode, turns the linear axis to, as a number of length
-        1 on the polar plane; NaN where it has not, or by steps alone.
+        Where the tool stands on the polar plane in the row of a switch, X being positive, as a number of length 1.
+
+        1, on the linear axis, where C turns the plane with it, where C is not known, and along another axis than X.
         """
+        if self.machine.polar.zero_angle == "at-switch" or not self.switches_on.any():
+            return np.ones(len(self), np.complex128)
         axis, words = self.machine.polar.rotary_address, self.machine.polar.rotary_words
         referenced = self.listed("c_axis_reference") & self.has(*words)
         positioned = self.has(axis) & self.uses_axes & (self.state("distance") == Distance.ABSOLUTE)
         angle = np.where(referenced, 0.0, np.where(positioned, self.angle_of(axis), np.nan))
         angle = fill_down(angle, self.has(*words) | self.ends_mode | self.run.unknown | self.starts, np.nan)
-        return np.round(polar.to_plane(np.ones(len(self)), angle, 0.0), _DIGITS)
+        angle = np.where(self.linear_axis == _X, np.nan_to_num(angle), 0.0)
+        sense = -1 if self.machine.polar.zero_angle == "at-c0-reversed" else 1
+        return np.round(polar.to_plane(np.ones(len(self)), sense * angle, 0.0), _DIGITS)
 
     @cached_property
     def kept_angle(self) -> Floats:
@@ -72,9 +77,7 @@ class LinearAxis(Lengths):
 
         0 on its negative side, too, where a section begins with C as it is (polar.c_angles).
         """
-        if self.machine.polar.zero_angle != "at-c0":
-            return np.zeros(len(self))
-        direction = np.nan_to_num(self.c_direction)
+        direction = self.c_direction
         return np.where(direction.imag == 0, 0.0, np.degrees(np.angle(direction)))
 
     @cached_property

@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from polarcheck.arrays import Mask
-from polarcheck.machines.code_lists import is_code
+from polarcheck.machines.code_lists import is_code, numbers
 from polarcheck.machines.codes import NO_CODE, code_set
 from polarcheck.reading.words import NumberFault
 from polarcheck.table.filling import before
@@ -107,7 +107,12 @@ class ModeWords:
         shifts |= self.listed("coordinate_preset")
         shifts |= sets & self.in_rows(trace.has(*trace.machine.axis_words, *trace.machine.control.named_axes))
         shifts |= self.listed("data_input") & self.in_rows(is_work_offset)
-        shifts &= self.not_allowed
+        # Where work offsets may be selected in the mode, one that is in force already moves nothing.
+        first = next(iter(numbers(trace.machine.codes("work_offset"))), 0) // 10
+        offset = np.where(trace.state("work_offset") == 0, first, trace.state("work_offset"))
+        others = trace.in_polar & (offset != before(offset, trace.starts, first))
+        others = self.listed("work_offset") & self.in_rows(others)
+        shifts &= self.not_allowed | others
         return shifts | (sets & self.not_allowed & self.in_rows(self.rows(shifts)))
 
     @cached_property

@@ -11,6 +11,7 @@ import numpy as np
 from polarcheck.arrays import Floats, Mask, Rows
 from polarcheck.machines.code_lists import numbers
 from polarcheck.machines.offsets import steps_above
+from polarcheck.machines.own_language import shown
 from polarcheck.table.filling import fill_down, positions
 from polarcheck.table.offset_settings import Settings, X, in_order, of_list
 from polarcheck.table.trace import Trace
@@ -203,6 +204,14 @@ class Origin:
         steps = np.where(sets & ~forgets, moved, 0.0)
         return positions(np.full(len(trace), np.nan), steps, forgets | trace.starts, np.zeros(len(trace)))
 
+    @cached_property
+    def frame(self) -> Floats:
+        """X of the frame in force; 0 in the mode, where frames are meant, and where nobody knows it."""
+        trace = self.trace
+        if trace.frames is None:
+            return np.zeros(len(trace))
+        return np.where(trace.in_polar, 0.0, np.nan_to_num(trace.frames.shift.real / trace.x_factor))
+
     # ---- all of them ----
 
     @cached_property
@@ -212,7 +221,10 @@ class Origin:
         shifts = trace.listed("data_input", "local_shift", "coordinate_setting")
         # G50 S2000 is a speed.
         is_shifted = (
-            trace.job.work_offsets or trace.run.assigned or (shifts.any() and (shifts & trace.has("X", "U")).any())
+            trace.frames
+            or trace.job.work_offsets
+            or trace.run.assigned
+            or (shifts.any() and (shifts & trace.has("X", "U")).any())
         )
         return sum((part for part, _ in self._parts), np.zeros(len(trace))) if is_shifted else np.zeros(len(trace))
 
@@ -224,6 +236,7 @@ class Origin:
             *((x, functools.partial(self._of_offset, setter)) for x, setter in offsets),
             (self.trace.local_shift, lambda row: self._code("local_shift")),
             (self.coordinate_setting, lambda row: self._code("coordinate_setting")),
+            (self.frame, lambda row: shown(self.trace.machine.control.native_words, self._code("frame_shift"))),
         )
 
     def _of_offset(self, setter: Rows, row: int) -> str:

@@ -181,7 +181,9 @@ class Overcuts:
         from polarcheck.geometry import contour
 
         path, is_ramp = self.path
-        radius, tolerance = np.abs(self.radius[path.row]), self.trace.machine.compensation.overcut_tolerance
+        # What is left on the contour, the cutter stays away from it.
+        radius = np.abs((self.radius - self.trace.allowance)[path.row])
+        tolerance = self.trace.machine.compensation.overcut_tolerance
         walls, left = self.walls
         around = self._air(walls), self._level(walls)
         found = contour.overcuts(walls, left, *around, path, radius, is_ramp, tolerance, self.bar)

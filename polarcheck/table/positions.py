@@ -17,6 +17,7 @@ from polarcheck.machines.axes import INCREMENTS
 from polarcheck.machines.code_lists import numbers
 from polarcheck.machines.modal import Distance, Motion
 from polarcheck.table.filling import before, fill_down, positions
+from polarcheck.table.frames import Frames, Way, along, find_frames, in_frame
 from polarcheck.table.sections import Marks, Sections, find_sections, section_column
 from polarcheck.table.virtual_axis import VirtualAxis
 
@@ -178,7 +179,7 @@ class Positions(VirtualAxis):
             if rows.any():
                 found = self._programmed(*pair, factor, self.in_polar & rows)
                 absolute, steps = np.where(rows, found[0], absolute), np.where(rows, found[1], steps)
-        return absolute, steps
+        return in_frame(self.frames, self.in_polar, absolute, steps, along_virtual=True)
 
     def _forgets(self, axis: str, increment: str) -> Mask:
         """Rows after which an axis is not where its words say: references, shifts, cycles, blocks not executed."""
@@ -262,7 +263,7 @@ class Positions(VirtualAxis):
         for axis in self.other_linear_axes:
             other = self._programmed(axis, INCREMENTS[axis], 1.0, self.in_polar & (self.linear_axis == ord(axis)))
             absolute, steps = np.where(np.isnan(absolute), other[0], absolute), steps + other[1]
-        return absolute, steps
+        return in_frame(self.frames, self.in_polar, absolute, steps, along_virtual=False)
 
     @cached_property
     def local_shift(self) -> Floats:
@@ -275,6 +276,11 @@ class Positions(VirtualAxis):
         """G52 with X, and what takes it back."""
         return np.asarray((self.listed("local_shift") & self.has("X")) | self.presets_x)
 
+    @cached_property
+    def frames(self) -> Frames | None:
+        """The frame in force in each row; None where the program has none."""
+        return find_frames(self, self.x_factor, self.in_polar)
+
     def _alone(self, axis: str) -> Floats:
         """An axis after each row [mm] by what stands outside the mode."""
         where = self.section < 0
@@ -284,38 +290,48 @@ class Positions(VirtualAxis):
     @cached_property
     def _plane(self) -> tuple[Points, Points]:
         """Plane points after and before each row; the virtual coordinate is NaN outside the mode."""
-        shift, c_words = self.center_shift, self._virtual_coordinates
+        shift, turn = self.center_shift, self.c_direction
         leave = self.sections.leave[self.sections.leave < len(self)]
-        enter = self.sections.enter if self.machine.polar.zero_angle == "at-c0" else leave[:0]
+        # Where C does not turn the plane, the tool stands at its angle there, and not on the linear axis.
+        enter = self.sections.enter[turn[self.sections.enter] != 1]
         resets = self._forgets("X", "U") | self.mask_of(leave) | self.mask_of(enter)
-        values, c_values = self._set_by("X") * self.x_factor, shift.imag.copy()
+        values, virtual = self._set_by("X") * self.x_factor, shift.imag.copy()
         # Outside its section nobody asks where another linear axis is but at G12.1, and X is not followed within.
         for axis in self.other_linear_axes:
             begins = self.enters & (self.linear_axis == ord(axis))
             resets, values = resets | begins, np.where(begins, self._alone(axis), values)
         leave = leave[(self.linear_axis == ord("X"))[leave - 1]]
-        x_words, rows = self._linear_coordinates, np.concatenate((leave, enter))
-        settled = values[rows].astype(np.complex128)
-        c = positions(*c_words, self.enters, c_values)
+        x_words = Way(*self._linear_coordinates, resets, values)
+        c_words = Way(*self._virtual_coordinates, self.enters, virtual)
+        alone = None if len(enter) else self._virtual(c_words)
         for _ in range(_PASSES):
-            x = positions(*x_words, resets, values)
+            x, c = self._both(x_words, c_words, alone)
             # The control leaves the mode with X where the machine stands: never negative (B-62764EN/01 p. 51).
             last = leave - 1
-            left = np.hypot(x[last] - shift.real[last], c[last] - shift.imag[last]) + shift.real[last]
-            found = np.concatenate((left, before(x, self.starts, np.nan)[enter] * self.c_direction[enter]))
-            if np.array_equal(found, settled, equal_nan=True):
+            found = np.hypot(x[last] - shift.real[last], c[last] - shift.imag[last]) + shift.real[last]
+            entry = before(x, self.starts, np.nan)[enter] * turn[enter]
+            told = np.concatenate((values[leave], values[enter], virtual[enter]))
+            if np.array_equal(told, np.concatenate((found, entry.real, entry.imag)), equal_nan=True):
                 break
-            settled, values[rows] = found, found.real
-            if len(enter):
-                c_values[enter] = found.imag[len(leave) :]
-                c = positions(*c_words, self.enters, c_values)
+            values[leave], values[enter], virtual[enter] = found, entry.real, entry.imag
         else:
             values[leave] = np.nan  # sections that hang on each other by increments alone, one after another
-            x = positions(*x_words, resets, values)
+            x, c = self._both(x_words, c_words, alone)
         end = np.empty(len(self), np.complex128)
-        end.real, end.imag = np.where(self.is_followed, x, np.nan), np.where(self.section >= 0, c, np.nan)
+        end.real, end.imag = np.where(self.is_followed, x, np.nan), c
         end -= shift
         return end, before(end, self.starts, _NOWHERE)
+
+    def _virtual(self, words: Way) -> Floats:
+        """The virtual axis after each row where no frame turns it; NaN outside the mode."""
+        return np.where(self.section >= 0, positions(*words), np.nan)
+
+    def _both(self, x_words: Way, c_words: Way, alone: Floats | None) -> tuple[Floats, Floats]:
+        """The linear and the virtual axis after each row; alone: the latter without frames, where it is known."""
+        if self.frames is None or not np.any((self.frames.angle != 0) & self.in_polar):
+            return positions(*x_words), self._virtual(c_words) if alone is None else alone
+        found = along(x_words, c_words, np.where(self.in_polar, self.frames.turn, 1.0))
+        return found.real, np.where(self.section >= 0, found.imag, np.nan)
 
     @cached_property
     def end(self) -> Points:
@@ -332,7 +348,8 @@ class Positions(VirtualAxis):
         """X after the row as a radius [mm]; the programmed one, so that it may be negative in the mode."""
         after, ahead = self._plane
         # A plane that does not turn with C has another X there than the lathe, which has not moved.
-        return np.where(self.enters, ahead.real, after.real) if self.machine.polar.zero_angle == "at-c0" else after.real
+        turns = self.machine.polar.zero_angle == "at-switch"
+        return after.real if turns else np.where(self.enters, ahead.real, after.real)
 
     @cached_property
     def x_before(self) -> Floats:
@@ -342,8 +359,10 @@ class Positions(VirtualAxis):
     @cached_property
     def z(self) -> Floats:
         """Z after the row [mm]; NaN while unknown."""
-        words = self._programmed("Z", "W", 1.0, np.ones(len(self), bool))
-        return positions(*words, self._forgets("Z", "W"), self._set_by("Z"))
+        absolute, steps = self._programmed("Z", "W", 1.0, np.ones(len(self), bool))
+        if self.frames is not None:
+            absolute = absolute + self.frames.z
+        return positions(absolute, steps, self._forgets("Z", "W"), self._set_by("Z"))
 
     @cached_property
     def center(self) -> Points:
@@ -355,7 +374,10 @@ class Positions(VirtualAxis):
         i, j = (words[arcs] for words in self.to_center)
         written = ~np.isnan(i) | ~np.isnan(j)
         start, end, kind = self.start[arcs], self.end[arcs], self.motion[arcs]
-        by_center = np.where(written, start + np.nan_to_num(i) + 1j * np.nan_to_num(j), _NOWHERE)
+        to_center = np.nan_to_num(i) + 1j * np.nan_to_num(j)
+        if self.frames is not None:
+            to_center = to_center * self.frames.turn[arcs]
+        by_center = np.where(written, start + to_center, _NOWHERE)
         radius = self.length_of(self.machine.arcs.radius_word)[arcs]
         by_radius = polar.center_from_radius(start, end, radius, kind, np.inf)
         center[arcs] = np.where(np.isnan(radius), by_center, by_radius)

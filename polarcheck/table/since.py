@@ -8,6 +8,7 @@ from itertools import chain
 import numpy as np
 
 from polarcheck.arrays import Mask, Rows
+from polarcheck.machines.code_lists import FRAME_LISTS
 from polarcheck.table.filling import before, fill_down
 from polarcheck.table.trace import Trace
 
@@ -70,7 +71,7 @@ class Since:
         """From one block to the next that sets or selects a coordinate system."""
         trace = self.trace
         written = (
-            trace.listed("local_shift", "data_input", "coordinate_preset")
+            trace.listed("local_shift", "data_input", "coordinate_preset", *FRAME_LISTS)
             | trace.sets("work_offset")
             | trace.sets_coordinates
         )

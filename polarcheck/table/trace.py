@@ -199,9 +199,24 @@ class Trace(ToolOffsets):
 
     @cached_property
     def radius(self) -> Floats:
-        """R with which the rows are compensated [mm]; NaN where it is not known."""
-        radius = np.where(self.is_path_of_center, 0.0, self.radius_of_offset)
+        """R with which the rows are compensated, allowance included [mm]; NaN where it is not known."""
+        radius = np.where(self.is_path_of_center, 0.0, self.radius_of_offset) + self.allowance
         return np.where(self.sides_are_open, np.nan, radius) if self.sides_are_open.any() else radius
+
+    @cached_property
+    def allowance(self) -> Floats:
+        """What is added to R while cutter compensation is in force [mm]: OFFN, up to the next or the program's end."""
+        word = self.machine.offsets.allowance_word
+        written = self.has(word)
+        if not written.any():
+            return np.zeros(len(self))
+        return fill_down(np.where(written, self.length_of(word), 0.0), written | self.starts, 0.0)
+
+    @cached_property
+    def changes_allowance_in_offset_mode(self) -> Mask:
+        """Another allowance is written where compensation is in force and stays so."""
+        changes = self.allowance != before(self.allowance, self.starts, 0.0)
+        return np.asarray(changes & self.offset_mode & (self.side != Side.OFF))
 
     @property
     def stock_diameter(self) -> Floats:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 import textwrap
 from collections.abc import Iterator
 from typing import Any
@@ -93,6 +94,8 @@ _TOOLS = (
     " they do, macro variables and offsets are shown by `polarcheck machines`, and may be given here, too."
 )
 _COLUMNS = 100
+#: Of a list in one line [characters].
+_LONGEST = 180
 
 
 def text(name: str, inherits: str) -> str:
@@ -179,11 +182,26 @@ def _in_doubt(profile: Profile, group: str, told: set[str]) -> Iterator[str]:
 
 def _answer(key: str, value: Any, meaning: str) -> Iterator[str]:
     """A key and its value, left out, with what it means behind it or, where that is too long, above it."""
-    line = f"#{_toml_key(key)} = {_toml(value)}"
+    first, *others = _lines(f"#{_toml_key(key)} = {_toml(value)}")
+    if others:
+        yield from (f"# {meaning}", first, *others)
+        return
+    line = first
     is_short = len(line) + len(meaning) + 4 <= _COLUMNS
     if meaning and not is_short:
         yield f"# {meaning}"
     yield f"{line}  # {meaning}" if meaning and is_short else line
+
+
+def _lines(line: str) -> list[str]:
+    """A line, or where it holds a list of texts that is too long for one, several that can be taken in one by one."""
+    lines = [""]
+    for part in re.split(r'(?<=",)(?=")', line):
+        if lines[-1] and len(lines[-1]) + len(part) > _LONGEST:
+            lines[-1] = lines[-1].rstrip()
+            lines.append("#")
+        lines[-1] += part
+    return lines
 
 
 def _parameters(profile: Profile) -> Iterator[str]:
