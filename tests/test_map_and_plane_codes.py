@@ -67,10 +67,10 @@ def test_x_behind_the_map_is_where_the_machine_stands() -> None:
     assert trace.x[trace.enters].tolist() == [40.0]
 
 
-def test_without_c_before_the_map_nobody_knows_where_it_begins() -> None:
+def test_without_c_before_the_map_it_is_taken_to_begin_at_c0_and_said_to_be_open() -> None:
     program = HURCO.replace("G0 C{}\n", "").format("40.", "G101", cuts(1, "Y"), "G109")
     moves = moves_of(program, "hurco")
-    assert np.isnan(moves.start[0])
+    assert moves.start[0] == 40
     assert not np.isnan(moves.end).any()
     assert "c-angle-unknown-at-entry" in {rule for _, rule in said(report_of(program, "hurco"))}
 
