@@ -154,6 +154,12 @@ def test_the_words_beside_the_switch_follow() -> None:
     ("text", "said"),
     [
         ("[polar]\nrotary_address = 'X'", "polar.rotary_address: expected A, B, C or H, or the name of an axis as C2"),
+        (
+            "[polar]\nvirtual_axis = 'C22222'",
+            "polar.virtual_axis: expected an address, one letter or the name of an axis",
+        ),
+        ("[polar]\nvirtual_axis = 'M2'", "polar.virtual_axis: expected an address"),
+        ("[polar]\nwords_beside_switch = ['R2']", "polar.words_beside_switch: 'R2' is no code"),
         ("[polar]\nrotary_address = 3", "polar.rotary_address: expected"),
         ("[polar]\nrotary_address = 'c2'", "polar.rotary_address: expected"),
         ("[polar]\nrotary_address = 'A'\n[control]\naxes = ['X', 'Z', 'C']", "polar.rotary_axis is 3, C, but polar.ro"),

@@ -20,7 +20,7 @@ from polarcheck.machines.parameters import Origin
 _USUAL = "C"
 _INCREMENTAL = "H"
 #: An axis that is written with =.
-_NAME = re.compile("[A-Z]{1,6}[0-9]{1,2}")
+_NAME = re.compile("[ABCHU-Z][A-Z]{0,5}[0-9]{1,2}")
 _KEYS = ("rotary_address", "rotary_incremental", "virtual_axis", "virtual_axis_incremental")
 
 
@@ -88,7 +88,7 @@ def _rotary_by(merged: Mapping[str, Any], told: set[str]) -> list[tuple[str, str
         found.append((_followed(axis_of(axes, number), _named(merged)), cause))
     if isinstance(virtual, str) and "polar.virtual_axis" in told:
         found.append((virtual, "polar.virtual_axis"))
-    return [(name, cause) for name, cause in found if is_rotary(name)][:1]
+    return [(name, cause) for name, cause in found if is_rotary(name) and (len(name) == 1 or _NAME.fullmatch(name))][:1]
 
 
 def _axes(merged: Mapping[str, Any]) -> list[str]:

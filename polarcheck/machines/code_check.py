@@ -93,7 +93,7 @@ def _is_switch(text: str) -> bool:
 
 
 def _is_address_or_code(text: str) -> bool:
-    return re.fullmatch("[A-Z]|[A-FH-LN-Z][A-Z]{0,5}[0-9]{1,2}", text) is not None or is_code(text, "GM")
+    return re.fullmatch("[A-Z]|[ABCHU-Z][A-Z]{0,5}[0-9]{1,2}", text) is not None or is_code(text, "GM")
 
 
 def _is_word(text: str) -> bool:

@@ -48,21 +48,21 @@ AxisName: TypeAlias = Annotated[
 AxisAddress: TypeAlias = Annotated[
     str,
     msgspec.Meta(
-        pattern="^[A-Z]([A-Z]{0,5}[0-9]{1,2})?$(?!\\n)",
+        pattern="^([A-Z]|[ABCHU-Z][A-Z]{0,5}[0-9]{1,2})$(?!\\n)",
         extra={EXPECTED: "an address, one letter or the name of an axis as C2"},
     ),
 ]
 AxisAddressOrNone: TypeAlias = Annotated[
     str,
     msgspec.Meta(
-        pattern="^([A-Z]([A-Z]{0,5}[0-9]{1,2})?)?$(?!\\n)",
+        pattern="^([A-Z]|[ABCHU-Z][A-Z]{0,5}[0-9]{1,2})?$(?!\\n)",
         extra={EXPECTED: "an address, one letter or the name of an axis as C2, or none"},
     ),
 ]
 RotaryAddress: TypeAlias = Annotated[
     str,
     msgspec.Meta(
-        pattern="^([ABCH]|[A-Z]{1,6}[0-9]{1,2})$(?!\\n)",
+        pattern="^([ABCH]|[ABCHU-Z][A-Z]{0,5}[0-9]{1,2})$(?!\\n)",
         extra={EXPECTED: "A, B, C or H, or the name of an axis as C2"},
     ),
 ]
