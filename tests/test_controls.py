@@ -608,3 +608,63 @@ def test_an_f_up_to_the_clamp_says_nothing(limit: int) -> None:
     changes = {"parameters": {"5450#1": 1, "5462": limit}}
     rules = [rule for _, rule in said(report_of(GSK_CYCLE, "gsk-988", "2:radius=5,nose=0", changes=changes))]
     assert "feed-above-polar-limit" not in rules
+
+
+HAAS_HEAD = "%\nO1\nG20 G40 G97 G98\nM5\nM154\nT0101\nG17\nP2500 M133\n"
+HAAS_TAIL = "G113\nG18\nG0 Z.1\nM135\nM155\nM30\n%\n"
+HAAS_ABSOLUTE = """G0 X4. C0 Z.1
+G112
+G1 X1.5 Y0. F15.
+G1 G42 X.875 Y0. F5.
+Y.5
+G3 X.25 Y1.125 R.625
+G1 X-.75
+G3 X-.875 Y1. R.125
+G1 Y-1.125
+X.875
+Y0.
+G1 G40 X1.5
+"""
+HAAS_STEPS = """{0} G0 X4. C0 Z.1
+G112
+G1 X1.5 Y0. F15.
+{1}
+G1 G42 X-.625 F5.
+Y.5
+G3 X-.625 Y.625 R.625
+G1 X-1.
+G3 X-.125 Y-.125 R.125
+G1 Y-2.125
+X1.75
+Y1.125
+{0} G1 G40 X1.5
+"""
+
+
+@pytest.mark.parametrize(
+    ("absolute", "incremental"),
+    [("G390", "G391"), ("g390", "g391"), ("G390.", "G391."), ("N5 G0390", "G0391"), ("G390 M9", "G40 G391")],
+)
+def test_g390_and_g391_are_executed(absolute: str, incremental: str) -> None:
+    """Axis words as coordinates and as distances: the same tool center path, whichever way the codes are spelled."""
+    twin = HAAS_HEAD + HAAS_ABSOLUTE + HAAS_TAIL
+    program = HAAS_HEAD + HAAS_STEPS.format(absolute, incremental) + HAAS_TAIL
+    ours, theirs = (moves_of(text, "haas-lathe", "1:radius=.25,nose=0") for text in (program, twin))
+    for column in ("start", "end", "center", "kind", "c_feed"):
+        np.testing.assert_allclose(getattr(ours, column), getattr(theirs, column), atol=1e-9, equal_nan=True)
+    reports = [report_of(text, "haas-lathe", "1:radius=.25,nose=0") for text in (program, twin)]
+    assert [[rule for _, rule in said(report) if rule != "lower-case-word"] for report in reports] == [[], []]
+
+
+def test_g391_outside_the_mode_moves_by_steps_too() -> None:
+    program = HAAS_HEAD + "G0 X6. C0 Z1.\nG391\nX-2. Z-.5 C30.\nG390\nG112\nG1 X1. Y0. F15.\n" + HAAS_TAIL
+    trace = trace_of(program, "haas-lathe")
+    row = int(np.flatnonzero(trace.enters)[0])
+    np.testing.assert_allclose([trace.x[row], trace.z[row], trace.c_angle[row]], [2 * 25.4, 0.5 * 25.4, 30.0])
+
+
+def test_g391_left_in_force_is_no_coordinate() -> None:
+    """Else the contour would be that of the twin, which it is not."""
+    steps = HAAS_STEPS.format("G390", "G391").replace("G390 G1 G40", "G1 G40")
+    moves = moves_of(HAAS_HEAD + steps + HAAS_TAIL, "haas-lathe", "1:radius=.25,nose=0")
+    np.testing.assert_allclose(moves.end[-1].real, (0.875 + 1.5) * 25.4, atol=1e-9)

@@ -13,14 +13,16 @@ def polar_code_of_another_control(other_mode: OtherMode) -> Hits:
     """
     Polar mode begun by the code of another control.
 
-    The codes that switch the polar mode differ from control to control: G12.1, G112, G137, TRANSMIT. A control that
-    does not know the code stops at it or, worse, takes it for something else, and turns C by degrees where a length is
-    meant. Nothing of such a section is looked at here. Check the program with the machine that it is for, or have it
-    written for this one. Standing alone, without the code that ends the mode and without a move of the second axis at
-    feed behind it, a G code may be a macro of the builder and is a warning; a word as TRANSMIT is none. One finding
+    The codes that switch the polar mode differ from control to control: G12.1, G112, G137, TRANSMIT, G16 XC. A control
+    that does not know the code stops at it or, worse, takes it for something else, and turns C by degrees where a
+    length is meant. Nothing of such a section is looked at here. Check the program with the machine that it is for, or
+    have it written for this one. Standing alone, without the code that ends the mode and without a move of the second
+    axis at feed behind it, a G code may be a macro of the builder and is a warning; a word as TRANSMIT is none. G101
+    and G105, the polar maps of one builder, are macros of so many others that nothing is said without both. One finding
     stands for the program.
 
-    Source: FANUC B-62764EN/01, p. 51; Haas codes, G112; Okuma OSP-P300 post, G137; Siemens manual, TRANSMIT.
+    Source: FANUC B-62764EN/01, p. 51; Haas codes, G112; Okuma OSP-P300 post, G137; Siemens manual, TRANSMIT;
+    public posts for Hurco TMX8 and Fagor 8055i-TC.
 
     Bad, machine haas-lathe:
 
@@ -41,6 +43,25 @@ def polar_code_of_another_control(other_mode: OtherMode) -> Hits:
         G101 X20. F200
         G103 X10. Y10. L10.
         G136
+        M30
+
+    Bad:
+
+        O1
+        T0101
+        G98 G0 X40. C45.
+        G101              (expect: polar-code-of-another-control)
+        G17
+        G1 X20. Y10. F200
+        Y-10.
+        G109
+        M30
+
+    Good:
+
+        O1
+        G101
+        G0 X20. Z2.
         M30
 
     Bad, machine okuma-osp:
