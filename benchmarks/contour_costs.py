@@ -177,7 +177,7 @@ def measure(path: Path, radius: float) -> Cost:
 
     data = path.read_bytes()
     lathe, rules = profiles.load(MACHINE).machine, list(load_all().values())
-    job = Job(tools={number: Tool(radius=radius) for number in TOOLS} if radius else {})
+    job = Job(tools={str(number): Tool(radius=radius) for number in TOOLS} if radius else {})
     began = time.process_time()
     result = check.check_file(data, lathe, job, rules)
     taken = time.process_time() - began

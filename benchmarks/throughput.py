@@ -37,7 +37,7 @@ def stages(data: bytes) -> dict[str, Callable[[], Any]]:
     lathe = profiles.load(profiles.DEFAULT).machine
     rules = list(load_all().values())
     without = Job()
-    with_cutter = Job(tools={number: Tool(radius=2) for number in CUTTERS})
+    with_cutter = Job(tools={str(number): Tool(radius=2) for number in CUTTERS})
 
     def read() -> Any:
         return read_words(source.read(data))

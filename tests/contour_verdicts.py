@@ -129,7 +129,7 @@ def twins_of(seed: int) -> tuple[Twin, ...]:
 def found_in(program: Program, stock: bool) -> list[Finding]:
     """The findings of polarcheck, those that follow from others included."""
     bar = Stock(diameter=program.bar) if stock and program.bar is not None else Stock()
-    job = Job(units="mm", tools={1: Tool(radius=program.radius, nose=0)}, stock=bar)
+    job = Job(units="mm", tools={"1": Tool(radius=program.radius, nose=0)}, stock=bar)
     report = check.check_file(program.text.encode(), _lathe(), job, _rules())
     found = list(report.findings)
     for finding in found:

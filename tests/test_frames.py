@@ -238,3 +238,12 @@ def test_many_frames_are_followed_one_after_the_other() -> None:
     steps = sum(1j ** (number + 1) * (number % 7 + 1j) for number in range(20_000))
     last = trace.end[trace.moves_plane & trace.in_polar][-2]
     assert abs(last - (20 + 10j + steps)) < 1e-4
+
+
+def test_a_negative_radius_is_the_longer_arc() -> None:
+    body = "G1 X20 Y0 F200\nG3 X0 Y-20 CR={}20\n"
+    for sign, center in (("-", 0), ("", 20 - 20j)):
+        trace = trace_of(face(body.format(sign)), MACHINE)
+        assert np.allclose(trace.center[trace.is_arc], center)
+    report = report_of(face(body.format("-")), MACHINE, changes={"limits": {"c_feed": 1e6}})
+    assert said(report) == []

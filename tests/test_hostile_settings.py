@@ -359,7 +359,7 @@ def test_a_machine_of_its_own_that_asks_for_what_there_is_not() -> None:
 # ---- offset tables ----
 
 
-def table(text: str) -> dict[int, float]:
+def table(text: str) -> dict[str, float]:
     Path("offsets.txt").write_bytes(text.encode())
     return {number: tool.radius for number, tool in offset_table.read(Path("offsets.txt"), "offsets.txt").items()}
 

@@ -147,7 +147,7 @@ INSIDE = ["approach-inside-stock"]
     ],
 )
 def test_stock_is_in_the_units_of_the_job(units: str, x: str, expected: list[str]) -> None:
-    work = {"units": units, "stock": {"diameter": 30, "clearance": 4}, "tools": {1: {"diameter": 10}}}
+    work = {"units": units, "stock": {"diameter": 30, "clearance": 4}, "tools": {"1": {"diameter": 10}}}
     assert asked(f"T0101\nG0 X{x} C0\nG12.1\nG1 X10. F200\nX{x}\nG13.1", **work) == expected
 
 

@@ -10,9 +10,10 @@ def offset_changed_in_polar(trace: Trace, mode_words: ModeWords, machine: Machin
 
     The offset must be set before G12.1 and cannot be changed before G13.1: a T word with another tool or offset, T0800,
     G10 on an offset, or an assignment to its system variable stops the control or shifts the plane off the center of
-    the spindle, and the contour with it. Leave the mode, change the offset, position, and enter again.
+    the spindle, and the contour with it. Leave the mode, change the offset, position, and enter again. Controls on
+    which D calls an edge of the tool take another one where no compensation is in force.
 
-    Source: FANUC B-62764EN/01, p. 52; Mitsubishi M700V programming manual, P485.
+    Source: FANUC B-62764EN/01, p. 52; Mitsubishi M700V programming manual, P485; Siemens Job Planning 03/2006, p. 7-76.
 
     Bad:
 
