@@ -262,6 +262,9 @@ USES = {
         "haas-lathe",
         ("1:radius=4,nose=0",),
     ),
+    "polar.off_of_other_modes": Use(["G138"], "O1\nT0101\nG138\nG1 G41 X40. C0 F200\nC10.\nG40 X60.\nG13.1\nM30\n"),
+    "polar.contours_outside": Use(["G1"], before("G1 X50. C10. F100")),
+    "polar.direction_word": Use("C", FLAT),
     "polar.words_beside_switch": Use(["X"], FLAT.replace("G12.1", "G12.1 X0")),
     "polar.not_simulated_beside": Use(
         ["K"], FLAT.replace("G12.1", "G12.1 K1"), also={"polar": {"words_beside_switch": ["K"]}}

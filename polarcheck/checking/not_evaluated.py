@@ -15,6 +15,7 @@ from polarcheck.checking.phrases.common import block_and_line, linear
 from polarcheck.checking.phrases.offsets import called_tool, example, offset, to_give
 from polarcheck.checking.phrases.polar import (
     axes_not_followed,
+    contours_outside,
     extrudes,
     names_not_followed,
     names_not_known,
@@ -72,6 +73,7 @@ def unexecuted(tables: Tables) -> Iterator[NotEvaluated]:
         *not_simulated(tables["infeed"]),
         not_understood(trace, tables["other_mode"]),
         on_cylinder(trace),
+        contours_outside(trace),
         extrudes(trace),
     ):
         if count:

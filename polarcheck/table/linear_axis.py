@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from polarcheck.arrays import Floats, Mask, Points, States
 from polarcheck.geometry import polar
 from polarcheck.machines.axes import AXES, INCREMENTS, numbers_of
-from polarcheck.machines.machine import LinearAddress
 from polarcheck.machines.modal import Distance
+from polarcheck.machines.polar_keys import LinearAddress
 from polarcheck.machines.values import MOST_AXES
 from polarcheck.table.filling import fill_down, happened
 from polarcheck.table.lengths import Lengths

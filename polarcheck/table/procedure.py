@@ -73,7 +73,7 @@ class Procedure:
         """Rows that begin the mode, that of another control, another plane, a cylinder, or nobody knows what."""
         trace, mode = self.trace, self.trace.machine.polar
         foreign = [name for name in mode.on_of_other_controls if is_code(name) and name not in mode.on_of_macros]
-        begins = trace.switches_on | trace.codes(*foreign, *mode.ended_by) | trace.run.unknown
+        begins = trace.switches_on | trace.codes(*foreign, *mode.ended_by, *mode.off_of_other_modes) | trace.run.unknown
         return np.asarray(begins | trace.listed("cylindrical_interpolation"))
 
     @property

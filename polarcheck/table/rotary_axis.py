@@ -29,11 +29,11 @@ class RotaryAxis(Positions):
         # G28 H0 takes C to its reference point, the zero of its angle (builder's guide: "zero return C-axis").
         referenced = self.listed("c_axis_reference") & self.has(axis, increment)
         values = np.where(referenced, 0.0, np.where(self.sets_coordinates, self.angle_of(axis), np.nan))
-        resets, mode = self._forgets(axis, increment), self.machine.polar
-        turns_plane = self.enters & self.has(axis) & (axis in mode.words_beside_switch)
-        if mode.virtual_axis != axis and turns_plane.any():
+        resets, direction = self._forgets(axis, increment), self.machine.polar.direction_word
+        turns_plane = self.enters & self.has(direction)
+        if turns_plane.any():
             # Where the tool stands is not told by it, but in which direction of C the first axis of the plane points.
-            resets, values = resets | turns_plane, np.where(turns_plane, self.angle_of(axis), values)
+            resets, values = resets | turns_plane, np.where(turns_plane, self.angle_of(direction), values)
         return positions(absolute, turn, resets, values)
 
     @cached_property

@@ -13,6 +13,7 @@ import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Rows, States
 from polarcheck.geometry.tolerances import ROUNDING
+from polarcheck.machines.codes import code_numbers, code_set
 from polarcheck.machines.modal import FeedMode, Motion, Side
 from polarcheck.reading.words import NumberFault
 from polarcheck.table.filling import before, fill_down, happened
@@ -51,6 +52,19 @@ class Trace(ToolOffsets):
         radius = np.array([self.has(address) & ~(self.word(address) == 0) for address in names])
         ends = self.changes_tool | self.ends_program | self.starts
         return fill_down(written & radius.any(axis=0), written | ends, False).astype(bool)
+
+    @cached_property
+    def contours_outside(self) -> Mask:
+        """Blocks outside the mode with a code that cuts a contour there, and C beside it."""
+        codes = self.machine.polar.contours_outside
+        if not codes:
+            return np.zeros(len(self), bool)
+        written = code_numbers(self.run.words.value[self.g_words])
+        return (
+            self.with_words(self.g_words[code_set(codes)[written]])
+            & self.has(self.machine.polar.rotary_address)
+            & (self.section < 0)
+        )
 
     @cached_property
     def extrudes(self) -> Mask:

@@ -317,6 +317,16 @@ def extrudes(trace: Trace) -> tuple[str, int]:
     return f"{where} is no word of a move on a lathe: convert the file, or delete E", len(rows)
 
 
+def contours_outside(trace: Trace) -> tuple[str, int]:
+    """Where a contour is cut outside the mode with C in degrees, which is not simulated, and in how many blocks."""
+    rows = trace.contours_outside.nonzero()[0]
+    if not len(rows):
+        return "", 0
+    line = int(trace.line[rows[0]])
+    reason = f"a contour outside the polar mode, with C in degrees, from line {line} on, is not simulated"
+    return f"{reason}: look at it on the control", len(rows)
+
+
 def on_cylinder(trace: Trace) -> tuple[str, int]:
     """Where cylindrical interpolation is begun, which is not simulated, and in how many blocks it is in force."""
     rows = trace.on_cylinder.nonzero()[0]

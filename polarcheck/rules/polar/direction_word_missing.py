@@ -1,0 +1,40 @@
+from __future__ import annotations
+
+from polarcheck.checking.rule import WARNING, Machine, Mask, Trace, rule
+
+
+@rule(
+    WARNING,
+    "{switch} has no {machine.polar.direction_word}: in which direction of C the new axis points is not told; write "
+    "{machine.polar.direction_word}0 beside it",
+    at=("on",),
+)
+def direction_word_missing(trace: Trace, machine: Machine) -> Mask:
+    """
+    Coordinate conversion without the direction of its first axis.
+
+    On some controls the block that begins the mode says with C at which angle of the C axis X of the new plane points.
+    Without it the control takes an angle that the program does not tell, or stops, and the contour may lie turned on
+    the part. Write G137 C0 where X is to point where it did. Nothing is said where the machine needs no such word.
+
+    Source: post of a user for the OSP-P300, which writes C0 at each G137; OSP-P300L, description of G137.
+
+    Bad, machine okuma-osp:
+
+        G94 G0 X120. C0 Z5.
+        G137              (expect: direction-word-missing)
+        G101 X40. Y0 F500
+        Y10.
+        X60.
+        G136
+
+    Good, machine okuma-osp:
+
+        G94 G0 X120. C0 Z5.
+        G137 C90.
+        G101 X40. Y0 F500
+        Y10.
+        X60.
+        G136
+    """
+    return trace.enters & (machine.polar.direction_word != "") & ~trace.has(machine.polar.direction_word)
