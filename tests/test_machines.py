@@ -278,7 +278,6 @@ def test_what_is_wrong_is_said_in_one_line(text: str, said: str) -> None:
         ("[limits]\noverride_share = nan", "limits.override_share: expected a number above 0, found nan"),
         ("[limits]\nx_maximum = -20", "limits.x_maximum: expected a number above 0, found -20"),
         ("[limits]\nx_maximum = 0", "limits.x_maximum: expected a number above 0, found 0"),
-        ("[limits]\nc_acceleration = 0", "limits.c_acceleration: expected a number above 0, found 0"),
         ("[limits]\nx_minimum = 50\nx_maximum = 20", "limits: x_minimum is 50, above x_maximum, 20"),
         ("[feed]\ncutting_minimum = 9\ncutting_maximum = 8", "feed: cutting_minimum is 9, above cutting_maximum, 8"),
         ("[parameters]\n1422 = -5", "parameters.1422: limits.c_feed: expected a number above 0, found -5"),

@@ -164,7 +164,7 @@ class Limits(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     c_feed: Positive = math.nan
     c_feed_harmless: Positive
     c_feed_suspicious: Positive
-    c_acceleration: Positive = math.nan
+    c_acceleration: NotNegative = math.nan
     polar_feed: Positive = math.nan
     polar_feed_clamps: bool = True
     automatic_override: bool = False
