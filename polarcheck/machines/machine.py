@@ -67,6 +67,7 @@ class Control(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     native_words: words of the control's own language, by the code or address that they are read as: TRANSMIT = "G12.1"
     x_radius_words: what makes X a radius from then on: a code, a code with a word (G10.9 X0), a native word (DIAMOF)
     x_diameter_words: what makes X a diameter from then on
+    x_absolute_diameter_words: what makes X a diameter from then on where it is a coordinate, a radius where a distance
     """
 
     g_code_system: Literal["A", "B", "C"]
@@ -91,6 +92,7 @@ class Control(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     native_words: dict[Plain, Plain] = {}
     x_radius_words: list[SwitchWord] = []
     x_diameter_words: list[SwitchWord] = []
+    x_absolute_diameter_words: list[SwitchWord] = []
 
     def __post_init__(self) -> None:
         for word, text in self.native_words.items():

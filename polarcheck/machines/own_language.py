@@ -12,7 +12,7 @@ from polarcheck.machines.machine import Machine
 #: G0.1 to G0.9.
 _FREE = [f"G0.{digit}" for digit in range(1, 10)]
 #: Lists of [control] and of [g_codes] that may hold such words; those of one that is not simulated share a code.
-_OF_CONTROL = ("x_radius_words", "x_diameter_words")
+_OF_CONTROL = ("x_radius_words", "x_diameter_words", "x_absolute_diameter_words")
 *_FRAMES, _NOT_SIMULATED = FRAME_LISTS
 
 

@@ -23,6 +23,8 @@ FOLDER = Path(__file__).parent
 DEFAULT = "fanuc"
 #: Files that may stand behind each other by `inherits`; the built-in ones have four.
 _LONGEST_CHAIN = 10
+#: Tables by name, of which a nearer profile says what differs or is new.
+MERGED = ("control.named_axes", "macro.statements")
 #: Tables that a profile can leave behind.
 _REPLACED = ("alarms", "alarm_codes", "known_parameters", "severities", "notes")
 
@@ -114,13 +116,14 @@ def load(name: str, changes: Mapping[str, Any] | Sequence[Change] | None = None)
             inherited = {
                 group: dict(values) if isinstance(values, dict) else values for group, values in merged.items()
             }
-        named = _value(merged, "control.named_axes")
+        before = {key: _value(merged, key) for key in MERGED}
         axes = axis_names.axis_names(merged)
         _replace(merged, table.pop("replaces", []), title, origins)
         _merge(merged, table, title, origins, in_plain_form=title in ours)
         if title in chain:
             _forget(merged, table)
-        _keep(merged, "control.named_axes", named)
+        for key, value in before.items():
+            _keep(merged, key, value)
         if isinstance(table.get("parameters"), Mapping):
             # After the values of farther profiles, before those of nearer ones: the nearest word counts.
             parameters.apply(merged, table, title, origins)
@@ -128,8 +131,9 @@ def load(name: str, changes: Mapping[str, Any] | Sequence[Change] | None = None)
             axis_names.follow(merged, table, title, origins, axes)
     written = _convert(merged, origins, [title for title, _ in tables])
     machine = written
-    frames = (getattr(written.g_codes, key) for key in FRAME_LISTS)
-    if any((written.control.x_radius_words, written.control.x_diameter_words, *frames)):
+    control, g_codes = written.control, written.g_codes
+    switches = control.x_radius_words, control.x_diameter_words, control.x_absolute_diameter_words
+    if any((*switches, *(getattr(g_codes, key) for key in FRAME_LISTS))):
         from polarcheck.machines import own_language
 
         try:

@@ -165,7 +165,7 @@ class Arcs:
         """From start to end [mm], were X in the mode the other of diameter and radius; X before G12.1 stays."""
         trace = self.trace
         factor = np.where(trace.x_factor < 1, 2.0, 0.5)
-        has_x = trace.has("X") & ~trace.incremental & (trace.linear_axis == ord("X"))
+        has_x = trace.has("X") & ~trace.is_step("X") & (trace.linear_axis == ord("X"))
         had_x = np.zeros(len(trace), bool)
         had_x[1:] = trace.given_in_section(has_x)[:-1]
         x = trace.end.real * factor - trace.start.real * np.where(has_x & ~had_x, 1.0, factor)

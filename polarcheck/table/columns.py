@@ -98,6 +98,19 @@ class Columns:
         """The written value per row, the last where it is repeated; NaN where it is not written."""
         return self._column(f"word {address}", lambda: self._scatter(address, self.run.words.value))
 
+    def distance(self, address: str) -> States | None:
+        """Per row what the word of an address says of itself (modal.Distance), 0 where nothing; None in most files."""
+        own = self.run.distance
+        if own is None:
+            return None
+        return self._column(f"distance {address}", lambda: self._distance(address, own))
+
+    def _distance(self, address: str, own: NDArray[np.int16]) -> States:
+        column = np.zeros(len(self), np.int16)
+        at = self.word_indices(address)
+        column[self.run.row[at]] = own[at]
+        return column
+
     def has(self, *addresses: str) -> Mask:
         """Whether a row has a word of any of the addresses."""
         return self.with_words(self.word_indices(*addresses))

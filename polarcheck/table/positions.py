@@ -11,18 +11,17 @@ from functools import cached_property
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Points, Rows, States
-from polarcheck.geometry import polar
-from polarcheck.geometry.tolerances import ZERO
 from polarcheck.machines.axes import INCREMENTS
 from polarcheck.machines.code_lists import numbers
 from polarcheck.machines.modal import Distance, Motion
-from polarcheck.table.filling import before, fill_down, positions
+from polarcheck.table.filling import before, fill_down, happened, positions
 from polarcheck.table.frames import Frames, Way, along, find_frames, in_frame
 from polarcheck.table.sections import Marks, Sections, find_sections, section_column
 from polarcheck.table.virtual_axis import VirtualAxis
 
 _FACTOR = {"diameter": 0.5, "radius": 1.0}
-_NOWHERE = complex("nan+nanj")
+#: The point of a row of which none is known.
+NOWHERE = complex("nan+nanj")
 _PASSES = 8
 
 
@@ -154,15 +153,29 @@ class Positions(VirtualAxis):
         """G91 in systems B and C."""
         return np.asarray(self.state("distance") == Distance.INCREMENTAL)
 
-    def _programmed(self, address: str, increment: str, factor: Floats | float, where: Mask) -> tuple[Floats, Floats]:
-        """Absolute coordinates (NaN where none) and increments (0 where none) of an axis in the rows `where`."""
+    def is_step(self, address: str) -> Mask:
+        """Whether the word of an address is a distance, by G91 or as the word itself says: X=IC(10)."""
+        own = self.distance(address)
+        return self.incremental if own is None else np.where(own, own == Distance.INCREMENTAL, self.incremental)
+
+    def _programmed(
+        self, address: str, increment: str, factor: Floats | float, where: Mask, of_step: Floats | None = None
+    ) -> tuple[Floats, Floats]:
+        """
+        Absolute coordinates (NaN where none) and increments (0 where none) of an axis in the rows `where`.
+
+        factor: what the words are multiplied by; of_step: those that are distances, where that is another.
+        """
+        is_step = self.is_step(address)
+        if of_step is not None:
+            factor = np.where(is_step, of_step, factor)
         value, step = self.length_of(address) * factor, self.length_of(increment) * factor
         where = where & self.uses_axes
         written = self.has(address) & where
         has_step = self.has(increment) & where
-        absolute = np.where(written & ~self.incremental, value, np.nan)
+        absolute = np.where(written & ~is_step, value, np.nan)
         absolute[~where] = np.nan
-        steps = np.where(written & self.incremental, value, 0.0) + np.where(has_step, step, 0.0)
+        steps = np.where(written & is_step, value, 0.0) + np.where(has_step, step, 0.0)
         broken = written & np.isnan(value)
         return absolute, np.where(broken, np.nan, steps)
 
@@ -223,14 +236,25 @@ class Positions(VirtualAxis):
         control = self.machine.control
         factor = np.where(self.section >= 0, _FACTOR[self.machine.polar.x], _FACTOR[control.x])
         factor[self.linear_axis != ord("X")] = 1.0
-        if not (control.x_radius_words or control.x_diameter_words):
+        if not (control.x_radius_words or control.x_diameter_words or control.x_absolute_diameter_words):
             return factor
-        radius, diameter = self.codes(*control.x_radius_words), self.codes(*control.x_diameter_words)
+        radius = self.codes(*control.x_radius_words)
+        diameter = self.codes(*control.x_diameter_words, *control.x_absolute_diameter_words)
         if set(self.machine.polar.off) & set(control.x_diameter_words):
             diameter |= self.mask_of(self.sections.leave)  # be it that the code is missing there
         switched = radius | diameter | self.starts
         chosen = fill_down(np.where(radius, 1.0, np.where(diameter, 0.5, np.nan)), switched, np.nan)
         return np.asarray(np.where(np.isnan(chosen), factor, chosen), np.float64)
+
+    @cached_property
+    def x_step_factor(self) -> Floats | None:
+        """The same of X as a distance, where words make a diameter of the coordinate alone, as DIAM90; else None."""
+        control = self.machine.control
+        both = self.codes(*control.x_absolute_diameter_words)
+        if not both.any():
+            return None
+        others = self.codes(*control.x_radius_words, *control.x_diameter_words)
+        return np.where(happened(both, others | self.starts), 1.0, self.x_factor)
 
     @cached_property
     def center_shift(self) -> Points:
@@ -256,7 +280,8 @@ class Positions(VirtualAxis):
     @cached_property
     def _linear_coordinates(self) -> tuple[Floats, Floats]:
         """The linear axis of each row as _programmed gives an axis; X outside the mode."""
-        absolute, steps = self._programmed("X", "U", self.x_factor, ~self.enters & (self.linear_axis == ord("X")))
+        is_x = ~self.enters & (self.linear_axis == ord("X"))
+        absolute, steps = self._programmed("X", "U", self.x_factor, is_x, self.x_step_factor)
         shifted = np.diff(self.local_shift, prepend=0.0) * self.x_factor
         # In the mode that is a finding, and changes nothing of what is meant.
         steps = steps - np.where(self._shifts & (self.section < 0), shifted, 0.0)
@@ -320,7 +345,7 @@ class Positions(VirtualAxis):
         end = np.empty(len(self), np.complex128)
         end.real, end.imag = np.where(self.is_followed, x, np.nan), c
         end -= shift
-        return end, before(end, self.starts, _NOWHERE)
+        return end, before(end, self.starts, NOWHERE)
 
     def _virtual(self, words: Way) -> Floats:
         """The virtual axis after each row where no frame turns it; NaN outside the mode."""
@@ -336,12 +361,12 @@ class Positions(VirtualAxis):
     @cached_property
     def end(self) -> Points:
         """Programmed plane point after the row [mm]; NaN outside the mode or while unknown."""
-        return np.where(self.section >= 0, self._plane[0], _NOWHERE)
+        return np.where(self.section >= 0, self._plane[0], NOWHERE)
 
     @cached_property
     def start(self) -> Points:
         """Programmed plane point before the row [mm]."""
-        return np.where(self.in_polar, self._plane[1], _NOWHERE)
+        return np.where(self.in_polar, self._plane[1], NOWHERE)
 
     @cached_property
     def x(self) -> Floats:
@@ -363,49 +388,3 @@ class Positions(VirtualAxis):
         if self.frames is not None:
             absolute = absolute + self.frames.z
         return positions(absolute, steps, self._forgets("Z", "W"), self._set_by("Z"))
-
-    @cached_property
-    def center(self) -> Points:
-        """Center of an arc on the polar plane [mm]; NaN for lines and where it cannot be known."""
-        arcs = self.is_arc
-        center = np.full(len(self), _NOWHERE)
-        if not arcs.any():
-            return center
-        i, j = (words[arcs] for words in self.to_center)
-        written = ~np.isnan(i) | ~np.isnan(j)
-        start, end, kind = self.start[arcs], self.end[arcs], self.motion[arcs]
-        to_center = np.nan_to_num(i) + 1j * np.nan_to_num(j)
-        if self.frames is not None:
-            to_center = to_center * self.frames.turn[arcs]
-        by_center = np.where(written, start + to_center, _NOWHERE)
-        radius = self.length_of(self.machine.arcs.radius_word)[arcs]
-        by_radius = polar.center_from_radius(start, end, radius, kind, np.inf)
-        center[arcs] = np.where(np.isnan(radius), by_center, by_radius)
-        return center
-
-    @cached_property
-    def is_arc(self) -> Mask:
-        """An arc on the polar plane."""
-        return self.in_polar & self.moves_plane & np.isin(self.motion, (Motion.CW, Motion.CCW))
-
-    @cached_property
-    def travels(self) -> Mask:
-        """
-        A move on the polar plane of some length, round a full circle, or of a length that is not known.
-
-        Words that name the present position are no movement (B-63664EN p. 170), nor is an arc by R to its start.
-        """
-        still = np.abs(self.end - self.start) <= ZERO
-        is_full = self.is_arc & ~np.isnan(self.center)
-        return np.asarray(self.in_polar & self.moves_plane & (~still | is_full))
-
-    @cached_property
-    def length(self) -> Floats:
-        """Way of the row on the polar plane [mm]; 0 where it does not move there, NaN where unknown."""
-        moving = self.in_polar & self.moves_plane
-        length = np.zeros(len(self))
-        length[moving] = polar.length(*self._move(moving))
-        return length
-
-    def _move(self, rows: Mask) -> tuple[Points, Points, Points, States]:
-        return self.start[rows], self.end[rows], self.center[rows], self.motion[rows]

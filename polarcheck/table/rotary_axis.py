@@ -9,10 +9,10 @@ import numpy as np
 from polarcheck.arrays import Floats, Mask
 from polarcheck.geometry import polar
 from polarcheck.table.filling import positions
-from polarcheck.table.positions import Positions
+from polarcheck.table.plane_moves import PlaneMoves
 
 
-class RotaryAxis(Positions):
+class RotaryAxis(PlaneMoves):
     """The columns of the rotary axis; see the properties."""
 
     @cached_property
@@ -21,8 +21,9 @@ class RotaryAxis(Positions):
         axis, increment = self.machine.polar.rotary_words
         moving = self.uses_axes & (self.section < 0)
         written, stepped = self.has(axis) & moving, self.has(increment) & moving
-        absolute = np.where(written & ~self.incremental, self.angle_of(axis), np.nan)
-        turn = np.where(written & self.incremental, self.angle_of(axis), 0.0)
+        is_step = self.is_step(axis)
+        absolute = np.where(written & ~is_step, self.angle_of(axis), np.nan)
+        turn = np.where(written & is_step, self.angle_of(axis), 0.0)
         turn += np.where(stepped, self.angle_of(increment), 0.0)
         on_plane = self.in_polar & self.moves_plane
         turn[on_plane] = polar.c_sweep(*self._move(on_plane))
