@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from programs import report_of, said
+from programs import machine_of, report_of, said
 
 from polarcheck.reading.languages import recognised
 from polarcheck.reading.source import read
@@ -55,7 +55,7 @@ OWN = [
 @pytest.mark.parametrize(("title", "file"), PAIRS)
 @pytest.mark.parametrize("ends", ["\n", "\r\n", "\r"])
 def test_a_file_of_another_world_is_named_once(title: str, file: str, ends: str) -> None:
-    for machine in ("fanuc", "haas-lathe", "okuma-osp"):
+    for machine in ("fanuc", "haas-lathe", "okuma-osp", "siemens-transmit"):
         report = report_of(file.replace("\n", ends).encode(), machine)
         assert [(found.line, found.rule, found.severity) for found in report.findings] == [(1, "other-dialect", "note")]
         assert f"written for {title}, as `" in report.findings[0].message
@@ -78,8 +78,8 @@ def test_the_first_sign_is_shown() -> None:
 
 def test_a_sound_program_is_not_searched() -> None:
     text: Text = read_words(read(b"O1\nG0 X60. (o<a> call)\nM30\n"))
-    assert Dialect(text).recognised is None
-    assert Dialect(read_words(read(b""))).recognised is None
+    assert Dialect(text, machine_of()).recognised is None
+    assert Dialect(read_words(read(b"")), machine_of()).recognised is None
 
 
 @pytest.mark.parametrize("part", [b"#<a", b"O<", b"N1 ", b"L X1", b"G1 E ", b"0", b";", b"X", b"J2,", b"(", b"(\n"])

@@ -14,8 +14,10 @@ from polarcheck.machines.macro_keys import Macro
 _SUB = "M30\nO2\nG0 X#24 Z#4 U#7\nM99\n"
 #: Key -> what it is changed to, and the program; X, Z and U of its rows, or what is said, are no longer the same.
 KEYS: dict[str, tuple[Any, str]] = {
-    "language": ("user-task", "VC1=5\nG0 X=VC1\nM30\n"),
+    "language": ("high-level", "R1=5\nG0 X=R1\nM30\n"),
     "named_words": ({"QX": "X"}, "G0 QX=5.\nM30\n"),
+    "other_language": ("G290", "G290 X=5.\nG0 X5.\nM30\n"),
+    "statements": ({"DWELL": "none"}, "DWELL\nG0 X5.\nM30\n"),
     "local_variables": ([[1, 26]], "#27=5.\nG0 X#27\nM30\n"),
     "common_variables": ([[100, 149]], "#150=5.\nG0 X#150\nM30\n"),
     "retained_variables": ([[500, 531]], "#600=5.\nG0 X#600\nM30\n"),
@@ -60,7 +62,8 @@ def test_no_key_is_forgotten() -> None:
 @pytest.mark.parametrize("key", KEYS)
 def test_changing_a_key_changes_a_result(key: str) -> None:
     value, program = KEYS[key]
-    others = {"language": "user-task"} if key == "named_words" else {}
+    language = {"named_words": "user-task", "other_language": "high-level", "statements": "high-level"}.get(key)
+    others = {"language": language} if language else {}
     assert outcome(program, {"macro": others}) != outcome(program, {"macro": {**others, key: value}})
 
 

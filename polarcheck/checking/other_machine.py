@@ -81,7 +81,9 @@ def _find(tables: Tables) -> Fit | None:
 def _reads(machine: Machine) -> tuple[object, ...]:
     """What of a machine makes it read a program otherwise than another."""
     control, mode = machine.control, machine.polar
-    return mode.on, mode.virtual_axes, mode.x, machine.arcs.radius_word, control.native_words, control.motion_codes
+    switches = {*mode.on, *mode.off, machine.arcs.radius_word}
+    native = {word: text for word, text in control.native_words.items() if text in switches}
+    return mode.on, mode.virtual_axes, mode.x, machine.arcs.radius_word, native, control.motion_codes
 
 
 def _reasons(tables: Tables, machine: Machine) -> tuple[str, ...]:
@@ -133,6 +135,6 @@ def _read_by(tables: Tables, machine: Machine) -> Tables:
         return Tables(trace.run, machine, trace.job)
     found = source.read(trace.text.source.data, trace.text.source.path)
     found = channel_like(found, trace.text.source, ours.channel_mark, ours.line_comments)
-    found = translated(found, theirs.native_words)
+    found = translated(found, theirs.native_words, machine.macro.language)
     text = read_words(found, theirs.line_comments, ours.channel_mark, ours.wait_mark, machine.macro.language)
     return Tables(straight(text, machine.m_codes.program_end), machine, trace.job)

@@ -144,6 +144,14 @@ _OPERATIONS: Final[Mapping[str, Callable[..., float | FaultKind]]] = {
     "BIN": _binary,
     "BCD": _coded_decimal,
     "POW": _power,
+    "WHOLE": lambda a: round_to(a, 1),
+    "SQUARE": lambda a: a * a,
+    "LEAST": min,
+    "GREATEST": max,
+    "DIV": lambda a, b: float(math.trunc(a / b)) if b else "zero-divide",
+    "NOT": lambda a: not a,
+    "B_NOT": lambda a: float(~int(round_to(a, 1))),
+    "JOIN": lambda a, b: UNKNOWN,  # strings are not followed
     "ADP": lambda a: UNKNOWN,  # it asks whether an argument of the call was written with a point
     "NAMED": lambda a: UNKNOWN,  # a system variable by its name
 }

@@ -26,6 +26,7 @@ class Level:
     One level of calls: the program that runs, where its caller goes on, and how often it runs again.
 
     passed: the variables that the call has set, which have no value behind the return.
+    is_macro: it has local variables of its own. is_part: it is a part of the program that its caller runs.
     """
 
     program: Program
@@ -33,6 +34,7 @@ class Level:
     repeats: int = 1
     is_macro: bool = False
     passed: tuple[int, ...] = ()
+    is_part: bool = False
 
 
 @dataclass(slots=True)
@@ -105,6 +107,8 @@ class Calls:
             self.found(given.fault, block)
             arguments = given.values
         program = self.find(called.program)
+        if program is not None and statement.parameters is not None:
+            arguments = self.handed_over(statement, program, block)
         if program is None:
             self.missing(statement, block, called.program)
             return block + 1
@@ -118,6 +122,17 @@ class Calls:
             self.modal = ModalCall(program, arguments or {}, repeats)
             return block + 1
         return self.call(program, block + 1, repeats, arguments, statement, block)
+
+    def handed_over(self, statement: Statement, program: Program, block: int) -> dict[int, float | None]:
+        """The variables that a program takes from a call by name: what is given, else what it says itself, else 0."""
+        procedure, given = self.listing.procedure(program), statement.parameters or ()
+        values: dict[int, float | None] = {}
+        for place, parameter in enumerate(procedure.parameters or () if procedure else ()):
+            expression = (given[place].value if place < len(given) else None) or parameter.value
+            value, fault = (0.0, None) if expression is None else evaluate(expression, self.variables)
+            self.found(fault, block)
+            values[parameter.variable] = value
+        return values
 
     def modal_call(self) -> ModalCall | None:
         """What runs after each block that moves; the moves of that macro itself do not call it again."""

@@ -10,7 +10,8 @@ from collections.abc import Set as AbstractSet
 import numpy as np
 
 from polarcheck.execution.arithmetic import UNKNOWN
-from polarcheck.execution.calls import Again, Calls, Level, ModalCall, Resolver, Stop
+from polarcheck.execution.branches import Branches
+from polarcheck.execution.calls import Again, Level, ModalCall, Resolver, Stop
 from polarcheck.execution.executed_rows import ExecutedRows
 from polarcheck.execution.expression import Fault, decide, evaluate
 from polarcheck.execution.fault_list import FaultList, HasPlace
@@ -33,13 +34,13 @@ _LEAST = 1000
 _OF_CALL = 3
 
 
-class Execution(Calls):
+class Execution(Branches):
     """
     One execution of all programs of a file, with one state of block skip.
 
     used: the files of which a program was called. called_beside: the numbers and names of programs that other channels
     call, so that they run there. rows, faults, remarks: what came out of it. visited: per block,
-    whether it was run. stopped: it was broken off at a bound.
+    whether it was run. stopped: it was broken off at a bound. jumped: the block that runs has gone elsewhere.
     """
 
     def __init__(
@@ -54,7 +55,7 @@ class Execution(Calls):
         self.faults = FaultList(listing.text)
         self._remarks: dict[tuple[RemarkKind, int], Remark] = {}
         self.visited = np.zeros(len(listing.text.blocks), bool)
-        self.stopped = False
+        self.stopped = self.jumped = False
         self.modal: ModalCall | None = None
         self.variables = Variables(listing.macro)
         self._of_offsets = (*listing.macro.tool_offset_variables, *listing.macro.work_offset_variables)
@@ -204,9 +205,10 @@ class Execution(Calls):
             return block + 1
         for unread in statement.unread:
             self.remark("not-simulated", block, name=unread.name, matters=unread.matters)
+        self.jumped = False
         for part in (statement, *statement.more):
             goes_on = self.execute(part, block)
-            if goes_on != block + 1:
+            if self.jumped or goes_on != block + 1:
                 return goes_on
         if any(unread.moves for unread in statement.unread):
             self.rows.mark_unknown()
@@ -228,6 +230,10 @@ class Execution(Calls):
                 return self.loop(statement, block)
             case Kind.CALL:
                 return self.enter(statement, block)
+            case Kind.STRUCTURE:
+                return self.structure(statement, block)
+            case Kind.REPEAT:
+                return self.run_again(statement, block)
             case Kind.NC:
                 return self.nc(statement, block)
             case _:
@@ -259,14 +265,7 @@ class Execution(Calls):
 
     def holds(self, statement: Statement, block: int) -> bool:
         """Whether the condition holds; an unknown one counts as not, and is said."""
-        if statement.condition is None:
-            return False
-        result, fault = decide(statement.condition, self.variables, self.listing.arithmetic)
-        self.found(fault, block)
-        if result is None:
-            self.remark("condition-unknown", block)
-            return False
-        return result
+        return self.decided(statement.condition, block)
 
     def go_to(self, statement: Statement, block: int) -> int:
         if statement.label:
@@ -281,24 +280,30 @@ class Execution(Calls):
             else:
                 self.remark("condition-unknown", block)
             return block + 1
-        target = self.listing.programs.jump(self.stack[-1].program, round(number), block)
+        target = self.listing.programs.jump(self.stack[-1].program, round(number), block, statement.search)
         if target is None:
-            self.fault("sequence-number-not-found", block, statement.jump, number=round(number))
+            if statement.search is not Search.IF_THERE:
+                self.fault("sequence-number-not-found", block, statement.jump, number=round(number))
             return block + 1
+        return self.gone_to(target, block)
+
+    def gone_to(self, target: int, block: int) -> int:
+        """The target of a jump, once what the jump means has been seen to."""
         if target <= block:
             self.goes_back(block)
+        self.leave_parts(target)
+        self.jumped = True
         return target
 
     def go_to_label(self, statement: Statement, block: int) -> int:
         program, search = self.stack[-1].program, statement.search
         target = self.listing.programs.labelled(program, statement.label, block, search)
         if target is None:
-            where = {Search.FORWARD: "behind", Search.BACKWARD: "before"}.get(search, "beside")
-            self.fault("label-not-found", block, statement, label=statement.label, where=where)
+            if search is not Search.IF_THERE:
+                where = {Search.FORWARD: "behind", Search.BACKWARD: "before"}.get(search, "beside")
+                self.fault("label-not-found", block, statement, label=statement.label, where=where)
             return block + 1
-        if target <= block:
-            self.goes_back(block)
-        return target
+        return self.gone_to(target, block)
 
     def goes_back(self, block: int) -> None:
         """Back again without any variable changed since the last time here: it will never end."""

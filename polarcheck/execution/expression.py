@@ -125,7 +125,8 @@ _SUM, _PRODUCT, _OR, _AND = 1, 2, 4, 8
 _FAMILY: Final = {**dict.fromkeys("+-", _SUM), "*": _PRODUCT, "/": _PRODUCT, "MOD": _PRODUCT, "OR": _OR, "XOR": _OR}
 _FAMILY["AND"] = _AND
 _MIXES: Final = {_AND | _PRODUCT, _AND | _SUM, _OR | _SUM}
-_OPERANDS: Final = {"number": 0, **dict.fromkeys([*_ORDER, *_LOGICAL.values(), "ATAN2", "POW"], 2), "NEGATE": 1}
+_OF_TWO: Final = ["ATAN2", "POW", "DIV", "LEAST", "GREATEST", "JOIN"]
+_OPERANDS: Final = {"number": 0, **dict.fromkeys([*_ORDER, *_LOGICAL.values(), *_OF_TWO], 2), "NEGATE": 1}
 
 
 class _Stop(Exception):  # noqa: N818 - it ends the reading of one expression and never leaves read_expression

@@ -5,15 +5,22 @@ from __future__ import annotations
 import re
 from typing import Final
 
+from polarcheck.execution.expression import Expression, Step
+from polarcheck.execution.keywords import KEYWORDS, call_by_name
 from polarcheck.execution.names import Names
-from polarcheck.execution.rewriting import Read, Rewriting
-from polarcheck.execution.statement import Kind, Statement, Unread
+from polarcheck.execution.rewriting import Read
+from polarcheck.execution.spoken_block import SpokenBlock
+from polarcheck.execution.statement import Number, Statement, Word
+from polarcheck.execution.tokens import Token
 from polarcheck.machines.machine import Machine
 
-#: A tool by its name, alone or beside plain words: N10 T="MILL_8" D1.
-_TOOL: Final = re.compile(
-    r'((?:[ \t]*[/N][0-9]*)*[ \t]*)(T[ \t]*=[ \t]*"([^"]*)")((?:[ \t]*[A-Z][ \t]*[-+.0-9]+)*)\s*', re.I
+#: What only custom macro writes: it may stand beside the statements of this language.
+_CUSTOM_MACRO: Final = re.compile(
+    r"#|(?<![A-Z_])(?:(?:IF|WHILE)\s*\[|(?:GOTO|DO|END)\s*[0-9]|[BD]PRNT\s*\[|POPEN|PCLOS)", re.IGNORECASE
 )
+_STRING: Final = re.compile('"[^"]*+"?')
+#: Addresses of functions: with a number before their = they are those of another spindle, and no axis.
+_FUNCTIONS: Final = "DFHMST"
 
 
 def read(block: str, machine: Machine, names: Names, read: Read) -> Statement:
@@ -22,12 +29,172 @@ def read(block: str, machine: Machine, names: Names, read: Read) -> Statement:
 
     machine: whose codes and axes it names. names: of variables and tools, as they are met. read: reads custom macro.
     """
-    if found := _TOOL.fullmatch(block):
-        rewriting = Rewriting()
-        rewriting.put(found[1], *found.span(1))
-        rewriting.put(f"T{names.tool(found[3])}", *found.span(2))
-        rewriting.put(found[4], *found.span(4))
-        return read(rewriting.characters)
-    written = block.strip()
-    start = block.find(written)
-    return Statement(Kind.NC, start, start + len(written), unread=(Unread(written, start, start + len(written), True),))
+    if ("#" in block or "[" in block or "=" not in block) and _CUSTOM_MACRO.search(_STRING.sub("", block)):
+        return read(block)
+    return _Reader(block, machine, names).read()
+
+
+class _Reader(SpokenBlock):
+    """Reads one block from its head to its end."""
+
+    def read(self) -> Statement:
+        """The statement of the block."""
+        self.head()
+        self.first = self.token
+        while self.token.kind != "end":
+            token = self.token
+            self.at += 1
+            if token.kind == "letter":
+                self.letter(token)
+            elif token.kind == "name":
+                self.name(token)
+            else:
+                self.leave_rest(token)
+        return self.statement()
+
+    def head(self) -> None:
+        """Block skip, sequence number and label."""
+        while True:
+            token, following = self.token, self.tokens[min(self.at + 1, len(self.tokens) - 1)]
+            if token.text == "/" and token.kind == "sign":
+                has_level = following.text.isdigit() and following.start == token.end
+                self.skips.append(Number(int(following.text[:9]) if has_level else 1, token.start, following.end))
+                self.at += 1 + has_level
+            elif token.text in ("N", ":") and following.text.isdigit() and not self.is_sign("=", 2):
+                value = int(following.text) if len(following.text) < 19 else 10**18
+                self.sequence_number = Number(value, token.start, following.end)
+                self.at += 2
+            elif token.kind == "name" and self.is_sign(":", 1):
+                self.at += 2
+            else:
+                return
+
+    # ---- an address of one letter ----
+
+    def letter(self, first: Token) -> None:
+        """A word, be it with a number or behind =, or a parameter that takes a value."""
+        token = self.token
+        if first.text == "R" and ((token.kind == "number" and self.is_sign("=", 1)) or self.is_sign("[")):
+            self.parameter(first)
+        elif token.kind == "number":
+            self.at += 1
+            if self.take_sign("="):
+                self.extended(first, token)
+            else:
+                self.number(first, token.text, token)
+        elif token.text in ("+", "-") and self.tokens[self.at + 1].kind == "number":
+            number = self.tokens[self.at + 1]
+            self.at += 2
+            self.number(first, token.text + number.text, number)
+        elif self.take_sign("="):
+            self.behind_equal(first.text, first)
+        else:
+            self.leave_rest(first)
+
+    def number(self, first: Token, number: str, last: Token) -> None:
+        """A word with a number."""
+        if first.text == "L" and not self.words and self.token.text in ("P", "") and not self.after:
+            call_by_name(self, f"L{number}", first)
+            return
+        self.add_number(first.text, number, first, last)
+        if f"{first.text}{number.lstrip('0')}" == self.machine.macro.other_language:
+            self.leave_unread(f"{self.machine.macro.other_language} (another language)", first)
+
+    def parameter(self, first: Token) -> None:
+        """R1=5, R[R2]=5."""
+        self.at -= 1
+        target = self.expression()
+        if target is not None and target.steps[-1].name == "#" and self.take_sign("="):
+            steps = target.steps[:-1]
+            self.assign(Expression(steps, target.start, target.end), first)
+        else:
+            self.leave_rest(first)
+
+    def extended(self, first: Token, number: Token) -> None:
+        """C2=90, M2=70, S3=2000: an axis of a name, or a function of another spindle; its = is passed over."""
+        name = first.text + number.text
+        native = self.machine.control.native_words.get(f"{name}=")
+        if native is not None:
+            self.add_word(native, first)
+        elif (effect := self.effect(f"{name}=")) is not None or first.text in _FUNCTIONS:
+            effect = effect or self.effect(f"{first.text}n=") or "path"
+            self.value()
+            self.leave_unread(f"{name}=", first, effect, number)
+        else:
+            self.add_word(name, first)
+
+    def behind_equal(self, address: str, first: Token) -> None:
+        """A word whose value follows; T may call a tool by its name."""
+        token = self.token
+        if address == "T" and token.kind == "string":
+            self.at += 1
+            number = float(self.names.tool(token.text))
+            step = Step("number", number, token.start, token.end)
+            value = Expression((step,), token.start, token.end)
+            self.words.append(Word("T", value, f"{number:.0f}", first.start, token.end))
+        elif (effect := self.effect(f"{address}=")) is not None:
+            self.value()
+            self.leave_unread(f"{address}=", first, effect)
+        else:
+            self.add_word(address, first)
+
+    # ---- a name ----
+
+    def name(self, first: Token) -> None:
+        """A keyword, a word that stands for a code, an assignment, a statement of the profile, or a call."""
+        native = self.machine.control.native_words
+        if first.text in KEYWORDS:
+            KEYWORDS[first.text](self, first)
+        elif first.text in native:
+            self.native(native[first.text], first)
+        elif self.takes_value():
+            self.assignment(first)
+        elif (effect := self.effect(first.text)) is not None:
+            self.arguments()
+            if effect == "words" or (effect == "moves" and self.token.kind == "name"):
+                self.at = len(self.tokens) - 1
+            self.leave_unread(first.text, first, effect)
+        else:
+            call_by_name(self, first.text, first)
+
+    def native(self, code: str, first: Token) -> None:
+        """A word that stands for a code; what stands in its parentheses may choose another set of data."""
+        given = self.arguments()
+        if code:
+            self.add_number(code[0], code[1:], first, first)
+        if given not in ("", "1"):
+            self.leave_unread(f"{first.text}({given})", first)
+
+    def takes_value(self) -> bool:
+        """Whether an = follows, or [ ] with = behind."""
+        if not self.is_sign("["):
+            return self.is_sign("=")
+        at = self.at
+        self.arguments()
+        found = self.is_sign("=")
+        self.at = at
+        return found
+
+    def assignment(self, first: Token) -> None:
+        """NAME=5: a word of several letters, an axis, a variable, or what the profile says of it."""
+        index = self.arguments()
+        self.at += 1
+        control, name = self.machine.control, first.text
+        written = f"{name}[{index}]" if index else name
+        native = control.native_words.get(f"{written}=")
+        effect = self.effect(f"{written}=") or self.effect(f"{name}=")
+        if native is not None:
+            self.add_word(native, first)
+        elif name in control.named_axes and index in ("", "1"):
+            self.add_word(name, first)
+        elif effect is not None:
+            self.value()
+            self.leave_unread(f"{written}=", first, effect)
+        elif index or name[0] == "$":
+            self.value()
+            self.leave_unread(f"{written}=", first, matters=name[0] == "$")
+        else:
+            if not self.names.is_declared(name):
+                self.leave_unread(f"{name}=", first, matters=False)
+                self.names.declare(name)
+            self.assign(self.variable(first), first)

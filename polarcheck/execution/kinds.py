@@ -50,6 +50,8 @@ FaultKind: TypeAlias = Literal[
     "return-target-not-found",  # 078
     "loop-without-end",  # 124
     "end-without-loop",  # 124, PS1124
+    "structure-without-end",  # IF without ENDIF, FOR without ENDFOR
+    "end-without-structure",
     "loops-crossed",  # 124
     "loop-inside-itself",  # 124
     "loop-levels",  # 124: loops nested too deep

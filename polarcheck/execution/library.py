@@ -27,7 +27,10 @@ _LARGEST = 50_000_000
 _MOST_LOOKED_FOR = 100
 _NAME = re.compile(r"[A-Za-z0-9+_.-]{1,64}")
 #: In one line, and nothing of it read again: a file of blank lines is no reason to wait.
-_OWN_NAME = re.compile(r"^[^\S\n]*+[O:][^\S\n]*+(\d{1,15}(?!\d)|<[^>\n]*+>)", re.MULTILINE | re.IGNORECASE | re.ASCII)
+_OWN_NAME = re.compile(
+    r"^[^\S\n]*+(?:[O:][^\S\n]*+(\d{1,15}(?!\d)|<[^>\n]*+>)|%(?:_N_)?(\w{1,32})_[MS]PF\s*$)",
+    re.MULTILINE | re.IGNORECASE | re.ASCII,
+)
 #: The line that begins a tape. Behind a head it would end the program.
 _TAPE_MARK = re.compile(r"[\s\0]*+(?:\$[^%\n]*+)?%[^\n]*+\n")
 #: A name that stands at the head as the call has it: OFACE.
@@ -79,7 +82,10 @@ class Library:
         if number is not None:
             wanted = re.compile(rf"O?0*{number}(?:\.[A-Za-z]{{1,4}})?", re.IGNORECASE)
         elif name is not None and _NAME.fullmatch(name):
-            wanted = re.compile(rf"{re.escape(name)}(?:\.[A-Za-z]{{1,4}})?", re.IGNORECASE)
+            wanted = re.compile(
+                rf"{re.escape(name)}(?:\.[A-Za-z]{{1,4}})?|_N_{re.escape(name)}_[MS]PF(?:\.[A-Za-z]{{1,4}})?",
+                re.IGNORECASE,
+            )
         else:
             return None
         for folder, paths in self._paths:
@@ -103,9 +109,12 @@ def _with_head(data: bytes, file: str, called: ProgramName) -> Source:
     source = read(data, file)
     text = source.text
     own = _OWN_NAME.search(text)
-    right = own is not None and (own[1].isdigit() and number is not None and int(own[1]) == number)
-    if right or (own and name is not None and own[1].strip("<>").upper() == name.upper()):
-        return source
+    if own is not None:
+        own_name = own[1] or own[2]
+        if own_name.isdigit() and number is not None and int(own_name) == number:
+            return source
+        if name is not None and own_name.strip("<>").upper() == name.upper():
+            return source
     if name is not None and _BARE_NAME.fullmatch(name) and re.search(rf"(?im)^[^\S\n]*+{name}[^\S\n]*+(?:\(|$)", text):
         return source
     head = f"O{number:04d}" if number is not None else f"O<{name}>"

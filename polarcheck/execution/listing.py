@@ -14,7 +14,8 @@ from polarcheck.execution.loops import Loops, find_loops
 from polarcheck.execution.macro import Variables, called_program
 from polarcheck.execution.names import Names
 from polarcheck.execution.programs import Program, ProgramName, block_text, find_programs, first_blocks, turns
-from polarcheck.execution.statement import Statement
+from polarcheck.execution.statement import Kind, Statement
+from polarcheck.execution.structures import Structures, find_structures
 from polarcheck.machines.machine import Machine
 from polarcheck.reading.joining import joined
 from polarcheck.reading.words import Text
@@ -46,6 +47,7 @@ class Listing:
         self.names = Names()
         self._statements: dict[int, Statement] = {}
         self._loops: dict[int, Loops] = {}
+        self._structures: dict[int, Structures] = {}
         self._calls: dict[int, dict[ProgramName, bool]] = {}
         self._nothing_known = Variables(self.macro)
         self._nothing_known.forget()
@@ -103,6 +105,22 @@ class Listing:
         if program.first not in self._loops:
             self._loops[program.first] = find_loops(self.macro_statements(program), self.macro.loop_levels)
         return self._loops[program.first]
+
+    def structures(self, block: int) -> Structures:
+        """The structures of the program in which a block stands."""
+        program = self.programs.around(block)
+        if program.first not in self._structures:
+            self._structures[program.first] = find_structures(self.macro_statements(program))
+        return self._structures[program.first]
+
+    def procedure(self, program: Program) -> Statement | None:
+        """The statement with which a program of a name begins, None where it has none."""
+        at = bisect.bisect_left(self.stops, program.first)
+        block = self.stops[at] if at < len(self.stops) else program.end
+        if block >= program.end or not self.text.blocks.is_macro[block]:
+            return None
+        statement = self.statement(block)
+        return statement if statement.kind is Kind.PROCEDURE else None
 
     def calls(self, file: int) -> tuple[ProgramName, ...]:
         """The programs that the calls of a file name literally, whether they are run or not; each once, in order."""

@@ -15,7 +15,7 @@ from typing import Final
 from polarcheck.execution.arithmetic import UNKNOWN, Arithmetic, Value, round_to
 from polarcheck.execution.expression import DEFAULT, Fault, evaluate
 from polarcheck.execution.kinds import FaultKind
-from polarcheck.execution.names import FIRST_VARIABLE
+from polarcheck.execution.names import FIRST_PARAMETER, FIRST_VARIABLE, PARAMETERS
 from polarcheck.execution.programs import ProgramName
 from polarcheck.execution.statement import Statement, Word
 from polarcheck.machines.macro_keys import Macro
@@ -79,7 +79,8 @@ class Variables:
         """The value of a variable that exists."""
         whole, kind = _whole(number), self.kind(number)
         if kind is VariableKind.LOCAL:
-            return self._levels[-1].values.get(whole, self._levels[-1].unassigned)
+            unassigned = UNKNOWN if whole >= FIRST_VARIABLE else self._levels[-1].unassigned
+            return self._levels[-1].values.get(whole, unassigned)
         if kind is VariableKind.VACANT:
             return None
         if kind is VariableKind.CLOCK:
@@ -122,7 +123,10 @@ def _whole(number: float) -> int:
 
 def _kind(number: int, macro: Macro) -> VariableKind:
     if macro.language != "custom-macro" and number >= FIRST_VARIABLE:
-        return VariableKind.COMMON
+        if number >= FIRST_PARAMETER - PARAMETERS:
+            is_there = 0 <= number - FIRST_PARAMETER < PARAMETERS
+            return VariableKind.RETAINED if is_there else VariableKind.NONE
+        return VariableKind.LOCAL if macro.language == "high-level" else VariableKind.COMMON
     ranges = (
         (VariableKind.READ_ONLY, macro.read_only_variables),
         (VariableKind.CLOCK, macro.clock_variables),

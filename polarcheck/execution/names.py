@@ -6,6 +6,10 @@ from typing import Final
 
 #: Variables that have a name stand above all that have a number.
 FIRST_VARIABLE: Final = 20_000_000
+#: The number of R0 among the variables: parameters that every program shares.
+FIRST_PARAMETER: Final = 30_000_000
+#: No control has more of them: R0 to R32534 at most, by machine data.
+PARAMETERS: Final = 100_000
 _FIRST_TOOL: Final = 2_000_000_000
 #: A longer name is none of a number of a tool.
 _DIGITS: Final = 9
@@ -15,12 +19,15 @@ class Names:
     """
     A number for each name, in the order in which they are met; names are told in capitals.
 
-    variables: numbers of variables of a name. tools: numbers of tools of a name, for T.
+    variables: numbers of variables of a name. tools: numbers of tools of a name, for T. declared: names of variables
+    that a program defines. effects: what statements of a name do to the path, as they were looked up.
     """
 
     def __init__(self) -> None:
         self.variables: dict[str, int] = {}
         self.tools: dict[str, int] = {}
+        self.declared: set[str] = set()
+        self.effects: dict[str, str | None] = {}
 
     def variable(self, name: str) -> int:
         """The number that stands for a variable."""
@@ -31,3 +38,12 @@ class Names:
         if name.isdecimal() and len(name) < _DIGITS and name[:1] != "0":
             return int(name)
         return self.tools.setdefault(name.upper(), _FIRST_TOOL + len(self.tools))
+
+    def declare(self, name: str) -> int:
+        """The number that stands for a variable that a program defines."""
+        self.declared.add(name.upper())
+        return self.variable(name)
+
+    def is_declared(self, name: str) -> bool:
+        """Whether a program defines a variable of this name."""
+        return name.upper() in self.declared

@@ -90,26 +90,24 @@ class Programs:
         """The programs that a call can mean: those of that name, before those of that number, in order."""
         return [program for key in called.keys for program in self._by_key.get(key, [])]
 
-    def jump(self, program: Program, number: int, block: int) -> int | None:
+    def jump(self, program: Program, number: int, block: int, search: Search = Search.ROUND) -> int | None:
         """
         The block of an N number: the first after the block, else the first from the head of the program.
 
         Source: B-62754EN/01, chapter 16 (the search runs forward, then from the head).
         """
-        targets = self.targets(program).get(number, [])
-        at = bisect.bisect_right(targets, block)
-        return targets[at] if at < len(targets) else targets[0] if targets else None
+        return _found(self.targets(program).get(number, []), block, search)
 
     def labelled(self, program: Program, label: str, block: int, search: Search) -> int | None:
         """The block of a label of a program, in capitals, from another block on; None where there is none."""
-        targets = self._labels.get(program.first, {}).get(label, [])
-        behind = bisect.bisect_right(targets, block)
-        ahead, back = targets[behind:], targets[:behind]
-        if search is Search.FORWARD:
-            return ahead[0] if ahead else None
-        if search is Search.BACKWARD:
-            return back[-1] if back else None
-        return next(iter(ahead or targets), None)
+        return _found(self._labels.get(self._first_of(program.first), {}).get(label, []), block, search)
+
+    @cached_property
+    def with_labels(self) -> frozenset[int]:
+        """The blocks with a label: jumps that are not taken may lead there."""
+        return frozenset(
+            block for of_program in self._labels.values() for found in of_program.values() for block in found
+        )
 
     @cached_property
     def _labels(self) -> dict[int, dict[str, list[int]]]:
@@ -130,9 +128,13 @@ class Programs:
         """The first block of the program in which a block stands."""
         return self._firsts[max(bisect.bisect_right(self._firsts, block) - 1, 0)]
 
+    def around(self, block: int) -> Program:
+        """The program in which a block stands."""
+        return self.programs[max(bisect.bisect_right(self._firsts, block) - 1, 0)]
+
     def targets(self, program: Program) -> dict[int, list[int]]:
         """The blocks of each N number of a program, in order."""
-        return self._targets.get(program.first, {})
+        return self._targets.get(self._first_of(program.first), {})
 
     @cached_property
     def _targets(self) -> dict[int, dict[int, list[int]]]:
@@ -154,10 +156,21 @@ class Programs:
         return targets
 
 
+def _found(targets: Sequence[int], block: int, search: Search) -> int | None:
+    """Which of some blocks, in order, a search from a block on comes to first; None where it comes to none."""
+    behind = bisect.bisect_right(targets, block)
+    ahead = targets[behind] if behind < len(targets) else None
+    if search is Search.FORWARD:
+        return ahead
+    if search is Search.BACKWARD:
+        return targets[behind - 1] if behind else None
+    return targets[0] if ahead is None and targets else ahead
+
+
 def read_text(source: Source, machine: Machine) -> Text:
     """The words of a source as this control reads them."""
     control = machine.control
-    found = translated(source, control.native_words)
+    found = translated(source, control.native_words, machine.macro.language)
     marks = control.channel_mark, control.wait_mark
     return read_words(found, control.line_comments, *marks, machine.macro.language)
 

@@ -13,7 +13,11 @@ Place: TypeAlias = tuple[int, int]
 
 
 class Kind(enum.Enum):
-    """What a block does. OUTPUT is DPRNT and its like; NC is a block of NC words, CALL one that calls or returns."""
+    """
+    What a block does. OUTPUT is DPRNT and its like; NC is a block of NC words, CALL one that calls or returns.
+    STRUCTURE is IF, ELSE, LOOP and their like; REPEAT runs again what stands between labels; PROCEDURE begins a program
+    of a name.
+    """
 
     ASSIGN = enum.auto()
     IF_GOTO = enum.auto()
@@ -25,6 +29,9 @@ class Kind(enum.Enum):
     CALL = enum.auto()
     OUTPUT = enum.auto()
     NC = enum.auto()
+    STRUCTURE = enum.auto()
+    REPEAT = enum.auto()
+    PROCEDURE = enum.auto()
 
 
 class Number(NamedTuple):
@@ -73,11 +80,27 @@ class Word:
 
 
 class Search(enum.Enum):
-    """Where a jump looks for its target: from the next N number or label on, then from the head of the program."""
+    """
+    Where a jump looks for its target: from the next N number or label on, then from the head of the program. IF_THERE
+    does so, too, and without a target goes on.
+    """
 
     ROUND = enum.auto()
     FORWARD = enum.auto()
     BACKWARD = enum.auto()
+    IF_THERE = enum.auto()
+
+
+class Parameter(NamedTuple):
+    """
+    What a call by name hands over, or a program takes.
+
+    variable: the number of the variable that takes it, 0 in a call. value: what is given, or what is taken where
+    nothing is; None where that is nothing.
+    """
+
+    variable: int
+    value: Expression | None
 
 
 class Unread(NamedTuple):
@@ -103,8 +126,10 @@ class Statement:
     target: the number of the variable to assign, None for a variable by name. jump: the N to go to. then: what IF ..
     THEN does. call: the code that makes the block a call, "" in others. fault: the first one; what could not be read
     is None or not among the words, and with "bracket-levels" nothing is lost. label: the name to go to, where it is no
-    number; search: where it is looked for. more: what the block says beside it, in order. unread: what is not
-    simulated. passed: the variables that a call sets for its program, which have no value behind its return.
+    number; search: where it is looked for. until: the label up to which REPEAT goes. structure: the keyword of a
+    STRUCTURE. parameters: what a call by name hands over, or a program takes; None for other calls. more: what the
+    block says beside it, in order. unread: what is not simulated. passed: the variables that a call sets for its
+    program, which have no value behind its return.
     """
 
     kind: Kind
@@ -123,6 +148,9 @@ class Statement:
     fault: Fault | None = None
     label: str = ""
     search: Search = Search.ROUND
+    until: str = ""
+    structure: str = ""
+    parameters: tuple[Parameter, ...] | None = None
     more: tuple[Statement, ...] = ()
     unread: tuple[Unread, ...] = ()
     passed: tuple[int, ...] = ()

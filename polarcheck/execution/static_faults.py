@@ -29,6 +29,10 @@ def add_static_faults(execution: Execution) -> None:
             _target_twice(execution, program, block, statement)
         for kind, block, number, other, levels in listing.loops(program).faults:
             execution.fault(kind, block, listing.statement(block), number=number, other=other, levels=levels)
+        for structure in listing.structures(program.first).faults:
+            place = listing.statement(structure.block)
+            names = {"keyword": structure.keyword, "missing": structure.missing}
+            execution.fault(structure.kind, structure.block, place, **names)
     if not execution.remarks and not execution.stopped:
         _never_run(execution)
 
@@ -61,7 +65,8 @@ def _never_run(execution: Execution) -> None:
             continue
         was_visited, previous = True, program.first
         for block in execution.rows.filled(program.first, program.end):
-            if not visited[block] and was_visited and _ends_flow(listing, execution, previous):
+            is_new = not visited[block] and was_visited and block not in listing.programs.with_labels
+            if is_new and _ends_flow(listing, execution, previous):
                 written = block_text(listing.text, block)
                 lead = len(written) - len(written.lstrip())
                 place = Fault("never-run", lead, max(len(written.rstrip()), lead + 1))

@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 
 import msgspec
 
-from polarcheck.machines.values import Address, AddressOrNone, Count, Plain, Positive, Ranges, Variable
+from polarcheck.machines.values import Address, AddressOrNone, Count, LanguageCode, Plain, Positive, Ranges, Variable
 
 #: The lists of codes among the keys.
 CODE_LISTS = (
@@ -25,6 +25,8 @@ class Macro(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
 
     language: of statements: custom-macro (#1), high-level (R1, X=R1, IF .. GOTOF NAME) or user-task (VC1, IF [..] NAME)
     named_words: words of several letters with = in such a language, by the address that each is read as; empty: none
+    other_language: code that begins the other language of a control that has two; empty where it has one
+    statements: statement of a high-level language (* for any rest) -> what is not followed: none, path, words, moves
     local_variables: ranges, first and last number, of local variables, of which each macro call has its own
     common_variables: ranges of common variables that are vacant at power-on
     retained_variables: ranges of common variables that outlive the power-off: not known until a program assigns them
@@ -52,10 +54,15 @@ class Macro(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     signed_angles: whether ATAN gives -180 to 180 and ASIN -90 to 90, else 0 to 360 and 270 to 90
     largest_number: a result above it overflows
     given: variable -> its value, as the job or the machine knows it
+
+    Of a statement, none: it moves nothing and changes no path. path: the path or the feed changes, and the positions
+    stay. moves: nobody knows where the axes stand after it. words: the same, and the words behind it are its own.
     """
 
     language: Literal["custom-macro", "high-level", "user-task"]
     named_words: dict[Plain, AddressOrNone] = {}
+    other_language: LanguageCode = ""
+    statements: dict[Plain, Literal["none", "path", "words", "moves"]] = {}
     local_variables: Ranges
     common_variables: Ranges
     retained_variables: Ranges

@@ -66,6 +66,9 @@ RotaryAddress: TypeAlias = Annotated[
         extra={EXPECTED: "A, B, C or H, or the name of an axis as C2"},
     ),
 ]
+LanguageCode: TypeAlias = Annotated[
+    str, msgspec.Meta(pattern="^(?:[GM][0-9]+)?$(?!\\n)", extra={EXPECTED: "a code such as G290, or none"})
+]
 Variable: TypeAlias = Annotated[int, msgspec.Meta(ge=1, extra={EXPECTED: "the number of a variable, 100 for #100"})]
 #: No control of a lathe has more axes in a path.
 MOST_AXES = 24

@@ -8,6 +8,7 @@ elsewhere begins a comment, and behind a name parentheses hold arguments.
 
 from __future__ import annotations
 
+import bisect
 import re
 from typing import NamedTuple
 
@@ -22,14 +23,18 @@ class _Signs(NamedTuple):
     How blocks of a language are told from blocks of words.
 
     alone: characters that no block of words has. has_arguments: parentheses behind a name or a sign hold arguments,
-    else they are comments everywhere. line_comment: begins a comment, as a pattern that matches it whole. has_names:
-    N and O take names; $ heads a file or goes on with the block of the line above.
+    else they are comments everywhere. line_comment: begins a comment, as a pattern that matches it whole. lines: what
+    makes a line one of the language though it has none of these, as a pattern: L100 P3 calls, G290 changes languages.
+    has_heads: programs begin with lines such as %_N_SHAFT_MPF. has_names: N and O take names; $ heads a file or goes on
+    with the block of the line above.
     """
 
     alone: bytes
     has_arguments: bool
     line_comment: bytes
-    has_names: bool
+    lines: bytes = b""
+    has_heads: bool = False
+    has_names: bool = False
 
 
 class Taken(NamedTuple):
@@ -37,19 +42,28 @@ class Taken(NamedTuple):
     What was taken out of a text.
 
     statements: the place of the first sign of each line with statements. labels: sequence names (NLAP1) at the heads of
-    blocks that are words otherwise. programs: the names of programs (OFACE) in blocks of their own. is_joined: lines go
-    on with the block of the line above.
+    blocks that are words otherwise. programs: the names of programs (OFACE) in blocks of their own. heads: those in
+    lines such as %_N_SHAFT_MPF, with a character on either side. is_joined: lines go on with the block of the line
+    above.
     """
 
     statements: Positions
     labels: Ranges
     programs: Ranges
+    heads: Ranges
     is_joined: bool
 
 
 _SIGNS = {
-    "high-level": _Signs(b'="[$', True, rb";[^\n]*+", False),
-    "user-task": _Signs(b"=[$", False, rb"(?!)", True),
+    "high-level": _Signs(
+        b'="[$',
+        True,
+        rb";[^\n]*+",
+        rb"^[ \t\0]*+(?:/[0-9]?[ \t]*+)?(?:[N:][ \t]*+[0-9]++[ \t]*+)?L[0-9]++[ \t]*+"
+        rb"(?:P[ \t]*+[0-9]++)?(?=[ \t\r\0]*+(?:;|$))|(?<![A-Z_\"])G0*29[01](?![0-9.])",
+        has_heads=True,
+    ),
+    "user-task": _Signs(b"=[$", False, rb"(?!)", has_names=True),
 }
 _NAME_CHARACTERS = np.isin(np.arange(256), list(b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz_"))
 #: A name has two letters at least; the letters O and I behind an address are digits that somebody mistyped.
@@ -65,24 +79,30 @@ _BEFORE_LABEL = re.compile(rb"[ \t\r\0]*+(?:/[ \t]*+\d?+[ \t\r\0]*+)?+")
 #: A parenthesis that belongs to what stands before it: a name, a sign; so much before it is looked at [characters].
 _BEFORE_ARGUMENTS = re.compile(rb"(?:[=+\-*/,<>]|[A-Z_$][A-Z_][A-Z0-9_$]*+)[ \t]*+\(\Z")
 _NEAR = 64
+_FLAGS = re.IGNORECASE | re.MULTILINE
+#: The line before a program of an archive: %_N_SHAFT_MPF. In front of its name stands _ or %.
+_HEAD = re.compile(rb"[ \t\0]*+%[ \t]*+(?:_N_)?([A-Z0-9_]{1,32}?)_(?:MPF|SPF)[ \t\r\0]*+\Z")
 
 
 def take_out(code: Bytes, language: str) -> Taken:
     """
     Find the lines with statements of a language, and its names; all of them but their comments is blanked.
 
-    Lines that begin with % hold none. A line is looked at only where two letters adjoin or such a sign stands.
+    Lines that begin with % or O<NAME> hold none. A line is looked at only where two letters adjoin or such a sign
+    stands.
     """
     signs = _SIGNS.get(language)
     none = np.zeros(0, np.int64)
     if signs is None or not len(code):
-        return Taken(none, Ranges(none, none), Ranges(none, none), False)
+        nothing = Ranges(none, none)
+        return Taken(none, nothing, nothing, nothing, False)
     is_joined = signs.has_names and _join(code)
     is_name = _NAME_CHARACTERS[code]
     alone = b":" + signs.alone
     suspects = np.isin(code, list(alone))
     suspects[1:] |= is_name[1:] & is_name[:-1]
-    at = np.flatnonzero(suspects)
+    told = [match.end() - 1 for match in re.finditer(signs.lines, code.tobytes(), _FLAGS)] if signs.lines else []
+    at = np.union1d(np.flatnonzero(suspects), np.array(told, np.int64))
     breaks = np.append(np.flatnonzero(code == LF), len(code))
     index = np.unique(np.searchsorted(breaks, at))
     starts = np.append(0, breaks + 1)[index]
@@ -90,14 +110,22 @@ def take_out(code: Bytes, language: str) -> Taken:
     found: list[int] = []
     labels: list[tuple[int, int]] = []
     programs: list[tuple[int, int]] = []
+    heads: list[tuple[int, int]] = []
     for start, end in zip(starts.tolist(), breaks[index].tolist(), strict=True):
         line = code[start:end].tobytes().upper()
+        if line.lstrip(_BLANK)[:2] == b"O<":
+            continue
         if line.lstrip(_BLANK)[:1] == b"%":
+            if signs.has_heads and (head := _HEAD.match(line)):
+                code[start:end] = _BLANK[0]
+                heads.append((start + head.start(1) - 1, start + head.end(1) + 1))
             continue
         if signs.has_names and (head := _HEAD_OF_FILE.fullmatch(line)):
             code[start : start + line.rindex(b"%")] = _BLANK[0]
             continue
         comments, first = _parts(line, pattern, signs)
+        if first < 0:
+            first = _told_in(line, start, told, comments)
         if first < 0:
             continue
         if signs.has_names:
@@ -118,7 +146,7 @@ def take_out(code: Bytes, language: str) -> Taken:
         for comment, after in [*comments, (len(line), len(line))]:
             code[start + begin : start + comment] = _BLANK[0]
             begin = after
-    return Taken(np.array(found, np.int64), _ranges(labels), _ranges(programs), is_joined)
+    return Taken(np.array(found, np.int64), _ranges(labels), _ranges(programs), _ranges(heads), is_joined)
 
 
 def _ranges(places: list[tuple[int, int]]) -> Ranges:
@@ -141,6 +169,16 @@ def _without(line: bytes, places: list[tuple[int, int]]) -> bytes:
     for start, end in places:
         bare[start:end] = b" " * (end - start)
     return bytes(bare)
+
+
+def _told_in(line: bytes, start: int, told: list[int], comments: list[tuple[int, int]]) -> int:
+    """The first of some places in a text that lies in a line and in none of its comments; -1 where none does."""
+    begins = [begin for begin, _ in comments]
+    for place in told[bisect.bisect_left(told, start) : bisect.bisect_left(told, start + len(line))]:
+        before = bisect.bisect_right(begins, place - start) - 1
+        if before < 0 or place - start >= comments[before][1]:
+            return place - start
+    return -1
 
 
 def _pattern(signs: _Signs) -> re.Pattern[bytes]:

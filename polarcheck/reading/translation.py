@@ -15,25 +15,29 @@ from polarcheck.reading.source import Positions, Source
 _BLANKS = re.compile(rb"[ \t]+")
 
 
-def translated(source: Source, native_words: Mapping[str, str]) -> Source:
+def translated(source: Source, native_words: Mapping[str, str], language: str = "custom-macro") -> Source:
     """
     The source with its own words (TRANSMIT) read as others (G12.1); what is shown stays as it is written.
 
     A blank in such a word stands for any number of them, or none: `G17 XC` is `G17XC`, too.
+    language: of its statements. What a high-level language writes with arguments, or with more than a number behind =,
+    is left to who reads its statements.
     """
     if not native_words:
         return source
-    pattern, put = _translation(tuple(native_words.items()))
+    pattern, put = _translation(tuple(native_words.items()), language == "high-level")
     code = pattern.sub(put, source.code.tobytes())
     return replace(source, code=np.frombuffer(code, np.uint8))
 
 
 @functools.cache
-def _translation(words: tuple[tuple[str, str], ...]) -> tuple[re.Pattern[bytes], Callable[[re.Match[bytes]], bytes]]:
+def _translation(
+    words: tuple[tuple[str, str], ...], has_more: bool
+) -> tuple[re.Pattern[bytes], Callable[[re.Match[bytes]], bytes]]:
     """Longer words are looked for first; a word ends where its last letter is not followed by another one."""
     own = {word.upper().encode("latin-1"): text.encode("latin-1") for word, text in words}
     meant = {_BLANKS.sub(b"", word): text for word, text in own.items()}
-    found = [_pattern(word) for word in sorted(own, key=len, reverse=True)]
+    found = [_pattern(word) + _end(word) * has_more for word in sorted(own, key=len, reverse=True)]
 
     def put(match: re.Match[bytes]) -> bytes:
         return _filled(meant[_BLANKS.sub(b"", match[0].upper())], len(match[0]))
@@ -51,8 +55,15 @@ def spans(source: Source, word: str) -> tuple[Positions, Positions]:
 
 def _pattern(word: bytes) -> bytes:
     begins = rb"(?<![A-Z_])" if word[:1].isalpha() else b""
-    ends = rb"(?![A-Z0-9_])" if word[-1:].isalpha() else b""
+    ends = rb"(?![A-Z0-9_])" if word[-1:].isalnum() else b""
     return begins + rb"[ \t]*".join(map(re.escape, _BLANKS.split(word))) + ends
+
+
+def _end(word: bytes) -> bytes:
+    """What must follow where a word may have arguments, or a calculated value."""
+    if word[-1:] == b"=":
+        return rb"(?=[ \t]*+[-+]?+[0-9.]++[ \t]*+(?:[A-Z;\r\n]|\Z))"
+    return rb"(?![ \t]*+[(=])"
 
 
 def _filled(text: bytes, length: int) -> bytes:

@@ -168,16 +168,17 @@ def read_words(
     told = table.strays[_is_told(table, code, is_macro, starts)]
     strays = np.sort(np.append(told, _before(around.strays, prose, starts)))
     outside = around.outside
+    names = united(united(around.names, taken.heads), taken.programs)
     if data[end_of_data + 1 :].translate(None, BLANKS + b"\n"):
         outside = Ranges(np.append(outside.start, end_of_data), np.append(outside.end, len(data)))
     return Text(
         source=source,
-        words=_with_names(words, around.names.start),
+        words=_with_names(words, names.start),
         blocks=blocks,
         comments=spans(around.comments),
         unclosed=around.unclosed,
         nested=around.nested,
-        names=spans(united(around.names, taken.programs)),
+        names=spans(names),
         strays=spans(Ranges(strays, strays + 1)),
         foreign=spans(foreign(stored)),
         prose=spans(prose),

@@ -7,6 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from polarcheck.arrays import Mask
+from polarcheck.machines.machine import Machine
 from polarcheck.reading.languages import Recognised, recognised
 from polarcheck.reading.words import Text
 
@@ -14,8 +15,8 @@ from polarcheck.reading.words import Text
 class Dialect:
     """What is known of the language of a file; one element, the file."""
 
-    def __init__(self, text: Text) -> None:
-        self.text = text
+    def __init__(self, text: Text, machine: Machine) -> None:
+        self.text, self.machine = text, machine
 
     @cached_property
     def recognised(self) -> Recognised | None:
@@ -33,6 +34,8 @@ class Dialect:
     def _looks_odd(self) -> bool:
         """Something other than macros stands in the file that sound programs seldom have: most need no closer look."""
         text = self.text
+        if self.machine.macro.language != "custom-macro" and text.blocks.is_macro.any():
+            return True  # words of another language may be those that were taken for its own
         behind_marks = text.source.code[np.minimum(text.tape_marks + 1, len(text.source.code) - 1)]
         return bool(
             np.any(text.words.is_unreadable)

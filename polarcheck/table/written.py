@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from polarcheck.arrays import Mask, Rows
 from polarcheck.execution.programs import block_text, find_programs
+from polarcheck.machines.code_lists import is_code
 from polarcheck.machines.codes import NO_CODE, code_numbers, code_set, modal_tables
 from polarcheck.machines.machine import Machine
 from polarcheck.reading.source import OTHER
@@ -187,7 +188,8 @@ class Written:
         machine = self.machine
         polar = machine.polar
         listed = (*machine.control.known_codes, *machine.control.motion_codes, *machine.listed_codes)
-        known = code_set((*listed, *polar.on, *polar.off, *polar.ended_by, *polar.allowed_codes))
+        native = [text for text in machine.control.native_words.values() if is_code(text)]
+        known = code_set((*listed, *native, *polar.on, *polar.off, *polar.ended_by, *polar.allowed_codes))
         wrong = ~known[self._g_codes] & (self.words.fault[self._g_words] == NumberFault.NONE)
         words = self._g_words[wrong]
         counts = np.zeros(len(self.words), np.int64)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from polarcheck.checking.macro_faults import Faults
 from polarcheck.checking.phrases.common import short
 from polarcheck.checking.places import Place
+from polarcheck.execution.names import FIRST_PARAMETER, PARAMETERS
 from polarcheck.execution.programs import block_text
 from polarcheck.machines.machine import Machine
 from polarcheck.reading.words import Text
@@ -42,7 +43,9 @@ def expression(faults: Faults, index: int) -> str:
 
 def variable(faults: Faults, text: Text, place: Place, index: int) -> str:
     """A variable as it is written, and its number where that is computed."""
-    written, named = shown(text, place), f"#{number(faults, index)}"
+    which = number(faults, index)
+    is_parameter = which >= FIRST_PARAMETER - PARAMETERS
+    written, named = shown(text, place), f"R{which - FIRST_PARAMETER}" if is_parameter else f"#{which}"
     return written if "".join(written.split()) == named else f"{written} ({named})"
 
 
@@ -64,4 +67,4 @@ def ranges(machine: Machine) -> str:
         for name, numbers in kinds.items()
         if numbers
     )
-    return ", ".join(parts)
+    return ", ".join((*(["parameters from R0 on"] if macro.language == "high-level" else []), *parts))

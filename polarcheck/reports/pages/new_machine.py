@@ -13,7 +13,7 @@ import msgspec
 from polarcheck.checking.rule import load_all
 from polarcheck.machines.machine import meanings
 from polarcheck.machines.parameters import Meaning
-from polarcheck.machines.profiles import Profile, load
+from polarcheck.machines.profiles import MERGED, Profile, load
 from polarcheck.reading.excerpt import visible
 
 #: What a shop may have to say of its lathe, by table, each key with an answer as it may look where nothing is known.
@@ -177,7 +177,9 @@ def _in_doubt(profile: Profile, group: str, told: set[str]) -> Iterator[str]:
             if origin.source != said:
                 yield from _prose(f"in doubt: {origin.source}")
             said = origin.source
-            yield from _answer(key, value, meaning.get(key, ""))
+            # Of a table that adds to what is inherited, a line shows how it is written.
+            shown = dict(list(value.items())[:1]) if f"{group}.{key}" in MERGED else value
+            yield from _answer(key, shown, meaning.get(key, ""))
 
 
 def _answer(key: str, value: Any, meaning: str) -> Iterator[str]:

@@ -1,0 +1,13 @@
+O0004
+G17 G90 G94 G40 G97
+T0101
+R1=1
+G0 X120. C0 Z5.
+G12.1
+G1 X40. F200
+C10.
+IF R1==1           ; (expect: loop-unbalanced)
+X60.
+G13.1
+G0 Z100.
+M30
