@@ -155,7 +155,9 @@ def written(
         )
 
     start, here = complex(HALF + 30, 0), complex(HALF, 0)
-    lines = [hand.head, f"G0 X{number(hand.outside * start.real / unit)} C{number(entry)} Z{number(5 / unit)}", hand.on]
+    lines = [hand.head, f"G0 X{number(hand.outside * start.real / unit)} C{number(entry)} Z{number(5 / unit)}"]
+    # Where the block that begins the mode says in which direction of C its X axis points, it says the same.
+    lines.append(hand.on.replace("C0", f"C{number(entry)}"))
     lines += ["G91"] if by_g91 else []
     lines.append(f"{block(1, start, here, f'{side} ')} F{number(part.feed / unit)}")
     for kind, end in part.blocks():

@@ -240,9 +240,10 @@ class Positions(VirtualAxis):
             return factor
         radius = self.codes(*control.x_radius_words)
         diameter = self.codes(*control.x_diameter_words, *control.x_absolute_diameter_words)
-        if set(self.machine.polar.off) & set(control.x_diameter_words):
-            diameter |= self.mask_of(self.sections.leave)  # be it that the code is missing there
         switched = radius | diameter | self.starts
+        if set(self.machine.polar.off) & set(control.x_diameter_words):
+            # The mode has an X of its own, up to where it was meant to end.
+            switched |= self.enters | self.mask_of(self.sections.leave)
         chosen = fill_down(np.where(radius, 1.0, np.where(diameter, 0.5, np.nan)), switched, np.nan)
         return np.asarray(np.where(np.isnan(chosen), factor, chosen), np.float64)
 
