@@ -1,7 +1,7 @@
 """
 Values in user tasks, read as the expressions of custom macro: VC1*2+DIA, MOD[V1,2], [VC1 EQ 1] AND [LX GT 0].
 
-Sources: OSP-P200L programming manual 5238-E; public notes on it and on the OSP-P300L (source 71138944758): V1, local
+Sources: public notes on the manuals of OSP-P200L, 5238-E, and OSP-P300L (source 71138944758): V1, local
 variables by name, VTOFX[5]; the operators and functions from help.icam.com, Okuma pre-processor.
 """
 

@@ -2,7 +2,7 @@
 Statements of user tasks: VC1=5, X=VC1, CALL O1234 DIA=20, IF [VC1 EQ 1] NEND.
 
 Each part of a block is read as what custom macro writes for it: an assignment, words, and one statement of the flow.
-Sources: OSP-P200L programming manual 5238-E; public notes on it and on the OSP-P300L (source 71138944758): IF and GOTO
+Sources: public notes on the manuals of OSP-P200L, 5238-E, and OSP-P300L (source 71138944758): IF and GOTO
 with a sequence name or number, CALL with variables, RTS, MODIN; VC1 from the OSP-E100M.
 """
 

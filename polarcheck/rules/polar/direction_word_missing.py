@@ -17,7 +17,7 @@ def direction_word_missing(trace: Trace, machine: Machine) -> Mask:
     Without it the control takes an angle that the program does not tell, or stops, and the contour may lie turned on
     the part. Write G137 C0 where X is to point where it did. Nothing is said where the machine needs no such word.
 
-    Source: post of a user for the OSP-P300, which writes C0 at each G137; OSP-P300L, description of G137.
+    Source: public post for the OSP-P300, which writes C0 at each G137; public notes on the manual of the OSP-P300L.
 
     Bad, machine okuma-osp:
 
