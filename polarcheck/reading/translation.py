@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 
 import numpy as np
 from msgspec.structs import replace
@@ -42,7 +42,13 @@ def _translation(
     def put(match: re.Match[bytes]) -> bytes:
         return _filled(meant[_BLANKS.sub(b"", match[0].upper())], len(match[0]))
 
-    return re.compile(b"|".join(found), re.IGNORECASE), put
+    return re.compile(_beginning(meant) + b"(?:" + b"|".join(found) + b")", re.IGNORECASE), put
+
+
+def _beginning(words: Collection[bytes]) -> bytes:
+    """What the first two characters must be: nearly every place of a program is passed over by that alone."""
+    first, second = (b"".join({re.escape(word[at : at + 1]) for word in words}) for at in (0, 1))
+    return b"(?=[" + first + b"][" + second + b"])" if all(len(word) > 1 for word in words) else b""
 
 
 def spans(source: Source, word: str) -> tuple[Positions, Positions]:
