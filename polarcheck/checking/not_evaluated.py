@@ -69,7 +69,7 @@ def unexecuted(tables: Tables) -> Iterator[NotEvaluated]:
         *names_not_followed(trace),
         *on_sub_spindle(trace),
         offsets_not_known(trace),
-        *frames_not_simulated(trace),
+        *frames_not_simulated(trace, tables),
         *not_simulated(tables["infeed"]),
         not_understood(trace, tables["other_mode"]),
         on_cylinder(trace),
@@ -80,7 +80,7 @@ def unexecuted(tables: Tables) -> Iterator[NotEvaluated]:
             yield NotEvaluated(rule="all", reason=reason, blocks=count)
 
 
-def frames_not_simulated(trace: Trace) -> Iterator[tuple[str, int]]:
+def frames_not_simulated(trace: Trace, tables: Tables) -> Iterator[tuple[str, int]]:
     """The blocks that begin a frame which is not simulated, where the mode uses it, or an allowance changes in it."""
     frames = trace.frames
     if frames is not None:
@@ -90,6 +90,10 @@ def frames_not_simulated(trace: Trace) -> Iterator[tuple[str, int]]:
             first = int(begins[-1]) + 1 if len(begins) else 0
             what = f"{block_and_line(trace, first)} is not simulated"
             yield f"{what}: where the tool goes in that frame is not known", int(np.count_nonzero(in_force))
+    selects = tables["mode_words"].selects_other_work_offset
+    if selects.any():
+        what = f"{block_and_line(trace, int(np.flatnonzero(selects)[0]))} selects another work offset in the mode"
+        yield f"{what}: it is taken to lie where the one before did", int(np.count_nonzero(selects))
     changed = np.flatnonzero(trace.changes_allowance_in_offset_mode)
     if len(changed):
         what = f"{block_and_line(trace, int(changed[0]))} changes what is added to R in offset mode"

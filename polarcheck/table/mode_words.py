@@ -107,13 +107,17 @@ class ModeWords:
         shifts |= self.listed("coordinate_preset")
         shifts |= sets & self.in_rows(trace.has(*trace.machine.axis_words, *trace.machine.control.named_axes))
         shifts |= self.listed("data_input") & self.in_rows(is_work_offset)
-        # Where work offsets may be selected in the mode, one that is in force already moves nothing.
+        shifts &= self.not_allowed
+        return shifts | (sets & self.not_allowed & self.in_rows(self.rows(shifts)))
+
+    @cached_property
+    def selects_other_work_offset(self) -> Mask:
+        """Per row: selects another work offset than the one in force, in the mode, where the profile allows that."""
+        trace = self.trace
         first = next(iter(numbers(trace.machine.codes("work_offset"))), 0) // 10
         offset = np.where(trace.state("work_offset") == 0, first, trace.state("work_offset"))
         others = trace.in_polar & (offset != before(offset, trace.starts, first))
-        others = self.listed("work_offset") & self.in_rows(others)
-        shifts &= self.not_allowed | others
-        return shifts | (sets & self.not_allowed & self.in_rows(self.rows(shifts)))
+        return np.asarray(others & self.rows(self.listed("work_offset") & ~self.not_allowed))
 
     @cached_property
     def changes_tool_offset(self) -> Mask:

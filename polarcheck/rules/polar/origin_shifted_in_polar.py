@@ -65,4 +65,4 @@ def origin_shifted_in_polar(mode_words: ModeWords, trace: Trace, machine: Machin
         G55
     """
     assigns_one = trace.in_polar & trace.assigns(machine.macro.work_offset_variables)
-    return mode_words.rows(mode_words.shifts_origin) | assigns_one
+    return mode_words.rows(mode_words.not_allowed & mode_words.shifts_origin) | assigns_one
