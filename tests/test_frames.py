@@ -248,3 +248,41 @@ def test_a_negative_radius_is_the_longer_arc() -> None:
         assert np.allclose(trace.center[trace.is_arc], center)
     report = report_of(face(body.format("-")), MACHINE, changes={"limits": {"c_feed": 1e6}})
     assert said(report) == []
+
+
+#: After the example of Job Planning to TRANSMIT: a square roughed and finished, shifted and turned.
+JOB_PLANNING = """\
+N10 T1 D1 G54 G17 G90 F500 G94
+N20 G0 X20 Z10 SPOS=45
+N30 TRANSMIT
+N40 ROT RPL=-45
+N50 ATRANS X-2 Y10
+N60 G1 X10 Y-10 G41 OFFN=1
+N70 X-10
+N80 Y10
+N90 X10
+N100 Y-10
+N110 G0 Z20 G40 OFFN=0
+N120 T2 D1 X15 Y-15
+N130 Z10 G41
+N140 G1 X10 Y-10
+N150 X-10
+N160 Y10
+N170 X10
+N180 Y-10
+N190 Z20 G40
+N200 TRANS
+N210 TRAFOOF
+N220 G0 X20 Z10 SPOS=45
+N230 M30
+"""
+
+
+@pytest.mark.parametrize("offsets", [(), ("1:radius=2", "2:radius=2"), ("1:radius=1.5", "2:radius=1")])
+def test_the_example_of_a_shop_has_no_fault(offsets: tuple[str, ...]) -> None:
+    """Without DIAMON and DIAMOF its X20 is what the machine data say: here 20 from the center, as in the mode."""
+    report = report_of(JOB_PLANNING, MACHINE, *offsets)
+    assert not [one for one in report.findings if one.severity == "error"]
+    assert report.sections == 1
+    distances = [abs(point) for point in ends(JOB_PLANNING)]
+    assert np.allclose(distances[:5], np.abs([8, -12 + 0j, -12 + 20j, 8 + 20j, 8 + 0j]))

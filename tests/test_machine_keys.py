@@ -184,6 +184,7 @@ USES = {
     "control.x_radius_words": Use(["G7"], before("G7", "X50.")),
     "control.x_diameter_words": Use(["G8"], before("G8", "X50."), also={"control": {"x": "radius"}}),
     "control.x_absolute_diameter_words": Use(["G8"], before("G8", "X50."), also={"control": {"x": "radius"}}),
+    "control.x_without_words": Use("radius", FLAT, also={"control": {"x_radius_words": ["G7"]}}),
     "g_codes.rapid": Use(["G0", "G150"], inside("G150 X50.")),
     "g_codes.line": Use(["G1", "G150"], FLAT.replace("G1 ", "G150 ")),
     "g_codes.arc_clockwise": Use(["G2", "G150"], ARC.replace("G3", "G150").format("R15.")),

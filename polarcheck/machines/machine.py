@@ -68,6 +68,7 @@ class Control(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     x_radius_words: what makes X a radius from then on: a code, a code with a word (G10.9 X0), a native word (DIAMOF)
     x_diameter_words: what makes X a diameter from then on
     x_absolute_diameter_words: what makes X a diameter from then on where it is a coordinate, a radius where a distance
+    x_without_words: diameter or radius: what X words are outside the mode of a program with none of them; empty: as x
     """
 
     g_code_system: Literal["A", "B", "C"]
@@ -93,6 +94,7 @@ class Control(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     x_radius_words: list[SwitchWord] = []
     x_diameter_words: list[SwitchWord] = []
     x_absolute_diameter_words: list[SwitchWord] = []
+    x_without_words: Literal["", "diameter", "radius"] = ""
 
     def __post_init__(self) -> None:
         for word, text in self.native_words.items():

@@ -53,6 +53,16 @@ class LinearAxis(Lengths):
         return self.switches_off | self.codes(*mode.ended_by) if mode.ended_by else self.switches_off
 
     @cached_property
+    def incremental(self) -> Mask:
+        """G91 in systems B and C."""
+        return np.asarray(self.state("distance") == Distance.INCREMENTAL)
+
+    def is_step(self, address: str) -> Mask:
+        """Whether the word of an address is a distance, by G91 or as the word itself says: X=IC(10)."""
+        own = self.distance(address)
+        return self.incremental if own is None else np.where(own, own == Distance.INCREMENTAL, self.incremental)
+
+    @cached_property
     def c_direction(self) -> Points:
         """
         Where the tool stands on the polar plane in the row of a switch, X being positive, as a number of length 1.
@@ -63,7 +73,7 @@ class LinearAxis(Lengths):
             return np.ones(len(self), np.complex128)
         axis, words = self.machine.polar.rotary_address, self.machine.polar.rotary_words
         referenced = self.listed("c_axis_reference") & self.has(*words)
-        positioned = self.has(axis) & self.uses_axes & (self.state("distance") == Distance.ABSOLUTE)
+        positioned = self.has(axis) & self.uses_axes & ~self.is_step(axis)
         angle = np.where(referenced, 0.0, np.where(positioned, self.angle_of(axis), np.nan))
         angle = fill_down(angle, self.has(*words) | self.ends_mode | self.run.unknown | self.starts, np.nan)
         angle = np.where(self.linear_axis == _X, np.nan_to_num(angle), 0.0)

@@ -13,7 +13,7 @@ import numpy as np
 from polarcheck.arrays import Floats, Mask, Points, Rows, States
 from polarcheck.machines.axes import INCREMENTS
 from polarcheck.machines.code_lists import numbers
-from polarcheck.machines.modal import Distance, Motion
+from polarcheck.machines.modal import Motion
 from polarcheck.table.filling import before, fill_down, happened, positions
 from polarcheck.table.frames import Frames, Way, along, find_frames, in_frame
 from polarcheck.table.sections import Marks, Sections, find_sections, section_column
@@ -148,16 +148,6 @@ class Positions(VirtualAxis):
         written = self.sets("units") & ~refused
         return fill_down(assumed, written | self.starts, assumed[0])
 
-    @cached_property
-    def incremental(self) -> Mask:
-        """G91 in systems B and C."""
-        return np.asarray(self.state("distance") == Distance.INCREMENTAL)
-
-    def is_step(self, address: str) -> Mask:
-        """Whether the word of an address is a distance, by G91 or as the word itself says: X=IC(10)."""
-        own = self.distance(address)
-        return self.incremental if own is None else np.where(own, own == Distance.INCREMENTAL, self.incremental)
-
     def _programmed(
         self, address: str, increment: str, factor: Floats | float, where: Mask, of_step: Floats | None = None
     ) -> tuple[Floats, Floats]:
@@ -240,6 +230,9 @@ class Positions(VirtualAxis):
             return factor
         radius = self.codes(*control.x_radius_words)
         diameter = self.codes(*control.x_diameter_words, *control.x_absolute_diameter_words)
+        if control.x_without_words:
+            has_none = ~self.anywhere_in_program(radius | diameter) & (self.section < 0)
+            factor = np.where(has_none, _FACTOR[control.x_without_words], factor)
         switched = radius | diameter | self.starts
         if set(self.machine.polar.off) & set(control.x_diameter_words):
             # The mode has an X of its own, up to where it was meant to end.
