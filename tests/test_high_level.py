@@ -265,6 +265,12 @@ def test_programs_are_called_by_name(call: str) -> None:
     assert said(report_of(program(whole), OWN)) == []
 
 
+@pytest.mark.parametrize("head", ["%_N_TASCHE_SPF", "%TASCHE_SPF", "% _N_TASCHE_SPF"])
+def test_a_program_has_the_name_at_its_head(head: str) -> None:
+    report = report_of(program(f"%_N_MAIN_MPF / TASCHE / M30 / {head} / G0 X=1/0 / M17"), OWN)
+    assert [(finding.rule, finding.program) for finding in report.findings] == [("arithmetic-error", "TASCHE")]
+
+
 def test_programs_are_called_by_l_and_have_variables_of_their_own() -> None:
     whole = "DEF REAL AA=5 / L100 P2 / G0 X=AA / M30 / %_N_L100_SPF / DEF REAL AA=7 / R1=AA / G0 X=R1 / RET"
     assert executed(whole) == ["G0 X7", "G0 X7", "G0 X5", "M30"]

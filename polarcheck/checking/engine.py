@@ -16,6 +16,7 @@ from polarcheck.checking.places import PLACES, Place
 from polarcheck.checking.rule import Hits, Rule
 from polarcheck.checking.tables import OF_CAUSE, Tables
 from polarcheck.errors import TooHardError
+from polarcheck.execution.programs import name_at_head
 from polarcheck.execution.run import begins_program
 from polarcheck.machines.codes import code_numbers, code_set
 from polarcheck.reading.excerpt import shortened
@@ -259,7 +260,7 @@ def program_heads(trace: Trace) -> list[tuple[int, str]]:
         if int(block) in bare or text.source.excerpt(int(start), int(start) + 1) != "<":
             heads.append((block, start, end))
     return [
-        (int(block), shortened(places.squeezed(text.source.excerpt(int(start), int(end))), _NAME_LENGTH))
+        (int(block), shortened(places.squeezed(name_at_head(text.source.excerpt(int(start), int(end)))), _NAME_LENGTH))
         for block, start, end in sorted(heads)
     ]
 

@@ -186,8 +186,7 @@ def find_programs(text: Text) -> Programs:
     has_words = set(words.block[np.isin(words.block, text.names.block) & (words.address != ord("O"))].tolist())
     for start, end, block in zip(text.names.start, text.names.end, text.names.block, strict=True):
         if int(block) not in has_words and int(block) not in heads and not text.blocks.is_macro[block]:
-            written = text.source.excerpt(int(start), int(end))
-            heads[int(block)] = (None, written[1:-1].strip() if written.startswith("<") else written)
+            heads[int(block)] = (None, name_at_head(text.source.excerpt(int(start), int(end))).strip("<>").strip())
     filled = np.concatenate((words.block, np.flatnonzero(text.blocks.is_macro)))
     programs: list[Program] = []
     for file, (begin, limit) in enumerate(itertools.pairwise([*first_blocks(text), len(text.blocks)])):
@@ -198,6 +197,11 @@ def find_programs(text: Text) -> Programs:
         for first, end in itertools.pairwise([*firsts, limit]):
             programs.append(Program(*heads[first], first, end, True, file))
     return Programs(text, programs)
+
+
+def name_at_head(written: str) -> str:
+    """A name as a call writes it: of %NAME_MPF and %_N_NAME_MPF, found with a character on either side, NAME."""
+    return written[1:-1] if written[:1] in ("_", "%") else written
 
 
 def first_blocks(text: Text) -> list[int]:
