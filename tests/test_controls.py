@@ -554,7 +554,7 @@ def test_feed_per_revolution_in_the_mode_is_a_note_where_the_documents_allow_it(
     assert [(line, severity) for line, severity, _ in told] == [(4, "note")]
 
 
-@pytest.mark.parametrize("plane", ["G17 XC", "G17XC", "G17 UH", "G91 G17 XU\nG90"])
+@pytest.mark.parametrize("plane", ["G17 XC", "G17XC", "G17 UH", "G17 U H", "G17 X C", "G91 G17 XU\nG90"])
 def test_a_mazak_selects_the_plane_with_its_axes(plane: str) -> None:
     program = f"O1\nG94 G0 X50. Z2. C0\n{plane}\nG12.1\nG1 X40. F200\nG13.1\nM30\n"
     assert not {"bad-number", "plane-wrong-at-entry"} & {
