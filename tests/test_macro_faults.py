@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
 import pytest
 from programs import report_of, said, tables_of
 
@@ -84,12 +85,38 @@ def test_the_table_has_all_kinds_and_only_rules_that_there_are() -> None:
 
 
 @pytest.mark.parametrize("kind", UNREPORTED)
-def test_what_other_dialects_write_is_found_and_not_reported(kind: str) -> None:
+def test_what_other_dialects_write_is_found_and_is_no_fault(kind: str) -> None:
     program = f"O1\nG0 X50.\n{UNREPORTED[kind]}\nM30\n"
     assert not report_of(program, only=["macro"]).findings
     faults: Faults = tables_of(program)["faults"]
     assert set(faults.kind) == {kind}
     assert set(faults.rule) == {""}
+
+
+@pytest.mark.parametrize(
+    ("machine", "block", "name"),
+    [
+        ("fanuc-30i", "G1 X=60.", "X=60."),
+        ("fanuc-30i", "G1 X=", "X="),
+        ("fanuc-30i", "X=C", "X=C"),
+        ("fanuc-30i", "G1 X60. CR=10.", "CR=10."),
+        ("fanuc-30i", "G1 X60. Z#1 Y--5.", "Y--5."),
+        ("citizen", "G1 X60. E=S", "E=S"),
+        ("mazak-quick-turn", "G1 X = 60.", "X=60."),
+    ],
+)
+def test_a_word_of_which_nobody_knows_what_the_control_makes_is_not_evaluated_by_name(
+    machine: str, block: str, name: str
+) -> None:
+    report = report_of(f"O1\n#1=0\nG98 G0 X50.\n{block} F100\nM30\n", machine, only=["macro"])
+    assert [(told.reason, told.matters) for told in report.not_evaluated] == [(f"{name} is not simulated", True)]
+    assert report.verdict == "unverified"
+
+
+def test_nothing_is_judged_by_an_axis_whose_word_was_lost() -> None:
+    program = "G98 G40\nT0101\nG0 X120. C0 Z5.\nG12.1\nG1 X=40. F200\nC10.\nX120.\nG13.1\nM30\n"
+    path = tables_of(program, "fanuc-30i", "1:radius=5")["trace"].end
+    assert np.isnan(path[4:6]).all()
 
 
 @pytest.mark.parametrize("kind", sorted(FAULTS))

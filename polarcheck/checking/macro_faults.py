@@ -31,7 +31,8 @@ RULES: Final[Mapping[FaultKind, str]] = {
     "missing-comma": "macro-syntax",
     "if-format": "macro-syntax",
     "while-format": "macro-syntax",
-    # Words of other dialects look so (E=C, CR=10), of which it is not known what the control makes; nothing is said.
+    # Words of other dialects look so (E=C, CR=10), of which it is not known what the control makes: the first is told
+    # as not evaluated, by name.
     "word-format": "",
     "stray-character": "",
     "too-long": "macro-syntax",

@@ -17,8 +17,9 @@ from typing import Final
 
 from polarcheck.execution.expression import NUMBER, Characters, Expression, Fault, Step, read_expression
 from polarcheck.execution.kinds import FaultKind
-from polarcheck.execution.statement import Kind, Number, Place, Statement, Word
+from polarcheck.execution.statement import Kind, Number, Place, Statement, Unread, Word
 from polarcheck.machines.axes import AXIS_LETTERS
+from polarcheck.reading.excerpt import shortened
 
 _OUTPUTS: Final = ("BPRNT", "DPRNT", "POPEN", "PCLOS", "SETVN")
 _SHORT: Final = {"WH": "WHILE", "GO": "GOTO", "EN": "END", "TH": "THEN"} | {name[:2]: name for name in _OUTPUTS[:4]}
@@ -34,6 +35,10 @@ _NAMED: Final = re.compile(r"([A-FH-MP-Z][0-9]{1,2})=")
 #: What a number or an expression begins with.
 _VALUE: Final = re.compile(r"[-+]*+[.0-9#\[]")
 _NO_VALUE: Final = re.compile("[-+.0-9]*")
+#: What a word that gives no number is called by: all its letters, and behind = a number or one letter, as in E=C.
+_LOST: Final = re.compile(r",?[A-Z:]+(?:[0-9]{0,2}=(?:[A-Z](?![-+.0-9#\[=])|[-+.0-9]*)|[-+.0-9]*)")
+#: Characters of its name that are shown.
+_SHOWN: Final = 24
 _JOINS: Final = re.compile("AN|OR|XO")
 # After X#1: X#1+#2 lacks its brackets. X#1/2 does too, but in X#1/2Y5. the / skips the rest.
 _BEYOND: Final = re.compile(r"[-+*]|/[0-9]*+(?:$|[#\[])|AND|OR|XOR|MOD")
@@ -60,6 +65,7 @@ class _Reader:
         self.calls, self.loops, self.levels, self.size = calls, loops, levels, size
         self.names, self.has_equal = sorted(names, key=len, reverse=True), "=" in self.text
         self.skips: list[Number] = []
+        self.lost: list[Unread] = []
         self.fault: Fault | None = None
 
     def blame(self, fault: Fault | None) -> None:
@@ -120,6 +126,7 @@ class _Reader:
             skips=tuple(self.skips),
             words=(*head, *statement.words),
             fault=self.fault,
+            unread=tuple(self.lost),
         )
 
     def statement(self) -> Statement:
@@ -274,7 +281,18 @@ class _Reader:
         found = _NO_VALUE.match(self.text, begin)
         self.at = found.end() if found else begin
         self.wrong("word-format", start, self.at)
+        self.lose(start, address)
         return []
+
+    def lose(self, start: int, address: str) -> None:
+        """Keep the name of a word that gives no number: what the control makes of it is not known."""
+        place = self.characters.span(start, self.at)
+        if self.lost and place[0] < self.lost[-1].end:
+            return
+        found = _LOST.match(self.text, start)
+        shown = found[0] if found else address
+        end = self.characters.span(start, start + len(shown))[1]
+        self.lost.append(Unread(shortened(shown, _SHOWN), place[0], end, address in AXIS_LETTERS))
 
     def axis_name(self) -> str:
         """The name of an axis with its = that stands here; "" where there is none, or where it is the end of a word."""
@@ -289,6 +307,7 @@ class _Reader:
         self.at = begin = start + len(name) + 1
         if self.at >= len(self.text):
             self.wrong("word-format", start, self.at)
+            self.lose(start, name[0])
             return []
         if name[0] not in AXIS_LETTERS and not _VALUE.match(self.text, begin):
             # A word of another language, as R1=R2*2: it is told by its name, and nothing here is wrong.
