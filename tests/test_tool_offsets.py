@@ -188,7 +188,7 @@ def test_what_the_program_sets_takes_the_place_of_the_job(
         # G10 is something else, or says nothing without L.
         ("G10 P1 R4.\nT0101", "haas-lathe", (3, "command line")),
         ("G10 P1 R4.\nT0101", "okuma-osp", (3, "command line")),
-        ("G10 P1 R4.\nT0101", "siemens-transmit", (3, "command line")),
+        ("G10 P1 R4.\nT1 D1", "siemens-transmit", (3, "command line")),
     ],
 )
 def test_the_radius_on_other_controls(blocks: str, machine: str, expected: tuple[float, str]) -> None:
