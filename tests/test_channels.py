@@ -339,12 +339,19 @@ def test_marks_behind_the_end_of_the_file_are_none() -> None:
     assert channels(source, "$") == [source]
 
 
-@pytest.mark.parametrize("machine", ["haas-lathe", "okuma-osp", "gsk-988", "lsis", "siemens-iso", "siemens-transmit"])
+@pytest.mark.parametrize("machine", ["haas-lathe", "gsk-988", "lsis"])
 def test_a_control_without_channels_reads_them_as_before(machine: str) -> None:
     report = report_of("O1\n$1\nG0 X60.\nM30\n$2\nG0 X60.\nM30\n", machine)
     assert report.findings
     assert all(found.channel is msgspec.UNSET for found in report.findings)
     assert {line for line, rule in said(report) if rule in ("stray-character", "bad-number")} >= {2}
+
+
+@pytest.mark.parametrize("machine", ["okuma-osp", "siemens-iso", "siemens-transmit"])
+def test_where_the_language_has_the_mark_it_parts_no_channels(machine: str) -> None:
+    report = report_of("O1\nG0 X60.\nX=$1\nM30\n", machine)
+    assert report.findings or report.not_evaluated
+    assert all(found.channel is msgspec.UNSET for found in (*report.findings, *report.not_evaluated))
 
 
 def test_remarks_and_comments_stand_in_the_order_of_the_file() -> None:

@@ -25,6 +25,7 @@ from polarcheck.checking import batch
 from polarcheck.checking.rule import load_all
 from polarcheck.commands import main
 from polarcheck.machines import profiles
+from polarcheck.machines.machine import Machine
 from polarcheck.machines.profiles import names
 from polarcheck.reports.pages import schema
 
@@ -739,12 +740,17 @@ def test_machines_lists_all_of_them() -> None:
     assert any(line.endswith("< fanuc") for line in lines)
 
 
+#: Of a machine: what `polarcheck machines` shows as comments.
+_LEFT_OUT = ("known_parameters", "notes")
+
+
 @pytest.mark.parametrize("name", names())
 def test_a_profile_is_shown_as_a_profile_that_says_the_same(name: str) -> None:
     shown = call("machines", name).stdout
     Path("copy.toml").write_text(shown, "utf-8")
     said, meant = (
-        msgspec.structs.replace(profiles.load(of).machine, known_parameters={}, notes=[]) for of in ("copy.toml", name)
+        [getattr(profiles.load(of).machine, key) for key in Machine.__struct_fields__ if key not in _LEFT_OUT]
+        for of in ("copy.toml", name)
     )
     assert repr(said) == repr(meant)  # NaN differs from itself
 

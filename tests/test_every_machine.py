@@ -29,7 +29,8 @@ class Hand:
 
     head: before the approach. on, off: of the mode, with what belongs there. axis: of the virtual axis. factor,
     outside: of X in the mode and outside of it, 2 for diameters. steps: addresses of incremental words; empty: by G91.
-    arc: address of the radius. codes: line, G2, G3. turns: whether C at the switch turns the plane.
+    arc: address of the radius. codes: line, G2, G3. turns: whether C at the switch turns the plane. sense: else -1
+    where the tool stands at its angle the other way round.
     """
 
     head: str
@@ -43,6 +44,7 @@ class Hand:
     codes: tuple[str, str, str] = ("G1", "G2", "G3")
     comment: str = "(COMMENT G0 X1.)"
     turns: bool = True
+    sense: int = 1
 
 
 FANUC = Hand("O1\nG40 G97 G98\nT0101")
@@ -80,6 +82,7 @@ HANDS = {
         steps="",
         arc="CR=",
         comment="; COMMENT G0 X1.",
+        sense=-1,
         turns=False,
     ),
     "doosan": Hand("O1\nG40 G97 G98\nM35\nG28 H0\nT0101"),
@@ -274,7 +277,7 @@ def test_where_the_plane_stays_with_the_part_only_the_way_to_it_changes(
     hand = HANDS[name]
     ours, *_ = read(name, written(part, hand), radius)
     theirs, *_ = read(name, written(part, hand, entry=angle), radius)
-    np.testing.assert_allclose(theirs.start[0], (HALF + 30) * np.exp(1j * np.radians(angle)), atol=1e-9)
+    np.testing.assert_allclose(theirs.start[0], (HALF + 30) * np.exp(1j * np.radians(hand.sense * angle)), atol=1e-9)
     np.testing.assert_allclose(theirs.end[1:], ours.end[1:], atol=1e-9)
     np.testing.assert_allclose(theirs.c_angles[0][0], angle, atol=1e-9)
     turns = (theirs.c_angles[1][1:] - ours.c_angles[1][1:]) / 360

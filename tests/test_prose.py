@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 import pytest
-from programs import SHARED, Rule, find, load_all, report_of, said, trace_of
+from programs import SHARED, report_of, said, trace_of
 
 from polarcheck.checking.finding import FileReport
 from polarcheck.machines import profiles
@@ -362,7 +362,8 @@ def test_the_page_of_the_guide_with_two_programs_in_a_block_says_what_it_is() ->
     assert len(rules) < 20
 
 
-def test_the_rule_is_a_note_where_the_language_is_not_read_in_full() -> None:
-    rule: Rule = find(RULE, load_all())[0]
-    report = report_of("G0 X50. RAPID TO START\nM30\n", "siemens-transmit", only=[rule])
-    assert [found.severity for found in report.findings] == ["note"]
+@pytest.mark.parametrize("machine", ["siemens-transmit", "siemens-iso", "okuma-osp"])
+def test_where_statements_have_names_text_is_one_of_them_and_told_as_such(machine: str) -> None:
+    report = report_of("G0 X50. RAPID TO START\nM30\n", machine)
+    assert not [found for found in report.findings if found.rule == RULE]
+    assert report.verdict != "pass"

@@ -51,7 +51,7 @@ def test_z_is_the_programmed_one() -> None:
     [
         ({}, False, False),
         ({"x_minimum": 0}, True, False),
-        ({"x_maximum": 0}, True, False),
+        ({"x_maximum": 0.001}, True, False),
         ({"z_minimum": 0}, False, True),
         ({"z_maximum": 0}, False, True),
     ],

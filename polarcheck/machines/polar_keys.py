@@ -69,10 +69,10 @@ class Polar(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     not_simulated_beside: list[Address] = []
     rotary_address: RotaryAddress
     rotary_incremental: AddressOrNone
-    virtual_axis: AxisAddress
     off_of_other_modes: list[str] = []
     contours_outside: list[str] = []
     direction_word: AddressOrNone
+    virtual_axis: AxisAddress
     virtual_axis_incremental: AddressOrNone
     virtual_axis_by_word: dict[NumberedWord, tuple[AxisAddress, AddressOrNone]] = {}
     virtual_axis_of_other_controls: list[AxisAddressOrNone]
