@@ -22,12 +22,13 @@ from polarcheck.machines.parameters import Meaning
 from polarcheck.machines.polar_keys import Polar
 from polarcheck.machines.values import (
     Address,
-    AddressOrNone,
     AxisAddress,
+    AxisLetterOrNone,
     AxisName,
     CharacterOrNone,
     Count,
     Length,
+    MarkOrNone,
     NotNegative,
     Plain,
     Positive,
@@ -80,14 +81,14 @@ class Control(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     word_limit: Count
     m_code_limit: Count
     line_comments: CharacterOrNone
-    channel_mark: CharacterOrNone
-    wait_mark: CharacterOrNone
+    channel_mark: MarkOrNone
+    wait_mark: MarkOrNone
     offset_digits: Annotated[int, msgspec.Meta(ge=1, le=4)]
     radius_offset_digits: Annotated[int, msgspec.Meta(ge=0, le=3)]
     unknown_codes_are_errors: bool
     x: Literal["diameter", "radius"]
     axes: list[AxisAddress] = []
-    named_axes: dict[AxisName, AddressOrNone] = {}
+    named_axes: dict[AxisName, AxisLetterOrNone] = {}
     known_codes: list[str]
     motion_codes: dict[str, str] = {}
     native_words: dict[Plain, Plain] = {}
@@ -100,6 +101,8 @@ class Control(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
         for word, text in self.native_words.items():
             if not word or len(text) > len(word.replace(" ", "")):
                 raise ValueError(f"native_words: {text!r} has no room in the place of {word!r}")
+        if self.channel_mark and self.channel_mark == self.wait_mark:
+            raise ValueError(f"channel_mark and wait_mark are both {self.channel_mark}; expected two characters")
         if len(self.named_axes) > MOST_NAMED:
             raise ValueError(f"named_axes: expected {MOST_NAMED} names at most")
         for name, meant in self.motion_codes.items():
@@ -242,6 +245,9 @@ class Machine(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
 
     def __post_init__(self) -> None:
         check_axes(self.axes, self.polar.linear_axis, self.polar.rotary_axis, self.polar.rotary_address)
+        virtual = self.polar.virtual_axes
+        if virtual == [axis_of(self.axes or [self.polar.linear_address], self.polar.linear_axis)]:
+            raise ValueError(f"polar.virtual_axis is {virtual[0]}, which is the linear axis")
 
     @property
     def axes(self) -> list[str]:

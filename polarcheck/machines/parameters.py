@@ -82,7 +82,8 @@ def _known(merged: Mapping[str, Any], profile: str) -> dict[str, Meaning]:
 def _values(name: str, meaning: Meaning, given: Any, profile: str) -> Mapping[str, Any]:
     is_number = isinstance(given, int | float)
     spelled = f"{given:g}" if is_number else str(given)
-    told = given if spelled and spelled.isprintable() else repr(given)
+    # A number in quotes is shown with them: it looks like what is expected.
+    told = given if (spelled and spelled.isprintable() and not spelled.isdecimal()) or is_number else repr(given)
     for setting, values in meaning.values.items():
         if setting.upper() == spelled.upper():
             return values

@@ -271,6 +271,8 @@ def _unwrapped(value: Any, key: str, origin: Origin, origins: dict[str, Origin])
 
 def _origin(said: Mapping[str, Any], of_table: Origin) -> Origin:
     source, doubtful = said.get("source", of_table.source), said.get("doubtful", of_table.doubtful)
+    if not isinstance(doubtful, bool):
+        raise MachineError(f"{of_table.profile}: doubtful: expected true or false, found {doubtful!r}")
     return Origin(of_table.profile, str(source), bool(doubtful))
 
 

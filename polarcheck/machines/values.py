@@ -22,6 +22,14 @@ Plain: TypeAlias = Annotated[
 CharacterOrNone: TypeAlias = Annotated[
     str, msgspec.Meta(pattern="^[!-~]?$(?!\\n)", extra={EXPECTED: "one character or none"})
 ]
+#: What begins a mark of channels: no letter, digit or sign that words, comments and statements are made of.
+MarkOrNone: TypeAlias = Annotated[
+    str,
+    msgspec.Meta(
+        pattern="^[!\"$&':<>?@\\\\^_`{|}~]?$(?!\\n)",
+        extra={EXPECTED: "one character that stands in no word, as $ or !, or none"},
+    ),
+]
 SwitchWord: TypeAlias = Annotated[
     str,
     msgspec.Meta(
@@ -44,18 +52,22 @@ AxisName: TypeAlias = Annotated[
     str,
     msgspec.Meta(pattern="^[A-Z][A-Z0-9]{1,7}$(?!\\n)", extra={EXPECTED: "the name of an axis with a number, as C2"}),
 ]
+#: What such an axis is here: no letter of another meaning on every lathe, as F and G.
+AxisLetterOrNone: TypeAlias = Annotated[
+    str, msgspec.Meta(pattern="^[ABCEHU-Z]?$(?!\\n)", extra={EXPECTED: "the address of an axis, one letter, or none"})
+]
 #: An axis by one letter, or by such a name.
 AxisAddress: TypeAlias = Annotated[
     str,
     msgspec.Meta(
-        pattern="^([A-Z]|[ABCHU-Z][A-Z]{0,5}[0-9]{1,2})$(?!\\n)",
+        pattern="^([A-EHPQU-Z]|[ABCHU-Z][A-Z]{0,5}[0-9]{1,2})$(?!\\n)",
         extra={EXPECTED: "an address, one letter or the name of an axis as C2"},
     ),
 ]
 AxisAddressOrNone: TypeAlias = Annotated[
     str,
     msgspec.Meta(
-        pattern="^([A-Z]|[ABCHU-Z][A-Z]{0,5}[0-9]{1,2})?$(?!\\n)",
+        pattern="^([A-EHPQU-Z]|[ABCHU-Z][A-Z]{0,5}[0-9]{1,2})?$(?!\\n)",
         extra={EXPECTED: "an address, one letter or the name of an axis as C2, or none"},
     ),
 ]
