@@ -329,6 +329,25 @@ def test_a_fault_of_a_statement_is_one_finding(blocks: str, expected: list[tuple
     assert found == [one for one in expected if one[1] != "unreachable-block"]
 
 
+@pytest.mark.parametrize(
+    ("machine", "tool", "section"),
+    [
+        (OWN, "8/1:radius=4", "T8 D1 / G0 X60 Z5 / DIAMOF / TRANSMIT / G94 G1 X40 Y-20 F200 / G41 X12 Y-12 / X-12"
+         " / {fault} / X12 / Y-25 / G40 X40 / TRAFOOF / M30"),
+        ("fanuc", "1:radius=4,nose=0", "G98 T0101 / G0 X120. C0 Z5. / G12.1 / G1 X60. C-20. F200 / G41 X24. C-12."
+         " / X-24. / {fault} / X24. / C-25. / G40 X80. / G13.1 / M30"),
+    ],
+)  # fmt: skip
+@pytest.mark.parametrize("value", ["", "12+", "[12"])
+def test_where_a_word_cannot_be_read_nobody_knows_the_contour(
+    machine: str, tool: str, section: str, value: str
+) -> None:
+    """What the contour does without the word is no second fault."""
+    fault = f"Y={value}" if machine == OWN else f"C[{value}"
+    whole = program(section.format(fault=fault))
+    assert [finding.rule for finding in report_of(whole, machine, tool).findings] == ["macro-syntax"]
+
+
 def test_a_parameter_that_does_not_exist_is_named_as_it_is_written() -> None:
     (finding,) = report_of("R1=-5\nX=R[R1]\nM30\n", OWN).findings
     assert (finding.line, finding.rule) == (2, "variable-out-of-range")

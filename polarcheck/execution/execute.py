@@ -210,7 +210,10 @@ class Execution(Branches):
             goes_on = self.execute(part, block)
             if self.jumped or goes_on != block + 1:
                 return goes_on
-        if any(unread.moves for unread in statement.unread):
+        loses_words = (
+            statement.kind is Kind.NC and statement.fault is not None and self.listing.text.blocks.is_macro[block]
+        )
+        if loses_words or any(unread.moves for unread in statement.unread):
             self.rows.mark_unknown()
         return block + 1
 

@@ -58,7 +58,8 @@ class SpokenBlock(Infix):
         place = self.first.start, max(self.tokens[-1].end, self.first.start + 1)
         self.note_unknown()
         parts = list(self.before)
-        if self.words or any(unread.moves for unread in self.unread):
+        is_faulty_move = self.fault is not None and not (self.before or self.after)
+        if self.words or is_faulty_move or any(unread.moves for unread in self.unread):
             calls = self.machine.macro.flow_codes
             call = next((word.code for word in self.words if word.code in calls), "")
             parts.append(Statement(Kind.CALL if call else Kind.NC, *place, words=tuple(self.words), call=call))
