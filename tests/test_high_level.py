@@ -348,6 +348,12 @@ def test_where_a_word_cannot_be_read_nobody_knows_the_contour(
     assert [finding.rule for finding in report_of(whole, machine, tool).findings] == ["macro-syntax"]
 
 
+@pytest.mark.parametrize(("block", "closing"), [("X=(R1+2", ")"), ("X=AC(5", ")"), ("X=SIN(5", ")"), ("R[1+2=5", "]")])
+def test_the_bracket_that_is_missing_is_the_one_to_write(block: str, closing: str) -> None:
+    (finding,) = report_of(program(f"{block} / M30"), OWN).findings
+    assert f"lacks a closing bracket {closing};" in finding.message
+
+
 def test_a_parameter_that_does_not_exist_is_named_as_it_is_written() -> None:
     (finding,) = report_of("R1=-5\nX=R[R1]\nM30\n", OWN).findings
     assert (finding.line, finding.rule) == (2, "variable-out-of-range")

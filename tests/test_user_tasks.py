@@ -312,3 +312,11 @@ def test_it_ends_in_bounded_time(program: str) -> None:
 
 def test_a_jump_to_itself_is_one_endless_loop() -> None:
     assert said(report_of("O1\nNBAC GOTO NBAC\nM2\n", LATHE))[0] == (2, "endless-loop")
+
+
+@pytest.mark.parametrize("jump", ["GOTO NCUT", "IF [1 EQ 1] NCUT", "IF [1 EQ 1] GOTO NCUT"])
+def test_a_jump_is_shown_with_the_name_that_it_goes_to(jump: str) -> None:
+    (finding,) = (
+        one for one in report_of(f"O1\nNCUT G0 X100.\n{jump}\nM2\n", LATHE).findings if one.rule == "endless-loop"
+    )
+    assert finding.message.startswith(f"{jump} comes back here")

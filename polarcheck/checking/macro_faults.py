@@ -85,7 +85,7 @@ _REASONS: Final[Mapping[FaultKind, str]] = {
     "format": "does not fit into the expression",
     "statement-format": "cannot be read as a macro statement or the rest of one",
     "missing-open-bracket": "lacks an opening bracket [",
-    "missing-close-bracket": "lacks a closing bracket ]",
+    "missing-close-bracket": "lacks a closing bracket {closing}",
     "missing-equal": "lacks the = of an assignment",
     "missing-comma": "lacks the comma between two values",
     "if-format": "cannot follow the condition of an IF: write GOTO 10, or THEN and one assignment",
@@ -202,9 +202,11 @@ class Faults:
             "loop_numbers": macro.loop_numbers,
             "largest_number": macro.largest_number,
         }
-        values = self.run.faults[index].values
+        fault = self.run.faults[index]
+        written, values = self.run.text.source.excerpt(fault.start, fault.end), fault.values
+        closing = ")" if "(" in written and "[" not in written else "]"
         blocks = self._calling_blocks.get(values.get("program"), ())
-        return {**limits, "times": f" in {len(blocks)} blocks" if len(blocks) > 1 else "", **values}
+        return {**limits, "closing": closing, "times": f" in {len(blocks)} blocks" if len(blocks) > 1 else "", **values}
 
     @cached_property
     def _calling_blocks(self) -> dict[object, set[int]]:

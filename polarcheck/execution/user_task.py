@@ -248,7 +248,9 @@ class _Block(Values):
             self.leave(first, moves=True)
             return
         statement = self.read_as(rewriting)
-        self.flow = replace(statement, label=label, jump=None) if label else statement
+        if label:
+            statement = replace(statement, label=label, jump=None, end=max(statement.end, token.end))
+        self.flow = statement
 
     def call(self, first: int) -> None:
         """CALL O1234 Q3 DIA=20, MODIN O1234: the program, how often, and the local variables that it is given."""
