@@ -348,6 +348,22 @@ def test_where_a_word_cannot_be_read_nobody_knows_the_contour(
     assert [finding.rule for finding in report_of(whole, machine, tool).findings] == ["macro-syntax"]
 
 
+@pytest.mark.parametrize(
+    ("machine", "section"),
+    [
+        (OWN, "T1 D1 / G0 X60 Z5 / DIAMOF / TRANSMIT / G94 G1 X40 Y-20 F200 / X12 / Y=R99 / X20 / TRAFOOF / M30"),
+        (
+            "fanuc",
+            "G98 T0101 / G0 X120. C0 Z5. / G12.1 / G1 X60. C-20. F200 / X50. / X24. / C#599 / X30. / G13.1 / M30",
+        ),
+    ],
+)
+def test_the_block_that_leaves_the_position_open_is_named(machine: str, section: str) -> None:
+    reasons = [entry.reason for entry in report_of(program(section), machine).not_evaluated]
+    assert any(f"{'Y=R99' if machine == OWN else 'C#599'} in line 7 leaves open" in reason for reason in reasons)
+    assert not any("was not programmed before" in reason for reason in reasons)
+
+
 @pytest.mark.parametrize(("block", "closing"), [("X=(R1+2", ")"), ("X=AC(5", ")"), ("X=SIN(5", ")"), ("R[1+2=5", "]")])
 def test_the_bracket_that_is_missing_is_the_one_to_write(block: str, closing: str) -> None:
     (finding,) = report_of(program(f"{block} / M30"), OWN).findings

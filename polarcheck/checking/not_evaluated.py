@@ -300,6 +300,16 @@ def _position(tables: Tables, row: int) -> str:
     trace: Trace = tables["trace"]
     if trace.frames is not None and not trace.frames.is_known[row]:
         return "the position is not known: the frame in force is not simulated"
+    open_ends = np.flatnonzero(trace.in_polar & np.isnan(trace.end) & ~np.isnan(trace.start))
+    at_or_before = open_ends[open_ends <= row]
+    if not np.isnan(trace.end[row]) and (open_ends > row).any():
+        row = int(open_ends[open_ends > row][0])  # a corner hangs on the block behind it
+    elif len(at_or_before):
+        row = int(at_or_before[-1])
+    if row in open_ends and not trace.run.unknown[row]:
+        return (
+            f"the position is not known: {block_and_line(trace, row)} leaves open where the tool goes; {_OF_VARIABLES}"
+        )
     lost = np.flatnonzero((trace.run.unknown & (trace.program == trace.program[row]))[: row + 1])
     if not len(lost):
         axis = linear(trace, row)
