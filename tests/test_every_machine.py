@@ -280,6 +280,8 @@ def test_where_the_plane_stays_with_the_part_only_the_way_to_it_changes(
     np.testing.assert_allclose(theirs.start[0], (HALF + 30) * np.exp(1j * np.radians(hand.sense * angle)), atol=1e-9)
     np.testing.assert_allclose(theirs.end[1:], ours.end[1:], atol=1e-9)
     np.testing.assert_allclose(theirs.c_angles[0][0], angle, atol=1e-9)
+    if hand.sense < 0:
+        return  # the sense of C is machine data that no profile has
     turns = (theirs.c_angles[1][1:] - ours.c_angles[1][1:]) / 360
     np.testing.assert_allclose(turns, np.round(turns), atol=1e-9)
 
