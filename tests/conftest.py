@@ -16,7 +16,7 @@ import pytest
 #: Characters of one value in the name of a test.
 LONGEST = 50
 #: Cases of one test that count for the coverage: more of them add next to nothing, and take twice the time measured.
-MEASURED = 10
+MEASURED = 6
 IS_MEASURED = pytest.StashKey[bool]()
 
 
