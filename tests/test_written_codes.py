@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import re
 import tomllib
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import pytest
 from programs import report_of, said
 
 from polarcheck.errors import MachineError
-from polarcheck.machines import profiles, written_codes
+from polarcheck.machines import code_keys, profiles, written_codes
+from polarcheck.machines.code_lists import FRAME_LISTS
+from polarcheck.machines.machine import Machine
 
 ALLOWED = profiles.load("fanuc-30i").machine.polar.allowed_codes
 
@@ -182,3 +186,31 @@ def test_our_own_files_hold_the_plain_form(path: Path) -> None:
             if isinstance(value, list) and any(map(written_codes.is_change, value)):
                 value = [change[1:] for change in value]
             assert written_codes.taken(f"{table}.{key}", value, None) == value, f"{table}.{key}"
+
+
+#: Lists of texts that hold no codes.
+_OF_ADDRESSES = {"control.axes", "polar.not_simulated_beside", "polar.virtual_axis_of_other_controls"}
+
+
+def test_every_list_of_texts_is_one_of_codes_or_of_addresses() -> None:
+    tables = [table for table in msgspec.structs.fields(Machine) if hasattr(table.type, "__struct_fields__")]
+    found = {
+        f"{table.name}.{key.name}"
+        for table in tables
+        for key in msgspec.structs.fields(table.type)
+        if re.match(r"(typing\.Annotated\[)?list\[(typing\.Annotated\[)?str", str(key.type))
+    }
+    assert found - code_keys.EVERY == _OF_ADDRESSES
+
+
+#: What a control's own language writes as words, and axis words with a code.
+_OTHER_WORDS = {f"g_codes.{key}" for key in FRAME_LISTS} | {f"control.{key}" for key in code_keys.TYPED["control"]}
+
+
+@pytest.mark.parametrize("key", sorted(code_keys.EVERY - _OTHER_WORDS))
+def test_what_is_no_code_is_refused_in_one_line(key: str) -> None:
+    table, _, name = key.partition(".")
+    with pytest.raises(MachineError) as raised:
+        profiles.load("fanuc", {table: {name: ["G1.1.1"]}})
+    assert f"{table}" in str(raised.value)
+    assert "G1.1.1" in str(raised.value)

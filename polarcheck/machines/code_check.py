@@ -6,28 +6,12 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 
 from polarcheck.errors import MachineError, RuleError
-from polarcheck.machines.code_lists import GCodes, GCodeSystem, is_code, numbers
-from polarcheck.machines.m_codes import PLAIN_M_CODES, SWITCHED, MCodes, PowerOn
+from polarcheck.machines import code_keys
+from polarcheck.machines.code_lists import is_code, numbers
+from polarcheck.machines.m_codes import SWITCHED, PowerOn
 from polarcheck.machines.machine import Machine
 from polarcheck.machines.modal import STATES
 from polarcheck.machines.parameters import Origin
-
-#: Lists of G codes, in which `G54-G59` is a range.
-_RANGES = {
-    "control": ("known_codes",),
-    "polar": ("allowed_codes",),
-    "g_codes": GCodes.__struct_fields__,
-    "g_code_system_a": GCodeSystem.__struct_fields__,
-    "g_code_system_b": GCodeSystem.__struct_fields__,
-    "g_code_system_c": GCodeSystem.__struct_fields__,
-}
-#: Lists of addresses and codes, and of words of which some are codes.
-_MIXED = {"polar": ("words_beside_switch",)}
-_WORDS = {"polar": ("on_of_other_controls", "on_of_other_meaning", "on_of_macros")}
-#: Lists of G and M codes, each written by itself.
-_SINGLE = {"polar": ("on", "off", "ended_by", "plane_before"), "m_codes": PLAIN_M_CODES}
-#: Lists of M codes, of which some are told apart by a word beside them: M3 P11, M3 P12.
-_WITH_WORDS = {"m_codes": tuple(key for key in MCodes.__struct_fields__ if key not in PLAIN_M_CODES)}
 
 
 def check_codes(machine: Machine, origins: Mapping[str, Origin], chain: Sequence[str]) -> None:
@@ -104,11 +88,11 @@ def _is_word(text: str) -> bool:
 
 
 _FORMS: tuple[tuple[Mapping[str, Sequence[str]], Callable[[str], bool]], ...] = (
-    (_RANGES, is_code),
-    (_SINGLE, _is_single),
-    (_WITH_WORDS, _is_switch),
-    (_MIXED, _is_address_or_code),
-    (_WORDS, _is_word),
+    (code_keys.RANGES, is_code),
+    (code_keys.SINGLE, _is_single),
+    (code_keys.WITH_WORDS, _is_switch),
+    (code_keys.MIXED, _is_address_or_code),
+    (code_keys.WORDS, _is_word),
 )
 
 

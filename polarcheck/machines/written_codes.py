@@ -9,23 +9,11 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
+from polarcheck.machines.code_keys import EVERY
 from polarcheck.machines.code_lists import is_code, numbers
-from polarcheck.machines.m_codes import MCodes
-from polarcheck.machines.macro_keys import CODE_LISTS as OF_MACRO
 
-#: Tables, and keys of others, that hold lists of codes.
-_TABLES = ("g_codes", "g_code_system_a", "g_code_system_b", "g_code_system_c", "alarm_codes")
-_KEYS = frozenset(
-    (
-        "control.known_codes",
-        "control.x_radius_words",
-        "control.x_diameter_words",
-        *(f"polar.{key}" for key in ("on", "off", "on_of_other_controls", "on_of_other_meaning", "plane_before")),
-        *("polar.words_beside_switch", "polar.virtual_axis_of_other_controls", "polar.allowed_codes"),
-        *(f"m_codes.{key}" for key in MCodes.__struct_fields__),
-        *(f"macro.{key}" for key in OF_MACRO),
-    )
-)
+#: Beside the lists of codes: codes by alarm, and addresses that are written as codes are.
+_FURTHER_TABLE, _FURTHER_KEY = "alarm_codes", "polar.virtual_axis_of_other_controls"
 #: Tables of codes.
 _PAIRS = ("control.motion_codes",)
 #: What holds addresses: one, a list of them, or lists by address.
@@ -51,7 +39,7 @@ class ListError(ValueError):
 
 def is_list(key: str) -> bool:
     """Whether a key with its table, as in `polar.allowed_codes`, holds a list of codes."""
-    return key in _KEYS or key.partition(".")[0] in _TABLES
+    return key in EVERY or key == _FURTHER_KEY or key.partition(".")[0] == _FURTHER_TABLE
 
 
 def plain(text: str) -> str:
