@@ -365,6 +365,7 @@ def test_json_is_the_contract() -> None:
         "findings",
         "not_evaluated",
         "looked_at",
+        "silenced",
     ]
     assert list(checked) == keys
     keys = "rule severity message line column end_line end_column block program section_line alarm values count source"

@@ -154,7 +154,7 @@ def report(reports: list[FileReport], machine: str) -> Report:
         errors=severities.count("error"),
         warnings=severities.count("warning"),
         notes=severities.count("note"),
-        silenced=0,
+        silenced=sum(len(file.silenced) for file in reports),
         passed=verdicts.count("pass"),
         unverified=verdicts.count("unverified"),
         fail=verdicts.count("fail"),

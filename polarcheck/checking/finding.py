@@ -73,6 +73,22 @@ class Undecided(Finding, frozen=True, kw_only=True):
     """A finding of which nobody can say that something is wrong: it fails no file, and leaves it unverified."""
 
 
+#: What can silence a finding.
+SILENCED_BY = ALLOW, BASELINE = "allow", "baseline"
+
+
+class Silenced(Finding, frozen=True, kw_only=True):
+    """
+    A finding that somebody has answered for: it counts nowhere but as silenced.
+
+    by: allow, a comment of the program, or baseline, a file of findings that are known. reason: the words of whoever
+    silenced it, empty where none were given.
+    """
+
+    by: str
+    reason: str = ""
+
+
 class NotEvaluated(msgspec.Struct, frozen=True, kw_only=True):
     """
     What was not looked at, why, in how many blocks.
@@ -130,6 +146,7 @@ class FileReport(msgspec.Struct, frozen=True, kw_only=True):
     findings: list[Finding]
     not_evaluated: list[NotEvaluated]
     looked_at: list[str] = []
+    silenced: list[Silenced] = []
 
 
 class Producer(msgspec.Struct, frozen=True):

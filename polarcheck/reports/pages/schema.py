@@ -7,7 +7,7 @@ from typing import Any
 
 import msgspec
 
-from polarcheck.checking.finding import Report, Severity
+from polarcheck.checking.finding import SILENCED_BY, Report, Severity
 from polarcheck.machines.job import Job
 from polarcheck.machines.machine import Machine, meanings
 
@@ -31,7 +31,9 @@ def text(name: str) -> str:
 def _report() -> Schema:
     made: Schema = _without_nan(msgspec.json.schema(Report))
     definitions = made["$defs"]
-    definitions["Finding"]["properties"]["severity"] = {"enum": [level.name.lower() for level in reversed(Severity)]}
+    for kind in ("Finding", "Silenced"):
+        definitions[kind]["properties"]["severity"] = {"enum": [level.name.lower() for level in reversed(Severity)]}
+    definitions["Silenced"]["properties"]["by"] = {"enum": list(SILENCED_BY)}
     definitions["FileReport"]["properties"]["verdict"] = {"enum": list(VERDICTS)}
     definitions["Report"]["properties"]["schema"] = {"const": 1}
     return made
