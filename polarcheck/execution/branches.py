@@ -5,8 +5,8 @@ from __future__ import annotations
 from polarcheck.arrays import Mask
 from polarcheck.execution.calls import Calls
 from polarcheck.execution.expression import Expression, decide, evaluate
-from polarcheck.execution.programs import Program
-from polarcheck.execution.statement import Search, Statement
+from polarcheck.execution.programs import Program, Search
+from polarcheck.execution.statement import Statement
 from polarcheck.execution.structures import Structures
 
 

@@ -17,7 +17,7 @@ from typing import Final
 
 from polarcheck.execution.expression import NUMBER, Characters, Expression, Fault, Step, read_expression
 from polarcheck.execution.kinds import FaultKind
-from polarcheck.execution.statement import Kind, Number, Place, Statement, Unread, Word
+from polarcheck.execution.statement import Kind, Number, Place, Statement, Unread, Word, whole
 from polarcheck.machines.axes import AXIS_LETTERS
 from polarcheck.reading.excerpt import shortened
 
@@ -81,8 +81,7 @@ class _Reader:
         self.at = len(self.text)
 
     def number(self, digits: str, start: int) -> Number:
-        value = int(digits) if len(digits) < 19 else 10**18  # as good as any: no control has such a number
-        return Number(value, *self.characters.span(start, self.at))
+        return Number(whole(digits), *self.characters.span(start, self.at))
 
     def keyword(self) -> str:
         """The macro word that stands here, spelled out; "" where there is none."""

@@ -19,9 +19,9 @@ from polarcheck.execution.kinds import FaultKind, RemarkKind
 from polarcheck.execution.library import Shelf
 from polarcheck.execution.listing import Listing
 from polarcheck.execution.macro import Variables, assign, step_of, word_value
-from polarcheck.execution.programs import Program, ProgramName
+from polarcheck.execution.programs import Program, ProgramName, Search
 from polarcheck.execution.run import NO_VARIABLE, Assigned, Remark
-from polarcheck.execution.statement import Kind, Search, Statement, Word
+from polarcheck.execution.statement import Kind, Statement, Word
 from polarcheck.machines.codes import code_numbers, code_set
 from polarcheck.machines.job import Running
 from polarcheck.machines.macro_keys import Macro
@@ -222,10 +222,10 @@ class Execution(Branches):
             case Kind.ASSIGN:
                 self.assign(statement, block)
             case Kind.IF_GOTO:
-                if self.holds(statement, block):
+                if self.decided(statement.condition, block):
                     return self.go_to(statement, block)
             case Kind.IF_THEN:
-                if statement.then is not None and self.holds(statement, block):
+                if statement.then is not None and self.decided(statement.condition, block):
                     return self.execute(statement.then, block)
             case Kind.GOTO:
                 return self.go_to(statement, block)
@@ -265,10 +265,6 @@ class Execution(Branches):
             self.remark("stops-itself", block, number=int(number or 0))
             if number in macro.alarm_variables:
                 raise Stop
-
-    def holds(self, statement: Statement, block: int) -> bool:
-        """Whether the condition holds; an unknown one counts as not, and is said."""
-        return self.decided(statement.condition, block)
 
     def go_to(self, statement: Statement, block: int) -> int:
         if statement.label:

@@ -36,6 +36,11 @@ class Fault(NamedTuple):
 _CAPITALS: Final = {ord(letter): ord(letter) - 32 for letter in "abcdefghijklmnopqrstuvwxyz"}
 
 
+def in_capitals(text: str) -> str:
+    """The text with the letters a to z in capitals; it stays as long as it is, which upper() does not promise."""
+    return text.translate(_CAPITALS)
+
+
 class Characters:
     """The text of a block without blanks, in capitals, and the place in the block where each character stands."""
 
@@ -43,7 +48,7 @@ class Characters:
 
     def __init__(self, block: str) -> None:
         self.places = [found.start() for found in re.finditer(r"[^\s\0]", block)]
-        self.text = "".join([block[place] for place in self.places]).translate(_CAPITALS)
+        self.text = in_capitals("".join([block[place] for place in self.places]))
 
     @classmethod
     def read_as(cls, text: str, places: list[int]) -> Characters:

@@ -10,7 +10,7 @@ from polarcheck.execution.keywords import KEYWORDS, call_by_name
 from polarcheck.execution.names import Names
 from polarcheck.execution.rewriting import Read
 from polarcheck.execution.spoken_block import SpokenBlock
-from polarcheck.execution.statement import Number, Statement, Word
+from polarcheck.execution.statement import Number, Statement, Word, whole
 from polarcheck.execution.tokens import Token
 from polarcheck.machines.machine import Machine
 
@@ -61,8 +61,7 @@ class _Reader(SpokenBlock):
                 self.skips.append(Number(int(following.text[:9]) if has_level else 1, token.start, following.end))
                 self.at += 1 + has_level
             elif token.text in ("N", ":") and following.text.isdigit() and not self.is_sign("=", 2):
-                value = int(following.text) if len(following.text) < 19 else 10**18
-                self.sequence_number = Number(value, token.start, following.end)
+                self.sequence_number = Number(whole(following.text), token.start, following.end)
                 self.at += 2
             elif token.kind == "name" and self.is_sign(":", 1):
                 self.at += 2

@@ -7,8 +7,9 @@ from dataclasses import replace
 from typing import Final
 
 from polarcheck.execution.expression import Expression, Step
+from polarcheck.execution.programs import Search
 from polarcheck.execution.spoken_block import SpokenBlock
-from polarcheck.execution.statement import Kind, Parameter, Search, Statement, Word
+from polarcheck.execution.statement import Kind, Parameter, Statement, Word
 from polarcheck.execution.tokens import Token
 
 _SEARCHES: Final = {

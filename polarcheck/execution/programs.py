@@ -6,6 +6,7 @@ the flow can turn.
 from __future__ import annotations
 
 import bisect
+import enum
 import itertools
 import re
 from collections.abc import Iterable, Sequence
@@ -17,7 +18,6 @@ import numpy as np
 
 from polarcheck.arrays import Mask, stretch
 from polarcheck.execution.run import begins_program, is_code
-from polarcheck.execution.statement import Search
 from polarcheck.machines.machine import Machine
 from polarcheck.reading.source import Source
 from polarcheck.reading.translation import translated
@@ -31,6 +31,18 @@ _LABEL = re.compile(
     r"[\s/]*(?:/\s*\d\s*)?(?:N\s*\d+\s*)?(?:([A-Z_][A-Z0-9_]+)\s*:(?!=)|(N(?!OEX\b)[A-Z][A-Z0-9]{0,3})(?![A-Z0-9=]))",
     re.IGNORECASE,
 )
+
+
+class Search(enum.Enum):
+    """
+    Where a jump looks for its target: from the next N number or label on, then from the head of the program. IF_THERE
+    does so, too, and without a target goes on.
+    """
+
+    ROUND = enum.auto()
+    FORWARD = enum.auto()
+    BACKWARD = enum.auto()
+    IF_THERE = enum.auto()
 
 
 class ProgramName(NamedTuple):

@@ -15,6 +15,7 @@ from polarcheck.execution.statement import Kind, Number, Statement, Unread, Word
 from polarcheck.execution.tokens import Token, tokens
 from polarcheck.machines.machine import Machine
 from polarcheck.machines.modal import Distance
+from polarcheck.reading.excerpt import shortened
 
 #: Bound of the tokens of a block, and of the steps of an expression.
 _SIZE: Final = 5_000
@@ -83,7 +84,7 @@ class SpokenBlock(Infix):
     ) -> None:
         """Name what is not simulated, by its effect (macro.statements); nothing is said of what has none."""
         if effect != "none":
-            shown = name if len(name) <= _SHOWN else name[:_SHOWN] + "..."
+            shown = shortened(name, _SHOWN)
             self.unread.append(Unread(shown, first.start, (last or first).end, effect in ("words", "moves"), matters))
 
     def leave_rest(self, first: Token) -> None:

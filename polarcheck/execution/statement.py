@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import NamedTuple, TypeAlias
 
 from polarcheck.execution.expression import Expression, Fault
+from polarcheck.execution.programs import Search
 from polarcheck.machines.modal import Distance
 
 Place: TypeAlias = tuple[int, int]
@@ -40,6 +41,15 @@ class Number(NamedTuple):
     value: int
     start: int
     end: int
+
+
+#: Digits of a number that no control has, so that all longer ones are as good as one.
+_DIGITS = 18
+
+
+def whole(digits: str) -> int:
+    """The value of some digits, of which a hostile program may write any number."""
+    return int(digits) if len(digits) <= _DIGITS else 10**_DIGITS
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,18 +87,6 @@ class Word:
     def has_point(self) -> bool:
         """Whether the value is not in least increments: a number with a decimal point, or a calculated value."""
         return self.written is None or "." in self.written
-
-
-class Search(enum.Enum):
-    """
-    Where a jump looks for its target: from the next N number or label on, then from the head of the program. IF_THERE
-    does so, too, and without a target goes on.
-    """
-
-    ROUND = enum.auto()
-    FORWARD = enum.auto()
-    BACKWARD = enum.auto()
-    IF_THERE = enum.auto()
 
 
 class Parameter(NamedTuple):

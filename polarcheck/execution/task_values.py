@@ -11,6 +11,7 @@ import itertools
 import re
 from typing import Final, NamedTuple, TypeAlias
 
+from polarcheck.execution.expression import in_capitals
 from polarcheck.execution.names import Names
 from polarcheck.execution.statement import Unread
 from polarcheck.reading.excerpt import shortened
@@ -30,7 +31,6 @@ _TOKEN: Final = re.compile(
     r"(?P<number>[0-9]++\.?+[0-9]*+|\.[0-9]++)|(?P<name>VC[0-9]++|[A-Z][A-Z][A-Z0-9]*+)|(?P<letter>[A-Z])"
     r"|(?P<sign>[-+*/=,\[\]])|(?P<other>[^\s\0])"
 )
-_CAPITALS: Final = {ord(letter): ord(letter) - 32 for letter in "abcdefghijklmnopqrstuvwxyz"}
 _COMPARISONS: Final = frozenset(("EQ", "NE", "GT", "LT", "GE", "LE"))
 _JOINS: Final = {"AND": "AND", "OR": "OR", "EOR": "XOR"}
 _FUNCTIONS: Final = {
@@ -81,7 +81,7 @@ class Values:
 
     def __init__(self, block: str, names: Names) -> None:
         self.block, self.names = block, names
-        found = itertools.islice(_TOKEN.finditer(_without_continuations(block.translate(_CAPITALS))), MOST + 1)
+        found = itertools.islice(_TOKEN.finditer(_without_continuations(in_capitals(block))), MOST + 1)
         self.tokens = [Token(one.lastgroup or "", one[0], *one.span()) for one in found]
         self.at = 0
         self.unread: list[Unread] = []

@@ -6,6 +6,8 @@ import itertools
 import re
 from typing import Final, NamedTuple
 
+from polarcheck.execution.expression import in_capitals
+
 #: A name has two letters at least, so that X10Y5 is no name; what else stands alone is a letter.
 _TOKEN: Final = re.compile(
     r"""
@@ -37,7 +39,7 @@ class Token(NamedTuple):
 
 def tokens(block: str, most: int) -> list[Token]:
     """The tokens of a block without comments, no more than so many, and one of the kind end behind them."""
-    capitals = block.upper() if block.isascii() else block.translate(_CAPITALS)
+    capitals = block.upper() if block.isascii() else in_capitals(block)
     found = []
     for match in itertools.islice(_TOKEN.finditer(capitals), most):
         kind = match.lastgroup or ""
@@ -46,6 +48,3 @@ def tokens(block: str, most: int) -> list[Token]:
         found.append(Token(kind, text, start, end))
     last = len(block.rstrip())
     return [*found, Token("end", "", max(last - 1, 0), last)]
-
-
-_CAPITALS: Final = {ord(letter): ord(letter) - 32 for letter in "abcdefghijklmnopqrstuvwxyz"}

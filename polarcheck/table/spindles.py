@@ -60,9 +60,7 @@ class Spindles:
         Where both spindles are engaged, it is the one that was engaged last (LinearAxis.on_sub_spindle).
         """
         trace, is_sub = self.trace, self.trace.on_sub_spindle
-        if not is_sub.any():
-            return is_sub
-        if not len(trace.sections):
+        if not is_sub.any() or not len(trace.sections):
             return is_sub
         at_entry = is_sub[trace.sections.enter][trace.section]
         return np.asarray(np.where(trace.section >= 0, at_entry, is_sub))
