@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import functools
+import itertools
 import math
 import os
 import sys
 from collections import Counter
-from collections.abc import Generator, Mapping, Set
+from collections.abc import Callable, Generator, Mapping, Set
 from enum import Enum
 from pathlib import Path
 from typing import Any
@@ -15,7 +17,8 @@ import pytest
 
 #: Characters of one value in the name of a test.
 LONGEST = 50
-#: Cases of one test that count for the coverage: more of them add next to nothing, and take twice the time measured.
+#: Cases of one test, be they written or drawn, that count for the coverage: more of them add next to nothing, and take
+#: twice the time measured.
 MEASURED = 6
 IS_MEASURED = pytest.StashKey[bool]()
 
@@ -32,6 +35,22 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
         test = item.nodeid.partition("[")[0]
         cases[test] += 1
         item.stash[IS_MEASURED] = cases[test] <= MEASURED
+        drawn = getattr(getattr(item, "obj", None), "hypothesis", None)
+        if drawn is not None and cases[test] == 1:
+            drawn.inner_test = measured_at_first(drawn.inner_test)
+
+
+def measured_at_first(test: Callable[..., None]) -> Callable[..., None]:
+    """The test of one drawn example, of which no more than so many count for the coverage."""
+    examples = itertools.count()
+
+    @functools.wraps(test)
+    def run(*arguments: Any, **named: Any) -> None:
+        if next(examples) >= MEASURED:
+            sys.settrace(None)  # pytest_runtest_call sets it again, behind the last example
+        test(*arguments, **named)
+
+    return run
 
 
 @pytest.hookimpl(wrapper=True)
