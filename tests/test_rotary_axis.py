@@ -67,8 +67,15 @@ def findings(report: FileReport) -> list[tuple[Any, ...]]:
     return [(one.rule, one.line, one.severity, one.alarm, one.count) for one in report.findings]
 
 
-@pytest.mark.parametrize("name", ["A", "B", "H", "C2"])
-@pytest.mark.parametrize(("path", "machine"), PROGRAMS, ids=lambda one: one.stem if isinstance(one, Path) else one)
+@pytest.mark.parametrize(
+    ("path", "machine", "name"),
+    # Two of the four names for each program, each time others.
+    [
+        pytest.param(path, machine, name, id=f"{path.stem}-{machine}-{name}")
+        for number, (path, machine) in enumerate(PROGRAMS)
+        for name in ("A", "B", "H", "C2")[number % 2 :: 2]
+    ],
+)
 def test_the_same_program_with_another_address(path: Path, machine: str, name: str) -> None:
     """The same tool center path, rates and findings."""
     program = path.read_text("utf-8").replace("H0", "C0")
