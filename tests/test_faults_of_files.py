@@ -199,7 +199,7 @@ def test_standard_input_may_be_closed() -> None:
 
 def planned(*paths: str) -> tuple[list[batch.Task], list[str]]:
     told: list[str] = []
-    return batch.plan(paths, settings.in_folders(settings.Options()), (), told.append, pytest.fail), told
+    return batch.plan(paths, settings.of_programs(settings.Options()), (), told.append, pytest.fail), told
 
 
 @of_posix

@@ -247,7 +247,7 @@ def checked(bad: Exception, monkeypatch: pytest.MonkeyPatch) -> tuple[batch.Chec
     Path("c.nc").write_text(GOOD)
     told: list[str] = []
     bugs: list[Exception] = []
-    tasks = batch.plan(["a.nc", "b.nc", "c.nc"], settings.in_folders(settings.Options()), (), told.append, told.append)
+    tasks = batch.plan(["a.nc", "b.nc", "c.nc"], settings.of_programs(settings.Options()), (), told.append, told.append)
     return batch.check_files(tasks, told.append, bugs.append), told, bugs
 
 
@@ -279,7 +279,7 @@ def test_a_file_that_needs_more_memory_than_there_is_costs_itself_only() -> None
 
 def test_no_table_of_a_file_outlives_the_next() -> None:
     told: list[str] = []
-    (task,) = batch.plan(["a.nc"], settings.in_folders(settings.Options()), (), told.append, told.append)
+    (task,) = batch.plan(["a.nc"], settings.of_programs(settings.Options()), (), told.append, told.append)
     living = []
 
     def tasks() -> Iterator[batch.Task]:

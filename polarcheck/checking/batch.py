@@ -5,7 +5,6 @@ from __future__ import annotations
 import gc
 import os
 from collections.abc import Callable, Iterable, Sequence
-from pathlib import Path
 
 import msgspec
 
@@ -37,17 +36,19 @@ class Checked(msgspec.Struct, frozen=True):
     The reports of the files that could be read, and by path and number the lines that their findings stand in.
 
     called: keys of the offsets that any of the programs calls, where it has a job with tools. stopped: by what the
-    check was interrupted; the files that were finished before that are here.
+    check was interrupted; the files that were finished before that are here. failed: whether any of them fails, by the
+    severity that its own settings name and, where these are strict, by being unverified.
     """
 
     files: list[FileReport]
     lines: dict[str, dict[int, str]]
     called: set[str]
     stopped: KeyboardInterrupt | None = None
+    failed: bool = False
 
 
 def plan(
-    paths: Iterable[str], settings_in: Callable[[Path], Settings], extensions: Sequence[str], tell: Tell, warn: Tell
+    paths: Iterable[str], settings_of: Callable[[str], Settings], extensions: Sequence[str], tell: Tell, warn: Tell
 ) -> list[Task]:
     """
     The programs of files, folders and standard input (`-`), each once, in the order asked for.
@@ -55,15 +56,16 @@ def plan(
     Paths that mean the same file are one program, under the first of them; where links lead to it from folders with
     settings of their own, one for each of these.
 
-    tell is told of folders that cannot be read, warn of those without programs. Raises a PolarcheckError for settings
-    that cannot be used, before any file is checked.
+    settings_of: what applies to a program; a path that ends in a separator is a folder, of which the extensions are
+    asked. tell is told of folders that cannot be read, warn of those without programs. Raises a PolarcheckError for
+    settings that cannot be used, before any file is checked.
     """
     tasks: dict[tuple[str, int], Task] = {}
     real = files.RealPaths()
     for path in paths:
         found, failures = [path], list[str]()
         if path != files.STANDARD_INPUT and os.path.isdir(path):  # noqa: PTH112  Path.is_dir raises for some names
-            own = settings_in(Path(path)).job.extensions
+            own = settings_of(os.path.join(path, "")).job.extensions  # noqa: PTH118
             wanted = files.extensions(extensions or own) or files.EXTENSIONS
             found = list(files.walk(path, wanted, failures.append))
             for failure in failures:
@@ -71,8 +73,7 @@ def plan(
             if not found and not failures:
                 warn(f"{files.shown(path)}: no NC programs in this folder; --extensions names other endings")
         for program in found:
-            # Path("-").parent is the working folder, where standard input belongs.
-            settings = settings_in(Path(program).parent)
+            settings = settings_of(program)
             tasks.setdefault((real.of(program), id(settings)), Task(program, settings))
     return list(tasks.values())
 
@@ -81,8 +82,6 @@ def check_files(
     tasks: Iterable[Task],
     tell: Tell,
     bug: Callable[[Exception], None],
-    encoding: str | None = None,
-    fail_on: str = "warning",
     most: int = files.LARGEST,
 ) -> Checked:
     """
@@ -95,6 +94,7 @@ def check_files(
     lines: dict[str, dict[int, str]] = {}
     called: set[str] = set()
     stopped = None
+    failed = False
     try:
         for number, task in enumerate(tasks):
             if number:
@@ -102,7 +102,7 @@ def check_files(
                 # find it costs nothing of what is older, and without it no table of any file would ever be freed.
                 gc.collect(0)
             try:
-                found, source, offsets = _check(task, files.read(task.path, most), encoding)
+                found, source, offsets = _check(task, files.read(task.path, most))
             except (SourceError, TooHardError) as error:
                 tell(str(error))
             except MemoryError:
@@ -111,21 +111,28 @@ def check_files(
                 error.add_note(f"while checking {files.shown(task.path)}")
                 bug(error)
             else:
-                verdict = check.verdict(found.findings, found.not_evaluated, fail_on)
+                verdict = check.verdict(found.findings, found.not_evaluated, task.settings.fail_on)
                 reports.append(msgspec.structs.replace(found, machine=task.settings.name, verdict=verdict))
+                failed = failed or fails(reports[-1], task.settings)
                 if found.findings:
                     lines[found.path] = _lines(source, found)
                 called |= offsets
     except KeyboardInterrupt as stop:
         stopped = stop
-    return Checked(reports, lines, called, stopped)
+    return Checked(reports, lines, called, stopped, failed)
 
 
-def _check(task: Task, data: bytes, encoding: str | None) -> tuple[FileReport, Source, set[str]]:
+def fails(report: FileReport, settings: Settings) -> bool:
+    """Whether a file has a finding at or above the severity that fails, or is unverified where that fails, too."""
+    told = any(check.is_told(found, settings.fail_on) for found in report.findings)
+    return told or (settings.strict and report.verdict == "unverified")
+
+
+def _check(task: Task, data: bytes) -> tuple[FileReport, Source, set[str]]:
     """The report, the text, and the keys of the offsets that are called, where the job has any."""
     path, settings = files.shown(task.path), task.settings
     with time_limit(seconds_for(len(data), settings.job.run.max_seconds)):
-        found = check.read(data, settings.machine, settings.job, path, encoding)
+        found = check.read(data, settings.machine, settings.job, path, settings.encoding)
         text: Text = found[0][1]["text"]
         report = check.check_runs(found, settings.rules, settings.severities)
         return report, text.source, _offsets(found) if settings.job.tools else set()
@@ -166,9 +173,3 @@ def report(reports: list[FileReport], machine: str) -> Report:
         files=reports,
         summary=summary,
     )
-
-
-def status(report: Report, strict: bool, fail_on: str = "warning") -> int:
-    """The exit code: 1 for a finding at or above a severity and, where that is asked for, for an unverified file."""
-    told = any(check.is_told(found, fail_on) for file in report.files for found in file.findings)
-    return int(told or (strict and any(file.verdict == "unverified" for file in report.files)))

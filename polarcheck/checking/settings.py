@@ -17,7 +17,9 @@ class Settings(msgspec.Struct, frozen=True):
     What applies to a program.
 
     name: of the machine, as it was asked for. rules: those to run. severities: error, warning, note or off by rule,
-    where they differ from the machine's. read: the files that all this was read from.
+    where they differ from the machine's. read: the files that all this was read from. fail_on: the least severity that
+    fails, or never. strict: whether a file that is unverified fails, too. encoding: of the program; None where it is
+    found out. inline: whether comments of the program that allow something are heeded.
     """
 
     name: str
@@ -26,3 +28,7 @@ class Settings(msgspec.Struct, frozen=True):
     rules: Sequence[Rule]
     severities: Mapping[str, str]
     read: Sequence[Path] = ()
+    fail_on: str = "warning"
+    strict: bool = False
+    encoding: str | None = None
+    inline: bool = True

@@ -61,10 +61,10 @@ def _outputs(ctx: click.Context, parameter: click.Parameter, values: tuple[str, 
 @many("--ignore", metavar="RULE", help="All but these.")
 @many("--severity", "severities", metavar="RULE=LEVEL", help="error, warning, note or off.")
 @option(
-    "--fail-on", type=click.Choice(["error", "warning", "note", "never"]), default="warning", show_default=True,
+    "--fail-on", type=click.Choice(["error", "warning", "note", "never"]), show_default="warning",
     help="The least severity that fails.",
 )  # fmt: skip
-@option("--strict", is_flag=True, help="Fail where a file is unverified, too.")
+@option("--strict/--no-strict", default=None, help="Fail where a file is unverified, too.")
 @option(
     "--format",
     "form",
@@ -132,9 +132,8 @@ def _command(ctx: click.Context) -> str:
         if isinstance(parameter, click.Option) and name not in _OF_OUTPUT and _is_written(ctx, name):
             value = ctx.params[name]
             values = value if parameter.multiple else [value]
-            words += [
-                max(parameter.opts, key=len) + ("" if parameter.is_flag else f" {_quoted(one)}") for one in values
-            ]
+            written = parameter.secondary_opts if parameter.is_flag and not value else parameter.opts
+            words += [max(written, key=len) + ("" if parameter.is_flag else f" {_quoted(one)}") for one in values]
     return " ".join(words)
 
 
@@ -153,13 +152,10 @@ def _check(
     command: str,
     debug: bool,
     *,
-    fail_on: str,
-    strict: bool,
     form: str | None,
     outputs: list[tuple[str, Path]],
     no_config: bool,
     extensions: tuple[str, ...],
-    encoding: str | None,
     max_size: int,
     color: str,
     quiet: bool,
@@ -179,15 +175,15 @@ def _check(
     failures: list[str] = []
     bugs: list[str] = []
     applies = settings.Options(use_config=not no_config, **asked)
-    tasks = batch.plan(paths, settings.in_folders(applies), extensions, failures.append, warn)
+    tasks = batch.plan(paths, settings.of_programs(applies), extensions, failures.append, warn)
     overwriting.refuse([path for _, path in outputs], tasks)
     with contextlib.closing(watched(tasks, not quiet)) as awaited:
         checked = batch.check_files(
-            awaited, failures.append, lambda bug: bugs.extend(said_of_bug(bug, debug)), encoding, fail_on, max_size
+            awaited, failures.append, lambda bug: bugs.extend(said_of_bug(bug, debug)), max_size
         )
     name = applies.machine or (tasks[0].settings.name if tasks else profiles.DEFAULT)
     report = batch.report(checked.files, name)
-    status = batch.status(report, strict, fail_on)
+    status = int(checked.failed)
     for failure in failures:
         say(failure)
         status = COULD_NOT_RUN

@@ -31,7 +31,7 @@ class _Narrower(click.Option):
 
 def option(*names: str, **attributes: Any) -> Decorator:
     """An option of click that the environment can give, too: POLARCHECK_FAIL_ON for --fail-on."""
-    written = max((name for name in names if name.startswith("--")), key=len)
+    written = max((name.partition("/")[0] for name in names if name.startswith("--")), key=len)
     return click.option(*names, envvar="POLARCHECK_" + written[2:].upper().replace("-", "_"), **attributes)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterable, Sequence
 from functools import cache
 from pathlib import Path
@@ -39,11 +40,16 @@ class Options(msgspec.Struct, frozen=True):
     max_statements: int | None = None
     max_seconds: float | None = None
     radius_from_comments: bool = False
+    fail_on: str | None = None
+    strict: bool | None = None
+    encoding: str | None = None
+    inline: bool | None = None
 
 
-def in_folders(options: Options) -> Callable[[Path], Settings]:
+def of_programs(options: Options) -> Callable[[str], Settings]:
     """
-    The settings for the programs of a folder; each job file is read once and makes one profile.
+    The settings for a program by its path; each job file is read once and makes one profile. Of a path that ends in a
+    separator they are those of the folder.
 
     The function raises a PolarcheckError that names the option, or the file and key, at fault.
     """
@@ -52,13 +58,17 @@ def in_folders(options: Options) -> Callable[[Path], Settings]:
     of_job: dict[Path | None, Settings] = {}
 
     @cache
-    def in_folder(folder: Path) -> Settings:
-        found = job_in(folder)
+    def in_folder(folder: str) -> Settings:
+        found = job_in(Path(folder))
         if found.path not in of_job:
             of_job[found.path] = _settings(options, found, known)
         return of_job[found.path]
 
-    return in_folder
+    def of_program(path: str) -> Settings:
+        # "-" lies in the working folder, where standard input belongs.
+        return in_folder(os.path.dirname(path))  # noqa: PTH120  once for each of thousands
+
+    return of_program
 
 
 def jobs_in_folders(options: Options) -> Callable[[Path], JobFile]:
@@ -107,7 +117,18 @@ def _settings(options: Options, found: JobFile, known: Rules) -> Settings:
     check_work_offsets(found.job, machine, str(found.path))
     levels = selection.severities(options.severities, options.select, found, known, machine)
     rules = selection.chosen(options.select, options.ignore, found, known, machine)
-    return Settings(name, machine, found.job, rules, levels, _read(options, found, profile))
+    return Settings(
+        name,
+        machine,
+        found.job,
+        rules,
+        levels,
+        _read(options, found, profile),
+        options.fail_on or "warning",
+        bool(options.strict),
+        options.encoding,
+        options.inline is not False,
+    )
 
 
 def _read(options: Options, found: JobFile, profile: profiles.Profile) -> list[Path]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from itertools import chain
-from pathlib import Path
 from typing import Any
 
 import click
@@ -30,9 +29,7 @@ from polarcheck.commands.output import show, warn
 @options.encoding("program")
 @options.max_size
 @options.debug
-def trace(
-    path: str, which: str | None, form: str, no_config: bool, encoding: str | None, max_size: int, **asked: Any
-) -> None:
+def trace(path: str, which: str | None, form: str, no_config: bool, max_size: int, **asked: Any) -> None:
     """
     Show what FILE does, block by block or, with --path, move by move inside polar sections.
 
@@ -47,11 +44,11 @@ def trace(
     from polarcheck.reports.pages import executed
     from polarcheck.time_limit import seconds_for, time_limit
 
-    found = settings.in_folders(settings.Options(use_config=not no_config, **asked))(Path(path).parent)
+    found = settings.of_programs(settings.Options(use_config=not no_config, **asked))(path)
     data = files.read(path, max_size)
     with time_limit(seconds_for(len(data), found.job.run.max_seconds)):
         # One run for each channel: --block-skip asks for one state.
-        runs = check.read(data, found.machine, found.job, files.shown(path), encoding)
+        runs = check.read(data, found.machine, found.job, files.shown(path), found.encoding)
         paths = [(tables["trace"], tables["tool_center"]) for _, tables in runs]
         for of_path in paths if which == "tool" else ():
             unknown = executed.without_radius(*of_path)
