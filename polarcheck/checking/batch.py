@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import gc
 import os
-from collections.abc import Callable, Iterable, Sequence
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
 import msgspec
 
 from polarcheck import __version__
 from polarcheck.checking import check
 from polarcheck.checking.finding import FileReport, Producer, Report, Summary
+from polarcheck.checking.kept import Kept
 from polarcheck.checking.settings import Settings
 from polarcheck.checking.tables import Tables
 from polarcheck.errors import SourceError, TooHardError
@@ -31,17 +33,36 @@ class Task(msgspec.Struct, frozen=True):
     settings: Settings
 
 
+class Outcome(msgspec.Struct, frozen=True):
+    """
+    What came of one file: its report with the lines that findings stand in, or why there is none.
+
+    called: keys of the offsets that it calls, where it has a job with tools. failed: whether it fails, by its own
+    settings. failure: in one line, why it could not be checked. bug: what polarcheck itself did wrong.
+    short_of_memory: where that is why; with more it may be checked.
+    """
+
+    report: FileReport | None = None
+    lines: dict[int, str] = {}
+    called: frozenset[str] = frozenset()
+    failed: bool = False
+    failure: str = ""
+    bug: Exception | None = None
+    short_of_memory: bool = False
+
+
 class Checked(msgspec.Struct, frozen=True):
     """
     The reports of the files that could be read, and by path and number the lines that their findings stand in.
 
-    called: keys of the offsets that any of the programs calls, where it has a job with tools. stopped: by what the
-    check was interrupted; the files that were finished before that are here. failed: whether any of them fails, by the
-    severity that its own settings name and, where these are strict, by being unverified.
+    Many reports are no list in memory, but can be gone through as often as one likes. called: keys of the offsets that
+    any of the programs calls, where it has a job with tools. stopped: by what the check was interrupted; the files that
+    were finished before that are here. failed: whether any of them fails, by the severity that its own settings name
+    and, where these are strict, by being unverified.
     """
 
-    files: list[FileReport]
-    lines: dict[str, dict[int, str]]
+    files: Sequence[FileReport]
+    lines: Mapping[str, Mapping[int, str]]
     called: set[str]
     stopped: KeyboardInterrupt | None = None
     failed: bool = False
@@ -85,41 +106,77 @@ def check_files(
     most: int = files.LARGEST,
 ) -> Checked:
     """
-    Check one file after the other; what is wrong with one costs that file only.
+    Check one file after the other in this process; what is wrong with one costs that file only.
 
     tell is told, in one line, of those that cannot be read or are too hard, bug of what polarcheck itself does wrong.
     most: bytes of a file; a larger one is not read.
     """
-    reports: list[FileReport] = []
-    lines: dict[str, dict[int, str]] = {}
-    called: set[str] = set()
-    stopped = None
-    failed = False
+    return gather(one_by_one(tasks, most), tell, bug)
+
+
+def one_by_one(tasks: Iterable[Task], most: int = files.LARGEST) -> Iterator[Outcome]:
+    """What comes of each file, checked in this process when it is asked for."""
+    for number, task in enumerate(tasks):
+        if number:
+            forget()
+        yield outcome(task, most)
+
+
+def forget() -> None:
+    """
+    Free what the last file has left behind: the command line keeps the collector off.
+
+    It is young, so that to find it costs nothing of what is older. Without it no table of any file would ever be freed.
+    """
+    gc.collect(0)
+
+
+def gather(
+    outcomes: Iterable[Outcome],
+    tell: Tell,
+    bug: Callable[[Exception], None],
+    show: Callable[[FileReport, Mapping[int, str]], None] | None = None,
+) -> Checked:
+    """
+    All that came of the files, in their order, up to an interrupt.
+
+    tell is told of failures in one line, bug of what polarcheck itself did wrong. show gets each report, with the lines
+    of its findings, as soon as it is its turn.
+    """
+    kept, called, failed, stopped = Kept(), set[str](), False, None
     try:
-        for number, task in enumerate(tasks):
-            if number:
-                # The command line keeps the collector off. What the last file has left behind is young, then: to
-                # find it costs nothing of what is older, and without it no table of any file would ever be freed.
-                gc.collect(0)
-            try:
-                found, source, offsets = _check(task, files.read(task.path, most))
-            except (SourceError, TooHardError) as error:
-                tell(str(error))
-            except MemoryError:
-                tell(f"{files.shown(task.path)}: there is not enough memory to check it")
-            except Exception as error:
-                error.add_note(f"while checking {files.shown(task.path)}")
-                bug(error)
-            else:
-                verdict = check.verdict(found.findings, found.not_evaluated, task.settings.fail_on)
-                reports.append(msgspec.structs.replace(found, machine=task.settings.name, verdict=verdict))
-                failed = failed or fails(reports[-1], task.settings)
-                if found.findings:
-                    lines[found.path] = _lines(source, found)
-                called |= offsets
+        for found in outcomes:
+            if found.failure:
+                tell(found.failure)
+            if found.bug is not None:
+                bug(found.bug)
+            if found.report is not None:
+                kept.add(found.report, found.lines)
+                called |= found.called
+                failed = failed or found.failed
+                if show is not None:
+                    show(found.report, found.lines)
     except KeyboardInterrupt as stop:
         stopped = stop
-    return Checked(reports, lines, called, stopped, failed)
+    return Checked(kept.files, kept.lines, called, stopped, failed)
+
+
+def outcome(task: Task, most: int = files.LARGEST, data: bytes | None = None) -> Outcome:
+    """What comes of the check of a file, or of its bytes where somebody else has read them; nothing is raised."""
+    try:
+        found, source, called = _check(task, files.read(task.path, most) if data is None else data)
+    except (SourceError, TooHardError) as error:
+        return Outcome(failure=str(error))
+    except MemoryError:
+        told = f"{files.shown(task.path)}: there is not enough memory to check it"
+        return Outcome(failure=told, short_of_memory=True)
+    except Exception as error:
+        error.add_note(f"while checking {files.shown(task.path)}")
+        return Outcome(bug=error)
+    verdict = check.verdict(found.findings, found.not_evaluated, task.settings.fail_on)
+    report = msgspec.structs.replace(found, machine=task.settings.name, verdict=verdict)
+    lines = _lines(source, found) if found.findings else {}
+    return Outcome(report, lines, frozenset(called), fails(report, task.settings))
 
 
 def fails(report: FileReport, settings: Settings) -> bool:
@@ -151,20 +208,24 @@ def _lines(text: Source, found: FileReport) -> dict[int, str]:
     return {line: text.line_text(line) for line in sorted(numbers) if line <= len(text.line_starts)}
 
 
-def report(reports: list[FileReport], machine: str) -> Report:
+def report(reports: Sequence[FileReport], machine: str) -> Report:
     """The report over all files; machine: what a report without files is for."""
-    severities = [finding.severity for file in reports for finding in file.findings]
-    verdicts = [file.verdict for file in reports]
-    machines = {file.machine for file in reports} or {machine}
+    severities, verdicts, machines, silenced = Counter[str](), Counter[str](), set[str](), 0
+    for file in reports:  # once: it may not lie in memory
+        severities.update(finding.severity for finding in file.findings)
+        verdicts[file.verdict] += 1
+        machines.add(file.machine)
+        silenced += len(file.silenced)
+    machines = machines or {machine}
     summary = Summary(
         files=len(reports),
-        errors=severities.count("error"),
-        warnings=severities.count("warning"),
-        notes=severities.count("note"),
-        silenced=sum(len(file.silenced) for file in reports),
-        passed=verdicts.count("pass"),
-        unverified=verdicts.count("unverified"),
-        fail=verdicts.count("fail"),
+        errors=severities["error"],
+        warnings=severities["warning"],
+        notes=severities["note"],
+        silenced=silenced,
+        passed=verdicts["pass"],
+        unverified=verdicts["unverified"],
+        fail=verdicts["fail"],
     )
     return Report(
         schema=SCHEMA,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import enum
+from collections.abc import Sequence
 from typing import Any
 
 import msgspec
@@ -175,5 +176,5 @@ class Report(msgspec.Struct, frozen=True, kw_only=True):
     schema: int
     tool: Producer
     machine: str | None
-    files: list[FileReport]
+    files: Sequence[FileReport]
     summary: Summary

@@ -100,7 +100,7 @@ class Commands(click.Group):
 def run() -> None:
     """The console script: never returns."""
     # Imports make thousands of objects that stay; looking among them for circles costs a tenth of a small check.
-    # Between files it is asked for (batch.check_files).
+    # Between files it is asked for (batch.forget).
     gc.disable()
     # There is no linear algebra here, and starting its threads is a fifth of the import of NumPy.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
