@@ -16,6 +16,7 @@ import pytest
 from programs import machine_of, report_of, said, tables_of
 
 from polarcheck.checking import message, tables
+from polarcheck.checking.allows import Allows
 from polarcheck.checking.engine import LISTED, Engine
 from polarcheck.checking.finding import ERROR, NOTE, WARNING, Finding
 from polarcheck.checking.other_machine import OtherMachine
@@ -48,6 +49,9 @@ M30
 def made() -> Tables:
     found = tables_of(PROGRAM)
     found.give("other_machine", OtherMachine(found))
+    allows = Allows(found["text"], {rule.name: rule.group for rule in RULES.values()})
+    found.give("allows", allows)
+    found.give("unused_allows", allows.unused((), RULES))
     return found
 
 
@@ -390,7 +394,8 @@ def test_each_rule_is_asked_once(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Rule, "hits", noted)
     report_of("G98 G0 X60. C0\nG12.1\nG1 X40. F100\nG13.1\n")
     off = {name for name, rule in RULES.items() if rule.level(machine_of().severities) == "off"}
-    assert sorted(order) == sorted(set(RULES) - off)
+    of_allows = {name for name, rule in RULES.items() if rule.group == "silence"}
+    assert sorted(order) == sorted(set(RULES) - off - of_allows)
 
 
 def test_advice_is_given_where_somebody_names_its_severity() -> None:

@@ -191,7 +191,7 @@ def _check(task: Task, data: bytes) -> tuple[FileReport, Source, set[str]]:
     with time_limit(seconds_for(len(data), settings.job.run.max_seconds)):
         found = check.read(data, settings.machine, settings.job, path, settings.encoding)
         text: Text = found[0][1]["text"]
-        report = check.check_runs(found, settings.rules, settings.severities)
+        report = check.check_runs(found, settings.rules, settings.severities, settings.inline)
         return report, text.source, _offsets(found) if settings.job.tools else set()
 
 

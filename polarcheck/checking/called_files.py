@@ -5,34 +5,40 @@ another channel of this file, where they are.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import msgspec
 
-from polarcheck.checking.finding import Finding
+from polarcheck.checking.finding import Finding, Silenced
 from polarcheck.table.trace import Trace
 
+#: What a finding is at the block of the file that calls: that may allow it.
+Answered = Callable[[Finding, int], Finding]
 
-def in_the_file(findings: Sequence[Finding], trace: Trace) -> list[Finding]:
+
+def in_the_file(findings: Sequence[Finding], trace: Trace, answered: Answered) -> list[Finding]:
     """
     Findings in a called program that lies in another file are shown at the block that calls it.
 
-    What its text alone has wrong is left to a check of that file; what follows from that is shown for itself.
+    What its text alone has wrong is left to a check of that file; what follows from that is shown for itself, as is
+    what follows from a finding that the calling block allows.
     """
     if not trace.text.source.parts:
         return list(findings)
     found: list[Finding] = []
     for finding in findings:
-        following = in_the_file(finding.follows, trace)
-        shown = _shown(finding, trace)
-        if shown is None:
+        following = in_the_file(finding.follows, trace, answered)
+        shown = _shown(finding, trace, answered)
+        if shown is not None and isinstance(shown, Silenced):
+            found += [msgspec.structs.replace(shown, follows=[]), *following]
+        elif shown is None:
             found += following
         else:
             found.append(msgspec.structs.replace(shown, follows=following))
     return found
 
 
-def _shown(finding: Finding, trace: Trace) -> Finding | None:
+def _shown(finding: Finding, trace: Trace, answered: Answered) -> Finding | None:
     source = trace.text.source
     part = source.part_of(finding.line)
     if part is None:
@@ -40,21 +46,22 @@ def _shown(finding: Finding, trace: Trace) -> Finding | None:
     call = _call_of(trace, finding.line)
     if call is None:
         return None
-    line, block = call
+    line, block, text_of_block = call
     text = source.line_text(line)
     section_line = finding.section_line
     if source.is_own(part):
         return _at(finding, part[1], source.part_of(section_line) if section_line else None)
-    return msgspec.structs.replace(
+    shown = msgspec.structs.replace(
         finding,
         message=f"in {part[0]}, line {part[1]}, {finding.block}: {finding.message}",
         line=line,
         end_line=line,
         column=1 + len(text) - len(text.lstrip()),
         end_column=1 + len(text.rstrip()),
-        block=block,
+        block=text_of_block,
         section_line=None if section_line and source.part_of(section_line) else section_line,
     )
+    return answered(shown, block)
 
 
 def _at(finding: Finding, line: int, section: tuple[str, int] | None) -> Finding:
@@ -64,8 +71,12 @@ def _at(finding: Finding, line: int, section: tuple[str, int] | None) -> Finding
     return msgspec.structs.replace(finding, line=line, end_line=end_line, section_line=section_line)
 
 
-def _call_of(trace: Trace, line: int) -> tuple[int, str] | None:
-    """The line and text of the block of this file that ran last before a line of a called program; None if none did."""
+def _call_of(trace: Trace, line: int) -> tuple[int, int, str] | None:
+    """
+    The line, number and text of the block of this file that ran last before a line of a called program.
+
+    None where none did.
+    """
     rows = (trace.line == line).nonzero()[0]
     if not len(rows):
         return None
@@ -74,4 +85,4 @@ def _call_of(trace: Trace, line: int) -> tuple[int, str] | None:
     if not len(own):
         return None
     found = int(trace.line[own[-1]])
-    return found, trace.text.source.line_text(found).strip()
+    return found, int(trace.run.block[own[-1]]), trace.text.source.line_text(found).strip()

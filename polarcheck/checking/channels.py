@@ -15,6 +15,7 @@ from polarcheck.reading.channels import stands_in
 from polarcheck.reading.source import Source
 
 Part = TypeVar("Part", NotEvaluated, PolarSection)
+Found = TypeVar("Found", bound=Finding)
 
 _Reports = Sequence[tuple[Source, FileReport]]
 
@@ -34,17 +35,18 @@ def united(reports: _Reports) -> FileReport:
         blocks=sum(report.blocks for _, report in reports),
         sections=sum(report.sections for _, report in reports),
         polar_sections=sorted(sections, key=lambda section: section.line),
-        findings=list(_once(reports)),
+        findings=list(_once(reports, attrgetter("findings"))),
+        silenced=list(_once(reports, attrgetter("silenced"))),
         not_evaluated=list(_each(reports, attrgetter("not_evaluated"))),
         looked_at=max((report.looked_at for _, report in reports), key=len),
     )
 
 
-def _once(reports: _Reports) -> Iterator[Finding]:
-    shown = Counter(_key(found) for _, report in reports for found in report.findings)
+def _once(reports: _Reports, findings: Callable[[FileReport], Sequence[Found]]) -> Iterator[Found]:
+    shown = Counter(_key(found) for _, report in reports for found in findings(report))
     told: set[tuple[object, ...]] = set()
     for source, report in reports:
-        for found in report.findings:
+        for found in findings(report):
             key = _key(found)
             if key in told:
                 continue
@@ -56,7 +58,7 @@ def _once(reports: _Reports) -> Iterator[Finding]:
                 yield found if shown[key] == len(reports) else _of_channel(found, source.channel)
 
 
-def _of_channel(found: Finding, name: str) -> Finding:
+def _of_channel(found: Found, name: str) -> Found:
     return replace(found, channel=name, follows=[_of_channel(one, name) for one in found.follows])
 
 

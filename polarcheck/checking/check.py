@@ -6,6 +6,7 @@ import math
 from collections import Counter
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from itertools import groupby
+from typing import TypeVar
 
 import msgspec
 
@@ -16,9 +17,11 @@ from polarcheck.checking.finding import ERROR, SEVERITIES, FileReport, Finding, 
 from polarcheck.checking.not_evaluated import unevaluated, unexecuted
 from polarcheck.checking.other_machine import OtherMachine
 from polarcheck.checking.polar_sections import polar_sections
-from polarcheck.checking.rule import Hits, Rule
+from polarcheck.checking.rule import Hits, Rule, load_all
+from polarcheck.checking.silence import UNUSED, Used, divided, mentions_allow
 from polarcheck.checking.tables import Tables
 from polarcheck.errors import TooHardError
+from polarcheck.execution.run import is_code
 from polarcheck.execution.runs import runs
 from polarcheck.machines.job import Job
 from polarcheck.machines.machine import Machine
@@ -49,22 +52,70 @@ def check_file(
     path: str = "-",
     encoding: str | None = None,
     severities: Mapping[str, str] | None = None,
+    inline: bool = True,
 ) -> FileReport:
-    """All findings of the rules in one file, in the order of its lines; severities override those of the rules."""
-    return check_runs(read(data, machine, job, path, encoding), rules, severities)
+    """
+    All findings of the rules in one file, in the order of its lines; severities override those of the rules.
+
+    inline: whether the allow comments of the program are heeded.
+    """
+    return check_runs(read(data, machine, job, path, encoding), rules, severities, inline)
 
 
 def check_runs(
-    found: Sequence[tuple[str, Tables]], rules: Sequence[Rule], severities: Mapping[str, str] | None = None
+    found: Sequence[tuple[str, Tables]],
+    rules: Sequence[Rule],
+    severities: Mapping[str, str] | None = None,
+    inline: bool = True,
 ) -> FileReport:
     """All findings of the rules in the runs of one file, of each of its channels."""
     channels = [list(runs_of_one) for _, runs_of_one in groupby(found, lambda run: _source(run[1]).channel)]
-    reports = [(_source(one[0][1]), _check_channel(one, rules, severities)) for one in channels]
+    checked = [_check_channel(one, rules, severities, inline) for one in channels]
+    # What no run of any channel has needed is known only now.
+    used = set[Used]().union(*(engine.used for _, engines in checked for engine in engines))
+    reports = [(_source(engine.tables), _with_unused(report, engine, rules, used)) for report, (engine, *_) in checked]
     if len(reports) == 1:
         return reports[0][1]
     report = united(reports)
     findings = in_order(report.findings)
     return msgspec.structs.replace(report, findings=findings, verdict=verdict(findings, report.not_evaluated))
+
+
+def _with_unused(report: FileReport, engine: Engine, rules: Sequence[Rule], used: Collection[Used]) -> FileReport:
+    """The report with what is said of allow comments without effect. used: those that have one in any run."""
+    asked = [rule for rule in rules if UNUSED in rule.parameters and rule.level(engine.severities) != "off"]
+    if engine.allows is None or not asked:
+        return report
+    tables = engine.tables
+    tables.give(UNUSED, engine.allows.unused(used, _could_silence(engine, report)))
+    findings, silenced = divided(Engine(tables, engine.severities, asked, allows=engine.allows).findings())
+    findings = in_order([*report.findings, *findings])
+    return msgspec.structs.replace(
+        report,
+        findings=findings,
+        silenced=in_order([*report.silenced, *silenced]),
+        verdict=verdict(findings, report.not_evaluated),
+    )
+
+
+def _could_silence(engine: Engine, report: FileReport) -> set[str]:
+    """
+    The rules of which something would have been found: an allow comment for another one has no effect for now.
+
+    Those that the machine has off are no reason to keep silent about the others of a group. A program that returns,
+    and has no section of its own, is judged where it is called.
+    """
+    tables = engine.tables
+    machine: Machine = tables["machine"]
+    words = tables["words"]
+    missing = {one.rule for one in report.not_evaluated if one.matters}
+    returns = (
+        is_code(words, machine.macro.program_returns).any() and not is_code(words, machine.m_codes.program_end).any()
+    )
+    if "all" in missing or (returns and not len(tables["sections"])):
+        return set()
+    off = {rule.name for rule in load_all().values() if rule.level(machine.severities) == "off"}
+    return {*engine.rules, *off} - missing
 
 
 def _source(tables: Tables) -> source.Source:
@@ -74,20 +125,20 @@ def _source(tables: Tables) -> source.Source:
 
 
 def _check_channel(
-    found: Sequence[tuple[str, Tables]], rules: Sequence[Rule], severities: Mapping[str, str] | None
-) -> FileReport:
-    """The findings in the runs of one channel; what hangs on its text alone is looked for once."""
+    found: Sequence[tuple[str, Tables]], rules: Sequence[Rule], severities: Mapping[str, str] | None, inline: bool
+) -> tuple[FileReport, list[Engine]]:
+    """The findings in the runs of one channel, and what found them; what hangs on its text alone is looked for once."""
     (state, tables), *more = found
-    engine = engine_of(tables, rules, severities)
+    engine = engine_of(tables, rules, severities, inline=inline)
     first = report_of(engine)
     if not more:
-        return first
+        return first, [engine]
     ((other, others),) = more
     of_text = {rule.name: engine.hits(rule) for rule in engine.rules.values() if rule.of_text}
     # A program that one run alone calls stands in the text of that run alone.
     known = of_text if others["text"] is tables["text"] else None
-    second = report_of(engine_of(others, rules, severities, known))
-    return _merged((state, first), (other, second), of_text)
+    again = engine_of(others, rules, severities, known, inline)
+    return _merged((state, first), (other, report_of(again)), of_text), [engine, again]
 
 
 def engine_of(
@@ -95,23 +146,35 @@ def engine_of(
     rules: Sequence[Rule],
     severities: Mapping[str, str] | None = None,
     known: Mapping[str, Hits] | None = None,
+    inline: bool = True,
 ) -> Engine:
-    """The rules that are not off, over the tables of one run. known: what is known already of some of them."""
+    """
+    The rules that are not off, over the tables of one run.
+
+    known: what is known already of some of them. inline: whether allow comments are heeded; without any there is
+    nothing to ask the rules about them.
+    """
     machine: Machine = tables["machine"]
     levels = {**machine.severities, **(severities or {})}
     tables.give("other_machine", OtherMachine(tables))
-    asked = [rule for rule in rules if rule.level(levels) != "off"]
+    asked = [rule for rule in rules if rule.level(levels) != "off" and UNUSED not in rule.parameters]
     of_dialect = [rule for rule in asked if "dialect" in rule.parameters]
     if of_dialect and tables["dialect"].recognised is not None:
         # Where that is told, nothing that the words of another language seem to say is worth telling.
         asked = of_dialect
-    return Engine(tables, levels, asked, known)
+    if inline and mentions_allow(tables["text"]):
+        from polarcheck.checking.allows import Allows  # most files have none
+
+        allows = Allows(tables["text"], {rule.name: rule.group for rule in load_all().values()})
+        tables.give("allows", allows)
+        return Engine(tables, levels, asked, known, allows)
+    return Engine(tables, levels, [rule for rule in asked if "allows" not in rule.parameters], known)
 
 
 def report_of(engine: Engine) -> FileReport:
     """All that is found in one run, and what of it could not be evaluated."""
     tables, trace = engine.tables, engine.trace
-    findings = in_order(in_the_file(engine.findings(), trace))
+    findings, silenced = divided(in_order(in_the_file(engine.findings(), trace, engine.answered)))
     not_evaluated = [*unexecuted(tables)]
     for rule in engine.rules.values():
         try:
@@ -131,6 +194,7 @@ def report_of(engine: Engine) -> FileReport:
         findings=findings,
         not_evaluated=not_evaluated,
         looked_at=_looked_at(tables),
+        silenced=silenced,
     )
 
 
@@ -142,6 +206,7 @@ def _looked_at(tables: Tables) -> list[str]:
 
 #: What tells a finding from others of the same file.
 _Place = tuple[str, int, int]
+Found = TypeVar("Found", bound=Finding)
 
 
 def _merged(first: tuple[str, FileReport], second: tuple[str, FileReport], of_text: Collection[str]) -> FileReport:
@@ -151,9 +216,11 @@ def _merged(first: tuple[str, FileReport], second: tuple[str, FileReport], of_te
     of_text: the rules that hang on the text alone, so that both runs show the same of them.
     """
     (skip_off, off), (skip_on, on) = first, second
-    shown_off, shown_on = ({_place(found) for found in _all(report.findings)} for report in (off, on))
+    shown_off, shown_on = (
+        {_place(found) for found in _all([*report.findings, *report.silenced])} for report in (off, on)
+    )
 
-    def told(found: Finding, others: set[_Place], state: str) -> Finding:
+    def told(found: Found, others: set[_Place], state: str) -> Found:
         # What stands by itself in the first run is no second time listed under what only the other one shows.
         own = (one for one in found.follows if others is shown_on or _place(one) not in others)
         follows = [told(one, others, state) for one in own]
@@ -170,6 +237,8 @@ def _merged(first: tuple[str, FileReport], second: tuple[str, FileReport], of_te
         shown = told(found, shown_on, skip_off)
         findings.append(with_following(shown, [*shown.follows, *more]))
     findings += [told(found, shown_off, skip_on) for found in on.findings if _place(found) not in shown_off]
+    silenced = [told(found, shown_on, skip_off) for found in off.silenced]
+    silenced += [told(found, shown_off, skip_on) for found in on.silenced if _place(found) not in shown_off]
     not_evaluated = list(dict.fromkeys((*off.not_evaluated, *on.not_evaluated)))
     findings = in_order(findings)
     return msgspec.structs.replace(
@@ -181,6 +250,7 @@ def _merged(first: tuple[str, FileReport], second: tuple[str, FileReport], of_te
         not_evaluated=not_evaluated,
         looked_at=max(off.looked_at, on.looked_at, key=len),
         verdict=verdict(findings, not_evaluated),
+        silenced=in_order(silenced),
     )
 
 

@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import bisect
+import contextlib
 from collections.abc import Iterable, Mapping
 from functools import cached_property
+from typing import TYPE_CHECKING, TypeVar
 
 import msgspec
 import numpy as np
 
-from polarcheck.arrays import Rows
+from polarcheck.arrays import Mask, Rows
 from polarcheck.checking import places
-from polarcheck.checking.finding import NOTE, SEVERITIES, Finding, NotEvaluated, Severity, Undecided
+from polarcheck.checking.finding import NOTE, SEVERITIES, Finding, NotEvaluated, Severity, Silenced, Undecided
 from polarcheck.checking.places import PLACES, Place
 from polarcheck.checking.rule import Hits, Rule
+from polarcheck.checking.silence import Used, allowed
 from polarcheck.checking.tables import OF_CAUSE, Tables
 from polarcheck.errors import TooHardError
 from polarcheck.execution.programs import name_at_head
@@ -22,20 +25,26 @@ from polarcheck.machines.codes import code_numbers, code_set
 from polarcheck.reading.excerpt import shortened
 from polarcheck.table.trace import Trace
 
+if TYPE_CHECKING:
+    from polarcheck.checking.allows import Allows
+
 #: More findings of one rule in one file are counted, not listed: nobody reads them, and hostile files stay bounded.
 LISTED = 1000
 #: Of the name of a program [characters].
 _NAME_LENGTH = 40
+Found = TypeVar("Found", bound=Finding)
 
 
 class _Listed(msgspec.Struct, frozen=True):
     """
     The findings of one rule. index: the elements hit, sorted. finding: for each of them the finding that stands for it.
-    cause: for each finding the rule and the element that it follows from; None where it stands alone.
+    silent: for each of them whether an allow comment silences that. cause: for each finding the rule and the element
+    that it follows from; None where it stands alone.
     """
 
     index: Rows
     finding: Rows
+    silent: Mask
     findings: list[Finding]
     cause: list[tuple[str, int] | None]
 
@@ -45,7 +54,8 @@ class Engine:
     The hits of one run, each rule run once.
 
     severities: by rule, where it is not the rule's own. rules: those that are asked; none that is off. known: the hits
-    of some of them. heads: the block and the name of each program.
+    of some of them. allows: the allow comments that are heeded. used: their names that have silenced something, each
+    with the position of its comment. heads: the block and the name of each program.
     """
 
     def __init__(
@@ -54,13 +64,18 @@ class Engine:
         severities: Mapping[str, str],
         rules: Iterable[Rule],
         known: Mapping[str, Hits] | None = None,
+        allows: Allows | None = None,
     ) -> None:
         self.tables = tables
         self.trace: Trace = tables["trace"]
         self.severities = severities
         self.rules = {rule.name: rule for rule in rules}
         self.unlisted: list[NotEvaluated] = []
+        self.allows = allows
+        self.used: set[Used] = set()
         self._hits: dict[str, Hits] = dict(known or {})
+        self._found: dict[str, _Listed | None] = {}
+        self._asking: set[str] = set()
         self.heads = program_heads(self.trace)
 
     def hits(self, rule: Rule) -> Hits:
@@ -95,6 +110,8 @@ class Engine:
 
     def _all_listed(self) -> dict[str, _Listed] | None:
         """The findings by rule; None where one was given up only now, so that nothing follows from it any more."""
+        self._found.clear()
+        self._asking.clear()
         listed = {}
         for rule in self.rules.values():
             try:
@@ -106,13 +123,31 @@ class Engine:
                 listed[rule.name] = found
         return listed
 
+    def answered(self, finding: Finding, block: int) -> Finding:
+        """A finding that is shown at a block; silenced where that allows it."""
+        if self.allows is None or isinstance(finding, Silenced):
+            return finding
+        at = np.array([block])
+        if not self.allows.silenced(finding.rule, at)[0]:
+            return finding
+        self.used |= self.allows.used(finding.rule, at)
+        return allowed(finding, self.allows.reason(finding.rule, block))
+
     def _listed(self, rule: Rule) -> _Listed | None:
+        if rule.name not in self._found:
+            self._found[rule.name] = self._looked_for(rule)
+        return self._found[rule.name]
+
+    def _looked_for(self, rule: Rule) -> _Listed | None:
         hits = self.hits(rule)
         index = np.flatnonzero(hits.mask)
         if not len(index):
             return None
+        self._asking.add(rule.name)
         cause, element = self._causes(rule, index)
+        self._asking.remove(rule.name)
         finding = np.zeros(len(index), np.int64)
+        silent = np.zeros(len(index), bool)
         findings: list[Finding] = []
         causes: list[tuple[str, int] | None] = []
         for follows in (False, True):
@@ -120,15 +155,47 @@ class Engine:
             if not len(at):
                 continue
             chosen, group, count = self._merged(rule, index[at])
-            finding[at] = np.minimum(group, LISTED - 1) + len(findings)
-            for number, runs in zip(chosen[:LISTED].tolist(), count.tolist(), strict=False):
-                first = at[number]
-                place = PLACES[rule.over](self.tables, int(index[first]))
-                findings.append(self._finding(rule, place, hits, runs))
-                causes.append((self._names[cause[first]], int(element[first])) if follows else None)
-            if len(chosen) > LISTED:
-                self.unlisted.append(_unlisted(rule, len(chosen)))
-        return _Listed(index, finding, findings, causes)
+            is_silent = self._silenced(rule, index[at[chosen]])
+            silent[at] = is_silent[group]
+            for quiet in (False, True) if is_silent.any() else (False,):
+                # Each for itself: what is allowed must not take the place of what is told in a list that is cut.
+                own = np.flatnonzero(is_silent == quiet)
+                number_of = np.full(len(chosen), -1)
+                number_of[own] = np.minimum(np.arange(len(own)), LISTED - 1) + len(findings)
+                finding[at[is_silent[group] == quiet]] = number_of[group[is_silent[group] == quiet]]
+                for number, runs in zip(chosen[own][:LISTED].tolist(), count[own].tolist(), strict=False):
+                    first = at[number]
+                    place = PLACES[rule.over](self.tables, int(index[first]))
+                    found = self._finding(rule, place, hits, runs)
+                    findings.append(self._allowed(found, place) if quiet else found)
+                    is_one_more = follows and not quiet
+                    causes.append((self._names[cause[first]], int(element[first])) if is_one_more else None)
+                if len(own) > LISTED:
+                    self.unlisted.append(_unlisted(rule, len(own)))
+        return _Listed(index, finding, silent, findings, causes)
+
+    def _silenced(self, rule: Rule, index: Rows) -> Mask:
+        """Which of these elements an allow comment silences, where they stand."""
+        if self.allows is None or not self.allows.names(rule.name):
+            return np.zeros(len(index), bool)
+        blocks = places.blocks(rule.over, self.tables)[index]
+        found = self.allows.silenced(rule.name, blocks)
+        self.used |= self.allows.used(rule.name, blocks)
+        return found
+
+    def _allowed(self, finding: Finding, place: Place) -> Finding:
+        return finding if self.allows is None else allowed(finding, self.allows.reason(finding.rule, place.block))
+
+    def _told(self, rule: Rule, index: Rows) -> Rows:
+        """Those of the elements of a rule that are told: none that an allow comment silences."""
+        if self.allows is None or not len(index) or not self.allows.names(rule.name):
+            return index
+        if rule.name not in self._asking:
+            with contextlib.suppress(TooHardError):  # it is given up when it is its turn
+                found = self._listed(rule)
+                return index if found is None else found.index[~found.silent]
+        # What its own findings follow from hangs on the one that asks: each element counts for itself.
+        return index[~self.allows.silenced(rule.name, places.blocks(rule.over, self.tables)[index])]
 
     @cached_property
     def _names(self) -> list[str]:
@@ -147,7 +214,7 @@ class Engine:
                 if name not in self.rules:
                     continue
                 other = self.rules[name]
-                hit = np.flatnonzero(self.hits(other).mask)
+                hit = self._told(other, np.flatnonzero(self.hits(other).mask))
                 if not len(hit):
                     continue
                 try:
@@ -285,7 +352,7 @@ def with_following(finding: Finding, following: list[Finding]) -> Finding:
     return msgspec.structs.replace(finding, severity=severity, follows=in_order(following))
 
 
-def in_order(findings: Iterable[Finding]) -> list[Finding]:
+def in_order(findings: Iterable[Found]) -> list[Found]:
     """In the order of the lines; at one place the worst first."""
     return sorted(findings, key=lambda found: (found.line, found.column, -SEVERITIES[found.severity], found.rule))
 

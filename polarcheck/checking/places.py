@@ -50,6 +50,8 @@ def blocks(over: str, tables: Tables) -> Rows:
         return np.array([fault.block for fault in trace.run.faults], np.int64)
     if over == "files":
         return np.zeros(1, np.int64)
+    if over == "allows":
+        return np.asarray(tables["allows"].block)
     found: Rows = getattr(trace.text, over).block
     return found
 
@@ -135,6 +137,13 @@ def of_fault(tables: Tables, index: int) -> Place:
     return Place(fault.start, fault.end, fault.block, row if fault.row >= 0 else -1, index)
 
 
+def of_allow(tables: Tables, index: int) -> Place:
+    """An allow comment."""
+    trace, allows = tables["trace"], tables["allows"]
+    block = int(allows.block[index])
+    return Place(int(allows.start[index]), int(allows.end[index]), block, int(trace.row_of_block[block]), index)
+
+
 def _of_span(name: str) -> Callable[[Tables, int], Place]:
     def place(tables: Tables, index: int) -> Place:
         trace: Trace = tables["trace"]
@@ -160,6 +169,7 @@ PLACES: dict[str, Callable[[Tables, int], Place]] = {
     "programs": of_program,
     "faults": of_fault,
     "files": of_file,
+    "allows": of_allow,
     **{name: _of_span(name) for name in ("comments", "strays", "foreign", "prose", "dots", "outside")},
 }
 

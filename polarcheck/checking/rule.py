@@ -24,6 +24,8 @@ if TYPE_CHECKING:
     from polarcheck.arrays import Floats as Floats
     from polarcheck.arrays import Mask as Mask
     from polarcheck.arrays import States
+    from polarcheck.checking.allows import Allows as Allows
+    from polarcheck.checking.allows import UnusedAllows as UnusedAllows
     from polarcheck.checking.macro_faults import Faults as Faults
     from polarcheck.checking.other_machine import OtherMachine as OtherMachine
     from polarcheck.machines.job import Job as Job
@@ -81,6 +83,7 @@ OVER = (
     "programs",
     "faults",
     "files",
+    "allows",
 )
 
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import click
 
-from polarcheck.commands import options
+from polarcheck.commands import options, silencing
 from polarcheck.commands.exit_codes import BUG, COULD_NOT_RUN
 from polarcheck.commands.options import many, option
 from polarcheck.commands.output import COLUMNS, columns, in_color, said_of_bug, say, say_lines, show, warn
@@ -81,6 +81,7 @@ def _outputs(ctx: click.Context, parameter: click.Parameter, values: tuple[str, 
     metavar="FORMAT:FILE",
     help="A report in a file, too.",
 )
+@silencing.inline
 @options.config
 @options.no_config
 @option("--block-skip", type=click.Choice(["off", "on", "both"]), help="Of blocks with /; both is the default.")

@@ -1,0 +1,1 @@
+"""Allow comments, with which a program answers for a finding."""

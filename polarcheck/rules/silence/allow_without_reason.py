@@ -1,0 +1,34 @@
+from __future__ import annotations
+
+from polarcheck.checking.rule import NOTE, Allows, Mask, rule
+
+
+@rule(NOTE, "say behind the names why this is right: who reads it next must decide whether it still is", over="allows")
+def allow_without_reason(allows: Allows) -> Mask:
+    """
+    Allow comment without a reason.
+
+    The comment is heeded. But whoever finds it in a year cannot tell a proven exception from a finding that somebody
+    wanted to be rid of. A few words behind the names are enough: PROVEN ON L7, STOCK IS 40.
+
+    Source: polarcheck, docs/silence.md.
+
+    Bad:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. F200
+        G0 C5. (POLARCHECK ALLOW RAPID-IN-POLAR)   (expect: allow-without-reason)
+        G1 C-5.
+        G13.1
+
+    Good:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. F200
+        G0 C5. (POLARCHECK ALLOW RAPID-IN-POLAR PROVEN ON L7)
+        G1 C-5.
+        G13.1
+    """
+    return allows.is_own & allows.silences & ~allows.has_reason
