@@ -60,6 +60,7 @@ def _shown(finding: Finding, trace: Trace, answered: Answered) -> Finding | None
         end_column=1 + len(text.rstrip()),
         block=text_of_block,
         section_line=None if section_line and source.part_of(section_line) else section_line,
+        fix=None,
     )
     return answered(shown, block)
 
@@ -68,7 +69,7 @@ def _at(finding: Finding, line: int, section: tuple[str, int] | None) -> Finding
     """A finding at a line of the file itself, with the line of its G12.1."""
     end_line = line + finding.end_line - finding.line
     section_line = section[1] if section else finding.section_line
-    return msgspec.structs.replace(finding, line=line, end_line=end_line, section_line=section_line)
+    return msgspec.structs.replace(finding, line=line, end_line=end_line, section_line=section_line, fix=None)
 
 
 def _call_of(trace: Trace, line: int) -> tuple[int, int, str] | None:

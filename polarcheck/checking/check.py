@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections import Counter
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from itertools import groupby
@@ -28,6 +29,7 @@ from polarcheck.machines.machine import Machine
 from polarcheck.reading import source
 from polarcheck.reading.words import Text
 
+_SKIP = re.compile(r"\s*(?:N\s*\d+\s*)?/", re.IGNORECASE)
 #: At what is looked in any program.
 LOOKED_AT = ("text", "flow", "position")
 
@@ -220,7 +222,16 @@ def _merged(first: tuple[str, FileReport], second: tuple[str, FileReport], of_te
         {_place(found) for found in _all([*report.findings, *report.silenced])} for report in (off, on)
     )
 
+    fixes_off, fixes_on = (
+        {_place(found): found.fix for found in _all([*report.findings, *report.silenced])} for report in (off, on)
+    )
+
     def told(found: Found, others: set[_Place], state: str) -> Found:
+        place = _place(found)
+        # What mends the one run must not change the other.
+        agrees = fixes_off[place] == fixes_on[place] if place in fixes_off.keys() & fixes_on.keys() else _skips(found)
+        if found.fix is not None and found.rule not in of_text and not agrees:
+            found = msgspec.structs.replace(found, fix=None)
         # What stands by itself in the first run is no second time listed under what only the other one shows.
         own = (one for one in found.follows if others is shown_on or _place(one) not in others)
         follows = [told(one, others, state) for one in own]
@@ -283,6 +294,11 @@ def _fold(worst: Callable[..., float], one: float | None, other: float | None) -
 
 def _place(found: Finding) -> _Place:
     return found.rule, found.line, found.column
+
+
+def _skips(found: Finding) -> bool:
+    """The block has block skip at its head, so that one run alone executes it."""
+    return _SKIP.match(found.block) is not None
 
 
 def _all(findings: Sequence[Finding]) -> Iterator[Finding]:

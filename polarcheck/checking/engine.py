@@ -260,6 +260,7 @@ class Engine:
 
     def _finding(self, rule: Rule, place: Place, hits: Hits, count: int) -> Finding:
         from polarcheck.checking.message import fill
+        from polarcheck.checking.repair import fix_of
 
         trace = self.trace
         at = (
@@ -290,6 +291,7 @@ class Engine:
             count=count,
             source=rule.source,
             fingerprint=_fingerprint(rule.name, block),
+            fix=fix_of(rule, hits, self.tables, place, count),
         )
 
     def _alarm(self, rule: Rule, at: list[int]) -> str | None:

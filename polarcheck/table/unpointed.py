@@ -58,6 +58,23 @@ class Unpointed:
             self._add(reported, slips & large, section_or_rest, np.append(is_habit, False))
         return reported
 
+    def stands_for(self, index: int) -> list[int]:
+        """
+        The words of the file that lack nothing but their point, for which a reported one stands; none where it is
+        large, so that least increments may be meant, or its program is written in them.
+        """
+        trace, start = self.trace, self.trace.text.words.start[index]
+        executed = np.flatnonzero(trace.run.words.start == start)
+        if not self.slips[index] or not len(executed) or trace.is_large_unpointed[executed].any():
+            return []
+        if self.slips[index] == 1:
+            return [index]
+        own = self._sections == self._sections[trace.run.row[executed[0]]]
+        words = trace.is_unpointed & ~trace.is_large_unpointed & own[trace.run.row]
+        at, _ = self._in_file(np.flatnonzero(words))
+        found: list[int] = np.unique(at).tolist()
+        return found
+
     @cached_property
     def _radii_of_offsets(self) -> Mask:
         """Per executed word: R of a tool offset that G10 sets, too small to be meant in least increments."""

@@ -1,0 +1,203 @@
+"""
+Edits of the text of a program: words taken out, blocks put in, with the line ends and blanks of what stands around.
+
+A Replace is (start, end, text): the characters from start to end (exclusive) become the text.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from itertools import pairwise
+
+from polarcheck.arrays import stretch
+from polarcheck.reading.source import CR, LF, Source
+from polarcheck.table.trace import Trace
+
+Replace = tuple[int, int, str]
+
+_SEMICOLON = ord(";")
+_BLANKS = " \t"
+_BLANK_OR_END = " \t\r\n\0\x7f"
+
+
+def is_plain(trace: Trace, row: int) -> bool:
+    """Whether the words of a row stand in the file as they are executed: no macro, no words of another language."""
+    block = int(trace.run.block[row])
+    if trace.text.blocks.is_macro[block]:
+        return False
+    words, source = trace.run.words, trace.text.source
+    for index in words_of(trace, row):
+        written = source.excerpt(int(words.start[index]), int(words.end[index])).lstrip(",").strip()
+        address = chr(int(words.address[index])).upper()
+        if written[:1].upper().replace(":", "O") != address:
+            return False
+    return True
+
+
+def words_of(trace: Trace, row: int) -> list[int]:
+    """The executed words of a row, in the order in which they are written."""
+    low, high = stretch(trace.run.row, row, row + 1)
+    return sorted(range(low, high), key=lambda index: int(trace.run.words.start[index]))
+
+
+def is_head(trace: Trace, index: int) -> bool:
+    """An N word, an O word or block skip, which stay at the head of a block."""
+    return chr(int(trace.run.words.address[index])) in "NO/"
+
+
+def begins_program(trace: Trace, row: int) -> bool:
+    """A row with an O word: nothing can be put before its block."""
+    return any(chr(int(trace.run.words.address[index])) == "O" for index in words_of(trace, row))
+
+
+def written_word(trace: Trace, index: int) -> str:
+    """An executed word as it is written."""
+    words = trace.run.words
+    return trace.text.source.excerpt(int(words.start[index]), int(words.end[index])).strip()
+
+
+def skip_sign(trace: Trace, row: int) -> str:
+    """The block skip of a row as it is written, `/` or `/2`; empty without."""
+    signs = [index for index in words_of(trace, row) if chr(int(trace.run.words.address[index])) == "/"]
+    return written_word(trace, signs[0]) if signs else ""
+
+
+def separator(trace: Trace, row: int) -> str:
+    """What stands between the words of a row: a blank, or nothing in a program without blanks."""
+    words, own = trace.run.words, words_of(trace, row)
+    if len(own) < 2:
+        return " "
+    apart = [int(words.start[after]) - int(words.end[before]) for before, after in pairwise(own)]
+    return " " if any(apart) else ""
+
+
+def line_end(source: Source, line: int) -> str:
+    """The line end behind a line (from 1), else that before it: LF, CR LF, LF CR CR, CR CR LF or CR; LF without any."""
+    code, starts = source.code, source.line_starts
+    for number in (line, line - 1):
+        if not 0 < number < len(starts) + (len(code) > 0 and code[-1] in (LF, CR)):
+            continue
+        end = int(starts[number]) if number < len(starts) else len(code)
+        first = end - 1
+        if code[first] == CR:
+            return "\r"
+        while first and code[first - 1] == CR:
+            first -= 1
+        last = end
+        while last < len(code) and code[last] == CR:
+            last += 1
+        if last < len(code) and code[last] == LF:  # they belong to the end of the next line, which is empty
+            last = end
+        return "\r" * (end - 1 - first) + "\n" + "\r" * (last - end)
+    return "\n"
+
+
+def _content(trace: Trace, block: int) -> tuple[int, int]:
+    """The characters of a block without the blanks and line ends around it."""
+    blocks = trace.text.blocks
+    start, end = int(blocks.start[block]), int(blocks.end[block])
+    text = trace.text.source.excerpt(start, end)
+    stripped = text.lstrip(_BLANK_OR_END)
+    return end - len(stripped) if stripped else start, start + len(text.rstrip(_BLANK_OR_END)) if stripped else start
+
+
+def _ends_with_sign(trace: Trace, block: int) -> bool:
+    """A semicolon ends the block."""
+    code, end = trace.text.source.code, int(trace.text.blocks.end[block])
+    return end < len(code) and int(code[end]) == _SEMICOLON
+
+
+def _line_of(trace: Trace, block: int) -> int:
+    return trace.text.source.line_of(_content(trace, block)[0])
+
+
+def blocks_before(trace: Trace, block: int, texts: Sequence[str]) -> Replace:
+    """New blocks before one, each on a line of its own; before a block in the middle of a line beside it."""
+    source, (start, _) = trace.text.source, _content(trace, block)
+    line = source.line_of(start)
+    first = int(source.line_starts[line - 1])
+    while first < start and source.code[first] == CR:
+        first += 1
+    if source.excerpt(first, start).strip(_BLANK_OR_END):
+        return start, start, "".join(f"{text}; " for text in texts)
+    sign = ";" * _ends_with_sign(trace, block)
+    return first, first, "".join(f"{text}{sign}{line_end(source, line)}" for text in texts)
+
+
+def blocks_behind(trace: Trace, block: int, texts: Sequence[str]) -> Replace:
+    """New blocks behind one, each on a line of its own."""
+    end = _content(trace, block)[1]
+    parting = _parting(trace, block)
+    return end, end, "".join(f"{parting}{text}" for text in texts)
+
+
+def _parting(trace: Trace, block: int) -> str:
+    """What parts a block into two."""
+    return ";" * _ends_with_sign(trace, block) + line_end(trace.text.source, _line_of(trace, block))
+
+
+def parted(trace: Trace, row: int, index: int) -> Replace:
+    """The block of a row parted in two before one of its words; block skip stands at the head of both."""
+    words, source = trace.run.words, trace.text.source
+    block = int(trace.run.block[row])
+    start, begin = int(words.start[index]), int(trace.text.blocks.start[block])
+    before = source.excerpt(begin, start)
+    blanks = len(before) - len(before.rstrip(_BLANKS))
+    return start - blanks, start, _parting(trace, block) + skip_sign(trace, row)
+
+
+def with_word(trace: Trace, row: int, text: str) -> Replace:
+    """A word put behind the last one of a row."""
+    index = words_of(trace, row)[-1]
+    end = int(trace.run.words.end[index])
+    return end, end, separator(trace, row) + text
+
+
+def in_place_of(trace: Trace, index: int, text: str) -> Replace:
+    """Another word in the place of one."""
+    return int(trace.run.words.start[index]), int(trace.run.words.end[index]), text
+
+
+def without(trace: Trace, row: int, removed: Iterable[int]) -> list[Replace]:
+    """The block of a row without some of its words; where nothing is left of it, without its line."""
+    words, source = trace.run.words, trace.text.source
+    block = int(trace.run.block[row])
+    begin, end = _content(trace, block)
+    text = source.excerpt(begin, end)
+    gone: list[tuple[int, int]] = []
+    for index in sorted(removed, key=lambda index: int(words.start[index])):
+        first, last = int(words.start[index]) - begin, int(words.end[index]) - begin
+        if gone and not text[gone[-1][1] : first].strip(_BLANKS):
+            gone[-1] = gone[-1][0], last
+        else:
+            gone.append((first, last))
+    kept = [0, *(place for span in gone for place in span), len(text)]
+    if not "".join(text[first:last] for first, last in zip(kept[::2], kept[1::2], strict=True)).strip(_BLANKS + "/"):
+        return [_line_without(trace, block, begin, end)]
+    return [(begin + first, begin + last, "") for first, last in (_with_blanks(text, *span) for span in gone)]
+
+
+def _with_blanks(text: str, first: int, last: int) -> tuple[int, int]:
+    """What goes with the blanks behind it; at the end of a block with those before it."""
+    behind = text[last:]
+    last += len(behind) - len(behind.lstrip(_BLANKS))
+    return (len(text[:first].rstrip(_BLANKS)), last) if last == len(text) else (first, last)
+
+
+def _line_without(trace: Trace, block: int, begin: int, end: int) -> Replace:
+    """A block that goes as a whole: with its line, where nothing else stands on that."""
+    source = trace.text.source
+    line = source.line_of(begin)
+    first = int(source.line_starts[line - 1])
+    while first < begin and source.code[first] == CR:
+        first += 1
+    last = int(source.line_starts[line]) if line < len(source.line_starts) else len(source.code)
+    behind = source.excerpt(end, last)
+    if source.excerpt(first, begin).strip(_BLANKS) or behind.strip(_BLANK_OR_END + ";") or behind.count(";") > 1:
+        return begin, end, ""
+    if line < len(source.line_starts):
+        while last < len(source.code) and source.code[last] == CR:
+            last += 1
+        if last < len(source.code) and source.code[last] == LF:
+            last = int(source.line_starts[line])
+    return first, last, ""

@@ -1,0 +1,74 @@
+"""F words put in, lowered and restored, as they are written in the program."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from polarcheck.arrays import Mask
+from polarcheck.checking.editing import Replace, is_plain, with_word, written_word
+from polarcheck.checking.quantity import in_row
+from polarcheck.machines.modal import Motion
+from polarcheck.table.trace import Trace
+
+#: Below this a number of F is not rounded down to whole ones.
+_LEAST_WHOLE = 10.0
+
+
+def takes_feed(trace: Trace) -> Mask:
+    """Rows that move at the F in force, inside the mode and outside."""
+    return np.asarray(trace.moves & (trace.motion != Motion.RAPID))
+
+
+def feed_in_force(trace: Trace, row: int) -> int | None:
+    """The executed F word in force at a row; None where none is, or a macro gives its number."""
+    words = trace.word_indices("F")
+    found = words[trace.run.words.start[words] == trace.feed_word[row]]
+    if not len(found):
+        return None
+    index = int(found[0])
+    return index if is_plain(trace, int(trace.run.row[index])) else None
+
+
+def feed_below(trace: Trace, row: int, feed: float) -> str | None:
+    """
+    The F word below a feed [mm/min], as the message says it, with a point where the program writes one or needs it.
+
+    None where no feed is left.
+    """
+    shown = in_row(feed, trace, row)
+    text = f"{shown:below}".split()[0]
+    if not float(text) > 0 or "e" in text:
+        return None
+    if "." not in text:
+        return f"F{text}{'.' * _writes_points(trace, row)}"
+    if not _writes_points(trace, row) and float(text) >= _LEAST_WHOLE:
+        return f"F{float(text):.0f}" if float(text).is_integer() else f"F{int(float(text))}"
+    return f"F{text.lstrip('0')}" if text.startswith("0.") else f"F{text}"
+
+
+def feed_text(trace: Trace, row: int, feed: float) -> str:
+    """The F word of a feed [mm/min] in whole units of the program."""
+    shown = in_row(feed, trace, row)
+    return f"F{round(shown.length(feed))}{'.' * _writes_points(trace, row)}"
+
+
+def _writes_points(trace: Trace, row: int) -> bool:
+    """Numbers of F have points: in inch, and where one of the program has."""
+    words = trace.word_indices("F")
+    return bool(in_row(0.0, trace, row).inch or trace.run.words.has_point[words].any())
+
+
+def restored(trace: Trace, row: int) -> list[Replace] | None:
+    """
+    The F in force at a row written again where a move after it relies on it.
+
+    Nothing where another F comes before that; None where the move has to be slow, and nobody knows how slow.
+    """
+    later = np.flatnonzero(takes_feed(trace) & (np.arange(len(trace)) > row))
+    begins = np.flatnonzero((trace.has("F") | trace.starts) & (np.arange(len(trace)) > row))
+    if not len(later) or (len(begins) and begins[0] <= later[0]):
+        return []
+    index, first = feed_in_force(trace, row), int(later[0])
+    if index is None or not is_plain(trace, first):
+        return None
+    return [with_word(trace, first, written_word(trace, index))]

@@ -1,0 +1,68 @@
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from polarcheck.arrays import Mask
+from polarcheck.checking.editing import Replace, in_place_of, is_plain, with_word, written_word
+from polarcheck.checking.feed_edits import feed_below, feed_in_force, takes_feed
+from polarcheck.checking.repair import FEED, Mended, repair
+from polarcheck.table.tool_center import ToolCenter
+from polarcheck.table.trace import Trace
+
+
+@repair(FEED)
+def c_feed_above_limit(trace: Trace, tool_center: ToolCenter, row: int, hit: Mask) -> Mended | None:
+    """
+    F is lowered to the highest that the message names, rounded down, and restored behind the blocks that need it.
+
+    Only with the machine's own limit of C. Unsafe: another feed cuts otherwise.
+
+    Bad, set limits.c_feed=3600:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. C5. F500
+        X4. (NEAR THE CENTER)
+        C-5.
+        X40.
+        C-10.
+        G13.1
+
+    Good, set limits.c_feed=3600:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. C5. F500
+        X4. F125 (NEAR THE CENTER)
+        C-5.
+        X40.
+        C-10. F500
+        G13.1
+    """
+    feed = feed_in_force(trace, row)
+    if feed is None or math.isnan(trace.machine.limits.c_feed):
+        return None
+    low = feed_below(trace, row, float(tool_center.feed_allowed[row]))
+    if low is None:
+        return None
+    old = written_word(trace, feed)
+    edits: set[Replace] = set()
+    is_low = False
+    governed = np.flatnonzero(takes_feed(trace) & (trace.feed_word == trace.feed_word[row]))
+    for moving in governed.tolist():
+        if bool(hit[moving]) == is_low:
+            continue
+        is_low = not is_low
+        if not is_plain(trace, moving):
+            return None
+        if trace.has("F")[moving]:
+            edits |= {in_place_of(trace, feed, low)} if is_low else set()
+        else:
+            edits.add(with_word(trace, moving, low if is_low else old))
+    places = [start for start, _, _ in edits]
+    if len(set(places)) < len(places):
+        return None  # a block of a loop that needs one F here and the other there
+    restores = f" and restore {old} behind" if any(text.strip() == old for _, _, text in edits) else ""
+    return Mended(f"Lower {old} to {low}{restores}", False, tuple(edits))

@@ -1,0 +1,117 @@
+from __future__ import annotations
+
+from polarcheck.checking.editing import (
+    blocks_before,
+    is_head,
+    is_plain,
+    parted,
+    skip_sign,
+    without,
+    words_of,
+    written_word,
+)
+from polarcheck.checking.phrases.common import switch
+from polarcheck.checking.repair import Mended, repair
+from polarcheck.machines.modal import Motion
+from polarcheck.table.mode_words import ModeWords
+from polarcheck.table.trace import Trace
+
+
+@repair()
+def polar_switch_not_alone(trace: Trace, mode_words: ModeWords, row: int) -> Mended | None:
+    """
+    G12.1 or G13.1 gets a block of its own.
+
+    What is written before the code comes before it, what is written behind it comes behind it; but G codes that cannot
+    stand in the mode go to the other side. Safe where nothing beside it moves X or C, or in G0 only, which can stand
+    nowhere but outside. Else unsafe: the control may have taken the words on the other side.
+
+    Bad:
+
+        G98 G0 X60. C0
+        N20 G12.1 (ON) M8 (COOLANT)
+        G1 X40. F200
+        C10.
+        X60.
+        N30 G13.1 G0 Z50.
+
+    Good:
+
+        G98 G0 X60. C0
+        N20 G12.1 (ON)
+        M8 (COOLANT)
+        G1 X40. F200
+        C10.
+        X60.
+        N30 G13.1
+        G0 Z50.
+
+    Bad:
+
+        G98 G0 X60. C0
+        G12.1 G18
+        G1 X40. F200
+        C10.
+        X60.
+        G13.1
+
+    Good:
+
+        G98 G0 X60. C0
+        G18
+        G12.1
+        G1 X40. F200
+        C10.
+        X60.
+        G13.1
+    """
+    if not is_plain(trace, row):
+        return None
+    polar = trace.machine.polar
+    own = words_of(trace, row)
+    is_switch = mode_words.codes(*polar.on, *polar.off)
+    switches = [index for index in own if is_switch[index]]
+    beside = [index for index in own if not is_switch[index] and not is_head(trace, index)]
+    if len(switches) != 1 or not beside:
+        return None
+    (at,) = switches
+    enters = bool(trace.enters[row])
+    # Words that the profile lets stand beside the code stay there.
+    beside = [index for index in beside if not mode_words.may_stand_beside_switch[index]]
+    block = int(trace.run.block[row])
+    outside = [index for index in beside if _must_be_outside(trace, mode_words, index)]
+    out_of_place = [index for index in outside if (index > at) == enters]
+    title = f"Write {switch(trace, row)} in a block of its own"
+    if out_of_place:
+        if len(out_of_place) < len(beside) or not enters:
+            return None
+        text = skip_sign(trace, row) + " ".join(written_word(trace, index) for index in out_of_place)
+        edits = [blocks_before(trace, block, [text]), *without(trace, row, out_of_place)]
+        return Mended(title, True, tuple(edits))
+    starts = trace.run.words.start
+    before = [index for index in own if starts[index] < starts[at] and not is_head(trace, index)]
+    behind = [index for index in beside if starts[index] > starts[at]]
+    # What may stand beside the code stays there where it follows it, else it goes with the others.
+    edits = [parted(trace, row, at)] if any(index in beside for index in before) else []
+    edits += [parted(trace, row, behind[0])] if behind else []
+    return Mended(title, _is_safe(trace, row, before if enters else behind, beside), tuple(edits))
+
+
+def _must_be_outside(trace: Trace, mode_words: ModeWords, index: int) -> bool:
+    """A G code that cannot stand in the mode."""
+    from polarcheck.machines.codes import NO_CODE, code_numbers, code_set
+
+    words = trace.run.words
+    if chr(int(words.address[index])) != "G":
+        return False
+    number = int(code_numbers(words.value[index : index + 1])[0])
+    return number != NO_CODE and not code_set(trace.machine.polar.allowed_codes)[number]
+
+
+def _is_safe(trace: Trace, row: int, outside: list[int], beside: list[int]) -> bool:
+    """Nothing beside the code moves the axes of the plane, or only in G0 outside the mode."""
+    machine = trace.machine
+    axes = {"X", "U", "Y", "V", *machine.polar.rotary_words, machine.polar.rotary_address, machine.polar.virtual_axis}
+    moving = [index for index in beside if chr(int(trace.run.words.address[index])) in axes]
+    in_rapid = bool(trace.motion[row] == Motion.RAPID)
+    return all(in_rapid and index in outside for index in moving)

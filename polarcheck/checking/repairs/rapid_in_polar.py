@@ -1,0 +1,88 @@
+from __future__ import annotations
+
+import re
+
+import numpy as np
+
+from polarcheck.checking.editing import in_place_of, is_head, is_plain, separator, with_word, words_of, written_word
+from polarcheck.checking.feed_edits import feed_below, feed_text, restored
+from polarcheck.checking.repair import FEED, Mended, repair
+from polarcheck.table.tool_center import ToolCenter
+from polarcheck.table.trace import Trace
+
+_RAPID = re.compile(r"(G\s*0*?)0", re.IGNORECASE)
+
+
+@repair(FEED)
+def rapid_in_polar(trace: Trace, tool_center: ToolCenter, row: int, at: list[int]) -> Mended | None:
+    """
+    G0 in the mode becomes G1 with the lowest F for positioning that the machine recommends.
+
+    That is feed.positioning_minimum; without it there is a fix only where the block has an F of its own. Where C would
+    turn too fast for it, F is as high as its limit allows. The F from before is written again where cutting goes on.
+    Unsafe: a feed that nobody has chosen.
+
+    Bad, machine turning-center:
+
+        G20 G98 G18 G0 X2.4 C0
+        G12.1
+        G18
+        G1 X2.2 F8.
+        N50 G0 C.5
+        X2.1
+        G1 C.4
+        G13.1
+
+    Good, machine turning-center:
+
+        G20 G98 G18 G0 X2.4 C0
+        G12.1
+        G18
+        G1 X2.2 F8.
+        N50 G1 C.5 F30.
+        X2.1
+        G1 C.4 F8.
+        G13.1
+
+    Bad:
+
+        G98 G0 X60. C0
+        G12.1
+        X40. F200
+        G1 C5.
+        G13.1
+
+    Good:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. F200
+        G1 C5.
+        G13.1
+    """
+    of_same_code = (trace.motion_word == trace.motion_word[row]) & (np.arange(len(trace)) > row)
+    if not is_plain(trace, row) or np.any(of_same_code & trace.moves & ~trace.in_polar):
+        return None
+    edits = []
+    for index in at:
+        code = _RAPID.fullmatch(written_word(trace, index))
+        if code is None:
+            return None
+        edits.append(in_place_of(trace, index, f"{code[1]}1"))
+    if not at:
+        body = [index for index in words_of(trace, row) if not is_head(trace, index)]
+        start = int(trace.run.words.start[body[0]])
+        edits.append((start, start, f"G1{separator(trace, row)}"))
+    if trace.has("F")[row]:
+        return Mended("Write G1", False, tuple(edits))
+    feed = trace.machine.feed.positioning_minimum
+    again = restored(trace, row)
+    if not feed > 0 or not trace.per_minute[row] or again is None:
+        return None
+    moving = np.append(row, np.flatnonzero(of_same_code & trace.in_polar))
+    allowed = float(np.nanmin(np.append(tool_center.feed_allowed[moving], np.inf)))
+    word = feed_text(trace, row, feed) if feed < allowed else feed_below(trace, row, allowed)
+    if word is None:
+        return None
+    edits += [with_word(trace, row, word), *again]
+    return Mended(f"Write G1 with {word}", False, tuple(edits))
