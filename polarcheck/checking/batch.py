@@ -27,10 +27,20 @@ Tell = Callable[[str], None]
 
 
 class Task(msgspec.Struct, frozen=True):
-    """A file to check and what applies to it."""
+    """
+    A file to check and what applies to it.
+
+    path: what is read. named: the file that standard input is judged and reported as; empty for what is its own file.
+    """
 
     path: str
     settings: Settings
+    named: str = ""
+
+    @property
+    def title(self) -> str:
+        """The path under which it is reported."""
+        return files.shown(self.named or self.path)
 
 
 class Outcome(msgspec.Struct, frozen=True):
@@ -69,7 +79,12 @@ class Checked(msgspec.Struct, frozen=True):
 
 
 def plan(
-    paths: Iterable[str], settings_of: Callable[[str], Settings], extensions: Sequence[str], tell: Tell, warn: Tell
+    paths: Iterable[str],
+    settings_of: Callable[[str], Settings],
+    extensions: Sequence[str],
+    tell: Tell,
+    warn: Tell,
+    standard_input: str = files.STANDARD_INPUT,
 ) -> list[Task]:
     """
     The programs of files, folders and standard input (`-`), each once, in the order asked for.
@@ -78,8 +93,9 @@ def plan(
     settings of their own, one for each of these.
 
     settings_of: what applies to a program; a path that ends in a separator is a folder, of which the extensions are
-    asked. tell is told of folders that cannot be read, warn of those without programs. Raises a PolarcheckError for
-    settings that cannot be used, before any file is checked.
+    asked. standard_input: the file, which need not be there, that standard input is judged as. tell is told of folders
+    that cannot be read, warn of those without programs. Raises a PolarcheckError for settings that cannot be used,
+    before any file is checked.
     """
     tasks: dict[tuple[str, int], Task] = {}
     real = files.RealPaths()
@@ -94,8 +110,10 @@ def plan(
             if not found and not failures:
                 warn(f"{files.shown(path)}: no NC programs in this folder; --extensions names other endings")
         for program in found:
-            settings = settings_of(program)
-            tasks.setdefault((real.of(program), id(settings)), Task(program, settings))
+            place = standard_input if program == files.STANDARD_INPUT else program
+            settings = settings_of(place)
+            named = place if place != program else ""
+            tasks.setdefault((real.of(place), id(settings)), Task(program, settings, named))
     return list(tasks.values())
 
 
@@ -168,10 +186,10 @@ def outcome(task: Task, most: int = files.LARGEST, data: bytes | None = None) ->
     except (SourceError, TooHardError) as error:
         return Outcome(failure=str(error))
     except MemoryError:
-        told = f"{files.shown(task.path)}: there is not enough memory to check it"
+        told = f"{task.title}: there is not enough memory to check it"
         return Outcome(failure=told, short_of_memory=True)
     except Exception as error:
-        error.add_note(f"while checking {files.shown(task.path)}")
+        error.add_note(f"while checking {task.title}")
         return Outcome(bug=error)
     verdict = check.verdict(found.findings, found.not_evaluated, task.settings.fail_on)
     report = msgspec.structs.replace(found, machine=task.settings.name, verdict=verdict)
@@ -187,7 +205,7 @@ def fails(report: FileReport, settings: Settings) -> bool:
 
 def _check(task: Task, data: bytes) -> tuple[FileReport, Source, set[str]]:
     """The report, the text, and the keys of the offsets that are called, where the job has any."""
-    path, settings = files.shown(task.path), task.settings
+    path, settings = task.title, task.settings
     with time_limit(seconds_for(len(data), settings.job.run.max_seconds)):
         found = check.read(data, settings.machine, settings.job, path, settings.encoding)
         text: Text = found[0][1]["text"]

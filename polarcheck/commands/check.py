@@ -9,7 +9,7 @@ from typing import Any
 
 import click
 
-from polarcheck.commands import options, silencing
+from polarcheck.commands import options, silencing, standard_input
 from polarcheck.commands.exit_codes import BUG, COULD_NOT_RUN
 from polarcheck.commands.options import many, option
 from polarcheck.commands.output import COLUMNS, columns, in_color, said_of_bug, say, say_lines, show, warn
@@ -21,7 +21,7 @@ _FOR_PEOPLE = ("text", "concise", "short")
 #: Of more files than this the report is short, if no format is asked for.
 _LONG = 3
 #: Options that change how a report looks or where it goes, but not what it says.
-_OF_OUTPUT = ("form", "outputs", "color", "quiet", "following")
+_OF_OUTPUT = ("stdin_filename", "form", "outputs", "color", "quiet", "following")
 _FORMATS = formats()
 
 
@@ -101,6 +101,7 @@ def _outputs(ctx: click.Context, parameter: click.Parameter, values: tuple[str, 
 @many("--extensions", metavar="EXT", help="Of the programs in a folder, instead of .nc, .tap, .eia and others.")
 @options.encoding("programs")
 @options.max_size
+@standard_input.filename
 @option("--color", type=click.Choice(["auto", "always", "never"]), default="auto", show_default=True)
 @option("--show-following", "following", is_flag=True, help="In text, what follows from a finding, too.")
 @option("-q", "--quiet", is_flag=True, help="Findings only.")
@@ -158,6 +159,7 @@ def _check(
     no_config: bool,
     extensions: tuple[str, ...],
     max_size: int,
+    stdin_filename: str | None,
     color: str,
     quiet: bool,
     following: bool,
@@ -176,7 +178,8 @@ def _check(
     failures: list[str] = []
     bugs: list[str] = []
     applies = settings.Options(use_config=not no_config, **asked)
-    tasks = batch.plan(paths, settings.of_programs(applies), extensions, failures.append, warn)
+    named = standard_input.judged_as(paths, stdin_filename)
+    tasks = batch.plan(paths, settings.of_programs(applies), extensions, failures.append, warn, **named)
     overwriting.refuse([path for _, path in outputs], tasks)
     with contextlib.closing(watched(tasks, not quiet)) as awaited:
         checked = batch.check_files(

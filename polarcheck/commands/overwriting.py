@@ -22,8 +22,9 @@ def refuse(outputs: Sequence[Path], tasks: Sequence[Task]) -> None:
     read: dict[str, str] = {}
     folders: dict[str, str] = {}
     for task in tasks:
-        if task.path != files.STANDARD_INPUT:
-            read[_real(task.path)] = task.path
+        path = task.named or task.path
+        if path != files.STANDARD_INPUT:
+            read[_real(path)] = path
         read |= {_real(path): str(path) for path in task.settings.read}
         folders |= {_real(folder): folder for folder in task.settings.job.run.subprograms}
     same = {_identity(path): path for path in read.values()}
