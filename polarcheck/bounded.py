@@ -6,7 +6,8 @@ import contextlib
 import errno
 import os
 import stat
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
+from contextvars import ContextVar
 from pathlib import Path
 from typing import BinaryIO
 
@@ -17,6 +18,29 @@ _UNITS = ((10**9, "GB"), (10**6, "MB"), (10**3, "kB"))
 _PATIENCE = 1000
 # Not blocking: a pipe without a writer would keep open() for ever.
 _FLAGS = os.O_RDONLY | sum(getattr(os, name, 0) for name in ("O_BINARY", "O_NOCTTY", "O_NONBLOCK"))
+
+#: The folders, without links to their names, that files are read from; None for all, as the command line does.
+_FOLDERS: ContextVar[Sequence[Path] | None] = ContextVar("folders", default=None)
+
+
+@contextlib.contextmanager
+def only_below(folders: Sequence[Path]) -> Iterator[None]:
+    """What is done inside reads files from these folders, which have no links to their names, and from nowhere else."""
+    token = _FOLDERS.set(folders)
+    try:
+        yield
+    finally:
+        _FOLDERS.reset(token)
+
+
+def may_read(path: str | os.PathLike[str]) -> bool:
+    """Whether a file, or what lies in a folder, may be read here, wherever links lead."""
+    return _FOLDERS.get() is None or _folder_around(path) is not None
+
+
+def _folder_around(path: str | os.PathLike[str]) -> Path | None:
+    real = Path(os.path.realpath(path))
+    return next((folder for folder in _FOLDERS.get() or () if real.is_relative_to(folder)), None)
 
 
 def read(
@@ -38,6 +62,11 @@ def read(
     file that is written to meanwhile. One that is replaced is the old one or the new one.
     """
     try:
+        if below is None and _FOLDERS.get() is not None:
+            below = _folder_around(path)
+            if below is None:
+                raise OSError(errno.EACCES, "lies outside the folders that are open")
+            path = Path(os.path.realpath(path)).relative_to(below)
         descriptor = _opened(path, pipes) if below is None else _opened_below(below, Path(path).parts)
     except ValueError:
         raise OSError(errno.EINVAL, "no file can have this name") from None

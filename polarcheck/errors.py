@@ -7,6 +7,7 @@ What can go wrong on our side. What is wrong in a program is a finding, never an
     |-- OutputError       a report that cannot be written
     |-- MachineError      a machine profile: unknown machine, key, type
     |-- JobError          polarcheck.toml, pyproject.toml, an offset table
+    |-- StoppedError      nobody waits for the outcome any more
     |-- TooHardError      a table that would take more than its bound of time or size
     `-- RuleError         a rule without severity, message, docstring: a bug in a rule file
 """
@@ -41,6 +42,10 @@ class MachineError(PolarcheckError):
 
 class JobError(PolarcheckError):
     """A job file or offset table that cannot be used."""
+
+
+class StoppedError(PolarcheckError):
+    """A check of which nobody waits for the outcome any more."""
 
 
 class TooHardError(PolarcheckError):

@@ -233,3 +233,53 @@ def test_a_file_that_is_written_to_while_it_is_read(tmp_path: Path, monkeypatch:
 )
 def test_limits_are_named_in_round_numbers(size: int, name: str) -> None:
     assert bounded.megabytes(size) == name
+
+
+# ---- folders that files are read from ----
+
+
+@pytest.fixture
+def workspace(tmp_path: Path) -> Path:
+    """A folder, with a file and a link that leads out of it; beside it a secret."""
+    folder = Path(os.path.realpath(tmp_path)) / "open"
+    (folder / "inner").mkdir(parents=True)
+    (folder / "inner" / "a.toml").write_bytes(b"a")
+    (folder.parent / "secret.toml").write_bytes(b"s")
+    (folder.parent / "open-too").mkdir()
+    (folder.parent / "open-too" / "b.toml").write_bytes(b"b")
+    if sys.platform != "win32":
+        (folder / "link.toml").symlink_to(folder.parent / "secret.toml")
+        (folder / "own.toml").symlink_to(folder / "inner" / "a.toml")
+    return folder
+
+
+def test_files_are_read_from_some_folders_alone(workspace: Path) -> None:
+    with bounded.only_below([workspace]):
+        assert bounded.read(workspace / "inner" / "a.toml", LIMIT, "") == b"a"
+        assert bounded.read(workspace / "inner" / ".." / "inner" / "a.toml", LIMIT, "") == b"a"
+        for outside in ("../secret.toml", "../open-too/b.toml", "inner/../../secret.toml"):
+            assert objection(workspace / outside) == "lies outside the folders that are open"
+            assert not bounded.may_read(workspace / outside)
+    with bounded.only_below([]):
+        assert objection(workspace / "inner" / "a.toml") == "lies outside the folders that are open"
+    assert bounded.read(workspace.parent / "secret.toml", LIMIT, "") == b"s"
+    assert bounded.may_read(workspace.parent)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="links need rights there")
+def test_links_do_not_lead_out_of_them(workspace: Path) -> None:
+    with bounded.only_below([workspace]):
+        assert bounded.read(workspace / "own.toml", LIMIT, "") == b"a"
+        assert objection(workspace / "link.toml") == "lies outside the folders that are open"
+        assert not bounded.may_read(workspace / "link.toml")
+
+
+def test_a_thread_has_folders_of_its_own(workspace: Path) -> None:
+    read: list[bytes] = []
+    with bounded.only_below([workspace]):
+        other = threading.Thread(
+            target=lambda: read.append(bounded.read(workspace.parent / "secret.toml", LIMIT, "")),
+        )
+        other.start()
+        other.join()
+    assert read == [b"s"]

@@ -12,7 +12,7 @@ import shapely  # type: ignore[import-untyped]
 from programs import ROOT, report_of, said, tables_of
 
 from polarcheck.checking.finding import FileReport
-from polarcheck.errors import TooHardError
+from polarcheck.errors import StoppedError, TooHardError
 from polarcheck.geometry import areas, bounds, noding, segments
 from polarcheck.geometry.segments import Curves
 from polarcheck.machines.modal import Motion
@@ -351,3 +351,19 @@ def test_a_check_stays_within_its_memory(family: str, moves: int, reason: str, t
     assert not found.fault
     assert found.megabytes < 1000
     assert not reason or any(reason in told for told in found.not_evaluated)
+
+
+# ---- when nobody waits any more ----
+
+
+def test_a_check_that_nobody_waits_for_ends_at_its_next_turn() -> None:
+    """Not as one that was too hard, which would be a report: its outcome is of no interest."""
+    asked: list[int] = []
+
+    def is_stopped() -> bool:
+        asked.append(1)
+        return len(asked) > 3
+
+    with pytest.raises(StoppedError), time_limit(60, is_stopped):
+        checked("#1=1\nWHILE[#1GT0]DO1\n#1=#1+1\nEND1\nM30\n")
+    assert len(asked) == 4

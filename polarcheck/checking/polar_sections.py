@@ -52,7 +52,7 @@ def _polar_sections(trace: Trace, tool_center: ToolCenter, center: Center, ramps
                 units="inch" if trace.units[enter] == Units.INCH else "mm",
                 offset=key_of(trace, int(trace.offset_number[row])),
                 radius=rounded(trace.radius[row] - trace.allowance[row]),
-                radius_source=_radius_source(trace, row),
+                radius_source=radius_source(trace, row),
                 nearest=rounded(nearest[index]),
                 c_feed=rounded(highest[index]),
                 c_feed_line=int(trace.line_in_file[fast]) if fast >= 0 else None,
@@ -72,7 +72,8 @@ def _offset_rows(trace: Trace) -> Rows:
     return rows
 
 
-def _radius_source(trace: Trace, row: int) -> str:
+def radius_source(trace: Trace, row: int) -> str:
+    """Where R of the offset in force in a row comes from, as in PolarSection."""
     if np.isnan(trace.radius[row]):
         return "none"
     if trace.radius_set_in[row] >= 0:

@@ -68,6 +68,8 @@ def _from_here(path: Path) -> Path:
 
 def _own(folder: Path) -> Path | None:
     """The job file that lies in a folder."""
+    if not bounded.may_read(folder):
+        return None
     # A link that leads nowhere, a folder or a pipe of this name is told when it is read, and not passed over.
     if os.path.lexists(folder / FILE_NAME):
         return folder / FILE_NAME

@@ -78,6 +78,11 @@ class Library:
 
         A file without an O number of its own is given that of the call.
         """
+        found = self.place(called)
+        return None if found is None else _with_head(found[1], found[0].name, called)
+
+    def place(self, called: ProgramName) -> tuple[Path, bytes] | None:
+        """The file of such a program, and its bytes."""
         number, name = called
         if number is not None:
             wanted = re.compile(rf"O?0*{number}(?:\.[A-Za-z]{{1,4}})?", re.IGNORECASE)
@@ -91,7 +96,7 @@ class Library:
         for folder, paths in self._paths:
             for path in paths:
                 if wanted.fullmatch(path.name) and (data := _read_inside(folder, path)) is not None:
-                    return _with_head(data, path.name, called)
+                    return path, data
         return None
 
 

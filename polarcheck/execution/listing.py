@@ -142,12 +142,13 @@ class Listing:
             found = self._calls[file] = {}
             blocks = np.flatnonzero(turns(self.files[file], self._call_codes)) + self.first_blocks[file]
             for block in blocks.tolist():
-                called = self._named_in(block)
+                called = self.called_in(block)
                 if called is not None:
                     found[called] = found.get(called, False) or not self.text.blocks.is_macro[block]
         return self._calls[file]
 
-    def _named_in(self, block: int) -> ProgramName | None:
+    def called_in(self, block: int) -> ProgramName | None:
+        """The program that a block calls, where it names it literally."""
         statement = self.statement(block)
         parts = (statement if statement.then is None else statement.then, *statement.more)
         call = next((part for part in parts if part.call in self._call_codes), None)
