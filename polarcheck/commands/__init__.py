@@ -21,7 +21,7 @@ from polarcheck.commands.exit_codes import BUG, CLEAN, COULD_NOT_RUN
 from polarcheck.commands.output import COLUMNS, abandon_output, said_of_bug, say, say_lines
 from polarcheck.errors import PolarcheckError, RuleError
 
-NAMES = ("check", "explain", "machines", "rules", "schema", "trace")
+NAMES = ("check", "completion", "explain", "machines", "rules", "schema", "trace")
 
 
 class Modules(Mapping[str, click.Command]):
@@ -52,6 +52,10 @@ class Commands(click.Group):
     ) -> int:
         """Run a command; its exit code is returned, or ends the process in standalone mode."""
         status = COULD_NOT_RUN
+        if "_POLARCHECK_COMPLETE" in os.environ:
+            from polarcheck.commands import completing
+
+            completing.register()
         try:
             status = super().main(args, prog_name, standalone_mode=False, **extra) or CLEAN
         except click.ClickException as error:

@@ -1,0 +1,353 @@
+"""
+What a shell is told where it asks how a word goes on: commands and options by click, values by their metavar.
+
+The scripts under completions/ ask, by the variables of the environment that click has for it; a line of the answer has
+up to three fields with US (0x1f) between them:
+
+    head, TEXT                what stands before all values in the word that is typed, as `--machine=`
+    word, VALUE, HELP         a value, behind which a blank follows
+    part, VALUE, HELP         a value that goes on, as `json:`
+    files, BEGUN, ENDING      names of files that begin so, and end so where an ending is given
+    folders, BEGUN            names of folders
+
+The shell itself looks for files and folders: it knows how names with blanks, `~` and variables are written.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator, Mapping
+from copy import copy
+from pathlib import Path
+from typing import cast
+
+import click
+from click.shell_completion import CompletionItem, ShellComplete, add_completion_class, split_arg_string
+
+from polarcheck.commands.completion import SHELLS
+
+#: By it click is asked to complete.
+VARIABLE = "_POLARCHECK_COMPLETE"
+_BETWEEN = "\x1f"
+_PROFILE = ".toml"
+
+Item = CompletionItem[str]
+
+
+def _item(value: str, about: str = "", kind: str = "plain", head: str = "") -> Item:
+    """head: what of the word stands before the value and stays."""
+    return CompletionItem(value, kind, about, head=head)
+
+
+# ---- values by metavar ----
+
+
+def _files(begun: str) -> Iterator[Item]:
+    yield _item(begun, kind="file")
+
+
+def _folders(begun: str) -> Iterator[Item]:
+    yield _item(begun, kind="dir")
+
+
+def _profiles(begun: str) -> Iterator[Item]:
+    yield _item(begun, _PROFILE, "file")
+
+
+def _machines(begun: str) -> Iterator[Item]:
+    """The built-in machines, and files of the user's own."""
+    from polarcheck import machines
+
+    titles = {path.stem: _title_of_machine(path) for path in Path(machines.__file__).parent.glob("*.toml")}
+    yield from (_item(name, title) for name, title in sorted(titles.items()) if name.startswith(begun))
+    yield from _profiles(begun)
+
+
+def _title_of_machine(path: Path) -> str:
+    lines = path.read_text("utf-8").splitlines()
+    return next((line.partition('"')[2].rpartition('"')[0] for line in lines if line.startswith("title = ")), "")
+
+
+def _machines_and_verbs(begun: str) -> Iterator[Item]:
+    verbs = {"check": "whether a file for a lathe is sound", "new": "a file for a lathe of your own"}
+    yield from (_item(verb, about) for verb, about in verbs.items() if verb.startswith(begun))
+    yield from _machines(begun)
+
+
+def _rules(begun: str) -> Iterator[Item]:
+    """Rules and groups, behind those that stand there with commas between."""
+    before, comma, last = begun.rpartition(",")
+    yield from (_item(name, about, head=before + comma) for name, about in _names_of_rules() if name.startswith(last))
+
+
+def _pages(begun: str) -> Iterator[Item]:
+    verdicts = dict.fromkeys(("pass", "unverified", "fail"), "what this verdict means")
+    for name, about in [*_names_of_rules(), *verdicts.items()]:
+        if name.startswith(begun):
+            yield _item(name, about)
+
+
+def _names_of_rules() -> Iterator[tuple[str, str]]:
+    """
+    Groups and rules with their titles, from the files: to load them all takes longer than a user waits for a word.
+    """
+    from polarcheck import rules
+
+    folder = Path(rules.__file__).parent
+    for group in sorted(path.parent.name for path in folder.glob("*/__init__.py")):
+        yield group, "all rules of this group"
+    for path in sorted(folder.glob("*/*.py")):
+        if path.stem != "__init__":
+            text = path.read_text("utf-8").partition('"""')[2]
+            yield path.stem.replace("_", "-"), text.strip().partition("\n")[0].rstrip(".")
+
+
+def _levels(begun: str) -> Iterator[Item]:
+    from polarcheck.commands.selection import LEVELS
+
+    name, equals, level = begun.partition("=")
+    if equals:
+        yield from (_item(one, head=f"{name}=") for one in LEVELS if one.startswith(level))
+    else:
+        yield from (_item(f"{one.value}=", one.help or "", "part") for one in _rules(name))
+
+
+def _outputs(begun: str) -> Iterator[Item]:
+    """FORMAT: and then a file; a drive letter behind it belongs to the file."""
+    from polarcheck.reports import formats
+
+    form, colon, path = begun.partition(":")
+    if colon:
+        yield _item(path, kind="file", head=f"{form}:")
+    else:
+        yield from (_item(f"{one}:", "a report in a file", "part") for one in formats() if one.startswith(form))
+
+
+def _keys(begun: str) -> Iterator[Item]:
+    """TABLE.KEY= of a machine."""
+    import msgspec
+
+    from polarcheck.machines.machine import Machine, meanings
+
+    for field in msgspec.structs.fields(Machine):
+        if isinstance(field.type, type) and issubclass(field.type, msgspec.Struct):
+            for key, about in meanings(field.type).items():
+                if f"{field.name}.{key}".startswith(begun):
+                    yield _item(f"{field.name}.{key}=", about, "part")
+
+
+def _tool(begun: str) -> Iterator[Item]:
+    """N:KEY=, behind the number of an offset and what is said of it already."""
+    number, colon, values = begun.rpartition(":")
+    before, comma, key = values.rpartition(",")
+    if colon and "=" not in key:
+        head = f"{number}:{before}{comma}"
+        yield from (_item(f"{one}=", "", "part", head) for one in ("radius", "nose") if one.startswith(key))
+
+
+def _encodings(begun: str) -> Iterator[Item]:
+    known = {
+        "utf-8": "",
+        "utf-16": "",
+        "cp1252": "Western Europe",
+        "cp1250": "Central Europe",
+        "cp1251": "Cyrillic",
+        "shift_jis": "Japanese",
+        "gb18030": "Chinese",
+        "euc_kr": "Korean",
+    }
+    yield from (_item(name, about) for name, about in known.items() if name.startswith(begun))
+
+
+def _nothing(begun: str) -> Iterator[Item]:
+    yield from ()
+
+
+Values = Callable[[str], Iterator[Item]]
+
+#: What the values of options are, as the help names them; an option of a type of click's that knows better needs none.
+OPTIONS: dict[str, Values] = {
+    "ADDRESS": _nothing,
+    "EXT": _nothing,
+    "FILE": _files,
+    "FOLDER": _folders,
+    "FORMAT:FILE": _outputs,
+    "KEY=VALUE": _keys,
+    "N": _nothing,
+    "N:KEY=VALUE": _tool,
+    "NAME": _encodings,
+    "NAME|FILE": _machines,
+    "PATH": _files,
+    "REF": _nothing,
+    "RULE": _rules,
+    "RULE=LEVEL": _levels,
+    "SIZE": _nothing,
+}
+#: The same for arguments.
+ARGUMENTS: dict[str, Values] = {
+    "FILE": _files,
+    "FOLDER": _folders,
+    "LATHE": _profiles,
+    "NAME": _machines_and_verbs,
+    "PATH": _files,
+    "RULE": _pages,
+}
+
+
+def metavar(parameter: click.Parameter) -> str:
+    """How the help names a value: without the marks of what may be left out or repeated."""
+    written = parameter.metavar or (parameter.name or "").upper()
+    return written.strip("[]").removesuffix("...").strip("[]")
+
+
+class _Named(click.types.StringParamType):
+    """The type of a value whose metavar says what it is; it only completes."""
+
+    name = "named"
+
+    def __init__(self, values: Values) -> None:
+        self._values = values
+
+    def shell_complete(self, ctx: click.Context, param: click.Parameter, incomplete: str) -> list[Item]:
+        return list(self._values(incomplete))
+
+
+def _named(command: click.Command) -> click.Command:
+    """A copy of a command in which each value has the type that its metavar names."""
+    copied = copy(command)
+    copied.params = [_named_value(parameter) for parameter in command.params]
+    if isinstance(command, click.Group) and isinstance(copied, click.Group):
+        copied.commands = cast("dict[str, click.Command]", _NamedCommands(command.commands))
+    return copied
+
+
+def _named_value(parameter: click.Parameter) -> click.Parameter:
+    values = (OPTIONS if isinstance(parameter, click.Option) else ARGUMENTS).get(metavar(parameter))
+    if values is None or isinstance(parameter.type, click.Choice):
+        return parameter
+    copied = copy(parameter)
+    copied.type = _Named(values)
+    return copied
+
+
+class _NamedCommands(Mapping[str, click.Command]):
+    """The commands of a group likewise, each loaded when it is asked for."""
+
+    def __init__(self, commands: Mapping[str, click.Command]) -> None:
+        self._commands = commands
+
+    def __getitem__(self, name: str) -> click.Command:
+        return _named(self._commands[name])
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._commands)
+
+    def __len__(self) -> int:
+        return len(self._commands)
+
+
+# ---- what the shells ask and are told ----
+
+
+class _Shell(ShellComplete):
+    """One of the shells; the variables hold the words before the one that is completed, a line each, and that one."""
+
+    source_template = ""
+
+    def get_completion_args(self) -> tuple[list[str], str]:
+        """The words behind the command that are complete, and the one that is not."""
+        return os.environ.get("COMP_WORDS", "").split("\n")[1:], self.word()
+
+    def word(self) -> str:
+        """The word that is completed, as far as it is typed, without the shell's quotes."""
+        return os.environ.get("POLARCHECK_WORD", "")
+
+    def stays(self, head: str) -> str:
+        """What of the beginning of the word the values are to begin with, for this shell."""
+        return head
+
+    def complete(self) -> str:
+        """The answer."""
+        arguments, word = self.get_completion_args()
+        self.cli = _named(self.cli)
+        lead = word[: word.index("=") + 1] if word.startswith("--") and "=" in word else ""
+        lines: list[str] = []
+        for item in self.get_completions(arguments, word):
+            head = self.stays(lead + (item.head or ""))
+            if not lines and head:
+                lines.append(_BETWEEN.join(("head", head)))
+            lines.append(_BETWEEN.join(_fields(item)))
+        return "\n".join(lines)
+
+
+def _fields(item: Item) -> tuple[str, ...]:
+    about = " ".join((item.help or "").split())
+    if item.type in ("file", "dir"):
+        return ("files", item.value, about) if item.type == "file" else ("folders", item.value)
+    return ("part" if item.type == "part" else "word", item.value, about)
+
+
+class _Bash(_Shell):
+    """bash, which parts words at = and :, too, and completes what stands behind the last of these."""
+
+    name = "bash"
+
+    def get_completion_args(self) -> tuple[list[str], str]:
+        """The words behind the command that are complete, and the one that is not, from the line up to the cursor."""
+        line = os.environ.get("COMP_WORDS", "")
+        words = split_arg_string(line)
+        is_new = line != line.rstrip() and not _ends_inside_a_word(line)
+        return (words[1:], "") if is_new else (words[1:-1], words[-1] if len(words) > 1 else "")
+
+    def stays(self, head: str) -> str:
+        """What stands behind the last character at which bash has parted the word."""
+        line, breaks = os.environ.get("COMP_WORDS", ""), os.environ.get("POLARCHECK_BREAKS", "")
+        if _open_quote(line):
+            return head
+        return head[max((head.rfind(mark) for mark in breaks if mark in "=:"), default=-1) + 1 :]
+
+
+def _open_quote(line: str) -> str:
+    """The quote that is open at the end of a line, or empty."""
+    quote, escaped = "", False
+    for character in line:
+        if escaped:
+            escaped = False
+        elif character == "\\" and quote != "'":
+            escaped = True
+        elif quote:
+            quote = "" if character == quote else quote
+        elif character in "'\"":
+            quote = character
+    return quote or ("\\" if escaped else "")
+
+
+def _ends_inside_a_word(line: str) -> bool:
+    """Whether the blank at the end of a line belongs to a word, by a quote or a backslash before it."""
+    return bool(_open_quote(line) or _open_quote(line[:-1]) == "\\")
+
+
+class _Fish(_Shell):
+    """fish, which hands over the word as it is typed, with its quotes."""
+
+    name = "fish"
+
+    def word(self) -> str:
+        """The word that is completed, without quotes."""
+        words = split_arg_string(super().word())
+        return words[0] if words else ""
+
+
+class _Zsh(_Shell):
+    name = "zsh"
+
+
+class _PowerShell(_Shell):
+    name = "powershell"
+
+
+def register() -> None:
+    """Let click answer by these, where the environment asks it to complete."""
+    for shell in (_Bash, _Zsh, _Fish, _PowerShell):
+        assert shell.name in SHELLS
+        add_completion_class(shell)

@@ -1,0 +1,31 @@
+"""`polarcheck completion`: the script that lets a shell complete what is typed behind `polarcheck`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from polarcheck.commands import options
+from polarcheck.commands.output import show
+
+#: The scripts, by the name of the shell that their ending is.
+FOLDER = Path(__file__).parent / "completions"
+SHELLS = ("bash", "zsh", "fish", "powershell")
+
+
+@click.command
+@click.argument("shell", type=click.Choice(SHELLS))
+@options.debug
+def completion(shell: str) -> None:
+    """
+    Show the script that completes commands, options, files, machines and rules in a SHELL.
+
+    \b
+    bash          in ~/.bashrc:                  eval "$(polarcheck completion bash)"
+    zsh           in ~/.zshrc, behind compinit:  source <(polarcheck completion zsh)
+    fish          once:   polarcheck completion fish > ~/.config/fish/completions/polarcheck.fish
+    powershell    in $PROFILE:  polarcheck completion powershell | Out-String | Invoke-Expression
+    """
+    # As bytes: a shell on Windows that is none of Windows takes no CR.
+    show((FOLDER / f"polarcheck.{shell}").read_bytes())
