@@ -19,7 +19,7 @@ import os
 from collections.abc import Callable, Iterator, Mapping
 from copy import copy
 from pathlib import Path
-from typing import cast
+from typing import TYPE_CHECKING, cast
 
 import click
 from click.shell_completion import CompletionItem, ShellComplete, add_completion_class, split_arg_string
@@ -31,7 +31,11 @@ VARIABLE = "_POLARCHECK_COMPLETE"
 _BETWEEN = "\x1f"
 _PROFILE = ".toml"
 
-Item = CompletionItem[str]
+if TYPE_CHECKING:
+    # In click below 8.4 the class takes no type.
+    Item = CompletionItem[str]
+else:
+    Item = CompletionItem
 
 
 def _item(value: str, about: str = "", kind: str = "plain", head: str = "") -> Item:
