@@ -50,10 +50,18 @@ def keep_time() -> None:
 
     Raises TooHardError once the time is over, StoppedError where nobody waits for the outcome.
     """
+    keep_going()
     limit = _LIMIT.get()
-    if limit is None:
-        return
-    if limit.is_stopped is not None and limit.is_stopped():
-        raise StoppedError("stopped")
-    if time.monotonic() > limit.end:
+    if limit is not None and time.monotonic() > limit.end:
         raise TooHardError(f"the check of this file takes longer than {limit.seconds:g} s: --max-seconds gives it more")
+
+
+def keep_going() -> None:
+    """
+    To be asked where another bound keeps the time.
+
+    Raises StoppedError where nobody waits for the outcome any more.
+    """
+    limit = _LIMIT.get()
+    if limit is not None and limit.is_stopped is not None and limit.is_stopped():
+        raise StoppedError("stopped")

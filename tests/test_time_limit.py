@@ -356,14 +356,16 @@ def test_a_check_stays_within_its_memory(family: str, moves: int, reason: str, t
 # ---- when nobody waits any more ----
 
 
-def test_a_check_that_nobody_waits_for_ends_at_its_next_turn() -> None:
+@pytest.mark.parametrize("turns", [0, 3, 100])
+@pytest.mark.parametrize("program", ["G12.1\nG1 X4. F100\nG13.1\nM30\n", "#1=1\nWHILE[#1GT0]DO1\n#1=#1+1\nEND1\nM30\n"])
+def test_a_check_that_nobody_waits_for_ends_at_its_next_turn(program: str, turns: int) -> None:
     """Not as one that was too hard, which would be a report: its outcome is of no interest."""
     asked: list[int] = []
 
     def is_stopped() -> bool:
         asked.append(1)
-        return len(asked) > 3
+        return len(asked) > turns
 
     with pytest.raises(StoppedError), time_limit(60, is_stopped):
-        checked("#1=1\nWHILE[#1GT0]DO1\n#1=#1+1\nEND1\nM30\n")
-    assert len(asked) == 4
+        checked(program)
+    assert len(asked) == turns + 1

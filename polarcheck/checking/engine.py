@@ -24,6 +24,7 @@ from polarcheck.execution.run import begins_program
 from polarcheck.machines.codes import code_numbers, code_set
 from polarcheck.reading.excerpt import shortened
 from polarcheck.table.trace import Trace
+from polarcheck.time_limit import keep_going
 
 if TYPE_CHECKING:
     from polarcheck.checking.allows import Allows
@@ -81,6 +82,7 @@ class Engine:
     def hits(self, rule: Rule) -> Hits:
         """What the rule finds; nothing where one of its tables would take more than its bounds."""
         if rule.name not in self._hits:
+            keep_going()
             try:
                 self._hits[rule.name] = rule.hits(self.tables)
             except TooHardError as error:

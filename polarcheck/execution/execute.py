@@ -25,7 +25,7 @@ from polarcheck.execution.statement import Kind, Statement, Word
 from polarcheck.machines.codes import code_numbers, code_set
 from polarcheck.machines.job import Running
 from polarcheck.machines.macro_keys import Macro
-from polarcheck.time_limit import seconds_for
+from polarcheck.time_limit import keep_going, seconds_for
 
 #: So many endless programs of a file get all the statements that are asked for, those behind them so many each.
 _ENDLESS = 4
@@ -169,8 +169,10 @@ class Execution(Branches):
             self.endless("too-many-blocks", block, limit=asked.max_blocks)
         elif self._count > self._allowed + self._own:
             self.endless("too-many-statements", block, limit=self._allowed)
-        elif self._count % 256 == 0 and time.monotonic() > self._end:
-            self.endless("runs-too-long", block, limit=self._seconds)
+        elif self._count % 256 == 0:
+            keep_going()
+            if time.monotonic() > self._end:
+                self.endless("runs-too-long", block, limit=self._seconds)
 
     def endless(self, kind: FaultKind, block: int, **values: str | int | float) -> None:
         """Say that the run does not end by itself, and end it."""
