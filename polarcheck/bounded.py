@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 import contextlib
 import errno
 import os
@@ -98,6 +99,23 @@ def read_stream(stream: BinaryIO, most: int, remark: str) -> bytes:
         return found
 
     return _whole(some, _CHUNK, most, remark)
+
+
+def text(data: bytes, otherwise: str = "utf-8") -> str:
+    """
+    The text of a file as editors and shells save it: UTF-16 where its mark begins it, UTF-8 with or without a mark.
+
+    otherwise: of a text without a mark. Raises ValueError, which says in one line what it is not.
+    """
+    marks = {codecs.BOM_UTF8: "utf-8", codecs.BOM_UTF16_LE: "utf-16-le", codecs.BOM_UTF16_BE: "utf-16-be"}
+    mark = next((mark for mark in marks if data.startswith(mark)), b"")
+    encoding = marks.get(mark, otherwise)
+    try:
+        return data[len(mark) :].decode(encoding)
+    except UnicodeDecodeError as error:
+        line = data.count(b"\n", 0, error.start) + 1
+        place = f"line {line}" if encoding == otherwise else f"byte {error.start + 1}"
+        raise ValueError(f"{place} is not {encoding.upper()}; save the file as UTF-8") from None
 
 
 def megabytes(size: int) -> str:

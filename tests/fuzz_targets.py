@@ -203,7 +203,7 @@ def settings(data: bytes, setup: int) -> Iterable[str]:
 
 def _as_job(table: dict[str, Any]) -> None:
     job = from_table(table, "a.toml")
-    check_work_offsets(job, machine_of(), "a.toml")
+    check_work_offsets(job, machine_of(), str)
     check.check_file(_SMALL, machine_of(), job, list(load_all().values()))
 
 

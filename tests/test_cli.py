@@ -260,36 +260,36 @@ def test_what_means_nothing_is_named_in_one_line(arguments: list[str], told: str
 @pytest.mark.parametrize(
     ("text", "told"),
     [
-        ("machin = 'x'\n", "polarcheck.toml: unknown key machin; did you mean machine?"),
-        ("x =\n", "polarcheck.toml: Invalid value"),
-        ("[tools.8]\nradius = 'big'\n", "polarcheck.toml: "),
+        ("machin = 'x'\n", "polarcheck.toml:1: unknown key machin; did you mean machine?"),
+        ("x =\n", "polarcheck.toml:1: Invalid value"),
+        ("[tools.8]\nradius = 'big'\n", "polarcheck.toml:2: tools.8.radius: expected a number"),
         ("machine = 'fanuk'\n", "unknown machine 'fanuk'"),
-        ("select = ['poler']\n", "polarcheck.toml: select: unknown rule 'poler'"),
-        ("ignore = ['poler']\n", "polarcheck.toml: ignore: unknown rule 'poler'"),
-        ("severities = { poler = 'off' }\n", "polarcheck.toml: severities: unknown rule 'poler'"),
+        ("select = ['poler']\n", "polarcheck.toml:1: select: unknown rule 'poler'"),
+        ("ignore = ['poler']\n", "polarcheck.toml:1: ignore: unknown rule 'poler'"),
+        ("severities = { poler = 'off' }\n", "polarcheck.toml:1: severities: unknown rule 'poler'"),
         ("[limits]\nc_fed = 3\n", "unknown key limits.c_fed"),
         ("offsets = 'gone.txt'\n", "gone.txt: No such file"),
         (
             "select = ['rapid']\n",
-            "polarcheck.toml: select: unknown rule 'rapid'; did you mean rapid-through-center or rapid-in-polar?",
+            "polarcheck.toml:1: select: unknown rule 'rapid'; did you mean rapid-through-center or rapid-in-polar?",
         ),
-        ("tools = 3\n", "polarcheck.toml: tools: expected a table, found 3"),
+        ("tools = 3\n", "polarcheck.toml:1: tools: expected a table, found 3"),
         ("[tools.-1]\nradius = 4\n", "tools.-1: expected the number of a tool offset, 8 for T0808, found -1"),
         ("[tools.T1]\nradius = 4\n", "tools.T1: expected the number of a tool offset, 8 for T0808, found T1"),
-        ("[tools.8]\nradus = 4\n", "polarcheck.toml: unknown key tools.8.radus; did you mean radius?"),
+        ("[tools.8]\nradus = 4\n", "polarcheck.toml:2: unknown key tools.8.radus; did you mean radius?"),
         (
             "[tools.8]\nradius = '4,5'\n",
             "tools.8.radius: expected a number from -1000 to 1000, found '4,5'; write 4.5,",
         ),
         ("[tools.8]\nradius = nan\n", "tools.8.radius: expected a number from -1000 to 1000, found nan"),
-        ("[tools.8]\nmount = 'foo'\n", "polarcheck.toml: tools.8.mount: expected axial or radial, found 'foo'"),
+        ("[tools.8]\nmount = 'foo'\n", "polarcheck.toml:2: tools.8.mount: expected axial or radial, found 'foo'"),
         (
             "[work_offsets.G77]\nx = 1\n",
-            'polarcheck.toml: work_offsets.G77: expected G54 to G59 or "G54.1 P1", found G77',
+            'polarcheck.toml:1: work_offsets.G77: expected G54 to G59 or "G54.1 P1", found G77',
         ),
         ("[work_offsets.'G55 P1']\nx = 1\n", "work_offsets.G55 P1: expected G54 to G59 or"),
         ("[work_offsets.G54]\nx = inf\n", "work_offsets.G54.x: expected a number from -20000 to 20000, found inf"),
-        ("[run]\nsubprograms = ['gone']\n", "polarcheck.toml: run.subprograms: there is no folder 'gone'"),
+        ("[run]\nsubprograms = ['gone']\n", "polarcheck.toml:2: run.subprograms: there is no folder 'gone'"),
         ("[run]\nsubprograms = 'gone'\n", "run.subprograms: expected a list of texts, found 'gone'"),
         ("[run]\nmax_blocks = 0\n", "run.max_blocks: expected a whole number from 1 to 1e+12, found 0"),
         (f"[tools.8]\nradius = {'9' * 18}\n", "tools.8.radius: expected a number from -1000 to 1000, found 9999"),
@@ -303,9 +303,9 @@ def test_what_means_nothing_is_named_in_one_line(arguments: list[str], told: str
         ("[run.variables]\n100 = nan\n", "run.variables.100: expected a number, found nan"),
         ("[stock]\ndiameter = inf\n", "stock.diameter: expected a number above 0, 20000 at most, found inf"),
         ("[stock]\nclearance = -2\n", "stock.clearance: expected a number from 0 to 20000, found -2"),
-        ("units = 'cm'\n", "polarcheck.toml: units: expected mm or inch, found 'cm'"),
-        ("[limits]\nc_feed = -5\n", "polarcheck.toml: limits.c_feed: expected a number above 0, found -5"),
-        ("[limits]\nc_feed = 'fast'\n", "polarcheck.toml: limits.c_feed: expected a number"),
+        ("units = 'cm'\n", "polarcheck.toml:1: units: expected mm or inch, found 'cm'"),
+        ("[limits]\nc_feed = -5\n", "polarcheck.toml:2: limits.c_feed: expected a number above 0, found -5"),
+        ("[limits]\nc_feed = 'fast'\n", "polarcheck.toml:2: limits.c_feed: expected a number"),
     ],
 )
 def test_a_broken_job_file_is_named_with_its_key(text: str, told: str) -> None:
@@ -322,7 +322,7 @@ def test_a_work_offset_is_one_of_the_machine() -> None:
     assert check("a.nc", *RAPID_ONLY).exit_code == 0
     make(mine__toml="inherits = 'fanuc'\n[g_codes]\nwork_offset = ['G54-G58']\nwork_offset_extended = []\n")
     result = check("a.nc", *RAPID_ONLY, "--machine", "mine.toml")
-    assert result.stderr == "polarcheck: polarcheck.toml: work_offsets.G59: expected G54 to G58, found G59\n"
+    assert result.stderr == "polarcheck: polarcheck.toml:2: work_offsets.G59: expected G54 to G58, found G59\n"
 
 
 @pytest.mark.parametrize("number", ["1", "T1", "t01"])

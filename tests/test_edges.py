@@ -210,7 +210,7 @@ def test_a_control_without_edges_has_numbers_alone(option: str, told: str) -> No
     assert (result.exit_code, result.stderr) == (2, f"polarcheck: {told}\n")
     make(polarcheck__toml='[tools."8/2"]\nradius = 4\n')
     result = check("a.nc")
-    expected = "polarcheck.toml: tools.8/2: expected the number of a tool offset, 8 for T0808, found 8/2"
+    expected = "polarcheck.toml:1: tools.8/2: expected the number of a tool offset, 8 for T0808, found 8/2"
     assert (result.exit_code, result.stderr) == (2, f"polarcheck: {expected}\n")
     make(polarcheck__toml='[tools."8/1"]\nradius = 4\n')
     assert check("a.nc").exit_code == 0

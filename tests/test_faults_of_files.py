@@ -543,7 +543,7 @@ def test_what_is_told_of_other_files_can_be_read_where_the_locale_knows_ascii_al
     make("Maß/b.nc")
     make("Maß/polarcheck.toml", text="x = 1\n")
     ended = in_shell(f"{CHECK} Maß", LC_ALL="C", PYTHONUTF8="0", PYTHONCOERCECLOCALE="0")
-    assert ended.stderr.decode().startswith("polarcheck: Maß/polarcheck.toml: ")
+    assert ended.stderr.decode().startswith("polarcheck: Maß/polarcheck.toml:1: ")
 
 
 @of_posix

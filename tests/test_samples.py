@@ -26,11 +26,9 @@ def settings(path: Path) -> dict[str, Any]:
     """The machine and the job that the nearest polarcheck.toml gives a sample."""
     found = job_files.Nearest().of(path)
     assert found is not None
-    work = job_files.load(found)
+    work = job_files.load(found).merged([(0, 0)]).job
     assert work.machine is not None
-    own = found.parent / work.machine
-    machine = str(own) if own.is_file() else work.machine
-    return {"machine": machine, "changes": {"limits": work.limits} if work.limits else None, "job": work}
+    return {"machine": work.machine, "changes": {"limits": work.limits} if work.limits else None, "job": work}
 
 
 @cache

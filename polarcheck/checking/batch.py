@@ -85,6 +85,7 @@ def plan(
     tell: Tell,
     warn: Tell,
     standard_input: str = files.STANDARD_INPUT,
+    excluded_in: files.ExcludedIn | None = None,
 ) -> list[Task]:
     """
     The programs of files, folders and standard input (`-`), each once, in the order asked for.
@@ -93,9 +94,9 @@ def plan(
     settings of their own, one for each of these.
 
     settings_of: what applies to a program; a path that ends in a separator is a folder, of which the extensions are
-    asked. standard_input: the file, which need not be there, that standard input is judged as. tell is told of folders
-    that cannot be read, warn of those without programs. Raises a PolarcheckError for settings that cannot be used,
-    before any file is checked.
+    asked. standard_input: the file, which need not be there, that standard input is judged as. excluded_in: which
+    files and folders a walk passes over (files.walk). tell is told of folders that cannot be read, warn of those
+    without programs. Raises a PolarcheckError for settings that cannot be used, before any file is checked.
     """
     tasks: dict[tuple[str, int], Task] = {}
     real = files.RealPaths()
@@ -104,7 +105,7 @@ def plan(
         if path != files.STANDARD_INPUT and os.path.isdir(path):  # noqa: PTH112  Path.is_dir raises for some names
             own = settings_of(os.path.join(path, "")).job.extensions  # noqa: PTH118
             wanted = files.extensions(extensions or own) or files.EXTENSIONS
-            found = list(files.walk(path, wanted, failures.append))
+            found = list(files.walk(path, wanted, failures.append, excluded_in))
             for failure in failures:
                 tell(failure)
             if not found and not failures:

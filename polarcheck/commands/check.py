@@ -84,6 +84,7 @@ def _outputs(ctx: click.Context, parameter: click.Parameter, values: tuple[str, 
 @silencing.inline
 @options.config
 @options.no_config
+@options.force_exclude
 @option("--block-skip", type=click.Choice(["off", "on", "both"]), help="Of blocks with /; both is the default.")
 @options.subprograms
 @option(
@@ -157,6 +158,7 @@ def _check(
     form: str | None,
     outputs: list[tuple[str, Path]],
     no_config: bool,
+    force_exclude: bool,
     extensions: tuple[str, ...],
     max_size: int,
     stdin_filename: str | None,
@@ -178,8 +180,14 @@ def _check(
     failures: list[str] = []
     bugs: list[str] = []
     applies = settings.Options(use_config=not no_config, **asked)
+    settings_of = settings.of_programs(applies)
+    paths = settings_of.left(paths, warn) if force_exclude else paths
     named = standard_input.judged_as(paths, stdin_filename)
-    tasks = batch.plan(paths, settings.of_programs(applies), extensions, failures.append, warn, **named)
+    tasks = batch.plan(
+        paths, settings_of, extensions, failures.append, warn, excluded_in=settings_of.excluded_in, **named
+    )
+    for unmatched in settings_of.unmatched(paths):
+        warn(unmatched)
     overwriting.refuse([path for _, path in outputs], tasks)
     with contextlib.closing(watched(tasks, not quiet)) as awaited:
         checked = batch.check_files(

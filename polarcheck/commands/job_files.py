@@ -4,27 +4,96 @@ from __future__ import annotations
 
 import contextlib
 import os
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import msgspec
 
 from polarcheck import bounded
+from polarcheck.commands import job_layers
+from polarcheck.commands.job_layers import Layer, Merged, Written
 from polarcheck.errors import JobError
-from polarcheck.machines import toml_text
-from polarcheck.machines.fitting import shown
-from polarcheck.machines.job import Job, from_table
+from polarcheck.machines import toml_lines, toml_text
+from polarcheck.machines.fitting import MisfitError, fitted, shown
+from polarcheck.machines.job import Job
 from polarcheck.reading.files import RealPaths
+from polarcheck.reading.globs import Globs, is_pattern
 
 FILE_NAME = "polarcheck.toml"
+#: Files that may extend each other.
+_LONGEST_CHAIN = 10
 _PROJECT = "pyproject.toml"
 
 
-class JobFile(msgspec.Struct, frozen=True):
-    """A job and where it was read; no path for a job that nobody wrote."""
+class _Part(NamedTuple):
+    """
+    One file of a chain: what it says of all programs, its entries, the patterns of these, with the entry and the text
+    of each, and what it excludes; None where it does not say.
+    """
 
-    job: Job
+    own: Layer
+    entries: tuple[Layer, ...]
+    files: Globs
+    patterns: tuple[tuple[Layer, str], ...]
+    exclude: Globs | None
+
+
+class JobFile(msgspec.Struct, frozen=True):
+    """A job file with those that it extends, the farthest first; nothing of a job that nobody wrote."""
+
     path: Path | None = None
+    parts: tuple[_Part, ...] = ()
+
+    @property
+    def read(self) -> list[Path]:
+        """The files themselves."""
+        return [part.own.written.path for part in reversed(self.parts)]
+
+    @property
+    def has_entries(self) -> bool:
+        """Whether what applies hangs on the name of the program."""
+        return any(part.patterns for part in self.parts)
+
+    def layers(self, folder: str, name: str) -> tuple[tuple[int, int], ...]:
+        """
+        Which layers apply to a program, by file and entry (0 for the file itself), the nearest last.
+
+        folder: its real path. name: empty for what applies to the folder itself.
+        """
+        found: list[tuple[int, int]] = []
+        for number, part in enumerate(self.parts):
+            found.append((number, 0))
+            if part.patterns and name:
+                matched = {part.patterns[index][0].entry for index in part.files.of_file(folder, name)}
+                found += [(number, entry) for entry in sorted(matched)]
+        return tuple(found)
+
+    def merged(self, layers: Sequence[tuple[int, int]]) -> Merged:
+        """The job of some layers. Raises JobError, which names file, line and key."""
+        return job_layers.merged([self._layer(number, entry) for number, entry in layers])
+
+    def _layer(self, number: int, entry: int) -> Layer:
+        part = self.parts[number]
+        return part.entries[entry - 1] if entry else part.own
+
+    @property
+    def exclude(self) -> Globs | None:
+        """What walks pass over, as the nearest file says it."""
+        return next((part.exclude for part in reversed(self.parts) if part.exclude is not None), None)
+
+    def unmatched(self, names: Iterable[tuple[str, str]]) -> list[str]:
+        """What is to be said of patterns of the nearest file that match none of these programs (folder, name)."""
+        if not self.parts or not self.parts[-1].patterns:
+            return []
+        part = self.parts[-1]
+        left = set(range(len(part.patterns)))
+        for folder, name in names:
+            left -= part.files.of_file(folder, name)
+        return [
+            f"{layer.at('files')}: files: no program of this folder matches {shown(pattern)}"
+            for layer, pattern in (part.patterns[index] for index in sorted(left))
+        ]
 
 
 class Nearest:
@@ -34,13 +103,14 @@ class Nearest:
     """
 
     def __init__(self) -> None:
-        self._real = RealPaths()
+        #: Of folders, which are asked for by thousands of programs.
+        self.real = RealPaths()
         self._known: dict[str, Path | None] = {}
 
     def of(self, path: Path) -> Path | None:
         """The job file of a program or folder. Raises JobError for a pyproject.toml that cannot be read."""
         try:
-            found = self._from(self._real.folder(str(path if path.is_dir() else path.parent)))
+            found = self._from(self.real.folder(str(path if path.is_dir() else path.parent)))
         except (OSError, RuntimeError, ValueError):
             return None  # the folder itself cannot be entered; reading the program will say so
         return _from_here(found) if found is not None else None
@@ -83,47 +153,86 @@ def _is_job_file(project: Path) -> bool:
         text = bounded.read(project, toml_text.LARGEST, "no job file is")
     except OSError as error:
         raise JobError(f"{_from_here(project)}: {error.strerror}") from None
-    if b"polarcheck" not in text:
+    if b"polarcheck" not in text.replace(b"\0", b""):  # every other byte of UTF-16
         return False
     try:
-        tools = toml_text.parsed(text.decode("utf-8").replace("\r\n", "\n")).get("tool")
+        tools = toml_text.parsed(bounded.text(text).replace("\r\n", "\n")).get("tool")
     except ValueError:  # somebody else's fault, unless it is meant for us: reading it will say so
         return b"[tool.polarcheck" in text
     return isinstance(tools, dict) and "polarcheck" in tools
 
 
-def load(path: Path, *, pipes: bool = False) -> Job:
+def load(path: Path, *, pipes: bool = False) -> JobFile:
     """
-    The job of a polarcheck.toml or pyproject.toml, with its offset table; folders in it begin where the file lies.
+    The job file of a path, a polarcheck.toml or pyproject.toml, and those that it extends.
 
-    pipes: whether it may be a pipe, as a shell hands over `<(...)`. Raises JobError with file and key.
+    pipes: whether it may be a pipe, as a shell hands over `<(...)`. Raises JobError with file, line and key.
     """
+    parts: list[_Part] = []
+    real: set[str] = set()
+    asked_by = ""
+    while True:
+        identity = os.path.realpath(path)
+        if identity in real:
+            raise JobError(f"{asked_by}: extend: {path} extends itself")
+        if len(real) == _LONGEST_CHAIN:
+            raise JobError(f"{asked_by}: extend: more than {_LONGEST_CHAIN} job files, one behind the other")
+        real.add(identity)
+        part, extended = _part(path, asked_by, pipes=pipes and not parts)
+        parts.append(part)
+        if extended is None:
+            return JobFile(parts[0].own.written.path, tuple(reversed(parts)))
+        asked_by = part.own.at("extend")
+        path = _from_here(Path(os.path.normpath(job_layers.beside(path.parent, extended))))
+
+
+def _part(path: Path, asked_by: str, *, pipes: bool) -> tuple[_Part, str | None]:
+    """What one file says, and the file that it extends. asked_by: the place that names it."""
+    before = f"{asked_by}: extend: " if asked_by else ""
     try:
-        table: Any = toml_text.read(path, "job file", pipes=pipes)
+        text = toml_text.text_of(path, "job file", pipes=pipes)
+        table: Any = toml_text.parsed(text)
     except ValueError as error:
-        raise JobError(f"{path}: {error}") from None
+        raise JobError(f"{before}{toml_lines.placed(str(path), str(error))}") from None
+    prefix = ""
     if path.name == _PROJECT:
+        prefix = "tool.polarcheck."
         tools = table.get("tool", {})
         table = tools.get("polarcheck", {}) if isinstance(tools, dict) else {}
         if not isinstance(table, dict):
             raise JobError(f"{path}: tool.polarcheck: expected a table, found {shown(table)}")
-    job = from_table(table, str(path))
-    folders = [str(path.parent / folder) for folder in job.run.subprograms]
-    for written, folder in zip(job.run.subprograms, folders, strict=True):
-        _check_folder(folder, written, path)
-    job = msgspec.structs.replace(job, run=msgspec.structs.replace(job.run, subprograms=folders))
-    if job.offsets is not None:
-        from polarcheck.machines import offset_table
-
-        listed = offset_table.read(path.parent / job.offsets, f"{path}: offsets: {job.offsets}")
-        job = msgspec.structs.replace(job, tools={**listed, **job.tools})
-    return job
-
-
-def _check_folder(folder: str, written: str, path: Path) -> None:
+    written = Written(path, text, prefix)
     try:
-        os.scandir(folder).close()
-    except (FileNotFoundError, NotADirectoryError, ValueError):
-        raise JobError(f"{path}: run.subprograms: there is no folder {shown(written)}") from None
-    except OSError as error:
-        raise JobError(f"{path}: run.subprograms: {shown(written)}: {error.strerror}") from None
+        job = fitted(table, Job)
+    except MisfitError as misfit:
+        raise JobError(f"{before}{written.at(misfit.key)}: {misfit}") from None
+    own = Layer(written, table)
+    entries = [Layer(written, entry, number) for number, entry in enumerate(table.get("programs", ()), 1)]
+    for layer, said in ((own, job), *zip(entries, job.programs, strict=True)):
+        _check_encoding(layer, said.encoding)
+    base = os.path.realpath(path.parent)
+    owners = [(layer, pattern) for layer, said in zip(entries, job.programs, strict=True) for pattern in said.files]
+    files = _globs(base, [pattern for _, pattern in owners], lambda number: owners[number][0].at("files"), "files")
+    exclude = _globs(base, job.exclude, lambda number: own.at("exclude"), "exclude")
+    return _Part(own, tuple(entries), files, tuple(owners), exclude if "exclude" in table else None), job.extend
+
+
+def _globs(base: str, patterns: Sequence[str], at: Callable[[int], str], key: str) -> Globs:
+    for number, pattern in enumerate(patterns):
+        if not is_pattern(pattern):
+            raise JobError(
+                f"{at(number)}: {key}: expected a pattern such as O12*.nc or lathe7/**, found {shown(pattern)}"
+            )
+    return Globs(base, patterns)
+
+
+def _check_encoding(layer: Layer, name: str | None) -> None:
+    import codecs
+
+    try:
+        if name is not None:
+            codecs.lookup(name)
+    except (LookupError, ValueError):
+        raise JobError(
+            f"{layer.at('encoding')}: encoding: unknown encoding {shown(name)}; for example utf-8, cp1252, shift_jis"
+        ) from None

@@ -111,7 +111,9 @@ subprograms = option(
 )  # fmt: skip
 units = option("--units", type=click.Choice(["mm", "inch"]), help="Of programs with neither G20 nor G21.")
 radius_from_comments = option(
-    "--radius-from-comments", is_flag=True, help="Take unknown radii from comments such as 3/4 DIA. CUTTER."
+    "--radius-from-comments/--no-radius-from-comments",
+    default=None,
+    help="Take unknown radii from comments such as 3/4 DIA. CUTTER.",
 )
 config = option(
     "--config",
@@ -119,3 +121,6 @@ config = option(
     help="Instead of the nearest polarcheck.toml.",
 )
 no_config = option("--no-config", is_flag=True, help="Read no polarcheck.toml or pyproject.toml.")
+force_exclude = option(
+    "--force-exclude", is_flag=True, help="Pass over what polarcheck.toml excludes where it is named, too."
+)

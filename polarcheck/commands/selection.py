@@ -8,8 +8,8 @@ from typing import Any
 
 from polarcheck.checking import rule as all_rules
 from polarcheck.checking.rule import Rule
-from polarcheck.commands.job_files import JobFile
 from polarcheck.errors import MachineError, UsageError, suggestion
+from polarcheck.machines.job import Job
 from polarcheck.machines.machine import Machine
 from polarcheck.machines.profiles import Profile
 
@@ -17,6 +17,8 @@ LEVELS = ("error", "warning", "note", "off")
 _ALARM = re.compile(r"([A-Za-z]{0,3})\s?0*(\d{1,9})")
 
 Rules = dict[str, Rule]
+#: Where a key of a job stands: `polarcheck.toml:12`.
+Place = Callable[[str], str]
 
 
 def select(names: Iterable[str], known: Rules, machine: Machine) -> Rules:
@@ -47,21 +49,22 @@ def _of_alarm(alarm: re.Match[str], known: Rules, machine: Machine) -> list[Rule
 
 
 def chosen(
-    selected: Sequence[str], ignored: Sequence[str], found: JobFile, known: Rules, machine: Machine
+    selected: Sequence[str], ignored: Sequence[str], job: Job, at: Place, known: Rules, machine: Machine
 ) -> list[Rule]:
     """
     The rules to run; --select sets aside what the job selects and ignores.
 
-    selected, ignored: names as the command line gives them. Raises UsageError, which names the option or the key of
+    selected, ignored: names as the command line gives them. at: where a key of the job stands.
+    Raises UsageError, which names the option or the key of
     the file, for an unknown name, and where no rule is left.
     """
     rules, without = known, {}
     if selected:
         rules = _named("--select", select, selected, known, machine)
     else:
-        if found.job.select:
-            rules = _named(f"{found.path}: select", select, found.job.select, known, machine)
-        without = _named(f"{found.path}: ignore", select, found.job.ignore, known, machine)
+        if job.select:
+            rules = _named(f"{at('select')}: select", select, job.select, known, machine)
+        without = _named(f"{at('ignore')}: ignore", select, job.ignore, known, machine)
     without = without | _named("--ignore", select, ignored, known, machine)
     left = [rule for name, rule in rules.items() if name not in without]
     if not left:
@@ -70,15 +73,18 @@ def chosen(
 
 
 def severities(
-    levels: Iterable[str], selected: Iterable[str], found: JobFile, known: Rules, machine: Machine
+    levels: Iterable[str], selected: Iterable[str], job: Job, at: Place, known: Rules, machine: Machine
 ) -> dict[str, str]:
     """
     Severities by rule where they differ from the profile; a rule selected by its own name is never off.
 
-    levels: RULE=LEVEL as the command line gives them; selected: names of --select. Raises UsageError, which names the
-    option or the key of the file.
+    levels: RULE=LEVEL as the command line gives them; selected: names of --select. at: where a key of the job stands.
+    Raises UsageError, which names the option or the key of the file.
     """
-    of_job = _named(f"{found.path}: severities", _levels, found.job.severities.items(), known, machine)
+    of_job: dict[str, str] = {}
+    for name, level in job.severities.items():
+        title = f"{at(f'severities.{name}')}: severities"
+        of_job |= _named(title, _levels, [(name, level)], known, machine)
     asked = _named("--severity", _levels, [_pair(option) for option in levels], known, machine)
     changed = of_job | asked
     for name in selected:

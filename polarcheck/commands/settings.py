@@ -2,23 +2,26 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
+import re
 from collections.abc import Callable, Iterable, Sequence
-from functools import cache
 from pathlib import Path
 from typing import Any
 
 import msgspec
 
-from polarcheck.checking.rule import load_all
+from polarcheck.checking.rule import Rule, load_all
 from polarcheck.checking.settings import Settings
 from polarcheck.commands import job_files, selection
 from polarcheck.commands.job_files import JobFile
+from polarcheck.commands.job_layers import Merged
 from polarcheck.commands.selection import Rules
 from polarcheck.errors import MachineError, UsageError
 from polarcheck.machines import profiles, toml_text
-from polarcheck.machines.job import Job, Running, check_tools, check_work_offsets, with_tool
+from polarcheck.machines.job import Job, PunchedTool, Running, check_tools, check_work_offsets, with_tool
 from polarcheck.machines.machine import Machine
+from polarcheck.reading.files import STANDARD_INPUT
 
 
 class Options(msgspec.Struct, frozen=True):
@@ -39,54 +42,196 @@ class Options(msgspec.Struct, frozen=True):
     max_blocks: int | None = None
     max_statements: int | None = None
     max_seconds: float | None = None
-    radius_from_comments: bool = False
+    radius_from_comments: bool | None = None
     fail_on: str | None = None
     strict: bool | None = None
     encoding: str | None = None
     inline: bool | None = None
 
 
-def of_programs(options: Options) -> Callable[[str], Settings]:
+class OfPrograms:
     """
-    The settings for a program by its path; each job file is read once and makes one profile. Of a path that ends in a
-    separator they are those of the folder.
+    The settings of programs by their paths; of a path that ends in a separator they are those of the folder.
 
-    The function raises a PolarcheckError that names the option, or the file and key, at fault.
+    Each job file is read once, and makes settings once for all programs to which the same of its entries apply. Raises
+    a PolarcheckError that names the option, or file, line and key, at fault.
     """
-    job_in = jobs_in_folders(options)
-    known = load_all()
-    of_job: dict[Path | None, Settings] = {}
 
-    @cache
-    def in_folder(folder: str) -> Settings:
-        found = job_in(Path(folder))
-        if found.path not in of_job:
-            of_job[found.path] = _settings(options, found, known)
-        return of_job[found.path]
+    def __init__(self, options: Options) -> None:
+        self._options = options
+        self._nearest = job_files.Nearest()
+        self._loaded: dict[Path | None, JobFile] = {}
+        self._of_folder: dict[str, tuple[JobFile, str]] = {}
+        #: Of folders whose programs all have the same.
+        self._plain: dict[str, Settings] = {}
+        self._settings: dict[tuple[Path | None, Layers], Settings] = {}
+        self._asked: dict[Path, list[tuple[str, str]]] = {}
+        self._making = _Making(options)
 
-    def of_program(path: str) -> Settings:
-        # "-" lies in the working folder, where standard input belongs.
-        return in_folder(os.path.dirname(path))  # noqa: PTH120  once for each of thousands
+    def __call__(self, path: str) -> Settings:
+        folder, name = os.path.split(path)
+        plain = self._plain.get(folder)
+        if plain is not None:
+            return plain
+        found, real = self._job_file(folder)
+        layers = found.layers(real, name)
+        key = found.path, layers
+        if key not in self._settings:
+            self._settings[key] = self._making.settings(found, layers)
+        if not found.has_entries:
+            self._plain[folder] = self._settings[key]
+        elif name and found.path is not None:
+            self._asked.setdefault(found.path, []).append((real, name))
+        return self._settings[key]
 
-    return of_program
+    def applied(self, path: str) -> Applied:
+        """The same with the origin of each value."""
+        folder, name = os.path.split(path)
+        found, real = self._job_file(folder)
+        return self._making.applied(found, found.layers(real, name))
+
+    def excluded_in(self, folder: str) -> Callable[[str, bool], bool] | None:
+        """What of a folder a walk passes over, as the job file nearest to it says; see files.walk."""
+        found, real = self._job_file(folder)
+        exclude = found.exclude
+        return (lambda name, is_folder: bool(exclude.itself(real, name, is_folder=is_folder))) if exclude else None
+
+    def is_within_excluded(self, path: str) -> bool:
+        """Whether a walk from above would pass over a file or folder that is named, or over a folder around it."""
+        folder, name = os.path.split(path.rstrip(os.sep) or path)
+        found, real = self._job_file(folder)
+        if not found.exclude or path == STANDARD_INPUT:
+            return False
+        is_folder = os.path.isdir(path)  # noqa: PTH112  Path.is_dir raises for some names
+        if name in ("", os.curdir, os.pardir):
+            return bool(found.exclude.of_folder(os.path.realpath(path)))
+        return bool(found.exclude.of_folder(real) or found.exclude.itself(real, name, is_folder=is_folder))
+
+    def left(self, paths: Sequence[str], warn: Callable[[str], None]) -> tuple[str, ...]:
+        """Those of some paths that are not excluded; warn is told where none is left."""
+        left = tuple(path for path in paths if not self.is_within_excluded(path))
+        if not left:
+            warn("all that is named is excluded: nothing is checked")
+        return left
+
+    def unmatched(self, paths: Iterable[str]) -> list[str]:
+        """
+        What is to be said of patterns in job files that match none of the programs asked for so far, where all in the
+        folder of the job file have been.
+
+        paths: files and folders, which have been walked.
+        """
+        if not self._asked:
+            return []
+        walked = [self._nearest.real.folder(path) for path in paths if os.path.isdir(path)]  # noqa: PTH112
+        return [
+            told
+            for path, asked in self._asked.items()
+            if any(Path(os.path.realpath(path.parent)).is_relative_to(folder) for folder in walked)
+            for told in self._loaded[path].unmatched(asked)
+        ]
+
+    def _job_file(self, folder: str) -> tuple[JobFile, str]:
+        """The job file for a folder, and the real path of the folder."""
+        if folder not in self._of_folder:
+            options = self._options
+            nearest = None if not options.use_config else options.config or self._nearest.of(Path(folder))
+            if nearest not in self._loaded:
+                pipes = nearest == options.config
+                self._loaded[nearest] = job_files.load(nearest, pipes=pipes) if nearest else JobFile()
+            with contextlib.suppress(OSError, RuntimeError, ValueError):  # reading the program will say so
+                self._of_folder[folder] = self._loaded[nearest], self._nearest.real.folder(folder or os.curdir)
+                return self._of_folder[folder]
+            return self._loaded[nearest], folder
+        return self._of_folder[folder]
 
 
-def jobs_in_folders(options: Options) -> Callable[[Path], JobFile]:
-    """The job files for folders, with the options of the command line merged over it."""
+of_programs = OfPrograms
 
-    @cache
-    def read(path: Path | None) -> JobFile:
-        job = job_files.load(path, pipes=path == options.config) if path else Job()
-        return JobFile(_changed(job, options), path)
+Layers = tuple[tuple[int, int], ...]
 
-    nearest = job_files.Nearest()
 
-    def in_folder(folder: Path) -> JobFile:
-        if not options.use_config:
-            return read(None)
-        return read(options.config or nearest.of(folder))
+class Applied(msgspec.Struct, frozen=True):
+    """What applies to a program, with where it comes from: the job as files say it, and its machine."""
 
-    return in_folder
+    settings: Settings
+    merged: Merged
+    profile: profiles.Profile
+    file: JobFile
+
+
+class _Making:
+    """Makes settings; those of the same machine and rules share what is made of these."""
+
+    def __init__(self, options: Options) -> None:
+        self._options = options
+        self._known = load_all()
+        self._changes = changes(options.changes)
+        self._profiles: dict[str, profiles.Profile] = {}
+        self._rules: dict[str, tuple[list[Rule], dict[str, str]]] = {}
+
+    def settings(self, found: JobFile, layers: Layers) -> Settings:
+        return self.applied(found, layers).settings
+
+    def applied(self, found: JobFile, layers: Layers) -> Applied:
+        """The settings of some layers of a job file."""
+        options = self._options
+        merged = found.merged(layers)
+        job = _changed(merged.job, options)
+        name = options.machine or job.machine or profiles.DEFAULT
+        profile = self._profile(name, merged)
+        machine = profile.machine
+        check_tools(job, options.tools, machine, merged.at)
+        check_work_offsets(job, machine, merged.at)
+        rules, levels = self._chosen(job, merged, profile)
+        settings = Settings(
+            name=name,
+            machine=machine,
+            job=job,
+            rules=rules,
+            severities=levels,
+            read=_read(options, job, profile, found),
+            fail_on=job.fail_on,
+            strict=job.strict,
+            encoding=job.encoding,
+            inline=job.inline,
+        )
+        return Applied(settings, merged, profile, found)
+
+    def _profile(self, name: str, merged: Merged) -> profiles.Profile:
+        over: list[profiles.Change] = [("--set", self._changes)]
+        for layer in reversed(merged.layers):
+            limits = layer.table.get("limits")
+            if limits:
+                over.append((layer.at("limits"), {"limits": limits}))
+        key = repr((name, over))
+        if key not in self._profiles:
+            asked_by = "" if self._options.machine or not merged.job.machine else f"{merged.at('machine')}: machine: "
+            try:
+                self._profiles[key] = _profile(name, over, self._known, asked_by)
+            except MachineError as error:
+                raise MachineError(_with_line(str(error), merged)) from None
+        return self._profiles[key]
+
+    def _chosen(self, job: Job, merged: Merged, profile: profiles.Profile) -> tuple[list[Rule], dict[str, str]]:
+        """The rules to run, and their severities where they differ from the machine's."""
+        options, machine = self._options, profile.machine
+        key = repr((id(profile), job.select, job.ignore, list(job.severities.items())))
+        if key not in self._rules:
+            levels = selection.severities(options.severities, options.select, job, merged.at, self._known, machine)
+            rules = selection.chosen(options.select, options.ignore, job, merged.at, self._known, machine)
+            self._rules[key] = rules, levels
+        return self._rules[key]
+
+
+def _with_line(said: str, merged: Merged) -> str:
+    """What is said of [limits], with the line of the key."""
+    key = re.search(r"limits\.\w+", said)
+    for layer in merged.layers if key else ():
+        table = f"{layer.at('limits')}: "
+        if key and said.startswith(table):
+            return f"{layer.at(key[0])}: {said.removeprefix(table)}"
+    return said
 
 
 def _changed(job: Job, options: Options) -> Job:
@@ -94,61 +239,30 @@ def _changed(job: Job, options: Options) -> Job:
         from polarcheck.machines import offset_table
 
         listed = offset_table.read(options.offsets, str(options.offsets), pipes=True)
-        job = msgspec.structs.replace(job, tools={**job.tools, **listed})
+        own = {key: tool for key, tool in job.tools.items() if not isinstance(tool, PunchedTool)}
+        job = msgspec.structs.replace(job, tools={**own, **listed})
     for tool in options.tools:
         job = with_tool(job, tool)
+    asked = {key: value for key in _OVER_JOB if (value := getattr(options, key)) is not None}
     if options.units:
-        job = msgspec.structs.replace(job, program_units=options.units)
-    if options.radius_from_comments:
-        job = msgspec.structs.replace(job, radius_from_comments=True)
-    asked = {name: getattr(options, name) for name in Running.__struct_fields__ if getattr(options, name, None)}
-    if "subprograms" in asked:
-        asked["subprograms"] = [*asked["subprograms"], *job.run.subprograms]
-    return msgspec.structs.replace(job, run=msgspec.structs.replace(job.run, **asked)) if asked else job
+        asked["program_units"] = options.units
+    of_run = {name: getattr(options, name) for name in Running.__struct_fields__ if getattr(options, name, None)}
+    if "subprograms" in of_run:
+        of_run["subprograms"] = [*of_run["subprograms"], *job.run.subprograms]
+    if of_run:
+        asked["run"] = msgspec.structs.replace(job.run, **of_run)
+    return msgspec.structs.replace(job, **asked) if asked else job
 
 
-def _settings(options: Options, found: JobFile, known: Rules) -> Settings:
-    name = machine_name(options.machine, found)
-    of_job = {"limits": found.job.limits} if found.job.limits else {}
-    over = [("--set", changes(options.changes)), (str(found.path), of_job)]
-    profile = _profile(name, over, known, "" if options.machine else f"{found.path}: machine: ")
-    machine = profile.machine
-    check_tools(found.job, options.tools, machine, str(found.path))
-    check_work_offsets(found.job, machine, str(found.path))
-    levels = selection.severities(options.severities, options.select, found, known, machine)
-    rules = selection.chosen(options.select, options.ignore, found, known, machine)
-    return Settings(
-        name,
-        machine,
-        found.job,
-        rules,
-        levels,
-        _read(options, found, profile),
-        options.fail_on or "warning",
-        bool(options.strict),
-        options.encoding,
-        options.inline is not False,
-    )
+#: Options that a job has a key of the same name for.
+_OVER_JOB = ("radius_from_comments", "fail_on", "strict", "encoding", "inline")
 
 
-def _read(options: Options, found: JobFile, profile: profiles.Profile) -> list[Path]:
-    """The job file, the offset tables and the machine files of the user's own."""
+def _read(options: Options, job: Job, profile: profiles.Profile, found: JobFile) -> list[Path]:
+    """The job files, the offset tables and the machine files of the user's own."""
     own = [Path(title) for title in profile.chain if title not in profiles.names()]
     tables = [options.offsets] if options.offsets else []
-    if found.path is None:
-        return [*own, *tables]
-    return [*own, *tables, found.path, *([found.path.parent / found.job.offsets] if found.job.offsets else [])]
-
-
-def machine_name(asked: str | None, found: JobFile) -> str:
-    """The machine of the command line, else of the job (a name, or a file beside the job file), else the default."""
-    name = asked or found.job.machine
-    if name is None:
-        return profiles.DEFAULT
-    if asked is None and found.path is not None and name not in profiles.names():
-        beside = found.path.parent / name
-        return str(beside) if profiles.is_meant(beside, name) else name
-    return name
+    return [*own, *tables, *found.read, *([Path(job.offsets)] if job.offsets else [])]
 
 
 def changes(options: Iterable[str]) -> dict[str, Any]:
@@ -189,6 +303,7 @@ def toml_value(text: str) -> Any:
 
 def here(machine: str | None) -> tuple[str, Machine]:
     """The machine for a command without programs: the one asked for, else that of the job of the working folder."""
-    found = JobFile(Job()) if machine else jobs_in_folders(Options())(Path())
-    name = machine_name(machine, found)
-    return name, _profile(name, (), load_all(), "" if machine else f"{found.path}: machine: ").machine
+    if machine:
+        return machine, _profile(machine, (), load_all(), "").machine
+    found = OfPrograms(Options())("")
+    return found.name, found.machine

@@ -81,8 +81,9 @@ def _misfits(part: _Part) -> Iterator[MisfitError]:
         elif get_origin(kind) is dict:
             yield from _of_dict(part, kind)
     elif isinstance(part.value, list) and get_origin(kind) is list:
-        for value in part.value:
-            yield from _misfits(_Part(part.key, value, get_args(kind)[0]))
+        for number, value in enumerate(part.value, 1):
+            key = f"{part.key}.{number}" if isinstance(value, Mapping) else part.key
+            yield from _misfits(_Part(key, value, get_args(kind)[0]))
     try:
         msgspec.convert(part.value, part.kind, str_keys=True)
     except msgspec.ValidationError as error:

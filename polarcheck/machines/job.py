@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Annotated, Any, ClassVar, Literal
 
 import msgspec
@@ -85,8 +85,11 @@ class Running(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     variables: Annotated[dict[Variable, float], msgspec.Meta(description="values of #-variables, by number")] = {}
 
 
-class Job(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A job. tools: by the keys of their offsets (offset_keys.canonical). work_offsets: by name (G54)."""
+class OfPrograms(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """
+    What a job file says of all its programs or, under [[programs]], of some of them. tools: by the keys of their
+    offsets (offset_keys.canonical). work_offsets: by name (G54).
+    """
 
     machine: Annotated[str, msgspec.Meta(description="name or TOML file of the lathe")] | None = None
     units: (
@@ -98,21 +101,34 @@ class Job(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True)
     program_units: (
         Annotated[Literal["mm", "inch"], msgspec.Meta(description="of programs with neither G20 nor G21")] | None
     ) = None
-    tools: dict[OffsetKey, Tool] = {}
+    tools: Annotated[dict[OffsetKey, Tool], msgspec.Meta(description="tool offsets by number, 8 for T0808")] = {}
     stock: Stock = Stock()
     run: Running = Running()
     radius_from_comments: Annotated[
         bool, msgspec.Meta(description="take R of unknown offsets from comments such as 3/4 DIA. CUTTER")
     ] = False
-    work_offsets: dict[str, WorkOffset] = {}
+    work_offsets: Annotated[
+        dict[str, WorkOffset], msgspec.Meta(description="where X0 of each work offset lies, by its code (G54)")
+    ] = {}
     offsets: (
-        Annotated[str, msgspec.Meta(description="offset table punched out by the control (G10 P.. R.. Q..)")] | None
+        Annotated[str, msgspec.Meta(description="file with the offset table of the control, punched out or copied")]
+        | None
     ) = None
-    select: list[str] = []
-    ignore: list[str] = []
-    severities: dict[str, Literal["error", "warning", "note", "off"]] = {}
-    extensions: list[str] = []
-    limits: dict[str, float | bool] = {}
+    select: Annotated[list[str], msgspec.Meta(description="only these rules, groups or alarms")] = []
+    ignore: Annotated[list[str], msgspec.Meta(description="all rules but these, groups or alarms")] = []
+    severities: Annotated[
+        dict[str, Literal["error", "warning", "note", "off"]],
+        msgspec.Meta(description="severity by rule, group or alarm"),
+    ] = {}
+    limits: Annotated[dict[str, float | bool], msgspec.Meta(description="[limits] of the lathe, over its own")] = {}
+    fail_on: Annotated[
+        Literal["error", "warning", "note", "never"], msgspec.Meta(description="the least severity that fails")
+    ] = "warning"
+    strict: Annotated[bool, msgspec.Meta(description="fail where a file is unverified, too")] = False
+    encoding: Annotated[str, msgspec.Meta(description="of the programs: cp1252, shift_jis; else found out")] | None = (
+        None
+    )
+    inline: Annotated[bool, msgspec.Meta(description="heed comments of programs that allow a finding")] = True
 
     def __post_init__(self) -> None:
         tools: dict[str, Tool] = {}
@@ -123,6 +139,34 @@ class Job(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True)
                 raise ValueError(f"tools.{written[key]} and tools.{name} are one tool offset")
             tools[key], written[key] = tool, name
         msgspec.structs.force_setattr(self, "tools", tools)
+
+
+class Programs(OfPrograms, frozen=True):
+    """What applies to some programs, over what the file says of all; of several entries the last one counts."""
+
+    files: Annotated[
+        list[str],
+        msgspec.Meta(
+            description="patterns of names (O12*.nc) or paths (lathe7/**), relative to this file; capitals are ignored"
+        ),
+    ]
+
+
+class Job(OfPrograms, frozen=True):
+    """A job file, or what of it and its entries applies to one program."""
+
+    extensions: Annotated[
+        list[str], msgspec.Meta(description="endings of the programs in a folder, instead of .nc, .tap and others")
+    ] = []
+    exclude: Annotated[
+        list[str], msgspec.Meta(description="patterns of files and folders that no walk through a folder finds")
+    ] = []
+    extend: (
+        Annotated[str, msgspec.Meta(description="another job file, whose values apply where this one has none")] | None
+    ) = None
+    programs: Annotated[
+        list[Programs], msgspec.Meta(description="entries for some of the programs, in their order")
+    ] = []
 
 
 def from_table(table: Any, title: str) -> Job:
@@ -213,10 +257,10 @@ _DIGITS_OF_T = 8
 _DIGITS_OF_OFFSET = 2
 
 
-def check_tools(job: Job, options: Iterable[str], machine: Machine, title: str) -> None:
+def check_tools(job: Job, options: Iterable[str], machine: Machine, at: Callable[[str], str]) -> None:
     """
-    Raises UsageError or JobError, which names the option, or the title and the key, for a tool by its name or edge on
-    a machine that has offset numbers alone.
+    Raises UsageError or JobError, which names the option, or the key and where it stands (at), for a tool by its name
+    or edge on a machine that has offset numbers alone.
     """
     if machine.has_edges:
         return
@@ -225,11 +269,13 @@ def check_tools(job: Job, options: Iterable[str], machine: Machine, title: str) 
             raise UsageError(_expected_number(option))
     for key in job.tools:
         if not is_plain_number(key):
-            raise JobError(f"{title}: tools.{key}: expected the number of a tool offset, 8 for T0808, found {key}")
+            raise JobError(
+                f"{at(f'tools.{key}')}: tools.{key}: expected the number of a tool offset, 8 for T0808, found {key}"
+            )
 
 
-def check_work_offsets(job: Job, machine: Machine, title: str) -> None:
-    """Raises JobError, which names the title and the key, for a work offset that the machine does not have."""
+def check_work_offsets(job: Job, machine: Machine, at: Callable[[str], str]) -> None:
+    """Raises JobError, which names the key and where it stands (at), for a work offset that the machine has not."""
     known = machine.codes("work_offset")
     extended = machine.codes("work_offset_extended")
     for name in job.work_offsets:
@@ -238,7 +284,7 @@ def check_work_offsets(job: Job, machine: Machine, title: str) -> None:
             continue
         listed = [code.replace("-", " to ") for code in machine.g_codes.work_offset]
         expected = " or ".join([*listed, *(f'"{code} P1"' for code in extended)]) or "none on this machine"
-        raise JobError(f"{title}: work_offsets.{name}: expected {expected}, found {name}")
+        raise JobError(f"{at(f'work_offsets.{name}')}: work_offsets.{name}: expected {expected}, found {name}")
 
 
 def _number(text: str) -> float | str:

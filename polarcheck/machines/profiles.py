@@ -54,7 +54,13 @@ class Profile(msgspec.Struct, frozen=True):
 
 def names() -> list[str]:
     """The built-in machines."""
-    return sorted(path.stem for path in FOLDER.glob("*.toml"))
+    return list(_names_in(FOLDER))
+
+
+@functools.cache
+def _names_in(folder: Path) -> tuple[str, ...]:
+    """Each of thousands of settings asks for them."""
+    return tuple(sorted(path.stem for path in folder.glob("*.toml")))
 
 
 @functools.cache

@@ -37,11 +37,18 @@ def read(path: str | PathLike[str], what: str, *, pipes: bool = False) -> dict[s
 
     Raises ValueError, which says in one line what is wrong, but not with which file.
     """
+    return parsed(text_of(path, what, pipes=pipes))
+
+
+def text_of(path: str | PathLike[str], what: str, *, pipes: bool = False) -> str:
+    """
+    The text of a file, in any encoding in which editors save it; lines end with LF. Arguments and errors as of read.
+    """
     try:
-        text = bounded.read(path, LARGEST, f"no {what} is", pipes=pipes).decode("utf-8")
+        data = bounded.read(path, LARGEST, f"no {what} is", pipes=pipes)
     except OSError as error:
         raise ValueError(error.strerror or str(error)) from None
-    return parsed(text.replace("\r\n", "\n"))
+    return bounded.text(data).replace("\r\n", "\n")
 
 
 def parsed(text: str) -> dict[str, Any]:
@@ -62,6 +69,8 @@ def parsed(text: str) -> dict[str, Any]:
     except tomllib.TOMLDecodeError as error:
         bit = re.search(_BIT, text, re.MULTILINE)
         hint = f'; write "{bit[1]}" in quotes: # begins a comment' if bit else ""
+        if "'\\'" in str(error):
+            hint = "; write / between folders, or the text in single quotes"
         raise ValueError(f"{error}{hint}") from None
     except ValueError as error:  # a number that Python does not read: its own text means nothing to a setter
         raise ValueError(_long_number(text) or str(error)) from None

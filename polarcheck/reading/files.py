@@ -35,22 +35,32 @@ _BLOCK = r"(?i)/?\d?\s*(?:N\s?\d+\s*)?(?:[A-Z]\s?[-+]?(?:\d+(?:\.\d*)?|\.\d+)\s*
 _BLOCKS_NEEDED, _LINES_LOOKED_AT = 2, 10
 
 
+#: Of a folder: whether a name in it, of a folder or not, is passed over; None where none is.
+ExcludedIn = Callable[[str], Callable[[str, bool], bool] | None]
+
+
 def extensions(names: Iterable[str]) -> list[str]:
     """Extensions as they are compared: lower case, with the point."""
     return [f".{name.strip().lower().lstrip('.')}" for name in names if name.strip(" .")]
 
 
-def walk(folder: str, wanted: Collection[str], failed: Callable[[str], None]) -> Iterator[str]:
+def walk(
+    folder: str,
+    wanted: Collection[str],
+    failed: Callable[[str], None],
+    excluded_in: ExcludedIn | None = None,
+) -> Iterator[str]:
     """
     The programs below a folder, in order of their names, as paths that begin with the folder as it is given.
 
     Hidden files and folders are passed over; a folder that links lead to twice is entered once. failed is told, in one
-    line, of folders that cannot be read.
+    line, of folders that cannot be read. excluded_in: says of a folder what of it is passed over; what
+    lies in a folder that is, is not asked for.
     """
     wanted = frozenset(wanted)
     seen: set[tuple[int, int]] = set()
     # Folders can be nested deeper than functions: the innermost one stands at the end.
-    left = [iter(_entries(folder, seen, failed))]
+    left = [_entries(folder, seen, failed, excluded_in)]
     while left:
         entry = next(left[-1], None)
         if entry is None:
@@ -60,24 +70,30 @@ def walk(folder: str, wanted: Collection[str], failed: Callable[[str], None]) ->
             continue
         path = entry.path if folder != "." else entry.path.removeprefix(f".{os.sep}")
         if _is_folder(entry):
-            left.append(iter(_entries(path, seen, failed)))
+            left.append(_entries(path, seen, failed, excluded_in))
         elif is_program(path, wanted):
             yield path if path != STANDARD_INPUT else entry.path
 
 
-def _entries(folder: str, seen: set[tuple[int, int]], failed: Callable[[str], None]) -> list[os.DirEntry[str]]:
+def _entries(
+    folder: str, seen: set[tuple[int, int]], failed: Callable[[str], None], excluded_in: ExcludedIn | None
+) -> Iterator[os.DirEntry[str]]:
     """What lies in a folder, by name; nothing where it has been seen or cannot be read."""
     try:
         status = Path(folder).stat()
         identity = (status.st_dev, status.st_ino)
         if identity in seen:
-            return []
+            return iter(())
         seen.add(identity)
         with os.scandir(folder) as found:
-            return sorted(found, key=lambda entry: entry.name)
+            entries = sorted(found, key=lambda entry: entry.name)
     except OSError as error:
         failed(f"{shown(folder)}: {error.strerror}")
-        return []
+        return iter(())
+    is_excluded = excluded_in(folder) if excluded_in is not None else None
+    if is_excluded is None:
+        return iter(entries)
+    return (entry for entry in entries if not is_excluded(entry.name, _is_folder(entry)))
 
 
 def _is_folder(entry: os.DirEntry[str]) -> bool:
