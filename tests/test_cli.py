@@ -243,7 +243,7 @@ def test_a_reader_who_goes_away_changes_no_exit_code() -> None:
         (["--config", "gone.toml"], "'gone.toml' does not exist"),
         (["--encoding", "utf-99"], "unknown encoding 'utf-99'"),
         (["--output", "report.json"], "'report.json': expected FORMAT:FILE"),
-        (["--output", "xml:a.xml"], "expected FORMAT:FILE, the format one of concise, json, short, text"),
+        (["--output", "xml:a.xml"], "expected FORMAT:FILE, the format one of text, short, concise, checkstyle"),
         (["--units", "cm"], "'cm' is not one of 'mm', 'inch'"),
     ],
 )

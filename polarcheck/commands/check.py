@@ -9,19 +9,16 @@ from typing import Any
 
 import click
 
-from polarcheck.commands import options, silencing, standard_input
+from polarcheck.commands import options, reporting, silencing, standard_input
 from polarcheck.commands.exit_codes import BUG, COULD_NOT_RUN
 from polarcheck.commands.options import many, option
 from polarcheck.commands.output import COLUMNS, columns, in_color, said_of_bug, say, say_lines, show, warn
-from polarcheck.errors import PolarcheckError
-from polarcheck.reports import formats
+from polarcheck.reports import FOR_PEOPLE, formats
 
-#: Reports for people come in the encoding of their terminal; all others are UTF-8.
-_FOR_PEOPLE = ("text", "concise", "short")
 #: Of more files than this the report is short, if no format is asked for.
 _LONG = 3
 #: Options that change how a report looks or where it goes, but not what it says.
-_OF_OUTPUT = ("stdin_filename", "form", "outputs", "color", "quiet", "following")
+_OF_OUTPUT = ("stdin_filename", "form", "outputs", "color", "quiet", "following", "statistics")
 _FORMATS = formats()
 
 
@@ -82,6 +79,7 @@ def _outputs(ctx: click.Context, parameter: click.Parameter, values: tuple[str, 
     help="A report in a file, too.",
 )
 @silencing.inline
+@reporting.statistics
 @options.config
 @options.no_config
 @options.force_exclude
@@ -165,6 +163,7 @@ def _check(
     color: str,
     quiet: bool,
     following: bool,
+    statistics: bool,
     **asked: Any,
 ) -> int:
     from polarcheck import reports
@@ -174,9 +173,9 @@ def _check(
     from polarcheck.commands.progress import watched
     from polarcheck.machines import profiles
     from polarcheck.machines.job import key_of_option
-    from polarcheck.reading import files
 
     keep_within_memory()
+    reporting.refuse(form, statistics)
     failures: list[str] = []
     bugs: list[str] = []
     applies = settings.Options(use_config=not no_config, **asked)
@@ -202,25 +201,25 @@ def _check(
     if bugs:
         say_lines(bugs)
         status = BUG
+    went_wrong = [*failures, *bugs]
     if checked.stopped is not None:
         status, how = signals.told(checked.stopped)
-        say(f"{how} after {len(checked.files)} of {len(tasks)} files; these are reported")
+        went_wrong.append(f"{how} after {len(checked.files)} of {len(tasks)} files; these are reported")
+        say(went_wrong[-1])
     else:
         for key in dict.fromkeys(map(key_of_option, applies.tools)):
             if key not in checked.called:
                 warn(f"--tool {key}: no program of this run calls offset {key}")
     form = form or ("text" if len(report.files) <= _LONG else "short")
     plain = reports.Background(checked.lines, rule.load_all(), COLUMNS, False, quiet, command, following)
-    for kind, path in outputs:
-        try:
-            files.write(path, reports.render(kind, report, plain))
-        except PolarcheckError as error:
-            say(str(error))
-            status = max(status, COULD_NOT_RUN)
+    plain = reporting.background(plain, tasks, went_wrong)
+    for error in reporting.written(outputs, form, report, plain):
+        say(str(error))
+        status = max(status, COULD_NOT_RUN)
     is_colored = in_color(color)
     shown = plain._replace(columns=columns(), color=is_colored)
-    text = reports.render(form, report, shown)
-    show(text if form in _FOR_PEOPLE else text.encode(), is_colored or None)
+    text = reporting.rendered(form, report, shown, statistics)
+    show(text if form in FOR_PEOPLE else text.encode(), is_colored or None)
     if form == "concise" and not quiet and any(file.verdict == "unverified" for file in report.files):
         warn("some rules could not be evaluated; --format text says which, and what to give")
     return status

@@ -9,6 +9,8 @@ _BYTES = re.compile("[\udc80-\udcff]+")
 _FIRST_BYTE = 0xDC00
 #: What looks as if it had been spelled out.
 _SPELLED = re.compile(r"\\[xuU]")
+#: What has been spelled out in such a name.
+_PARTS = re.compile(r"\\(?:(\\)|x([0-9a-f]{2})|u([0-9a-f]{4}))")
 
 
 def spelled(name: str) -> str:
@@ -20,6 +22,11 @@ def spelled(name: str) -> str:
     """
     text = with_characters(name)
     return text if text.isprintable() and not _SPELLED.search(text) else "".join(map(_in_text, text))
+
+
+def unspelled(name: str) -> str:
+    """The name of a file of which `spelled` has made this; bytes that are no characters are as Python holds them."""
+    return name if name.isprintable() and not _SPELLED.search(name) else _PARTS.sub(_as_it_was, name)
 
 
 def with_characters(name: str) -> str:
@@ -37,6 +44,11 @@ def code(character: str) -> str:
 
 def _in_text(character: str) -> str:
     return character * 2 if character == "\\" else code(character) if "\ud800" <= character <= "\udfff" else character
+
+
+def _as_it_was(found: re.Match[str]) -> str:
+    backslash, byte, number = found.groups()
+    return backslash or chr(int(byte, 16) + _FIRST_BYTE if byte else int(number, 16))
 
 
 def _decoded(found: re.Match[str]) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import importlib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
@@ -11,8 +11,11 @@ from typing import TYPE_CHECKING, NamedTuple
 if TYPE_CHECKING:
     from polarcheck.checking.finding import Report
     from polarcheck.checking.rule import Rule
+    from polarcheck.checking.settings import Settings
 
 SEVERITIES = ("error", "warning", "note")
+#: Formats that come in the encoding of a terminal, and that one looks for first; all others are UTF-8, for programs.
+FOR_PEOPLE = ("text", "short", "concise")
 _STYLES = {
     "error": "1;31",
     "warning": "1;33",
@@ -32,7 +35,9 @@ class Background(NamedTuple):
 
     lines: by path and line number, those that findings stand in. rules: by name. columns: the width of the terminal.
     quiet: findings only. command: what checks a file behind it as these were checked. following: whether what follows
-    from a finding is shown, too.
+    from a finding is shown, too. settings: what applied to a file, by its path. failures: a line each on what could not
+    be read, or went wrong. root, folder: of the repository, and the one that paths begin in; absolute, with slashes,
+    empty where they are not known.
     """
 
     lines: Mapping[str, Mapping[int, str]] = MappingProxyType({})
@@ -42,11 +47,16 @@ class Background(NamedTuple):
     quiet: bool = False
     command: str = "polarcheck check"
     following: bool = False
+    settings: Mapping[str, Settings] = MappingProxyType({})
+    failures: Sequence[str] = ()
+    root: str = ""
+    folder: str = ""
 
 
 def formats() -> list[str]:
-    """The names of the formats: the modules of this package."""
-    return sorted(path.stem for path in Path(__file__).parent.glob("*.py") if path.stem != "__init__")
+    """The names of the formats: the modules of this package, those for people first."""
+    found = {path.stem for path in Path(__file__).parent.glob("*.py")} - {"__init__"}
+    return [*FOR_PEOPLE, *sorted(found.difference(FOR_PEOPLE))]
 
 
 def render(form: str, report: Report, background: Background) -> str:

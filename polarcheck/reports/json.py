@@ -23,11 +23,16 @@ _ESCAPED = {number: f"\\u{number:04x}" for number in _ACTING}
 
 def json(report: Report, background: Background | None = None) -> str:
     """The report as JSON, in the order of its fields; NaN is null."""
+    return encoded(report, indent=2) + "\n"
+
+
+def encoded(value: Any, indent: int = 0) -> str:
+    """Any value as JSON in which nothing acts, in one line if it is not indented; NaN is null."""
     try:
-        text = msgspec.json.encode(report)
+        text = msgspec.json.encode(value)
     except UnicodeEncodeError:
-        text = msgspec.json.encode(_encodable(msgspec.to_builtins(report)))
-    return msgspec.json.format(text, indent=2).decode().translate(_ESCAPED) + "\n"
+        text = msgspec.json.encode(_encodable(msgspec.to_builtins(value)))
+    return (msgspec.json.format(text, indent=indent) if indent else text).decode().translate(_ESCAPED)
 
 
 def _encodable(value: Any) -> Any:

@@ -1,0 +1,94 @@
+"""What the reports of a run are given beside its findings, and where they go besides standard output."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from polarcheck.commands.options import option
+from polarcheck.errors import OutputError, UsageError
+
+if TYPE_CHECKING:
+    from polarcheck.checking.batch import Task
+    from polarcheck.checking.finding import Report
+    from polarcheck.reports import Background
+
+#: Where GitHub Actions takes the summary of a step from, and the report that is for GitHub Actions.
+STEP_SUMMARY, _OF_GITHUB = "GITHUB_STEP_SUMMARY", "github"
+#: Formats that can hold counts in place of findings.
+_WITH_COUNTS = ("text", "short", "concise", "json", "jsonl")
+
+statistics = option("--statistics", is_flag=True, help="How often each rule speaks, in place of the findings.")
+
+
+def refuse(form: str | None, wants_statistics: bool) -> None:
+    """Raises UsageError where counts are asked for in a format that has no place for them."""
+    if wants_statistics and form not in (None, *_WITH_COUNTS):
+        raise UsageError(f"--statistics: expected --format {', '.join(_WITH_COUNTS)}, found {form}")
+
+
+def background(plain: Background, tasks: Iterable[Task], failures: Sequence[str]) -> Background:
+    """What applied to each file, where paths begin, and what went wrong."""
+    from polarcheck.reading import files
+
+    folder = ""
+    with contextlib.suppress(OSError):  # the working folder may be gone
+        folder = os.getcwd()  # noqa: PTH109
+    return plain._replace(
+        settings={files.shown(task.path): task.settings for task in tasks},
+        failures=failures,
+        root=_root(folder).replace(os.sep, "/"),
+        folder=folder.replace(os.sep, "/"),
+    )
+
+
+def _root(folder: str) -> str:
+    """The folder of the repository, else the one that is checked."""
+    for outer in (Path(folder), *Path(folder).parents) if folder else ():
+        with contextlib.suppress(OSError):
+            if (outer / ".git").exists():
+                return str(outer)
+    return folder
+
+
+def rendered(form: str, report: Report, shown: Background, wants_statistics: bool) -> str:
+    """The report on standard output, or the counts in its place."""
+    from polarcheck import reports
+
+    if not wants_statistics:
+        return reports.render(form, report, shown)
+    from polarcheck.reports.pages.statistics import statistics as counted
+
+    return counted(report, shown, form)
+
+
+def written(outputs: Iterable[tuple[str, Path]], form: str, report: Report, plain: Background) -> Iterator[OutputError]:
+    """Write the reports that go into files, and the summary of GitHub Actions; what could not be written."""
+    from polarcheck import reports
+    from polarcheck.reading import files
+
+    forms = [form]
+    for kind, path in outputs:
+        forms.append(kind)
+        try:
+            files.write(path, reports.render(kind, report, plain))
+        except OutputError as error:
+            yield error
+    summary = os.environ.get(STEP_SUMMARY)
+    if summary and _OF_GITHUB in forms:
+        try:
+            _append(summary, report, plain)
+        except (OSError, ValueError) as error:
+            said = getattr(error, "strerror", None) or error
+            yield OutputError(f"{STEP_SUMMARY}: {files.shown(summary)}: {said}")
+
+
+def _append(path: str, report: Report, plain: Background) -> None:
+    """To what other commands of the step have written there; the runner takes away the file of each step."""
+    from polarcheck.reports.ci.step_summary import LARGEST, step_summary
+
+    with Path(path).open("ab") as file:
+        file.write(step_summary(report, plain, LARGEST - file.tell()).encode())

@@ -1,0 +1,40 @@
+"""Checkstyle's XML: what Jenkins, SonarQube and reviewdog read of linters they do not know."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from polarcheck.reports.ci import xml
+from polarcheck.reports.ci.paths import from_root
+
+if TYPE_CHECKING:
+    from polarcheck.checking.finding import FileReport, Report
+    from polarcheck.reports import Background
+
+_SEVERITIES = {"error": "error", "warning": "warning", "note": "info"}
+
+
+def checkstyle(report: Report, background: Background) -> str:
+    """An element for each file, those without a finding included."""
+    files = (line for file in report.files for line in _file(file, background))
+    return xml.HEAD + "".join(xml.element("checkstyle", {"version": "4.3"}, files))
+
+
+def _file(file: FileReport, background: Background) -> Iterator[str]:
+    errors = (
+        line
+        for found in file.findings
+        for line in xml.element(
+            "error",
+            {
+                "line": found.line,
+                "column": found.column,
+                "severity": _SEVERITIES.get(found.severity, "info"),
+                "message": f"{found.channel}: {found.message}" if found.channel else found.message,
+                "source": f"polarcheck.{found.rule}",
+            },
+            depth=2,
+        )
+    )
+    return xml.element("file", {"name": from_root(file.path, background)}, errors, depth=1)

@@ -1,0 +1,50 @@
+"""Paths as CI wants them: from the root of the repository, whatever folder the check began in."""
+
+from __future__ import annotations
+
+import posixpath
+import re
+from typing import TYPE_CHECKING
+from urllib.parse import quote
+
+from polarcheck.reading.excerpt import visible
+from polarcheck.reading.files import STANDARD_INPUT
+from polarcheck.reading.names import spelled, unspelled
+
+if TYPE_CHECKING:
+    from polarcheck.reports import Background
+
+_DRIVE = re.compile(r"[A-Za-z]:/")
+
+
+def from_root(path: str, background: Background) -> str:
+    """The path of a file report from the root of the repository, without `./`; absolute where it lies outside."""
+    return path if path == STANDARD_INPUT else visible(spelled(_from_root(path, background)))
+
+
+def uri(path: str, background: Background) -> str:
+    """The same as a URI: relative inside the repository, its bytes percent-encoded."""
+    if path == STANDARD_INPUT:
+        return path
+    raw = _from_root(path, background)
+    try:
+        data = raw.encode("utf-8", "surrogateescape")
+    except UnicodeEncodeError:  # half characters, as Windows allows them in names
+        data = raw.encode("utf-8", "surrogatepass")
+    if _DRIVE.match(raw):
+        return f"file:///{raw[0]}:{quote(data[2:])}"
+    return ("file://" if raw.startswith("/") else "") + quote(data)
+
+
+def _from_root(path: str, background: Background) -> str:
+    raw = unspelled(path)
+    is_absolute = raw.startswith("/") or _DRIVE.match(raw)
+    whole = posixpath.normpath(raw if is_absolute else posixpath.join(background.folder, raw))
+    root = background.root.rstrip("/") + "/"
+    if background.root and whole.startswith(root):
+        return whole.removeprefix(root)
+    return whole if is_absolute or whole.startswith("../") or _is_outside(raw) else posixpath.normpath(raw)
+
+
+def _is_outside(raw: str) -> bool:
+    return posixpath.normpath(raw).startswith("../")

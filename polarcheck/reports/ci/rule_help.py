@@ -1,0 +1,57 @@
+"""The manual page of a rule as code scanning shows it beside a finding: in plain text and in Markdown."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from polarcheck.checking.rule import Rule
+
+_EXAMPLE = re.compile(r"(Bad|Good)\b[^\n]*:")
+_INDENT = "    "
+#: What means something in Markdown, outside of spans of code.
+_MARKS = re.compile(r"(`[^`]*`)|([\\*_<>\[\]#|~])")
+
+
+def why(rule: Rule) -> str:
+    """What happens at the machine and what to do about it: the first paragraph below the title."""
+    return " ".join(rule.page.partition("\n")[2].strip().partition("\n\n")[0].split())
+
+
+def plain(rule: Rule) -> str:
+    """The page in plain text, without its examples."""
+    return "\n\n".join(" ".join(part.split()) for part in _paragraphs(rule.page) if not _is_of_example(part))
+
+
+def markdown(rule: Rule) -> str:
+    """The page in Markdown, with the first example of each kind."""
+    return "\n\n".join(_in_markdown(rule.page))
+
+
+def escaped(text: str) -> str:
+    """Text in which nothing but spans of code means something in Markdown."""
+    return _MARKS.sub(lambda found: found[1] or f"\\{found[2]}", text)
+
+
+def _paragraphs(page: str) -> list[str]:
+    return page.strip().split("\n\n")
+
+
+def _is_of_example(paragraph: str) -> bool:
+    return paragraph.startswith(_INDENT) or _EXAMPLE.fullmatch(paragraph) is not None
+
+
+def _in_markdown(page: str) -> Iterator[str]:
+    title, *rest = _paragraphs(page)
+    yield f"**{escaped(title)}**"
+    shown: set[str] = set()
+    is_shown = True
+    for part in rest:
+        heading = _EXAMPLE.fullmatch(part)
+        if heading:
+            is_shown = heading[1] not in shown
+            shown.add(heading[1])
+        if is_shown:
+            yield part if part.startswith(_INDENT) else escaped(" ".join(part.split()))

@@ -1,0 +1,81 @@
+"""How often each rule speaks: what to look at first in a folder of many programs."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import msgspec
+
+from polarcheck.reading.excerpt import visible
+from polarcheck.reports import SEVERITIES, painted
+from polarcheck.reports.json import encoded
+from polarcheck.reports.text import summary
+
+if TYPE_CHECKING:
+    from polarcheck.checking.finding import Report
+    from polarcheck.reports import Background
+
+_HEADS = ("findings", "files", "fixable", "silenced", "severity", "rule")
+#: Columns of text, which stand to the left.
+_OF_TEXT = ("severity", "rule")
+
+
+class Count(msgspec.Struct, frozen=True, kw_only=True):
+    """The findings of a rule and a severity; files: in how many; silenced: how many more somebody has answered for."""
+
+    rule: str
+    severity: str
+    findings: int
+    files: int
+    fixable: int
+    silenced: int
+
+
+def counts(report: Report) -> list[Count]:
+    """By rule and severity, the most frequent first; a rule whose findings are all silenced is counted, too."""
+    keys = {(one.rule, one.severity) for file in report.files for one in (*file.findings, *file.silenced)}
+    found = {key: [0, 0, 0, 0] for key in keys}
+    for file in report.files:
+        seen = set()
+        for one in file.findings:
+            key = one.rule, one.severity
+            number = found[key]
+            number[0] += 1
+            number[1] += key not in seen
+            number[2] += one.fix is not None
+            seen.add(key)
+        for silenced in file.silenced:
+            found[silenced.rule, silenced.severity][3] += 1
+    made = [
+        Count(rule=rule, severity=severity, findings=n[0], files=n[1], fixable=n[2], silenced=n[3])
+        for (rule, severity), n in found.items()
+    ]
+    return sorted(made, key=lambda one: (-one.findings, _rank(one.severity), one.rule))
+
+
+def _rank(severity: str) -> int:
+    return SEVERITIES.index(severity) if severity in SEVERITIES else len(SEVERITIES)
+
+
+def statistics(report: Report, background: Background, form: str) -> str:
+    """The counts as `json` or `jsonl`, else as a table for people, with the line over all files below it."""
+    found = counts(report)
+    if form == "json":
+        return encoded(found, indent=2) + "\n"
+    if form == "jsonl":
+        return "".join(encoded(one) + "\n" for one in found)
+    table = [[str(getattr(one, head)) for head in _HEADS] for one in found]
+    shown = [column for column, head in enumerate(_HEADS) if head != "silenced" or any(one.silenced for one in found)]
+    widths = [max(len(visible(row[column])) for row in [list(_HEADS), *table]) for column in range(len(_HEADS))]
+    lines = []
+    for row in [list(_HEADS), *table] if table else []:
+        cells = []
+        for column in shown:
+            text, width = visible(row[column]), widths[column]
+            cell = text.ljust(width) if _HEADS[column] in _OF_TEXT else text.rjust(width)
+            is_severity = background.color and text in SEVERITIES
+            cells.append(cell.replace(text, painted(text, text)) if is_severity else cell)
+        lines.append("  ".join(cells).rstrip())
+    if report.files and not background.quiet:
+        lines += [""] * bool(lines) + [summary(report)]
+    return "".join(line + "\n" for line in lines)
