@@ -152,7 +152,7 @@ def test_a_bug_is_no_finding(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_an_interrupt_has_its_own_code(monkeypatch: pytest.MonkeyPatch) -> None:
-    def interrupted(*given: Any) -> None:
+    def interrupted(*given: Any, **named: Any) -> None:
         raise KeyboardInterrupt
 
     monkeypatch.setattr(batch, "plan", interrupted)

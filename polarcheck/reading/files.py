@@ -211,13 +211,13 @@ class RealPaths:
         return self._folders[inside[0] if inside else folder]
 
 
-def write(path: Path, text: str) -> None:
+def write(path: Path, text: str | Iterable[str]) -> None:
     """
-    Write a file whole or not at all, whoever reads it at that moment.
+    Write a file whole or not at all, whoever reads it at that moment; text may come in pieces.
 
     Raises OutputError where it cannot be written.
     """
-    data = text.encode("utf-8")
+    data = _encoded([text] if isinstance(text, str) else text)
     try:
         target = Path(os.path.realpath(path))
         if target.exists() and not target.is_file():
@@ -229,23 +229,31 @@ def write(path: Path, text: str) -> None:
         raise OutputError(f"{shown(str(path))}: {said}") from None
 
 
-def _send(target: Path, data: bytes) -> None:
+def _encoded(pieces: Iterable[str]) -> Iterator[bytes]:
+    try:
+        for piece in pieces:
+            yield piece.encode("utf-8")
+    except ValueError as error:  # a bug of ours, and no fault of the file that it would be written to
+        raise RuntimeError("a report cannot be made") from error
+
+
+def _send(target: Path, data: Iterable[bytes]) -> None:
     """To a device, or to a pipe that somebody reads: one that nobody reads would be waited for without end."""
     handle = os.open(target, os.O_WRONLY | getattr(os, "O_NONBLOCK", 0))
     if hasattr(os, "set_blocking"):
         os.set_blocking(handle, True)
     with os.fdopen(handle, "wb") as file:
-        file.write(data)
+        file.writelines(data)
 
 
-def _replace(target: Path, data: bytes) -> None:
+def _replace(target: Path, data: Iterable[bytes]) -> None:
     import tempfile
 
     handle, name = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.", suffix=".new")
     beside = Path(name)
     try:
         with os.fdopen(handle, "wb") as file:
-            file.write(data)
+            file.writelines(data)
             file.flush()
             # Else a machine that goes down could leave an empty file in the place of the old one.
             os.fsync(file.fileno())

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import importlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
-from types import MappingProxyType
+from types import MappingProxyType, ModuleType
 from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
-    from polarcheck.checking.finding import Report
+    from polarcheck.checking.finding import FileReport, Report
     from polarcheck.checking.rule import Rule
     from polarcheck.checking.settings import Settings
 
@@ -53,6 +53,18 @@ class Background(NamedTuple):
     folder: str = ""
 
 
+class Parts(NamedTuple):
+    """
+    A report that is written file by file, as they are finished.
+
+    of_file: what is said of a file, given the lines that its findings stand in; to be called once for each, in their
+    order. end: what is said behind all of them.
+    """
+
+    of_file: Callable[[FileReport, Mapping[int, str]], str]
+    end: Callable[[Report], str]
+
+
 def formats() -> list[str]:
     """The names of the formats: the modules of this package, those for people first."""
     found = {path.stem for path in Path(__file__).parent.glob("*.py")} - {"__init__"}
@@ -61,8 +73,31 @@ def formats() -> list[str]:
 
 def render(form: str, report: Report, background: Background) -> str:
     """The report in one of the formats."""
-    function = getattr(importlib.import_module(f"polarcheck.reports.{form}"), form)
+    function = getattr(_module(form), form)
     return str(function(report, background))
+
+
+def parts(form: str, background: Background) -> Parts | None:
+    """How a format is written file by file; None where it must know all files first."""
+    make = getattr(_module(form), f"{form}_parts", None)
+    return make(background) if make else None
+
+
+def pieces(form: str, report: Report, background: Background) -> Iterator[str]:
+    """The same text as that of render, of many files bit by bit, where the format can do so."""
+    of_format = getattr(_module(form), f"{form}_pieces", None)
+    yield from of_format(report, background) if of_format else (render(form, report, background),)
+
+
+def of_each(parts: Parts, report: Report, background: Background) -> Iterator[str]:
+    """A report in parts, of files that are all there."""
+    for file in report.files:
+        yield parts.of_file(file, background.lines.get(file.path, {}))
+    yield parts.end(report)
+
+
+def _module(form: str) -> ModuleType:
+    return importlib.import_module(f"polarcheck.reports.{form}")
 
 
 def counted(number: int, noun: str) -> str:

@@ -9,6 +9,8 @@ import msgspec
 from polarcheck.reading.names import with_characters
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from polarcheck.checking.finding import Report
     from polarcheck.reports import Background
 
@@ -23,6 +25,8 @@ _ESCAPED = {number: f"\\u{number:04x}" for number in _ACTING}
 
 def json(report: Report, background: Background | None = None) -> str:
     """The report as JSON, in the order of its fields; NaN is null."""
+    if not isinstance(report.files, list):
+        return "".join(json_pieces(report, background))
     return encoded(report, indent=2) + "\n"
 
 
@@ -33,6 +37,18 @@ def encoded(value: Any, indent: int = 0) -> str:
     except UnicodeEncodeError:
         text = msgspec.json.encode(_encodable(msgspec.to_builtins(value)))
     return (msgspec.json.format(text, indent=indent) if indent else text).decode().translate(_ESCAPED)
+
+
+def json_pieces(report: Report, background: Background | None = None) -> Iterator[str]:
+    """The same, file by file."""
+    head, no_files, end = json(msgspec.structs.replace(report, files=[])).partition('"files": []')
+    before = '"files": [\n'
+    yield head if report.files else head + no_files
+    for number, file in enumerate(report.files):
+        text = json(msgspec.structs.replace(report, files=[file]))
+        # No text in it has a line end of its own, so that these stand at the top level.
+        yield (",\n" if number else before) + text[text.index(before) + len(before) : text.rindex("\n  ]")]
+    yield "\n  ]" + end if report.files else end
 
 
 def _encodable(value: Any) -> Any:

@@ -5,11 +5,11 @@ from __future__ import annotations
 import re
 import textwrap
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 from polarcheck.reading.excerpt import excerpt, visible
-from polarcheck.reports import SEVERITIES, Background, counted, painted
+from polarcheck.reports import SEVERITIES, Background, Parts, counted, of_each, painted
 from polarcheck.reports.pages.resting import resting
 
 if TYPE_CHECKING:
@@ -56,31 +56,46 @@ class _Page(NamedTuple):
 
 def text(report: Report, background: Background) -> str:
     """Findings with excerpts, then what was not evaluated, then the verdict of each file and one line over all."""
+    return "".join(text_pieces(report, background))
+
+
+def text_pieces(report: Report, background: Background) -> Iterator[str]:
+    """The same, file by file."""
+    return of_each(_parts(background, len(report.files) <= _LISTED), report, background)
+
+
+def text_parts(background: Background) -> Parts:
+    """The same, of files as they are finished, of which there are many."""
+    return _parts(background, False)
+
+
+def _parts(background: Background, are_listed: bool) -> Parts:
+    """are_listed: whether of each file it is said with its findings what was not evaluated, not behind all of them."""
     page = _Page(max(background.columns, _NARROWEST), background.color)
-    return "".join(line + "\n" for line in _report(report, background, page))
+    explained: dict[str, None] = {}
 
-
-def _report(report: Report, background: Background, page: _Page) -> Iterator[str]:
-    explained: set[str] = set()
-    for file in report.files:
-        lines = background.lines.get(file.path, {})
+    def of_file(file: FileReport, lines: Mapping[int, str]) -> str:
+        shown = list[str]()
         for found in file.findings:
-            yield from _finding(found, file, lines, background.rules.get(found.rule), found.rule not in explained, page)
-            yield from _following(found, background.following, page)
-            yield ""
-            explained.add(found.rule)
-        if not background.quiet and len(report.files) <= _LISTED:
-            yield from _not_evaluated([file], page)
-    if background.quiet or not report.files:
-        return
-    if len(report.files) > _LISTED:
-        yield from _not_evaluated(report.files, page)
-    yield from _verdicts(report, page)
-    yield ""
-    yield summary(report)
-    known = [found.rule for file in report.files for found in file.findings if found.rule in background.rules]
-    if known:
-        yield page.paint("aside", f"More about a rule: polarcheck explain {known[0]}")
+            rule = background.rules.get(found.rule)
+            shown += _finding(found, file, lines, rule, found.rule not in explained, page)
+            shown += _following(found, background.following, page)
+            shown.append("")
+            explained[found.rule] = None
+        if are_listed and not background.quiet:
+            shown += _not_evaluated([file], page)
+        return "".join(line + "\n" for line in shown)
+
+    def end(report: Report) -> str:
+        shown = list[str]()
+        if not background.quiet and report.files:
+            shown += [] if are_listed else _not_evaluated(report.files, page)
+            shown += [*_verdicts(report, page), "", summary(report)]
+            known = next((rule for rule in explained if rule in background.rules), None)
+            shown += [page.paint("aside", f"More about a rule: polarcheck explain {known}")] if known else []
+        return "".join(line + "\n" for line in shown)
+
+    return Parts(of_file, end)
 
 
 def _following(found: Finding, is_shown: bool, page: _Page) -> Iterator[str]:
@@ -146,7 +161,7 @@ def _fix(fix: Fix) -> str:
     return f"{fix.title} ({'moves as meant' if fix.safe else 'look at it before you take it'})"
 
 
-def _not_evaluated(files: Sequence[FileReport], page: _Page) -> Iterator[str]:
+def _not_evaluated(files: Iterable[FileReport], page: _Page) -> Iterator[str]:
     """One paragraph for each reason, whatever the number of rules that it silences."""
     reasons: dict[str, list[tuple[str, NotEvaluated]]] = {}
     for file in files:
@@ -169,10 +184,17 @@ def _place(path: str, group: Sequence[NotEvaluated]) -> str:
     return f"{path}, {counted(max(missing.blocks for missing in group), 'block')}"
 
 
+def _is_listed(file: FileReport, report: Report) -> bool:
+    return file.verdict != "pass" or len(report.files) <= _LISTED
+
+
 def _verdicts(report: Report, page: _Page) -> Iterator[str]:
-    shown = [file for file in report.files if file.verdict != "pass" or len(report.files) <= _LISTED]
-    width = max((len(verdict(file)) for file in shown), default=0)
-    for file in shown:
+    # Of many files no report is held on to.
+    widths = [len(verdict(file)) for file in report.files if _is_listed(file, report)]
+    width = max(widths, default=0)
+    for file in report.files:
+        if not _is_listed(file, report):
+            continue
         word = verdict(file)
         facts = [severities(Counter(found.severity for found in file.findings))]
         if word == file.verdict:
@@ -181,7 +203,7 @@ def _verdicts(report: Report, page: _Page) -> Iterator[str]:
         machine = f", for {visible(file.machine)}" if report.machine is None else ""
         space = " " * (width - len(word))
         yield f"{page.paint(file.verdict, word)}{space}  {visible(file.path)}: {', '.join(facts)}{machine}"
-        if file.verdict != "fail" and len(shown) <= _RESTING:
+        if file.verdict != "fail" and len(widths) <= _RESTING:
             for line in resting(file):
                 yield from page.indented(line)
 
