@@ -49,54 +49,57 @@ def text() -> str:
         *_overview(loaded),
     ]
     for profile in loaded:
-        lines += ["", f"## {profile.name}", "", *_page(profile)]
+        lines += ["", f"## {profile.name}", "", *properties(profile)]
     lines += ["", "## What the keys mean", "", *_keys()]
     return "\n".join(lines) + "\n"
 
 
 def _keys() -> Iterator[str]:
-    yield _row("key", "meaning")
-    yield _row("---", "---")
+    yield row("key", "meaning")
+    yield row("---", "---")
     for field in msgspec.structs.fields(Machine):
         if isinstance(field.type, type) and issubclass(field.type, msgspec.Struct) and field.name not in _SAME_KEYS:
             for key, meaning in meanings(field.type).items():
-                yield _row(f"`{field.name}.{key}`", meaning)
+                yield row(f"`{field.name}.{key}`", meaning)
     for key, meaning in meanings(Machine).items():
-        yield _row(f"`{key}`", meaning)
+        yield row(f"`{key}`", meaning)
 
 
 def _overview(loaded: list[Profile]) -> Iterator[str]:
-    yield _row("control", *_COLUMNS)
-    yield _row(*["---"] * (len(_COLUMNS) + 1))
+    yield row("control", *_COLUMNS)
+    yield row(*["---"] * (len(_COLUMNS) + 1))
     for profile in loaded:
-        yield _row(f"[{profile.name}](#{profile.name})", *(_said(profile, key) for key in _COLUMNS))
+        yield row(f"[{profile.name}](#{profile.name})", *(_said(profile, key) for key in _COLUMNS))
 
 
 def _said(profile: Profile, key: str) -> str:
     group, _, last = key.partition(".")
     origin = profile.origins.get(key)
     mark = " ?" if origin and origin.doubtful else ""
-    return f"{_shown(getattr(getattr(profile.written, group), last))}{mark}"
+    return f"{shown(getattr(getattr(profile.written, group), last))}{mark}"
 
 
-def _page(profile: Profile) -> Iterator[str]:
+def properties(profile: Profile) -> Iterator[str]:
+    """What a profile says of itself: title, notes, and each of its own values with the source."""
     yield f"{profile.machine.title}. " + (f"Inherits {' < '.join(profile.chain[1:])}." if profile.chain[1:] else "")
     for note in profile.machine.notes:
         yield from ("", f"- {note}")
     own = {key: origin for key, origin in profile.origins.items() if origin.profile == profile.name and "." in key}
     if own:
-        yield from ("", _row("property", "value", "source"), _row("---", "---", "---"))
+        yield from ("", row("property", "value", "source"), row("---", "---", "---"))
     table = msgspec.to_builtins(profile.written)
     for key, origin in own.items():
         group, _, last = key.partition(".")
-        yield _row(f"`{key}`", _shown(table[group][last], group), _source(origin))
+        yield row(f"`{key}`", shown(table[group][last], group), source_of(origin))
 
 
-def _source(origin: Origin) -> str:
+def source_of(origin: Origin) -> str:
+    """Where a value is from, behind a mark where it is in doubt."""
     return f"{'? ' if origin.doubtful else ''}{origin.source}"
 
 
-def _shown(value: Any, group: str = "") -> str:
+def shown(value: Any, group: str = "") -> str:
+    """A value in the words of a page."""
     if group == "known_parameters":
         return str(value["title"])
     if isinstance(value, bool):
@@ -112,7 +115,8 @@ def _shown(value: Any, group: str = "") -> str:
     return str(value) or "none"
 
 
-def _row(*cells: str) -> str:
+def row(*cells: str) -> str:
+    """A row of a table in Markdown."""
     return f"| {' | '.join(cell.replace('|', '&#124;') for cell in cells)} |"
 
 

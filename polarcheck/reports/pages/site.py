@@ -1,0 +1,40 @@
+"""
+The pages of docs/ that are made from the rules and the machine files.
+
+`python -m polarcheck.reports.pages.site docs` writes them anew, and takes away those of rules and machines that are
+gone.
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+from polarcheck.checking.rule import load_all
+from polarcheck.reading import files
+from polarcheck.reports.pages import controls, machine_pages, rule_pages
+
+#: Folders below docs/ that hold nothing else.
+FOLDERS = ("rules", "machines")
+
+
+def pages() -> dict[str, str]:
+    """The text of every page by its path below docs/."""
+    return {"controls.md": controls.text(), **dict(rule_pages.pages(load_all())), **dict(machine_pages.pages())}
+
+
+def write(folder: Path) -> None:
+    """Write all pages. Raises OutputError where one cannot be written."""
+    made = pages()
+    for name, text in made.items():
+        path = folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        files.write(path, text)
+    for own in FOLDERS:
+        for path in (folder / own).rglob("*.md"):
+            if path.relative_to(folder).as_posix() not in made:
+                path.unlink()
+
+
+if __name__ == "__main__":
+    write(Path(sys.argv[1]))
