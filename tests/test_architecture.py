@@ -17,6 +17,7 @@ ORDER = (
     ("__main__",),
     ("commands",),
     ("reports",),
+    ("fixes",),
     ("rules",),
     ("checking",),
     ("table",),

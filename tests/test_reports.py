@@ -182,7 +182,7 @@ def test_program_count_and_fix_are_shown() -> None:
     fix = Fix(title="write G1", safe=False, edits=[Edit(line=12, column=1, end_line=12, end_column=3, text="G1")])
     shown = text(file(finding(count=7, fix=fix), programs=["O0001", "O0002"]))
     assert "    at   a.nc:12:1, program O0001, in 7 runs of the block\n" in shown
-    assert "   fix   write G1 (look at it before you take it)\n" in shown
+    assert "   fix   write G1 (look at it first: --diff --unsafe-fixes)\n" in shown
     assert shown.splitlines()[-2] == "1 file checked for fanuc; 1 error"
 
 

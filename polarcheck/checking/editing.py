@@ -10,6 +10,7 @@ from collections.abc import Iterable, Sequence
 from itertools import pairwise
 
 from polarcheck.arrays import stretch
+from polarcheck.checking.places import squeezed
 from polarcheck.reading.source import CR, LF, Source
 from polarcheck.table.trace import Trace
 
@@ -51,9 +52,10 @@ def begins_program(trace: Trace, row: int) -> bool:
 
 
 def written_word(trace: Trace, index: int) -> str:
-    """An executed word as it is written."""
+    """An executed word as it is written, without blanks."""
     words = trace.run.words
-    return trace.text.source.excerpt(int(words.start[index]), int(words.end[index])).strip()
+    text = squeezed(trace.text.source.excerpt(int(words.start[index]), int(words.end[index])))
+    return "".join(filter(str.isprintable, text))
 
 
 def skip_sign(trace: Trace, row: int) -> str:

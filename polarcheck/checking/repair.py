@@ -27,8 +27,8 @@ from polarcheck.table.trace import Trace
 _FOLDER = Path(__file__).parent / "repairs"
 #: A block that runs more often is not looked at each time, and has no fix.
 _MOST_RUNS = 1000
-#: What of the path of the tool center a fix may change in the lines that it edits.
-CHANGES = FEED, Z = "feed", "z"
+#: What of the path of the tool center a fix may change in the lines that it edits; the way also of the move before.
+CHANGES = FEED, Z, WAY = "feed", "z", "way"
 
 
 class Mended(msgspec.Struct, frozen=True):

@@ -9,7 +9,7 @@ from typing import Any
 
 import click
 
-from polarcheck.commands import options, reporting, silencing, standard_input
+from polarcheck.commands import fixing, options, reporting, silencing, standard_input
 from polarcheck.commands.exit_codes import BUG, COULD_NOT_RUN
 from polarcheck.commands.options import many, option
 from polarcheck.commands.output import COLUMNS, columns, in_color, said_of_bug, say, say_lines, show, warn
@@ -18,7 +18,7 @@ from polarcheck.reports import FOR_PEOPLE, formats
 #: Of more files than this the report is short, if no format is asked for.
 _LONG = 3
 #: Options that change how a report looks or where it goes, but not what it says.
-_OF_OUTPUT = ("stdin_filename", "form", "outputs", "color", "quiet", "following", "statistics")
+_OF_OUTPUT = ("stdin_filename", "form", "outputs", "color", "quiet", "following", "statistics", *fixing.NAMES)
 _FORMATS = formats()
 
 
@@ -104,6 +104,7 @@ def _outputs(ctx: click.Context, parameter: click.Parameter, values: tuple[str, 
 @option("--color", type=click.Choice(["auto", "always", "never"]), default="auto", show_default=True)
 @option("--show-following", "following", is_flag=True, help="In text, what follows from a finding, too.")
 @option("-q", "--quiet", is_flag=True, help="Findings only.")
+@fixing.wanted
 @options.debug
 @click.pass_context
 def check(ctx: click.Context, /, paths: tuple[str, ...], **asked: Any) -> None:
@@ -164,6 +165,7 @@ def _check(
     quiet: bool,
     following: bool,
     statistics: bool,
+    fixes: fixing.Wanted,
     **asked: Any,
 ) -> int:
     from polarcheck import reports
@@ -188,16 +190,20 @@ def _check(
     for unmatched in settings_of.unmatched(paths):
         warn(unmatched)
     overwriting.refuse([path for _, path in outputs], tasks)
+    is_colored = in_color(color)
+    made = fixing.make(fixes, tasks, max_size, fixing.Shown(quiet, is_colored, debug, bool(outputs)))
+    if made.ends:
+        return COULD_NOT_RUN if failures else made.status
     with contextlib.closing(watched(tasks, not quiet)) as awaited:
         checked = batch.check_files(
             awaited, failures.append, lambda bug: bugs.extend(said_of_bug(bug, debug)), max_size
         )
     name = applies.machine or (tasks[0].settings.name if tasks else profiles.DEFAULT)
     report = batch.report(checked.files, name)
-    status = int(checked.failed)
+    status = max(int(checked.failed), made.status)
     for failure in failures:
         say(failure)
-        status = COULD_NOT_RUN
+        status = max(status, COULD_NOT_RUN)
     if bugs:
         say_lines(bugs)
         status = BUG
@@ -212,14 +218,13 @@ def _check(
                 warn(f"--tool {key}: no program of this run calls offset {key}")
     form = form or ("text" if len(report.files) <= _LONG else "short")
     plain = reports.Background(checked.lines, rule.load_all(), COLUMNS, False, quiet, command, following)
-    plain = reporting.background(plain, tasks, went_wrong)
+    plain = reporting.background(plain, tasks, went_wrong)._replace(fixed=made.fixed)
     for error in reporting.written(outputs, form, report, plain):
         say(str(error))
         status = max(status, COULD_NOT_RUN)
-    is_colored = in_color(color)
     shown = plain._replace(columns=columns(), color=is_colored)
     text = reporting.rendered(form, report, shown, statistics)
-    show(text if form in FOR_PEOPLE else text.encode(), is_colored or None)
+    show(text if form in FOR_PEOPLE else text.encode(), is_colored or None, made.has_output)
     if form == "concise" and not quiet and any(file.verdict == "unverified" for file in report.files):
         warn("some rules could not be evaluated; --format text says which, and what to give")
     return status

@@ -20,13 +20,18 @@ _MOST_SAID = 200
 _LONGEST, _HEAD, _TAIL = 1000, 300, 500
 
 
-def show(text: str | bytes, color: bool | None = None) -> bool:
+def show(text: str | bytes, color: bool | None = None, to_error: bool = False) -> bool:
     """
     Write to standard output; whether anybody still reads. If nobody does, the exit code is all that is left to say.
 
-    color: whether escapes for color stay in the text; None where only a terminal shows them. Raises OutputError where
+    color: whether escapes for color stay in the text; None where only a terminal shows them. to_error: to standard
+    error, where standard output holds something else. Raises OutputError where
     it cannot be written: a full disk, a closed output.
     """
+    if to_error:
+        with contextlib.suppress(OSError, ValueError):
+            click.echo(text, nl=False, err=True, color=color)
+        return True
     if sys.stdout is None:
         raise OutputError("standard output is closed")
     try:

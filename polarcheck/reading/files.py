@@ -27,7 +27,7 @@ EXTENSIONS = (
 )
 _SKIPPED_FOLDERS = frozenset(("node_modules", "__pycache__"))
 #: O1234, O0001(SB12 RG FRONT), O1234.bak: as controls and transfer programs name what they punch out.
-_O_NAME = r"(?i)O\d{2,8}(?:\([^)]*\))?(?:\.[^.]*)?"
+_O_NAME = r"(?i)O\d{2,8}(?:\([^)]*\))?(?:\.(?!orig$)[^.]*)?"
 _SNIFFED = frozenset(("", ".txt"))
 _SNIFFED_BYTES = 4096
 _HEAD = r"%(?!PDF|!|%)|[O:]\s?\d{1,8}\b"
@@ -164,6 +164,11 @@ def read(path: str, most: int = LARGEST) -> bytes:
         raise SourceError(f"{shown(path) or repr(path)}: {error.strerror or error}") from None
 
 
+def is_standard_input(path: str) -> bool:
+    """Whether a path means standard input."""
+    return path in _STANDARD_INPUTS
+
+
 def shown(path: str) -> str:
     """
     A path as reports hold it: with slashes, and with the bytes spelled out that are no characters.
@@ -211,19 +216,20 @@ class RealPaths:
         return self._folders[inside[0] if inside else folder]
 
 
-def write(path: Path, text: str | Iterable[str]) -> None:
+def write(path: Path, text: str | bytes | Iterable[str], last: Callable[[], None] | None = None) -> None:
     """
-    Write a file whole or not at all, whoever reads it at that moment; text may come in pieces.
+    Write a file whole or not at all, whoever reads it at that moment; a text in UTF-8, which may come in pieces.
 
-    Raises OutputError where it cannot be written.
+    last: is called right before the new file takes the place of the old one, and may raise. Raises OutputError where
+    it cannot be written.
     """
-    data = _encoded([text] if isinstance(text, str) else text)
+    data = [text] if isinstance(text, bytes) else _encoded([text] if isinstance(text, str) else text)
     try:
         target = Path(os.path.realpath(path))
         if target.exists() and not target.is_file():
             _send(target, data)
         else:
-            _replace(target, data)
+            _replace(target, data, last)
     except (OSError, ValueError) as error:
         said = getattr(error, "strerror", None) or error
         raise OutputError(f"{shown(str(path))}: {said}") from None
@@ -246,7 +252,7 @@ def _send(target: Path, data: Iterable[bytes]) -> None:
         file.writelines(data)
 
 
-def _replace(target: Path, data: Iterable[bytes]) -> None:
+def _replace(target: Path, data: Iterable[bytes], last: Callable[[], None] | None) -> None:
     import tempfile
 
     handle, name = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.", suffix=".new")
@@ -258,6 +264,8 @@ def _replace(target: Path, data: Iterable[bytes]) -> None:
             # Else a machine that goes down could leave an empty file in the place of the old one.
             os.fsync(file.fileno())
         beside.chmod(_mode(target))
+        if last is not None:
+            last()
         beside.replace(target)
     except BaseException:
         with contextlib.suppress(OSError):

@@ -37,7 +37,7 @@ class Background(NamedTuple):
     quiet: findings only. command: what checks a file behind it as these were checked. following: whether what follows
     from a finding is shown, too. settings: what applied to a file, by its path. failures: a line each on what could not
     be read, or went wrong. root, folder: of the repository, and the one that paths begin in; absolute, with slashes,
-    empty where they are not known.
+    empty where they are not known. fixed: how many fixes were written into the files before.
     """
 
     lines: Mapping[str, Mapping[int, str]] = MappingProxyType({})
@@ -51,6 +51,7 @@ class Background(NamedTuple):
     failures: Sequence[str] = ()
     root: str = ""
     folder: str = ""
+    fixed: int = 0
 
 
 class Parts(NamedTuple):

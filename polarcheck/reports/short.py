@@ -43,7 +43,7 @@ def _end(report: Report, background: Background) -> Iterator[str]:
     total = report.summary
     if total.errors or total.warnings or total.notes:
         yield ""
-    yield summary(report)
+    yield summary(report, background.fixed)
     for verdict, told in _FULL.items():
         of_verdict = (file.path for file in report.files if file.verdict == verdict and file.path != STANDARD_INPUT)
         path = next(of_verdict, None)

@@ -90,7 +90,7 @@ def _parts(background: Background, are_listed: bool) -> Parts:
         shown = list[str]()
         if not background.quiet and report.files:
             shown += [] if are_listed else _not_evaluated(report.files, page)
-            shown += [*_verdicts(report, page), "", summary(report)]
+            shown += [*_verdicts(report, page), "", summary(report, background.fixed)]
             known = next((rule for rule in explained if rule in background.rules), None)
             shown += [page.paint("aside", f"More about a rule: polarcheck explain {known}")] if known else []
         return "".join(line + "\n" for line in shown)
@@ -158,7 +158,7 @@ def first_sentence(page: str) -> str:
 
 
 def _fix(fix: Fix) -> str:
-    return f"{fix.title} ({'moves as meant' if fix.safe else 'look at it before you take it'})"
+    return f"{fix.title} ({'--fix writes it' if fix.safe else 'look at it first: --diff --unsafe-fixes'})"
 
 
 def _not_evaluated(files: Iterable[FileReport], page: _Page) -> Iterator[str]:
@@ -213,8 +213,8 @@ def verdict(file: FileReport) -> str:
     return file.verdict if file.sections or file.verdict != "pass" else "pass (no polar section)"
 
 
-def summary(report: Report) -> str:
-    """One line over all files."""
+def summary(report: Report, fixed: int = 0) -> str:
+    """One line over all files. fixed: how many fixes were written into them before."""
     total, verdicts = report.summary, ""
     if len(report.files) > 1:
         empty = sum(file.verdict == "pass" and not file.sections for file in report.files)
@@ -226,6 +226,7 @@ def summary(report: Report) -> str:
     machine = f"{machines} machines" if report.machine is None else visible(report.machine)
     found = [severities({"error": total.errors, "warning": total.warnings, "note": total.notes})]
     found += [f"{total.silenced} silenced"] if total.silenced else []
+    found += [f"{fixed} fixed"] if fixed else []
     return f"{counted(len(report.files), 'file')} checked for {machine}{verdicts}; {', '.join(found)}"
 
 

@@ -1,18 +1,22 @@
 from __future__ import annotations
 
-from polarcheck.checking.editing import begins_program, blocks_before, is_plain, skip_sign
+import numpy as np
+
+from polarcheck.checking.editing import begins_program, blocks_before, is_head, is_plain, separator, skip_sign, words_of
 from polarcheck.checking.phrases.common import code_of
-from polarcheck.checking.repair import Mended, repair
+from polarcheck.checking.repair import WAY, Mended, repair
+from polarcheck.geometry.tolerances import ROUNDING
+from polarcheck.machines.modal import Motion
 from polarcheck.table.trace import Trace
 
 
-@repair()
+@repair(WAY)
 def polar_switched_in_offset_mode(trace: Trace, row: int) -> Mended | None:
     """
-    G40 is put before G12.1 or G13.1.
+    G40 is put before G12.1, or before G13.1 with the last move, where that leads away.
 
-    Unsafe: whether compensation should have ended there, or further up, with the move away from the part, only the
-    programmer knows.
+    It leads away where it is straight, and ends where the start-up begins or farther from the center than all other
+    moves since then; else there is no fix. Unsafe: whether compensation should end there only the programmer knows.
 
     Bad, tool 1:radius=4:
 
@@ -36,9 +40,49 @@ def polar_switched_in_offset_mode(trace: Trace, row: int) -> Mended | None:
         C10.
         G40 X60.
         G13.1
+
+    Bad, tool 1:radius=4:
+
+        T0101
+        G98 G0 X60. C0
+        G12.1
+        G1 G41 X40. F200
+        C-10.
+        N60 G1 X60.
+        G13.1
+
+    Good, tool 1:radius=4:
+
+        T0101
+        G98 G0 X60. C0
+        G12.1
+        G1 G41 X40. F200
+        C-10.
+        N60 G1 G40 X60.
+        G13.1
     """
-    if not is_plain(trace, row) or begins_program(trace, row) or not (trace.enters[row] or trace.leaves[row]):
-        return None
     off = code_of(trace.machine, "compensation_off")
-    edit = blocks_before(trace, int(trace.run.block[row]), [skip_sign(trace, row) + off])
-    return Mended(f"Write {off} before it", False, (edit,))
+    if trace.enters[row]:
+        if not is_plain(trace, row) or begins_program(trace, row):
+            return None
+        edit = blocks_before(trace, int(trace.run.block[row]), [skip_sign(trace, row) + off])
+        return Mended(f"Write {off} before it", False, (edit,))
+    last = _move_away(trace, row) if trace.leaves[row] else None
+    if last is None or not is_plain(trace, last):
+        return None
+    body = [index for index in words_of(trace, last) if not is_head(trace, index)]
+    others = [index for index in body if chr(int(trace.run.words.address[index])) != "G"]
+    start = int(trace.run.words.start[(others or body)[0]])
+    return Mended(f"Write {off} with the last move", False, ((start, start, off + separator(trace, last)),))
+
+
+def _move_away(trace: Trace, row: int) -> int | None:
+    """The last move on the plane before a row, where it leads away from the contour."""
+    moving = np.flatnonzero(trace.travels & (trace.section == trace.section[row - 1]) & (np.arange(len(trace)) < row))
+    begins = moving[trace.starts_up[moving]]
+    if not len(begins) or moving[-1] <= begins[-1] or trace.motion[moving[-1]] != Motion.LINE:
+        return None
+    *path, last = moving[moving >= begins[-1]].tolist()
+    end, farthest = trace.end[last], float(np.abs(trace.end[path]).max())
+    leads_back = abs(end - trace.start[begins[-1]]) <= ROUNDING
+    return int(last) if leads_back or abs(end) > farthest + ROUNDING else None

@@ -1,0 +1,233 @@
+"""`check --diff` and `check --fix`: the fixes of the programs, shown or written, before they are checked."""
+
+from __future__ import annotations
+
+import contextlib
+import functools
+import gc
+import io
+import sys
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import click
+
+from polarcheck.commands.exit_codes import BUG, CLEAN, COULD_NOT_RUN, FINDINGS
+from polarcheck.commands.options import option
+from polarcheck.commands.output import said_of_bug, say, say_lines, show, warn
+from polarcheck.commands.progress import watched
+from polarcheck.errors import OutputError, PolarcheckError, SourceError, TooHardError, UsageError
+
+if TYPE_CHECKING:
+    from polarcheck.checking.batch import Task
+    from polarcheck.checking.finding import FileReport
+    from polarcheck.fixes.fixing import Outcome
+
+#: Of the fixes of a file so many are told one by one.
+_TOLD = 20
+_COLORS = {"-": "31", "+": "32", "@": "36"}
+#: The options, which belong in no command that shows a report again.
+NAMES = ("fix", "unsafe_fixes", "diff", "backup")
+
+
+class Wanted(NamedTuple):
+    """What of the fixes is asked for."""
+
+    fix: bool
+    unsafe_fixes: bool
+    diff: bool
+    backup: bool
+
+
+class Shown(NamedTuple):
+    """What the command line says of the output; outputs: whether reports in files are asked for."""
+
+    quiet: bool
+    color: bool
+    debug: bool
+    outputs: bool
+
+
+class Made(NamedTuple):
+    """
+    What became of it: the exit code so far, how many fixes were written, whether it ends there, without a report, and
+    whether standard output holds a program, so that the report goes to standard error.
+    """
+
+    status: int = CLEAN
+    fixed: int = 0
+    ends: bool = False
+    has_output: bool = False
+
+
+def wanted(function: Any) -> Any:
+    """
+    The options of fixes, which the command gets as one, `fixes`.
+
+    The environment asks neither for --fix nor for --unsafe-fixes: it moves metal, and is asked for each time.
+    """
+
+    def collected(*arguments: Any, **options: Any) -> Any:
+        return function(*arguments, fixes=Wanted(*(options.pop(name) for name in NAMES)), **options)
+
+    functools.update_wrapper(collected, function)
+    found: Any = collected
+    for decorate in (
+        option("--backup", is_flag=True, help="With --fix, keep the old program as FILE.orig."),
+        option("--diff", is_flag=True, help="Show what --fix would change, and no report."),
+        click.option("--unsafe-fixes", is_flag=True, help="With --fix or --diff: those that move otherwise, too."),
+        click.option("--fix", is_flag=True, help="Write the safe fixes into the programs, then check them."),
+    ):
+        found = decorate(found)
+    return found
+
+
+def make(
+    wanted: Wanted,
+    tasks: Sequence[Task],
+    most: int,
+    shown: Shown,
+    answered: Callable[[FileReport], FileReport] | None = None,
+) -> Made:
+    """
+    Show or write the fixes of the programs, where that is asked for.
+
+    most: bytes of a program, as for its check. answered: takes findings out of a report that somebody has
+    answered for. Raises UsageError for options that exclude each other, SourceError where standard input cannot be
+    read.
+    """
+    if wanted.diff and (wanted.fix or shown.outputs):
+        raise UsageError(f"--diff shows what --fix would change, and writes nothing: leave out {_other(wanted)}")
+    for name in ("unsafe_fixes", "backup"):
+        if getattr(wanted, name) and not (wanted.fix or (wanted.diff and name == "unsafe_fixes")):
+            warn(f"--{name.replace('_', '-')} does nothing without --fix")
+    if not (wanted.fix or wanted.diff):
+        return Made()
+    work = _Work(wanted, most, shown, answered)
+    with contextlib.closing(watched(tasks, not shown.quiet)) as awaited:
+        for task in awaited:
+            work.do(task)
+            gc.collect(0)
+    if not shown.quiet:
+        work.tell()
+    found_some = FINDINGS if wanted.diff and work.count else CLEAN
+    return Made(max(work.status, found_some), work.count, wanted.diff, work.has_output)
+
+
+def _other(wanted: Wanted) -> str:
+    return "one of the two" if wanted.fix else "-o"
+
+
+class _Work:
+    """The pass over the programs. count: of the fixes. left: of those that only --unsafe-fixes would make."""
+
+    def __init__(
+        self,
+        wanted: Wanted,
+        most: int,
+        shown: Shown,
+        answered: Callable[[FileReport], FileReport] | None,
+    ) -> None:
+        self.wanted, self.most = wanted, most
+        self.shown, self.answered = shown, answered
+        self.status = CLEAN
+        self.count = self.files = self.left = 0
+        self.has_output = False
+
+    def do(self, task: Task) -> None:
+        """Fix one program; what is wrong with one costs that one only, and where a report follows it tells most."""
+        from polarcheck.reading import files
+
+        is_input = files.is_standard_input(task.path)
+        try:
+            data = files.read(task.path, self.most)
+        except SourceError as error:
+            if is_input:
+                raise
+            self._fail(error)
+            return
+        outcome = self._outcome(task, data, task.title)
+        new = data if outcome is None else outcome.data
+        if self.wanted.diff:
+            self._show(task, data, new)
+        elif is_input:
+            show(new)
+            self.has_output = True
+            # It can be read once only, and is to be checked as it is now.
+            sys.stdin = io.TextIOWrapper(io.BytesIO(new))
+        elif new != data and not self._written(task.path, data, new):
+            return
+        if outcome is not None:
+            self._count(outcome, task.title)
+
+    def _outcome(self, task: Task, data: bytes, path: str) -> Outcome | None:
+        from polarcheck.fixes.fixing import with_fixes
+
+        try:
+            return with_fixes(
+                data,
+                task.settings,
+                path,
+                task.settings.encoding,
+                self.wanted.unsafe_fixes,
+                self.answered or (lambda report: report),
+            )
+        except (SourceError, TooHardError) as error:
+            self._fail(error)
+        except MemoryError:
+            self._fail(SourceError(f"{path}: there is not enough memory to fix it"))
+        except Exception as error:
+            error.add_note(f"while fixing {path}")
+            say_lines(said_of_bug(error, self.shown.debug))
+            self.status = BUG
+        return None
+
+    def _fail(self, error: PolarcheckError) -> None:
+        """The check that follows says it, too; a diff is followed by none."""
+        if self.wanted.diff:
+            say(str(error))
+            self.status = max(self.status, COULD_NOT_RUN)
+
+    def _written(self, path: str, old: bytes, new: bytes) -> bool:
+        from polarcheck.reading.rewriting import rewrite
+
+        try:
+            rewrite(path, old, new, keep=self.wanted.backup)
+        except OutputError as error:
+            say(str(error))
+            self.status = max(self.status, COULD_NOT_RUN)
+            return False
+        return True
+
+    def _show(self, task: Task, old: bytes, new: bytes) -> None:
+        from polarcheck.fixes.difference import difference
+
+        lines = difference(task.title, old, new, task.settings.encoding)
+        if self.shown.color:
+            lines = [f"\x1b[{_COLORS[line[0]]}m{line}\x1b[0m" if line[0] in _COLORS else line for line in lines]
+        if lines:
+            show("".join(f"{line}\n" for line in lines).encode(), self.shown.color or None)
+
+    def _count(self, outcome: Outcome, path: str) -> None:
+        """What was made, and what not, line by line; the lines are those of the file as it was."""
+        self.count += len(outcome.fixed)
+        self.files += bool(outcome.fixed)
+        self.left += outcome.left
+        if self.shown.quiet:
+            return
+        for one in outcome.fixed[:_TOLD] if not self.wanted.diff else ():
+            say(f"{path}:{one.line}: fixed: {one.title} [{one.rule}]")
+        if len(outcome.fixed) > _TOLD and not self.wanted.diff:
+            say(f"{path}: {len(outcome.fixed) - _TOLD} more fixed")
+        for refused in outcome.refused[:_TOLD]:
+            say(f"{path}:{refused.line}: not fixed: {refused.title} [{refused.rule}]: {refused.reason}")
+
+    def tell(self) -> None:
+        """One line on the whole, where no report says it."""
+        more = f"{self.left} more with --unsafe-fixes" if self.left else ""
+        if self.wanted.diff:
+            many = "file" if self.files == 1 else "files"
+            would = f"--fix would write {self.count} fixes into {self.files} {many}" if self.count else "nothing to fix"
+            say(f"{would.replace(' 1 fixes', ' 1 fix')}{'; ' * bool(more)}{more}")
+        elif more:
+            say(more)

@@ -1,0 +1,166 @@
+"""The fixes of a program: round after round, until none is left that makes it better."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import msgspec
+import numpy as np
+
+from polarcheck.arrays import Rows
+from polarcheck.checking.finding import FileReport, Finding, Fix
+from polarcheck.checking.repair import WAY, repair_of
+from polarcheck.checking.settings import Settings
+from polarcheck.errors import SourceError, TooHardError
+from polarcheck.fixes.comparison import State, objection, state_of
+from polarcheck.fixes.edits import Span, applied, origins, overlap, shifted, spans
+
+#: The checks of one program for its fixes; what is left then is left for the next time.
+MOST_CHECKS = 200
+
+Answered = Callable[[FileReport], FileReport]
+
+
+class Fixed(msgspec.Struct, frozen=True):
+    """A fix that was made: the rule whose finding it mends, its line in the file as it was (from 1), its title."""
+
+    rule: str
+    line: int
+    title: str
+
+
+class Refused(Fixed, frozen=True):
+    """A fix that was not made, and why."""
+
+    reason: str
+
+
+class Outcome(msgspec.Struct, frozen=True):
+    """The bytes with the fixes; what was made, and what not. left: how many are only made where unsafe ones are."""
+
+    data: bytes
+    fixed: list[Fixed]
+    refused: list[Refused]
+    left: int = 0
+
+
+class _Candidate(msgspec.Struct, frozen=True):
+    """A fix that may be made. spans: its edits by position."""
+
+    found: Finding
+    fix: Fix
+    spans: list[Span]
+
+
+#: Of a finding, wherever the fixes before it have moved it.
+_Key = tuple[str, int, str]
+
+
+def with_fixes(
+    data: bytes,
+    settings: Settings,
+    path: str,
+    encoding: str | None = None,
+    unsafe: bool = False,
+    answered: Answered = lambda report: report,
+) -> Outcome:
+    """
+    A program with the fixes of its findings: the safe ones, or the unsafe ones, too.
+
+    answered: takes the findings out of a report that somebody has answered for: they are not fixed. A fix that would
+    bring another finding, or another way of the tool than it says, is not made. Those that touch each other come one
+    round after the other. Raises what state_of raises for the program as it is.
+    """
+    state = state_of(data, settings, path, encoding)
+    work = _Work(settings, path, encoding, unsafe, answered, len(state.source.line_starts))
+    while work.checks < MOST_CHECKS:
+        candidates = work.candidates(state)
+        if not candidates:
+            break
+        state = work.best(state, candidates) or state
+    left = sum(one.fix is not None and not one.fix.safe and not unsafe for one in answered(state.asked).findings)
+    return Outcome(state.source.data, work.fixed, list(work.refused.values()), left)
+
+
+class _Work:
+    """
+    What was made and refused so far. origin: for each line of the program as it is now that of the file (from 1).
+    """
+
+    def __init__(
+        self, settings: Settings, path: str, encoding: str | None, unsafe: bool, answered: Answered, lines: int
+    ) -> None:
+        self.settings, self.path, self.encoding = settings, path, encoding
+        self.unsafe, self.answered = unsafe, answered
+        self.fixed: list[Fixed] = []
+        self.refused: dict[_Key, Refused] = {}
+        self.checks = 0
+        self.origin: Rows = np.arange(1, lines + 1)
+
+    def candidates(self, state: State) -> list[_Candidate]:
+        """The fixes to try next, in the order of the lines: of which none touches another."""
+        chosen: list[_Candidate] = []
+        taken: list[Span] = []
+        for found in self.answered(state.asked).findings:
+            fix = found.fix
+            if fix is None or not (fix.safe or self.unsafe) or _key(found, fix) in self.refused:
+                continue
+            own = spans(state.source, fix)
+            if not overlap(own, taken):
+                chosen.append(_Candidate(found, fix, own))
+                taken += own
+        # What may change the way of the tool is looked at by itself.
+        plain = [one for one in chosen if WAY not in _changes(one)[0]]
+        return plain or chosen[:1]
+
+    def best(self, state: State, candidates: Sequence[_Candidate]) -> State | None:
+        """The program with as many of these fixes as it takes; None where it takes none of them."""
+        after, reason = self._tried(state, candidates)
+        if after is not None:
+            self.fixed += [Fixed(one.found.rule, self._line(one), one.fix.title) for one in candidates]
+            self._follow(state, after, candidates)
+            return after
+        if len(candidates) > 1 and self.checks < MOST_CHECKS:
+            half = len(candidates) // 2
+            # The others are tried again in the next round, beside those that were made.
+            return self.best(state, candidates[:half]) or self.best(state, candidates[half:])
+        for one in candidates if len(candidates) == 1 else ():
+            refused = Refused(one.found.rule, self._line(one), one.fix.title, reason)
+            self.refused[_key(one.found, one.fix)] = refused
+        return None
+
+    def _line(self, one: _Candidate) -> int:
+        return int(self.origin[one.found.line - 1])
+
+    def _tried(self, state: State, candidates: Sequence[_Candidate]) -> tuple[State | None, str]:
+        data = applied(state.source, [span for one in candidates for span in one.spans])
+        if data is None:
+            return None, f"its encoding, {state.source.encoding}, does not give all characters back as they are"
+        self.checks += 1
+        try:
+            after = state_of(data, self.settings, self.path, self.encoding)
+            rules = {one.found.rule for one in candidates}
+            reason = objection(state, after, rules, [_changes(one) for one in candidates])
+        except (SourceError, TooHardError) as error:
+            return None, f"the result could not be judged: {error}"
+        return (None, reason) if reason else (after, "")
+
+    def _follow(self, before: State, after: State, candidates: Sequence[_Candidate]) -> None:
+        """What was refused stands in other lines now."""
+        made = [span for one in candidates for span in one.spans]
+        self.origin = self.origin[origins(before.source, after.source, made) - 1]
+        self.refused = {
+            (rule, shifted(before.source, made, line), title): refused
+            for (rule, line, title), refused in self.refused.items()
+        }
+
+
+def _key(found: Finding, fix: Fix) -> _Key:
+    return found.rule, found.line, fix.title
+
+
+def _changes(one: _Candidate) -> tuple[Sequence[str], range]:
+    """What of the path a fix says it changes, and in which lines."""
+    way = repair_of(one.found.rule)
+    lines = [line for edit in one.fix.edits for line in (edit.line, edit.end_line)]
+    return way.changes if way is not None else (), range(min(lines), max(lines) + 1)
