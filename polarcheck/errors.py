@@ -8,6 +8,7 @@ What can go wrong on our side. What is wrong in a program is a finding, never an
     |-- MachineError      a machine profile: unknown machine, key, type
     |-- JobError          polarcheck.toml, pyproject.toml, an offset table
     |-- StoppedError      nobody waits for the outcome any more
+    |-- BaselineError     a file of known findings
     |-- TooHardError      a table that would take more than its bound of time or size
     `-- RuleError         a rule without severity, message, docstring: a bug in a rule file
 """
@@ -46,6 +47,10 @@ class JobError(PolarcheckError):
 
 class StoppedError(PolarcheckError):
     """A check of which nobody waits for the outcome any more."""
+
+
+class BaselineError(PolarcheckError):
+    """A file of known findings that cannot be used, or must not be written."""
 
 
 class TooHardError(PolarcheckError):

@@ -18,7 +18,10 @@ from polarcheck.reports import FOR_PEOPLE, formats
 #: Of more files than this the report is short, if no format is asked for.
 _LONG = 3
 #: Options that change how a report looks or where it goes, but not what it says.
-_OF_OUTPUT = ("stdin_filename", "form", "outputs", "color", "quiet", "following", "statistics", *fixing.NAMES)
+_OF_OUTPUT = (
+    *("stdin_filename", "form", "outputs", "color", "quiet", "following", "silenced", "statistics"),
+    *fixing.NAMES,
+)
 _FORMATS = formats()
 
 
@@ -79,6 +82,7 @@ def _outputs(ctx: click.Context, parameter: click.Parameter, values: tuple[str, 
     help="A report in a file, too.",
 )
 @silencing.inline
+@silencing.baseline
 @reporting.statistics
 @options.config
 @options.no_config
@@ -103,6 +107,7 @@ def _outputs(ctx: click.Context, parameter: click.Parameter, values: tuple[str, 
 @standard_input.filename
 @option("--color", type=click.Choice(["auto", "always", "never"]), default="auto", show_default=True)
 @option("--show-following", "following", is_flag=True, help="In text, what follows from a finding, too.")
+@silencing.show_silenced
 @option("-q", "--quiet", is_flag=True, help="Findings only.")
 @fixing.wanted
 @options.debug
@@ -164,6 +169,7 @@ def _check(
     color: str,
     quiet: bool,
     following: bool,
+    silenced: bool,
     statistics: bool,
     fixes: fixing.Wanted,
     **asked: Any,
@@ -195,9 +201,8 @@ def _check(
     if made.ends:
         return COULD_NOT_RUN if failures else made.status
     with contextlib.closing(watched(tasks, not quiet)) as awaited:
-        checked = batch.check_files(
-            awaited, failures.append, lambda bug: bugs.extend(said_of_bug(bug, debug)), max_size
-        )
+        outcomes = silencing.answered(batch.one_by_one(awaited, max_size), tasks, applies.baseline)
+        checked = batch.gather(outcomes, failures.append, lambda bug: bugs.extend(said_of_bug(bug, debug)))
     name = applies.machine or (tasks[0].settings.name if tasks else profiles.DEFAULT)
     report = batch.report(checked.files, name)
     status = max(int(checked.failed), made.status)
@@ -217,7 +222,7 @@ def _check(
             if key not in checked.called:
                 warn(f"--tool {key}: no program of this run calls offset {key}")
     form = form or ("text" if len(report.files) <= _LONG else "short")
-    plain = reports.Background(checked.lines, rule.load_all(), COLUMNS, False, quiet, command, following)
+    plain = reports.Background(checked.lines, rule.load_all(), COLUMNS, False, quiet, command, following, silenced)
     plain = reporting.background(plain, tasks, went_wrong)._replace(fixed=made.fixed)
     for error in reporting.written(outputs, form, report, plain):
         say(str(error))

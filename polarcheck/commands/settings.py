@@ -47,6 +47,7 @@ class Options(msgspec.Struct, frozen=True):
     strict: bool | None = None
     encoding: str | None = None
     inline: bool | None = None
+    baseline: Path | None = None
 
 
 class OfPrograms:
@@ -259,9 +260,9 @@ _OVER_JOB = ("radius_from_comments", "fail_on", "strict", "encoding", "inline")
 
 
 def _read(options: Options, job: Job, profile: profiles.Profile, found: JobFile) -> list[Path]:
-    """The job files, the offset tables and the machine files of the user's own."""
+    """The job files, the offset tables, the baseline and the machine files of the user's own."""
     own = [Path(title) for title in profile.chain if title not in profiles.names()]
-    tables = [options.offsets] if options.offsets else []
+    tables = [path for path in (options.offsets, options.baseline) if path]
     return [*own, *tables, *found.read, *([Path(job.offsets)] if job.offsets else [])]
 
 

@@ -1,7 +1,122 @@
-"""Options of what is silenced: allow comments of programs."""
+"""What is silenced, and the options that say so: allow comments of programs, findings of a baseline."""
 
 from __future__ import annotations
 
+import os
+from collections import Counter
+from collections.abc import Collection, Iterable, Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
 from polarcheck.commands.options import option
+from polarcheck.commands.output import warn
+
+if TYPE_CHECKING:
+    from polarcheck.checking.baseline import Baseline, Leftover
+    from polarcheck.checking.batch import Outcome, Task
+    from polarcheck.checking.finding import FileReport
+    from polarcheck.checking.settings import Settings
+
+#: Of what no longer occurs, or was moved, so much is named in one line.
+_NAMED = 5
+
+
+def _readable(ctx: click.Context, parameter: click.Parameter, value: Path | None) -> Path | None:
+    """Read it before anything is checked: an archive takes minutes."""
+    if value is not None:
+        from polarcheck.checking import baseline_file
+
+        baseline_file.read(value)
+    return value
+
 
 inline = option("--inline/--no-inline", default=None, help="Whether the allow comments of programs are heeded.")
+baseline = option(
+    "--baseline", type=click.Path(exists=True, dir_okay=False, path_type=Path), callback=_readable, metavar="FILE",
+    help="Known findings, of `polarcheck baseline create`: only others are told.",
+)  # fmt: skip
+show_silenced = option(
+    "--show-silenced", "silenced", is_flag=True, help="In text, what is silenced, too, with by what and why."
+)
+
+
+def answered(outcomes: Iterable[Outcome], tasks: Sequence[Task], path: Path | None) -> Iterator[Outcome]:
+    """What comes of each file, with the findings of a baseline silenced; at the end what no longer occurs is told."""
+    if path is None:
+        yield from outcomes
+        return
+    import msgspec
+
+    from polarcheck.checking import baseline_file
+    from polarcheck.checking.baseline import Baseline
+    from polarcheck.checking.batch import fails
+
+    known = Baseline(baseline_file.read(path), path.parent, (task.path for task in tasks))
+    settings = settings_of(tasks)
+    for outcome in outcomes:
+        found = outcome.report
+        if found is not None:
+            own = settings[found.path]
+            report = known.answered(found, evaluated(found, own), own.fail_on)
+            yield msgspec.structs.replace(outcome, report=report, failed=fails(report, own))
+        else:
+            yield outcome
+    _tell(known, path)
+
+
+def settings_of(tasks: Iterable[Task]) -> dict[str, Settings]:
+    """What applies to each file, by its path as reports have it."""
+    return {task.title: task.settings for task in tasks}
+
+
+def evaluated(report: FileReport, settings: Settings) -> Collection[str]:
+    """The rules that were asked of a file and could be evaluated: only of these it is known what no longer occurs."""
+    missing = {one.rule for one in report.not_evaluated if one.matters}
+    if "all" in missing:
+        return ()
+    levels = {**settings.machine.severities, **settings.severities}
+    return {rule.name for rule in settings.rules if rule.level(levels) != "off"} - missing
+
+
+def _tell(known: Baseline, path: Path) -> None:
+    """What is known and no longer occurs, and which files were moved, a line each."""
+    from polarcheck.reading import files
+    from polarcheck.reports import counted
+
+    name = files.shown(os.fspath(path))
+    moved = sorted((old, new) for new, old in known.moved.items() if old)
+    if moved:
+        named = _listed(f"{old} is {new}" for old, new in moved)
+        warn(f"{name}: {_were(len(moved), 'file')} moved: {named}; `polarcheck baseline update` takes the new paths")
+    leftovers = list(known.leftovers())
+    if leftovers:
+        count = sum(leftover.missing for leftover in leftovers)
+        occur = "occurs" if count == 1 else "occur"
+        named = _listed(_places(leftovers))
+        warn(
+            f"{name}: {counted(count, 'known finding')} no longer {occur}: {named}; `polarcheck baseline prune` drops "
+            f"{'it' if count == 1 else 'them'}"
+        )
+
+
+def _were(count: int, noun: str) -> str:
+    from polarcheck.reports import counted
+
+    return f"{counted(count, noun)} {'was' if count == 1 else 'were'}"
+
+
+def _places(leftovers: Iterable[Leftover]) -> list[str]:
+    """`rapid-in-polar in a.nc (2)`, and the files that are gone with all that was known of them."""
+    found: Counter[str] = Counter()
+    for one in leftovers:
+        entry = one.entry
+        found[f"{entry.file}, which is gone" if one.is_gone else f"{entry.rule} in {entry.file}"] += one.missing
+    return [f"{place} ({count})" if count > 1 else place for place, count in found.items()]
+
+
+def _listed(texts: Iterable[str]) -> str:
+    every = list(texts)
+    more = len(every) - _NAMED
+    return ", ".join(every[:_NAMED]) + (f" and {more} more" if more > 0 else "")

@@ -21,6 +21,7 @@ _STYLES = {
     "warning": "1;33",
     "note": "1;36",
     "not evaluated": "1;35",
+    "silenced": "1;35",
     "fail": "1;31",
     "unverified": "1;35",
     "pass": "1;32",
@@ -35,9 +36,10 @@ class Background(NamedTuple):
 
     lines: by path and line number, those that findings stand in. rules: by name. columns: the width of the terminal.
     quiet: findings only. command: what checks a file behind it as these were checked. following: whether what follows
-    from a finding is shown, too. settings: what applied to a file, by its path. failures: a line each on what could not
-    be read, or went wrong. root, folder: of the repository, and the one that paths begin in; absolute, with slashes,
-    empty where they are not known. fixed: how many fixes were written into the files before.
+    from a finding is shown, too. silenced: whether what is silenced is. settings: what applied to a file, by its path.
+    failures: a line each on what could not be read, or went wrong. root, folder: of the repository, and the one that
+    paths begin in; absolute, with slashes, empty where they are not known. fixed: how many fixes were written into the
+    files before.
     """
 
     lines: Mapping[str, Mapping[int, str]] = MappingProxyType({})
@@ -47,6 +49,7 @@ class Background(NamedTuple):
     quiet: bool = False
     command: str = "polarcheck check"
     following: bool = False
+    silenced: bool = False
     settings: Mapping[str, Settings] = MappingProxyType({})
     failures: Sequence[str] = ()
     root: str = ""

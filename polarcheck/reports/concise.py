@@ -10,7 +10,7 @@ from polarcheck.reports import Background, Parts, of_each, painted
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from polarcheck.checking.finding import FileReport, Finding, Report
+    from polarcheck.checking.finding import FileReport, Finding, Report, Silenced
 
 
 def concise(report: Report, background: Background | None = None) -> str:
@@ -26,10 +26,28 @@ def concise_pieces(report: Report, background: Background) -> Iterator[str]:
 def concise_parts(background: Background) -> Parts:
     """The same, of files as they are finished."""
 
-    def of_file(file: FileReport, lines: Mapping[int, str]) -> str:
-        return "".join(line(file, found) + "\n" for found in file.findings)
+    def of_file(file: FileReport, _: Mapping[int, str]) -> str:
+        return "".join(text + "\n" for text in lines(file, background.silenced))
 
     return Parts(of_file, lambda report: "")
+
+
+def lines(file: FileReport, silenced: bool, color: bool = False) -> Iterator[str]:
+    """The lines of the findings of a file, and those of what is silenced where that is asked for."""
+    yield from (line(file, found, color) for found in file.findings)
+    yield from (silenced_line(file, found) for found in file.silenced if silenced)
+
+
+def silenced_line(file: FileReport, found: Silenced) -> str:
+    """The line of a finding that is silenced; no pattern of an editor takes it for one that is told."""
+    return f"{visible(f'{file.path}:{found.line}:{found.column}')}: silenced: {why_silenced(found)}"
+
+
+def why_silenced(found: Silenced) -> str:
+    """What is silenced, by what, and why: in one line."""
+    channel = f"{found.channel}: " if found.channel else ""
+    reason = f": {found.reason}" if found.reason else ", no reason given"
+    return visible(f"{found.severity}: {channel}{found.message} [{found.rule}] (by {found.by}{reason})")
 
 
 def line(file: FileReport, found: Finding, color: bool = False) -> str:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from polarcheck.reading.excerpt import visible
 from polarcheck.reading.files import STANDARD_INPUT
 from polarcheck.reports import Background, Parts, of_each, painted
-from polarcheck.reports.concise import line
+from polarcheck.reports.concise import lines
 from polarcheck.reports.text import summary
 
 if TYPE_CHECKING:
@@ -31,8 +31,8 @@ def short_pieces(report: Report, background: Background) -> Iterator[str]:
 def short_parts(background: Background) -> Parts:
     """The same, of files as they are finished."""
 
-    def of_file(file: FileReport, lines: Mapping[int, str]) -> str:
-        return "".join(line(file, found, background.color) + "\n" for found in file.findings)
+    def of_file(file: FileReport, _: Mapping[int, str]) -> str:
+        return "".join(text + "\n" for text in lines(file, background.silenced, background.color))
 
     return Parts(of_file, lambda report: "".join(text + "\n" for text in _end(report, background)))
 
@@ -41,7 +41,7 @@ def _end(report: Report, background: Background) -> Iterator[str]:
     if background.quiet or not report.files:
         return
     total = report.summary
-    if total.errors or total.warnings or total.notes:
+    if total.errors or total.warnings or total.notes or (background.silenced and total.silenced):
         yield ""
     yield summary(report, background.fixed)
     for verdict, told in _FULL.items():

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from polarcheck.reading.excerpt import excerpt, visible
 from polarcheck.reports import SEVERITIES, Background, Parts, counted, of_each, painted
+from polarcheck.reports.concise import why_silenced
 from polarcheck.reports.pages.resting import resting
 
 if TYPE_CHECKING:
@@ -84,6 +85,8 @@ def _parts(background: Background, are_listed: bool) -> Parts:
             explained[found.rule] = None
         if are_listed and not background.quiet:
             shown += _not_evaluated([file], page)
+        if background.silenced:
+            shown += _silenced(file, page)
         return "".join(line + "\n" for line in shown)
 
     def end(report: Report) -> str:
@@ -96,6 +99,16 @@ def _parts(background: Background, are_listed: bool) -> Parts:
         return "".join(line + "\n" for line in shown)
 
     return Parts(of_file, end)
+
+
+def _silenced(file: FileReport, page: _Page) -> Iterator[str]:
+    """What is silenced in a file, a paragraph for all of it."""
+    if not file.silenced:
+        return
+    yield from page.heading("silenced", counted(len(file.silenced), "finding"))
+    for found in file.silenced:
+        yield from page.labelled("at", f"{file.path}:{found.line}:{found.column}: {why_silenced(found)}")
+    yield ""
 
 
 def _following(found: Finding, is_shown: bool, page: _Page) -> Iterator[str]:
@@ -197,7 +210,7 @@ def _verdicts(report: Report, page: _Page) -> Iterator[str]:
             continue
         word = verdict(file)
         facts = [severities(Counter(found.severity for found in file.findings))]
-        if word == file.verdict:
+        if file.sections or file.verdict != "pass":
             facts.append(counted(file.sections, "polar section") if file.sections else "no polar section")
         facts.append(counted(file.blocks, "block"))
         machine = f", for {visible(file.machine)}" if report.machine is None else ""
@@ -209,8 +222,10 @@ def _verdicts(report: Report, page: _Page) -> Iterator[str]:
 
 
 def verdict(file: FileReport) -> str:
-    """The verdict in words: a pass of a file in which there was nothing to look at says so."""
-    return file.verdict if file.sections or file.verdict != "pass" else "pass (no polar section)"
+    """The verdict in words, with what it does not rest on: nothing to look at, or findings that are silenced."""
+    remarks = ["no polar section"] if file.verdict == "pass" and not file.sections else []
+    remarks += [f"{len(file.silenced)} silenced"] if file.silenced else []
+    return f"{file.verdict} ({', '.join(remarks)})" if remarks else file.verdict
 
 
 def summary(report: Report, fixed: int = 0) -> str:
@@ -218,8 +233,13 @@ def summary(report: Report, fixed: int = 0) -> str:
     total, verdicts = report.summary, ""
     if len(report.files) > 1:
         empty = sum(file.verdict == "pass" and not file.sections for file in report.files)
-        how_many = f"{empty} with " if empty < total.passed else ""
-        of_pass = f"{total.passed} pass" + (f" ({how_many}no polar section)" if empty else "")
+        silent = sum(file.verdict == "pass" and bool(file.silenced) for file in report.files)
+        remarks = [
+            f"{count} with {what}" if count < total.passed else what
+            for count, what in ((empty, "no polar section"), (silent, "findings silenced"))
+            if count
+        ]
+        of_pass = f"{total.passed} pass" + (f" ({', '.join(remarks)})" if remarks else "")
         counts = {f"{total.fail} fail": total.fail, f"{total.unverified} unverified": total.unverified}
         verdicts = ": " + ", ".join([text for text, count in counts.items() if count] + [of_pass] * bool(total.passed))
     machines = len({file.machine for file in report.files})

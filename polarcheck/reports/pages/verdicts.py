@@ -29,6 +29,9 @@ pass (no polar section): the program never enters the polar mode, so that there 
 in it. If it is meant to, its code for the mode is that of another control: `polarcheck machines`
 lists them, --machine names one.
 
+pass (2 silenced): the program, or a baseline, answers for two findings. They may be errors:
+--show-silenced lists them, by whom and why; --no-inline does not heed the comments of the program.
+
 The exit code is 0.
 """,
         "unverified": """\

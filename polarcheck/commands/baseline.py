@@ -1,0 +1,195 @@
+"""`polarcheck baseline`: write down what is known, so that only new findings are told."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from polarcheck.commands import options
+from polarcheck.commands.check import check
+from polarcheck.commands.exit_codes import BUG, COULD_NOT_RUN
+from polarcheck.commands.output import said_of_bug, say, say_lines, show, warn
+
+if TYPE_CHECKING:
+    from polarcheck.checking.baseline import Baseline
+    from polarcheck.checking.baseline_file import Entry
+    from polarcheck.checking.batch import Checked, Task
+
+#: What of `check` decides what is found: its argument and options by name.
+DECIDING = (
+    *("paths", "machine", "changes", "tools", "offsets", "units", "select", "ignore", "severities", "inline"),
+    *("config", "no_config", "block_skip", "subprograms", "max_blocks", "max_statements", "max_seconds"),
+    *("radius_from_comments", "extensions", "encoding", "max_size"),
+)
+_FILE = "polarcheck-baseline.json"
+
+#: What a command makes of the entries of its file and of what was checked: the new entries, and what to say of them.
+_Made = tuple[list["Entry"], str]
+
+
+@click.group
+def baseline() -> None:
+    """
+    Write down the findings that are known, so that `check --baseline FILE` tells new ones only.
+
+    \b
+    polarcheck baseline create programs/
+    polarcheck check --baseline polarcheck-baseline.json programs/
+
+    A finding is known by its rule and its block, whatever its line: programs can be renumbered, punched out and moved.
+    Give the options that you give to check.
+    """
+
+
+def _output(text: str) -> Callable[[Any], Any]:
+    return click.option(
+        "-o", "--output", type=click.Path(dir_okay=False, path_type=Path), default=_FILE, show_default=True,
+        envvar="POLARCHECK_BASELINE", metavar="FILE", help=text,
+    )  # fmt: skip
+
+
+_reason = options.option("--reason", default="", metavar="TEXT", help="Why new findings may stay; reports tell it.")
+
+
+def _deciding(command: click.Command) -> click.Command:
+    """The command with what decides what is found, as in check."""
+    own = command.params
+    command.params = [parameter for parameter in check.params if parameter.name in DECIDING] + own
+    return command
+
+
+@_deciding
+@baseline.command
+@_output("To write; it must not be there yet.")
+@_reason
+@options.debug
+@click.pass_context
+def create(ctx: click.Context, /, paths: tuple[str, ...], output: Path, **asked: Any) -> None:
+    """
+    Write down all findings of the programs.
+
+    Nothing is overwritten: `polarcheck baseline update` takes a file that is there.
+    """
+    from polarcheck.errors import BaselineError
+    from polarcheck.reading import files
+
+    if output.exists() or output.is_symlink():
+        name = files.shown(str(output))
+        raise BaselineError(f"-o {name}: is there already; `polarcheck baseline update` rewrites it, or name another")
+    ctx.exit(_run(paths, output, options.DEBUG in ctx.meta, [], _updated, **asked))
+
+
+@_deciding
+@baseline.command
+@_output("To rewrite.")
+@_reason
+@options.debug
+@click.pass_context
+def update(ctx: click.Context, /, paths: tuple[str, ...], output: Path, **asked: Any) -> None:
+    """
+    Take what is found now: new findings come in, those that no longer occur go, reasons stay.
+
+    Programs that are not among the paths keep what is known of them.
+    """
+    ctx.exit(_run(paths, output, options.DEBUG in ctx.meta, _known(output), _updated, **asked))
+
+
+@_deciding
+@baseline.command
+@_output("To rewrite.")
+@options.debug
+@click.pass_context
+def prune(ctx: click.Context, /, paths: tuple[str, ...], output: Path, **asked: Any) -> None:
+    """
+    Drop what no longer occurs; nothing new comes in.
+
+    Kept is what could not be evaluated now, and what is known of programs that are not among the paths.
+    """
+    ctx.exit(_run(paths, output, options.DEBUG in ctx.meta, _known(output), _pruned, **asked))
+
+
+def _known(path: Path) -> list[Entry]:
+    from polarcheck.checking import baseline_file
+    from polarcheck.errors import BaselineError
+    from polarcheck.reading import files
+
+    if not path.exists():
+        raise BaselineError(f"-o {files.shown(str(path))}: there is none; `polarcheck baseline create` writes it")
+    return baseline_file.read(path)
+
+
+def _run(
+    paths: tuple[str, ...],
+    output: Path,
+    debug: bool,
+    entries: list[Entry],
+    make: Callable[[Baseline, list[Entry], Checked, list[Task], str], _Made],
+    *,
+    no_config: bool,
+    extensions: tuple[str, ...],
+    max_size: int,
+    reason: str = "",
+    **asked: Any,
+) -> int:
+    from polarcheck.checking import baseline_file, batch
+    from polarcheck.checking.baseline import Baseline
+    from polarcheck.commands import overwriting, settings, signals
+    from polarcheck.commands.memory import keep_within_memory
+    from polarcheck.commands.progress import watched
+    from polarcheck.reading import files
+
+    keep_within_memory()
+    failures: list[str] = []
+    bugs: list[str] = []
+    applies = settings.Options(use_config=not no_config, **asked)
+    settings_of = settings.of_programs(applies)
+    tasks = batch.plan(paths, settings_of, extensions, failures.append, warn, excluded_in=settings_of.excluded_in)
+    overwriting.refuse([output], tasks)
+    with contextlib.closing(watched(tasks, True)) as awaited:
+        checked = batch.check_files(
+            awaited,
+            failures.append,
+            lambda bug: bugs.extend(said_of_bug(bug, debug)),
+            max_size,
+        )
+    for failure in failures:
+        say(failure)
+    say_lines(bugs)
+    if checked.stopped is not None:
+        status, how = signals.told(checked.stopped)
+        say(f"{how}; nothing is written")
+        return status
+    known = Baseline(entries, output.parent, (task.path for task in tasks))
+    made, told = make(known, entries, checked, tasks, reason)
+    files.write(output, baseline_file.text_of(made))
+    show(f"{files.shown(str(output))}: {told}\n")
+    return BUG if bugs else COULD_NOT_RUN if failures else 0
+
+
+def _updated(known: Baseline, entries: list[Entry], checked: Checked, tasks: list[Task], reason: str) -> _Made:
+    from polarcheck.commands.silencing import evaluated, settings_of
+    from polarcheck.reports import counted
+
+    settings = settings_of(tasks)
+    made = known.updated(((report, evaluated(report, settings[report.path])) for report in checked.files), reason)
+    before, now = known.total(entries), known.total(made.entries)
+    files = len({entry.file for entry in made.entries})
+    changed = f"; {made.new} new, {before + made.new - now} gone" if before else ""
+    return made.entries, f"{counted(now, 'finding')} of {counted(files, 'file')} known{changed}"
+
+
+def _pruned(known: Baseline, entries: list[Entry], checked: Checked, tasks: list[Task], reason: str) -> _Made:
+    from polarcheck.commands.silencing import evaluated, settings_of
+    from polarcheck.reports import counted
+
+    settings = settings_of(tasks)
+    for report in checked.files:
+        known.answered(report, evaluated(report, settings[report.path]))
+    left = known.pruned()
+    now = known.total(left)
+    files = len({entry.file for entry in left})
+    return left, f"{counted(now, 'finding')} of {counted(files, 'file')} known; {known.total(entries) - now} gone"
