@@ -261,6 +261,7 @@ class Engine:
         return first[order], np.argsort(order)[group], count[order]
 
     def _finding(self, rule: Rule, place: Place, hits: Hits, count: int) -> Finding:
+        from polarcheck.checking.fingerprints import fingerprint
         from polarcheck.checking.message import fill
         from polarcheck.checking.repair import fix_of
 
@@ -292,7 +293,7 @@ class Engine:
             values=values,
             count=count,
             source=rule.source,
-            fingerprint=_fingerprint(rule.name, block),
+            fingerprint=fingerprint(rule, trace.text, place),
             fix=fix_of(rule, hits, self.tables, place, count),
         )
 
@@ -364,10 +365,3 @@ def in_order(findings: Iterable[Found]) -> list[Found]:
 def _severity(rule: Rule, hits: Hits, place: Place) -> Severity:
     given = rule.severity if hits.severity is None else hits.severity
     return Severity(int(given[place.index])) if isinstance(given, np.ndarray) else Severity(given)
-
-
-def _fingerprint(rule: str, block: str) -> str:
-    """The same for the same rule in the same block, wherever that stands."""
-    import hashlib  # late: a program without findings does not need it
-
-    return hashlib.sha256(f"{rule}\0{places.squeezed(block)}".encode("utf-8", "replace")).hexdigest()[:16]

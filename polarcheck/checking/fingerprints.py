@@ -1,0 +1,62 @@
+"""
+What a finding is known by: its rule and its block as the control reads it.
+
+It stays the same where a program is renumbered, punched out, moved, or changed elsewhere. What cannot be told apart so
+is counted: the same block twice has the same fingerprint.
+"""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+
+from polarcheck.checking.places import Place
+from polarcheck.checking.rule import Rule
+from polarcheck.reading.words import Text
+
+#: Of a block that is looked at; no longer one was written by hand [characters].
+_LONGEST = 4000
+_BLANKS = re.compile(r"[\0-\x20\x7f\xa0;]+")
+_SEQUENCE_NUMBER = re.compile(r"^(/?)N\d+")
+_NUMBER = re.compile(r"(\d*)\.(\d*)|(\d+)")
+#: A sign that changes nothing: behind an address, not between two terms.
+_PLUS = re.compile(r"(?<=[A-Z=])\+(?=[\d.])")
+
+
+def fingerprint(rule: Rule, text: Text, place: Place) -> str:
+    """16 hexadecimal digits, the same for the same rule in the same block, wherever that stands."""
+    import hashlib  # late: a program without findings does not need it
+
+    words = "" if rule.over == "files" else _words(text, place)
+    return hashlib.sha256(f"{rule.name}\0{words}".encode("utf-8", "replace")).hexdigest()[:16]
+
+
+def _words(text: Text, place: Place) -> str:
+    """The words of the block; where it has none, as before a comment, the characters at fault."""
+    start, end = int(text.blocks.start[place.block]), int(text.blocks.end[place.block])
+    end = min(end, start + _LONGEST)
+    found = normal(_without_comments(text, start, end))
+    return found or normal(text.source.excerpt(place.start, min(place.end, place.start + _LONGEST)))
+
+
+def _without_comments(text: Text, start: int, end: int) -> str:
+    comments = text.comments
+    pieces, at = [], start
+    for number in range(*np.searchsorted(comments.start, [start, end]).tolist()):
+        pieces.append(text.source.excerpt(at, max(int(comments.start[number]), at)))
+        at = max(at, int(comments.end[number]))
+    return "".join([*pieces, text.source.excerpt(at, end) if at < end else ""])
+
+
+def normal(words: str) -> str:
+    """A block without comments in one spelling: N G01 X+05.0 is G1X5. in any case, with or without blanks."""
+    found = _BLANKS.sub("", words).upper().replace(":", "O")
+    return _NUMBER.sub(_shortest, _PLUS.sub("", _SEQUENCE_NUMBER.sub(r"\1", found)))
+
+
+def _shortest(number: re.Match[str]) -> str:
+    """Without zeros that mean nothing. The point stays: without it the number is one of increments."""
+    if number[3] is not None:
+        return number[3].lstrip("0") or "0"
+    return f"{number[1].lstrip('0')}.{number[2].rstrip('0')}"
