@@ -196,7 +196,7 @@ def _line_without(trace: Trace, block: int, begin: int, end: int) -> Replace:
     last = int(source.line_starts[line]) if line < len(source.line_starts) else len(source.code)
     behind = source.excerpt(end, last)
     if source.excerpt(first, begin).strip(_BLANKS) or behind.strip(_BLANK_OR_END + ";") or behind.count(";") > 1:
-        return begin, end, ""
+        return begin, end + len(behind) - len(behind.lstrip(_BLANKS + ";")) if ";" in behind else end, ""
     if line < len(source.line_starts):
         while last < len(source.code) and source.code[last] == CR:
             last += 1

@@ -74,7 +74,8 @@ def _worse(before: FileReport, after: FileReport, rules: Collection[str]) -> str
     for rule, found in new.items():
         known = old.get(rule, [])
         if len(found) > len(known) or any(_rank(one) > _rank(other) for one, other in zip(found, known, strict=False)):
-            one = found[0]
+            told = {(one.block, one.message) for one in known}
+            one = next((one for one in found if (one.block, one.message) not in told), found[0])
             return f"the result would have {rule} in line {one.line}: {one.message}"
     for rule in rules:
         if len(old.get(rule, ())) <= len(new.get(rule, ())) < LISTED:

@@ -91,6 +91,8 @@ def polar_switch_not_alone(trace: Trace, mode_words: ModeWords, row: int) -> Men
     starts = trace.run.words.start
     before = [index for index in own if starts[index] < starts[at] and not is_head(trace, index)]
     behind = [index for index in beside if starts[index] > starts[at]]
+    if not all(_means_something(trace, group) for group in (before, behind) if group):
+        return None
     # What may stand beside the code stays there where it follows it, else it goes with the others.
     edits = [parted(trace, row, at)] if any(index in beside for index in before) else []
     edits += [parted(trace, row, behind[0])] if behind else []
@@ -106,6 +108,12 @@ def _must_be_outside(trace: Trace, mode_words: ModeWords, index: int) -> bool:
         return False
     number = int(code_numbers(words.value[index : index + 1])[0])
     return number != NO_CODE and not code_set(trace.machine.polar.allowed_codes)[number]
+
+
+def _means_something(trace: Trace, words: list[int]) -> bool:
+    """A block of these words alone: P, Q and the like mean nothing without a code."""
+    addresses = {chr(int(trace.run.words.address[index])) for index in words}
+    return bool(addresses & set("GMT")) or not addresses & set("DEIJKLPQR")
 
 
 def _is_safe(trace: Trace, row: int, outside: list[int], beside: list[int]) -> bool:

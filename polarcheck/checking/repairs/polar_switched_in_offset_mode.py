@@ -9,14 +9,17 @@ from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.machines.modal import Motion
 from polarcheck.table.trace import Trace
 
+#: A move goes outward where so much of its length adds to the distance from the center: within 45 deg.
+OUTWARD = 0.7
+
 
 @repair(WAY)
 def polar_switched_in_offset_mode(trace: Trace, row: int) -> Mended | None:
     """
     G40 is put before G12.1, or before G13.1 with the last move, where that leads away.
 
-    It leads away where it is straight, and ends where the start-up begins or farther from the center than all other
-    moves since then; else there is no fix. Unsafe: whether compensation should end there only the programmer knows.
+    It leads away where it is straight, and ends where the start-up begins, or goes outward, and farther from the center
+    than all other moves since then; else there is no fix. Unsafe: whether compensation should end there only the programmer knows.
 
     Bad, tool 1:radius=4:
 
@@ -85,4 +88,5 @@ def _move_away(trace: Trace, row: int) -> int | None:
     *path, last = moving[moving >= begins[-1]].tolist()
     end, farthest = trace.end[last], float(np.abs(trace.end[path]).max())
     leads_back = abs(end - trace.start[begins[-1]]) <= ROUNDING
-    return int(last) if leads_back or abs(end) > farthest + ROUNDING else None
+    leads_out = abs(end) - abs(trace.start[last]) > OUTWARD * abs(end - trace.start[last])
+    return int(last) if leads_back or (leads_out and abs(end) > farthest + ROUNDING) else None

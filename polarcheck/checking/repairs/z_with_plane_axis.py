@@ -46,6 +46,8 @@ def z_with_plane_axis(trace: Trace, row: int) -> Mended | None:
     if not is_plain(trace, row) or begins_program(trace, row):
         return None
     depth = float(trace.z[row] - before(trace.z, trace.starts, float("nan"))[row])
+    if depth != depth and trace.has("W")[row] and not trace.has("Z")[row]:
+        depth = float(trace.word("W")[row])
     if not depth:  # nothing moves Z
         return None
     machine, words = trace.machine, trace.run.words
