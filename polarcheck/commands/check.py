@@ -10,6 +10,7 @@ from typing import Any
 import click
 
 from polarcheck.commands import fixing, options, reporting, silencing, standard_input
+from polarcheck.commands.diff_base import diff_base, narrowed
 from polarcheck.commands.exit_codes import BUG, COULD_NOT_RUN
 from polarcheck.commands.options import many, option
 from polarcheck.commands.output import COLUMNS, columns, in_color, said_of_bug, say, say_lines, show, warn
@@ -17,9 +18,9 @@ from polarcheck.reports import FOR_PEOPLE, formats
 
 #: Of more files than this the report is short, if no format is asked for.
 _LONG = 3
-#: Options that change how a report looks or where it goes, but not what it says.
+#: Options that change how a report looks or where it goes, or which files it is of, but not what it says of one.
 _OF_OUTPUT = (
-    *("stdin_filename", "form", "outputs", "color", "quiet", "following", "silenced", "statistics"),
+    *("stdin_filename", "form", "outputs", "color", "quiet", "following", "silenced", "statistics", "diff_base"),
     *fixing.NAMES,
 )
 _FORMATS = formats()
@@ -84,6 +85,7 @@ def _outputs(ctx: click.Context, parameter: click.Parameter, values: tuple[str, 
 @silencing.inline
 @silencing.baseline
 @reporting.statistics
+@diff_base
 @options.config
 @options.no_config
 @options.force_exclude
@@ -172,6 +174,7 @@ def _check(
     silenced: bool,
     statistics: bool,
     fixes: fixing.Wanted,
+    diff_base: str | None,
     **asked: Any,
 ) -> int:
     from polarcheck import reports
@@ -196,6 +199,7 @@ def _check(
     for unmatched in settings_of.unmatched(paths):
         warn(unmatched)
     overwriting.refuse([path for _, path in outputs], tasks)
+    tasks = narrowed(tasks, diff_base, max_size, not quiet)
     is_colored = in_color(color)
     made = fixing.make(fixes, tasks, max_size, fixing.Shown(quiet, is_colored, debug, bool(outputs)))
     if made.ends:
@@ -219,7 +223,7 @@ def _check(
         say(went_wrong[-1])
     else:
         for key in dict.fromkeys(map(key_of_option, applies.tools)):
-            if key not in checked.called:
+            if key not in checked.called and diff_base is None:
                 warn(f"--tool {key}: no program of this run calls offset {key}")
     form = form or ("text" if len(report.files) <= _LONG else "short")
     plain = reports.Background(checked.lines, rule.load_all(), COLUMNS, False, quiet, command, following, silenced)

@@ -83,21 +83,26 @@ class Library:
 
     def place(self, called: ProgramName) -> tuple[Path, bytes] | None:
         """The file of such a program, and its bytes."""
-        number, name = called
-        if number is not None:
-            wanted = re.compile(rf"O?0*{number}(?:\.[A-Za-z]{{1,4}})?", re.IGNORECASE)
-        elif name is not None and _NAME.fullmatch(name):
-            wanted = re.compile(
-                rf"{re.escape(name)}(?:\.[A-Za-z]{{1,4}})?|_N_{re.escape(name)}_[MS]PF(?:\.[A-Za-z]{{1,4}})?",
-                re.IGNORECASE,
-            )
-        else:
+        wanted = names_of(called)
+        if wanted is None:
             return None
         for folder, paths in self._paths:
             for path in paths:
                 if wanted.fullmatch(path.name) and (data := _read_inside(folder, path)) is not None:
                     return path, data
         return None
+
+
+def names_of(called: ProgramName) -> re.Pattern[str] | None:
+    """The names of files that can hold a program; None where none can."""
+    number, name = called
+    if number is not None:
+        return re.compile(rf"O?0*{number}(?:\.[A-Za-z]{{1,4}})?", re.IGNORECASE)
+    if name is None or not _NAME.fullmatch(name):
+        return None
+    return re.compile(
+        rf"{re.escape(name)}(?:\.[A-Za-z]{{1,4}})?|_N_{re.escape(name)}_[MS]PF(?:\.[A-Za-z]{{1,4}})?", re.IGNORECASE
+    )
 
 
 def _read_inside(folder: Path, path: Path) -> bytes | None:

@@ -22,6 +22,7 @@ from polarcheck.reading.words import Text
 
 #: Bound of the words of a block, and of the steps of an expression.
 _SIZE = 5_000
+_COMPUTED = ProgramName(None, None)
 
 
 class Listing:
@@ -147,12 +148,21 @@ class Listing:
                     found[called] = found.get(called, False) or not self.text.blocks.is_macro[block]
         return self._calls[file]
 
+    def computes_calls(self, file: int) -> bool:
+        """Whether a file has a call of which its text does not say which program is meant."""
+        blocks = np.flatnonzero(turns(self.files[file], self._call_codes)) + self.first_blocks[file]
+        return any(self._call_in(block) == _COMPUTED for block in blocks.tolist())
+
     def called_in(self, block: int) -> ProgramName | None:
         """The program that a block calls, where it names it literally."""
+        called = self._call_in(block)
+        return None if called == _COMPUTED else called
+
+    def _call_in(self, block: int) -> ProgramName | None:
+        """The program that a block calls, of which number and name may be computed; None without a call."""
         statement = self.statement(block)
         parts = (statement if statement.then is None else statement.then, *statement.more)
         call = next((part for part in parts if part.call in self._call_codes), None)
         if call is None:
             return None
-        called = called_program(call, self._nothing_known, self.macro, self.arithmetic).program
-        return None if called == ProgramName(None, None) else called
+        return called_program(call, self._nothing_known, self.macro, self.arithmetic).program

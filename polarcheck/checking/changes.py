@@ -1,0 +1,106 @@
+"""Of the programs of a run those whose report may have changed since a commit."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Sequence
+
+from polarcheck.checking.batch import Task
+from polarcheck.checking.settings import Settings
+from polarcheck.errors import SourceError, TooHardError, UsageError
+from polarcheck.execution.dependence import calls_one_of
+from polarcheck.reading import files, git, source
+from polarcheck.time_limit import seconds_for, time_limit
+
+
+class Changes:
+    """
+    What has changed in the repositories of some programs since a commit.
+
+    Raises UsageError for a program that lies in none, and where git cannot tell.
+    """
+
+    def __init__(self, tasks: Iterable[Task], ref: str, job_file: str) -> None:
+        self._real = files.RealPaths()
+        repositories = git.Repositories(self._real)
+        roots: dict[str, None] = {}
+        for task in tasks:
+            if task.path == files.STANDARD_INPUT:
+                continue
+            root = repositories.root(os.path.dirname(task.path))  # noqa: PTH120
+            if root is None:
+                raise UsageError(f"--diff-base {ref}: {files.shown(task.path)} lies in no git repository")
+            roots[root] = None
+        self._paths = {path for root in roots for path in git.changed(root, ref)}
+        self._names: dict[str, set[str]] = {}
+        for path in self._paths:
+            folder, name = os.path.split(path)
+            self._names.setdefault(folder, set()).add(name)
+        #: Folders out of which a job file has gone: what lies below them is judged by another one now.
+        self._without_job = [
+            os.path.join(folder, "")  # noqa: PTH118
+            for folder, names in self._names.items()
+            if job_file in names and not os.path.lexists(os.path.join(folder, job_file))  # noqa: PTH118
+        ]
+        self._of_settings: dict[int, bool] = {}
+        self._of_folders: dict[str, set[str]] = {}
+
+    def concern(self, task: Task, most: int = files.LARGEST) -> bool:
+        """
+        Whether a program has changed, or its job file, machine file or offset table, or a program that it calls; most:
+        bytes of a program that is read.
+
+        Standard input always has. What cannot be read counts as changed: its check says why.
+        """
+        if task.path == files.STANDARD_INPUT or self._has(task.path) or self._concern_settings(task.settings):
+            return True
+        real = self._real.of(task.path)
+        return any(real.startswith(folder) for folder in self._without_job) or self._concern_called(task, most)
+
+    def _has(self, path: str) -> bool:
+        """A link has changed where it has, or what it leads to."""
+        folder, name = os.path.split(path)
+        beside = os.path.join(self._real.folder(folder or os.curdir), name)  # noqa: PTH118
+        return self._real.of(path) in self._paths or os.path.normcase(beside) in self._paths
+
+    def _concern_settings(self, settings: Settings) -> bool:
+        if id(settings) not in self._of_settings:
+            self._of_settings[id(settings)] = any(self._has(str(path)) for path in settings.read)
+        return self._of_settings[id(settings)]
+
+    def _concern_called(self, task: Task, most: int) -> bool:
+        settings = task.settings
+        folders = settings.job.run.subprograms
+        names = set().union(*(self._in_folder(folder) for folder in folders))
+        if not names:
+            return False
+        try:
+            data = files.read(task.path, most)
+            with time_limit(seconds_for(len(data), settings.job.run.max_seconds)):
+                text = source.read(data, task.path, settings.encoding)
+                return calls_one_of(text, settings.machine, folders, names)
+        except (SourceError, TooHardError, MemoryError):
+            return True
+
+    def _in_folder(self, folder: str) -> set[str]:
+        """The names in a folder of subprograms that have changed or lead to what has."""
+        real = os.path.normcase(os.path.realpath(folder))
+        if real not in self._of_folders:
+            found = set(self._names.get(real, ()))
+            try:
+                links = [entry for entry in os.scandir(real) if entry.is_symlink()]
+            except OSError:
+                links = []
+            found.update(entry.name for entry in links if self._real.of(entry.path) in self._paths)
+            self._of_folders[real] = found
+        return self._of_folders[real]
+
+
+def since(ref: str, tasks: Sequence[Task], job_file: str, most: int = files.LARGEST) -> list[Task]:
+    """
+    Those of the tasks that the changes since a commit concern, in their order; job_file: the name of one.
+
+    Raises UsageError where git cannot tell what has changed.
+    """
+    changes = Changes(tasks, ref, job_file)
+    return [task for task in tasks if changes.concern(task, most)]

@@ -1,0 +1,359 @@
+"""`--diff-base`: which programs a change concerns, in repositories of git that are real."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from programs import machine_of
+from test_cli import call, make
+
+from polarcheck.commands.diff_base import narrowed
+from polarcheck.execution.dependence import calls_one_of
+from polarcheck.reading import source
+
+GOOD = "O0001\nG98 G0 X60. C0\nG12.1\nG1 X40. F200\nC5.\nG13.1\nM30\n"
+ONLY = ("--select", "rapid-in-polar")
+
+posix = pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such names and links")
+
+
+def git(*words: str, folder: str = ".") -> str:
+    settings = ("user.name=a", "user.email=a@localhost", "commit.gpgsign=false", "init.defaultBranch=main", "gc.auto=0")
+    given = [word for setting in settings for word in ("-c", setting)]
+    nobody = {"GIT_CONFIG_GLOBAL": os.devnull, "GIT_CONFIG_NOSYSTEM": "1"}
+    done = subprocess.run(
+        ["git", "-C", folder, *given, *words], capture_output=True, text=True, check=True, env={**os.environ, **nobody}
+    )
+    return done.stdout
+
+
+def commit(*paths: str) -> None:
+    git("add", "-A", *paths)
+    git("commit", "-q", "-m", "x", "--allow-empty")
+
+
+@pytest.fixture(autouse=True)
+def _repository(own_folder: None) -> None:
+    git("init", "-q", "-b", "main")
+    make(a__nc=GOOD, b__nc=GOOD, c__nc=GOOD)
+    commit()
+
+
+def checked(*arguments: str, ref: str = "HEAD", paths: tuple[str, ...] = (".",), code: int = 0) -> list[str]:
+    """The paths that are checked, sorted."""
+    result = call("check", *paths, *ONLY, "--diff-base", ref, "--format", "json", "-q", *arguments)
+    assert result.exit_code == code, result.output
+    return sorted(file["path"] for file in json.loads(result.stdout)["files"])
+
+
+def refused(*paths: str, ref: str = "main") -> str:
+    """The one line of a run that cannot tell."""
+    result = call("check", *(paths or (".",)), "--diff-base", ref)
+    assert (result.exit_code, result.stdout) == (2, "")
+    (line,) = result.stderr.splitlines()
+    return line.removeprefix("polarcheck: --diff-base ")
+
+
+# ---- what has changed itself ----
+
+
+def test_nothing_has_changed() -> None:
+    result = call("check", ".", "--diff-base", "HEAD")
+    assert (result.exit_code, result.stdout) == (0, "")
+    assert result.stderr == (
+        "polarcheck: --diff-base HEAD: nothing to check: none of 3 programs has changed, nor calls or is judged by "
+        "what has\n"
+    )
+    assert json.loads(call("check", ".", "--diff-base", "HEAD", "--format", "json").stdout)["files"] == []
+
+
+def test_committed_staged_unstaged_and_untracked_programs_have_changed() -> None:
+    make(committed__nc=GOOD)
+    commit()
+    make(staged__nc=GOOD, a__nc=GOOD + "(X)\n")
+    git("add", "staged.nc")
+    make(untracked__nc=GOOD)
+    assert checked(ref="HEAD~1") == ["a.nc", "committed.nc", "staged.nc", "untracked.nc"]
+    assert checked() == ["a.nc", "staged.nc", "untracked.nc"]
+    assert checked(paths=("b.nc", "a.nc")) == ["a.nc"]
+
+
+def test_how_many_are_left_is_told() -> None:
+    make(a__nc=GOOD + "(X)\n")
+    result = call("check", ".", *ONLY, "--diff-base", "HEAD", "--tool", "8:radius=4")
+    assert result.stderr == (
+        "polarcheck: --diff-base HEAD: 1 of 3 programs to check: changed, or calling or judged by what has\n"
+    )
+    assert narrowed([], None, 1, True) == []
+
+
+def test_findings_of_what_has_not_changed_fail_nothing() -> None:
+    make(a__nc=GOOD.replace("\nC5.", "\nG0 C5."))
+    commit()
+    make(b__nc=GOOD + "(X)\n")
+    assert checked() == ["b.nc"]
+    assert checked(ref="HEAD~1", code=1) == ["a.nc", "b.nc"]
+
+
+def test_a_file_that_git_does_not_keep_may_have_changed() -> None:
+    Path(".gitignore").write_text("out/\n")
+    commit()
+    Path("out").mkdir()
+    Path("out", "d.nc").write_text(GOOD)
+    assert checked() == ["out/d.nc"]
+
+
+def test_a_renamed_program_has_changed() -> None:
+    git("mv", "a.nc", "new.nc")
+    assert checked() == ["new.nc"]
+
+
+def test_a_branch_is_compared_with_where_it_has_left_the_other() -> None:
+    git("checkout", "-q", "-b", "work")
+    make(a__nc=GOOD + "(X)\n")
+    commit()
+    git("checkout", "-q", "main")
+    make(b__nc=GOOD + "(Y)\n")
+    commit()
+    git("checkout", "-q", "work")
+    assert checked(ref="main") == ["a.nc"]
+
+
+@posix
+def test_names_of_all_kinds() -> None:
+    names = ["b\u00f6hmisch \u89d2.nc", 'quo"te.nc', "tab\t\n.nc", "-x.nc", os.fsdecode(b"\xff.nc")]
+    for name in names:
+        Path(name).write_text(GOOD)
+    commit()
+    assert checked() == []
+    for name in names:
+        Path(name).write_text(GOOD + "(X)\n")
+    assert len(checked()) == len(names)
+
+
+def test_in_a_subfolder_and_from_outside(monkeypatch: pytest.MonkeyPatch) -> None:
+    Path("sub").mkdir()
+    Path("sub", "d.nc").write_text(GOOD)
+    commit()
+    Path("sub", "d.nc").write_text(GOOD + "(X)\n")
+    make(a__nc=GOOD + "(X)\n")
+    root = Path.cwd()
+    monkeypatch.chdir("sub")
+    assert checked() == ["d.nc"]
+    assert checked(paths=("..",)) == ["../a.nc", "../sub/d.nc"]
+    monkeypatch.chdir("/")
+    assert checked(paths=(str(root),)) == [(root / "a.nc").as_posix(), (root / "sub/d.nc").as_posix()]
+
+
+def test_each_repository_is_asked_for_its_own() -> None:
+    for name in ("one", "two"):
+        Path(name).mkdir()
+        git("init", "-q", "-b", "main", folder=name)
+        Path(name, "d.nc").write_text(GOOD)
+        Path(name, "e.nc").write_text(GOOD)
+        git("add", "-A", folder=name)
+        git("commit", "-q", "-m", "x", folder=name)
+    Path("one", "d.nc").write_text(GOOD + "(X)\n")
+    assert checked() == ["one/d.nc"]
+
+
+@posix
+def test_a_link_has_changed_where_that_has_to_which_it_leads() -> None:
+    Path("far").mkdir()
+    Path("far", "target.txt").write_text(GOOD)
+    Path("link.nc").symlink_to("far/target.txt")
+    commit()
+    assert checked(paths=("link.nc",)) == []
+    Path("far", "target.txt").write_text(GOOD + "(X)\n")
+    assert checked(paths=("link.nc",)) == ["link.nc"]
+
+
+def test_standard_input_is_always_checked() -> None:
+    result = call("check", "-", *ONLY, "--diff-base", "HEAD", "--format", "json", given=GOOD)
+    assert [file["path"] for file in json.loads(result.stdout)["files"]] == ["-"]
+
+
+def test_a_hook_of_git_says_nothing_of_the_repository(monkeypatch: pytest.MonkeyPatch) -> None:
+    make(a__nc=GOOD + "(X)\n")
+    monkeypatch.setenv("GIT_DIR", "/nowhere/.git")
+    monkeypatch.setenv("GIT_INDEX_FILE", "/nowhere/index")
+    assert checked() == ["a.nc"]
+
+
+# ---- what calls it, or is judged by it ----
+
+
+def with_subprograms() -> None:
+    """m calls n, which calls O9001; by_name calls FACE; computed calls what a variable says; b calls nothing."""
+    Path("subs").mkdir()
+    texts = {
+        "m.nc": "O0010\nM98 P9000\nM30\n",
+        "by_name.nc": "O0011\nM98 <FACE>\nM30\n",
+        "computed.nc": "O0012\n#1=#5\nG65 P#1\nM30\n",
+        "last.nc": "O0013\nG65 P9002 A1.\nM30\n",
+        "subs/O9000.nc": "O9000\nM98 P9001\nM99\n",
+        "subs/9001.NC": "O9001\nG4 P1\nM99\n",
+        "subs/O9002": "O9002\nG4 P1\nM99\n",
+        "subs/FACE.nc": "O<FACE>\nG4 P1\nM99\n",
+        "subs/O9005.nc": "O9005\nM99\n",
+        "polarcheck.toml": '[run]\nsubprograms = ["subs"]\n',
+    }
+    for path, text in texts.items():
+        Path(path).write_text(text)
+    commit()
+    assert checked() == []
+
+
+@pytest.mark.parametrize(
+    ("path", "callers"),
+    [
+        ("subs/O9000.nc", ["computed.nc", "m.nc", "subs/O9000.nc"]),
+        ("subs/9001.NC", ["computed.nc", "m.nc", "subs/9001.NC", "subs/O9000.nc"]),
+        ("subs/O9002", ["computed.nc", "last.nc", "subs/O9002"]),
+        ("subs/FACE.nc", ["by_name.nc", "computed.nc", "subs/FACE.nc"]),
+        ("subs/O9005.nc", ["computed.nc", "subs/O9005.nc"]),
+    ],
+)
+def test_a_program_is_checked_where_one_that_it_calls_has_changed(path: str, callers: list[str]) -> None:
+    with_subprograms()
+    Path(path).write_text(Path(path).read_text() + "(X)\n")
+    assert checked() == callers
+
+
+def test_so_it_is_where_one_is_gone_or_renamed() -> None:
+    with_subprograms()
+    git("mv", "subs/9001.NC", "subs/old9001.nc")
+    assert checked() == ["computed.nc", "m.nc", "subs/O9000.nc", "subs/old9001.nc"]
+    commit()
+    Path("subs", "FACE.nc").unlink()
+    assert checked() == ["by_name.nc", "computed.nc"]
+
+
+@posix
+def test_so_it_is_where_a_link_leads_to_another_version() -> None:
+    with_subprograms()
+    Path("subs", "v").mkdir()
+    Path("subs", "v", "face_2.txt").write_text("O<FACE>\nM99\n")
+    Path("subs", "FACE.nc").unlink()
+    Path("subs", "FACE.nc").symlink_to("v/face_2.txt")
+    commit()
+    Path("subs", "v", "face_2.txt").write_text("O<FACE>\nG4 P1\nM99\n")
+    assert "by_name.nc" in checked()
+    assert "m.nc" not in checked()
+
+
+def test_a_program_that_cannot_be_read_is_left_to_its_check() -> None:
+    with_subprograms()
+    Path("subs", "FACE.nc").write_text("O<FACE>\nM99\n")
+    result = call("check", "m.nc", "--diff-base", "HEAD", "--max-size", "5")
+    assert result.exit_code == 2
+    assert "polarcheck: m.nc: " in result.stderr
+
+
+def test_channels_and_texts_without_calls() -> None:
+    machine = machine_of("fanuc-30i")
+    text = source.read(b"O0001\nM98 P9000\nM30\n", "a.nc")
+    assert calls_one_of(text, machine, ["."], ["O9000.nc"])
+    assert not calls_one_of(text, machine, ["."], [])
+    assert not calls_one_of(source.read(GOOD.encode(), "a.nc"), machine, ["."], ["O9000.nc"])
+
+
+@pytest.mark.parametrize("path", ["polarcheck.toml", "lathe.toml", "base.toml", "table.tbl"])
+def test_what_a_program_is_judged_by_concerns_all_that_it_applies_to(path: str) -> None:
+    Path("cell").mkdir()
+    texts = {
+        "cell/d.nc": GOOD,
+        "cell/e.nc": GOOD,
+        "cell/polarcheck.toml": 'machine = "lathe.toml"\noffsets = "table.tbl"\n',
+        "cell/lathe.toml": 'inherits = "base.toml"\n',
+        "cell/base.toml": 'inherits = "fanuc-30i"\n',
+        "cell/table.tbl": "%\nG10 P1 R4.\n%\n",
+    }
+    for name, text in texts.items():
+        Path(name).write_text(text)
+    commit()
+    assert checked() == []
+    changed = Path("cell", path)
+    changed.write_text(changed.read_text().replace("\n", "\n\n", 1))
+    assert checked() == ["cell/d.nc", "cell/e.nc"]
+    assert checked(paths=("cell/d.nc", "a.nc")) == ["cell/d.nc"]
+
+
+def test_a_job_file_that_is_gone_concerns_all_below_it() -> None:
+    Path("cell/deep").mkdir(parents=True)
+    Path("cell/deep/d.nc").write_text(GOOD)
+    Path("cell/polarcheck.toml").write_text('machine = "fanuc-30i"\n')
+    commit()
+    Path("cell/polarcheck.toml").unlink()
+    assert checked() == ["cell/deep/d.nc"]
+
+
+# ---- what git cannot tell ----
+
+
+def test_without_a_repository(tmp_path_factory: pytest.TempPathFactory) -> None:
+    folder = tmp_path_factory.mktemp("outside")
+    (folder / "d.nc").write_text(GOOD)
+    assert refused(str(folder / "d.nc")) == f"main: {(folder / 'd.nc').as_posix()} lies in no git repository"
+
+
+def test_without_git(monkeypatch: pytest.MonkeyPatch) -> None:
+    Path("git").write_text("#!/bin/sh\nexit 0\n")
+    Path("git").chmod(0o755)
+    for path in ("", "/nowhere", f".{os.pathsep}/nowhere"):
+        monkeypatch.setenv("PATH", path)
+        assert refused() == "main: git is not installed, or not on the PATH"
+
+
+@posix
+def test_a_git_that_cannot_be_run(monkeypatch: pytest.MonkeyPatch) -> None:
+    Path("bin").mkdir()
+    Path("bin", "git").write_bytes(b"\x7fELF")
+    Path("bin", "git").chmod(0o755)
+    monkeypatch.setenv("PATH", str(Path("bin").absolute()))
+    assert refused().startswith("main: git: ")
+    Path("bin", "git").write_text("#!/bin/sh\necho 'fatal: \x1b[31mno' >&2; exit 128\n")
+    assert "\x1b" not in refused()
+
+
+def test_an_unknown_commit_is_named_with_the_nearest_branch() -> None:
+    git("branch", "release-2")
+    assert refused(ref="mian") == f"mian: git knows no such commit in {Path.cwd().as_posix()}; did you mean main?"
+    assert refused(ref="release-3").endswith("; did you mean release-2?")
+    for ref in ("-n", "--output=x", "", " "):
+        assert refused(ref=ref) == f"{ref!r}: expected a commit, a branch or a tag, such as main"
+    assert not Path("x").exists()
+
+
+def test_a_shallow_clone_without_the_commit() -> None:
+    make(a__nc=GOOD + "(X)\n")
+    commit()
+    git("clone", "-q", "--depth", "1", Path.cwd().as_uri(), "clone")
+    assert refused("clone", ref="HEAD~1").startswith("HEAD~1: the clone is shallow and has no such commit: fetch it")
+    Path("clone", "b.nc").write_text(GOOD + "(Y)\n")
+    assert checked(paths=("clone",)) == ["clone/b.nc"]
+
+
+def test_without_a_common_commit_all_differences_count() -> None:
+    git("checkout", "-q", "--orphan", "other")
+    make(b__nc=GOOD + "(Y)\n")
+    commit()
+    assert checked(ref="main") == ["b.nc"]
+
+
+def test_no_program_is_run_that_a_repository_names() -> None:
+    """What a stranger's .git/config names is no command of ours."""
+    Path("evil.sh").write_text("#!/bin/sh\ntouch ran\nprintf '\\0'\n")
+    Path("evil.sh").chmod(0o755)
+    evil = str(Path("evil.sh").absolute())
+    for key in ("core.fsmonitor", "diff.external", "core.pager", "diff.nc.textconv", "diff.nc.command"):
+        git("config", key, evil)
+    Path(".gitattributes").write_text("*.nc diff=nc\n")
+    make(a__nc=GOOD + "(X)\n")
+    assert checked() == ["a.nc"]
+    assert not Path("ran").exists()
