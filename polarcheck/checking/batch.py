@@ -5,7 +5,7 @@ from __future__ import annotations
 import gc
 import os
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
 
 import msgspec
 
@@ -15,7 +15,7 @@ from polarcheck.checking.finding import FileReport, Producer, Report, Summary
 from polarcheck.checking.kept import Kept
 from polarcheck.checking.settings import Settings
 from polarcheck.checking.tables import Tables
-from polarcheck.errors import SourceError, TooHardError
+from polarcheck.errors import CrewError, SourceError, TooHardError
 from polarcheck.reading import files
 from polarcheck.reading.source import Source
 from polarcheck.reading.words import Text
@@ -133,7 +133,7 @@ def check_files(
     return gather(one_by_one(tasks, most), tell, bug)
 
 
-def one_by_one(tasks: Iterable[Task], most: int = files.LARGEST) -> Iterator[Outcome]:
+def one_by_one(tasks: Iterable[Task], most: int = files.LARGEST) -> Generator[Outcome, None, None]:
     """What comes of each file, checked in this process when it is asked for."""
     for number, task in enumerate(tasks):
         if number:
@@ -177,6 +177,8 @@ def gather(
                     show(found.report, found.lines)
     except KeyboardInterrupt as stop:
         stopped = stop
+    except CrewError as error:
+        tell(str(error))
     return Checked(kept.files, kept.lines, called, stopped, failed)
 
 

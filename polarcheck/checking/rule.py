@@ -156,6 +156,10 @@ class Rule(msgspec.Struct, frozen=True):
     is_advice: bool
     parameters: tuple[str, ...]
 
+    def __reduce__(self) -> tuple[Callable[[str], Rule], tuple[str]]:
+        """Another process finds it by its name: its function cannot be sent, whose name means the rule itself."""
+        return _named, (self.name,)
+
     @property
     def of_text(self) -> bool:
         """Whether it hangs on the text alone, and not on how the program runs."""
@@ -249,6 +253,10 @@ def load_all() -> dict[str, Rule]:
             raise RuleError(f"rules/{path.parent.name}/{path.name}: no rule named {path.stem}")
         rules[found.name] = found
     return rules
+
+
+def _named(name: str) -> Rule:
+    return load_all()[name]
 
 
 def find(name: str, rules: dict[str, Rule]) -> list[Rule]:

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 DECIDING = (
     *("paths", "machine", "changes", "tools", "offsets", "units", "select", "ignore", "severities", "inline"),
     *("config", "no_config", "block_skip", "subprograms", "max_blocks", "max_statements", "max_seconds"),
-    *("radius_from_comments", "extensions", "encoding", "max_size"),
+    *("radius_from_comments", "extensions", "encoding", "max_size", "workers", "cluster"),
 )
 _FILE = "polarcheck-baseline.json"
 
@@ -132,14 +132,16 @@ def _run(
     no_config: bool,
     extensions: tuple[str, ...],
     max_size: int,
+    workers: int,
+    cluster: str | None,
     reason: str = "",
     **asked: Any,
 ) -> int:
     from polarcheck.checking import baseline_file, batch
     from polarcheck.checking.baseline import Baseline
-    from polarcheck.commands import overwriting, settings, signals
+    from polarcheck.commands import jobs, overwriting, settings, signals
     from polarcheck.commands.memory import keep_within_memory
-    from polarcheck.commands.progress import watched
+    from polarcheck.commands.progress import Bar
     from polarcheck.reading import files
 
     keep_within_memory()
@@ -149,13 +151,11 @@ def _run(
     settings_of = settings.of_programs(applies)
     tasks = batch.plan(paths, settings_of, extensions, failures.append, warn, excluded_in=settings_of.excluded_in)
     overwriting.refuse([output], tasks)
-    with contextlib.closing(watched(tasks, True)) as awaited:
-        checked = batch.check_files(
-            awaited,
-            failures.append,
-            lambda bug: bugs.extend(said_of_bug(bug, debug)),
-            max_size,
-        )
+    with (
+        jobs.outcomes(tasks, max_size, workers, cluster) as outcomes,
+        contextlib.closing(Bar(len(tasks), True).watched(outcomes)) as watched,
+    ):
+        checked = batch.gather(watched, failures.append, lambda bug: bugs.extend(said_of_bug(bug, debug)))
     for failure in failures:
         say(failure)
     say_lines(bugs)

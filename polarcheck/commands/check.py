@@ -9,19 +9,19 @@ from typing import Any
 
 import click
 
-from polarcheck.commands import fixing, options, reporting, silencing, standard_input
+from polarcheck.commands import fixing, jobs, options, reporting, silencing, standard_input
 from polarcheck.commands.diff_base import diff_base, narrowed
 from polarcheck.commands.exit_codes import BUG, COULD_NOT_RUN
 from polarcheck.commands.options import many, option
-from polarcheck.commands.output import COLUMNS, columns, in_color, said_of_bug, say, say_lines, show, warn
-from polarcheck.reports import FOR_PEOPLE, formats
+from polarcheck.commands.output import COLUMNS, columns, in_color, said_of_bug, say, say_lines, warn
+from polarcheck.reports import formats
 
 #: Of more files than this the report is short, if no format is asked for.
 _LONG = 3
-#: Options that change how a report looks or where it goes, or which files it is of, but not what it says of one.
+#: Options that change how a report looks or where it goes, who makes it or which files it is of, but not what it says.
 _OF_OUTPUT = (
-    *("stdin_filename", "form", "outputs", "color", "quiet", "following", "silenced", "statistics", "diff_base"),
-    *fixing.NAMES,
+    *("stdin_filename", "form", "outputs", "color", "quiet", "following", "silenced", "statistics"),
+    *("diff_base", "workers", "cluster", *fixing.NAMES),
 )
 _FORMATS = formats()
 
@@ -107,6 +107,8 @@ def _outputs(ctx: click.Context, parameter: click.Parameter, values: tuple[str, 
 @options.encoding("programs")
 @options.max_size
 @standard_input.filename
+@jobs.jobs
+@jobs.cluster
 @option("--color", type=click.Choice(["auto", "always", "never"]), default="auto", show_default=True)
 @option("--show-following", "following", is_flag=True, help="In text, what follows from a finding, too.")
 @silencing.show_silenced
@@ -168,6 +170,8 @@ def _check(
     extensions: tuple[str, ...],
     max_size: int,
     stdin_filename: str | None,
+    workers: int,
+    cluster: str | None,
     color: str,
     quiet: bool,
     following: bool,
@@ -179,9 +183,8 @@ def _check(
 ) -> int:
     from polarcheck import reports
     from polarcheck.checking import batch, rule
-    from polarcheck.commands import overwriting, settings, signals
+    from polarcheck.commands import live, overwriting, progress, settings, signals
     from polarcheck.commands.memory import keep_within_memory
-    from polarcheck.commands.progress import watched
     from polarcheck.machines import profiles
     from polarcheck.machines.job import key_of_option
 
@@ -200,13 +203,23 @@ def _check(
         warn(unmatched)
     overwriting.refuse([path for _, path in outputs], tasks)
     tasks = narrowed(tasks, diff_base, max_size, not quiet)
-    is_colored = in_color(color)
-    made = fixing.make(fixes, tasks, max_size, fixing.Shown(quiet, is_colored, debug, bool(outputs)))
+    shown_in = fixing.Shown(quiet, in_color(color), debug, bool(outputs))
+    made = fixing.make(fixes, tasks, max_size, shown_in)
     if made.ends:
         return COULD_NOT_RUN if failures else made.status
-    with contextlib.closing(watched(tasks, not quiet)) as awaited:
-        outcomes = silencing.answered(batch.one_by_one(awaited, max_size), tasks, applies.baseline)
-        checked = batch.gather(outcomes, failures.append, lambda bug: bugs.extend(said_of_bug(bug, debug)))
+    form = form or ("text" if len(tasks) <= _LONG else "short")
+    went_wrong: list[str] = []
+    plain = reports.Background({}, rule.load_all(), COLUMNS, False, quiet, command, following, silenced)
+    plain = reporting.background(plain, tasks, went_wrong)._replace(fixed=made.fixed)
+    bar = progress.Bar(len(tasks), not quiet)
+    shown = plain._replace(columns=columns(), color=in_color(color))
+    shower = live.Live(form, shown, len(tasks), bar.hide, in_place_of_findings=statistics, to_error=made.has_output)
+    with (
+        jobs.outcomes(tasks, max_size, workers, cluster) as outcomes,
+        contextlib.closing(bar.watched(outcomes)) as watched,
+    ):
+        answered = silencing.answered(watched, tasks, applies.baseline)
+        checked = batch.gather(answered, failures.append, lambda bug: bugs.extend(said_of_bug(bug, debug)), shower.file)
     name = applies.machine or (tasks[0].settings.name if tasks else profiles.DEFAULT)
     report = batch.report(checked.files, name)
     status = max(int(checked.failed), made.status)
@@ -216,7 +229,7 @@ def _check(
     if bugs:
         say_lines(bugs)
         status = BUG
-    went_wrong = [*failures, *bugs]
+    went_wrong += [*failures, *bugs]
     if checked.stopped is not None:
         status, how = signals.told(checked.stopped)
         went_wrong.append(f"{how} after {len(checked.files)} of {len(tasks)} files; these are reported")
@@ -225,15 +238,10 @@ def _check(
         for key in dict.fromkeys(map(key_of_option, applies.tools)):
             if key not in checked.called and diff_base is None:
                 warn(f"--tool {key}: no program of this run calls offset {key}")
-    form = form or ("text" if len(report.files) <= _LONG else "short")
-    plain = reports.Background(checked.lines, rule.load_all(), COLUMNS, False, quiet, command, following, silenced)
-    plain = reporting.background(plain, tasks, went_wrong)._replace(fixed=made.fixed)
-    for error in reporting.written(outputs, form, report, plain):
+    for error in reporting.written(outputs, form, report, plain._replace(lines=checked.lines)):
         say(str(error))
         status = max(status, COULD_NOT_RUN)
-    shown = plain._replace(columns=columns(), color=is_colored)
-    text = reporting.rendered(form, report, shown, statistics)
-    show(text if form in FOR_PEOPLE else text.encode(), is_colored or None, made.has_output)
+    shower.end(report, checked.lines)
     if form == "concise" and not quiet and any(file.verdict == "unverified" for file in report.files):
         warn("some rules could not be evaluated; --format text says which, and what to give")
     return status

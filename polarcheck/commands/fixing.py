@@ -15,7 +15,7 @@ import click
 from polarcheck.commands.exit_codes import BUG, CLEAN, COULD_NOT_RUN, FINDINGS
 from polarcheck.commands.options import option
 from polarcheck.commands.output import said_of_bug, say, say_lines, show, warn
-from polarcheck.commands.progress import watched
+from polarcheck.commands.progress import Bar
 from polarcheck.errors import OutputError, PolarcheckError, SourceError, TooHardError, UsageError
 
 if TYPE_CHECKING:
@@ -104,7 +104,7 @@ def make(
     if not (wanted.fix or wanted.diff):
         return Made()
     work = _Work(wanted, most, shown, answered)
-    with contextlib.closing(watched(tasks, not shown.quiet)) as awaited:
+    with contextlib.closing(Bar(len(tasks), not shown.quiet).watched(tasks)) as awaited:
         for task in awaited:
             work.do(task)
             gc.collect(0)

@@ -14,16 +14,18 @@ _LEAST = 1_000_000_000
 _OF_CONTAINER = (Path("/sys/fs/cgroup/memory.max"), Path("/sys/fs/cgroup/memory/memory.limit_in_bytes"))
 
 
-def keep_within_memory() -> None:
+def keep_within_memory(sharing: int = 1) -> None:
     """
     Have more memory than there is refused, where the system would give it and end the whole process later.
 
-    A bound that is lower already stays as it is; on systems without such bounds nothing is done.
+    sharing: how many processes share it. A bound that is lower already stays as it is; on systems without such bounds
+    nothing is done.
     """
     try:
         import resource
 
         bound = int(_SHARE * min(_installed(), *map(_of_container, _OF_CONTAINER)))
+        bound = max(bound // sharing, min(bound, _LEAST))
         now, highest = resource.getrlimit(resource.RLIMIT_DATA)
     except (ImportError, OSError, ValueError, AttributeError):
         return

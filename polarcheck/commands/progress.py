@@ -2,39 +2,81 @@
 
 from __future__ import annotations
 
+import contextlib
+import shutil
 import sys
 import time
-from collections.abc import Generator, Sequence
+from collections.abc import Generator, Iterable
 from typing import TypeVar
 
 from polarcheck.commands.output import is_terminal
 
 #: Nobody needs a bar for less than this [s].
 _PATIENCE = 1.0
+#: It is drawn no more often than this [s].
+_STEP = 0.1
+#: Characters of the bar itself.
+_LENGTH = 24
 
 Element = TypeVar("Element")
 
 
-def watched(elements: Sequence[Element], is_shown: bool) -> Generator[Element, None, None]:
-    """The elements one after the other; a bar on stderr, if that is a terminal, appears after the first second."""
-    if not is_shown or not is_terminal(sys.stderr):
-        yield from elements
-        return
-    begun = time.monotonic()
-    for done, element in enumerate(elements):
-        if time.monotonic() - begun > _PATIENCE:
-            yield from _with_bar(elements, done)
+class Bar:
+    """How many of so many files are done, how fast, and how long the rest will take: one line on stderr."""
+
+    def __init__(self, total: int, is_shown: bool) -> None:
+        self._total = total
+        self._is_shown = is_shown and is_terminal(sys.stderr)
+        self._length = 0
+
+    def watched(self, elements: Iterable[Element]) -> Generator[Element, None, None]:
+        """The elements one after the other; where stderr is a terminal the bar appears after the first second."""
+        if not self._is_shown:
+            yield from elements
             return
-        yield element
+        begun = time.monotonic()
+        drawn = begun + _PATIENCE - _STEP
+        try:
+            for done, element in enumerate(elements, 1):
+                yield element
+                now = time.monotonic()
+                if now - drawn >= _STEP:
+                    drawn = now
+                    self._draw(line(done, self._total, now - begun))
+        finally:
+            self.hide()
+
+    def hide(self) -> None:
+        """Take the bar away before something else is written; it comes back by itself."""
+        if self._length:
+            self._write(f"\r{' ' * self._length}\r")
+            self._length = 0
+
+    def _draw(self, text: str) -> None:
+        # A line that reached the edge would be two.
+        text = text[: shutil.get_terminal_size().columns - 1]
+        self._write(f"\r{text}{' ' * (self._length - len(text))}")
+        self._length = len(text)
+
+    @staticmethod
+    def _write(text: str) -> None:
+        with contextlib.suppress(OSError, ValueError):
+            sys.stderr.write(text)
+            sys.stderr.flush()
 
 
-def _with_bar(elements: Sequence[Element], done: int) -> Generator[Element, None, None]:
-    from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TimeRemainingColumn
+def line(done: int, total: int, seconds: float) -> str:
+    """`[####----] 120 of 400 files, 85 files/s, 0:03 left`."""
+    rate = done / max(seconds, 1e-3)
+    filled = _LENGTH * done // total
+    fast = f"{rate:.0f}" if rate >= 10 else f"{rate:.1f}"
+    return (
+        f"[{'#' * filled}{'-' * (_LENGTH - filled)}] {done} of {total} files, {fast} files/s, "
+        f"{_clock((total - done) / rate)} left"
+    )
 
-    columns = (BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
-    with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
-        task = progress.add_task("", total=len(elements), completed=done)
-        for element in elements[done:]:
-            yield element
-            progress.advance(task)
+
+def _clock(seconds: float) -> str:
+    minutes, rest = divmod(round(seconds), 60)
+    hours, minutes = divmod(minutes, 60)
+    return f"{hours}:{minutes:02}:{rest:02}" if hours else f"{minutes}:{rest:02}"

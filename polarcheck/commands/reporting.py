@@ -32,13 +32,11 @@ def refuse(form: str | None, wants_statistics: bool) -> None:
 
 def background(plain: Background, tasks: Iterable[Task], failures: Sequence[str]) -> Background:
     """What applied to each file, where paths begin, and what went wrong."""
-    from polarcheck.reading import files
-
     folder = ""
     with contextlib.suppress(OSError):  # the working folder may be gone
         folder = os.getcwd()  # noqa: PTH109
     return plain._replace(
-        settings={files.shown(task.path): task.settings for task in tasks},
+        settings={task.title: task.settings for task in tasks},
         failures=failures,
         root=_root(folder).replace(os.sep, "/"),
         folder=folder.replace(os.sep, "/"),
@@ -54,17 +52,6 @@ def _root(folder: str) -> str:
     return folder
 
 
-def rendered(form: str, report: Report, shown: Background, wants_statistics: bool) -> str:
-    """The report on standard output, or the counts in its place."""
-    from polarcheck import reports
-
-    if not wants_statistics:
-        return reports.render(form, report, shown)
-    from polarcheck.reports.pages.statistics import statistics as counted
-
-    return counted(report, shown, form)
-
-
 def written(outputs: Iterable[tuple[str, Path]], form: str, report: Report, plain: Background) -> Iterator[OutputError]:
     """Write the reports that go into files, and the summary of GitHub Actions; what could not be written."""
     from polarcheck import reports
@@ -74,7 +61,7 @@ def written(outputs: Iterable[tuple[str, Path]], form: str, report: Report, plai
     for kind, path in outputs:
         forms.append(kind)
         try:
-            files.write(path, reports.render(kind, report, plain))
+            files.write(path, reports.pieces(kind, report, plain))
         except OutputError as error:
             yield error
     summary = os.environ.get(STEP_SUMMARY)

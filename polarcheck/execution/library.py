@@ -105,6 +105,17 @@ def names_of(called: ProgramName) -> re.Pattern[str] | None:
     )
 
 
+def contents(folder: str) -> dict[str, bytes]:
+    """All that could be called in a folder of a job, by name: for a machine that does not have the folder."""
+    real = Path(os.path.realpath(folder))
+    found = {}
+    with contextlib.suppress(OSError):
+        for path in sorted(real.iterdir()):
+            if _NAME.fullmatch(path.name) and (data := _read_inside(real, path)) is not None:
+                found[path.name] = data
+    return found
+
+
 def _read_inside(folder: Path, path: Path) -> bytes | None:
     """The bytes of a program; None for what lies outside the folder, is no file, cannot be read, or is too large."""
     real = Path(os.path.realpath(path))

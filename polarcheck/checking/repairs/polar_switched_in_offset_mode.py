@@ -19,7 +19,8 @@ def polar_switched_in_offset_mode(trace: Trace, row: int) -> Mended | None:
     G40 is put before G12.1, or before G13.1 with the last move, where that leads away.
 
     It leads away where it is straight, and ends where the start-up begins, or goes outward, and farther from the center
-    than all other moves since then; else there is no fix. Unsafe: whether compensation should end there only the programmer knows.
+    than all other moves since then; else there is no fix. Unsafe: whether compensation should end there only the
+    programmer knows.
 
     Bad, tool 1:radius=4:
 
