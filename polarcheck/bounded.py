@@ -132,10 +132,14 @@ def _opened(path: str | os.PathLike[str], pipes: bool, folder: int | None = None
 
 def _opened_below(folder: str | os.PathLike[str], parts: tuple[str, ...]) -> int:
     """Step by step, each part in the folder before it and none through a link, whoever exchanges them meanwhile."""
-    if ".." in parts or not parts or parts[0].startswith(("/", "\\")):
+    # A drive on Windows would begin a path of its own, whatever stands before it.
+    if ".." in parts or not parts or parts[0].startswith(("/", "\\")) or Path(*parts).drive:
         raise OSError(errno.EACCES, "lies outside the folder")
     if os.open not in os.supports_dir_fd:
-        return _opened(Path(folder, *parts), False)
+        target = Path(folder, *parts)
+        if not Path(os.path.realpath(target)).is_relative_to(os.path.realpath(folder)):
+            raise OSError(errno.EACCES, "lies outside the folder")
+        return _opened(target, False)
     links = getattr(os, "O_NOFOLLOW", 0)
     held = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
     try:
@@ -165,9 +169,11 @@ def _head_of_pipe(descriptor: int) -> bytes:
     """What comes out first, where that must be taken to see whether anybody writes; then reading waits for more."""
     import select
 
+    head = b""
+    if not hasattr(select, "poll"):  # on Windows, where no pipe is opened that nobody holds
+        return head
     waiting = select.poll()
     waiting.register(descriptor, select.POLLIN)
-    head = b""
     if not waiting.poll(_PATIENCE):
         with contextlib.suppress(BlockingIOError):  # raised where a writer is there, and slow
             head = os.read(descriptor, _CHUNK)

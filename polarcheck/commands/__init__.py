@@ -18,7 +18,7 @@ import click
 from polarcheck import __version__
 from polarcheck.commands import options, signals
 from polarcheck.commands.exit_codes import BUG, CLEAN, COULD_NOT_RUN
-from polarcheck.commands.output import COLUMNS, abandon_output, said_of_bug, say, say_lines
+from polarcheck.commands.output import COLUMNS, ON_WINDOWS, abandon_output, said_of_bug, say, say_lines
 from polarcheck.errors import PolarcheckError, RuleError
 
 NAMES = ("baseline", "check", "completion", "explain", "machines", "rules", "schema", "trace")
@@ -57,6 +57,12 @@ class Commands(click.Group):
 
             completing.register()
         try:
+            if args is None and ON_WINDOWS:
+                from polarcheck.commands import wildcards
+
+                args = wildcards.expanded(sys.argv[1:])
+            # What click makes of a glob loses a file whose own name has brackets.
+            extra["windows_expand_args"] = False
             status = super().main(args, prog_name, standalone_mode=False, **extra) or CLEAN
         except click.ClickException as error:
             say(error.format_message())

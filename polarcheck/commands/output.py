@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import errno
 import os
 import sys
 from collections.abc import Iterable
@@ -12,6 +13,7 @@ import click
 
 from polarcheck.errors import OutputError
 
+ON_WINDOWS = os.name == "nt"
 #: Width of reports that go anywhere but to a terminal, and the widest that is good to read [characters].
 COLUMNS = 100
 #: Of what an exception says [characters].
@@ -34,16 +36,23 @@ def show(text: str | bytes, color: bool | None = None, to_error: bool = False) -
         return True
     if sys.stdout is None:
         raise OutputError("standard output is closed")
+    if ON_WINDOWS and isinstance(text, bytes) and is_terminal(sys.stdout):
+        # The console takes characters in any code page, and bytes in its own only.
+        text = text.decode("utf-8", "replace")
     try:
         click.echo(text, nl=False, color=color)
         sys.stdout.flush()
-    except BrokenPipeError:
-        abandon_output()
-        return False
     except OSError as error:
         abandon_output()
+        if nobody_reads(error):
+            return False
         raise OutputError(f"standard output: {error.strerror or error}") from None
     return True
+
+
+def nobody_reads(error: OSError) -> bool:
+    """Whether whoever read the output has gone; Windows calls that an invalid argument."""
+    return isinstance(error, BrokenPipeError) or (ON_WINDOWS and error.errno == errno.EINVAL)
 
 
 def abandon_output() -> None:

@@ -51,7 +51,8 @@ def _beside(found: str, shown: str) -> str:
 
 
 def _real(path: str | Path) -> str:
-    return os.path.realpath(path)
+    """One path for all that lead to a file, in any case where case tells no files apart."""
+    return os.path.normcase(os.path.realpath(path))
 
 
 def _identity(path: str | Path) -> tuple[int, int] | None:
@@ -60,4 +61,5 @@ def _identity(path: str | Path) -> tuple[int, int] | None:
         status = Path(path).stat()
     except (OSError, ValueError):
         return None
-    return (status.st_dev, status.st_ino) if stat.S_ISREG(status.st_mode) else None
+    # Some network drives of Windows number nothing.
+    return (status.st_dev, status.st_ino) if stat.S_ISREG(status.st_mode) and status.st_ino else None

@@ -13,9 +13,11 @@ class Terminated(KeyboardInterrupt):
 
 
 def listen() -> None:
-    """Make SIGTERM an exception, unless whoever started the process has it ignored."""
-    if signal.getsignal(signal.SIGTERM) is signal.SIG_DFL:
-        signal.signal(signal.SIGTERM, _terminated)
+    """Make SIGTERM an exception, unless whoever started the process has it ignored; on Windows Ctrl-Break, too."""
+    for name in ("SIGTERM", "SIGBREAK"):
+        number = getattr(signal, name, None)
+        if number is not None and signal.getsignal(number) is signal.SIG_DFL:
+            signal.signal(number, _terminated)
 
 
 def _terminated(number: int, frame: Any) -> None:

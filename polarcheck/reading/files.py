@@ -58,7 +58,7 @@ def walk(
     lies in a folder that is, is not asked for.
     """
     wanted = frozenset(wanted)
-    seen: set[tuple[int, int]] = set()
+    seen: set[tuple[int, int] | str] = set()
     # Folders can be nested deeper than functions: the innermost one stands at the end.
     left = [_entries(folder, seen, failed, excluded_in)]
     while left:
@@ -76,12 +76,13 @@ def walk(
 
 
 def _entries(
-    folder: str, seen: set[tuple[int, int]], failed: Callable[[str], None], excluded_in: ExcludedIn | None
+    folder: str, seen: set[tuple[int, int] | str], failed: Callable[[str], None], excluded_in: ExcludedIn | None
 ) -> Iterator[os.DirEntry[str]]:
     """What lies in a folder, by name; nothing where it has been seen or cannot be read."""
     try:
         status = Path(folder).stat()
-        identity = (status.st_dev, status.st_ino)
+        # Some network drives of Windows number nothing: there all folders would be one.
+        identity = (status.st_dev, status.st_ino) if status.st_ino else os.path.realpath(folder)
         if identity in seen:
             return iter(())
         seen.add(identity)
@@ -245,7 +246,7 @@ def _encoded(pieces: Iterable[str]) -> Iterator[bytes]:
 
 def _send(target: Path, data: Iterable[bytes]) -> None:
     """To a device, or to a pipe that somebody reads: one that nobody reads would be waited for without end."""
-    handle = os.open(target, os.O_WRONLY | getattr(os, "O_NONBLOCK", 0))
+    handle = os.open(target, os.O_WRONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
     if hasattr(os, "set_blocking"):
         os.set_blocking(handle, True)
     with os.fdopen(handle, "wb") as file:
@@ -269,6 +270,7 @@ def _replace(target: Path, data: Iterable[bytes], last: Callable[[], None] | Non
         beside.replace(target)
     except BaseException:
         with contextlib.suppress(OSError):
+            beside.chmod(0o600)  # else Windows keeps it where it has the mode of a file that is read only
             beside.unlink()
         raise
 

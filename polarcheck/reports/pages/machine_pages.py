@@ -66,7 +66,7 @@ def index(loaded: Sequence[Profile]) -> str:
     """All machines, with links."""
     lines = ["# Machines", "", MADE, ""]
     lines += [
-        "`--machine NAME` names one of these, `polarcheck machines NAME` shows it whole at a shell. Your own lathe is",
+        "`--machine NAME` names one of these, `polarcheck machines NAME` shows it whole. Your own lathe is",
         "a file that inherits from one of them and says its limits:",
         f"`polarcheck machines new lathe3 --from {profiles.DEFAULT}`",
         "([a lathe of your own](../getting_started.md#your-own-lathe)). All values with their sources:",
