@@ -111,6 +111,7 @@ def checks() -> list[tuple[str, ...]]:
         for path in PATHS:
             options = ("--format", form, "--tool", "1:radius=4", "--show-following")
             found += [("check", path, *OF_MACHINE, *options, "--color", color) for color in ("never", "always")]
+    found += [("check", path, *OF_MACHINE, "--diff", "--unsafe-fixes") for path in PATHS]
     return found
 
 

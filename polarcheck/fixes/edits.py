@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from itertools import accumulate, pairwise
 
 import numpy as np
 
@@ -38,27 +39,44 @@ def applied(source: Source, spans: Iterable[Span]) -> bytes | None:
 
     None where the encoding cannot say what is to be written, or does not give the bytes of a text back as they were.
     """
+    made = sorted(set(spans))
+    body = source.data[len(source.bom) :]
+    places = made if len(source.code) == len(body) else _in_bytes(source, made)
+    if places is None:
+        return None
     pieces: list[bytes] = []
     at = 0
-    body = source.data[len(source.bom) :]
-    one_byte_each = len(source.code) == len(body)
-    text = "" if one_byte_each else source.text
     try:
-        if not one_byte_each and source.encode(text) != source.data:
-            return None
-        offset, counted = 0, 0
-        for start, end, new in sorted(set(spans)):
-            if one_byte_each:
-                first, last = start, end
-            else:
-                offset += len(text[counted:start].encode(source.encoding))
-                first, counted = offset, start
-                last = first + len(text[start:end].encode(source.encoding))
-            pieces += [body[at:first], new.encode(source.encoding)]
+        for (first, last, _), (_, _, new) in zip(places, made, strict=True):
+            pieces += [body[at:first], _encoded(new, source.encoding)]
             at = last
     except UnicodeEncodeError:
         return None
     return source.bom + b"".join(pieces) + body[at:]
+
+
+def _in_bytes(source: Source, made: Sequence[Span]) -> list[Span] | None:
+    """Where edits stand in the bytes of a text of which characters take several; None where that cannot be said."""
+    text, encoding = source.text, source.encoding
+    ends = [place for start, end, _ in made for place in (start, end)]
+    try:
+        whole = "".encode(encoding)
+        pieces = [_encoded(text[first:last], encoding) for first, last in pairwise([0, *ends, len(text)])]
+    except UnicodeEncodeError:
+        return None
+    # Some encodings have two ways to write a character, or write one by what stands before it.
+    if whole + b"".join(pieces) != source.data[len(source.bom) :]:
+        return None
+    places = list(accumulate(map(len, pieces[:-1]), initial=len(whole)))[1:]
+    return [
+        (first, last, text)
+        for (first, last), (_, _, text) in zip(zip(places[::2], places[1::2], strict=True), made, strict=True)
+    ]
+
+
+def _encoded(text: str, encoding: str) -> bytes:
+    """Without the mark that some encodings put at the head."""
+    return text.encode(encoding)[len("".encode(encoding)) :]
 
 
 def shifted(source: Source, spans: Iterable[Span], line: int) -> int:
