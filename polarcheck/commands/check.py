@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import math
 from pathlib import Path
 from typing import Any
 
@@ -26,19 +25,6 @@ _OF_OUTPUT = (
 _FORMATS = formats()
 
 
-class Seconds(click.FloatRange):
-    """A time; float() knows nan and inf, which are none."""
-
-    name = "seconds"
-
-    def convert(self, value: Any, parameter: click.Parameter | None, ctx: click.Context | None) -> float:
-        """The number of seconds of an option."""
-        found = float(super().convert(value, parameter, ctx))
-        if not math.isfinite(found):
-            self.fail(f"expected a number above 0, found {value}", parameter, ctx)
-        return found
-
-
 def _outputs(ctx: click.Context, parameter: click.Parameter, values: tuple[str, ...]) -> list[tuple[str, Path]]:
     outputs = []
     for value in values:
@@ -53,19 +39,8 @@ def _outputs(ctx: click.Context, parameter: click.Parameter, values: tuple[str, 
 
 @click.command
 @click.argument("paths", nargs=-1, required=True, metavar="PATH...")
-@options.machine
-@options.changes
-@options.tools
-@options.offsets
-@options.units
-@many("--select", metavar="RULE", help="Only these rules, groups or alarms (PS0146).")
-@many("--ignore", metavar="RULE", help="All but these.")
-@many("--severity", "severities", metavar="RULE=LEVEL", help="error, warning, note or off.")
-@option(
-    "--fail-on", type=click.Choice(["error", "warning", "note", "never"]), show_default="warning",
-    help="The least severity that fails.",
-)  # fmt: skip
-@option("--strict/--no-strict", default=None, help="Fail where a file is unverified, too.")
+@options.executing("programs")
+@options.judging
 @option(
     "--format",
     "form",
@@ -82,29 +57,11 @@ def _outputs(ctx: click.Context, parameter: click.Parameter, values: tuple[str, 
     metavar="FORMAT:FILE",
     help="A report in a file, too.",
 )
-@silencing.inline
 @silencing.baseline
 @reporting.statistics
 @diff_base
-@options.config
-@options.no_config
 @options.force_exclude
-@option("--block-skip", type=click.Choice(["off", "on", "both"]), help="Of blocks with /; both is the default.")
-@options.subprograms
-@option(
-    "--max-blocks",
-    type=click.IntRange(1, 10**12),
-    help="Executed blocks, beyond those of the file, after which a run is given up.",
-)
-@option("--max-statements", type=click.IntRange(1, 10**12), help="The same for macro statements and calls.")
-@option(
-    "--max-seconds",
-    type=Seconds(0, min_open=True),
-    help="The same for seconds, and for the whole check; a file has so long for each MB.",
-)
-@options.radius_from_comments
 @many("--extensions", metavar="EXT", help="Of the programs in a folder, instead of .nc, .tap, .eia and others.")
-@options.encoding("programs")
 @options.max_size
 @standard_input.filename
 @jobs.jobs

@@ -73,6 +73,15 @@ class JobFile(msgspec.Struct, frozen=True):
         """The job of some layers. Raises JobError, which names file, line and key."""
         return job_layers.merged([self._layer(number, entry) for number, entry in layers])
 
+    @property
+    def excluding(self) -> Layer | None:
+        """The layer that says what walks pass over."""
+        return next((part.own for part in reversed(self.parts) if part.exclude is not None), None)
+
+    def patterns(self, layer: Layer) -> list[str]:
+        """The patterns of an entry."""
+        return [pattern for part in self.parts for own, pattern in part.patterns if own is layer]
+
     def _layer(self, number: int, entry: int) -> Layer:
         part = self.parts[number]
         return part.entries[entry - 1] if entry else part.own

@@ -58,6 +58,11 @@ class Layer:
     def __init__(self, written: Written, table: Mapping[str, Any], entry: int = 0) -> None:
         self.written, self.entry, self._table = written, entry, table
 
+    @property
+    def excluded(self) -> list[str]:
+        """The patterns of what walks pass over."""
+        return list(self._table.get("exclude", ()))
+
     def at(self, key: str) -> str:
         """`polarcheck.toml:12`: where a key of this layer stands."""
         return self.written.at(f"programs.{self.entry}.{key}" if self.entry else key)

@@ -65,13 +65,9 @@ def _checked(name: str) -> str:
 
 def _loaded(name: str) -> Profile:
     """Raises MachineError for what cannot be used, names of rules included."""
-    from polarcheck.checking.rule import load_all
-    from polarcheck.commands import selection
-    from polarcheck.machines import profiles
+    from polarcheck.commands import settings
 
-    profile = profiles.load(name)
-    selection.check_names(profile, load_all())
-    return profile
+    return settings.profile_of(name)
 
 
 def _write(name: str, inherits: str) -> Path:

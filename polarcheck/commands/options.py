@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Callable
 from pathlib import Path
@@ -124,3 +125,71 @@ no_config = option("--no-config", is_flag=True, help="Read no polarcheck.toml or
 force_exclude = option(
     "--force-exclude", is_flag=True, help="Pass over what polarcheck.toml excludes where it is named, too."
 )
+
+
+class _Seconds(click.FloatRange):
+    """A time; float() knows nan and inf, which are none."""
+
+    name = "seconds"
+
+    def convert(self, value: Any, parameter: click.Parameter | None, ctx: click.Context | None) -> float:
+        """The number of seconds of an option."""
+        found = float(super().convert(value, parameter, ctx))
+        if not math.isfinite(found):
+            self.fail(f"expected a number above 0, found {value}", parameter, ctx)
+        return found
+
+
+_block_skip = option(
+    "--block-skip", type=click.Choice(["off", "on", "both"]), help="Of blocks with /; both is the default."
+)
+_one_block_skip = narrower(
+    "--block-skip", type=click.Choice(["off", "on"]), default="off", show_default=True, help="Of blocks with /."
+)
+_max_blocks = option(
+    "--max-blocks", type=click.IntRange(1, 10**12),
+    help="Executed blocks, beyond those of the file, after which a run is given up.",
+)  # fmt: skip
+_max_statements = option(
+    "--max-statements", type=click.IntRange(1, 10**12), help="The same for macro statements and calls."
+)
+_max_seconds = option(
+    "--max-seconds", type=_Seconds(0, min_open=True),
+    help="The same for seconds, and for the whole check; a file has so long for each MB.",
+)  # fmt: skip
+
+
+def _all(*decorators: Decorator) -> Decorator:
+    """One decorator for several, in the order in which the help shows them."""
+
+    def decorated(command: Any) -> Any:
+        for decorator in reversed(decorators):
+            command = decorator(command)
+        return command
+
+    return decorated
+
+
+def executing(what: str, *, both: bool = True) -> Decorator:
+    """
+    What decides how a program is read and executed, the same of every command that reads programs.
+
+    what: `programs`, for the help. both: whether a program may be run with block skip on and off.
+    """
+    each = (machine, changes, tools, offsets, units, config, no_config, _block_skip if both else _one_block_skip)
+    more = (subprograms, _max_blocks, _max_statements, _max_seconds, radius_from_comments, encoding(what))
+    return _all(*each, *more)
+
+
+#: What decides which rules run, and what of their findings fails.
+judging = _all(
+    many("--select", metavar="RULE", help="Only these rules, groups or alarms (PS0146)."),
+    many("--ignore", metavar="RULE", help="All but these."),
+    many("--severity", "severities", metavar="RULE=LEVEL", help="error, warning, note or off."),
+    option(
+        "--fail-on", type=click.Choice(["error", "warning", "note", "never"]), show_default="warning",
+        help="The least severity that fails.",
+    ),
+    option("--strict/--no-strict", default=None, help="Fail where a file is unverified, too."),
+    option("--inline/--no-inline", default=None, help="Whether the allow comments of programs are heeded."),
+)  # fmt: skip

@@ -18,7 +18,7 @@ from polarcheck.commands.job_files import JobFile
 from polarcheck.commands.job_layers import Merged
 from polarcheck.commands.selection import Rules
 from polarcheck.errors import MachineError, UsageError
-from polarcheck.machines import profiles, toml_text
+from polarcheck.machines import profiles, toml_lines, toml_text
 from polarcheck.machines.job import Job, PunchedTool, Running, check_tools, check_work_offsets, with_tool
 from polarcheck.machines.machine import Machine
 from polarcheck.reading.files import STANDARD_INPUT
@@ -286,9 +286,11 @@ def _profile(name: str, over: Sequence[profiles.Change], known: Rules, asked_by:
     """asked_by: the file and key of the name, before what is said of a name that there is not."""
     try:
         profile = profiles.load(name, over)
+        selection.check_names(profile, known)
     except profiles.UnknownMachineError as error:
         raise MachineError(f"{asked_by}{error}") from None
-    selection.check_names(profile, known)
+    except MachineError as error:
+        raise MachineError(toml_lines.located(str(error))) from None
     return profile
 
 
@@ -305,6 +307,11 @@ def toml_value(text: str) -> Any:
 def here(machine: str | None) -> tuple[str, Machine]:
     """The machine for a command without programs: the one asked for, else that of the job of the working folder."""
     if machine:
-        return machine, _profile(machine, (), load_all(), "").machine
+        return machine, profile_of(machine).machine
     found = OfPrograms(Options())("")
     return found.name, found.machine
+
+
+def profile_of(machine: str) -> profiles.Profile:
+    """The profile of a name or file as it is. Raises MachineError for one that cannot be used."""
+    return _profile(machine, (), load_all(), "")

@@ -32,7 +32,6 @@ def _readable(ctx: click.Context, parameter: click.Parameter, value: Path | None
     return value
 
 
-inline = option("--inline/--no-inline", default=None, help="Whether the allow comments of programs are heeded.")
 baseline = option(
     "--baseline", type=click.Path(exists=True, dir_okay=False, path_type=Path), callback=_readable, metavar="FILE",
     help="Known findings, of `polarcheck baseline create`: only others are told.",

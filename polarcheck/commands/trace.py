@@ -14,19 +14,9 @@ from polarcheck.commands.output import show, warn
 
 @click.command
 @click.argument("path", metavar="FILE")
-@options.machine
-@options.changes
-@options.tools
-@options.offsets
-@options.units
+@options.executing("program", both=False)
 @option("--path", "which", type=click.Choice(["tool", "programmed"]), help="The moves of a path, not the blocks.")
 @narrower("--format", "form", type=click.Choice(["csv", "jsonl"]), default="csv", show_default=True)
-@narrower("--block-skip", type=click.Choice(["off", "on"]), default="off", show_default=True, help="Of blocks with /.")
-@options.subprograms
-@options.radius_from_comments
-@options.config
-@options.no_config
-@options.encoding("program")
 @options.max_size
 @options.debug
 def trace(path: str, which: str | None, form: str, no_config: bool, max_size: int, **asked: Any) -> None:

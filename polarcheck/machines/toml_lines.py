@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
+from polarcheck.machines import toml_text
+
 #: `(at line 3, column 5)`, as tomllib ends a message.
 _AT_LINE = re.compile(r" \(at line (\d+), column (\d+)\)")
 _BLANK = re.compile(r"(?:[ \t\r\n]|#[^\n]*+)*+")
@@ -62,6 +64,24 @@ def placed(title: str, said: str) -> str:
     if found is None:
         return f"{title}: {said}"
     return f"{title}:{found[1]}: {said[: found.start()]} at column {found[2]}{said[found.end() :]}"
+
+
+def located(said: str) -> str:
+    """What is said of a machine file and a key of it, with the line: `lathe.toml:12: limits.c_fed: ...`."""
+    found = _OF_FILE_AND_KEY.match(said)
+    if found is None:
+        return said
+    try:
+        line = line_of(found[2].strip("\"'"), toml_text.text_of(found[1], "machine file"))
+    except ValueError:
+        return said
+    return f"{found[1]}:{line}{said[found.end(1) :]}" if line else said
+
+
+#: The file, and the key as the different faults name it.
+_OF_FILE_AND_KEY = re.compile(
+    r"(.+?\.toml): (?:unknown key |unknown table \[|(?:parameters: )?no meaning is known for )?([^\s:;\]]+)"
+)
 
 
 class _Scanner:

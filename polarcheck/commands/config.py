@@ -1,0 +1,83 @@
+"""`polarcheck config show`: what applies to a program, and where each value comes from."""
+
+from __future__ import annotations
+
+import os
+from typing import Any
+
+import click
+
+from polarcheck.commands import options
+from polarcheck.commands.options import many, narrower
+from polarcheck.commands.output import show as print_out
+from polarcheck.commands.output import warn
+
+
+@click.group
+@options.debug
+def config() -> None:
+    """Show what polarcheck.toml and the options say of a program."""
+
+
+@config.command
+@click.argument("path", metavar="FILE")
+@options.executing("programs")
+@options.judging
+@many("--extensions", metavar="EXT", help="Of the programs in a folder, instead of .nc, .tap, .eia and others.")
+@narrower("--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True)
+@options.debug
+@click.pass_context
+def show(ctx: click.Context, /, path: str, **asked: Any) -> None:
+    """
+    Show every value that applies to FILE, a program, and where it comes from: a line of a job file or of one of its
+    entries, the machine, the command line, the environment, or the built-in default.
+
+    \b
+    polarcheck config show O1234.NC
+    polarcheck config show O1234.NC --tool 8:radius=4
+    """
+    print_out(_shown(ctx, path, **asked).encode())
+
+
+def _shown(
+    ctx: click.Context, path: str, *, form: str, no_config: bool, extensions: tuple[str, ...], **asked: Any
+) -> str:
+    from polarcheck.commands import origins, settings
+    from polarcheck.reading import files
+    from polarcheck.reports.pages import applied as page
+
+    settings_of = settings.of_programs(settings.Options(use_config=not no_config, **asked))
+    found = settings_of.applied(path)
+    if path != files.STANDARD_INPUT and not os.path.lexists(path):
+        warn(f"{files.shown(path)}: there is no such file; this is what would apply to it")
+    of_command = dict(pair.split("=", 1) for pair in asked["severities"])
+    rows = [page.Row(*value) for value in origins.values(found, _given(ctx), of_command)]
+    if extensions:
+        rows = [
+            row._replace(value=list(extensions), kind="command line", origin="command line --extensions")
+            if row.key == "extensions"
+            else row
+            for row in rows
+        ]
+    names = [str(name) for name in found.file.read]
+    entries = [
+        f"{layer.at('files')}: {', '.join(found.file.patterns(layer))}" for layer in found.merged.layers if layer.entry
+    ]
+    excluded = settings_of.is_within_excluded(path)
+    if form == "json":
+        return page.as_json(files.shown(path), names, entries, excluded, rows)
+    heads = [f"job file: {' extends '.join(names) or 'none'}", *(f"[[programs]]: {entry}" for entry in entries)]
+    if excluded:
+        heads.append("excluded: no walk through a folder finds it")
+    heads.append(f"the other values of the machine: polarcheck machines {found.settings.name}")
+    return page.text(files.shown(path), heads, rows)
+
+
+def _given(ctx: click.Context) -> dict[str, str]:
+    """Which options were given, and whether by the command line or the environment."""
+    kinds = {
+        click.core.ParameterSource.COMMANDLINE: "command line",
+        click.core.ParameterSource.ENVIRONMENT: "environment",
+    }
+    sources = {name: ctx.get_parameter_source(name) for name in ctx.params}
+    return {name: kinds[source] for name, source in sources.items() if source in kinds}

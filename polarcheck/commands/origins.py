@@ -1,0 +1,172 @@
+"""Where each value that applies to a program comes from, for `polarcheck config show`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any, NamedTuple
+
+import msgspec
+
+from polarcheck.commands.job_layers import Layer, Merged
+from polarcheck.commands.settings import Applied
+from polarcheck.machines import profiles, toml_lines
+from polarcheck.machines.job import Job, PunchedTool
+from polarcheck.machines.parameters import Origin
+
+
+class Value(NamedTuple):
+    """
+    A value that applies; None is not known.
+
+    kind: default, machine, file, programs (an entry of a job file), environment or command line. origin: the same as a
+    text that names the file, line and option.
+    """
+
+    key: str
+    value: Any
+    kind: str
+    origin: str
+
+
+#: Keys of a job that say which files are meant.
+_OF_FILES = ("programs", "extend", "exclude", "extensions", "limits")
+_DEFAULT = ("default", "built-in default")
+#: Options by the key of the job that each gives; others give several, or have the name of theirs.
+_OPTIONS = {
+    "program_units": ("units", "--units"),
+    "run.block_skip": ("block_skip", "--block-skip"),
+    "run.subprograms": ("subprograms", "--subprograms"),
+    "run.max_blocks": ("max_blocks", "--max-blocks"),
+    "run.max_statements": ("max_statements", "--max-statements"),
+    "run.max_seconds": ("max_seconds", "--max-seconds"),
+    "select": ("select", "--select"),
+    "ignore": ("ignore", "--ignore"),
+    "fail_on": ("fail_on", "--fail-on"),
+    "strict": ("strict", "--strict"),
+    "machine": ("machine", "--machine"),
+    "encoding": ("encoding", "--encoding"),
+    "inline": ("inline", "--no-inline"),
+    "extensions": ("extensions", "--extensions"),
+    "radius_from_comments": ("radius_from_comments", "--radius-from-comments"),
+}
+
+#: `command line` or `environment` by the name of an option; nothing for one that was not given.
+Given = Mapping[str, str]
+
+
+def values(applied: Applied, given: Given, severities: Mapping[str, str]) -> Iterator[Value]:
+    """
+    All that applies to a program, in the order of the keys of a job file, and the limits of its lathe.
+
+    given: the options that were given. severities: those of the command line, as they are written.
+    """
+    job, merged = applied.settings.job, applied.merged
+    table = {"machine": applied.settings.name, **_flat(job)}
+    for key, value in table.items():
+        yield Value(key, value, *_origin(key, value, job, merged, given))
+    for name, level in severities.items():
+        yield Value(f"severities.{name}", level, *_of_option("severities", "--severity", given))
+    yield from _of_machine(applied, given)
+    yield Value("extensions", job.extensions, *_origin("extensions", job.extensions, job, merged, given))
+    excluding = applied.file.excluding
+    excluded = _of_layer(excluding, "exclude") if excluding else _DEFAULT
+    yield Value("exclude", excluding.excluded if excluding else [], *excluded)
+
+
+def _flat(job: Job) -> dict[str, Any]:
+    """The values of a job by key; of tables only what is given."""
+    found: dict[str, Any] = {}
+    for field in msgspec.structs.fields(Job):
+        value = getattr(job, field.name)
+        if field.name in _OF_FILES or field.name == "machine":
+            continue
+        if field.name == "tools":
+            for key, tool in value.items():
+                found |= _differing(f"tools.{key}", tool)
+        elif field.name == "work_offsets":
+            for key, offset in value.items():
+                found[f"work_offsets.{key}.x"] = offset.x
+        elif field.name == "severities":
+            found |= {f"severities.{name}": level for name, level in value.items()}
+        elif isinstance(value, msgspec.Struct):
+            found |= {f"{field.name}.{key}": inner for key, inner in msgspec.structs.asdict(value).items()}
+        else:
+            found[field.name] = value
+    variables = found.pop("run.variables")
+    return {**found, **{f"run.variables.{number}": value for number, value in variables.items()}}
+
+
+def _differing(key: str, table: msgspec.Struct) -> dict[str, Any]:
+    return {
+        f"{key}.{field.name}": value
+        for field in msgspec.structs.fields(type(table))
+        if (value := getattr(table, field.name)) == value and value is not None and value != field.default
+    }
+
+
+def _origin(key: str, value: Any, job: Job, merged: Merged, given: Given) -> tuple[str, str]:
+    name, option = _OPTIONS.get(key, ("", ""))
+    if name in given:
+        return _of_option(name, option, given)
+    if key.startswith("tools."):
+        return _of_tool(key, job, merged, given)
+    layer = merged.origins.get(key)
+    return _of_layer(layer, key) if layer else _DEFAULT
+
+
+def _of_tool(key: str, job: Job, merged: Merged, given: Given) -> tuple[str, str]:
+    name, _, last = key.removeprefix("tools.").rpartition(".")
+    tool, written = job.tools[name], merged.job.tools.get(name)
+    if written is None or getattr(written, last) != getattr(tool, last):
+        if isinstance(tool, PunchedTool):
+            return _of_option("offsets", "--offsets", given)
+        return _of_option("tools", "--tool", given)
+    if isinstance(written, PunchedTool) and key not in merged.origins:
+        layer = merged.origin("offsets")
+        kind, origin = _of_layer(layer, "offsets") if layer else _DEFAULT
+        return kind, f"{job.offsets}, named in {origin}"
+    layer = merged.origins.get(key)
+    return _of_layer(layer, key) if layer else _DEFAULT
+
+
+def _of_option(name: str, option: str, given: Given) -> tuple[str, str]:
+    kind = given.get(name, "command line")
+    return kind, f"{kind} {_of_environment(option) if kind == 'environment' else option}"
+
+
+def _of_environment(option: str) -> str:
+    return "POLARCHECK_" + option[2:].upper().replace("-", "_")
+
+
+def _of_layer(layer: Layer, key: str) -> tuple[str, str]:
+    where = layer.at(layer.spelling(key))
+    return ("programs", f"{where}, [[programs]] {layer.entry}") if layer.entry else ("file", where)
+
+
+def _of_machine(applied: Applied, given: Given) -> Iterator[Value]:
+    """The limits of the lathe, and what else does not come from a built-in machine."""
+    profile, built_in = applied.profile, profiles.names()
+    ours = {key: origin for key, origin in profile.origins.items() if origin.profile not in built_in}
+    limits = msgspec.structs.asdict(profile.written.limits)
+    keys = [*(f"limits.{key}" for key in limits), *(key for key in ours if not key.startswith("limits."))]
+    for key in keys:
+        group, _, last = key.partition(".")
+        value = getattr(profile.written, group)
+        for part in [last] if last else []:
+            value = value.get(part) if isinstance(value, dict) else getattr(value, part, None)
+        origin = profile.origins.get(key)
+        yield Value(key, value, *_of_profile(key, origin, applied.merged, given, built_in))
+
+
+def _of_profile(key: str, origin: Origin | None, merged: Merged, given: Given, built_in: list[str]) -> tuple[str, str]:
+    if origin is None:
+        return _DEFAULT
+    if origin.profile == "--set":
+        return _of_option("changes", "--set", given)
+    layer = merged.origins.get(key)
+    if layer is not None and layer.at("limits") == origin.profile:
+        return _of_layer(layer, key)
+    if origin.profile in built_in:
+        return "machine", f"built-in {origin.profile}"
+    by = f"parameters.{origin.parameter}" if origin.parameter else key
+    return "machine", toml_lines.located(f"{origin.profile}: {by}:").removesuffix(f": {by}:")

@@ -1,0 +1,53 @@
+"""`polarcheck config show`: what applies to a program, and where each value comes from."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from typing import Any, NamedTuple
+
+import msgspec
+
+from polarcheck.reading.excerpt import visible
+
+#: A value longer than this stands on a line of its own [characters].
+_LONGEST = 48
+
+
+class Row(NamedTuple):
+    """A value, None or NaN where it is not known; what kind of thing says it, and where it does."""
+
+    key: str
+    value: Any
+    kind: str
+    origin: str
+
+
+def text(path: str, heads: Sequence[str], rows: Iterable[Row]) -> str:
+    """The values in aligned lines, `key = value  # origin`, as TOML writes them."""
+    lines = [(f"{row.key} = {_toml(row.value)}", row.origin) for row in rows]
+    width = max((len(line) for line, _ in lines if len(line) <= _LONGEST), default=0)
+    shown = [f"{line:<{width}}  # {origin}" for line, origin in lines]
+    return "".join(f"{visible(line)}\n" for line in [f"# {path}", *(f"# {head}" for head in heads), "", *shown])
+
+
+def as_json(path: str, files: Sequence[str], entries: Sequence[str], excluded: bool, rows: Iterable[Row]) -> str:
+    """The same as JSON: null is not known."""
+    found = {
+        "path": path,
+        "files": list(files),
+        "programs": list(entries),
+        "excluded": excluded,
+        "values": [{**row._asdict(), "value": None if _is_unknown(row.value) else row.value} for row in rows],
+    }
+    return msgspec.json.format(msgspec.json.encode(found), indent=2).decode() + "\n"
+
+
+def _is_unknown(value: Any) -> bool:
+    return value is None or (isinstance(value, float) and math.isnan(value))
+
+
+def _toml(value: Any) -> str:
+    if value is None:
+        return "not given"
+    return "not known" if _is_unknown(value) else msgspec.json.encode(value).decode()
