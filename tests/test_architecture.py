@@ -16,6 +16,7 @@ PACKAGE = Path(__file__).parent.parent / "polarcheck"
 ORDER = (
     ("__main__",),
     ("commands",),
+    ("server",),
     ("reports",),
     ("fixes",),
     ("rules",),

@@ -1,0 +1,100 @@
+"""`polarcheck server`: what a check finds, in an editor."""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+from pathlib import Path
+from typing import Any
+
+import click
+
+from polarcheck.commands import options, silencing
+from polarcheck.commands.options import many, option
+from polarcheck.commands.output import say
+from polarcheck.errors import UsageError
+
+_NEEDED = ("pygls", "lsprotocol")
+
+
+@click.command
+@options.machine
+@options.changes
+@options.tools
+@options.offsets
+@options.units
+@many("--select", metavar="RULE", help="Only these rules, groups or alarms (PS0146).")
+@many("--ignore", metavar="RULE", help="All but these.")
+@many("--severity", "severities", metavar="RULE=LEVEL", help="error, warning, note or off.")
+@options.config
+@options.no_config
+@option("--block-skip", type=click.Choice(["off", "on", "both"]), help="Of blocks with /; both is the default.")
+@options.subprograms
+@options.radius_from_comments
+@silencing.inline
+@option(
+    "--trust", type=click.Path(exists=True, file_okay=False, path_type=Path), multiple=True, metavar="FOLDER",
+    help="Files are opened in this folder, too, not only in the folders of the editor.",
+)  # fmt: skip
+@option("--stdio", is_flag=True, help="Speak over standard input and output, as always.")
+@options.debug
+@click.pass_context
+def server(ctx: click.Context, /, no_config: bool, trust: tuple[Path, ...], stdio: bool, **asked: Any) -> None:
+    """
+    Show findings in an editor while a program is written: a language server on standard input and output.
+
+    An editor starts it; docs/editors/ says how. It marks findings, shows manual pages and the state of each block, and
+    offers fixes. Settings are those of `check`: the polarcheck.toml nearest to a program, over it these options.
+
+    Files are opened in the folders that are open in the editor, and nowhere else: but for what these options name, and
+    the folders of subprograms that a polarcheck.toml names.
+    """
+    ctx.exit(_serve(no_config, trust, asked))
+
+
+def _serve(no_config: bool, trust: tuple[Path, ...], asked: dict[str, Any]) -> int:
+    if not all(map(importlib.util.find_spec, _NEEDED)):
+        raise UsageError('the server needs pygls: pip install "polarcheck[server]"')
+    import gc
+
+    from polarcheck.commands.memory import keep_within_memory
+    from polarcheck.server import process
+
+    try:
+        streams = process.own_streams()
+    except OSError as error:
+        raise UsageError(f"standard input or output: {error.strerror}: an editor starts the server") from None
+    if os.isatty(streams.source):
+        say("an editor starts the server, and speaks to it over standard input; Ctrl-C ends it")
+    from polarcheck.server.session import Server
+
+    # It runs for hours: what the command line leaves to the end of the process is collected here.
+    gc.enable()
+    keep_within_memory()
+    session = Server(_Settings(no_config, asked), _trusted(trust, asked))
+    return process.serve(session, streams)
+
+
+class _Settings:
+    """
+    What applies to a program, read anew each time: it costs some milliseconds, and is never what it has been.
+
+    Made when it is first asked for: an editor waits for the answer to its first message, which needs no rules.
+    """
+
+    def __init__(self, no_config: bool, asked: dict[str, Any]) -> None:
+        self._use_config, self._asked = not no_config, asked
+
+    def __call__(self, path: Path) -> Any:
+        from polarcheck.commands import settings
+
+        return settings.of_programs(settings.Options(use_config=self._use_config, **self._asked))(str(path))
+
+
+def _trusted(trust: tuple[Path, ...], asked: dict[str, Any]) -> list[Path]:
+    """The folders that the command line names, and those of the files that it names."""
+    files = [asked["config"], asked["offsets"]]
+    if asked["machine"] and os.path.isfile(asked["machine"]):  # noqa: PTH113  Path.is_file raises for some names
+        files.append(Path(asked["machine"]))
+    beside = [Path(os.path.realpath(file)).parent for file in files if file is not None]
+    return [*trust, *beside, *map(Path, asked["subprograms"])]

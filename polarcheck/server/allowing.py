@@ -1,0 +1,130 @@
+"""The comment that allows what a rule finds: written where it belongs, and completed while it is typed."""
+
+from __future__ import annotations
+
+import re
+
+from lsprotocol import types
+
+from polarcheck.checking.finding import Edit, Finding
+from polarcheck.checking.rule import Rule, load_all
+from polarcheck.machines.machine import Machine
+from polarcheck.server.judged import Judged
+from polarcheck.server.markdown import page
+from polarcheck.server.open_text import OpenText
+
+WORD = "POLARCHECK"
+_KEYWORDS = {
+    "ALLOW": "in this block; alone on its line, in the next one",
+    "ALLOW-FILE": "in the whole file; at its head",
+    "ALLOW-ON": "from here on",
+    "ALLOW-OFF": "up to here",
+}
+_KEYWORD = re.compile(rf"[(;]\s*{WORD}\s*:?\s+([A-Z-]*)$", re.IGNORECASE)
+#: Names follow each other with commas, or those with a hyphen with blanks between; else the reason has begun.
+_NAME = re.compile(
+    rf"[(;]\s*{WORD}\s*:?\s+ALLOW(?:-FILE|-ON|-OFF)?\s*:?\s+(?:[A-Z0-9-]+\s*,\s*|[A-Z0-9]+-[A-Z0-9-]*\s+)*([A-Z0-9-]*)$",
+    re.IGNORECASE,
+)
+
+
+def comment(rule: str, machine: Machine) -> str:
+    """The comment as this control writes one, in characters that it keeps."""
+    if machine.control.line_comments:
+        return f"{machine.control.line_comments[0]} {WORD} ALLOW {rule.upper()} "
+    return f"({WORD} ALLOW {rule.upper()} )"
+
+
+def allow(found: Finding, judged: Judged) -> Edit:
+    """
+    The edit that allows a finding: a comment at the end of its block, or on a line of its own before that.
+
+    The latter where the block ends in a comment that would take up what is written behind it.
+    """
+    assert judged.settings is not None
+    machine, line = judged.settings.machine, judged.text.line_text(found.line)
+    written = comment(found.rule, machine)
+    if _is_open(line, machine) or found.end_line != found.line:
+        ends = _line_end(judged.text)
+        return Edit(line=found.line, column=1, end_line=found.line, end_column=1, text=f"{written}{ends}")
+    column = len(line.rstrip()) + 1
+    return Edit(line=found.line, column=column, end_line=found.line, end_column=column, text=f" {written}")
+
+
+def _is_open(line: str, machine: Machine) -> bool:
+    """Whether a comment goes on at the end of a line."""
+    if line.rfind("(") > line.rfind(")"):
+        return True
+    marks = machine.control.line_comments
+    return bool(marks) and any(mark in line for mark in marks)
+
+
+def _line_end(text: OpenText) -> str:
+    return "\r\n" if "\r\n" in text.text else "\n" if "\n" in text.text else "\r" if "\r" in text.text else "\n"
+
+
+def completions(text: OpenText, position: types.Position, judged: Judged | None) -> list[types.CompletionItem]:
+    """What can follow in such a comment: the words of polarcheck, then the names of rules and groups."""
+    offset = text.offset(position)
+    line = text.line_of(position)
+    before = text.text[text.offset_of(line) : offset]
+    keyword = _KEYWORD.search(before)
+    if keyword:
+        place = text.range(offset - len(keyword[1]), offset)
+        return [
+            types.CompletionItem(
+                label=name,
+                kind=types.CompletionItemKind.Keyword,
+                detail=said,
+                sort_text=f"{number}",
+                text_edit=types.TextEdit(place, f"{name} "),
+            )
+            for number, (name, said) in enumerate(_KEYWORDS.items())
+        ]
+    name = _NAME.search(before)
+    if not name:
+        return []
+    place = text.range(offset - len(name[1]), offset)
+    rules = load_all()
+    near = _near(judged, line)
+    groups = dict.fromkeys(rule.group for rule in rules.values())
+    return [_of_rule(rule, place, rule.name in near) for rule in rules.values()] + [
+        types.CompletionItem(
+            label=group.upper(),
+            kind=types.CompletionItemKind.Module,
+            detail=f"all rules of {group}",
+            sort_text=f"2{group}",
+            text_edit=types.TextEdit(place, f"{group.upper()} "),
+        )
+        for group in groups
+    ]
+
+
+def _near(judged: Judged | None, line: int) -> set[str]:
+    """The rules with a finding in a line or the next one."""
+    if judged is None or judged.report is None:
+        return set()
+    return {found.rule for found in judged.report.findings if line <= found.line <= line + 1}
+
+
+def _of_rule(rule: Rule, place: types.Range, is_near: bool) -> types.CompletionItem:
+    name = rule.name.upper()
+    return types.CompletionItem(
+        label=name,
+        kind=types.CompletionItemKind.EnumMember,
+        detail=rule.title,
+        data=rule.name,
+        sort_text=f"{'0' if is_near else '1'}{rule.name}",
+        preselect=is_near or None,
+        text_edit=types.TextEdit(place, f"{name} "),
+    )
+
+
+def with_page(item: types.CompletionItem, with_markdown: bool) -> types.CompletionItem:
+    """The item of a rule with its manual page, which would be too much for the whole list."""
+    rule = load_all().get(str(item.data))
+    if rule is not None:
+        text = rule.page.strip()
+        kind = types.MarkupKind.Markdown if with_markdown else types.MarkupKind.PlainText
+        item.documentation = types.MarkupContent(kind, page(text) if with_markdown else text)
+    return item

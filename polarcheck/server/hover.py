@@ -1,0 +1,192 @@
+"""What is shown of a block: the manual pages of what is wrong with it, else what the control has in force there."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+from lsprotocol import types
+
+from polarcheck.checking.finding import Finding
+from polarcheck.checking.phrases import common
+from polarcheck.checking.phrases.offsets import key_of
+from polarcheck.checking.polar_sections import radius_source
+from polarcheck.checking.quantity import Quantity, in_row
+from polarcheck.checking.rule import load_all
+from polarcheck.checking.tables import Tables
+from polarcheck.errors import TooHardError
+from polarcheck.machines.modal import FeedMode, Motion, Side
+from polarcheck.reports.pages import manual
+from polarcheck.server.judged import Judged
+from polarcheck.server.markdown import page, plain
+from polarcheck.table.tool_center import ToolCenter
+from polarcheck.table.trace import Trace
+from polarcheck.time_limit import time_limit
+
+#: Of a hover that has to make tables that no rule has asked for [s].
+_PATIENCE = 5.0
+_UNKNOWN = "not known"
+_SIDES = {Side.LEFT: "G41, to the left", Side.RIGHT: "G42, to the right"}
+_MOTIONS = {
+    Motion.RAPID: "rapid traverse",
+    Motion.LINE: "straight line",
+    Motion.CW: "arc, clockwise",
+    Motion.CCW: "arc, counterclockwise",
+    Motion.CYCLE: "cycle",
+}
+_FEED_MODES = {FeedMode.PER_MINUTE: "/min", FeedMode.PER_REVOLUTION: "/rev", FeedMode.INVERSE_TIME: "inverse time"}
+
+
+def hover(judged: Judged, position: types.Position, with_markdown: bool) -> types.Hover | None:
+    """The pages of the findings at a place, or the state of its block; None where there is nothing to say."""
+    found = at(judged, position)
+    if found:
+        text = _pages(judged, found, with_markdown)
+        first = found[0]
+        place = judged.text.range_of(first.line, first.column, first.end_line, first.end_column)
+    else:
+        line = judged.text.line_of(position)
+        try:
+            with time_limit(_PATIENCE):
+                title, facts = state(judged, line)
+        except TooHardError as error:
+            title, facts = "", [("not evaluated", str(error))]
+        if not facts:
+            return None
+        text = _listed(title, facts, with_markdown)
+        place = judged.text.line_range(line)
+    kind = types.MarkupKind.Markdown if with_markdown else types.MarkupKind.PlainText
+    return types.Hover(types.MarkupContent(kind, text), place)
+
+
+def at(judged: Judged, position: types.Position) -> list[Finding]:
+    """The findings whose words stand at a place."""
+    if judged.report is None:
+        return []
+    offset, text = judged.text.offset(position), judged.text
+    return [
+        found
+        for found in judged.report.findings
+        if text.offset_of(found.line, found.column) <= offset <= text.offset_of(found.end_line, found.end_column)
+    ]
+
+
+def _pages(judged: Judged, found: list[Finding], with_markdown: bool) -> str:
+    assert judged.settings is not None
+    rules = load_all()
+    names = [name for name in dict.fromkeys(one.rule for one in found) if name in rules]
+    if not with_markdown:
+        return manual.pages((rules[name] for name in names), judged.settings.machine)
+    shown = []
+    for name in names:
+        _, _, body = manual.pages([rules[name]], judged.settings.machine).partition("\n\n")
+        alarms = [one.alarm for one in found if one.rule == name and one.alarm]
+        alarm = f", alarm {plain(alarms[0])}" if alarms else ""
+        shown.append(f"**{name}**{alarm}\n\n{page(body.strip())}")
+    return "\n\n---\n\n".join(shown)
+
+
+def _listed(title: str, facts: list[tuple[str, str]], with_markdown: bool) -> str:
+    if with_markdown:
+        return "\n".join([f"**{plain(title)}**\n", *(f"- {plain(name)}: {plain(fact)}" for name, fact in facts)])
+    return "\n".join([title, *(f"{name}: {fact}" for name, fact in facts)])
+
+
+def state(judged: Judged, line: int) -> tuple[str, list[tuple[str, str]]]:
+    """
+    What is in force behind a block when it first runs: a title, and facts by name, in the units of the program.
+
+    Both are empty for a line that does nothing.
+    """
+    found = judged.row_of(line)
+    if found is None:
+        return "", []
+    tables, row, count = found
+    trace: Trace = tables["trace"]
+    title = _title(trace, row)
+    facts = list(_facts(tables, trace, row))
+    if count > 1:
+        facts.append(("runs", f"{count} times; this is the first"))
+    return title, facts
+
+
+def _title(trace: Trace, row: int) -> str:
+    if trace.enters[row]:
+        return "The polar mode begins"
+    if row in trace.sections.leave[trace.sections.left]:
+        return "The polar mode ends"
+    motion = _MOTIONS.get(Motion(int(trace.motion[row])), "")
+    what = f"{motion[:1].upper()}{motion[1:]}" if trace.moves[row] and motion else "No movement"
+    if not trace.in_polar[row]:
+        return f"{what}, outside the polar mode"
+    enter = int(trace.sections.enter[trace.section[row]])
+    return f"{what}, in the polar mode since line {int(trace.line_in_file[enter])}"
+
+
+def _facts(tables: Tables, trace: Trace, row: int) -> Iterator[tuple[str, str]]:
+    inside = bool(trace.in_polar[row])
+    # In the mode all of it counts; outside, what is not known is of no interest.
+    if inside or np.isfinite([trace.x[row], trace.z[row], trace.c_angle[row]]).any():
+        yield "position behind it", ", ".join(_position(trace, row))
+    yield "tool offset", _offset(trace, row)
+    if inside:
+        yield "compensation", _SIDES.get(Side(int(trace.side[row])), "off (G40)")
+    feed = _feed(trace, row)
+    if inside or feed != _UNKNOWN:
+        yield "feed", feed
+    if inside and trace.moves_plane[row]:
+        yield from _of_tool_center(tables["tool_center"], trace, row)
+
+
+def _position(trace: Trace, row: int) -> Iterator[str]:
+    """Each axis with what it is, since that is what goes wrong: a diameter, a length, an angle."""
+    inside = bool(trace.in_polar[row])
+    is_diameter = bool(trace.x_factor[row] < 1)
+    linear = common.linear(trace, row)
+    x = trace.end[row].real if inside else trace.x[row]
+    yield f"{linear} {_shown(in_row(x, trace, row), 'diameter')}{' (diameter)' if is_diameter else ' (radius)'}"
+    if inside:
+        yield f"{common.virtual(trace, row)} {_shown(in_row(trace.end[row].imag, trace, row), 'length')} (length)"
+    yield f"Z {_shown(in_row(trace.z[row], trace, row), 'length')}"
+    angle = float(trace.c_angle[row])
+    yield f"{common.rotary(trace.machine)} axis {f'{angle:.3f} deg' if math.isfinite(angle) else _UNKNOWN}"
+
+
+def _shown(value: Quantity, form: str) -> str:
+    return value.shown(form) if np.isfinite(value.value) else _UNKNOWN
+
+
+def _offset(trace: Trace, row: int) -> str:
+    key = key_of(trace, int(trace.offset_number[row]))
+    if key is None:
+        return "none in force"
+    radius = in_row(float(trace.radius[row]), trace, row)
+    source = f" ({radius_source(trace, row)})" if np.isfinite(radius.value) else ""
+    return f"{key}, R {_shown(radius, 'length')}{source}"
+
+
+def _feed(trace: Trace, row: int) -> str:
+    mode = FeedMode(int(trace.feed_mode[row]))
+    value = in_row(float((trace.feed if mode == FeedMode.PER_MINUTE else trace.feed_number)[row]), trace, row)
+    if not np.isfinite(value.value):
+        return _UNKNOWN
+    if mode == FeedMode.PER_MINUTE:
+        return f"F {value.shown('feed')}"
+    return f"F {value.shown('length')}{_FEED_MODES[mode]}"
+
+
+def _of_tool_center(tool_center: ToolCenter, trace: Trace, row: int) -> Iterator[tuple[str, str]]:
+    """What the move asks of C, where it comes nearest to its center, the highest F, and how long it takes."""
+    c_feed = float(tool_center.c_feed[row])
+    limit = trace.machine.limits.c_feed
+    of_limit = f" of {limit:.0f}" if math.isfinite(limit) else ""
+    yield "C axis", f"{c_feed:.0f}{of_limit} deg/min" if math.isfinite(c_feed) else _UNKNOWN
+    yield "nearest to the center", _shown(in_row(float(tool_center.nearest[row]), trace, row), "length")
+    allowed = in_row(float(tool_center.feed_allowed[row]), trace, row)
+    if of_limit and np.isfinite(allowed.value):
+        yield "highest F here", f"{allowed:highest}"
+    moves = tool_center.moves
+    time = float(np.sum(moves.time[(moves.row == row) & moves.known]))
+    if time > 0:
+        yield "time", f"{time:.2f} s"

@@ -1,0 +1,100 @@
+"""The programs and polar sections of a document, and above each section what it asks of the lathe."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+from lsprotocol import types
+
+from polarcheck.checking.finding import PolarSection
+from polarcheck.execution.programs import Program, find_programs
+from polarcheck.machines.modal import MM_PER_INCH
+from polarcheck.reading.excerpt import visible
+from polarcheck.reading.words import Text
+from polarcheck.server.judged import Judged
+
+
+def code_lenses(judged: Judged) -> list[types.CodeLens]:
+    """A line above each G12.1: time, highest rate of C and its limit, radius."""
+    if judged.report is None:
+        return []
+    return [
+        types.CodeLens(judged.text.line_range(line), types.Command(visible(summary(section, runs)), ""))
+        for line, (section, runs) in _by_line(judged.report.polar_sections).items()
+    ]
+
+
+def _by_line(sections: Iterable[PolarSection]) -> dict[int, tuple[PolarSection, int]]:
+    """Of the sections that begin in a line the one that asks most of C, or nobody knows what, and their number."""
+    found: dict[int, list[PolarSection]] = {}
+    for section in sections:
+        found.setdefault(section.line, []).append(section)
+
+    def rate(section: PolarSection) -> float:
+        return math.inf if section.c_feed is None else section.c_feed
+
+    return {line: (max(own, key=rate), len(own)) for line, own in found.items()}
+
+
+def summary(section: PolarSection, runs: int = 1) -> str:
+    """What a polar section asks of the lathe, in one line, in the units of the program; runs: how often it is run."""
+    limit = f" of {section.c_feed_limit:.0f}" if section.c_feed_limit is not None else ""
+    at = f" in line {section.c_feed_line}" if section.c_feed_line is not None else ""
+    rate = "rate of C not known" if section.c_feed is None else f"C {section.c_feed:.0f}{limit} deg/min{at}"
+    time = "time not known" if section.time is None else f"{section.time:.1f} s"
+    channel = f"{section.channel}: " if section.channel else ""
+    often = f" | the highest of {runs} runs" if runs > 1 else ""
+    return f"{channel}{time} | {rate} | {_radius(section)}{often}"
+
+
+def _radius(section: PolarSection) -> str:
+    if section.offset is None:
+        return "no tool offset"
+    if section.radius is None:
+        return f"R of offset {section.offset} not known"
+    is_inch = section.units == "inch"
+    radius = section.radius / MM_PER_INCH if is_inch else section.radius
+    return f"R {radius:.{4 if is_inch else 3}f} {section.units} (offset {section.offset}, {section.radius_source})"
+
+
+def symbols(judged: Judged) -> list[types.DocumentSymbol]:
+    """The programs of the document, and in each its polar sections."""
+    found = []
+    for text in judged.texts:
+        for program in find_programs(text).programs:
+            if program.file == 0 and program.first < program.end:
+                found.append(_of_program(program, text, judged))
+    return found
+
+
+def _of_program(program: Program, text: Text, judged: Judged) -> types.DocumentSymbol:
+    begins = judged.text.place_of(int(text.blocks.start[program.first]))
+    ends = judged.text.place_of(int(text.blocks.end[program.end - 1]))
+    name = f"O{program.number:04d}" if program.number is not None else program.name or "program"
+    channel = f"{text.source.channel} " if text.source.channel else ""
+    first, last = (int(text.blocks.line[block]) for block in (program.first, program.end - 1))
+    sections = judged.report.polar_sections if judged.report is not None else ()
+    own = [one for one in sections if first <= one.line <= last and (one.channel or "") == text.source.channel]
+    return types.DocumentSymbol(
+        name=visible(channel + name),
+        kind=types.SymbolKind.Function,
+        range=judged.text.range(begins, ends),
+        selection_range=judged.text.range(
+            begins, min(ends, judged.text.offset_of(first + 1) if last > first else ends)
+        ),
+        children=list(_of_sections(own, last, judged)),
+    )
+
+
+def _of_sections(sections: Iterable[PolarSection], last: int, judged: Judged) -> Iterable[types.DocumentSymbol]:
+    for section, runs in _by_line(sections).values():
+        head = judged.text.line_range(section.line)
+        end = judged.text.line_range(min(max(section.end_line, section.line), last)).end
+        yield types.DocumentSymbol(
+            name=visible(judged.text.line_text(section.line).strip() or "polar section"),
+            detail=visible(summary(section, runs)),
+            kind=types.SymbolKind.Namespace,
+            range=types.Range(head.start, end),
+            selection_range=head,
+        )
