@@ -824,7 +824,10 @@ def test_a_report_fits_its_schema() -> None:
         (["rules"], {"numpy", "shapely", "rich"}),
         (["machines", "fanuc"], {"numpy", "shapely", "rich"}),
         (["schema", "job"], {"numpy", "shapely", "rich"}),
-        (["check", "a.nc", *RAPID_ONLY], {"shapely", "rich", "polarcheck.commands.trace"}),
+        (
+            ["check", "a.nc", "a.nc", ".", *RAPID_ONLY],
+            {"shapely", "rich", "polarcheck.commands.trace", "multiprocessing", "concurrent.futures.process", "asyncio"},
+        ),
     ],
 )
 def test_commands_import_what_they_need_and_no_more(arguments: list[str], unwanted: set[str]) -> None:

@@ -8,6 +8,7 @@ They end with the pipe, and so with the process that has started them, however t
 from __future__ import annotations
 
 import contextlib
+import os
 import signal
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -215,12 +216,21 @@ def work(
         signal.pthread_sigmask(signal.SIG_UNBLOCK, (signal.SIGINT, signal.SIGTERM))
     for end in ends:
         end.close()
+    _be_silent()
     prepare(alone)
     with contextlib.suppress(EOFError, OSError):
         pipe.send(None)
         while True:
             for told in told_of(pipe.recv(), settings, most):
                 pipe.send(told)
+
+
+def _be_silent() -> None:
+    """Whoever reads what the first process writes must not wait for this one."""
+    with contextlib.suppress(OSError):
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        for descriptor in (1, 2):
+            os.dup2(nowhere, descriptor)
 
 
 def told_of(items: Iterable[Item], settings: Sequence[Settings], most: int) -> Iterator[tuple[int, Sent]]:
