@@ -826,7 +826,14 @@ def test_a_report_fits_its_schema() -> None:
         (["schema", "job"], {"numpy", "shapely", "rich"}),
         (
             ["check", "a.nc", "a.nc", ".", *RAPID_ONLY],
-            {"shapely", "rich", "polarcheck.commands.trace", "multiprocessing", "concurrent.futures.process", "asyncio"},
+            {
+                "shapely",
+                "rich",
+                "polarcheck.commands.trace",
+                "multiprocessing",
+                "concurrent.futures.process",
+                "asyncio",
+            },
         ),
     ],
 )

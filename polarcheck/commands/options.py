@@ -125,6 +125,7 @@ no_config = option("--no-config", is_flag=True, help="Read no polarcheck.toml or
 force_exclude = option(
     "--force-exclude", is_flag=True, help="Pass over what polarcheck.toml excludes where it is named, too."
 )
+inline = option("--inline/--no-inline", default=None, help="Whether the allow comments of programs are heeded.")
 
 
 class _Seconds(click.FloatRange):
@@ -191,5 +192,5 @@ judging = _all(
         help="The least severity that fails.",
     ),
     option("--strict/--no-strict", default=None, help="Fail where a file is unverified, too."),
-    option("--inline/--no-inline", default=None, help="Whether the allow comments of programs are heeded."),
+    inline,
 )  # fmt: skip

@@ -9,8 +9,8 @@ from typing import Any
 
 import click
 
-from polarcheck.commands import options, silencing
-from polarcheck.commands.options import many, option
+from polarcheck.commands import options
+from polarcheck.commands.options import option
 from polarcheck.commands.output import say
 from polarcheck.errors import UsageError
 
@@ -18,20 +18,8 @@ _NEEDED = ("pygls", "lsprotocol")
 
 
 @click.command
-@options.machine
-@options.changes
-@options.tools
-@options.offsets
-@options.units
-@many("--select", metavar="RULE", help="Only these rules, groups or alarms (PS0146).")
-@many("--ignore", metavar="RULE", help="All but these.")
-@many("--severity", "severities", metavar="RULE=LEVEL", help="error, warning, note or off.")
-@options.config
-@options.no_config
-@option("--block-skip", type=click.Choice(["off", "on", "both"]), help="Of blocks with /; both is the default.")
-@options.subprograms
-@options.radius_from_comments
-@silencing.inline
+@options.executing("programs")
+@options.judging
 @option(
     "--trust", type=click.Path(exists=True, file_okay=False, path_type=Path), multiple=True, metavar="FOLDER",
     help="Files are opened in this folder, too, not only in the folders of the editor.",
