@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import bisect
 import re
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from functools import cached_property
 
 import msgspec
@@ -23,9 +23,12 @@ from polarcheck.checking.silence import WORD, Used
 from polarcheck.execution.run import begins_program
 from polarcheck.reading.source import LF
 from polarcheck.reading.words import Text
+from polarcheck.time_limit import keep_time
 
 #: Of a comment that is read [characters]; a longer one is prose.
 _LONGEST = 1000
+#: Comments of a file whose misspelled names are compared with all others.
+_GUESSES = 500
 #: Between the begin of a comment and its first word stand signs and blanks, not many.
 _SIGNS = 20
 #: Words beside which a block does nothing: its number, its program number.
@@ -46,11 +49,10 @@ class Place(msgspec.Struct, frozen=True):
 
 
 class Grant(msgspec.Struct, frozen=True):
-    """One name of an allow comment and its rule: silent in the blocks from first to last (exclusive)."""
+    """One name of an allow comment: its rules are silent in the blocks from first to last (exclusive)."""
 
     allow: int
     name: str
-    rule: str
     first: int
     last: int
 
@@ -70,31 +72,38 @@ class Region(msgspec.Struct, frozen=True):
 
 
 class _Ranges:
-    """The ranges that are open, by rule, as indices of the grants that have begun them."""
+    """The ranges that are open, by name, as indices of the grants that have begun them."""
 
-    def __init__(self, grants: list[Grant]) -> None:
+    def __init__(self, grants: list[Grant], known: Mapping[str, Collection[str]]) -> None:
         self._grants = grants
+        self._known = known
         self._open: dict[str, list[int]] = {}
 
     def open(self, begin: int) -> None:
         """The grants from there on begin ranges."""
         for number in range(begin, len(self._grants)):
-            self._open.setdefault(self._grants[number].rule, []).append(number)
+            self._open.setdefault(self._grants[number].name, []).append(number)
 
-    def close(self, rules: Mapping[str, list[str]], last: int) -> str:
+    def close(self, names: Sequence[str], last: int) -> str:
         """
-        End the ranges of names and their rules at a block (exclusive), all where none is named.
+        End the ranges of names at a block (exclusive), all where none is named; what is to be said of the others.
 
-        What is to be said of names that nothing has begun; empty where there are none.
+        A name ends the range of its group, too: what is not allowed any more must not stay silent under another name.
         """
-        closing = {rule for own in rules.values() for rule in own} if rules else set(self._open)
-        closed = {rule: self._open.pop(rule) for rule in closing if rule in self._open}
-        for number in (number for numbers in closed.values() for number in numbers):
-            self._grants[number] = msgspec.structs.replace(self._grants[number], last=last)
-        if not rules:
+        closed = set()
+        for name in list(self._open):
+            if not names or any(self._is_same(name, one) for one in names):
+                closed.add(name)
+                for number in self._open.pop(name):
+                    self._grants[number] = msgspec.structs.replace(self._grants[number], last=last)
+        if not names:
             return "" if closed else "no range is open here that it could close"
-        names = ", ".join(name.upper() for name, own in rules.items() if not closed.keys() & set(own))
-        return f"no range of {names} is open here that it could close" if names else ""
+        idle = [one for one in names if not any(self._is_same(name, one) for name in closed)]
+        return f"no range of {', '.join(idle).upper()} is open here that it could close" if idle else ""
+
+    def _is_same(self, one: str, other: str) -> bool:
+        """Whether two names are the same, or a group and a rule of it."""
+        return one == other or one in self._known[other] or other in self._known[one]
 
     def left(self) -> dict[int, str]:
         """Per comment the names of the ranges that are still open, which are so no longer."""
@@ -127,23 +136,25 @@ class Allows:
         self.known = grouped(groups)
         self.read: list[Allow] = []
         found: list[Grant] = []
-        ranges = _Ranges(found)
+        ranges = _Ranges(found, self.known)
         region = None
         for number, place in enumerate(places):
-            allow = read_allow(text.source.excerpt(place.start, min(place.end, place.start + _LONGEST)), self.known)
+            keep_time()
+            comment = text.source.excerpt(place.start, min(place.end, place.start + _LONGEST))
+            allow = read_allow(comment, self.known, number < _GUESSES)
             self.read.append(allow)
             self.faults[number] = allow.fault
             here = self._region(place.block)
             if region is not None and here is not region:
                 self._left_open(ranges, region)
             region = here
-            named = {name: self.known[name] for name in allow.names}
             if allow.kind == OFF:
-                self.unpaired[number] = ranges.close(named, place.block + 1) if named or not allow.fault else ""
+                is_clear = allow.names or not allow.fault
+                self.unpaired[number] = ranges.close(allow.names, place.block + 1) if is_clear else ""
                 continue
             first, last = self._reach(number, place, allow, region)
             begun = len(found)
-            found += [Grant(number, name, rule, first, last) for name, own in named.items() for rule in own]
+            found += [Grant(number, name, first, last) for name in allow.names]
             if allow.kind == ON and first < last:
                 ranges.open(begun)
         if region is not None:
@@ -171,20 +182,24 @@ class Allows:
     # ---- what is silent ----
 
     @cached_property
-    def _of_rule(self) -> Mapping[str, list[Grant]]:
-        found: dict[str, list[Grant]] = {}
-        for grant in sorted(self.grants, key=lambda grant: grant.first):
-            found.setdefault(grant.rule, []).append(grant)
-        return found
+    def _of_rules(self) -> dict[str, list[Grant]]:
+        return {}
+
+    def _of_rule(self, rule: str) -> list[Grant]:
+        """The grants for a rule, under its own name and that of its group, by where they begin."""
+        if rule not in self._of_rules:
+            own = [grant for grant in self.grants if rule in self.known[grant.name]]
+            self._of_rules[rule] = sorted(own, key=lambda grant: grant.first)
+        return self._of_rules[rule]
 
     def names(self, rule: str) -> bool:
         """Whether any comment allows a rule anywhere."""
-        return rule in self._of_rule
+        return bool(self._of_rule(rule))
 
     def silenced(self, rule: str, blocks: Rows) -> Mask:
         """Which of these blocks a rule is silent in."""
         steps = np.zeros(len(self.text.blocks) + 1, np.int64)
-        for grant in self._of_rule.get(rule, ()):
+        for grant in self._of_rule(rule):
             steps[grant.first] += 1
             steps[grant.last] -= 1
         return np.asarray(np.cumsum(steps)[blocks] > 0)
@@ -194,13 +209,13 @@ class Allows:
         at = np.unique(blocks)
         return {
             (int(self.start[grant.allow]), grant.name)
-            for grant in self._of_rule.get(rule, ())
+            for grant in self._of_rule(rule)
             if np.searchsorted(at, grant.first) < np.searchsorted(at, grant.last)
         }
 
     def reason(self, rule: str, block: int) -> str:
         """Why a rule is silent in a block: the words of the comment that is nearest before it."""
-        grants = self._of_rule.get(rule, [])
+        grants = self._of_rule(rule)
         at = bisect.bisect_right(grants, block, key=lambda grant: grant.first)
         found = next((grant for grant in reversed(grants[:at]) if block < grant.last), None)
         return self.read[found.allow].reason if found else ""
@@ -249,15 +264,14 @@ class Allows:
         """The block of a comment, or the one behind its end on the same line; else the next that has words."""
         if self.has_words[block]:
             return block
-        line = self.text.blocks.line
-        following = np.flatnonzero(self.has_words[block : region.last])
-        after = block + int(following[0]) if len(following) else None
-        if after is not None and line[after] == line[block]:
+        line, at = self.text.blocks.line, int(np.searchsorted(self._with_text, block))
+        after = int(self._with_text[at]) if at < len(self._with_text) else region.last
+        if after < region.last and line[after] == line[block]:
             return after
         before = block - 1
         if before >= region.first and line[before] == line[block] and self.has_words[before]:
             return before
-        return after
+        return after if after < region.last else None
 
     def _faulty(self, number: int, fault: str) -> None:
         self.faults[number] = self.faults[number] or fault
@@ -273,6 +287,10 @@ class Allows:
     def has_words(self) -> Mask:
         """Per block whether anything but its number and comments stands in it."""
         return self._with_words(_NUMBERS[:1])
+
+    @cached_property
+    def _with_text(self) -> Rows:
+        return np.flatnonzero(self.has_words)
 
     @cached_property
     def does_something(self) -> Mask:
@@ -325,6 +343,7 @@ def _places(text: Text) -> Iterator[Place]:
     """Where comments begin with the word; and lines with it that the control does not store, before the program."""
     code = text.source.code.tobytes()
     code = code if b"\n" in code else code.replace(b"\r", b"\n")
+    ends = np.append(np.flatnonzero(np.frombuffer(code, np.uint8) == LF), len(code))
     comments, outside, blocks = text.comments, text.outside, text.blocks
     seen = -1
     for match in re.finditer(WORD, code, re.IGNORECASE):
@@ -337,12 +356,11 @@ def _places(text: Text) -> Iterator[Place]:
                 yield Place(start, int(comments.end[number]), int(comments.block[number]), is_loose=False)
             seen = number
             continue
-        line_end = code.find(LF, at)
-        line_end = len(code) if line_end < 0 else line_end
+        line_end = int(ends[np.searchsorted(ends, at)])
         beyond = int(np.searchsorted(outside.start, at, side="right")) - 1
         is_outside = beyond >= 0 and at < outside.end[beyond]
         mark = int(np.searchsorted(text.tape_marks, at)) - 1
-        is_marked = mark >= 0 and code.find(LF, int(text.tape_marks[mark]), at) < 0
+        is_marked = mark >= 0 and np.searchsorted(ends, text.tape_marks[mark]) == np.searchsorted(ends, at)
         if is_outside or is_marked:
-            closed = code.find(b")", at, line_end)
+            closed = code.find(b")", at, min(line_end, at + _LONGEST))
             yield Place(at, closed if closed >= 0 else line_end, block, is_loose=True)

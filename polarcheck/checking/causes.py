@@ -7,6 +7,15 @@ SECTION_READ_OTHERWISE = (
     "second-axis-never-programmed",
     "linear-axis-never-programmed",
 )
+#: The polar sections, or the words themselves, are others than were meant: what else would be found is not known.
+READ_OTHERWISE = (
+    *SECTION_READ_OTHERWISE,
+    "polar-never-left",
+    "polar-never-entered",
+    "polar-code-of-another-control",
+    "comment-not-closed",
+    "other-dialect",
+)
 #: An arc whose end may be what is wrong, and then what begins there is, too.
 END_IN_DOUBT = (
     "arc-center-on-path",

@@ -12,6 +12,7 @@ from typing import TypeVar
 import msgspec
 
 from polarcheck.checking.called_files import in_the_file
+from polarcheck.checking.causes import READ_OTHERWISE
 from polarcheck.checking.channels import united
 from polarcheck.checking.engine import Engine, in_order, too_hard, with_following
 from polarcheck.checking.finding import ERROR, SEVERITIES, FileReport, Finding, NotEvaluated, PolarSection, Undecided
@@ -114,6 +115,8 @@ def _could_silence(engine: Engine, report: FileReport) -> set[str]:
     returns = (
         is_code(words, machine.macro.program_returns).any() and not is_code(words, machine.m_codes.program_end).any()
     )
+    if {found.rule for found in report.findings} & {*READ_OTHERWISE}:
+        return set()
     if "all" in missing or (returns and not len(tables["sections"])):
         return set()
     off = {rule.name for rule in load_all().values() if rule.level(machine.severities) == "off"}
