@@ -165,7 +165,7 @@ def merged(layers: Sequence[Layer]) -> Merged:
             listed = _in_units(values["units"], table, listed, layer, origins)
         if "offsets" in values:
             # A table of this lathe takes the place of that of another one, and is nearer than what is said of all.
-            listed = _listed(layer)
+            listed = _listed(layer, values.get("units", table.get("units")))
             for key in listed:
                 table.get("tools", {}).pop(key, None)
                 for name in [name for name in origins if name.startswith(f"tools.{key}.")]:
@@ -197,12 +197,12 @@ def _put(table: dict[str, Any], parts: tuple[str, ...], value: Any) -> None:
     table[last] = value
 
 
-def _listed(layer: Layer) -> dict[str, Tool]:
+def _listed(layer: Layer, units: Any) -> dict[str, Tool]:
     """The offset table that a layer names."""
     from polarcheck.machines import offset_table
 
     path = layer.table["offsets"]
-    return offset_table.read(Path(path), f"{layer.at('offsets')}: offsets: {path}")
+    return offset_table.read(Path(path), f"{layer.at('offsets')}: offsets: {path}", units=units)
 
 
 def _in_units(

@@ -239,7 +239,7 @@ def _changed(job: Job, options: Options) -> Job:
     if options.offsets is not None:
         from polarcheck.machines import offset_table
 
-        listed = offset_table.read(options.offsets, str(options.offsets), pipes=True)
+        listed = offset_table.read(options.offsets, str(options.offsets), pipes=True, units=job.units)
         own = {key: tool for key, tool in job.tools.items() if not isinstance(tool, PunchedTool)}
         job = msgspec.structs.replace(job, tools={**own, **listed})
     for tool in options.tools:
