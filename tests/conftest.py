@@ -27,9 +27,13 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption(
         "--accept", action="store_true", dest="update_snapshots", help="take the present outcomes as golden ones"
     )
+    parser.addoption("--installs", action="store_true", help="run the tests that install packages, too")
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    for item in items:
+        if item.get_closest_marker("installs") and not config.getoption("--installs"):
+            item.add_marker(pytest.mark.skip(reason="--installs runs what installs packages"))
     cases: Counter[str] = Counter()
     for item in items:
         test = item.nodeid.partition("[")[0]

@@ -170,7 +170,7 @@ def test_devices_and_links_are_written_through(tmp_path: Path) -> None:
 
 
 def hook(key: str) -> str:
-    """A key of the only hook in the manifest; one line each, quotes taken off."""
+    """A key of the first hook in the manifest; one line each, quotes taken off."""
     found = re.search(rf"^[ -] {key}: (.*)$", HOOKS.read_text("utf-8"), re.MULTILINE)
     assert found, key
     return found[1].strip("'")
@@ -200,4 +200,4 @@ def test_the_hook_runs_a_command_that_exists() -> None:
 def test_the_manifest_is_valid() -> None:
     manifest = pytest.importorskip("pre_commit.clientlib")
     hooks = manifest.load_manifest(str(HOOKS))
-    assert [entry["id"] for entry in hooks] == ["polarcheck"]
+    assert [entry["id"] for entry in hooks] == ["polarcheck", "polarcheck-config"]
