@@ -26,7 +26,7 @@ from polarcheck.checking.rule import load_all
 from polarcheck.reading import files
 from polarcheck.reading.excerpt import visible
 from polarcheck.reading.names import spelled, unspelled
-from polarcheck.reports import Background, formats, render
+from polarcheck.reports import Background, formats, pieces, render
 from polarcheck.reports.ci import rule_help
 from polarcheck.reports.ci.paths import from_root, uri
 from polarcheck.reports.ci.step_summary import step_summary
@@ -258,7 +258,7 @@ def test_pages_mean_in_markdown_what_they_say() -> None:
 
 def test_sarif_keeps_what_is_silenced() -> None:
     by_allow, by_baseline = silenced(), silenced(line=7, by="baseline", reason="")
-    run = sarif(file(finding(), silenced=[by_allow, by_baseline]), file(path="b.nc"))
+    run = sarif(file(finding(), silenced=[by_allow, by_baseline]), file(path="b.nc"), has_baseline=True)
     allowed, known, new = run["results"]
     assert allowed["suppressions"] == [
         {"kind": "inSource", "status": "accepted", "justification": "proven on the lathe"}
@@ -269,6 +269,34 @@ def test_sarif_keeps_what_is_silenced() -> None:
     (first, second) = sarif(file(finding(), silenced=[by_allow]))["results"]
     assert "baselineState" not in {**first, **second}
     assert "suppressions" not in sarif(file(finding()))["results"][0]
+    (new,) = sarif(file(finding()), has_baseline=True)["results"]
+    assert new["baselineState"] == "new"
+
+
+def test_a_baseline_of_the_command_makes_the_others_new() -> None:
+    make(a__nc=RAPID)
+    assert call("baseline", "create", "a.nc", "-o", "known.json").exit_code == 0
+    make(b__nc=RAPID)
+    told = check("a.nc", "b.nc", *RAPID_ONLY, "--baseline", "known.json", "--format", "sarif")
+    run = json.loads(told.stdout)["runs"][0]
+    schema("sarif").validate(json.loads(told.stdout))
+    assert [(one["baselineState"], len(one["suppressions"])) for one in run["results"]] == [
+        ("unchanged", 1),
+        ("new", 0),
+    ]
+    fresh = json.loads(check("b.nc", *RAPID_ONLY, "--baseline", "known.json", "--format", "sarif").stdout)
+    assert fresh["runs"][0]["results"][0]["baselineState"] == "new"
+
+
+@pytest.mark.parametrize("form", formats())
+def test_many_files_are_written_as_few_are(form: str) -> None:
+    """Piece by piece, and where the format can file by file, as they are finished."""
+    for number in range(12):
+        Path(f"{number:02}.nc").write_text(RAPID if number % 3 else GOOD)
+    whole = check(".", *RAPID_ONLY, "--format", form, "-o", f"{form}:out")
+    assert Path("out").read_bytes() == whole.stdout_bytes
+    of = [nasty(), file(path="b.nc"), file(finding(), path="c.nc", silenced=[silenced()])]
+    assert "".join(pieces(form, report(*of), background())) == shown(form, *of)
 
 
 def test_sarif_says_what_went_wrong_and_what_was_not_looked_at() -> None:

@@ -167,7 +167,9 @@ def _check(
     form = form or ("text" if len(tasks) <= _LONG else "short")
     went_wrong: list[str] = []
     plain = reports.Background({}, rule.load_all(), COLUMNS, False, quiet, command, following, silenced)
-    plain = reporting.background(plain, tasks, went_wrong)._replace(fixed=made.fixed)
+    plain = reporting.background(plain, tasks, went_wrong)._replace(
+        fixed=made.fixed, has_baseline=applies.baseline is not None
+    )
     bar = progress.Bar(len(tasks), not quiet)
     shown = plain._replace(columns=columns(), color=in_color(color))
     shower = live.Live(form, shown, len(tasks), bar.hide, in_place_of_findings=statistics, to_error=made.has_output)

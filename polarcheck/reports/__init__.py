@@ -39,7 +39,7 @@ class Background(NamedTuple):
     from a finding is shown, too. silenced: whether what is silenced is. settings: what applied to a file, by its path.
     failures: a line each on what could not be read, or went wrong. root, folder: of the repository, and the one that
     paths begin in; absolute, with slashes, empty where they are not known. fixed: how many fixes were written into the
-    files before.
+    files before. has_baseline: whether findings of a baseline are silenced, so that others are new.
     """
 
     lines: Mapping[str, Mapping[int, str]] = MappingProxyType({})
@@ -55,6 +55,7 @@ class Background(NamedTuple):
     root: str = ""
     folder: str = ""
     fixed: int = 0
+    has_baseline: bool = False
 
 
 class Parts(NamedTuple):

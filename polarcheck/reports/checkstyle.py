@@ -17,8 +17,14 @@ _SEVERITIES = {"error": "error", "warning": "warning", "note": "info"}
 
 def checkstyle(report: Report, background: Background) -> str:
     """An element for each file, those without a finding included."""
+    return "".join(checkstyle_pieces(report, background))
+
+
+def checkstyle_pieces(report: Report, background: Background) -> Iterator[str]:
+    """The same, file by file."""
+    yield xml.HEAD
     files = (line for file in report.files for line in _file(file, background))
-    return xml.HEAD + "".join(xml.element("checkstyle", {"version": "4.3"}, files))
+    yield from xml.element("checkstyle", {"version": "4.3"}, files)
 
 
 def _file(file: FileReport, background: Background) -> Iterator[str]:

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 import msgspec
 
+from polarcheck.reports import Background, Parts, of_each
 from polarcheck.reports.json import encoded
 
 if TYPE_CHECKING:
     from polarcheck.checking.finding import FileReport, Report
-    from polarcheck.reports import Background
 
 _LISTED = ("findings", "silenced")
 
@@ -23,14 +23,25 @@ def jsonl(report: Report, background: Background | None = None) -> str:
     `type` says which: finding, silenced, file, summary. All other fields are those of `json`; `path` is in each line
     but the last.
     """
-    return "".join(encoded(line) + "\n" for line in _lines(report))
+    return "".join(jsonl_pieces(report, background or Background()))
 
 
-def _lines(report: Report) -> Iterator[dict[str, Any]]:
-    for file in report.files:
-        yield from lines(file)
-    fields = {key: value for key, value in msgspec.to_builtins(report).items() if key not in ("files", "summary")}
-    yield {"type": "summary", **fields, **msgspec.to_builtins(report.summary)}
+def jsonl_pieces(report: Report, background: Background) -> Iterator[str]:
+    """The same, file by file."""
+    return of_each(jsonl_parts(background), report, background)
+
+
+def jsonl_parts(background: Background) -> Parts:
+    """The same, of files as they are finished."""
+
+    def of_file(file: FileReport, shown: Mapping[int, str]) -> str:
+        return "".join(encoded(line) + "\n" for line in lines(file))
+
+    def end(report: Report) -> str:
+        about = {"schema": report.schema, "tool": report.tool, "machine": report.machine}
+        return encoded({"type": "summary", **about, **msgspec.to_builtins(report.summary)}) + "\n"
+
+    return Parts(of_file, end)
 
 
 def lines(file: FileReport) -> Iterator[dict[str, Any]]:

@@ -32,7 +32,6 @@ def sarif(report: Report, background: Background) -> str:
     found = {one.rule: one for file in report.files for one in file.findings}
     names = sorted({*silenced, *found})
     indices = {name: index for index, name in enumerate(names)}
-    has_baseline = any(one.by == BASELINE for file in report.files for one in file.silenced)
     notifications = [*_failures(background.failures), *_not_evaluated(report, background)]
     run = {
         "tool": {
@@ -48,7 +47,7 @@ def sarif(report: Report, background: Background) -> str:
         "originalUriBaseIds": {_ROOT: {"description": {"text": "The root of the repository."}}},
         "invocations": [{"executionSuccessful": not background.failures, "toolExecutionNotifications": notifications}],
         "results": [
-            _result(one, file, indices, background, bool(silenced), has_baseline)
+            _result(one, file, indices, background, bool(silenced))
             for file in report.files
             for one in sorted((*file.findings, *file.silenced), key=lambda one: (one.line, one.column, one.rule))
         ],
@@ -74,12 +73,7 @@ def _rule(name: str, rule: Rule | None, found: Finding) -> dict[str, Any]:
 
 
 def _result(
-    found: Finding,
-    file: FileReport,
-    indices: Mapping[str, int],
-    background: Background,
-    has_silenced: bool,
-    has_baseline: bool,
+    found: Finding, file: FileReport, indices: Mapping[str, int], background: Background, has_silenced: bool
 ) -> dict[str, Any]:
     artifact = {"uri": uri(file.path, background), "uriBaseId": _ROOT}
     section = found.section_line if found.section_line != found.line else None
@@ -108,7 +102,7 @@ def _result(
         result["suppressions"] = [{**suppression, "justification": visible(found.reason)}]
     elif has_silenced:
         result["suppressions"] = []  # left out would mean that nobody knows
-    if has_baseline:
+    if background.has_baseline:
         result["baselineState"] = "unchanged" if isinstance(found, Silenced) and found.by == BASELINE else "new"
     return result
 
