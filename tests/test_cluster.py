@@ -1,0 +1,297 @@
+"""Files checked behind an executor, and by a real cluster of two processes, one of which is killed in the middle."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future, ThreadPoolExecutor
+from pathlib import Path
+from typing import Any
+
+import pytest
+from click.testing import CliRunner
+from test_jobs import ENDLESS, FOREVER, GOOD, ONLY, RAPID, _is_busy, make, planned, run, start
+
+import polarcheck
+from polarcheck.checking import batch, crews, remote
+from polarcheck.checking.remote import Answer, Batch, OnExecutor, check_batch
+from polarcheck.commands import main
+from polarcheck.errors import CrewError
+
+pytestmark = pytest.mark.usefixtures("own_folder")
+
+CLUSTER = """
+import sys
+from distributed import LocalCluster
+
+if __name__ == "__main__":
+    with LocalCluster(n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None) as cluster:
+        print(cluster.scheduler_address, *(worker.pid for worker in cluster.workers.values()), flush=True)
+        sys.stdin.read()
+"""
+
+
+class Executor(ThreadPoolExecutor):
+    """One that does something else with some of the batches; they are counted from 0."""
+
+    def __init__(self, acts: Callable[[int, Batch], Any] = lambda number, batch: None) -> None:
+        super().__init__(2)
+        self._acts = acts
+        self.sent: list[Batch] = []
+
+    def submit(self, function: Any, /, *given: Any, **more: Any) -> Future[Any]:
+        self.sent.append(given[0])
+        number = len(self.sent) - 1
+
+        def act() -> Any:
+            done = self._acts(number, given[0])
+            return function(*given, **more) if done is None else done
+
+        return super().submit(act)
+
+
+@pytest.fixture(autouse=True)
+def nothing_remembered(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(remote, "_REMEMBER", remote._Remembered())
+
+
+def through(executor: Executor, tasks: list[batch.Task], jobs: int = 2) -> list[batch.Outcome]:
+    with executor:
+        return list(crews.outcomes(tasks, OnExecutor(tasks, executor, jobs, batch.files.LARGEST, "the cluster")))
+
+
+def test_any_executor_gives_what_one_process_gives() -> None:
+    make(30)
+    Path("f/own").mkdir()
+    Path("f/own/polarcheck.toml").write_text('machine = "haas-lathe"\n')
+    Path("f/own/a.nc").write_text(RAPID)
+    Path("f/link.nc").symlink_to("nowhere")
+    tasks = planned("f")
+    found = through(Executor(), tasks)
+    assert found == list(batch.one_by_one(tasks))
+    assert sum(bool(one.failure) for one in found) == 1
+
+
+def test_settings_are_sent_to_each_once() -> None:
+    make(60)
+    executor = Executor()
+    through(executor, planned("f"), 1)
+    assert len(executor.sent) > 4
+    assert [len(sent.settings) for sent in executor.sent] == [1] + [0] * (len(executor.sent) - 1)
+
+
+def test_who_does_not_know_the_settings_gets_them() -> None:
+    make(60)
+    executor = Executor(lambda number, sent: remote._REMEMBER._known.clear() if number == 5 else None)
+    tasks = planned("f")
+    assert through(executor, tasks, 1) == list(batch.one_by_one(tasks))
+    assert [len(sent.settings) for sent in executor.sent].count(1) == 2
+
+
+def test_settings_and_their_folders_are_forgotten_in_their_turn(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(remote, "_REMEMBERED", 1)
+    Path("subs").mkdir()
+    Path("subs/O0100.nc").write_text("O0100\nM99\n")
+    make(1)
+    Path("f/polarcheck.toml").write_text('[run]\nsubprograms = ["../subs"]\n')
+    packed = remote.pack(planned("f")[0].settings)
+    first = remote._REMEMBER("first", packed)
+    assert first is not None
+    (folder,) = map(Path, first.job.run.subprograms)
+    assert [path.name for path in folder.iterdir()] == ["O0100.nc"]
+    assert remote._REMEMBER("second", packed) is not None
+    assert remote._REMEMBER("first") is None
+    assert not folder.exists()
+
+
+def test_called_programs_are_sent() -> None:
+    Path("subs").mkdir()
+    Path("subs/O0100.nc").write_text("O0100\nM98 P200\nM99\n")
+    Path("subs/O0200").write_text("O0200\nG0 C5.\nM99\n")
+    Path("subs/secret").symlink_to("/etc/hostname")
+    make(3)
+    Path("f/polarcheck.toml").write_text('[run]\nsubprograms = ["../subs"]\n')
+    for path in Path("f").glob("*.nc"):
+        path.write_text(RAPID.replace("G0 C5.", "M98 P100"))
+    tasks = planned("f")
+    expected = list(batch.one_by_one(tasks))
+    assert expected[0].report is not None
+    assert "in O0200, line 2" in expected[0].report.findings[0].message
+
+    def acts(number: int, sent: Batch) -> None:
+        if Path("subs").exists():
+            Path("subs").rename("gone")
+
+    assert through(Executor(acts), tasks, 1) == expected
+    sent = remote.pack(tasks[0].settings)
+    assert sorted(remote.library.contents("gone")) == ["O0100.nc", "O0200"]
+    assert len(sent) < 100_000
+
+
+def test_too_many_called_programs_are_not_sent(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(remote, "_MOST_CALLED", 1_000_000)
+    Path("subs").mkdir()
+    Path("subs/O0100.nc").write_text("O0100\n" + "\n" * 2_000_000)
+    make(3)
+    Path("f/polarcheck.toml").write_text('[run]\nsubprograms = ["../subs"]\n')
+    with pytest.raises(CrewError, match=r"subs: 2 MB of subprograms are too much to be sent.*; 0 of 3 files"):
+        through(Executor(), planned("f"))
+
+
+# ---- what goes wrong ----
+
+
+def failing(error: BaseException, when: Callable[[int, Batch], bool]) -> Executor:
+    def acts(number: int, sent: Batch) -> None:
+        if when(number, sent):
+            raise error
+
+    return Executor(acts)
+
+
+def test_what_was_lost_is_sent_again() -> None:
+    make(40)
+    tasks = planned("f")
+    executor = failing(OSError("gone"), lambda number, sent: number in (0, 3))
+    assert through(executor, tasks) == list(batch.one_by_one(tasks))
+
+
+def test_a_file_that_ends_who_checks_it_is_told() -> None:
+    make(40)
+    tasks = planned("f")
+    executor = failing(OSError("gone"), lambda number, sent: any(path == "f/003.nc" for _, path, _, _ in sent.items))
+    found = through(executor, tasks)
+    assert [one.failure for one in found if one.failure] == ["f/003.nc: could not be checked: its process ended"]
+    assert len(found) == 40
+
+
+def test_a_cluster_that_is_gone_leaves_what_is_finished() -> None:
+    make(40)
+    tasks = planned("f")
+    executor = failing(remote.CancelledError(), lambda number, sent: number > 4)
+    told: list[str] = []
+    with executor:
+        crew = OnExecutor(tasks, executor, 2, batch.files.LARGEST, "the cluster")
+        checked = batch.gather(crews.outcomes(tasks, crew), told.append, lambda bug: pytest.fail(str(bug)))
+    (line,) = told
+    assert line == f"the cluster is gone; {len(checked.files)} of 40 files were checked"
+    assert 0 < len(checked.files) < 40
+    assert [file.path for file in checked.files] == sorted(file.path for file in checked.files)
+
+
+@pytest.mark.parametrize(
+    ("error", "line"),
+    [
+        (ModuleNotFoundError("No module named 'polarcheck'"), "is wanted on all workers: No module named 'polarcheck'"),
+        (remote.CancelledError(), "the cluster is gone; 0 of 3 files were checked"),
+    ],
+)
+def test_what_no_worker_can_do_is_told_in_a_line(error: BaseException, line: str) -> None:
+    make(3)
+    with pytest.raises(CrewError) as told:
+        through(failing(error, lambda number, sent: True), planned("f"))
+    assert line in str(told.value)
+
+
+def test_an_executor_that_takes_no_more_is_told() -> None:
+    make(3)
+    executor = Executor()
+    executor.shutdown()
+    with pytest.raises(CrewError, match="the cluster takes no more files: cannot schedule new futures"):
+        through(executor, planned("f"))
+
+
+def test_another_version_is_told() -> None:
+    make(3)
+    with pytest.raises(CrewError, match=rf"a worker has polarcheck 9.9, this is {polarcheck.__version__}"):
+        through(Executor(lambda number, sent: Answer("9.9")), planned("f"))
+    assert check_batch(Batch("9.9", [], {})) == Answer(polarcheck.__version__)
+
+
+def test_without_the_extra_it_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    import socket
+
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    make(1)
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        address = f"tcp://127.0.0.1:{server.getsockname()[1]}"
+        result = CliRunner().invoke(main, ["check", "f", "--cluster", address])
+    assert result.exit_code == 2
+    assert result.stderr == 'polarcheck: --cluster needs dask.distributed: pip install "polarcheck[cluster]"\n'
+
+
+@pytest.mark.parametrize(
+    ("address", "line"),
+    [
+        ("tcp://127.0.0.1:1", "no scheduler answers there: Connection refused"),
+        ("nowhere", "expected tcp://HOST:PORT"),
+        ("http://127.0.0.1:80", "expected tcp://HOST:PORT"),
+        ("tcp://127.0.0.1:99999", "no scheduler answers there"),
+        ("tcp://no.such.host.invalid:80", "no scheduler answers there"),
+    ],
+)
+def test_an_address_where_nobody_is_takes_seconds_at_most(address: str, line: str) -> None:
+    make(1)
+    status, shown, told = run("check", "f", "--cluster", address)
+    assert (status, shown) == (2, "")
+    assert told.startswith(f"polarcheck: --cluster {address}: ")
+    assert line in told
+    assert told.count("\n") == 1
+
+
+# ---- a real one ----
+
+
+@pytest.fixture(scope="module")
+def cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[str, list[int]]]:
+    """The address of the scheduler, and two workers in processes of their own."""
+    folder = tmp_path_factory.mktemp("cluster")
+    script = folder / "cluster.py"
+    script.write_text(CLUSTER)
+    environment = {
+        **os.environ,
+        "PYTHONPATH": os.fspath(Path(polarcheck.__file__).parent.parent),
+        "DASK_TEMPORARY_DIRECTORY": os.fspath(folder),
+    }
+    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "stderr": subprocess.DEVNULL}
+    with subprocess.Popen([sys.executable, str(script)], env=environment, text=True, cwd=folder, **pipes) as running:  # type: ignore[call-overload]
+        address, *workers = running.stdout.readline().split()
+        try:
+            yield address, list(map(int, workers))
+        finally:
+            running.stdin.close()
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                running.wait(60)
+            running.kill()
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="looks into /proc")
+def test_a_worker_that_is_killed_loses_nothing(cluster: tuple[str, list[int]]) -> None:
+    address, workers = cluster
+    make(24)
+    for number in (3, 9, 17):
+        Path(f"f/{number:03}.nc").write_text(ENDLESS)
+    Path("f/003.nc").write_text(RAPID)
+    words = ("check", "f", *ONLY, "--format", "json", "--max-seconds", "1.5", *FOREVER[2:])
+    running = start(*words, "--cluster", address)
+    while not (busy := [worker for worker in workers if _is_busy(worker)]):
+        assert running.poll() is None
+    os.kill(busy[0], signal.SIGKILL)
+    shown, told = running.communicate(timeout=120)
+    assert (running.returncode, shown, told) == run(*words, "--jobs", "1")
+
+
+def test_a_cluster_reads_no_file_of_ours(cluster: tuple[str, list[int]]) -> None:
+    """Its workers stand in another folder: what is read there would be another file, or none."""
+    make(4)
+    Path("g").mkdir()
+    Path("g/bad.nc").write_text(GOOD)
+    Path("g/bad.nc").chmod(0)
+    words = ("check", "f", "g", "-", "--max-size", "10k", *ONLY)
+    found = run(*words, "--cluster", cluster[0], input=RAPID)
+    assert found == run(*words, "--jobs", "1", input=RAPID)
+    assert "-:4:1: error" in found[1]
