@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import importlib
 import re
 from collections.abc import Iterator, Mapping, Sequence
@@ -13,6 +14,7 @@ from polarcheck.checking.finding import Finding
 from polarcheck.checking.rule import Rule
 from polarcheck.machines import profiles, toml_text
 from polarcheck.machines.job import from_table, with_tool
+from polarcheck.machines.machine import Machine
 from polarcheck.machines.profiles import Profile
 from polarcheck.reports.pages.markdown import MADE, prose, row, rule_under
 
@@ -78,11 +80,17 @@ def _findings(example: Example, rule: Rule) -> Sequence[Finding]:
         for folder in folders:
             place = place.setdefault(folder, {})
         place[last] = toml_text.parsed(f"value = {value}")["value"]
-    machine = profiles.load(example.machine or profiles.DEFAULT, changes).machine
+    name = example.machine or profiles.DEFAULT
+    machine = profiles.load(name, changes).machine if changes else _built_in()[name]
     job = from_table(table, rule.name)
     for tool in example.tools:
         job = with_tool(job, tool)
     return check.check_file(example.program.encode(), machine, job, [rule], severities=_as_found(rule)).findings
+
+
+@functools.cache
+def _built_in() -> dict[str, Machine]:
+    return {profile.name: profile.machine for profile in profiles.built_in()}
 
 
 def _as_found(rule: Rule) -> dict[str, str]:
@@ -153,7 +161,7 @@ def _fixes(said: Sequence[Finding]) -> Iterator[str]:
         yield "None is made by itself: what to write instead stands in the message."
         return
     for fix in fixes.values():
-        asked = "`--fix`" if fix.safe else "`--unsafe-fixes`"
+        asked = "`--fix`" if fix.safe else "`--fix --unsafe-fixes`"
         yield f"- {prose(fix.title)}: written by {asked}, shown by `--diff` ([fixes](../../fixes.md))"
 
 
