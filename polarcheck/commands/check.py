@@ -8,7 +8,7 @@ from typing import Any
 
 import click
 
-from polarcheck.commands import fixing, jobs, options, reporting, silencing, standard_input
+from polarcheck.commands import fixing, jobs, options, reporting, silencing, standard_input, watching
 from polarcheck.commands.diff_base import diff_base, narrowed
 from polarcheck.commands.exit_codes import BUG, COULD_NOT_RUN
 from polarcheck.commands.options import many, option
@@ -20,7 +20,7 @@ _LONG = 3
 #: Options that change how a report looks or where it goes, who makes it or which files it is of, but not what it says.
 _OF_OUTPUT = (
     *("stdin_filename", "form", "outputs", "color", "quiet", "following", "silenced", "statistics"),
-    *("diff_base", "workers", "cluster", *fixing.NAMES),
+    *("diff_base", "workers", "cluster", "watch", *fixing.NAMES),
 )
 _FORMATS = formats()
 
@@ -66,6 +66,7 @@ def _outputs(ctx: click.Context, parameter: click.Parameter, values: tuple[str, 
 @standard_input.filename
 @jobs.jobs
 @jobs.cluster
+@watching.watch
 @option("--color", type=click.Choice(["auto", "always", "never"]), default="auto", show_default=True)
 @option("--show-following", "following", is_flag=True, help="In text, what follows from a finding, too.")
 @silencing.show_silenced
@@ -73,7 +74,7 @@ def _outputs(ctx: click.Context, parameter: click.Parameter, values: tuple[str, 
 @fixing.wanted
 @options.debug
 @click.pass_context
-def check(ctx: click.Context, /, paths: tuple[str, ...], **asked: Any) -> None:
+def check(ctx: click.Context, /, paths: tuple[str, ...], watch: bool, **asked: Any) -> None:
     """
     Check NC programs: files, folders, or - for standard input.
 
@@ -89,7 +90,12 @@ def check(ctx: click.Context, /, paths: tuple[str, ...], **asked: Any) -> None:
     understood or written, 3 for a bug; 130 or 143 where it was interrupted or terminated: what was finished until then
     is reported.
     """
-    ctx.exit(_check(paths, _command(ctx), options.DEBUG in ctx.meta, **asked))
+    command, debug = _command(ctx), options.DEBUG in ctx.meta
+
+    def run(seen: watching.Seen | None) -> int:
+        return _check(paths, command, debug, seen, **asked)
+
+    ctx.exit(watching.repeatedly(run, paths, asked["outputs"]) if watch else run(None))
 
 
 def _command(ctx: click.Context) -> str:
@@ -119,6 +125,7 @@ def _check(
     paths: tuple[str, ...],
     command: str,
     debug: bool,
+    seen: watching.Seen | None,
     *,
     form: str | None,
     outputs: list[tuple[str, Path]],
@@ -174,7 +181,7 @@ def _check(
     shown = plain._replace(columns=columns(), color=in_color(color))
     shower = live.Live(form, shown, len(tasks), bar.hide, in_place_of_findings=statistics, to_error=made.has_output)
     with (
-        jobs.outcomes(tasks, max_size, workers, cluster) as outcomes,
+        jobs.outcomes(tasks, max_size, workers, cluster, seen) as outcomes,
         contextlib.closing(bar.watched(outcomes)) as watched,
     ):
         answered = silencing.answered(watched, tasks, applies.baseline)

@@ -16,6 +16,7 @@ from polarcheck.commands.options import option
 
 if TYPE_CHECKING:
     from polarcheck.checking.batch import Outcome, Task
+    from polarcheck.commands.watching import Seen
 
 #: This process begins alone. Others are started once it was at it for so long [s],
 _ALONE = 0.25
@@ -54,24 +55,28 @@ def cores() -> int:
 
 @contextlib.contextmanager
 def outcomes(
-    tasks: Sequence[Task], most: int, workers: int = 1, address: str | None = None
+    tasks: Sequence[Task], most: int, workers: int = 1, address: str | None = None, seen: Seen | None = None
 ) -> Iterator[Generator[Outcome, None, None]]:
     """
     What comes of each file, in the order of the tasks, whoever checks it; at the end nobody is left who checks.
 
-    most: bytes of a file. workers: processes, 0 for as many as pay. address: of the scheduler of a cluster. Raises
-    CrewError where that cannot be used.
+    most: bytes of a file. workers: processes, 0 for as many as pay. address: of the scheduler of a cluster. seen: what
+    is known of an earlier run, and not checked again. Raises CrewError where the cluster cannot be used.
     """
+    if seen is not None:
+        with seen.outcomes(tasks, lambda changed: outcomes(changed, most, workers, address)) as found:
+            yield found
+        return
     from polarcheck.checking.batch import one_by_one
 
     with contextlib.ExitStack() as stack:
-        if address is not None:
+        if address is not None and tasks:
             from polarcheck.checking import crews
             from polarcheck.commands import cluster as of_cluster
 
             crew = stack.enter_context(of_cluster.crew(address, tasks, most))
             found = crews.outcomes(tasks, crew, most)
-        elif workers == 1 or len(tasks) == 1:
+        elif workers == 1 or len(tasks) <= 1:
             found = one_by_one(tasks, most)
         elif workers:
             found = _by_pool(tasks, most, workers)

@@ -1,0 +1,194 @@
+"""
+`--watch`: check, and again whenever something changes that the result hangs on.
+
+It looks at times and sizes of files: drives of a network tell nobody that something has changed there.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import stat
+import sys
+import time
+from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from polarcheck.commands.exit_codes import CLEAN, COULD_NOT_RUN, INTERRUPTED
+from polarcheck.commands.options import option
+from polarcheck.commands.output import is_terminal, say
+from polarcheck.errors import PolarcheckError, UsageError
+
+if TYPE_CHECKING:
+    from polarcheck.checking.batch import Outcome, Task
+
+watch = option("--watch", is_flag=True, help="Check again whenever a file changes, until Ctrl-C.")
+
+#: From one look to the next at least this [s], and so many times as long as a look takes.
+_PAUSE, _TIMES = 0.5, 10
+#: A file that is being written changes at each of two looks so far apart [s]; nobody waits for it longer than this [s].
+_SETTLING, _LONGEST = 0.1, 5.0
+#: Job files that may come to lie in a folder above the programs.
+_OF_JOBS = ("polarcheck.toml", "pyproject.toml")
+#: Of the files that have changed so many are named.
+_NAMED = 3
+
+#: What changes with a file: None where it cannot be looked at.
+State = tuple[int, int, int] | None
+Look = dict[str, State]
+#: The outcomes of some tasks.
+Check = Callable[[Sequence["Task"]], contextlib.AbstractContextManager[Generator["Outcome", None, None]]]
+
+
+class Seen:
+    """What was looked at for the last result, and what came of each program."""
+
+    def __init__(self, paths: Sequence[str], written: Iterable[Path] = ()) -> None:
+        """written: what the runs themselves write, which is no change."""
+        self._asked = paths
+        self._written = frozenset(os.path.realpath(path) for path in written)
+        self._of_programs: dict[str, tuple[Look, Outcome]] = {}
+        self._look: Look = {}
+
+    @contextlib.contextmanager
+    def outcomes(self, tasks: Sequence[Task], check: Check) -> Iterator[Generator[Outcome, None, None]]:
+        """What comes of each task, in order; only those are checked of which something has changed."""
+        looks = [self._of(task) for task in tasks]
+        self._look = {path: self._state(path) for path in _surroundings(self._asked)}
+        for look in looks:
+            self._look |= look
+        keys = [f"{number}\n{task.path}" for number, task in _numbered(tasks)]
+        known = [self._of_programs.get(key) for key in keys]
+        are_new = [old is None or old[0] != look for old, look in zip(known, looks, strict=True)]
+        self._of_programs = {key: old for key, old in zip(keys, known, strict=True) if old is not None}
+        with check([task for task, is_new in zip(tasks, are_new, strict=True) if is_new]) as found:
+
+            def merged() -> Generator[Outcome, None, None]:
+                for key, look, is_new, old in zip(keys, looks, are_new, known, strict=True):
+                    outcome = next(found) if is_new or old is None else old[1]
+                    self._of_programs[key] = look, outcome
+                    yield outcome
+
+            yield merged()
+
+    def _of(self, task: Task) -> Look:
+        """All that the result of a program hangs on: itself, its settings, and what it may call."""
+        settings = task.settings
+        files = {task.path, *(str(path) for path in settings.read)}
+        for folder in settings.job.run.subprograms:
+            files |= _inside(folder)
+        return {path: self._state(path) for path in sorted(files)}
+
+    def changed(self) -> list[str]:
+        """What has changed since the last result began; empty where nothing has."""
+        return [path for path, state in self._look.items() if self._state(path) != state]
+
+    def states(self, paths: Iterable[str]) -> Look:
+        """How some files are now."""
+        return {path: self._state(path) for path in paths}
+
+    def keep_looking(self) -> None:
+        """What has changed by now is known: it could not be checked."""
+        self._look = {path: self._state(path) for path in self._look}
+
+    def _state(self, path: str) -> State:
+        try:
+            status = os.stat(path)  # noqa: PTH116  thousands of them
+            if stat.S_ISDIR(status.st_mode):
+                # Of a folder it counts what lies in it: its time changes with each report that is written there.
+                with os.scandir(path) as entries:
+                    names = sorted(one.name for one in entries if not one.name.startswith("."))
+                written = [name for name in names if os.path.realpath(os.path.join(path, name)) not in self._written]  # noqa: PTH118
+                return hash(tuple(written)), 0, status.st_ino
+        except (OSError, ValueError):
+            return None
+        return status.st_mtime_ns, status.st_size, status.st_ino
+
+
+def _numbered(tasks: Sequence[Task]) -> Iterator[tuple[int, Task]]:
+    """Tasks of one path have different settings: they count from 0."""
+    met: dict[str, int] = {}
+    for task in tasks:
+        met[task.path] = met.get(task.path, -1) + 1
+        yield met[task.path], task
+
+
+def _inside(folder: str) -> set[str]:
+    """A folder and what lies in it."""
+    found = {folder}
+    with contextlib.suppress(OSError), os.scandir(folder) as entries:
+        found.update(entry.path for entry in entries)
+    return found
+
+
+def _surroundings(paths: Iterable[str]) -> Iterator[str]:
+    """Where programs and job files may come to lie: the folders, and the names that count in those above them."""
+    for path in paths:
+        yield path
+        folder = os.path.realpath(path if os.path.isdir(path) else os.path.dirname(path))  # noqa: PTH112, PTH120
+        while True:
+            yield from (os.path.join(folder, name) for name in _OF_JOBS)  # noqa: PTH118
+            folder, inner = os.path.dirname(folder), folder  # noqa: PTH120
+            if folder == inner:
+                break
+        if os.path.isdir(path):  # noqa: PTH112
+            for outer, inner_folders, _ in os.walk(path):
+                yield outer
+                inner_folders[:] = [name for name in inner_folders if not name.startswith(".")]
+
+
+def repeatedly(run: Callable[[Seen], int], paths: Sequence[str], outputs: Iterable[tuple[str, Path]] = ()) -> int:
+    """
+    Run a check again and again; Ctrl-C, with which it is meant to end, ends it with 0.
+
+    outputs: the reports that it writes, format and file. Raises UsageError for standard input, and what the first run
+    raises.
+    """
+    if "-" in paths:
+        raise UsageError("--watch: standard input comes once; name a file or folder")
+    seen = Seen(paths, [path for _, path in outputs])
+    try:
+        status = _run(run, seen, ())
+        while status < INTERRUPTED:
+            say("watching for changes; Ctrl-C ends")
+            changed = _next_change(seen)
+            try:
+                status = _run(run, seen, changed)
+            except PolarcheckError as error:  # a job file half written, say
+                say(str(error))
+                seen.keep_looking()
+                status = COULD_NOT_RUN
+    except KeyboardInterrupt as stop:
+        from polarcheck.commands.signals import told
+
+        status, _ = told(stop)
+    return CLEAN if status == INTERRUPTED else status
+
+
+def _run(run: Callable[[Seen], int], seen: Seen, changed: Sequence[str]) -> int:
+    if is_terminal(sys.stdout):
+        click.clear()
+    if changed:
+        named = ", ".join(changed[:_NAMED])
+        more = len(changed) - _NAMED
+        say(f"{named}{f' and {more} more' if more > 0 else ''} changed, {time.strftime('%H:%M:%S')}")
+    return run(seen)
+
+
+def _next_change(seen: Seen) -> list[str]:
+    """Wait for something to change, and until it is at rest."""
+    while True:
+        begun = time.monotonic()
+        if changed := seen.changed():
+            break
+        time.sleep(max(_PAUSE, _TIMES * (time.monotonic() - begun)))
+    end = time.monotonic() + _LONGEST
+    before: object = None
+    while (now := seen.states(changed)) != before and time.monotonic() < end:
+        before = now
+        time.sleep(_SETTLING)
+        changed = seen.changed() or changed
+    return sorted(changed)
