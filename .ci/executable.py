@@ -13,6 +13,7 @@ from __future__ import annotations
 import json
 import os
 import platform
+import re
 import shutil
 import subprocess
 import sys
@@ -23,6 +24,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 SAMPLES = "sample_programs"
+COMMANDS = re.compile(r"^  ([a-z]+) ", re.MULTILINE)
 
 
 def main() -> None:
@@ -60,10 +62,10 @@ def command(folder: Path) -> Path:
     return folder / ("polarcheck.exe" if os.name == "nt" else "polarcheck")
 
 
-def said(*arguments: str | Path, codes: tuple[int, ...] = (0,)) -> str:
-    """What a command prints; another exit code ends the build."""
+def said(*arguments: str | Path, codes: tuple[int, ...] = (0,), given: bytes = b"") -> str:
+    """What a command prints to whom this is given; another exit code ends the build."""
     environment = {**os.environ, "PYTHONUTF8": "1"}
-    done = subprocess.run(arguments, capture_output=True, cwd=ROOT, env=environment, timeout=600)
+    done = subprocess.run(arguments, capture_output=True, cwd=ROOT, env=environment, input=given, timeout=600)
     if done.returncode not in codes or done.stderr:
         sys.exit(f"{arguments}: exit code {done.returncode}\n{done.stderr.decode(errors='replace')}")
     return done.stdout.decode("utf-8").replace("\r\n", "\n")
@@ -72,7 +74,9 @@ def said(*arguments: str | Path, codes: tuple[int, ...] = (0,)) -> str:
 def attempt(python: Path, built: Path) -> None:
     """The executable says what the installed package says."""
     installed = (python, "-m", "polarcheck")
+    commands = COMMANDS.findall(said(built, "--help").partition("Commands:")[2])
     for arguments in (
+        *((name, "--help") for name in commands),
         ("rules", "--format", "json"),
         ("machines",),
         ("machines", "fanuc-30i"),
@@ -80,6 +84,11 @@ def attempt(python: Path, built: Path) -> None:
         ("schema",),
         ("completion", "powershell"),
         ("check", SAMPLES, "--format", "json"),
+        *(
+            [("check", SAMPLES, "--format", "json", "--jobs", "2")]
+            if "--jobs" in said(built, "check", "--help")
+            else []
+        ),
         ("check", f"{SAMPLES}/hexagon.nc"),
         ("trace", f"{SAMPLES}/hexagon.nc"),
     ):
@@ -87,6 +96,8 @@ def attempt(python: Path, built: Path) -> None:
         if expected != found:
             sys.exit(f"polarcheck {' '.join(arguments)}: the executable says something else than the package")
         print(f"polarcheck {' '.join(arguments)}: the same, {len(found)} characters")
+    if "server" in commands:
+        talk(built)
     files = json.loads(said(built, "check", SAMPLES, "--format", "json", codes=(0, 1)))["files"]
     print(f"{len(files)} sample programs checked")
     for name, how in (("installed package", installed), ("executable", (built,))):
@@ -96,6 +107,19 @@ def attempt(python: Path, built: Path) -> None:
             said(*how, "--version")
             times.append(time.perf_counter() - begun)
         print(f"start of the {name}: {sorted(times)[2] * 1000:.0f} ms")
+
+
+def talk(built: Path) -> None:
+    """The language server answers an editor, and ends when it is told to."""
+    told = b""
+    for number, method in enumerate(("initialize", "shutdown", "exit"), 1):
+        parameters = {"capabilities": {}, "processId": None, "rootUri": None} if method == "initialize" else None
+        message: dict[str, object] = {"jsonrpc": "2.0", "method": method, "params": parameters}
+        body = json.dumps(message if method == "exit" else {**message, "id": number}).encode()
+        told += b"Content-Length: %d\r\n\r\n%b" % (len(body), body)
+    if "hoverProvider" not in said(built, "server", given=told):
+        sys.exit("polarcheck server: it answers no editor")
+    print("polarcheck server: it answers an editor")
 
 
 if __name__ == "__main__":
