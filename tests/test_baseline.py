@@ -344,6 +344,25 @@ def test_standard_input() -> None:
     assert check("-", given=TWICE).exit_code == 1
 
 
+def test_what_an_editor_holds_is_known_as_its_file() -> None:
+    make(sub_of_a__nc=RAPID)
+    baseline("create", "sub")
+    result = check("-", "--stdin-filename", "sub/a.nc", "--format", "json", given=TWICE)
+    assert (silenced(result), result.exit_code, result.stderr) == ({"sub/a.nc": 1}, 1, "")
+
+
+def test_many_files_by_several_processes() -> None:
+    for number in range(30):
+        make(**{f"{number:02}__nc": RAPID if number % 2 else TWICE})
+    assert baseline("create", ".", "--jobs", "2").stdout == f"{FILE}: 45 findings of 30 files known\n"
+    make(**{"07__nc": TWICE, "08__nc": RAPID})
+    shown = [check(".", "--jobs", jobs) for jobs in ("1", "2")]
+    assert shown[0].stdout == shown[1].stdout
+    assert shown[0].stderr == shown[1].stderr
+    assert shown[0].stdout.startswith("07.nc:7:1: error: ")
+    assert "1 known finding no longer occurs: rapid-in-polar in 08.nc;" in shown[0].stderr
+
+
 # ---- faults ----
 
 
@@ -472,7 +491,9 @@ def test_a_verdict_says_what_it_does_not_rest_on() -> None:
 
 
 def test_it_takes_all_options_that_decide_what_is_found() -> None:
-    assert set(Options.__struct_fields__) - {"use_config", "baseline"} <= set(baseline_command.DECIDING)
+    assert set(Options.__struct_fields__) - {"use_config", "baseline", "strict", "fail_on"} <= set(
+        baseline_command.DECIDING
+    )
     for command in ("create", "update", "prune"):
         parameters = {one.name for one in baseline_command.baseline.commands[command].params}
         assert {*baseline_command.DECIDING, "output"} <= parameters

@@ -52,7 +52,7 @@ def answered(outcomes: Iterable[Outcome], tasks: Sequence[Task], path: Path | No
     from polarcheck.checking.baseline import Baseline
     from polarcheck.checking.batch import fails
 
-    known = Baseline(baseline_file.read(path), path.parent, (task.path for task in tasks))
+    known = Baseline(baseline_file.read(path), path.parent, (task.named or task.path for task in tasks))
     settings = settings_of(tasks)
     for outcome in outcomes:
         found = outcome.report
