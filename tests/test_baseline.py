@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -11,7 +12,7 @@ from typing import Any
 
 import pytest
 from click.testing import CliRunner, Result
-from programs import report_of
+from programs import ROOT, report_of
 
 import polarcheck
 from polarcheck.checking.baseline_file import Entry, read, text_of
@@ -142,6 +143,30 @@ def test_the_same_finding(changed: str) -> None:
     result = check("a.nc", "--format", "json")
     assert (result.exit_code, silenced(result)) == (0, {"a.nc": 1})
     assert result.stderr == ""
+
+
+def respelled(program: str) -> str:
+    """As another hand would write it: N numbers, zeros, remarks, the line ends of a punch."""
+    lines = []
+    for number, line in enumerate(program.splitlines()):
+        text = re.sub(r"(?<=[XCZIJ])(-?)(\d+)\.(\d*)", r"\g<1>0\2.\g<3>0", line)
+        text = re.sub(r"G([0-3])(?![\d.])", r"G0\1", text)
+        is_block = text.strip() and text[0] not in "%O:(/N;" and "(" not in text
+        lines.append(f"N{10 * number} {text} (X)" if is_block else text)
+    return "\n\r\r".join([*lines, ""])
+
+
+@pytest.mark.parametrize("path", sorted((ROOT / "sample_programs").glob("*.nc")), ids=lambda path: path.stem)
+def test_sample_programs_keep_their_fingerprints(path: Path) -> None:
+    text = path.read_text("utf-8")
+    if re.search(r"#|GOTO|M98|M99", text):
+        pytest.skip("its macro statements and jumps name N numbers")
+    groups = ("polar", "compensation", "feed", "motion", "setup")
+    before, after = (
+        sorted((found.rule, found.fingerprint) for found in report_of(program, only=groups).findings)
+        for program in (text, respelled(text))
+    )
+    assert before == after
 
 
 @pytest.mark.parametrize(
