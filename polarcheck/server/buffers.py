@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import os
 import threading
 import time
 from collections.abc import Awaitable, Callable, Sequence
@@ -143,7 +144,7 @@ class Buffers:
         """The files on which an outcome hangs: those read, and the job files that could be there."""
         found = [*judged.read]
         roots = self._folders_of(judged.path)
-        for folder in judged.path.parents:
+        for folder in Path(os.path.realpath(judged.path)).parents:
             if not any(folder.is_relative_to(root) for root in roots):
                 break
             found += [folder / "polarcheck.toml", folder / "pyproject.toml"]

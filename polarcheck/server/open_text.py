@@ -8,6 +8,7 @@ import re
 import sys
 from collections.abc import Iterable
 from functools import cached_property
+from itertools import accumulate
 from pathlib import Path
 from urllib.parse import unquote_to_bytes
 
@@ -49,13 +50,15 @@ class OpenText:
 
     @cached_property
     def _starts(self) -> list[int]:
-        return [0, *(found.end() for found in _LINE_END.finditer(self.text))]
+        text = self.text
+        if text.count("\r") == text.count("\r\n"):
+            return _starts(text, "\n")
+        return [0, *(found.end() for found in _LINE_END.finditer(text))]
 
     @cached_property
     def _report_starts(self) -> list[int]:
         """Where the lines of reports begin: behind LF, or behind CR where there is no LF (reading.source)."""
-        end = "\n" if "\n" in self.text else "\r"
-        return [0, *(found.end() for found in re.finditer(end, self.text))]
+        return _starts(self.text, "\n" if "\n" in self.text else "\r")
 
     # ---- as the editor counts ----
 
@@ -134,6 +137,11 @@ class OpenText:
     def character_of(self, position: types.Position) -> int:
         """The character at a place, as tables of a program count them."""
         return max(self.offset(position) - self._lead, 0)
+
+
+def _starts(text: str, end: str) -> list[int]:
+    """Where lines begin that end in one character: with each key that is pressed it is asked anew."""
+    return [0, *accumulate(len(line) + 1 for line in text.split(end)[:-1])]
 
 
 def path_of(uri: str) -> Path | None:

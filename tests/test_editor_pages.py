@@ -1,0 +1,123 @@
+"""The pages for editors: what they tell to copy is read from them, and tried on real output."""
+
+from __future__ import annotations
+
+import json
+import re
+import sys
+from pathlib import Path
+from typing import Any
+
+import click
+import msgspec
+import pytest
+from programs import ROOT, report_of
+from test_cli import RAPID, call
+
+from polarcheck.checking import batch
+from polarcheck.commands import main
+from polarcheck.reports import Background, render
+
+pytestmark = pytest.mark.usefixtures("own_folder")
+
+PAGES = ROOT / "docs" / "editors"
+TASKS: list[dict[str, Any]] = json.loads((PAGES / "tasks.json").read_text("utf-8"))["tasks"]
+#: As they stand in a report; those of Windows are shown with slashes, but an editor may ask with its own.
+PATHS = (
+    "O1234",
+    "inner folder/a b(1).nc",
+    "C:/shop/O1.NC",
+    "C:\\shop\\o 1.nc",
+    "//server/share$/\u00fc#%/O1.NC",
+    "/srv/12:34/a.nc",
+    "a [rule] error: .nc",
+    "./-x.nc",
+)
+#: Of each severity, with a message that holds what the pattern looks for.
+NASTY = (
+    RAPID.replace("C0\n", "C0 (A:1:2: error: B [c])\n").replace("G1 C", "g1 C") + "M98 P77\n(1:2: note: [x-y])#1=[\n"
+)
+
+
+def lines_of(path: str) -> tuple[list[str], list[Any]]:
+    """The lines of a concise report under a path, and its findings."""
+    file = msgspec.structs.replace(report_of(NASTY), path=path)
+    report = batch.report([file], "fanuc")
+    return render("concise", report, Background()).splitlines(), file.findings
+
+
+@pytest.mark.parametrize("path", PATHS)
+@pytest.mark.parametrize("task", TASKS, ids=lambda task: str(task["label"]))
+def test_the_problem_matcher_finds_file_place_and_rule(task: dict[str, Any], path: str) -> None:
+    pattern = task["problemMatcher"]["pattern"]
+    lines, findings = lines_of(path)
+    assert len(findings) > 2
+    for line, found in zip(lines, findings, strict=True):
+        match = re.fullmatch(pattern["regexp"], line)
+        assert match is not None
+        told = {key: match[group] for key, group in pattern.items() if key != "regexp"}
+        assert told == {
+            "file": path,
+            "line": str(found.line),
+            "column": str(found.column),
+            "severity": found.severity,
+            "message": found.message,
+            "code": found.rule,
+        }
+
+
+def test_other_lines_are_no_findings() -> None:
+    pattern = TASKS[0]["problemMatcher"]["pattern"]["regexp"]
+    Path("a.nc").write_text(RAPID, "utf-8")
+    for form in ("text", "json"):
+        shown = call("check", "a.nc", "--format", form, "--color", "never").stdout
+        assert not [line for line in shown.splitlines() if re.fullmatch(pattern, line)]
+
+
+@pytest.mark.parametrize("task", TASKS, ids=lambda task: str(task["label"]))
+@pytest.mark.parametrize("name", ["O1234", "a b.nc", *(["\u00fc:1.nc", "'$(x).nc"] if sys.platform != "win32" else [])])
+def test_the_task_checks_the_program(task: dict[str, Any], name: str) -> None:
+    path = Path(name).absolute()
+    path.write_text(RAPID, "utf-8")
+    assert task["command"] == "polarcheck"
+    result = call(*(str(path) if word == "${file}" else word for word in task["args"]))
+    assert result.exit_code == 1
+    matches = [re.fullmatch(task["problemMatcher"]["pattern"]["regexp"], line) for line in result.stdout.splitlines()]
+    assert matches
+    assert {match and Path(match[1]).absolute() for match in matches} == {path}
+
+
+def test_the_masks_of_notepad_match_each_severity() -> None:
+    page = (PAGES / "notepadpp.md").read_text("utf-8")
+    masks = re.findall(r"^    (%FILE%.*)$", page, re.MULTILINE)
+    places = {"%FILE%": "(.+?)", "%LINE%": r"(\d+)", "%CHAR%": r"(\d+)", r"\*": ".*"}
+    patterns = []
+    for mask in masks:
+        pattern = re.escape(mask)
+        for written, meant in places.items():
+            pattern = pattern.replace(written, meant)
+        patterns.append(pattern)
+    lines, findings = lines_of("C:/shop/O1.NC")
+    assert {found.severity for found in findings} == {"error", "warning", "note"}
+    for line, found in zip(lines, findings, strict=True):
+        (match,) = [match for pattern in patterns if (match := re.fullmatch(pattern, line))]
+        assert match.groups() == ("C:/shop/O1.NC", str(found.line), str(found.column))
+
+
+@pytest.mark.parametrize("page", sorted(PAGES.glob("*.md")), ids=lambda page: page.stem)
+def test_options_and_links_of_the_pages_are_there(page: Path) -> None:
+    text = page.read_text("utf-8")
+    known = {
+        written
+        for name in ("server", "check")
+        for parameter in main.commands[name].params
+        if isinstance(parameter, click.Option)
+        for written in parameter.opts
+    }
+    assert set(re.findall(r"(?<![\w-])--[a-z][a-z-]+", text)) <= known
+    for target in re.findall(r"\]\(([^)]+)\)", text):
+        name, _, anchor = target.partition("#")
+        linked = page.parent / name if name else page
+        assert linked.is_file()
+        headings = re.findall(r"^#+ (.+)$", linked.read_text("utf-8"), re.MULTILINE)
+        assert not anchor or anchor in [heading.lower().replace(" ", "-") for heading in headings]
