@@ -25,11 +25,7 @@ PAGES_TO_COME = {
     *("archives.md", "ci.md", "configuration.md", "fixes.md", "reports.md", "silence.md"),
     *("editors/neovim.md", "editors/notepadpp.md", "editors/vscode.md"),
 }
-TO_COME = {
-    *("baseline", "config", "init", "server", "junit", "sarif", "github", "gitlab", "checkstyle"),
-    *("--baseline", "--backup", "--cluster", "--diff", "--diff-base", "--fix", "--jobs", "--no-inline"),
-    *("--show-silenced", "--statistics", "--stdin-filename", "--unsafe-fixes", "--watch", "--force-exclude"),
-}
+TO_COME = {"init", "--watch"}
 
 _LINK = re.compile(r"(?<!!)\[[^\]]*\]\(([^)\s]+)\)")
 _SPAN = re.compile(r"`(polarcheck [^`\n]+)`")

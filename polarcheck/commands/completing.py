@@ -171,7 +171,6 @@ Values = Callable[[str], Iterator[Item]]
 
 #: What the values of options are, as the help names them; an option of a type of click's that knows better needs none.
 OPTIONS: dict[str, Values] = {
-    "ADDRESS": _nothing,
     "EXT": _nothing,
     "FILE": _files,
     "FOLDER": _folders,
@@ -186,6 +185,8 @@ OPTIONS: dict[str, Values] = {
     "RULE": _rules,
     "RULE=LEVEL": _levels,
     "SIZE": _nothing,
+    "TEXT": _nothing,
+    "tcp://HOST:PORT": _nothing,
 }
 #: The same for arguments.
 ARGUMENTS: dict[str, Values] = {
