@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -11,8 +10,7 @@ import click
 
 from polarcheck.commands import options
 from polarcheck.commands.check import check
-from polarcheck.commands.exit_codes import BUG, COULD_NOT_RUN
-from polarcheck.commands.output import said_of_bug, say, say_lines, show, warn
+from polarcheck.commands.output import say, show
 
 if TYPE_CHECKING:
     from polarcheck.checking.baseline import Baseline
@@ -137,28 +135,20 @@ def _run(
     reason: str = "",
     **asked: Any,
 ) -> int:
-    from polarcheck.checking import baseline_file, batch
+    from polarcheck.checking import baseline_file
     from polarcheck.checking.baseline import Baseline
-    from polarcheck.commands import jobs, overwriting, settings, signals
+    from polarcheck.commands import overwriting, running, settings, signals
     from polarcheck.commands.memory import keep_within_memory
     from polarcheck.commands.progress import Bar
     from polarcheck.reading import files
 
     keep_within_memory()
-    failures: list[str] = []
-    bugs: list[str] = []
+    faults = running.Faults(debug)
     applies = settings.Options(use_config=not no_config, **asked)
-    settings_of = settings.of_programs(applies)
-    tasks = batch.plan(paths, settings_of, extensions, failures.append, warn, excluded_in=settings_of.excluded_in)
+    tasks = running.planned(paths, settings.of_programs(applies), extensions, faults)
     overwriting.refuse([output], tasks)
-    with (
-        jobs.outcomes(tasks, max_size, workers, cluster) as outcomes,
-        contextlib.closing(Bar(len(tasks), True).watched(outcomes)) as watched,
-    ):
-        checked = batch.gather(watched, failures.append, lambda bug: bugs.extend(said_of_bug(bug, debug)))
-    for failure in failures:
-        say(failure)
-    say_lines(bugs)
+    checked = running.Crew(max_size, workers, cluster).check(tasks, Bar(len(tasks), True), faults)
+    could = faults.told()
     if checked.stopped is not None:
         status, how = signals.told(checked.stopped)
         say(f"{how}; nothing is written")
@@ -167,7 +157,7 @@ def _run(
     made, told = make(known, entries, checked, tasks, reason)
     files.write(output, baseline_file.text_of(made))
     show(f"{files.shown(str(output))}: {told}\n")
-    return BUG if bugs else COULD_NOT_RUN if failures else 0
+    return could
 
 
 def _updated(known: Baseline, entries: list[Entry], checked: Checked, tasks: list[Task], reason: str) -> _Made:

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-import contextlib
+from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import click
 
-from polarcheck.commands import fixing, jobs, options, reporting, silencing, standard_input, watching
+from polarcheck.commands import fixing, jobs, options, reporting, running, silencing, standard_input, watching
 from polarcheck.commands.diff_base import diff_base, narrowed
-from polarcheck.commands.exit_codes import BUG, COULD_NOT_RUN
+from polarcheck.commands.exit_codes import COULD_NOT_RUN
 from polarcheck.commands.options import many, option
-from polarcheck.commands.output import COLUMNS, columns, in_color, said_of_bug, say, say_lines, warn
+from polarcheck.commands.output import COLUMNS, columns, in_color, say, warn
 from polarcheck.reports import formats
 
 #: Of more files than this the report is short, if no format is asked for.
@@ -90,12 +90,39 @@ def check(ctx: click.Context, /, paths: tuple[str, ...], watch: bool, **asked: A
     understood or written, 3 for a bug; 130 or 143 where it was interrupted or terminated: what was finished until then
     is reported.
     """
-    command, debug = _command(ctx), options.DEBUG in ctx.meta
+    own = {name: asked.pop(name) for name in _Asked._fields if name in asked}
+    known = _Asked(**own, paths=paths, command=_command(ctx), debug=options.DEBUG in ctx.meta, more=asked)
+    run = partial(_check, known)
+    ctx.exit(watching.repeatedly(run, paths, known.outputs) if watch else run(None))
 
-    def run(seen: watching.Seen | None) -> int:
-        return _check(paths, command, debug, seen, **asked)
 
-    ctx.exit(watching.repeatedly(run, paths, asked["outputs"]) if watch else run(None))
+class _Asked(NamedTuple):
+    """
+    What the command line asks for.
+
+    command: what checks one of the files likewise. more: what applies to programs, as settings.Options takes it.
+    """
+
+    paths: tuple[str, ...]
+    command: str
+    debug: bool
+    more: dict[str, Any]
+    form: str | None
+    outputs: list[tuple[str, Path]]
+    no_config: bool
+    force_exclude: bool
+    extensions: tuple[str, ...]
+    max_size: int
+    stdin_filename: str | None
+    workers: int
+    cluster: str | None
+    color: str
+    quiet: bool
+    following: bool
+    silenced: bool
+    statistics: bool
+    fixes: fixing.Wanted
+    diff_base: str | None
 
 
 def _command(ctx: click.Context) -> str:
@@ -121,93 +148,68 @@ def _quoted(value: object) -> str:
     return shlex.quote(str(value))
 
 
-def _check(
-    paths: tuple[str, ...],
-    command: str,
-    debug: bool,
-    seen: watching.Seen | None,
-    *,
-    form: str | None,
-    outputs: list[tuple[str, Path]],
-    no_config: bool,
-    force_exclude: bool,
-    extensions: tuple[str, ...],
-    max_size: int,
-    stdin_filename: str | None,
-    workers: int,
-    cluster: str | None,
-    color: str,
-    quiet: bool,
-    following: bool,
-    silenced: bool,
-    statistics: bool,
-    fixes: fixing.Wanted,
-    diff_base: str | None,
-    **asked: Any,
-) -> int:
+def _check(asked: _Asked, seen: watching.Seen | None) -> int:
     from polarcheck import reports
     from polarcheck.checking import batch, rule
     from polarcheck.commands import live, overwriting, progress, settings, signals
     from polarcheck.commands.memory import keep_within_memory
     from polarcheck.machines import profiles
-    from polarcheck.machines.job import key_of_option
 
     keep_within_memory()
-    reporting.refuse(form, statistics)
-    failures: list[str] = []
-    bugs: list[str] = []
-    applies = settings.Options(use_config=not no_config, **asked)
-    settings_of = settings.of_programs(applies)
-    paths = settings_of.left(paths, warn) if force_exclude else paths
-    named = standard_input.judged_as(paths, stdin_filename)
-    tasks = batch.plan(
-        paths, settings_of, extensions, failures.append, warn, excluded_in=settings_of.excluded_in, **named
+    reporting.refuse(asked.form, asked.statistics)
+    applies = settings.Options(use_config=not asked.no_config, **asked.more)
+    faults = running.Faults(asked.debug)
+    tasks = running.planned(
+        asked.paths,
+        settings.of_programs(applies),
+        asked.extensions,
+        faults,
+        force_exclude=asked.force_exclude,
+        named=standard_input.judged_as(asked.paths, asked.stdin_filename),
     )
-    for unmatched in settings_of.unmatched(paths):
-        warn(unmatched)
-    overwriting.refuse([path for _, path in outputs], tasks)
-    tasks = narrowed(tasks, diff_base, max_size, not quiet)
-    shown_in = fixing.Shown(quiet, in_color(color), debug, bool(outputs))
-    made = fixing.make(fixes, tasks, max_size, shown_in)
+    overwriting.refuse([path for _, path in asked.outputs], tasks)
+    tasks = narrowed(tasks, asked.diff_base, asked.max_size, not asked.quiet)
+    is_colored = in_color(asked.color)
+    shown_in = fixing.Shown(asked.quiet, is_colored, asked.debug, bool(asked.outputs))
+    made = fixing.make(asked.fixes, tasks, asked.max_size, shown_in)
     if made.ends:
-        return COULD_NOT_RUN if failures else made.status
-    form = form or ("text" if len(tasks) <= _LONG else "short")
+        return max(faults.told(), made.status)
+    form = asked.form or ("text" if len(tasks) <= _LONG else "short")
     went_wrong: list[str] = []
-    plain = reports.Background({}, rule.load_all(), COLUMNS, False, quiet, command, following, silenced)
-    plain = reporting.background(plain, tasks, went_wrong)._replace(
-        fixed=made.fixed, has_baseline=applies.baseline is not None
+    plain = reporting.background(
+        reports.Background(
+            rules=rule.load_all(),
+            columns=COLUMNS,
+            quiet=asked.quiet,
+            command=asked.command,
+            following=asked.following,
+            silenced=asked.silenced,
+            fixed=made.fixed,
+            has_baseline=applies.baseline is not None,
+        ),
+        tasks,
+        went_wrong,
     )
-    bar = progress.Bar(len(tasks), not quiet)
-    shown = plain._replace(columns=columns(), color=in_color(color))
-    shower = live.Live(form, shown, len(tasks), bar.hide, in_place_of_findings=statistics, to_error=made.has_output)
-    with (
-        jobs.outcomes(tasks, max_size, workers, cluster, seen) as outcomes,
-        contextlib.closing(bar.watched(outcomes)) as watched,
-    ):
-        answered = silencing.answered(watched, tasks, applies.baseline)
-        checked = batch.gather(answered, failures.append, lambda bug: bugs.extend(said_of_bug(bug, debug)), shower.file)
-    name = applies.machine or (tasks[0].settings.name if tasks else profiles.DEFAULT)
-    report = batch.report(checked.files, name)
-    status = max(int(checked.failed), made.status)
-    for failure in failures:
-        say(failure)
-        status = max(status, COULD_NOT_RUN)
-    if bugs:
-        say_lines(bugs)
-        status = BUG
-    went_wrong += [*failures, *bugs]
+    bar = progress.Bar(len(tasks), not asked.quiet)
+    shown = plain._replace(columns=columns(), color=is_colored)
+    shower = live.Live(
+        form, shown, len(tasks), bar.hide, in_place_of_findings=asked.statistics, to_error=made.has_output
+    )
+    crew = running.Crew(asked.max_size, asked.workers, asked.cluster, seen)
+    checked = crew.check(tasks, bar, faults, applies.baseline, shower.file)
+    report = batch.report(checked.files, applies.machine or (tasks[0].settings.name if tasks else profiles.DEFAULT))
+    status = max(int(checked.failed), made.status, faults.told())
+    went_wrong += [*faults.failures, *faults.bugs]
     if checked.stopped is not None:
         status, how = signals.told(checked.stopped)
         went_wrong.append(f"{how} after {len(checked.files)} of {len(tasks)} files; these are reported")
         say(went_wrong[-1])
-    else:
-        for key in dict.fromkeys(map(key_of_option, applies.tools)):
-            if key not in checked.called and diff_base is None:
-                warn(f"--tool {key}: no program of this run calls offset {key}")
-    for error in reporting.written(outputs, form, report, plain._replace(lines=checked.lines)):
+    elif asked.diff_base is None:
+        running.tell_unused(applies.tools, checked.called)
+    for error in reporting.written(asked.outputs, form, report, plain._replace(lines=checked.lines)):
         say(str(error))
         status = max(status, COULD_NOT_RUN)
     shower.end(report, checked.lines)
-    if form == "concise" and not quiet and any(file.verdict == "unverified" for file in report.files):
+    if form == "concise" and not asked.quiet and any(file.verdict == "unverified" for file in report.files):
         warn("some rules could not be evaluated; --format text says which, and what to give")
     return status
