@@ -109,7 +109,9 @@ def plan(
             for failure in failures:
                 tell(failure)
             if not found and not failures:
-                warn(f"{files.shown(path)}: no NC programs in this folder; --extensions names other endings")
+                is_empty = next(files.walk(path, wanted, failures.append), None) is None
+                why = "no NC programs in this folder; --extensions names other endings"
+                warn(f"{files.shown(path)}: {why if is_empty else 'all NC programs in this folder are excluded'}")
         for program in found:
             place = standard_input if program == files.STANDARD_INPUT else program
             settings = settings_of(place)

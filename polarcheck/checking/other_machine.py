@@ -91,16 +91,9 @@ def _reasons(tables: Tables, machine: Machine) -> tuple[str, ...]:
     there = _read_by(tables, machine)
     trace: Trace = tables["trace"]
     other: Trace = there["trace"]
-    own, mode, arcs = trace.machine.polar, machine.polar, there["arcs"]
-    if not len(other.sections) or not other.sections.left.all() or _names_other_axis(there).any():
+    own, mode = trace.machine.polar, machine.polar
+    if not reads_well(there):
         return ()
-    if there["words"].is_unreadable.any():
-        return ()
-    if arcs.is_no_circle.any() or arcs.x_is_misread.any() or _switch_is_not_alone(there):
-        return ()
-    unread = other.run.unknown | other.with_words(other.words_not_followed)
-    if np.any(unread & (other.section >= 0)):
-        return ()  # nobody knows how it reads there
     reasons = []
     if mode.virtual_axis not in own.virtual_axes and np.any(other.has(mode.virtual_axis) & other.in_polar):
         reasons.append(f"{mode.virtual_axis} is the second axis of the polar plane there")
@@ -125,6 +118,20 @@ def _switch_is_not_alone(tables: Tables) -> bool:
 def _language(machine: Machine) -> tuple[object, ...]:
     """What of a machine makes it find other words in a text than another."""
     return machine.control.native_words, machine.control.line_comments, machine.macro.language
+
+
+def reads_well(there: Tables) -> bool:
+    """Whether sections of a program begin and end on the machine of the tables, and nothing in them is odd there."""
+    trace: Trace = there["trace"]
+    arcs = there["arcs"]
+    if not len(trace.sections) or not trace.sections.left.all() or _names_other_axis(there).any():
+        return False
+    if there["words"].is_unreadable.any():
+        return False
+    if arcs.is_no_circle.any() or arcs.x_is_misread.any() or _switch_is_not_alone(there):
+        return False
+    unread = trace.run.unknown | trace.with_words(trace.words_not_followed)
+    return not np.any(unread & (trace.section >= 0))  # else nobody knows how it reads there
 
 
 def _read_by(tables: Tables, machine: Machine) -> Tables:

@@ -14,7 +14,7 @@ from polarcheck import bounded
 from polarcheck.commands import job_layers
 from polarcheck.commands.job_layers import Layer, Merged, Written
 from polarcheck.errors import JobError
-from polarcheck.machines import toml_lines, toml_text
+from polarcheck.machines import toml_text
 from polarcheck.machines.fitting import MisfitError, fitted, shown
 from polarcheck.machines.job import Job
 from polarcheck.reading.files import RealPaths
@@ -128,7 +128,7 @@ class Nearest:
         passed: list[str] = []
         while folder not in self._known:
             passed.append(folder)
-            found, outer = _own(Path(folder)), os.path.dirname(folder)  # noqa: PTH120  long paths of pathlib are slow
+            found, outer = own(Path(folder)), os.path.dirname(folder)  # noqa: PTH120  long paths of pathlib are slow
             if found is not None or outer == folder:
                 self._known[folder] = found
             else:
@@ -145,7 +145,7 @@ def _from_here(path: Path) -> Path:
     return path
 
 
-def _own(folder: Path) -> Path | None:
+def own(folder: Path) -> Path | None:
     """The job file that lies in a folder."""
     if not bounded.may_read(folder):
         return None
@@ -202,6 +202,8 @@ def _part(path: Path, asked_by: str, *, pipes: bool) -> tuple[_Part, str | None]
         text = toml_text.text_of(path, "job file", pipes=pipes)
         table: Any = toml_text.parsed(text)
     except ValueError as error:
+        from polarcheck.machines import toml_lines
+
         raise JobError(f"{before}{toml_lines.placed(str(path), str(error))}") from None
     prefix = ""
     if path.name == _PROJECT:

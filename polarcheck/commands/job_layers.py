@@ -14,7 +14,7 @@ from typing import Any
 import msgspec
 
 from polarcheck.errors import JobError
-from polarcheck.machines import profiles, toml_lines
+from polarcheck.machines import profiles
 from polarcheck.machines.fitting import shown
 from polarcheck.machines.job import Job, Tool, from_table
 from polarcheck.machines.offset_keys import canonical
@@ -36,6 +36,8 @@ class Written:
 
     @cached_property
     def _lines(self) -> dict[str, int]:
+        from polarcheck.machines import toml_lines
+
         return toml_lines.of_keys(self._text)
 
     def at(self, key: str) -> str:
@@ -57,6 +59,11 @@ class Layer:
 
     def __init__(self, written: Written, table: Mapping[str, Any], entry: int = 0) -> None:
         self.written, self.entry, self._table = written, entry, table
+
+    @property
+    def title(self) -> str:
+        """What tells this layer from others, where its lines are not asked for."""
+        return f"{self.written.path}: [[programs]] {self.entry}" if self.entry else str(self.written.path)
 
     @property
     def excluded(self) -> list[str]:
@@ -108,14 +115,16 @@ class Layer:
     def _folder(self, folder: Path, written: str) -> str:
         import os
 
-        path, title = str(beside(folder, written)), f"{self.at('run.subprograms')}: run.subprograms"
+        path = str(beside(folder, written))
         try:
             os.scandir(path).close()
         except (FileNotFoundError, NotADirectoryError, ValueError):
-            raise JobError(f"{title}: there is no folder {shown(written)}") from None
+            told = f"there is no folder {shown(written)}"
         except OSError as error:
-            raise JobError(f"{title}: {shown(written)}: {error.strerror}") from None
-        return path
+            told = f"{shown(written)}: {error.strerror}"
+        else:
+            return path
+        raise JobError(f"{self.at('run.subprograms')}: run.subprograms: {told}")
 
 
 def beside(folder: Path, written: str) -> Path:

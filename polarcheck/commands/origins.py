@@ -164,7 +164,7 @@ def _of_profile(key: str, origin: Origin | None, merged: Merged, given: Given, b
     if origin.profile == "--set":
         return _of_option("changes", "--set", given)
     layer = merged.origins.get(key)
-    if layer is not None and layer.at("limits") == origin.profile:
+    if layer is not None and layer.title == origin.profile:
         return _of_layer(layer, key)
     if origin.profile in built_in:
         return "machine", f"built-in {origin.profile}"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Sequence
+from functools import partial
 from typing import Any
 
 from polarcheck.checking import rule as all_rules
@@ -63,8 +64,8 @@ def chosen(
         rules = _named("--select", select, selected, known, machine)
     else:
         if job.select:
-            rules = _named(f"{at('select')}: select", select, job.select, known, machine)
-        without = _named(f"{at('ignore')}: ignore", select, job.ignore, known, machine)
+            rules = _named(lambda: f"{at('select')}: select", select, job.select, known, machine)
+        without = _named(lambda: f"{at('ignore')}: ignore", select, job.ignore, known, machine)
     without = without | _named("--ignore", select, ignored, known, machine)
     left = [rule for name, rule in rules.items() if name not in without]
     if not left:
@@ -83,8 +84,7 @@ def severities(
     """
     of_job: dict[str, str] = {}
     for name, level in job.severities.items():
-        title = f"{at(f'severities.{name}')}: severities"
-        of_job |= _named(title, _levels, [(name, level)], known, machine)
+        of_job |= _named(partial(_of_severity, at, name), _levels, [(name, level)], known, machine)
     asked = _named("--severity", _levels, [_pair(option) for option in levels], known, machine)
     changed = of_job | asked
     for name in selected:
@@ -116,9 +116,13 @@ def _pair(option: str) -> tuple[str, str]:
     return name, level.lower()
 
 
-def _named(title: str, function: Callable[..., dict[str, Any]], *arguments: Any) -> dict[str, Any]:
-    """What the function returns; its errors begin with the option or the key of the file."""
+def _of_severity(at: Place, name: str) -> str:
+    return f"{at(f'severities.{name}')}: severities"
+
+
+def _named(title: str | Callable[[], str], function: Callable[..., dict[str, Any]], *arguments: Any) -> dict[str, Any]:
+    """What the function returns; its errors begin with the option or the key of the file, which is asked for then."""
     try:
         return function(*arguments)
     except UsageError as error:
-        raise UsageError(f"{title}: {error}") from None
+        raise UsageError(f"{title if isinstance(title, str) else title()}: {error}") from None

@@ -18,7 +18,7 @@ from polarcheck.commands.job_files import JobFile
 from polarcheck.commands.job_layers import Merged
 from polarcheck.commands.selection import Rules
 from polarcheck.errors import MachineError, UsageError
-from polarcheck.machines import profiles, toml_lines, toml_text
+from polarcheck.machines import profiles, toml_text
 from polarcheck.machines.job import Job, PunchedTool, Running, check_tools, check_work_offsets, with_tool
 from polarcheck.machines.machine import Machine
 from polarcheck.reading.files import STANDARD_INPUT
@@ -204,12 +204,14 @@ class _Making:
         for layer in reversed(merged.layers):
             limits = layer.table.get("limits")
             if limits:
-                over.append((layer.at("limits"), {"limits": limits}))
+                over.append((layer.title, {"limits": limits}))
         key = repr((name, over))
         if key not in self._profiles:
-            asked_by = "" if self._options.machine or not merged.job.machine else f"{merged.at('machine')}: machine: "
             try:
-                self._profiles[key] = _profile(name, over, self._known, asked_by)
+                self._profiles[key] = _profile(name, over, self._known)
+            except profiles.UnknownMachineError as error:
+                is_of_job = merged.job.machine and not self._options.machine
+                raise MachineError(f"{merged.at('machine')}: machine: {error}" if is_of_job else str(error)) from None
             except MachineError as error:
                 raise MachineError(_with_line(str(error), merged)) from None
         return self._profiles[key]
@@ -229,9 +231,8 @@ def _with_line(said: str, merged: Merged) -> str:
     """What is said of [limits], with the line of the key."""
     key = re.search(r"limits\.\w+", said)
     for layer in merged.layers if key else ():
-        table = f"{layer.at('limits')}: "
-        if key and said.startswith(table):
-            return f"{layer.at(key[0])}: {said.removeprefix(table)}"
+        if key and said.startswith((f"{layer.title}: {key[0]}", f"{layer.title}: unknown key")):
+            return f"{layer.at(key[0])}: {said.removeprefix(f'{layer.title}: ')}"
     return said
 
 
@@ -282,14 +283,15 @@ def changes(options: Iterable[str]) -> dict[str, Any]:
     return found
 
 
-def _profile(name: str, over: Sequence[profiles.Change], known: Rules, asked_by: str) -> profiles.Profile:
-    """asked_by: the file and key of the name, before what is said of a name that there is not."""
+def _profile(name: str, over: Sequence[profiles.Change], known: Rules) -> profiles.Profile:
     try:
         profile = profiles.load(name, over)
         selection.check_names(profile, known)
-    except profiles.UnknownMachineError as error:
-        raise MachineError(f"{asked_by}{error}") from None
+    except profiles.UnknownMachineError:
+        raise
     except MachineError as error:
+        from polarcheck.machines import toml_lines
+
         raise MachineError(toml_lines.located(str(error))) from None
     return profile
 
@@ -314,4 +316,4 @@ def here(machine: str | None) -> tuple[str, Machine]:
 
 def profile_of(machine: str) -> profiles.Profile:
     """The profile of a name or file as it is. Raises MachineError for one that cannot be used."""
-    return _profile(machine, (), load_all(), "")
+    return _profile(machine, (), load_all())

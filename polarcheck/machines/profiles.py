@@ -12,7 +12,7 @@ from typing import Any, get_origin
 import msgspec
 
 from polarcheck.errors import MachineError, suggestion
-from polarcheck.machines import axis_names, parameters, toml_lines, toml_text
+from polarcheck.machines import axis_names, parameters, toml_text
 from polarcheck.machines.code_lists import FRAME_LISTS
 from polarcheck.machines.fitting import MisfitError, fitted
 from polarcheck.machines.machine import Machine, OwnMachine
@@ -188,6 +188,8 @@ def _read(path: Path, title: str) -> dict[str, Any]:
     try:
         return toml_text.read(path, "machine file")
     except ValueError as error:
+        from polarcheck.machines import toml_lines
+
         raise MachineError(toml_lines.placed(title, str(error))) from None
 
 

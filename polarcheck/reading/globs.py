@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import os
 import re
-import unicodedata
 from collections.abc import Sequence
 
 _WILD = re.compile(r"[*?\[]")
@@ -118,7 +117,11 @@ def is_pattern(text: str) -> bool:
 def folded(path: str) -> str:
     """A path as it is compared: with `/`, without capitals, its accents as one character each."""
     text = path if os.sep == "/" else path.replace(os.sep, "/")
-    return text.lower() if text.isascii() else unicodedata.normalize("NFC", text).lower()
+    if text.isascii():
+        return text.lower()
+    import unicodedata
+
+    return unicodedata.normalize("NFC", text).lower()
 
 
 def _split(path: str) -> list[str]:

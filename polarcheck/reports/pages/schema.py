@@ -41,8 +41,8 @@ def _report() -> Schema:
 
 def _job() -> Schema:
     made: Schema = _without_nan(msgspec.json.schema(Job))
-    job = made["$defs"]["Job"]["properties"]
-    job["limits"] = {"$ref": "#/$defs/Limits"}
+    for kind in ("Job", "Programs"):
+        made["$defs"][kind]["properties"]["limits"] = {"$ref": "#/$defs/Limits"}
     limits = _without_nan(msgspec.json.schema(Machine))["$defs"]["Limits"]
     made["$defs"]["Limits"] = {**limits, "required": []}
     return made

@@ -1,0 +1,166 @@
+"""What the programs of a folder tell of the job that they need: the machines that read them, and the offsets called."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Sequence
+
+import msgspec
+import numpy as np
+
+from polarcheck.checking import check
+from polarcheck.checking.other_machine import reads_well
+from polarcheck.checking.tables import Tables
+from polarcheck.errors import PolarcheckError
+from polarcheck.machines import profiles
+from polarcheck.machines.job import Job
+from polarcheck.machines.machine import Machine
+from polarcheck.machines.modal import Side, Units
+from polarcheck.machines.profiles import Profile
+from polarcheck.reading import files
+from polarcheck.table.trace import Trace
+from polarcheck.time_limit import time_limit
+
+#: A program that takes longer tells nothing [s].
+_SECONDS = 10.0
+#: With more programs than this no other machines would be found.
+_TRIED = 12
+_NUMBERED = re.compile(r"([GM])(\d+)(?:\.(\d))?")
+
+
+class Told(msgspec.Struct, frozen=True):
+    """What a program tells of an offset that it needs: R [mm] and the comment that says so; None where none does."""
+
+    path: str
+    radius: float | None = None
+    comment: str = ""
+
+
+class Survey(msgspec.Struct, frozen=True):
+    """
+    What some programs tell.
+
+    programs: how many there are. polar: those that begin the polar mode. machine: the name of that which read them.
+    fitting: the built-in machines that read all that were tried. offsets: by key, with what each program tells of it.
+    units: mm, inch, both or, where none says it, none.
+    """
+
+    programs: int
+    polar: list[str]
+    machine: str
+    fitting: list[str]
+    offsets: dict[str, list[Told]]
+    units: list[str]
+
+
+def survey(paths: Sequence[str], asked: Profile | None, awaited: Iterable[str] | None = None) -> Survey:
+    """
+    Read the programs of some paths; those that cannot be read tell nothing.
+
+    asked: the machine, if somebody knows it; else those that fit are looked for. awaited: the same paths, as they are
+    gone through.
+    """
+    begins = _begins(asked)
+    known = [asked] if asked else list(profiles.built_in())
+    found: list[tuple[str, bytes]] = []
+    for path in paths if awaited is None else awaited:
+        data = _data(path)
+        if data is not None and begins.search(data.replace(b"\0", b"")):  # UTF-16, too
+            found.append((path, data))
+    fitting = _fitting([data for _, data in _sample(found)], known)
+    names = [profile.name for profile in fitting]
+    chosen = _chosen(asked, fitting)
+    offsets: dict[str, list[Told]] = {}
+    units: set[str] = set()
+    polar = []
+    for path, data in found:
+        tables = _tables(data, chosen.machine)
+        if tables is None or not len(tables["trace"].sections):
+            continue
+        polar.append(path)
+        trace: Trace = tables["trace"]
+        for key, told in _of_program(path, trace):
+            offsets.setdefault(key, []).append(told)
+        units |= set(_units(trace))
+    return Survey(len(paths), polar, chosen.name, names, offsets, sorted(units))
+
+
+def _chosen(asked: Profile | None, fitting: Sequence[Profile]) -> Profile:
+    if asked is not None:
+        return asked
+    default = profiles.load(profiles.DEFAULT)
+    return default if not fitting or default.name in [profile.name for profile in fitting] else fitting[0]
+
+
+def _data(path: str) -> bytes | None:
+    try:
+        return files.read(path)
+    except PolarcheckError:
+        return None
+
+
+def _begins(asked: Profile | None) -> re.Pattern[bytes]:
+    """What begins the polar mode, as it may be written: most programs of a folder need no closer look."""
+    known = [asked] if asked else profiles.built_in()
+    codes = {word for profile in known for word in (*profile.machine.polar.on, *profile.machine.control.native_words)}
+    return re.compile(rb"(?i)" + b"|".join(sorted(_written(code) for code in codes)))
+
+
+def _written(code: str) -> bytes:
+    found = _NUMBERED.fullmatch(code)
+    if found is None:
+        return re.escape(code).encode()
+    point = rf"\s*\.\s*{found[3]}" if found[3] else r"(?:\.0*)?"
+    return rf"{found[1]}\s*0*{found[2]}{point}(?!\d)".encode()
+
+
+def _sample(found: Sequence[tuple[str, bytes]]) -> Sequence[tuple[str, bytes]]:
+    return found[:: max(1, -(-len(found) // _TRIED))]
+
+
+def _tables(data: bytes, machine: Machine) -> Tables | None:
+    try:
+        with time_limit(_SECONDS):
+            return check.read(data, machine, Job())[0][1]
+    except (PolarcheckError, MemoryError):
+        return None
+
+
+def _fitting(programs: Sequence[bytes], known: Sequence[Profile]) -> list[Profile]:
+    """The machines that read all of the programs well which any machine reads."""
+    reading: list[set[str]] = []
+    for data in programs:
+        well = set()
+        for profile in known:
+            tables = _tables(data, profile.machine)
+            if tables is not None and _reads(tables):
+                well.add(profile.name)
+        if well:
+            reading.append(well)
+    names = set.intersection(*reading) if reading else set()
+    return [profile for profile in known if profile.name in names]
+
+
+def _reads(tables: Tables) -> bool:
+    try:
+        with time_limit(_SECONDS):
+            return bool(len(tables["trace"].sections)) and reads_well(tables)
+    except PolarcheckError:
+        return False
+
+
+def _of_program(path: str, trace: Trace) -> Iterator[tuple[str, Told]]:
+    """The offsets that the program calls in the polar mode or with cutter compensation there."""
+    needed = trace.in_polar & (trace.side != Side.OFF)
+    needed = needed if needed.any() else trace.in_polar
+    given = np.unique(trace.offset_number[needed & (trace.radius_set_in < 0)])
+    for number in given[given > 0].tolist():
+        key, told = trace.offset_key(number), trace.radius_told.get(number)
+        if key:
+            yield key, Told(path, told.radius, told.comment) if told else Told(path)
+
+
+def _units(trace: Trace) -> Iterator[str]:
+    """The units that the program itself says."""
+    state = trace.state("units")
+    yield from (name for name, one in (("inch", Units.INCH), ("mm", Units.MM)) if np.any(state[trace.in_polar] == one))

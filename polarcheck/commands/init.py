@@ -1,0 +1,78 @@
+"""`polarcheck init`: a commented polarcheck.toml for a folder, with what its programs tell."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import click
+
+from polarcheck.commands import options
+from polarcheck.commands.options import many, option
+from polarcheck.commands.output import show, warn
+from polarcheck.errors import UsageError
+
+
+@click.command
+@click.argument("folder", type=click.Path(exists=True, file_okay=False), default=".")
+@options.machine
+@many("--extensions", metavar="EXT", help="Of the programs in the folder, instead of .nc, .tap, .eia and others.")
+@option("--schema/--no-schema", default=True, help="Write the schema beside it, which lets editors complete its keys.")
+@option("-q", "--quiet", is_flag=True, help="No bar on the terminal.")
+@options.debug
+def init(folder: str, machine: str | None, extensions: tuple[str, ...], schema: bool, quiet: bool) -> None:
+    """
+    Write a commented polarcheck.toml into FOLDER, with the lathe and the tools that its programs tell.
+
+    It asks nothing, overwrites nothing, and says what is still to fill in.
+
+    \b
+    polarcheck init
+    polarcheck init programs --machine fanuc-30i
+    """
+    show("".join(f"{line}\n" for line in _init(folder, machine, extensions, schema, quiet)).encode())
+
+
+def _init(folder: str, machine: str | None, extensions: tuple[str, ...], schema: bool, quiet: bool) -> list[str]:
+    from polarcheck.checking import survey
+    from polarcheck.commands import job_files, settings
+    from polarcheck.commands.progress import Bar
+    from polarcheck.reading import files
+    from polarcheck.reading.excerpt import visible
+    from polarcheck.reports.pages import new_job
+    from polarcheck.reports.pages import schema as schemas
+
+    path = Path(folder, job_files.FILE_NAME)
+    there = job_files.own(Path(folder))
+    if there is not None or os.path.lexists(path):
+        raise UsageError(f"{there or path} is there already; `polarcheck config show` tells what it says")
+    asked = settings.profile_of(machine) if machine else None
+    nearest = job_files.Nearest().of(Path(folder))
+    outer = Path(os.path.relpath(nearest, folder)).as_posix() if nearest else None
+    wanted = files.extensions(extensions) or files.EXTENSIONS
+    programs = [str(Path(program)) for program in files.walk(folder, wanted, warn)]
+    named = [os.path.relpath(program, folder) for program in programs]
+    found = survey.survey(programs, asked, Bar(len(programs), not quiet).watched(programs))
+    found = new_job.relative(found, dict(zip(programs, named, strict=True)))
+    written = _name(machine, Path(folder)) if machine else None
+    schema_path = Path(folder, new_job.SCHEMA_FILE)
+    is_new = schema and not os.path.lexists(schema_path)
+    files.write(path, new_job.text(found, written, outer, schema))
+    if is_new:
+        files.write(schema_path, schemas.text("job"))
+    told = [f"{files.shown(str(path))} written: {new_job.summary(found)}"]
+    if schema:
+        lies = "beside it, for editors" if is_new else "is there already, and stays as it is"
+        told.append(f"{files.shown(str(schema_path))} {lies}")
+    if outer:
+        told.append(f"{outer} has applied here so far: `extend` in the new file lets it apply still")
+    told += ["still to fill in:", *(f"  {line}" for line in new_job.left_open(found, written))]
+    told.append(f"then: polarcheck check {files.shown(folder)}")
+    return [visible(line) for line in told]
+
+
+def _name(machine: str, folder: Path) -> str:
+    """A machine as a file in this folder names it."""
+    from polarcheck.machines import profiles
+
+    return machine if machine in profiles.names() else Path(os.path.relpath(machine, folder)).as_posix()
