@@ -475,6 +475,12 @@ def test_a_file_that_is_not_there_is_told_and_what_would_apply_is_shown() -> Non
     assert result.stderr == ("polarcheck: warning: gone.nc: there is no such file; this is what would apply to it\n")
 
 
+def test_config_alone_shows_what_it_can() -> None:
+    result = call("config")
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert re.search(r"^  show +Show every value", result.stderr, re.MULTILINE)
+
+
 def test_what_comes_from_files_acts_on_no_terminal() -> None:
     make("a.nc")
     job('machine = "l\\u001b[31m.toml"\n')

@@ -8,15 +8,20 @@ from typing import Any
 import click
 
 from polarcheck.commands import options
+from polarcheck.commands.exit_codes import COULD_NOT_RUN
 from polarcheck.commands.options import many, narrower
 from polarcheck.commands.output import show as print_out
 from polarcheck.commands.output import warn
 
 
-@click.group
+@click.group(invoke_without_command=True)
 @options.debug
-def config() -> None:
+@click.pass_context
+def config(ctx: click.Context) -> None:
     """Show what polarcheck.toml and the options say of a program."""
+    if ctx.invoked_subcommand is None:
+        click.echo(ctx.get_help(), err=True)
+        ctx.exit(COULD_NOT_RUN)
 
 
 @config.command
