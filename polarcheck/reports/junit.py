@@ -40,6 +40,26 @@ class _Case(NamedTuple):
         return "skipped" if self.missing else ""
 
 
+class _Ran:
+    """The groups of the rules that ran over a file: of many files few differ."""
+
+    def __init__(self, background: Background) -> None:
+        self._settings = background.settings
+        self._every = list(dict.fromkeys(rule.group for rule in background.rules.values()))
+        self._known: dict[int, list[str]] = {}
+
+    def over(self, file: FileReport) -> list[str]:
+        """The names of the groups, in the order of the catalogue."""
+        settings = self._settings.get(file.path)
+        if settings is None:
+            return self._every
+        if id(settings) not in self._known:
+            levels = {**settings.machine.severities, **settings.severities}
+            ran = (rule.group for rule in settings.rules if rule.level(levels) != "off")
+            self._known[id(settings)] = list(dict.fromkeys(ran))
+        return self._known[id(settings)]
+
+
 def junit(report: Report, background: Background) -> str:
     """
     A suite for each file, in which each group of rules that ran is a test: passed, failed by findings of the severity
@@ -50,7 +70,8 @@ def junit(report: Report, background: Background) -> str:
 
 def junit_pieces(report: Report, background: Background) -> Iterator[str]:
     """The same, file by file; they are gone through twice, since the counts stand at the head."""
-    outcomes = Counter(case.outcome for file in report.files for case in _cases(file, background))
+    ran = _Ran(background)
+    outcomes = Counter(case.outcome for file in report.files for case in _cases(file, background, ran))
     counts: dict[str, str | int] = {
         "name": "polarcheck",
         "tests": outcomes.total() + len(background.failures),
@@ -58,7 +79,7 @@ def junit_pieces(report: Report, background: Background) -> Iterator[str]:
         "errors": len(background.failures),
     }
     yield xml.HEAD
-    inside = (part for file in report.files for part in _suite(file, background))
+    inside = (part for file in report.files for part in _suite(file, background, ran))
     yield from xml.element("testsuites", counts, _all(inside, background))
 
 
@@ -75,7 +96,7 @@ def _unread(failure: str) -> Iterator[str]:
     return xml.element("testcase", {"classname": f"polarcheck.{_UNREAD}", "name": failure}, [inside], depth=2)
 
 
-def _cases(file: FileReport, background: Background) -> Iterator[_Case]:
+def _cases(file: FileReport, background: Background, ran: _Ran) -> Iterator[_Case]:
     settings = background.settings.get(file.path)
     fail_on, is_strict = (settings.fail_on, settings.strict) if settings else ("warning", False)
     found: dict[str, list[Finding]] = {}
@@ -85,8 +106,8 @@ def _cases(file: FileReport, background: Background) -> Iterator[_Case]:
     for gap in file.not_evaluated:
         if gap.matters:
             missing.setdefault(_group(gap.rule, background), []).append(gap)
-    ran = _groups(file, background) if file.sections else [_NOTHING]
-    for group in dict.fromkeys((*ran, *sorted({*found, *missing}))):
+    groups = ran.over(file) if file.sections else [_NOTHING]
+    for group in dict.fromkeys((*groups, *sorted({*found, *missing}))):
         told = [one for one in found.get(group, ()) if is_told(one, fail_on)]
         failing = [one for one in told if not isinstance(one, Undecided)]
         reasons = [one.message for one in told if isinstance(one, Undecided)]
@@ -95,22 +116,13 @@ def _cases(file: FileReport, background: Background) -> Iterator[_Case]:
         yield _Case(group, failing, others, list(dict.fromkeys(reasons)), is_strict)
 
 
-def _groups(file: FileReport, background: Background) -> list[str]:
-    """The groups of the rules that ran over a file."""
-    settings = background.settings.get(file.path)
-    if settings is None:
-        return list(dict.fromkeys(rule.group for rule in background.rules.values()))
-    levels = {**settings.machine.severities, **settings.severities}
-    return list(dict.fromkeys(rule.group for rule in settings.rules if rule.level(levels) != "off"))
-
-
 def _group(rule: str, background: Background) -> str:
     return background.rules[rule].group if rule in background.rules else rule
 
 
-def _suite(file: FileReport, background: Background) -> Iterator[str]:
+def _suite(file: FileReport, background: Background, ran: _Ran) -> Iterator[str]:
     path = from_root(file.path, background)
-    cases = list(_cases(file, background))
+    cases = list(_cases(file, background, ran))
     outcomes = [case.outcome for case in cases]
     counts: dict[str, str | int] = {
         "name": path,
