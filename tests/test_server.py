@@ -212,35 +212,6 @@ async def test_changes_of_settings_are_taken() -> None:
         assert job.uri not in client.diagnostics
 
 
-@pytest.mark.asyncio
-async def test_a_buffer_without_a_file_and_one_outside_have_the_options_alone() -> None:
-    Path("open").mkdir()
-    Path("polarcheck.toml").write_text("machin = 1\n", "utf-8")
-    Path("open/polarcheck.toml").write_text("[tools.1]\nradius = 40.0\n", "utf-8")
-    async with session(*ONLY_RAPID, "--tool", "2:radius=4", folders=["open"]) as client:
-        new = Document(client, "untitled:Untitled-1", COMPENSATED)
-        await new.marks("start-up-shorter-than-radius")
-        outside = Document(client, "O1.NC", COMPENSATED.replace("T0101", "T0202"))
-        assert not await outside.marks()
-
-
-@pytest.mark.asyncio
-async def test_without_a_folder_the_one_of_the_file_counts_and_an_editor_chooses_its_units() -> None:
-    Path("polarcheck.toml").write_text("[tools.1]\nradius = 40.0\n", "utf-8")
-    general = types.GeneralClientCapabilities(position_encodings=[types.PositionEncodingKind.Utf8])
-    async with session(*ONLY_RAPID, folders=[], capabilities=types.ClientCapabilities(general=general)) as client:
-        await Document(client, "O2.NC", COMPENSATED).marks("start-up-shorter-than-radius")
-        program = Document(client, "O1.NC", RAPID.replace("G0 C5.", "(\U0001f600) G0 C5."))
-        (mark,) = await program.marks("rapid-in-polar")
-        before = len("(\U0001f600) ".encode())
-        assert mark.range == types.Range(types.Position(3, before), types.Position(3, before + 2))
-        # Lines that end for Python and for no editor, and places that are not there.
-        program.type(3, before + 1, before + 2, "\x85\u2028\x0b1")
-        program.type(3, 0, 10_000, "G1 C5.")
-        program.type(99, 0, 5, "(END)")
-        assert not await program.marks()
-
-
 # ---- what nobody vouches for ----
 
 #: Starts the server with a note of every file that it opens and every folder that it lists.

@@ -76,10 +76,10 @@ class Server(LanguageServer):
         """
         The folders from which files are opened for a program, without links to their names.
 
-        Those of the workspace; where the editor has none, the program's own.
+        Those of the workspace; where the editor has none, the program's own, unless it lies nowhere yet.
         """
-        roots = self._roots or [Path(os.path.realpath(path.parent))]
-        return [*roots, *self._trusted]
+        own = [Path(os.path.realpath(path.parent))] if path.is_absolute() else []
+        return [*(self._roots or own), *self._trusted]
 
     def find_roots(self) -> None:
         """The folders of the workspace, as the editor tells them."""
@@ -193,6 +193,7 @@ class Server(LanguageServer):
             self._looking.cancel()
         for uri in list(self.buffers.open):
             self.buffers.drop(uri)
+        self.buffers.worker.end()
 
 
 def _load() -> None:

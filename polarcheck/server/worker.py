@@ -22,12 +22,16 @@ class Worker:
     """
 
     def __init__(self) -> None:
-        self._wanted: queue.SimpleQueue[Callable[[], None]] = queue.SimpleQueue()
+        self._wanted: queue.SimpleQueue[Callable[[], None] | None] = queue.SimpleQueue()
         threading.Thread(target=self._work, name="checks", daemon=True).start()
 
     def _work(self) -> None:
-        while True:
-            self._wanted.get()()
+        while (wanted := self._wanted.get()) is not None:
+            wanted()
+
+    def end(self) -> None:
+        """What was asked for before is still done, and nothing after it."""
+        self._wanted.put(None)
 
     async def do(self, function: Callable[Given, Found], *given: Given.args, **named: Given.kwargs) -> Found:
         """What the function gives; where nobody waits any more when its turn comes, it is not called."""
