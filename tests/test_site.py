@@ -21,11 +21,8 @@ DOCS = ROOT / "docs"
 pytestmark = pytest.mark.skipif(not (ROOT / "docs").exists(), reason="the pages lie in a checkout")
 
 #: Pages, commands and options that other changes bring. What is here already is held to all that is asked below.
-PAGES_TO_COME = {
-    *("archives.md", "ci.md", "configuration.md", "fixes.md", "reports.md", "silence.md"),
-    *("editors/neovim.md", "editors/notepadpp.md", "editors/vscode.md"),
-}
-TO_COME = {"init", "--watch"}
+PAGES_TO_COME = {"archives.md", "configuration.md"}
+TO_COME = {"init"}
 
 _LINK = re.compile(r"(?<!!)\[[^\]]*\]\(([^)\s]+)\)")
 _SPAN = re.compile(r"`(polarcheck [^`\n]+)`")
@@ -183,7 +180,8 @@ def test_shown_reports_are_what_is_said_today(pytestconfig: pytest.Config, monke
     for page in written_pages():
         text = shown = text_of(page)
         for block in blocks(text):
-            if block[0].startswith("$ polarcheck "):
+            # Others are of programs that their own tests make.
+            if block[0].startswith("$ polarcheck ") and SAMPLES in block[0]:
                 block = "\n".join(block).rstrip("\n").split("\n")
                 said = [block[0], *ran(block[0].removeprefix("$ "))[1].rstrip("\n").split("\n")]
                 before, after = ("\n".join(f"    {line}".rstrip() for line in lines) for lines in (block, said))
