@@ -45,6 +45,15 @@ def test_the_commands_do_what_the_page_says() -> None:
     assert {entry.reason for entry in read(Path("polarcheck-baseline.json"))} == {"RUN SINCE 2019"}
 
 
+@pytest.mark.usefixtures("own_folder")
+def test_a_job_file_can_say_that_comments_do_not_count() -> None:
+    Path("a.nc").write_text(PROGRAMS[0])
+    Path("polarcheck.toml").write_text("inline = false\n")
+    command = ["check", "a.nc", "--select", "rapid-in-polar"]
+    statuses = [CliRunner().invoke(main, [*command, *more]).exit_code for more in ([], ["--inline"])]
+    assert statuses == [1, 0]
+
+
 def test_the_entry_is_one() -> None:
     (entry,) = (json.loads(part) for part in PARTS if part.startswith("{"))
     assert set(entry) < set(Entry.__struct_fields__)
