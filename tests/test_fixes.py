@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+import shutil
 import signal
 import stat
 import subprocess
@@ -207,6 +208,20 @@ def test_options_that_do_nothing_alone_say_so(option: str) -> None:
     assert result.stderr == f"polarcheck: warning: {option} does nothing without --fix\n"
 
 
+@of_posix
+@pytest.mark.skipif(shutil.which("patch") is None, reason="patch is not here")
+def test_a_diff_of_plain_lines_can_be_applied() -> None:
+    sections = "".join(
+        f"(PART {number})\n" * 5 + f"G12.1 M8\nG17\nG1 X4{number}.\nX60.\nG13.1\nG0 Z50.\n" for number in range(9)
+    )
+    make(a__nc="G98 G0 X60. C0\n" + sections, b__nc="G98 G0 X60. C0\n" + sections)
+    shown = check("a.nc", "--diff", "--unsafe-fixes", "--select", "polar").stdout
+    assert shown.count("@@ -") > 1
+    subprocess.run(["patch", "-p0", "b.nc"], input=shown, text=True, check=True, capture_output=True, timeout=60)
+    check("a.nc", "--fix", "--unsafe-fixes", "--select", "polar")
+    assert text_of("a.nc") == text_of("b.nc")
+
+
 # ---- standard input ----
 
 
@@ -269,7 +284,7 @@ def test_what_somebody_has_answered_for_is_not_fixed() -> None:
         return msgspec.structs.replace(report, findings=[])
 
     found = fixing.with_fixes(DASH.encode(), settings_for(), "-", answered=answered)
-    assert found == fixing.Outcome(DASH.encode(), [], [])
+    assert (found.data, found.fixed, found.refused) == (DASH.encode(), [], [])
 
 
 @pytest.mark.parametrize(
@@ -330,7 +345,33 @@ def test_the_fixes_of_one_round_after_another_end() -> None:
     program = HEAD + "".join(f"G17 C–{number}0.\n" for number in range(1, 4)) + "X60.\nG13.1\n"
     found = outcome(program)
     assert found.data.decode() == program.replace("G17 ", "").replace("–", "-")
-    assert outcome(found.data.decode()) == fixing.Outcome(found.data, [], [])
+    assert outcome(found.data.decode()).fixed == []
+
+
+def test_what_is_refused_stands_in_the_way_of_nothing() -> None:
+    """Beside a G13.1 that is refused a G40 that changes the way of the tool, and is looked at by itself."""
+    last = "T0101\nG98 G0 X60. C0\nG12.1\nG1 G41 X40. F200\nC-10.\nX60.\nG13.1\nG0 Z50.\nM30\n"
+    found = outcome(f"O1\n{REFUSED}O2\n{last}")
+    assert found.data.decode() == f"O1\n{REFUSED}O2\n{last}".replace("X60.\nG13.1", "G40 X60.\nG13.1")
+    assert len(found.fixed) == len(found.refused) == 1
+
+
+def test_of_many_that_are_refused_only_some_are_tried() -> None:
+    found = outcome("".join(f"O{number}\n{REFUSED}" for number in range(1, 24)))
+    assert not found.fixed
+    assert len(found.refused) == fixing.MOST_REFUSED
+    assert found.is_whole
+
+
+def test_where_there_are_too_many_some_are_left(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(fixing, "MOST_CHECKS", 1)
+    make(a__nc=HEAD + "G17 C–10.\nX60.\nG13.1\n")
+    result = check("a.nc", "--fix", "--unsafe-fixes")
+    assert "warning: a.nc: it takes too long to try all of its fixes; run it once more for those that are left\n" in (
+        result.stderr
+    )
+    check("a.nc", "--fix", "--unsafe-fixes")
+    assert text_of("a.nc") == HEAD + "C-10.\nX60.\nG13.1\n"
 
 
 def test_a_program_that_is_too_hard_is_left_as_it_is() -> None:
@@ -547,7 +588,7 @@ def test_a_kill_leaves_the_old_program_or_the_new_one() -> None:
     long = HEAD + "".join(f"X40.{number:03}\nC–{number % 9 + 1}.\n" for number in range(60)) + "X60.\nG13.1\n"
     good, seen = long.replace("–", "-"), set()
     environment = {**os.environ, "PYTHONPATH": IMPORTED_FROM}
-    for number in range(4):
+    for number in range(3):
         Path("a.nc").write_text(long, "utf-8", newline="")
         process = subprocess.Popen(
             [sys.executable, "-m", "polarcheck", "check", "a.nc", "--fix", "--select", "wrong-dash", "-q"],
@@ -555,7 +596,7 @@ def test_a_kill_leaves_the_old_program_or_the_new_one() -> None:
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
         )
-        if number < 3:
+        if number < 2:
             # As soon as the new file begins to be there, or a little later.
             end = time.monotonic() + 60
             while process.poll() is None and time.monotonic() < end and not list(Path().glob(".a.nc.*")):
@@ -592,7 +633,7 @@ FAULTS: dict[str, Callable[[str], str]] = {
 PROGRAMS = [path for path in SAMPLES if path.stat().st_size < 3000]
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=15, deadline=None)
 @given(
     st.sampled_from(PROGRAMS), st.lists(st.sampled_from(sorted(FAULTS)), min_size=1, max_size=4), st.sampled_from(ENDS)
 )
@@ -621,8 +662,8 @@ def never_worse(data: bytes, own: Settings) -> None:
 @pytest.mark.skipif(not CORPUS.is_dir(), reason="the real programs are not here")
 def test_no_real_program_gets_worse() -> None:
     polar, others = (sorted((CORPUS / name).rglob("*")) for name in ("polar", "general"))
-    paths = [path for path in (*polar, *others[::10]) if path.is_file() and path.stat().st_size < 20_000]
-    assert len(paths) > 30
+    paths = [path for path in (*polar, *others[::20]) if path.is_file() and path.stat().st_size < 20_000]
+    assert len(paths) > 20
     for path in paths:
         never_worse(path.read_bytes(), settings_for("turning-center", "1:radius=4", c_feed=3600))
 

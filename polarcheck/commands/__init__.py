@@ -21,7 +21,19 @@ from polarcheck.commands.exit_codes import BUG, CLEAN, COULD_NOT_RUN
 from polarcheck.commands.output import COLUMNS, ON_WINDOWS, abandon_output, said_of_bug, say, say_lines
 from polarcheck.errors import PolarcheckError, RuleError
 
-NAMES = ("baseline", "check", "completion", "config", "explain", "init", "machines", "rules", "schema", "server", "trace")
+NAMES = (
+    "baseline",
+    "check",
+    "completion",
+    "config",
+    "explain",
+    "init",
+    "machines",
+    "rules",
+    "schema",
+    "server",
+    "trace",
+)
 
 
 class Modules(Mapping[str, click.Command]):

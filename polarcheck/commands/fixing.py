@@ -149,7 +149,7 @@ class _Work:
         outcome = self._outcome(task, data, task.title)
         new = data if outcome is None else outcome.data
         if self.wanted.diff:
-            self._show(task, data, new)
+            self._show(task, data, outcome)
         elif is_input:
             show(new)
             self.has_output = True
@@ -199,10 +199,12 @@ class _Work:
             return False
         return True
 
-    def _show(self, task: Task, old: bytes, new: bytes) -> None:
+    def _show(self, task: Task, old: bytes, outcome: Outcome | None) -> None:
         from polarcheck.fixes.difference import difference
 
-        lines = difference(task.title, old, new, task.settings.encoding)
+        if outcome is None:
+            return
+        lines = difference(task.title, old, outcome.data, outcome.origin, task.settings.encoding)
         if self.shown.color:
             lines = [f"\x1b[{_COLORS[line[0]]}m{line}\x1b[0m" if line[0] in _COLORS else line for line in lines]
         if lines:
@@ -213,6 +215,8 @@ class _Work:
         self.count += len(outcome.fixed)
         self.files += bool(outcome.fixed)
         self.left += outcome.left
+        if not outcome.is_whole:
+            warn(f"{path}: it takes too long to try all of its fixes; run it once more for those that are left")
         if self.shown.quiet:
             return
         for one in outcome.fixed[:_TOLD] if not self.wanted.diff else ():
@@ -221,6 +225,8 @@ class _Work:
             say(f"{path}: {len(outcome.fixed) - _TOLD} more fixed")
         for refused in outcome.refused[:_TOLD]:
             say(f"{path}:{refused.line}: not fixed: {refused.title} [{refused.rule}]: {refused.reason}")
+        if len(outcome.refused) > _TOLD:
+            say(f"{path}: {len(outcome.refused) - _TOLD} more not fixed")
 
     def tell(self) -> None:
         """One line on the whole, where no report says it."""

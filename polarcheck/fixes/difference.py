@@ -2,63 +2,91 @@
 
 from __future__ import annotations
 
-import difflib
-from collections.abc import Iterator
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
 
 from polarcheck.reading import source
 from polarcheck.reading.excerpt import visible
 
 _CONTEXT = 3
+_SAME, _OLD, _NEW = " -+"
+
+#: A sign and a line.
+_Marked = tuple[str, str]
 
 
-def difference(path: str, old: bytes, new: bytes, encoding: str | None) -> list[str]:
+def difference(path: str, old: bytes, new: bytes, origin: Sequence[int], encoding: str | None) -> list[str]:
     """
     The lines of a unified diff, without line ends; empty where nothing differs.
 
-    What would act on a terminal is spelled out, and line ends are left away: it is there to be read.
+    origin: for each line of the new text that of the old one (from 1) that it comes from, ascending. What would act on
+    a terminal is spelled out, and line ends are left away: it is there to be read.
     """
     if old == new:
         return []
     was, now = (_lines(data, path, encoding) for data in (old, new))
-    # Most of a long program is the same: to look for that, line by line, takes long.
-    head = _alike(was, now)
-    tail = _alike(was[head:][::-1], now[head:][::-1])
-    head, tail = max(head - _CONTEXT, 0), max(tail - _CONTEXT, 0)
-    pieces = (was[head : len(was) - tail], now[head : len(now) - tail])
-    groups = difflib.SequenceMatcher(None, *pieces).get_grouped_opcodes(_CONTEXT)
+    marked = list(_marked(was, now, origin))
+    changed = [number for number, (sign, _) in enumerate(marked) if sign != _SAME]
     name = visible(path)
     found = [f"--- {name}", f"+++ {name}"]
-    for group in groups:
-        first, last = group[0], group[-1]
-        spans = ((first[1] + head, last[2] + head), (first[3] + head, last[4] + head))
-        found.append("@@ -{} +{} @@".format(*(_span(*span) for span in spans)))
-        for tag, begin, end, new_begin, new_end in group:
-            if tag == "equal":
-                found += [f" {line}" for line in pieces[0][begin:end]]
-                continue
-            found += [f"-{line}" for line in pieces[0][begin:end]]
-            found += [f"+{line}" for line in pieces[1][new_begin:new_end]]
+    before = {_OLD: 0, _NEW: 0}
+    done = 0
+    for first, end in _hunks(changed, len(marked)):
+        for sign, others in ((_OLD, _NEW), (_NEW, _OLD)):
+            before[sign] += sum(mark != others for mark, _ in marked[done:first])
+        hunk = marked[first:end]
+        counts = {sign: sum(mark in (sign, _SAME) for mark, _ in hunk) for sign in (_OLD, _NEW)}
+        found.append("@@ -{} +{} @@".format(*(_span(before[sign], counts[sign]) for sign in (_OLD, _NEW))))
+        found += [visible(sign + line) for sign, line in _in_order(hunk)]
+        done = first
     return found
 
 
-def _alike(one: list[str], other: list[str]) -> int:
-    """How many lines at the head are the same."""
-    pairs = zip(one, other, strict=False)
-    return next(
-        (number for number, (line, of_other) in enumerate(pairs) if line != of_other), min(len(one), len(other))
-    )
+def _marked(old: list[str], new: list[str], origin: Sequence[int]) -> Iterator[_Marked]:
+    """The lines of both, each with its sign."""
+    from_line = defaultdict[int, list[str]](list)
+    for line, of_old in zip(new, origin, strict=True):
+        from_line[int(of_old)].append(line)
+    for number, line in enumerate(old, 1):
+        now = from_line[number]
+        if line in now:
+            at = now.index(line)
+            yield from ((_NEW, one) for one in now[:at])
+            yield _SAME, line
+            yield from ((_NEW, one) for one in now[at + 1 :])
+        else:
+            yield _OLD, line
+            yield from ((_NEW, one) for one in now)
 
 
-def _span(begin: int, end: int) -> str:
-    """As in a unified diff: the first line and how many; an empty one stands behind a line."""
-    count = end - begin
-    return f"{begin + 1}" if count == 1 else f"{begin + 1 if count else begin},{count}"
+def _hunks(changed: list[int], count: int) -> Iterator[tuple[int, int]]:
+    """From where to where lines are shown: those that differ and some around them."""
+    first = changed[0]
+    for number, following in zip(changed, [*changed[1:], None], strict=True):
+        if following is None or following - number > 2 * _CONTEXT + 1:
+            yield max(first - _CONTEXT, 0), min(number + _CONTEXT + 1, count)
+            first = following if following is not None else first
+
+
+def _in_order(hunk: list[_Marked]) -> Iterator[_Marked]:
+    """Of neighbours that differ the old ones first."""
+    new: list[_Marked] = []
+    for one in hunk:
+        if one[0] == _NEW:
+            new.append(one)
+            continue
+        if one[0] == _SAME:
+            yield from new
+            new = []
+        yield one
+    yield from new
+
+
+def _span(before: int, count: int) -> str:
+    """As in a unified diff: the first line and how many; none stand behind a line."""
+    return f"{before + 1}" if count == 1 else f"{before + 1 if count else before},{count}"
 
 
 def _lines(data: bytes, path: str, encoding: str | None) -> list[str]:
-    return [visible(line) for line in _texts(source.read(data, path, encoding))]
-
-
-def _texts(text: source.Source) -> Iterator[str]:
-    for line in range(1, len(text.line_starts) + 1):
-        yield text.line_text(line).lstrip("\r")
+    text = source.read(data, path, encoding)
+    return [text.line_text(line).lstrip("\r") for line in range(1, len(text.line_starts) + 1)]

@@ -9,7 +9,7 @@ import numpy as np
 
 from polarcheck.arrays import Rows
 from polarcheck.checking.finding import Edit, Fix
-from polarcheck.reading.source import LF, Source
+from polarcheck.reading.source import Source
 
 #: An edit by character positions: from, to (exclusive), text.
 Span = tuple[int, int, str]
@@ -79,14 +79,6 @@ def _encoded(text: str, encoding: str) -> bytes:
     return text.encode(encoding)[len("".encode(encoding)) :]
 
 
-def shifted(source: Source, spans: Iterable[Span], line: int) -> int:
-    """The line that a line (from 1) is after the edits; one that they take away is the next one."""
-    before = [span for span in spans if source.line_of(span[0]) < line]
-    new = sum(_breaks(source, text) for _, _, text in before)
-    gone = sum(source.line_of(end) - source.line_of(start) for start, end, _ in before)
-    return line + new - gone
-
-
 def origins(before: Source, after: Source, spans: Iterable[Span]) -> Rows:
     """For each line of the result the line (from 1) of the text before the edits that it comes from."""
     made = sorted(set(spans))
@@ -97,7 +89,3 @@ def origins(before: Source, after: Source, spans: Iterable[Span]) -> Rows:
     place = after.line_starts - grown[passed]
     begin = np.array([start for start, _, _ in made] + [len(before.code)], np.int64)[passed]
     return np.asarray(np.searchsorted(before.line_starts, np.minimum(place, begin), side="right"))
-
-
-def _breaks(source: Source, text: str) -> int:
-    return text.count("\n") or (text.count("\r") if not (source.code == LF).any() else 0)

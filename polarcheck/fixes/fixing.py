@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Sequence
 
 import msgspec
@@ -13,10 +14,15 @@ from polarcheck.checking.repair import WAY, repair_of
 from polarcheck.checking.settings import Settings
 from polarcheck.errors import SourceError, TooHardError
 from polarcheck.fixes.comparison import State, objection, state_of
-from polarcheck.fixes.edits import Span, applied, origins, overlap, shifted, spans
+from polarcheck.fixes.edits import Span, applied, origins, overlap, spans
+from polarcheck.time_limit import seconds_for
 
 #: The checks of one program for its fixes; what is left then is left for the next time.
 MOST_CHECKS = 200
+#: So many times as long as the check of the program may take, its fixes may.
+_TURNS = 5
+#: Where so many fixes of a rule are refused, no more of that rule are tried in the program.
+MOST_REFUSED = 20
 
 Answered = Callable[[FileReport], FileReport]
 
@@ -36,12 +42,19 @@ class Refused(Fixed, frozen=True):
 
 
 class Outcome(msgspec.Struct, frozen=True):
-    """The bytes with the fixes; what was made, and what not. left: how many are only made where unsafe ones are."""
+    """
+    The bytes with the fixes; what was made, and what not.
+
+    left: how many are only made where unsafe ones are. is_whole: there was time for all of them. origin: for each line
+    of the result that of the file (from 1).
+    """
 
     data: bytes
     fixed: list[Fixed]
     refused: list[Refused]
     left: int = 0
+    origin: list[int] = []
+    is_whole: bool = True
 
 
 class _Candidate(msgspec.Struct, frozen=True):
@@ -52,7 +65,7 @@ class _Candidate(msgspec.Struct, frozen=True):
     spans: list[Span]
 
 
-#: Of a finding, wherever the fixes before it have moved it.
+#: Of a fix of a program as it is.
 _Key = tuple[str, int, str]
 
 
@@ -72,30 +85,47 @@ def with_fixes(
     round after the other. Raises what state_of raises for the program as it is.
     """
     state = state_of(data, settings, path, encoding)
-    work = _Work(settings, path, encoding, unsafe, answered, len(state.source.line_starts))
-    while work.checks < MOST_CHECKS:
+    work = _Work(settings, path, encoding, unsafe, answered, len(state.source.line_starts), len(data))
+    while not work.is_over:
         candidates = work.candidates(state)
         if not candidates:
             break
         state = work.best(state, candidates) or state
     left = sum(one.fix is not None and not one.fix.safe and not unsafe for one in answered(state.asked).findings)
-    return Outcome(state.source.data, work.fixed, list(work.refused.values()), left)
+    return Outcome(
+        state.source.data, work.fixed, list(work.refused.values()), left, work.origin.tolist(), not work.is_over
+    )
 
 
 class _Work:
     """
-    What was made and refused so far. origin: for each line of the program as it is now that of the file (from 1).
+    What was made so far, and refused since then. origin: for each line of the program as it is now that of the file
+    (from 1).
     """
 
     def __init__(
-        self, settings: Settings, path: str, encoding: str | None, unsafe: bool, answered: Answered, lines: int
+        self,
+        settings: Settings,
+        path: str,
+        encoding: str | None,
+        unsafe: bool,
+        answered: Answered,
+        lines: int,
+        size: int,
     ) -> None:
         self.settings, self.path, self.encoding = settings, path, encoding
         self.unsafe, self.answered = unsafe, answered
         self.fixed: list[Fixed] = []
         self.refused: dict[_Key, Refused] = {}
+        self.last: State | None = None
         self.checks = 0
+        self.end = time.monotonic() + _TURNS * seconds_for(size, settings.job.run.max_seconds)
         self.origin: Rows = np.arange(1, lines + 1)
+
+    @property
+    def is_over(self) -> bool:
+        """What is left is left for the next time."""
+        return self.checks >= MOST_CHECKS or time.monotonic() > self.end
 
     def candidates(self, state: State) -> list[_Candidate]:
         """The fixes to try next, in the order of the lines: of which none touches another."""
@@ -104,6 +134,8 @@ class _Work:
         for found in self.answered(state.asked).findings:
             fix = found.fix
             if fix is None or not (fix.safe or self.unsafe) or _key(found, fix) in self.refused:
+                continue
+            if self._is_given_up(found.rule):
                 continue
             own = spans(state.source, fix)
             if not overlap(own, taken):
@@ -115,19 +147,37 @@ class _Work:
 
     def best(self, state: State, candidates: Sequence[_Candidate]) -> State | None:
         """The program with as many of these fixes as it takes; None where it takes none of them."""
-        after, reason = self._tried(state, candidates)
+        self.last = None
+        made = self._accepted(state, [], candidates)
+        if self.last is None:
+            return None
+        # What was refused is tried again: these may have made room for it, and the next time would find it.
+        self.refused = {}
+        self.fixed += [Fixed(one.found.rule, self._line(one), one.fix.title) for one in made]
+        spans_made = [span for one in made for span in one.spans]
+        self.origin = self.origin[origins(state.source, self.last.source, spans_made) - 1]
+        return self.last
+
+    def _accepted(self, state: State, made: list[_Candidate], candidates: Sequence[_Candidate]) -> list[_Candidate]:
+        """Those that were made, with as many of the candidates as the program takes beside them."""
+        candidates = [one for one in candidates if not self._is_given_up(one.found.rule)]
+        if not candidates or self.is_over:
+            return made
+        after, reason = self._tried(state, [*made, *candidates])
         if after is not None:
-            self.fixed += [Fixed(one.found.rule, self._line(one), one.fix.title) for one in candidates]
-            self._follow(state, after, candidates)
-            return after
-        if len(candidates) > 1 and self.checks < MOST_CHECKS:
-            half = len(candidates) // 2
-            # The others are tried again in the next round, beside those that were made.
-            return self.best(state, candidates[:half]) or self.best(state, candidates[half:])
-        for one in candidates if len(candidates) == 1 else ():
-            refused = Refused(one.found.rule, self._line(one), one.fix.title, reason)
-            self.refused[_key(one.found, one.fix)] = refused
-        return None
+            self.last = after
+            return [*made, *candidates]
+        if len(candidates) == 1:
+            (one,) = candidates
+            self.refused[_key(one.found, one.fix)] = Refused(one.found.rule, self._line(one), one.fix.title, reason)
+            return made
+        for part in _parts(candidates):
+            made = self._accepted(state, made, part)
+        return made
+
+    def _is_given_up(self, rule: str) -> bool:
+        """So many fixes of the rule were refused that no more are tried."""
+        return sum(refused.rule == rule for refused in self.refused.values()) >= MOST_REFUSED
 
     def _line(self, one: _Candidate) -> int:
         return int(self.origin[one.found.line - 1])
@@ -145,14 +195,14 @@ class _Work:
             return None, f"the result could not be judged: {error}"
         return (None, reason) if reason else (after, "")
 
-    def _follow(self, before: State, after: State, candidates: Sequence[_Candidate]) -> None:
-        """What was refused stands in other lines now."""
-        made = [span for one in candidates for span in one.spans]
-        self.origin = self.origin[origins(before.source, after.source, made) - 1]
-        self.refused = {
-            (rule, shifted(before.source, made, line), title): refused
-            for (rule, line, title), refused in self.refused.items()
-        }
+
+def _parts(candidates: Sequence[_Candidate]) -> list[list[_Candidate]]:
+    """Those of each rule, or the halves of those of a single one: what is refused often is so of one rule."""
+    rules = dict.fromkeys(one.found.rule for one in candidates)
+    if len(rules) > 1:
+        return [[one for one in candidates if one.found.rule == rule] for rule in rules]
+    half = len(candidates) // 2
+    return [list(candidates[:half]), list(candidates[half:])]
 
 
 def _key(found: Finding, fix: Fix) -> _Key:
