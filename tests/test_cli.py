@@ -117,6 +117,18 @@ def test_what_is_not_evaluated_fails_only_where_that_is_asked_for() -> None:
     assert check("a.nc", *RAMP_ONLY, "--strict", "--tool", "1:radius=4").exit_code == 0
 
 
+def test_the_offset_table_of_a_job_is_no_program_of_its_folder() -> None:
+    table = "%\nG10 P1 R4.\n%\n"
+    make(a__nc=GOOD, TOOLOFST__TXT=table, other__txt=table, O0002__nc=table)
+    make(polarcheck__toml="offsets = 'TOOLOFST.TXT'\n")
+    checked = json.loads(check(".", "--format", "json").stdout)["files"]
+    assert [file["path"] for file in checked] == ["O0002.nc", "a.nc", "other.txt"]
+    for named in ((".", "TOOLOFST.TXT"), ("TOOLOFST.TXT", ".")):
+        assert json.loads(check(*named, "--format", "json").stdout)["summary"]["files"] == 4
+    make(polarcheck__toml="offsets = 'O0002.nc'\n")
+    assert json.loads(check(".", "--format", "json").stdout)["summary"]["files"] == 4
+
+
 def test_an_unreadable_file_does_not_stop_the_others() -> None:
     make(a__nc=RAPID, b__nc=GOOD)
     result = check("a.nc", "gone\x1b[2J.nc", "b.nc", *RAPID_ONLY, "--format", "json")

@@ -91,7 +91,8 @@ def plan(
     The programs of files, folders and standard input (`-`), each once, in the order asked for.
 
     Paths that mean the same file are one program, under the first of them; where links lead to it from folders with
-    settings of their own, one for each of these.
+    settings of their own, one for each of these. An offset table that a job names is no program of a folder, though it
+    looks like one, unless its name is that of a program.
 
     settings_of: what applies to a program; a path that ends in a separator is a folder, of which the extensions are
     asked. standard_input: the file, which need not be there, that standard input is judged as. excluded_in: which
@@ -99,9 +100,10 @@ def plan(
     without programs. Raises a PolarcheckError for settings that cannot be used, before any file is checked.
     """
     tasks: dict[tuple[str, int], Task] = {}
+    by_look: set[tuple[str, int]] = set()
     real = files.RealPaths()
     for path in paths:
-        found, failures = [path], list[str]()
+        found, failures, wanted = [path], list[str](), None
         if path != files.STANDARD_INPUT and os.path.isdir(path):  # noqa: PTH112  Path.is_dir raises for some names
             own = settings_of(os.path.join(path, "")).job.extensions  # noqa: PTH118
             wanted = files.extensions(extensions or own) or files.EXTENSIONS
@@ -116,7 +118,18 @@ def plan(
             place = standard_input if program == files.STANDARD_INPUT else program
             settings = settings_of(place)
             named = place if place != program else ""
-            tasks.setdefault((real.of(place), id(settings)), Task(program, settings, named))
+            key = real.of(place), id(settings)
+            if wanted is None:
+                by_look.discard(key)
+            elif key not in tasks and not files.has_name_of_program(program, wanted):
+                by_look.add(key)
+            tasks.setdefault(key, Task(program, settings, named))
+    if by_look:
+        of_jobs = {id(task.settings): task.settings for task in tasks.values()}
+        read = {real.of(str(path)) for settings in of_jobs.values() for path in settings.read}
+        for key in by_look:
+            if key[0] in read:
+                del tasks[key]
     return list(tasks.values())
 
 
