@@ -195,7 +195,14 @@ def test_what_does_nothing_has_no_state(line: int) -> None:
 
 
 def test_words_of_a_program_format_nothing() -> None:
-    assert markdown.plain("a*b_c<d>[e](f)`#1`\x1b\n") == r"a\*b\_c\<d\>\[e\](f)\`\#1\`\\x1b\\x0a"
+    assert markdown.plain("a*b _c_ <d>[e](f)`#1`\x1b\n") == r"a\*b \_c\_ \<d\>\[e\](f)\`#1\`\\x1b\\x0a"
+    assert markdown.plain("F < L * R, limits.c_feed, #1=2") == r"F \< L * R, limits.c_feed, #1=2"
+    assert [markdown.plain(text) for text in ("# 1", "12. b", "+ c", "12.5 mm")] == [
+        r"\# 1",
+        r"12\. b",
+        r"\+ c",
+        "12.5 mm",
+    ]
     assert markdown.page("- 1\n\n    G1 X[#1*2]\n* x") == "\\- 1\n\n    G1 X[#1*2]\n\\* x"
 
 

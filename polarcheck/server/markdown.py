@@ -6,12 +6,21 @@ import re
 
 from polarcheck.reading.excerpt import visible
 
-_MEANS_SOMETHING = re.compile(r"([\\`*_{}\[\]<>#|~&!])|^(\s*)([-+]|\d+[.)])(?=\s)")
+#: Not _ inside a word, nor * between blanks: some editors show what stands before a sign to make it one.
+_MEANS_SOMETHING = re.compile(
+    r"([\\`\[\]<>~&]|(?<!\w)_|_(?!\w)|(?<!\s)\*|\*(?!\s))|^(\s*)([-+*]|#{1,6})(?=\s)|^(\s*\d+)([.)])(?=\s)"
+)
 
 
 def plain(text: str) -> str:
     """Words that come from anywhere, in one line."""
-    return _MEANS_SOMETHING.sub(lambda found: f"\\{found[1]}" if found[1] else f"{found[2]}\\{found[3]}", visible(text))
+    return _MEANS_SOMETHING.sub(_escaped, visible(text))
+
+
+def _escaped(found: re.Match[str]) -> str:
+    """A sign behind a backslash; what stands before it at the head of the line stays."""
+    sign, blanks, mark, number, point = found.groups()
+    return f"\\{sign}" if sign else f"{blanks or number or ''}\\{mark or point}"
 
 
 def page(text: str) -> str:
