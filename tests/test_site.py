@@ -50,6 +50,8 @@ def test_the_made_pages_are_current() -> None:
     found = {path.relative_to(DOCS).as_posix() for folder in site.FOLDERS for path in (DOCS / folder).rglob("*")}
     gone = {name for name in found - made.keys() if name.endswith(".md")}
     assert (differ, gone) == ([], set())
+    of_rules = [text for name, text in made.items() if name.startswith("rules/") and not name.endswith("index.md")]
+    assert all("## What it says" in text for text in of_rules)
 
 
 def test_the_pages_are_written_and_those_of_what_is_gone_taken_away(

@@ -11,7 +11,7 @@ from typing import Any
 from polarcheck.checking import check
 from polarcheck.checking.examples import Example, examples
 from polarcheck.checking.finding import Finding
-from polarcheck.checking.rule import Rule
+from polarcheck.checking.rule import Rule, load_all
 from polarcheck.machines import profiles, toml_text
 from polarcheck.machines.job import from_table, with_tool
 from polarcheck.machines.machine import Machine
@@ -61,16 +61,17 @@ def page(rule: Rule) -> str:
 
 def said_of_examples(rule: Rule) -> list[Finding]:
     """What the rule finds in the Bad examples of its page, in their order."""
-    return [
-        found
-        for example in examples(rule.page)
-        if not example.good
-        for found in _findings(example, rule)
-        if found.rule == rule.name
-    ]
+    bad = [example for example in examples(rule.page) if not example.good]
+    # Some rules speak of what others find, or do not.
+    said = _said(bad, rule, [rule]) or _said(bad, rule, list(load_all().values()))
+    return [found for found in said if found.rule == rule.name]
 
 
-def _findings(example: Example, rule: Rule) -> Sequence[Finding]:
+def _said(bad: Sequence[Example], rule: Rule, rules: Sequence[Rule]) -> list[Finding]:
+    return [found for example in bad for found in _findings(example, rule, rules)]
+
+
+def _findings(example: Example, rule: Rule, rules: Sequence[Rule]) -> Sequence[Finding]:
     changes: dict[str, Any] = {}
     table: dict[str, Any] = {}
     for setting in example.settings:
@@ -85,7 +86,7 @@ def _findings(example: Example, rule: Rule) -> Sequence[Finding]:
     job = from_table(table, rule.name)
     for tool in example.tools:
         job = with_tool(job, tool)
-    return check.check_file(example.program.encode(), machine, job, [rule], severities=_as_found(rule)).findings
+    return check.check_file(example.program.encode(), machine, job, rules, severities=_as_found(rule)).findings
 
 
 @functools.cache
