@@ -287,6 +287,16 @@ def test_what_somebody_has_answered_for_is_not_fixed() -> None:
     assert (found.data, found.fixed, found.refused) == (DASH.encode(), [], [])
 
 
+def test_what_a_baseline_knows_is_not_fixed() -> None:
+    make(a__nc=DASH, b__nc=DASH)
+    assert CliRunner().invoke(main, ["baseline", "create", "a.nc", "-o", "known.json"]).exit_code == 0
+    fixed = check("--fix", "--baseline", "known.json", "a.nc", "b.nc")
+    assert text_of("a.nc") == DASH
+    assert text_of("b.nc") == MINUS
+    assert "1 fixed" in fixed.stdout
+    assert "1 silenced" in fixed.stdout
+
+
 @pytest.mark.parametrize(
     ("wrong", "said"),
     [

@@ -171,7 +171,8 @@ def _check(asked: _Asked, seen: watching.Seen | None) -> int:
     tasks = narrowed(tasks, asked.diff_base, asked.max_size, not asked.quiet)
     is_colored = in_color(asked.color)
     shown_in = fixing.Shown(asked.quiet, is_colored, asked.debug, bool(asked.outputs))
-    made = fixing.make(asked.fixes, tasks, asked.max_size, shown_in)
+    is_known = silencing.answers(tasks, applies.baseline)
+    made = fixing.make(asked.fixes, tasks, asked.max_size, shown_in, is_known)
     if made.ends:
         return max(faults.told(), made.status)
     form = asked.form or ("text" if len(tasks) <= _LONG else "short")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections import Counter
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -48,21 +48,37 @@ def answered(outcomes: Iterable[Outcome], tasks: Sequence[Task], path: Path | No
         return
     import msgspec
 
-    from polarcheck.checking import baseline_file
-    from polarcheck.checking.baseline import Baseline
     from polarcheck.checking.batch import fails
 
-    known = Baseline(baseline_file.read(path), path.parent, (task.named or task.path for task in tasks))
-    settings = settings_of(tasks)
+    known, settings = _baseline(tasks, path), settings_of(tasks)
+    answer = _answering(known, settings)
     for outcome in outcomes:
-        found = outcome.report
-        if found is not None:
-            own = settings[found.path]
-            report = known.answered(found, evaluated(found, own), own.fail_on)
-            yield msgspec.structs.replace(outcome, report=report, failed=fails(report, own))
-        else:
+        if outcome.report is None:
             yield outcome
+        else:
+            report = answer(outcome.report)
+            yield msgspec.structs.replace(outcome, report=report, failed=fails(report, settings[report.path]))
     _tell(known, path)
+
+
+def answers(tasks: Sequence[Task], path: Path | None) -> Callable[[FileReport], FileReport] | None:
+    """What silences the findings of a baseline in a report, where there is one."""
+    return None if path is None else _answering(_baseline(tasks, path), settings_of(tasks))
+
+
+def _answering(known: Baseline, settings: Mapping[str, Settings]) -> Callable[[FileReport], FileReport]:
+    def answer(report: FileReport) -> FileReport:
+        own = settings[report.path]
+        return known.answered(report, evaluated(report, own), own.fail_on)
+
+    return answer
+
+
+def _baseline(tasks: Iterable[Task], path: Path) -> Baseline:
+    from polarcheck.checking import baseline_file
+    from polarcheck.checking.baseline import Baseline
+
+    return Baseline(baseline_file.read(path), path.parent, (task.named or task.path for task in tasks))
 
 
 def settings_of(tasks: Iterable[Task]) -> dict[str, Settings]:
