@@ -221,7 +221,10 @@ def test_without_the_extra_it_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
         address = f"tcp://127.0.0.1:{server.getsockname()[1]}"
         result = CliRunner().invoke(main, ["check", "f", "--cluster", address])
     assert result.exit_code == 2
-    assert result.stderr == 'polarcheck: --cluster needs dask.distributed: pip install "polarcheck[cluster]"\n'
+    assert (
+        result.stderr
+        == "polarcheck: --cluster needs dask.distributed, of the extra [cluster]: pip install distributed\n"
+    )
 
 
 @pytest.mark.parametrize(

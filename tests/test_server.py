@@ -421,7 +421,7 @@ def test_without_the_extra_it_says_what_to_install(monkeypatch: pytest.MonkeyPat
     monkeypatch.setitem(sys.modules, "pygls", None)
     result = call("server")
     assert (result.exit_code, result.stdout) == (2, "")
-    assert result.stderr == 'polarcheck: the server needs pygls: pip install "polarcheck[server]"\n'
+    assert result.stderr == "polarcheck: the server needs pygls, of the extra [server]: pip install pygls\n"
 
 
 def test_the_first_answer_needs_no_tables() -> None:

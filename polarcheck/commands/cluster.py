@@ -46,7 +46,7 @@ def _client(address: str) -> Iterator[Any]:
     try:
         connected = importlib.import_module("distributed").Client
     except ImportError:
-        raise CrewError('--cluster needs dask.distributed: pip install "polarcheck[cluster]"') from None
+        raise CrewError("--cluster needs dask.distributed, of the extra [cluster]: pip install distributed") from None
     # What goes wrong is told in one line, here.
     for name in ("distributed", "tornado"):
         logging.getLogger(name).setLevel(logging.CRITICAL)

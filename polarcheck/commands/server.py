@@ -42,7 +42,7 @@ def server(ctx: click.Context, /, no_config: bool, trust: tuple[Path, ...], stdi
 
 def _serve(no_config: bool, trust: tuple[Path, ...], asked: dict[str, Any]) -> int:
     if not all(map(importlib.util.find_spec, _NEEDED)):
-        raise UsageError('the server needs pygls: pip install "polarcheck[server]"')
+        raise UsageError("the server needs pygls, of the extra [server]: pip install pygls")
     import gc
 
     from polarcheck.commands.memory import keep_within_memory
