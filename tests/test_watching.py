@@ -132,6 +132,13 @@ def test_standard_input_cannot_be_watched() -> None:
     )  # fmt: skip
 
 
+@pytest.mark.parametrize("other", ["--diff", "--diff-base=HEAD"])
+def test_one_look_is_not_watched(other: str) -> None:
+    Path("a.nc").write_text(GOOD)
+    said = f"polarcheck: --watch: not with {other.partition('=')[0]}, which is for one look\n"
+    assert run("check", "a.nc", "--watch", other) == (2, "", said)
+
+
 def test_a_first_run_that_cannot_begin_ends_it() -> None:
     Path("polarcheck.toml").write_text("nonsense = 1\n")
     Path("a.nc").write_text(GOOD)

@@ -93,6 +93,8 @@ def check(ctx: click.Context, /, paths: tuple[str, ...], watch: bool, **asked: A
     own = {name: asked.pop(name) for name in _Asked._fields if name in asked}
     known = _Asked(**own, paths=paths, command=_command(ctx), debug=options.DEBUG in ctx.meta, more=asked)
     run = partial(_check, known)
+    if watch:
+        watching.refuse(paths, {"--diff": known.fixes.diff, "--diff-base": known.diff_base})
     ctx.exit(watching.repeatedly(run, paths, known.outputs) if watch else run(None))
 
 

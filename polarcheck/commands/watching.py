@@ -11,7 +11,7 @@ import os
 import stat
 import sys
 import time
-from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -140,15 +140,21 @@ def _surroundings(paths: Iterable[str]) -> Iterator[str]:
                 inner_folders[:] = [name for name in inner_folders if not name.startswith(".")]
 
 
+def refuse(paths: Sequence[str], others: Mapping[str, object]) -> None:
+    """Raises UsageError for what cannot be looked at again, and for other options, by name, that are given."""
+    if "-" in paths:
+        raise UsageError("--watch: standard input comes once; name a file or folder")
+    for name, value in others.items():
+        if value:
+            raise UsageError(f"--watch: not with {name}, which is for one look")
+
+
 def repeatedly(run: Callable[[Seen], int], paths: Sequence[str], outputs: Iterable[tuple[str, Path]] = ()) -> int:
     """
     Run a check again and again; Ctrl-C, with which it is meant to end, ends it with 0.
 
-    outputs: the reports that it writes, format and file. Raises UsageError for standard input, and what the first run
-    raises.
+    outputs: the reports that it writes, format and file. Raises what the first run raises.
     """
-    if "-" in paths:
-        raise UsageError("--watch: standard input comes once; name a file or folder")
     seen = Seen(paths, [path for _, path in outputs])
     try:
         status = _run(run, seen, ())
