@@ -9,7 +9,7 @@ What can go wrong on our side. What is wrong in a program is a finding, never an
     |-- JobError          polarcheck.toml, pyproject.toml, an offset table
     |-- StoppedError      nobody waits for the outcome any more
     |-- BaselineError     a file of known findings
-    |-- CrewError        those who should check many files cannot go on
+    |-- CrewError         those who should check many files cannot go on
     |-- TooHardError      a table that would take more than its bound of time or size
     `-- RuleError         a rule without severity, message, docstring: a bug in a rule file
 """

@@ -16,8 +16,6 @@ from polarcheck.errors import BaselineError, suggestion
 from polarcheck.reading.files import shown
 
 SCHEMA = 1
-#: The name that it has if nobody says another.
-FILE_NAME = "polarcheck-baseline.json"
 #: Of a baseline; 100,000 findings have 20 MB [bytes].
 _LARGEST = 200_000_000
 

@@ -175,7 +175,7 @@ def without(trace: Trace, row: int, removed: Iterable[int]) -> list[Replace]:
             gone.append((first, last))
     kept = [0, *(place for span in gone for place in span), len(text)]
     if not "".join(text[first:last] for first, last in zip(kept[::2], kept[1::2], strict=True)).strip(_BLANKS + "/"):
-        return [_line_without(trace, block, begin, end)]
+        return [_line_without(trace.text.source, begin, end)]
     return [(begin + first, begin + last, "") for first, last in (_with_blanks(text, *span) for span in gone)]
 
 
@@ -186,9 +186,8 @@ def _with_blanks(text: str, first: int, last: int) -> tuple[int, int]:
     return (len(text[:first].rstrip(_BLANKS)), last) if last == len(text) else (first, last)
 
 
-def _line_without(trace: Trace, block: int, begin: int, end: int) -> Replace:
+def _line_without(source: Source, begin: int, end: int) -> Replace:
     """A block that goes as a whole: with its line, where nothing else stands on that."""
-    source = trace.text.source
     line = source.line_of(begin)
     first = int(source.line_starts[line - 1])
     while first < begin and source.code[first] == CR:

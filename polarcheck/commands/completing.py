@@ -26,8 +26,6 @@ from click.shell_completion import CompletionItem, ShellComplete, add_completion
 
 from polarcheck.commands.completion import SHELLS
 
-#: By it click is asked to complete.
-VARIABLE = "_POLARCHECK_COMPLETE"
 _BETWEEN = "\x1f"
 _PROFILE = ".toml"
 

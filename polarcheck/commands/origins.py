@@ -63,11 +63,11 @@ def values(applied: Applied, given: Given, severities: Mapping[str, str]) -> Ite
     job, merged = applied.settings.job, applied.merged
     table = {"machine": applied.settings.name, **_flat(job)}
     for key, value in table.items():
-        yield Value(key, value, *_origin(key, value, job, merged, given))
+        yield Value(key, value, *_origin(key, job, merged, given))
     for name, level in severities.items():
         yield Value(f"severities.{name}", level, *_of_option("severities", "--severity", given))
     yield from _of_machine(applied, given)
-    yield Value("extensions", job.extensions, *_origin("extensions", job.extensions, job, merged, given))
+    yield Value("extensions", job.extensions, *_origin("extensions", job, merged, given))
     excluding = applied.file.excluding
     excluded = _of_layer(excluding, "exclude") if excluding else _DEFAULT
     yield Value("exclude", excluding.excluded if excluding else [], *excluded)
@@ -104,7 +104,7 @@ def _differing(key: str, table: msgspec.Struct) -> dict[str, Any]:
     }
 
 
-def _origin(key: str, value: Any, job: Job, merged: Merged, given: Given) -> tuple[str, str]:
+def _origin(key: str, job: Job, merged: Merged, given: Given) -> tuple[str, str]:
     name, option = _OPTIONS.get(key, ("", ""))
     if name in given:
         return _of_option(name, option, given)

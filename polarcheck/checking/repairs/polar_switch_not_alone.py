@@ -79,7 +79,7 @@ def polar_switch_not_alone(trace: Trace, mode_words: ModeWords, row: int) -> Men
     # Words that the profile lets stand beside the code stay there.
     beside = [index for index in beside if not mode_words.may_stand_beside_switch[index]]
     block = int(trace.run.block[row])
-    outside = [index for index in beside if _must_be_outside(trace, mode_words, index)]
+    outside = [index for index in beside if _must_be_outside(trace, index)]
     out_of_place = [index for index in outside if (index > at) == enters]
     title = f"Write {switch(trace, row)} in a block of its own"
     if out_of_place:
@@ -99,7 +99,7 @@ def polar_switch_not_alone(trace: Trace, mode_words: ModeWords, row: int) -> Men
     return Mended(title, _is_safe(trace, row, before if enters else behind, beside), tuple(edits))
 
 
-def _must_be_outside(trace: Trace, mode_words: ModeWords, index: int) -> bool:
+def _must_be_outside(trace: Trace, index: int) -> bool:
     """A G code that cannot stand in the mode."""
     from polarcheck.machines.codes import NO_CODE, code_numbers, code_set
 
