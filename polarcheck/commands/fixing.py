@@ -15,7 +15,6 @@ import click
 from polarcheck.commands.exit_codes import BUG, CLEAN, COULD_NOT_RUN, FINDINGS
 from polarcheck.commands.options import option
 from polarcheck.commands.output import said_of_bug, say, say_lines, show, warn
-from polarcheck.commands.progress import Bar
 from polarcheck.errors import OutputError, PolarcheckError, SourceError, TooHardError, UsageError
 
 if TYPE_CHECKING:
@@ -103,6 +102,8 @@ def make(
             warn(f"--{name.replace('_', '-')} does nothing without --fix")
     if not (wanted.fix or wanted.diff):
         return Made()
+    from polarcheck.commands.progress import Bar
+
     work = _Work(wanted, most, shown, answered)
     with contextlib.closing(Bar(len(tasks), not shown.quiet).watched(tasks)) as awaited:
         for task in awaited:
@@ -230,10 +231,12 @@ class _Work:
 
     def tell(self) -> None:
         """One line on the whole, where no report says it."""
+        from polarcheck.reports import counted
+
         more = f"{self.left} more with --unsafe-fixes" if self.left else ""
         if self.wanted.diff:
-            many = "file" if self.files == 1 else "files"
-            would = f"--fix would write {self.count} fixes into {self.files} {many}" if self.count else "nothing to fix"
-            say(f"{would.replace(' 1 fixes', ' 1 fix')}{'; ' * bool(more)}{more}")
+            fixes, into = counted(self.count, "fix"), counted(self.files, "file")
+            would = f"--fix would write {fixes} into {into}" if self.count else "nothing to fix"
+            say(f"{would}{'; ' * bool(more)}{more}")
         elif more:
             say(more)

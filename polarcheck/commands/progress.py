@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import shutil
 import sys
 import time
 from collections.abc import Generator, Iterable
@@ -53,6 +52,8 @@ class Bar:
             self._length = 0
 
     def _draw(self, text: str) -> None:
+        import shutil
+
         # A line that reached the edge would be two.
         text = text[: shutil.get_terminal_size().columns - 1]
         self._write(f"\r{text}{' ' * (self._length - len(text))}")

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from polarcheck.reading.excerpt import excerpt, visible
 from polarcheck.reports import SEVERITIES, Background, Parts, counted, of_each, painted
-from polarcheck.reports.concise import why_silenced
 from polarcheck.reports.pages.resting import resting
 
 if TYPE_CHECKING:
@@ -105,6 +104,8 @@ def _silenced(file: FileReport, page: _Page) -> Iterator[str]:
     """What is silenced in a file, a paragraph for all of it."""
     if not file.silenced:
         return
+    from polarcheck.reports.concise import why_silenced
+
     yield from page.heading("silenced", counted(len(file.silenced), "finding"))
     for found in file.silenced:
         yield from page.labelled("at", f"{file.path}:{found.line}:{found.column}: {why_silenced(found)}")

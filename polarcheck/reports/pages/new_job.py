@@ -12,6 +12,7 @@ from polarcheck.machines import profiles
 from polarcheck.machines.modal import MM_PER_INCH
 from polarcheck.reading import files
 from polarcheck.reading.excerpt import shortened, visible
+from polarcheck.reports import counted
 
 SCHEMA_FILE = "polarcheck.schema.json"
 _COLUMNS = 100
@@ -73,8 +74,8 @@ def relative(survey: Survey, names: Mapping[str, str]) -> Survey:
 
 
 def summary(survey: Survey) -> str:
-    """`12 of 2000 programs use the polar mode; they call offsets 8, 12`."""
-    programs = f"{len(survey.polar)} of {survey.programs} program{'' if survey.programs == 1 else 's'}"
+    """`12 of 2000 programs use the polar mode, with offsets 8, 12`."""
+    programs = f"{len(survey.polar)} of {counted(survey.programs, 'program')}"
     keys = ", ".join(sorted(survey.offsets, key=_order))
     called = f", with offset{'s' if len(survey.offsets) > 1 else ''} {keys}" if keys else ""
     return f"{programs} use{'s' if len(survey.polar) == 1 else ''} the polar mode{called}"
