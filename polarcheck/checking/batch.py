@@ -38,9 +38,14 @@ class Task(msgspec.Struct, frozen=True):
     named: str = ""
 
     @property
+    def place(self) -> str:
+        """The path of the file that it is checked as, which need not be there."""
+        return self.named or self.path
+
+    @property
     def title(self) -> str:
         """The path under which it is reported."""
-        return files.shown(self.named or self.path)
+        return files.shown(self.place)
 
 
 class Outcome(msgspec.Struct, frozen=True):

@@ -9,6 +9,7 @@ from polarcheck.checking.batch import Task
 from polarcheck.checking.settings import Settings
 from polarcheck.errors import SourceError, TooHardError, UsageError
 from polarcheck.execution.dependence import calls_one_of
+from polarcheck.machines.job import FILE_NAME
 from polarcheck.reading import files, git, source
 from polarcheck.time_limit import seconds_for, time_limit
 
@@ -20,7 +21,7 @@ class Changes:
     Raises UsageError for a program that lies in none, and where git cannot tell.
     """
 
-    def __init__(self, tasks: Iterable[Task], ref: str, job_file: str) -> None:
+    def __init__(self, tasks: Iterable[Task], ref: str) -> None:
         self._real = files.RealPaths()
         repositories = git.Repositories(self._real)
         roots: dict[str, None] = {}
@@ -40,7 +41,7 @@ class Changes:
         self._without_job = [
             os.path.join(folder, "")  # noqa: PTH118
             for folder, names in self._names.items()
-            if job_file in names and not os.path.lexists(os.path.join(folder, job_file))  # noqa: PTH118
+            if FILE_NAME in names and not os.path.lexists(os.path.join(folder, FILE_NAME))  # noqa: PTH118
         ]
         self._of_settings: dict[int, bool] = {}
         self._of_folders: dict[str, set[str]] = {}
@@ -96,11 +97,11 @@ class Changes:
         return self._of_folders[real]
 
 
-def since(ref: str, tasks: Sequence[Task], job_file: str, most: int = files.LARGEST) -> list[Task]:
+def since(ref: str, tasks: Sequence[Task], most: int = files.LARGEST) -> list[Task]:
     """
-    Those of the tasks that the changes since a commit concern, in their order; job_file: the name of one.
+    Those of the tasks that the changes since a commit concern, in their order.
 
     Raises UsageError where git cannot tell what has changed.
     """
-    changes = Changes(tasks, ref, job_file)
+    changes = Changes(tasks, ref)
     return [task for task in tasks if changes.concern(task, most)]

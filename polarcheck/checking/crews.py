@@ -8,7 +8,6 @@ was lost with a worker is given out once more, and a file that takes its worker 
 from __future__ import annotations
 
 import contextlib
-import os
 import sys
 from collections import Counter, deque
 from collections.abc import Generator, Iterable, Sequence
@@ -200,7 +199,7 @@ class _Ledger:
         numbers, size = list[int](), 0
         while self._left and len(numbers) < count and size < self._crew.most_bytes:
             numbers.append(self._left.popleft())
-            size += _size(self._tasks[numbers[-1]].path)
+            size += files.size(self._tasks[numbers[-1]].path)
         return Work(numbers)
 
     def take(self, results: Iterable[Result]) -> None:
@@ -215,7 +214,7 @@ class _Ledger:
                 if self._tries[number] < _TRIES:
                     self._again.append(number)
                     continue
-            path = files.shown(self._tasks[number].path)
+            path = self._tasks[number].title
             ended = Outcome(failure=f"{path}: could not be checked: its process ended")
             self.found[number] = found if isinstance(found, Outcome) else ended
         if untouched:
@@ -237,11 +236,3 @@ class _Ledger:
         for number in sorted(self.found):
             self.done += 1
             yield self.found.pop(number)
-
-
-def _size(path: str) -> int:
-    """Of a file [bytes]; 0 where nobody knows."""
-    try:
-        return os.stat(path).st_size  # noqa: PTH116  ten thousand of them
-    except (OSError, ValueError):
-        return 0

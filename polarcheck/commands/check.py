@@ -11,7 +11,7 @@ import click
 from polarcheck.commands import fixing, jobs, options, reporting, running, silencing, standard_input, watching
 from polarcheck.commands.diff_base import diff_base, narrowed
 from polarcheck.commands.exit_codes import COULD_NOT_RUN
-from polarcheck.commands.options import many, option
+from polarcheck.commands.options import option
 from polarcheck.commands.output import COLUMNS, columns, in_color, say, warn
 from polarcheck.reports import formats
 
@@ -61,7 +61,7 @@ def _outputs(ctx: click.Context, parameter: click.Parameter, values: tuple[str, 
 @reporting.statistics
 @diff_base
 @options.force_exclude
-@many("--extensions", metavar="EXT", help="Of the programs in a folder, instead of .nc, .tap, .eia and others.")
+@options.extensions
 @options.max_size
 @standard_input.filename
 @jobs.jobs

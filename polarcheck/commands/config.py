@@ -9,7 +9,7 @@ import click
 
 from polarcheck.commands import options
 from polarcheck.commands.exit_codes import COULD_NOT_RUN
-from polarcheck.commands.options import many, narrower
+from polarcheck.commands.options import narrower
 from polarcheck.commands.output import show as print_out
 from polarcheck.commands.output import warn
 
@@ -28,7 +28,7 @@ def config(ctx: click.Context) -> None:
 @click.argument("path", metavar="FILE")
 @options.executing("programs")
 @options.judging
-@many("--extensions", metavar="EXT", help="Of the programs in a folder, instead of .nc, .tap, .eia and others.")
+@options.extensions
 @narrower("--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True)
 @options.debug
 @click.pass_context

@@ -22,9 +22,8 @@ def narrowed(tasks: list[Task], ref: str | None, most: int, is_told: bool) -> li
     if ref is None:
         return tasks
     from polarcheck.checking import changes
-    from polarcheck.commands.job_files import FILE_NAME
 
-    found = changes.since(ref, tasks, FILE_NAME, most)
+    found = changes.since(ref, tasks, most)
     if is_told:
         say(f"--diff-base {ref}: {_how_many(tasks, found)}")
     return found

@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 
 from polarcheck.commands import options
-from polarcheck.commands.options import many, option
+from polarcheck.commands.options import option
 from polarcheck.commands.output import show, warn
 from polarcheck.errors import UsageError
 
@@ -16,7 +16,7 @@ from polarcheck.errors import UsageError
 @click.command
 @click.argument("folder", type=click.Path(exists=True, file_okay=False), default=".")
 @options.machine
-@many("--extensions", metavar="EXT", help="Of the programs in the folder, instead of .nc, .tap, .eia and others.")
+@options.extensions
 @option("--schema/--no-schema", default=True, help="Write the schema beside it, which lets editors complete its keys.")
 @option("-q", "--quiet", is_flag=True, help="No bar on the terminal.")
 @options.debug
@@ -37,12 +37,13 @@ def _init(folder: str, machine: str | None, extensions: tuple[str, ...], schema:
     from polarcheck.checking import survey
     from polarcheck.commands import job_files, settings
     from polarcheck.commands.progress import Bar
+    from polarcheck.machines.job import FILE_NAME
     from polarcheck.reading import files
     from polarcheck.reading.excerpt import visible
     from polarcheck.reports.pages import new_job
     from polarcheck.reports.pages import schema as schemas
 
-    path = Path(folder, job_files.FILE_NAME)
+    path = Path(folder, FILE_NAME)
     there = job_files.own(Path(folder))
     if there is not None or os.path.lexists(path):
         raise UsageError(f"{there or path} is there already; `polarcheck config show` tells what it says")

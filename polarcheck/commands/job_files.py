@@ -6,7 +6,7 @@ import contextlib
 import os
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import msgspec
 
@@ -16,14 +16,14 @@ from polarcheck.commands.job_layers import Layer, Merged, Written
 from polarcheck.errors import JobError
 from polarcheck.machines import toml_text
 from polarcheck.machines.fitting import MisfitError, fitted, shown
-from polarcheck.machines.job import Job
+from polarcheck.machines.job import FILE_NAME, PROJECT, Job
 from polarcheck.reading.files import RealPaths
-from polarcheck.reading.globs import Globs, is_pattern
 
-FILE_NAME = "polarcheck.toml"
+if TYPE_CHECKING:
+    from polarcheck.reading.globs import Globs
+
 #: Files that may extend each other.
 _LONGEST_CHAIN = 10
-_PROJECT = "pyproject.toml"
 
 
 class _Part(NamedTuple):
@@ -152,7 +152,7 @@ def own(folder: Path) -> Path | None:
     # A link that leads nowhere, a folder or a pipe of this name is told when it is read, and not passed over.
     if os.path.lexists(folder / FILE_NAME):
         return folder / FILE_NAME
-    return folder / _PROJECT if _is_job_file(folder / _PROJECT) else None
+    return folder / PROJECT if _is_job_file(folder / PROJECT) else None
 
 
 def _is_job_file(project: Path) -> bool:
@@ -206,7 +206,7 @@ def _part(path: Path, asked_by: str, *, pipes: bool) -> tuple[_Part, str | None]
 
         raise JobError(f"{before}{toml_lines.placed(str(path), str(error))}") from None
     prefix = ""
-    if path.name == _PROJECT:
+    if path.name == PROJECT:
         prefix = "tool.polarcheck."
         tools = table.get("tool", {})
         table = tools.get("polarcheck", {}) if isinstance(tools, dict) else {}
@@ -229,6 +229,8 @@ def _part(path: Path, asked_by: str, *, pipes: bool) -> tuple[_Part, str | None]
 
 
 def _globs(base: str, patterns: Sequence[str], at: Callable[[int], str], key: str) -> Globs:
+    from polarcheck.reading.globs import Globs, is_pattern
+
     for number, pattern in enumerate(patterns):
         if not is_pattern(pattern):
             raise JobError(

@@ -103,7 +103,9 @@ def _pays(left: Sequence[Task], done: int, seconds: float, workers: int) -> bool
     if len(left) == 1:
         return False
     if seconds < _ALONE or not done:
-        return _size(left[0].path) >= _LARGE
+        from polarcheck.reading import files
+
+        return files.size(left[0].path) >= _LARGE
     from polarcheck.checking import crews
 
     saved = seconds / done * len(left) * (1 - 1 / min(workers, len(left)))
@@ -133,10 +135,3 @@ class Preparation:
 
         gc.disable()  # as in the first process (commands.run)
         keep_within_memory(1 if is_alone else self.workers)
-
-
-def _size(path: str) -> int:
-    try:
-        return os.stat(path).st_size  # noqa: PTH116  Path.stat raises for the same names
-    except (OSError, ValueError):
-        return 0

@@ -125,6 +125,9 @@ no_config = option("--no-config", is_flag=True, help="Read no polarcheck.toml or
 force_exclude = option(
     "--force-exclude", is_flag=True, help="Pass over what polarcheck.toml excludes where it is named, too."
 )
+extensions = many(
+    "--extensions", metavar="EXT", help="Of the programs in a folder, instead of .nc, .tap, .eia and others."
+)
 inline = option("--inline/--no-inline", default=None, help="Whether the allow comments of programs are heeded.")
 
 

@@ -22,7 +22,7 @@ def refuse(outputs: Sequence[Path], tasks: Sequence[Task]) -> None:
     read: dict[str, str] = {}
     folders: dict[str, str] = {}
     for task in tasks:
-        path = task.named or task.path
+        path = task.place
         if path != files.STANDARD_INPUT:
             read[_real(path)] = path
         read |= {_real(path): str(path) for path in task.settings.read}

@@ -8,6 +8,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from polarcheck.commands import silencing
 from polarcheck.commands.options import option
 from polarcheck.errors import OutputError, UsageError
 
@@ -36,7 +37,7 @@ def background(plain: Background, tasks: Iterable[Task], failures: Sequence[str]
     with contextlib.suppress(OSError):  # the working folder may be gone
         folder = os.getcwd()  # noqa: PTH109
     return plain._replace(
-        settings={task.title: task.settings for task in tasks},
+        settings=silencing.settings_of(tasks),
         failures=failures,
         root=_root(folder).replace(os.sep, "/"),
         folder=folder.replace(os.sep, "/"),

@@ -78,7 +78,7 @@ def _baseline(tasks: Iterable[Task], path: Path) -> Baseline:
     from polarcheck.checking import baseline_file
     from polarcheck.checking.baseline import Baseline
 
-    return Baseline(baseline_file.read(path), path.parent, (task.named or task.path for task in tasks))
+    return Baseline(baseline_file.read(path), path.parent, (task.place for task in tasks))
 
 
 def settings_of(tasks: Iterable[Task]) -> dict[str, Settings]:

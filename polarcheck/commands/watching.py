@@ -31,8 +31,6 @@ watch = option("--watch", is_flag=True, help="Check again whenever a file change
 _PAUSE, _TIMES = 0.5, 10
 #: A file that is being written changes at each of two looks so far apart [s]; nobody waits for it longer than this [s].
 _SETTLING, _LONGEST = 0.1, 5.0
-#: Job files that may come to lie in a folder above the programs.
-_OF_JOBS = ("polarcheck.toml", "pyproject.toml")
 #: Of the files that have changed so many are named.
 _NAMED = 3
 
@@ -126,11 +124,13 @@ def _inside(folder: str) -> set[str]:
 
 def _surroundings(paths: Iterable[str]) -> Iterator[str]:
     """Where programs and job files may come to lie: the folders, and the names that count in those above them."""
+    from polarcheck.machines.job import FILE_NAME, PROJECT
+
     for path in paths:
         yield path
         folder = os.path.realpath(path if os.path.isdir(path) else os.path.dirname(path))  # noqa: PTH112, PTH120
         while True:
-            yield from (os.path.join(folder, name) for name in _OF_JOBS)  # noqa: PTH118
+            yield from (os.path.join(folder, name) for name in (FILE_NAME, PROJECT))  # noqa: PTH118
             folder, inner = os.path.dirname(folder), folder  # noqa: PTH120
             if folder == inner:
                 break

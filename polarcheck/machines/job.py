@@ -15,6 +15,9 @@ from polarcheck.machines.machine import Machine
 from polarcheck.machines.offset_keys import OffsetKey, canonical, is_plain_number
 from polarcheck.machines.values import Variable
 
+#: The file that a job stands in, and the one in which a table [tool.polarcheck] may hold it.
+FILE_NAME, PROJECT = "polarcheck.toml", "pyproject.toml"
+
 #: Lengths in the units of the file, mm or inch: no lathe and no cutter is larger.
 _LARGEST_CUTTER, _LARGEST_LATHE = 1000, 20_000
 

@@ -165,6 +165,14 @@ def read(path: str, most: int = LARGEST) -> bytes:
         raise SourceError(f"{shown(path) or repr(path)}: {error.strerror or error}") from None
 
 
+def size(path: str) -> int:
+    """Of a file [bytes]; 0 where nobody knows."""
+    try:
+        return os.stat(path).st_size  # noqa: PTH116  thousands of them, and Path.stat raises for some names
+    except (OSError, ValueError):
+        return 0
+
+
 def is_standard_input(path: str) -> bool:
     """Whether a path means standard input."""
     return path in _STANDARD_INPUTS

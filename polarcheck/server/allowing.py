@@ -6,6 +6,8 @@ import re
 
 from lsprotocol import types
 
+from polarcheck.checking import silence
+from polarcheck.checking.allow_words import ALLOW, FILE, OFF, ON
 from polarcheck.checking.finding import Edit, Finding
 from polarcheck.checking.rule import Rule, load_all
 from polarcheck.machines.machine import Machine
@@ -13,12 +15,12 @@ from polarcheck.server.judged import Judged
 from polarcheck.server.markdown import page
 from polarcheck.server.open_text import OpenText
 
-WORD = "POLARCHECK"
+WORD = silence.WORD.decode("ascii")
 _KEYWORDS = {
-    "ALLOW": "in this block; alone on its line, in the next one",
-    "ALLOW-FILE": "in the whole file; at its head",
-    "ALLOW-ON": "from here on",
-    "ALLOW-OFF": "up to here",
+    ALLOW: "in this block; alone on its line, in the next one",
+    FILE: "in the whole file; at its head",
+    ON: "from here on",
+    OFF: "up to here",
 }
 _KEYWORD = re.compile(rf"[(;]\s*{WORD}\s*:?\s+([A-Z-]*)$", re.IGNORECASE)
 #: Names follow each other with commas, or those with a hyphen with blanks between; else the reason has begun.
@@ -31,8 +33,8 @@ _NAME = re.compile(
 def comment(rule: str, machine: Machine) -> str:
     """The comment as this control writes one, in characters that it keeps."""
     if machine.control.line_comments:
-        return f"{machine.control.line_comments[0]} {WORD} ALLOW {rule.upper()} "
-    return f"({WORD} ALLOW {rule.upper()} )"
+        return f"{machine.control.line_comments[0]} {WORD} {ALLOW} {rule.upper()} "
+    return f"({WORD} {ALLOW} {rule.upper()} )"
 
 
 def allow(found: Finding, judged: Judged) -> Edit:

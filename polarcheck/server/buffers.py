@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from polarcheck.errors import StoppedError
+from polarcheck.machines.job import FILE_NAME, PROJECT
 from polarcheck.server.open_text import OpenText
 from polarcheck.server.worker import Worker
 
@@ -147,7 +148,7 @@ class Buffers:
         for folder in Path(os.path.realpath(judged.path)).parents:
             if not any(folder.is_relative_to(root) for root in roots):
                 break
-            found += [folder / "polarcheck.toml", folder / "pyproject.toml"]
+            found += [folder / FILE_NAME, folder / PROJECT]
         return found
 
     async def look_around(self) -> None:

@@ -6,13 +6,13 @@ import re
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from polarcheck.reports.pages.markdown import prose
+
 if TYPE_CHECKING:
     from polarcheck.checking.rule import Rule
 
 _EXAMPLE = re.compile(r"(Bad|Good)\b[^\n]*:")
 _INDENT = "    "
-#: What means something in Markdown, outside of spans of code.
-_MARKS = re.compile(r"(`[^`]*`)|([\\*_<>\[\]#|~])")
 
 
 def why(rule: Rule) -> str:
@@ -30,11 +30,6 @@ def markdown(rule: Rule) -> str:
     return "\n\n".join(_in_markdown(rule.page))
 
 
-def escaped(text: str) -> str:
-    """Text in which nothing but spans of code means something in Markdown."""
-    return _MARKS.sub(lambda found: found[1] or f"\\{found[2]}", text)
-
-
 def _paragraphs(page: str) -> list[str]:
     return page.strip().split("\n\n")
 
@@ -45,7 +40,7 @@ def _is_of_example(paragraph: str) -> bool:
 
 def _in_markdown(page: str) -> Iterator[str]:
     title, *rest = _paragraphs(page)
-    yield f"**{escaped(title)}**"
+    yield f"**{prose(title)}**"
     shown: set[str] = set()
     is_shown = True
     for part in rest:
@@ -54,4 +49,4 @@ def _in_markdown(page: str) -> Iterator[str]:
             is_shown = heading[1] not in shown
             shown.add(heading[1])
         if is_shown:
-            yield part if part.startswith(_INDENT) else escaped(" ".join(part.split()))
+            yield part if part.startswith(_INDENT) else prose(" ".join(part.split()))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 #: What Markdown or HTML would take for more than a character, outside of code.
-_ACTING = re.compile(r"[\\`*\[\]<|]|(?<!\w)_|_(?!\w)|^[#>]")
+_ACTING = re.compile(r"[\\`*\[\]<|~]|(?<!\w)_|_(?!\w)|^[#>]")
 _CODE = re.compile(r"(`[^`\n]+`)")
 
 MADE = "<!-- Made by `python -m polarcheck.reports.pages.site docs`: change what it is made from, not this page. -->"
