@@ -29,12 +29,12 @@ _LONGEST_CHAIN = 10
 class _Part(NamedTuple):
     """
     One file of a chain: what it says of all programs, its entries, the patterns of these, with the entry and the text
-    of each, and what it excludes; None where it does not say.
+    of each, and what it excludes; None of these where it does not say.
     """
 
     own: Layer
     entries: tuple[Layer, ...]
-    files: Globs
+    files: Globs | None
     patterns: tuple[tuple[Layer, str], ...]
     exclude: Globs | None
 
@@ -64,7 +64,7 @@ class JobFile(msgspec.Struct, frozen=True):
         found: list[tuple[int, int]] = []
         for number, part in enumerate(self.parts):
             found.append((number, 0))
-            if part.patterns and name:
+            if part.files is not None and name:
                 matched = {part.patterns[index][0].entry for index in part.files.of_file(folder, name)}
                 found += [(number, entry) for entry in sorted(matched)]
         return tuple(found)
@@ -93,9 +93,9 @@ class JobFile(msgspec.Struct, frozen=True):
 
     def unmatched(self, names: Iterable[tuple[str, str]]) -> list[str]:
         """What is to be said of patterns of the nearest file that match none of these programs (folder, name)."""
-        if not self.parts or not self.parts[-1].patterns:
+        part = self.parts[-1] if self.parts else None
+        if part is None or part.files is None:
             return []
-        part = self.parts[-1]
         left = set(range(len(part.patterns)))
         for folder, name in names:
             left -= part.files.of_file(folder, name)
@@ -223,9 +223,12 @@ def _part(path: Path, asked_by: str, *, pipes: bool) -> tuple[_Part, str | None]
         _check_encoding(layer, said.encoding)
     base = os.path.realpath(path.parent)
     owners = [(layer, pattern) for layer, said in zip(entries, job.programs, strict=True) for pattern in said.files]
-    files = _globs(base, [pattern for _, pattern in owners], lambda number: owners[number][0].at("files"), "files")
-    exclude = _globs(base, job.exclude, lambda number: own.at("exclude"), "exclude")
-    return _Part(own, tuple(entries), files, tuple(owners), exclude if "exclude" in table else None), job.extend
+    files = exclude = None
+    if owners:
+        files = _globs(base, [pattern for _, pattern in owners], lambda number: owners[number][0].at("files"), "files")
+    if "exclude" in table:
+        exclude = _globs(base, job.exclude, lambda _: own.at("exclude"), "exclude")
+    return _Part(own, tuple(entries), files, tuple(owners), exclude), job.extend
 
 
 def _globs(base: str, patterns: Sequence[str], at: Callable[[int], str], key: str) -> Globs:
