@@ -243,12 +243,9 @@ def _globs(base: str, patterns: Sequence[str], at: Callable[[int], str], key: st
 
 
 def _check_encoding(layer: Layer, name: str | None) -> None:
-    import codecs
+    from polarcheck.reading.source import is_encoding
 
-    try:
-        if name is not None:
-            codecs.lookup(name)
-    except (LookupError, ValueError):
+    if name is not None and not is_encoding(name):
         raise JobError(
             f"{layer.at('encoding')}: encoding: unknown encoding {shown(name)}; for example utf-8, cp1252, shift_jis"
-        ) from None
+        )

@@ -56,13 +56,10 @@ def encoding(what: str) -> Decorator:
 
 
 def _known_encoding(ctx: click.Context, parameter: click.Parameter, value: str | None) -> str | None:
-    import codecs
+    from polarcheck.reading.source import is_encoding
 
-    try:
-        if value is not None:
-            codecs.lookup(value)
-    except LookupError:
-        raise click.BadParameter(f"unknown encoding {value!r}; for example utf-8, cp1252, shift_jis") from None
+    if value is not None and not is_encoding(value):
+        raise click.BadParameter(f"unknown encoding {value!r}; for example utf-8, cp1252, shift_jis")
     return value
 
 

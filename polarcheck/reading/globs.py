@@ -110,8 +110,14 @@ class Globs:
 
 
 def is_pattern(text: str) -> bool:
-    """Whether a text means some files. `!`, which takes some out again elsewhere, means nothing here."""
-    return bool(text.strip("/\\ ")) and not text.startswith("!")
+    """Whether a text means some files. `!`, which takes some out again elsewhere, means nothing here, nor `[z-a]`."""
+    if not text.strip("/\\ ") or text.startswith("!"):
+        return False
+    try:
+        Globs("", [text])
+    except re.error:
+        return False
+    return True
 
 
 def folded(path: str) -> str:

@@ -99,6 +99,15 @@ def read(data: bytes, path: str = "-", encoding: str | None = None) -> Source:
     return Source(path, data, name, bom, code, _line_starts(code))
 
 
+def is_encoding(name: str) -> bool:
+    """Whether a name is that of an encoding of texts: Python's rot13 and base64 are codecs, too, and are of none."""
+    try:
+        "O".encode(name)
+    except (LookupError, ValueError):
+        return False
+    return True
+
+
 def _recognised(data: bytes, path: str, encoding: str | None) -> tuple[bytes, str]:
     if encoding is not None:
         try:
