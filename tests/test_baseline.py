@@ -316,6 +316,22 @@ def test_a_file_that_has_moved_is_known_by_what_is_found_in_it() -> None:
     assert check(".").stderr == ""
 
 
+@pytest.mark.parametrize("command", ["prune", "update"])
+def test_a_file_that_has_moved_where_the_run_was_not_keeps_what_is_known_of_it(command: str) -> None:
+    make(a__nc=RAPID, sub_of_b__nc=OTHER)
+    baseline("create", ".", "--reason", "OLD")
+    Path("sub/b.nc").rename("sub/c.nc")
+    before = Path(FILE).read_bytes()
+    Path("other").mkdir()
+    for paths in (["a.nc"], ["other", "a.nc"]):
+        assert baseline(command, *paths).exit_code == 0
+        assert Path(FILE).read_bytes() == before
+    assert check(".").exit_code == 0
+    Path("sub/c.nc").unlink()
+    assert baseline(command, "a.nc", "sub").exit_code == 0
+    assert [entry.file for entry in read(Path(FILE))] == ["a.nc"]
+
+
 def test_a_copy_is_new() -> None:
     make(a__nc=RAPID)
     baseline("create", "a.nc")

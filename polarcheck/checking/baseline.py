@@ -47,10 +47,13 @@ class Baseline:
     """
     What is known of the files of a run.
 
+    walked: files and folders that the run was asked for, None for all: of what is gone from elsewhere it says nothing.
     moved: by the paths of files, from the folder of the baseline, the gone ones whose entries count for them.
     """
 
-    def __init__(self, entries: Iterable[Entry], folder: Path, paths: Iterable[str]) -> None:
+    def __init__(
+        self, entries: Iterable[Entry], folder: Path, paths: Iterable[str], walked: Iterable[str] | None = None
+    ) -> None:
         self.folder = os.path.realpath(folder)
         self.of_file: dict[str, list[Entry]] = {}
         for entry in entries:
@@ -60,6 +63,7 @@ class Baseline:
         self._matched: dict[str, Counter[Key]] = {}
         self._asked: dict[str, Collection[str]] = {}
         self._gone = self._not_there()
+        self._walked = None if walked is None else [os.path.normcase(os.path.realpath(path)) for path in walked]
         self._taken: set[str] = set()
         self._counts = {file: _counted(self.of_file[file]) for file in self._gone}
         self._gone_with: dict[Key, list[str]] = {}
@@ -88,6 +92,17 @@ class Baseline:
             for file in self.of_file
             if file not in checked and file != STANDARD_INPUT and not os.path.lexists(os.path.join(self.folder, file))  # noqa: PTH118
         ]
+
+    def _dropped(self) -> Iterator[str]:
+        """The files that are gone from where the run was, and were not moved to where it was."""
+        for file in self._gone:
+            whole = os.path.normcase(os.path.normpath(os.path.join(self.folder, file)))  # noqa: PTH118
+            was_in_run = self._walked is None or any(
+                whole == path or whole.startswith(os.path.join(path, ""))  # noqa: PTH118
+                for path in self._walked
+            )
+            if was_in_run and file not in self._taken:
+                yield file
 
     def _new(self) -> Iterator[str]:
         """The files of this run that no entry is for."""
@@ -167,7 +182,7 @@ class Baseline:
         found: the reports, each with the rules that were asked and could be evaluated. reason: of what is new.
         """
         entries: list[Entry] = []
-        done = {*self._gone}
+        done: set[str] = set()
         new = 0
         for report, asked in found:
             file = self.path_of[report.path]
@@ -179,6 +194,7 @@ class Baseline:
             stays = [entry for key, entry in known.items() if not counts[key] and entry.rule not in asked]
             entries += [*now, *(msgspec.structs.replace(entry, file=file) for entry in stays)]
             done.add(os.path.normcase(file))
+        done |= {*self._dropped()} | self._taken
         entries += [entry for file, own in self.of_file.items() if file not in done for entry in own]
         return Updated(_added_up(entries), new)
 
@@ -205,9 +221,8 @@ class Baseline:
                 missing = entry.count - matched[entry.key]
                 if missing > 0 and entry.rule in self._asked[path]:
                     yield Leftover(entry, missing, is_gone=False)
-        for file in self._gone:
-            if file not in self._taken:
-                yield from (Leftover(entry, entry.count, is_gone=True) for entry in _added_up(self.of_file[file]))
+        for file in self._dropped():
+            yield from (Leftover(entry, entry.count, is_gone=True) for entry in _added_up(self.of_file[file]))
 
 
 def _entries_of(findings: Iterable[Finding], file: str, reasons: Mapping[Key, str], reason: str) -> list[Entry]:

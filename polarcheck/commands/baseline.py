@@ -153,7 +153,7 @@ def _run(
         status, how = signals.told(checked.stopped)
         say(f"{how}; nothing is written")
         return status
-    known = Baseline(entries, output.parent, (task.place for task in tasks))
+    known = Baseline(entries, output.parent, (task.place for task in tasks), paths)
     made, told = make(known, entries, checked, tasks, reason)
     files.write(output, baseline_file.text_of(made))
     show(f"{files.shown(str(output))}: {told}\n")
