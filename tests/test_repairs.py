@@ -331,6 +331,8 @@ def test_each_repair_is_tried_on_three_programs(rule: str) -> None:
         ),
         # Numbers of 1000 and more may be least increments; P and Q mean nothing by themselves.
         ("number-without-point", "fanuc", "G98 G0 X60000 C0\nG12.1\nG1 X40000 F200\nC20000\nX-40000\nG13.1\n"),
+        # 200 inch/min is no feed of this lathe; 2 inch/min, as the control takes it, is.
+        ("number-without-point", "turning-center", "G98 G18 G0 X3. C0\nG12.1\nG18\nG1 X2. F200\nC.5\nG13.1\n"),
         ("polar-switch-not-alone", "gsk-988", "G98 G0 X60. C0\nG12.1\nG1 X40. F200\nC10.\nX60.\nG13.1 P1 Q3\n"),
     ],
 )

@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+import numpy as np
+
 from polarcheck.checking.repair import FEED, Mended, repair
 from polarcheck.reading.words import Text
 from polarcheck.table.unpointed import Unpointed
@@ -11,8 +13,9 @@ def number_without_point(text: Text, unpointed: Unpointed, index: int) -> Mended
     The missing decimal point is put behind the number.
 
     Where one finding stands for all coordinates of a section, all of them get one. There is no fix for numbers of 1000
-    or more, nor for a program that is written in least increments throughout. Unsafe: the number is 1000 times as
-    large for the control.
+    or more, for a program that is written in least increments throughout, nor for an F that would then be above all
+    that the machine recommends: F200 in inch may well be meant as the 2 inch/min that it is. Unsafe: the number is
+    1000 times as large for the control.
 
     Bad:
 
@@ -48,5 +51,16 @@ def number_without_point(text: Text, unpointed: Unpointed, index: int) -> Mended
         C.5
         G13.1
     """
+    if _is_above_all(unpointed, int(text.words.start[index])):
+        return None
     ends = [int(text.words.end[word]) for word in unpointed.stands_for(index)]
     return Mended("Write the decimal point", False, tuple((end, end, ".") for end in ends))
+
+
+def _is_above_all(unpointed: Unpointed, start: int) -> bool:
+    """Whether the word at a position is an F that with its point is above every range of the machine."""
+    trace = unpointed.trace
+    words = trace.run.words
+    at = np.flatnonzero((words.start == start) & (words.address == ord("F")))
+    feeds = trace.machine.feed
+    return bool(np.any(trace.feed[trace.run.row[at]] > np.fmax(feeds.cutting_maximum, feeds.positioning_maximum)))
