@@ -557,3 +557,10 @@ def test_the_process() -> None:
     assert (status, told) == (0, "")
     assert "pass (1 silenced)" in shown
     assert run("baseline", "create", "a.nc")[0] == 2
+
+
+def test_the_name_alone_shows_what_it_can() -> None:
+    result = CliRunner().invoke(main, ["baseline"])
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert result.stderr.splitlines()[0].startswith("Usage: ")
+    assert "\n  create " in result.stderr

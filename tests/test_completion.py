@@ -273,3 +273,10 @@ def test_a_real_shell_completes(shell: str, tmp_path: Path) -> None:
             assert typed.words(f"polarcheck {line}")[-1] == last, line
     finally:
         typed.close()
+
+
+def test_without_a_shell_one_line_names_those_that_there_are() -> None:
+    result = call("completion")
+    assert result.exit_code == 2
+    assert result.stderr.endswith("Choose from: bash, zsh, fish, powershell\n")
+    assert "\\x" not in result.stderr

@@ -490,6 +490,16 @@ def test_config_alone_shows_what_it_can() -> None:
     assert re.search(r"^  show +Show every value", result.stderr, re.MULTILINE)
 
 
+@pytest.mark.parametrize("line", ["radius =", "radius =  # R on the offset page of the control, in mm"])
+def test_a_line_of_which_only_the_mark_was_taken_away_is_told_to_have_no_value(line: str) -> None:
+    make("a.nc")
+    job(f"[tools.8]\n{line}\n")
+    result = call("check", "a.nc")
+    assert result.exit_code == 2
+    assert result.stderr.startswith("polarcheck: polarcheck.toml:2: ")
+    assert '"radius" has no value behind the =: write one, or # before the line' in result.stderr
+
+
 def test_what_comes_from_files_acts_on_no_terminal() -> None:
     make("a.nc")
     job('machine = "l\\u001b[31m.toml"\n')

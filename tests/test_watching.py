@@ -186,3 +186,14 @@ def test_only_what_has_changed_is_checked() -> None:
     Path("polarcheck.toml").write_text('machine = "haas-lathe"\n')
     assert any(path.endswith("polarcheck.toml") for path in seen.changed())
     assert again() == ["f/a.nc", "f/b.nc", "f/e.nc"]
+
+
+def test_a_job_file_beside_the_programs_is_named_once() -> None:
+    Path("a.nc").write_text(RAPID)
+    Path("polarcheck.toml").write_text("strict = false\n")
+    with watched("a.nc") as found:
+        found.round()
+        Path("polarcheck.toml").write_text("strict = true\n")
+        told = [line for line in found.round() if " changed, " in line]
+        assert len(told) == 1
+        assert told[0].startswith("polarcheck: polarcheck.toml changed, ")

@@ -9,6 +9,7 @@ from __future__ import annotations
 import gc
 import importlib
 import os
+import re
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
@@ -34,6 +35,10 @@ NAMES = (
     "server",
     "trace",
 )
+
+
+#: click writes the choices that an argument has below each other.
+_LIST = re.compile(r"([:,])\n\t")
 
 
 class Modules(Mapping[str, click.Command]):
@@ -77,7 +82,7 @@ class Commands(click.Group):
             extra["windows_expand_args"] = False
             status = super().main(args, prog_name, standalone_mode=False, **extra) or CLEAN
         except click.ClickException as error:
-            say(error.format_message())
+            say(_LIST.sub(r"\1 ", error.format_message()))
         except PolarcheckError as error:
             say(str(error))
         except (click.Abort, KeyboardInterrupt) as stop:

@@ -10,6 +10,7 @@ import click
 
 from polarcheck.commands import options
 from polarcheck.commands.check import check
+from polarcheck.commands.exit_codes import COULD_NOT_RUN
 from polarcheck.commands.output import say, show
 
 if TYPE_CHECKING:
@@ -29,8 +30,10 @@ _FILE = "polarcheck-baseline.json"
 _Made = tuple[list["Entry"], str]
 
 
-@click.group
-def baseline() -> None:
+@click.group(invoke_without_command=True)
+@options.debug
+@click.pass_context
+def baseline(ctx: click.Context) -> None:
     """
     Write down the findings that are known, so that `check --baseline FILE` tells new ones only.
 
@@ -41,6 +44,9 @@ def baseline() -> None:
     A finding is known by its rule and its block, whatever its line: programs can be renumbered, punched out and moved.
     Give the options that you give to check.
     """
+    if ctx.invoked_subcommand is None:
+        click.echo(ctx.get_help(), err=True)
+        ctx.exit(COULD_NOT_RUN)
 
 
 def _output(text: str) -> Callable[[Any], Any]:

@@ -178,8 +178,11 @@ def _run(run: Callable[[Seen], int], seen: Seen, changed: Sequence[str]) -> int:
     if is_terminal(sys.stdout):
         click.clear()
     if changed:
-        named = ", ".join(changed[:_NAMED])
-        more = len(changed) - _NAMED
+        # A job file beside the programs is looked at under two names: as it was found, and as one of the folder.
+        names = list({os.path.realpath(path): path for path in sorted(changed, key=len, reverse=True)}.values())
+        names.sort()
+        named = ", ".join(names[:_NAMED])
+        more = len(names) - _NAMED
         say(f"{named}{f' and {more} more' if more > 0 else ''} changed, {time.strftime('%H:%M:%S')}")
     return run(seen)
 

@@ -30,6 +30,9 @@ _LONG_NUMBER = re.compile(r"(?<![\d_])\d[\d_]{1000,}+")
 #: 3401#0, the bit of a parameter, as a key without quotes.
 _BIT = r"^[ \t]*+(\w{1,20}#\w{1,20})[ \t]*+="
 
+#: A key without its value, as a commented line of a written file is when only its # was taken away.
+_BARE = re.compile(r"[ \t]*+([\w.-]{1,40}+)[ \t]*+=[ \t]*+(?:#.*)?$")
+
 
 def read(path: str | PathLike[str], what: str, *, pipes: bool = False) -> dict[str, Any]:
     """
@@ -69,6 +72,10 @@ def parsed(text: str) -> dict[str, Any]:
     except tomllib.TOMLDecodeError as error:
         bit = re.search(_BIT, text, re.MULTILINE)
         hint = f'; write "{bit[1]}" in quotes: # begins a comment' if bit else ""
+        line = re.search(r"\bline (\d+)", str(error))
+        bare = line and _BARE.match(text.splitlines()[min(int(line[1]), text.count("\n") + 1) - 1])
+        if bare:
+            hint = f'; "{bare[1]}" has no value behind the =: write one, or # before the line'
         if "'\\'" in str(error):
             hint = "; write / between folders, or the text in single quotes"
         raise ValueError(f"{error}{hint}") from None
