@@ -421,6 +421,12 @@ def test_a_summary_is_cut_before_it_is_too_large() -> None:
     assert "more" not in step_summary(many, background())
 
 
+def test_what_is_silenced_has_no_line_of_its_own_in_a_summary() -> None:
+    text = step_summary(report(file(silenced=[silenced()])), background())
+    assert "1 silenced" in text
+    assert "| findings |" not in text
+
+
 def test_nothing_in_a_summary_means_anything_to_markdown() -> None:
     bad = "[a](http://localhost) ![i](x) <script>x</script> **b** `c` |d| ~~e~~ @name #1 www.example.com\n# f"
     text = step_summary(report(file(finding(message=bad), path="*a*|b.nc")), background(failures=[bad]))

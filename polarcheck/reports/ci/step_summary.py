@@ -40,7 +40,7 @@ def step_summary(report: Report, background: Background, room: int = LARGEST) ->
 
 def _lines(report: Report, background: Background) -> Iterator[str]:
     yield f"### polarcheck\n\n{_cell(summary(report))}\n" if report.files else "### polarcheck\n\nno files checked\n"
-    found = counts(report)
+    found = [one for one in counts(report) if one.findings]
     if found:
         yield "\n| findings | files | severity | rule |\n|---:|---:|---|---|\n"
         yield from (f"| {one.findings} | {one.files} | {_cell(one.severity)} | {_cell(one.rule)} |\n" for one in found)
