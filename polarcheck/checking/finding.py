@@ -69,6 +69,11 @@ class Finding(msgspec.Struct, frozen=True, kw_only=True):
     follows: list[Finding] = []
     channel: str | UnsetType = UNSET
 
+    @property
+    def told(self) -> str:
+        """The message; before it the channel, in a file with several."""
+        return f"{self.channel}: {self.message}" if self.channel else self.message
+
 
 class Undecided(Finding, frozen=True, kw_only=True):
     """A finding of which nobody can say that something is wrong: it fails no file, and leaves it unverified."""

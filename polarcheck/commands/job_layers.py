@@ -17,11 +17,11 @@ from polarcheck.errors import JobError
 from polarcheck.machines import profiles
 from polarcheck.machines.fitting import shown
 from polarcheck.machines.job import Job, Tool, from_table
+from polarcheck.machines.modal import MM_PER_INCH
 from polarcheck.machines.offset_keys import canonical
 
 #: Keys that say which files are meant, and nothing of a program.
 _OF_FILES = ("extend", "exclude", "programs", "files")
-_INCH = 25.4
 #: Of a length that was converted: more are noise of the arithmetic.
 _DECIMALS = 9
 #: Keys of lengths, which are in the units of their file, by table.
@@ -42,12 +42,10 @@ class Written:
 
     def at(self, key: str) -> str:
         """`polarcheck.toml:12`: where a key stands, or the nearest table around it; the file where that is all."""
-        name = f"{self._prefix}{key}"
-        while name:
-            if name in self._lines:
-                return f"{self.path}:{self._lines[name]}"
-            name = name.rpartition(".")[0]
-        return str(self.path)
+        from polarcheck.machines import toml_lines
+
+        line = toml_lines.line_of(f"{self._prefix}{key}", self._lines)
+        return f"{self.path}:{line}" if line else str(self.path)
 
 
 class Layer:
@@ -230,7 +228,7 @@ def _in_units(
         key = ".".join(lengths[0]) if lengths else "offsets"
         where = origins[key].at(key)
         raise JobError(f"{layer.at('units')}: units: {key} of {where} has those of each program; give units there, too")
-    factor = _INCH if before == "inch" else 1 / _INCH
+    factor = MM_PER_INCH if before == "inch" else 1 / MM_PER_INCH
     for parts in lengths:
         inner = table
         for part in parts[:-1]:

@@ -8,14 +8,12 @@ from itertools import accumulate, pairwise
 import numpy as np
 
 from polarcheck.arrays import Rows
+from polarcheck.checking.editing import Replace
 from polarcheck.checking.finding import Edit, Fix
 from polarcheck.reading.source import Source
 
-#: An edit by character positions: from, to (exclusive), text.
-Span = tuple[int, int, str]
 
-
-def spans(source: Source, fix: Fix) -> list[Span]:
+def spans(source: Source, fix: Fix) -> list[Replace]:
     """The edits of a fix by character positions, in order."""
     return sorted((_position(source, edit, False), _position(source, edit, True), edit.text) for edit in fix.edits)
 
@@ -25,7 +23,7 @@ def _position(source: Source, edit: Edit, at_end: bool) -> int:
     return int(source.line_starts[line - 1]) + column - 1
 
 
-def overlap(spans: Iterable[Span], others: Iterable[Span]) -> bool:
+def overlap(spans: Iterable[Replace], others: Iterable[Replace]) -> bool:
     """Whether edits touch the same characters or the same place; two that are the same do not."""
     known = set(others)
     return any(
@@ -33,7 +31,7 @@ def overlap(spans: Iterable[Span], others: Iterable[Span]) -> bool:
     )
 
 
-def applied(source: Source, spans: Iterable[Span]) -> bytes | None:
+def applied(source: Source, spans: Iterable[Replace]) -> bytes | None:
     """
     The bytes with the edits, which do not overlap; all bytes that they do not name are those of the file.
 
@@ -55,7 +53,7 @@ def applied(source: Source, spans: Iterable[Span]) -> bytes | None:
     return source.bom + b"".join(pieces) + body[at:]
 
 
-def _in_bytes(source: Source, made: Sequence[Span]) -> list[Span] | None:
+def _in_bytes(source: Source, made: Sequence[Replace]) -> list[Replace] | None:
     """Where edits stand in the bytes of a text of which characters take several; None where that cannot be said."""
     text, encoding = source.text, source.encoding
     ends = [place for start, end, _ in made for place in (start, end)]
@@ -79,7 +77,7 @@ def _encoded(text: str, encoding: str) -> bytes:
     return text.encode(encoding)[len("".encode(encoding)) :]
 
 
-def origins(before: Source, after: Source, spans: Iterable[Span]) -> Rows:
+def origins(before: Source, after: Source, spans: Iterable[Replace]) -> Rows:
     """For each line of the result the line (from 1) of the text before the edits that it comes from."""
     made = sorted(set(spans))
     grown = np.cumsum([0, *(len(text) - (end - start) for start, end, text in made)])

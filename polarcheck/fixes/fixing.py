@@ -9,12 +9,13 @@ import msgspec
 import numpy as np
 
 from polarcheck.arrays import Rows
+from polarcheck.checking.editing import Replace
 from polarcheck.checking.finding import FileReport, Finding, Fix
 from polarcheck.checking.repair import WAY, repair_of
 from polarcheck.checking.settings import Settings
 from polarcheck.errors import SourceError, TooHardError
 from polarcheck.fixes.comparison import State, objection, state_of
-from polarcheck.fixes.edits import Span, applied, origins, overlap, spans
+from polarcheck.fixes.edits import applied, origins, overlap, spans
 from polarcheck.time_limit import seconds_for
 
 #: The checks of one program for its fixes; what is left then is left for the next time.
@@ -62,7 +63,7 @@ class _Candidate(msgspec.Struct, frozen=True):
 
     found: Finding
     fix: Fix
-    spans: list[Span]
+    spans: list[Replace]
 
 
 #: Of a fix of a program as it is.
@@ -130,7 +131,7 @@ class _Work:
     def candidates(self, state: State) -> list[_Candidate]:
         """The fixes to try next, in the order of the lines: of which none touches another."""
         chosen: list[_Candidate] = []
-        taken: list[Span] = []
+        taken: list[Replace] = []
         for found in self.answered(state.asked).findings:
             fix = found.fix
             if fix is None or not (fix.safe or self.unsafe) or _key(found, fix) in self.refused:

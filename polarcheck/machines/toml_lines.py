@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from polarcheck.machines import toml_text
 
@@ -48,9 +48,8 @@ def of_keys(text: str) -> dict[str, int]:
     return {name: line for name, line in lines.items() if name not in doubtful}
 
 
-def line_of(key: str, text: str) -> int | None:
-    """The line of a key, else of the nearest table around it that stands in the text; None where nobody knows."""
-    lines = of_keys(text)
+def line_of(key: str, lines: Mapping[str, int]) -> int | None:
+    """The line of a key, else of the nearest table around it that there is; None where nobody knows. lines: of_keys."""
     while key:
         if key in lines:
             return lines[key]
@@ -72,7 +71,7 @@ def located(said: str) -> str:
     if found is None:
         return said
     try:
-        line = line_of(found[2].strip("\"'"), toml_text.text_of(found[1], "machine file"))
+        line = line_of(found[2].strip("\"'"), of_keys(toml_text.text_of(found[1], "machine file")))
     except ValueError:
         return said
     return f"{found[1]}:{line}{said[found.end(1) :]}" if line else said

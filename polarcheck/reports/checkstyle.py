@@ -37,7 +37,7 @@ def _file(file: FileReport, background: Background) -> Iterator[str]:
                 "line": found.line,
                 "column": found.column,
                 "severity": _SEVERITIES.get(found.severity, "info"),
-                "message": f"{found.channel}: {found.message}" if found.channel else found.message,
+                "message": found.told,
                 "source": f"polarcheck.{found.rule}",
             },
             depth=2,

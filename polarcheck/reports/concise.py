@@ -45,16 +45,14 @@ def silenced_line(file: FileReport, found: Silenced) -> str:
 
 def why_silenced(found: Silenced) -> str:
     """What is silenced, by what, and why: in one line."""
-    channel = f"{found.channel}: " if found.channel else ""
     reason = f": {found.reason}" if found.reason else ", no reason given"
-    return visible(f"{found.severity}: {channel}{found.message} [{found.rule}] (by {found.by}{reason})")
+    return visible(f"{found.severity}: {found.told} [{found.rule}] (by {found.by}{reason})")
 
 
 def line(file: FileReport, found: Finding, color: bool = False) -> str:
     """The line of a finding, with its severity in color where that is asked for."""
     severity = visible(found.severity)
     severity = painted(found.severity, severity) if color else severity
-    channel = f"{found.channel}: " if found.channel else ""
     place = visible(f"{file.path}:{found.line}:{found.column}")
-    message = visible(f"{channel}{found.message} [{found.rule}]")
+    message = visible(f"{found.told} [{found.rule}]")
     return f"{place}: {severity}: {message}"

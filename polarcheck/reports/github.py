@@ -67,8 +67,7 @@ def _annotation(file: FileReport, found: Finding, background: Background) -> str
         # The last column counts here, not the one behind it.
         place |= {"col": found.column, "endColumn": max(found.end_column - 1, found.column)}
     written = ",".join(f"{key}={_property(visible(str(value)))}" for key, value in place.items())
-    channel = f"{found.channel}: " if found.channel else ""
-    return f"::{_level(found)} {written}::{_data(visible(f'{channel}{found.message}'))}"
+    return f"::{_level(found)} {written}::{_data(visible(found.told))}"
 
 
 def _plain(text: str) -> str:

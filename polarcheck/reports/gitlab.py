@@ -32,9 +32,8 @@ def _entries(report: Report, background: Background) -> Iterator[dict[str, Any]]
             # another; the number of the line would make a new finding of it wherever a block is inserted above.
             mistake = f"{path}\0{visible(found.rule)}\0{visible(found.fingerprint)}"
             told[mistake] += 1
-            channel = f"{found.channel}: " if found.channel else ""
             yield {
-                "description": visible(f"{channel}{found.message}"),
+                "description": visible(found.told),
                 "check_name": visible(found.rule),
                 "fingerprint": hashlib.sha256(f"{mistake}\0{told[mistake]}".encode()).hexdigest(),
                 "severity": _SEVERITIES.get(found.severity, "info"),

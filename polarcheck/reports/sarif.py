@@ -109,7 +109,7 @@ def _result(
 
 def _message(found: Finding, section: int | None) -> str:
     """The first sentence is what lists show. A text in brackets with a number in parentheses would be a link."""
-    text = visible(f"{found.channel}: {found.message}" if found.channel else found.message).replace("](", "] (")
+    text = visible(found.told).replace("](", "] (")
     text = text.removesuffix(".") + "."
     text += f" The control shows alarm {visible(found.alarm)}." if found.alarm else ""
     return text + (f" The polar section begins at [line {section}](1)." if section is not None else "")

@@ -37,13 +37,12 @@ def diagnostics(judged: Judged, uri: str) -> list[types.Diagnostic]:
 def diagnostic(found: Finding, judged: Judged, uri: str) -> types.Diagnostic:
     """A finding; beside it the G12.1 that it belongs to, and what follows from it."""
     alarm = f" (alarm {found.alarm})" if found.alarm else ""
-    channel = f"{found.channel}: " if found.channel else ""
     return types.Diagnostic(
         range=judged.text.range_of(found.line, found.column, found.end_line, found.end_column),
         severity=_SEVERITIES[found.severity],
         code=found.rule,
         source=SOURCE,
-        message=visible(f"{channel}{found.message}{alarm}"),
+        message=visible(f"{found.told}{alarm}"),
         related_information=_related(found, judged, uri) or None,
     )
 
