@@ -652,7 +652,14 @@ def test_init_in_a_folder_without_programs_says_so() -> None:
     result = call("init")
     assert result.exit_code == 0
     assert result.stdout.startswith("polarcheck.toml written: 0 of 0 programs use the polar mode\n")
+    assert "no NC programs in this folder; --extensions names other endings" in result.stderr
     assert call("config", "show", "a.nc").exit_code == 0
+
+
+def test_the_endings_by_which_init_has_found_programs_are_those_of_the_next_check() -> None:
+    make("a.job7")
+    assert call("init", "--extensions", "job7").exit_code == 0
+    assert "1 file checked" in call("check", ".").stdout
 
 
 def test_init_reads_each_program_and_stops_at_none_that_cannot_be_read() -> None:

@@ -52,13 +52,15 @@ def _init(folder: str, machine: str | None, extensions: tuple[str, ...], schema:
     outer = Path(os.path.relpath(nearest, folder)).as_posix() if nearest else None
     wanted = files.extensions(extensions) or files.EXTENSIONS
     programs = [str(Path(program)) for program in files.walk(folder, wanted, warn)]
+    if not programs:
+        warn(f"{files.shown(folder)}: no NC programs in this folder; --extensions names other endings")
     named = [os.path.relpath(program, folder) for program in programs]
     found = survey.survey(programs, asked, Bar(len(programs), not quiet).watched(programs))
     found = new_job.relative(found, dict(zip(programs, named, strict=True)))
     written = _name(machine, Path(folder)) if machine else None
     schema_path = Path(folder, new_job.SCHEMA_FILE)
     is_new = schema and not os.path.lexists(schema_path)
-    files.write(path, new_job.text(found, written, outer, schema))
+    files.write(path, new_job.text(found, written, outer, schema, extensions))
     if is_new:
         files.write(schema_path, schemas.text("job"))
     told = [f"{files.shown(str(path))} written: {new_job.summary(found)}"]

@@ -24,12 +24,12 @@ _LONGEST = 60
 _DECIMALS = 6
 
 
-def text(survey: Survey, machine: str | None, outer: str | None, schema: bool) -> str:
+def text(survey: Survey, machine: str | None, outer: str | None, schema: bool, extensions: Sequence[str] = ()) -> str:
     """
     The file, valid as it stands: what nobody knows is left out, and can be filled in.
 
     machine: as it is to be written, where somebody knows it. outer: the job file that has applied so far, from here.
-    schema: whether its schema lies beside it.
+    schema: whether its schema lies beside it. extensions: of the programs, if not the usual ones.
     """
     lines = [
         *([f"#:schema ./{SCHEMA_FILE}", ""] if schema else []),
@@ -44,7 +44,7 @@ def text(survey: Survey, machine: str | None, outer: str | None, schema: bool) -
         *_units(survey),
         "",
         '#exclude = ["old", "*.bak"]  # what is passed over in folders',
-        '#extensions = ["nc", "tap"]  # endings of the programs, instead of the usual ones',
+        f"{_extensions(extensions)}  # endings of the programs, instead of the usual ones",
         '#fail_on = "error"  # the least severity that fails; warning where nothing is said',
         "#strict = true  # fail where something that matters could not be judged, too",
         '#offsets = "TOOLOFST.TXT"  # R and T from the offset table of the control, punched out or copied as text',
@@ -62,6 +62,11 @@ def text(survey: Survey, machine: str | None, outer: str | None, schema: bool) -
         *_programs(survey),
     ]
     return "\n".join(map(visible, lines)) + "\n"
+
+
+def _extensions(given: Sequence[str]) -> str:
+    names = ", ".join(_toml(name) for name in given)
+    return f"extensions = [{names}]" if given else '#extensions = ["nc", "tap"]'
 
 
 def relative(survey: Survey, names: Mapping[str, str]) -> Survey:
