@@ -185,7 +185,7 @@ def test_what_applies_to_thousands_is_made_once_for_each_set_of_entries() -> Non
     make(*(f"O{number:04d}.nc" for number in range(60)), text="O1\nM30\n")
     job("[[programs]]\nfiles = ['O000*']\nstrict = true\n[[programs]]\nfiles = ['O0005.nc', 'O0055.nc']\nstrict = true")
     told: list[str] = []
-    tasks = batch.plan(["."], settings.of_programs(settings.Options()), (), told.append, told.append)
+    tasks = batch.plan(["."], settings.OfPrograms(settings.Options()), (), told.append, told.append)
     assert (len(tasks), told) == (60, [])
     assert len({id(task.settings) for task in tasks}) == 4
     assert len({id(task.settings.machine) for task in tasks}) == 1

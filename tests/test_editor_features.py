@@ -18,7 +18,7 @@ from test_cli import COMPENSATED, GOOD, RAPID
 from polarcheck.checking.finding import Edit, FileReport, Fix
 from polarcheck.checking.rule import load_all
 from polarcheck.checking.settings import Settings
-from polarcheck.commands.settings import Options, of_programs
+from polarcheck.commands.settings import OfPrograms, Options
 from polarcheck.errors import StoppedError
 from polarcheck.server import actions, allowing, definition, diagnostics, hover, markdown, outline
 from polarcheck.server.judged import Judged, judge
@@ -49,7 +49,7 @@ M99
 
 def settings_of(**asked: Any) -> Any:
     def find(path: Path) -> Settings:
-        return of_programs(Options(**asked))(str(path))
+        return OfPrograms(Options(**asked))(str(path))
 
     return find
 

@@ -199,7 +199,7 @@ def test_standard_input_may_be_closed() -> None:
 
 def planned(*paths: str) -> tuple[list[batch.Task], list[str]]:
     told: list[str] = []
-    return batch.plan(paths, settings.of_programs(settings.Options()), (), told.append, pytest.fail), told
+    return batch.plan(paths, settings.OfPrograms(settings.Options()), (), told.append, pytest.fail), told
 
 
 @of_posix
@@ -209,7 +209,7 @@ def test_a_file_that_is_gone_when_its_turn_comes() -> None:
     Path("f/b.nc").unlink()
     Path("f/c.nc").unlink()
     Path("f/c.nc").mkdir()
-    found = batch.check_files(tasks, told.append, lambda bug: pytest.fail(str(bug)))
+    found = batch.gather(batch.one_by_one(tasks), told.append, lambda bug: pytest.fail(str(bug)))
     assert [file.path for file in found.files] == ["f/a.nc", "f/d.nc"]
     assert told == ["f/b.nc: No such file or directory", "f/c.nc: is a folder, not a file"]
 
@@ -446,9 +446,10 @@ def test_names_that_no_file_can_have(name: str) -> None:
         files.read(name)
     make("a.nc")
     tasks, told = planned(name, "a.nc", name)
-    assert [file.path for file in batch.check_files(tasks, told.append, lambda bug: pytest.fail(str(bug))).files] == [
-        "a.nc"
-    ]
+    assert [
+        file.path
+        for file in batch.gather(batch.one_by_one(tasks), told.append, lambda bug: pytest.fail(str(bug))).files
+    ] == ["a.nc"]
     assert len(told) == 1
 
 

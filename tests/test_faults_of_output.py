@@ -247,8 +247,8 @@ def checked(bad: Exception, monkeypatch: pytest.MonkeyPatch) -> tuple[batch.Chec
     Path("c.nc").write_text(GOOD)
     told: list[str] = []
     bugs: list[Exception] = []
-    tasks = batch.plan(["a.nc", "b.nc", "c.nc"], settings.of_programs(settings.Options()), (), told.append, told.append)
-    return batch.check_files(tasks, told.append, bugs.append), told, bugs
+    tasks = batch.plan(["a.nc", "b.nc", "c.nc"], settings.OfPrograms(settings.Options()), (), told.append, told.append)
+    return batch.gather(batch.one_by_one(tasks), told.append, bugs.append), told, bugs
 
 
 def test_a_bug_costs_its_file_only(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -279,7 +279,7 @@ def test_a_file_that_needs_more_memory_than_there_is_costs_itself_only() -> None
 
 def test_no_table_of_a_file_outlives_the_next() -> None:
     told: list[str] = []
-    (task,) = batch.plan(["a.nc"], settings.of_programs(settings.Options()), (), told.append, told.append)
+    (task,) = batch.plan(["a.nc"], settings.OfPrograms(settings.Options()), (), told.append, told.append)
     living = []
 
     def tasks() -> Iterator[batch.Task]:
@@ -290,7 +290,7 @@ def test_no_table_of_a_file_outlives_the_next() -> None:
     gc.collect()
     gc.disable()
     try:
-        batch.check_files(tasks(), told.append, print)
+        batch.gather(batch.one_by_one(tasks()), told.append, print)
     finally:
         gc.enable()
     assert living[2] == living[3] == living[4] <= living[0] + 1

@@ -60,7 +60,7 @@ def make(count: int) -> None:
 
 def planned(*paths: str) -> list[batch.Task]:
     chosen = settings.Options(select=["rapid-in-polar"])
-    return batch.plan(paths, settings.of_programs(chosen), (), pytest.fail, pytest.fail)
+    return batch.plan(paths, settings.OfPrograms(chosen), (), pytest.fail, pytest.fail)
 
 
 def prepared(is_alone: bool) -> None:

@@ -132,7 +132,7 @@ def test_standard_input_cannot_be_watched() -> None:
     )  # fmt: skip
 
 
-@pytest.mark.parametrize("other", ["--diff", "--diff-base=HEAD"])
+@pytest.mark.parametrize("other", ["--fix", "--diff", "--diff-base=HEAD"])
 def test_one_look_is_not_watched(other: str) -> None:
     Path("a.nc").write_text(GOOD)
     said = f"polarcheck: --watch: not with {other.partition('=')[0]}, which is for one look\n"

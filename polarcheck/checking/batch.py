@@ -138,21 +138,6 @@ def plan(
     return list(tasks.values())
 
 
-def check_files(
-    tasks: Iterable[Task],
-    tell: Tell,
-    bug: Callable[[Exception], None],
-    most: int = files.LARGEST,
-) -> Checked:
-    """
-    Check one file after the other in this process; what is wrong with one costs that file only.
-
-    tell is told, in one line, of those that cannot be read or are too hard, bug of what polarcheck itself does wrong.
-    most: bytes of a file; a larger one is not read.
-    """
-    return gather(one_by_one(tasks, most), tell, bug)
-
-
 def one_by_one(tasks: Iterable[Task], most: int = files.LARGEST) -> Generator[Outcome, None, None]:
     """What comes of each file, checked in this process when it is asked for."""
     for number, task in enumerate(tasks):

@@ -30,7 +30,7 @@ _FILE = "polarcheck-baseline.json"
 _Made = tuple[list["Entry"], str]
 
 
-@click.group(invoke_without_command=True)
+@click.group(invoke_without_command=True, short_help="Write down what is known, so that new findings alone are told.")
 @options.debug
 @click.pass_context
 def baseline(ctx: click.Context) -> None:
@@ -151,7 +151,7 @@ def _run(
     keep_within_memory()
     faults = running.Faults(debug)
     applies = settings.Options(use_config=not no_config, **asked)
-    tasks = running.planned(paths, settings.of_programs(applies), extensions, faults)
+    tasks = running.planned(paths, settings.OfPrograms(applies), extensions, faults)
     overwriting.refuse([output], tasks)
     checked = running.Crew(max_size, workers, cluster).check(tasks, Bar(len(tasks), True), faults)
     could = faults.told()

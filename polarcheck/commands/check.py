@@ -94,7 +94,7 @@ def check(ctx: click.Context, /, paths: tuple[str, ...], watch: bool, **asked: A
     known = _Asked(**own, paths=paths, command=_command(ctx), debug=options.DEBUG in ctx.meta, more=asked)
     run = partial(_check, known)
     if watch:
-        watching.refuse(paths, {"--diff": known.fixes.diff, "--diff-base": known.diff_base})
+        watching.refuse(paths, {"--fix": known.fixes.fix, "--diff": known.fixes.diff, "--diff-base": known.diff_base})
     ctx.exit(watching.repeatedly(run, paths, known.outputs) if watch else run(None))
 
 
@@ -163,7 +163,7 @@ def _check(asked: _Asked, seen: watching.Seen | None) -> int:
     faults = running.Faults(asked.debug)
     tasks = running.planned(
         asked.paths,
-        settings.of_programs(applies),
+        settings.OfPrograms(applies),
         asked.extensions,
         faults,
         force_exclude=asked.force_exclude,
@@ -173,8 +173,8 @@ def _check(asked: _Asked, seen: watching.Seen | None) -> int:
     tasks = narrowed(tasks, asked.diff_base, asked.max_size, not asked.quiet)
     is_colored = in_color(asked.color)
     shown_in = fixing.Shown(asked.quiet, is_colored, asked.debug, bool(asked.outputs))
-    is_known = silencing.answers(tasks, applies.baseline)
-    made = fixing.make(asked.fixes, tasks, asked.max_size, shown_in, is_known)
+    known = None if applies.baseline is None else silencing.Known(applies.baseline, asked.paths)
+    made = fixing.make(asked.fixes, tasks, asked.max_size, shown_in, silencing.answers(tasks, known))
     if made.ends:
         return max(faults.told(), made.status)
     form = asked.form or ("text" if len(tasks) <= _LONG else "short")
@@ -199,7 +199,7 @@ def _check(asked: _Asked, seen: watching.Seen | None) -> int:
         form, shown, len(tasks), bar.hide, in_place_of_findings=asked.statistics, to_error=made.has_output
     )
     crew = running.Crew(asked.max_size, asked.workers, asked.cluster, seen)
-    checked = crew.check(tasks, bar, faults, applies.baseline, shower.file)
+    checked = crew.check(tasks, bar, faults, known, shower.file)
     report = batch.report(checked.files, applies.machine or (tasks[0].settings.name if tasks else profiles.DEFAULT))
     status = max(int(checked.failed), made.status, faults.told())
     went_wrong += [*faults.failures, *faults.bugs]

@@ -14,7 +14,7 @@ FOLDER = Path(__file__).parent / "completions"
 SHELLS = ("bash", "zsh", "fish", "powershell")
 
 
-@click.command
+@click.command(short_help="Show the script that completes commands, options and files.")
 @click.argument("shell", type=click.Choice(SHELLS))
 @options.debug
 def completion(shell: str) -> None:

@@ -51,7 +51,7 @@ def _shown(
     from polarcheck.reading import files
     from polarcheck.reports.pages import applied as page
 
-    settings_of = settings.of_programs(settings.Options(use_config=not no_config, **asked))
+    settings_of = settings.OfPrograms(settings.Options(use_config=not no_config, **asked))
     found = settings_of.applied(path)
     if path != files.STANDARD_INPUT and not os.path.lexists(path):
         warn(f"{files.shown(path)}: there is no such file; this is what would apply to it")

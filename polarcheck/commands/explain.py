@@ -8,7 +8,7 @@ from polarcheck.commands import options
 from polarcheck.commands.output import show
 
 
-@click.command
+@click.command(short_help="Show the manual page of a rule, a group, an alarm or a verdict.")
 @click.argument("rule")
 @options.machine
 @options.debug

@@ -13,7 +13,7 @@ from polarcheck.commands.output import show, warn
 from polarcheck.errors import UsageError
 
 
-@click.command
+@click.command(short_help="Write a commented polarcheck.toml for the programs of a folder.")
 @click.argument("folder", type=click.Path(exists=True, file_okay=False), default=".")
 @options.machine
 @options.extensions

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from polarcheck.machines.profiles import Profile
 
 
-@click.command
+@click.command(short_help="List the machines, show one, write or check one of your own.")
 @click.argument("name", required=False)
 @click.argument("lathe", required=False, metavar="[LATHE]")
 @option("--from", "inherits", metavar="NAME|FILE", help="What the new one inherits from.")

@@ -11,8 +11,6 @@ from polarcheck.commands.exit_codes import BUG, CLEAN, COULD_NOT_RUN
 from polarcheck.commands.output import said_of_bug, say, say_lines, warn
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from polarcheck.checking.batch import Checked, Task
     from polarcheck.checking.finding import FileReport
     from polarcheck.commands.progress import Bar
@@ -84,7 +82,7 @@ class Crew:
         tasks: Sequence[Task],
         bar: Bar,
         faults: Faults,
-        baseline: Path | None = None,
+        baseline: silencing.Known | None = None,
         show: Callable[[FileReport, Mapping[int, str]], None] | None = None,
     ) -> Checked:
         """

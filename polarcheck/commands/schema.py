@@ -8,7 +8,7 @@ from polarcheck.commands import options
 from polarcheck.commands.output import show
 
 
-@click.command
+@click.command(short_help="Show the JSON Schema of the report, the job or the machine.")
 @click.argument("name", type=click.Choice(["report", "job", "machine"]), default="report")
 @options.debug
 def schema(name: str) -> None:

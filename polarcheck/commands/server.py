@@ -17,7 +17,7 @@ from polarcheck.errors import UsageError
 _NEEDED = ("pygls", "lsprotocol")
 
 
-@click.command
+@click.command(short_help="Show findings in an editor while a program is written.")
 @options.executing("programs")
 @options.judging
 @option(
@@ -76,7 +76,7 @@ class _Settings:
     def __call__(self, path: Path) -> Any:
         from polarcheck.commands import settings
 
-        return settings.of_programs(settings.Options(use_config=self._use_config, **self._asked))(str(path))
+        return settings.OfPrograms(settings.Options(use_config=self._use_config, **self._asked))(str(path))
 
 
 def _trusted(trust: tuple[Path, ...], asked: dict[str, Any]) -> list[Path]:

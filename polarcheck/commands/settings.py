@@ -147,8 +147,6 @@ class OfPrograms:
         return self._of_folder[folder]
 
 
-of_programs = OfPrograms
-
 Layers = tuple[tuple[int, int], ...]
 
 

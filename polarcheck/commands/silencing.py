@@ -6,7 +6,7 @@ import os
 from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import click
 
@@ -41,16 +41,23 @@ show_silenced = option(
 )
 
 
-def answered(outcomes: Iterable[Outcome], tasks: Sequence[Task], path: Path | None) -> Iterator[Outcome]:
+class Known(NamedTuple):
+    """A file of known findings, and the paths of the run: of what lies elsewhere nobody knows if it still occurs."""
+
+    path: Path
+    walked: Sequence[str]
+
+
+def answered(outcomes: Iterable[Outcome], tasks: Sequence[Task], baseline: Known | None) -> Iterator[Outcome]:
     """What comes of each file, with the findings of a baseline silenced; at the end what no longer occurs is told."""
-    if path is None:
+    if baseline is None:
         yield from outcomes
         return
     import msgspec
 
     from polarcheck.checking.batch import fails
 
-    known, settings = _baseline(tasks, path), settings_of(tasks)
+    known, settings = _baseline(tasks, baseline), settings_of(tasks)
     answer = _answering(known, settings)
     for outcome in outcomes:
         if outcome.report is None:
@@ -58,12 +65,12 @@ def answered(outcomes: Iterable[Outcome], tasks: Sequence[Task], path: Path | No
         else:
             report = answer(outcome.report)
             yield msgspec.structs.replace(outcome, report=report, failed=fails(report, settings[report.path]))
-    _tell(known, path)
+    _tell(known, baseline.path)
 
 
-def answers(tasks: Sequence[Task], path: Path | None) -> Callable[[FileReport], FileReport] | None:
+def answers(tasks: Sequence[Task], baseline: Known | None) -> Callable[[FileReport], FileReport] | None:
     """What silences the findings of a baseline in a report, where there is one."""
-    return None if path is None else _answering(_baseline(tasks, path), settings_of(tasks))
+    return None if baseline is None else _answering(_baseline(tasks, baseline), settings_of(tasks))
 
 
 def _answering(known: Baseline, settings: Mapping[str, Settings]) -> Callable[[FileReport], FileReport]:
@@ -74,11 +81,12 @@ def _answering(known: Baseline, settings: Mapping[str, Settings]) -> Callable[[F
     return answer
 
 
-def _baseline(tasks: Iterable[Task], path: Path) -> Baseline:
+def _baseline(tasks: Iterable[Task], known: Known) -> Baseline:
     from polarcheck.checking import baseline_file
     from polarcheck.checking.baseline import Baseline
 
-    return Baseline(baseline_file.read(path), path.parent, (task.place for task in tasks))
+    entries = baseline_file.read(known.path)
+    return Baseline(entries, known.path.parent, (task.place for task in tasks), known.walked)
 
 
 def settings_of(tasks: Iterable[Task]) -> dict[str, Settings]:

@@ -12,7 +12,7 @@ from polarcheck.commands.options import narrower, option
 from polarcheck.commands.output import show, warn
 
 
-@click.command
+@click.command(short_help="Show what a program does, block by block or move by move.")
 @click.argument("path", metavar="FILE")
 @options.executing("program", both=False)
 @option("--path", "which", type=click.Choice(["tool", "programmed"]), help="The moves of a path, not the blocks.")
@@ -34,7 +34,7 @@ def trace(path: str, which: str | None, form: str, no_config: bool, max_size: in
     from polarcheck.reports.pages import executed
     from polarcheck.time_limit import seconds_for, time_limit
 
-    found = settings.of_programs(settings.Options(use_config=not no_config, **asked))(path)
+    found = settings.OfPrograms(settings.Options(use_config=not no_config, **asked))(path)
     data = files.read(path, max_size)
     with time_limit(seconds_for(len(data), found.job.run.max_seconds)):
         # One run for each channel: --block-skip asks for one state.

@@ -142,7 +142,7 @@ def _test(case: _Case, path: str, file: FileReport) -> Iterator[str]:
     """Files are the names of tests and groups their classes: readers split the name of a class at its last point."""
     inside = []
     if case.outcome:
-        messages = [one.message for one in case.failing] or list(case.missing)
+        messages = [one.told for one in case.failing] or list(case.missing)
         more = f" (and {len(messages) - 1} more)" if len(messages) > 1 else ""
         kind = case.failing[0].severity if case.failing else "unverified"
         lines = [*(line(file, one) for one in case.failing), *(f"not evaluated: {one}" for one in case.missing)]
