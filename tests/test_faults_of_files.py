@@ -568,7 +568,7 @@ def test_the_working_folder_may_be_gone(tmp_path: Path) -> None:
     ]
 
 
-@pytest.mark.parametrize("encoding", ["undefined", "punycode", "ascii", "utf-8", "idna"])
+@pytest.mark.parametrize("encoding", ["punycode", "ascii", "utf-8", "idna"])
 def test_an_encoding_that_reads_nothing_is_told(encoding: str) -> None:
     Path("a.nc").write_bytes(b"G0 X1.-\xffy\n")
     status, paths, (told,) = check("a.nc", "--encoding", encoding)
