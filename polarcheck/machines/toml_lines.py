@@ -15,6 +15,8 @@ _BASIC = re.compile(r'"((?:[^"\\\n]|\\.)*+)"')
 _LITERAL = re.compile(r"'([^'\n]*+)'")
 # In a text of several lines one or two quotes may stand before the three that end it.
 _LONG = re.compile(r'"""(?:[^\\"]|\\.|"(?!""))*+"{3,5}' + r"|'''(?:[^']|'(?!''))*+'{3,5}", re.DOTALL)
+#: Parts of a key, those of the tables around it included: more are refused (toml_text), and cost their square here.
+_MOST_PARTS = 30
 _SCALAR = re.compile(r"[^\s,\[\]{}#\"'][^,\n\]}#]*+")
 
 
@@ -135,6 +137,8 @@ class _Scanner:
         while True:
             self._skip()
             parts.append(self._part())
+            if len(parts) > _MOST_PARTS:
+                raise _UnclearError
             self._skip()
             self.at += 1
             if self.text[self.at - 1] == end:
@@ -175,6 +179,8 @@ class _Scanner:
                 return
             number += 1
             start = self.at
+            if len(key) > _MOST_PARTS:
+                raise _UnclearError
             if end == "}":
                 inner = (*key, *self._key())
                 yield start, inner

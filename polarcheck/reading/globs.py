@@ -179,6 +179,7 @@ def _translated(piece: re.Match[str]) -> str:
     if piece[0] == "?":
         return "[^/]"
     if piece[2]:
-        inside = re.sub(r"([\\\[\]^&~|])", r"\\\1", piece[2])
+        # A sign that stands twice may be an operation on sets some day: Python warns of it.
+        inside = re.sub(r"([\\\[\]^&~|])", r"\\\1", piece[2]).replace("--", r"-\-")
         return f"[{'^/' if piece[1] else ''}{inside}]"
     return re.escape(piece[0])
