@@ -17,9 +17,11 @@ import pytest
 
 #: Characters of one value in the name of a test.
 LONGEST = 50
-#: Cases of one test, be they written or drawn, that count for the coverage: more of them add next to nothing, and take
+#: Cases of one test, written and drawn ones, that count for the coverage: more of them add next to nothing, and take
 #: twice the time measured.
-MEASURED = 6
+MEASURED, DRAWN = 6, 20
+#: Files whose tests count whole: each case is another statement of a control's own language.
+MEASURED_WHOLE = ("test_high_level", "test_user_tasks", "test_statement", "test_flow")
 IS_MEASURED = pytest.StashKey[bool]()
 
 
@@ -38,7 +40,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     for item in items:
         test = item.nodeid.partition("[")[0]
         cases[test] += 1
-        item.stash[IS_MEASURED] = cases[test] <= MEASURED
+        item.stash[IS_MEASURED] = cases[test] <= MEASURED or item.path.stem in MEASURED_WHOLE
         drawn = getattr(getattr(item, "obj", None), "hypothesis", None)
         if drawn is not None and cases[test] == 1:
             drawn.inner_test = measured_at_first(drawn.inner_test)
@@ -50,7 +52,7 @@ def measured_at_first(test: Callable[..., None]) -> Callable[..., None]:
 
     @functools.wraps(test)
     def run(*arguments: Any, **named: Any) -> None:
-        if next(examples) >= MEASURED:
+        if next(examples) >= DRAWN:
             sys.settrace(None)  # pytest_runtest_call sets it again, behind the last example
         test(*arguments, **named)
 

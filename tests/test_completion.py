@@ -56,7 +56,9 @@ def values(words: str, word: str) -> list[str]:
 
 def test_commands_are_completed_with_what_they_do() -> None:
     assert values("", "") == list(NAMES)
-    assert answer("", "expl") == [("word", "explain", "Show the manual page of a RULE, or of the...")]
+    assert answer("", "expl") == [
+        ("word", "explain", "Show the manual page of a rule, a group, an alarm or a verdict.")
+    ]
 
 
 def test_every_option_of_check_is_completed() -> None:

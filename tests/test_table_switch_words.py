@@ -237,7 +237,7 @@ def test_a_wrong_parameter_ends_the_run_with_one_line(given: str, said: str) -> 
     Path("own.toml").write_text(f"inherits = 'gsk-988'\n[parameters]\n{given}\n", "utf-8")
     Path("part.nc").write_text(PROGRAM.format("G12.1", "G13.1"), "utf-8")
     ended = CliRunner().invoke(main, ["check", "part.nc", "--machine", "own.toml"])
-    assert (ended.exit_code, ended.stdout, ended.stderr) == (2, "", f"polarcheck: own.toml: {said}\n")
+    assert (ended.exit_code, ended.stdout, ended.stderr) == (2, "", f"polarcheck: own.toml:3: {said}\n")
 
 
 @pytest.mark.parametrize(("parameters", "axis"), [({"5460": 3}, 3), ({"5461": 1}, 1), ({"5460": 2, "5461": 2}, 2)])

@@ -9,7 +9,7 @@ import pytest
 from programs import report_of, said, trace_of
 
 from polarcheck.checking.finding import PolarSection
-from polarcheck.commands.job_files import load
+from polarcheck.commands.settings import OfPrograms, Options
 
 MM = "O1\nG21 G40 G97 G98 G18\n"
 #: The sample program of the builder's guide, with blocks before and behind its T word.
@@ -393,7 +393,9 @@ def test_the_size_of_turned_diameters_and_on_other_machines() -> None:
 def test_the_wear_in_x_of_an_offset_table(tmp_path: Path, table: str, block: str, expected: bool) -> None:
     (tmp_path / "offsets.txt").write_text(f"%\n{table}\n%\n")
     (tmp_path / "polarcheck.toml").write_text("offsets = 'offsets.txt'\n")
-    report = report_of(guide(block), "turning-center", job=load(tmp_path / "polarcheck.toml"))
+    report = report_of(
+        guide(block), "turning-center", job=OfPrograms(Options(config=tmp_path / "polarcheck.toml"))("part.nc").job
+    )
     message = "the wear in X of the offset table, -0.005 inch, changes X of offset 8"
     assert [(found.rule, found.line, message in found.message) for found in report.findings] == (
         [("size-by-x-offset", 7, True)] if expected else []

@@ -56,9 +56,11 @@ def encoding(what: str) -> Decorator:
 
 
 def _known_encoding(ctx: click.Context, parameter: click.Parameter, value: str | None) -> str | None:
+    if value is None:
+        return None
     from polarcheck.reading.source import is_encoding
 
-    if value is not None and not is_encoding(value):
+    if not is_encoding(value):
         raise click.BadParameter(f"unknown encoding {value!r}; for example utf-8, cp1252, shift_jis")
     return value
 
