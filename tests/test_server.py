@@ -10,6 +10,7 @@ import signal
 import subprocess
 import sys
 from collections.abc import AsyncIterator, Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -387,7 +388,9 @@ def test_broken_messages_end_nothing() -> None:
 @pytest.mark.parametrize(("number", "code"), [("SIGTERM", 143), ("SIGINT", 130)])
 def test_it_ends_when_it_is_told_to(number: str, code: int) -> None:
     pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
-    with subprocess.Popen([sys.executable, *SERVER], env=environment(), **pipes) as running:
+    # What is started in the background has the interrupt ignored, which is inherited.
+    heed = partial(signal.signal, getattr(signal, number), signal.SIG_DFL)
+    with subprocess.Popen([sys.executable, *SERVER], env=environment(), preexec_fn=heed, **pipes) as running:
         assert running.stdin is not None
         assert running.stdout is not None
         running.stdin.write(BEGIN)
