@@ -18,6 +18,7 @@ ORDER = (
     ("commands",),
     ("server",),
     ("reports",),
+    ("pictures",),
     ("fixes",),
     ("rules",),
     ("checking",),

@@ -218,6 +218,8 @@ def _check(task: Task, data: bytes) -> tuple[FileReport, Source, set[str]]:
         found = check.read(data, settings.machine, settings.job, path, settings.encoding)
         text: Text = found[0][1]["text"]
         report = check.check_runs(found, settings.rules, settings.severities, settings.inline)
+        for extra in settings.extras:
+            report = extra(report, found)
         return report, text.source, _offsets(found) if settings.job.tools else set()
 
 

@@ -33,6 +33,7 @@ MAKERS = {
     "mirrored": "polarcheck.table.mirrored:Mirrored",
     "slots": "polarcheck.table.slots:Slots",
     "uncompensated_cuts": "polarcheck.table.uncompensated_cuts:UncompensatedCuts",
+    "finished": "polarcheck.table.finished:Finished",
     "coverage": "polarcheck.table.coverage:Coverage",
     "arcs": "polarcheck.table.arcs:Arcs",
     "senses": "polarcheck.table.senses:Senses",

@@ -12,7 +12,7 @@ from typing import Any
 import msgspec
 
 from polarcheck.checking.rule import Rule, load_all
-from polarcheck.checking.settings import Settings
+from polarcheck.checking.settings import Extra, Settings
 from polarcheck.commands import job_files, selection
 from polarcheck.commands.job_files import JobFile
 from polarcheck.commands.job_layers import Merged
@@ -48,6 +48,8 @@ class Options(msgspec.Struct, frozen=True):
     encoding: str | None = None
     inline: bool | None = None
     baseline: Path | None = None
+    #: What the command itself adds to the reports of files.
+    extras: Sequence[Extra] = ()
 
 
 class OfPrograms:
@@ -194,6 +196,7 @@ class _Making:
             strict=job.strict,
             encoding=job.encoding,
             inline=job.inline,
+            extras=options.extras,
         )
         return Applied(settings, merged, profile, found)
 

@@ -185,7 +185,7 @@ class Overcuts:
         radius = np.abs((self.radius - self.trace.allowance)[path.row])
         tolerance = self.trace.machine.compensation.overcut_tolerance
         walls, left = self.walls
-        around = self._air(walls), self._level(walls)
+        around = self._air(walls), self.level
         found = contour.overcuts(walls, left, *around, path, radius, is_ramp, tolerance, self.bar)
         cuts = Cuts(path.row[found.move], found.row, found.depth, found.place)
         return cuts, is_ramp[found.move], np.isin(self.loop, found.tangled)
@@ -207,8 +207,10 @@ class Overcuts:
         np.fmin.at(least, section[first], ends)
         return least[section]
 
-    def _level(self, walls: Curves) -> Rows:
-        """For each wall the number of the section and the Z that its loop begins at."""
+    @cached_property
+    def level(self) -> Rows:
+        """For each of the walls the number of the section and the Z that its loop begins at."""
+        walls, _ = self.walls
         first = np.flatnonzero(np.diff(walls.loop, prepend=-1))
         row = walls.row[first]
         z = np.round(self.trace.z[row] / ROUNDING)

@@ -1,0 +1,106 @@
+"""
+What bounds a finished part, as the lines and arcs that a drawing has; lengths in mm, plane points complex, x + 1j*c.
+
+The faces of the contour check have chords in the place of arcs. Here the chords of one block are one element again,
+with the center that is programmed, so that a size is as exact as the program.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from polarcheck.arrays import Floats, Mask, Points, Rows, States
+from polarcheck.geometry.noding import TOUCH
+from polarcheck.geometry.plane import arc_sweep
+from polarcheck.geometry.segments import Curves
+from polarcheck.machines.modal import Motion
+
+#: Ends of chords that are nearer to each other are one point [mm].
+_SAME = 10 * TOUCH
+
+
+@dataclass(frozen=True, slots=True)
+class Outline:
+    """
+    Lines and arcs with the part on their left, n of them, those of one chain in the order in which they run.
+
+    start, end: complex128[n] [mm]. center: complex128[n], NaN for lines. kind: int16[n], Motion: an arc that runs
+    counterclockwise bulges outward. row: int[n], the row of the block. chain: int[n], from 0. closed: bool[chains], the
+    chain comes back to where it begins; else it ends where nobody knows what the part is like.
+    """
+
+    start: Points
+    end: Points
+    center: Points
+    kind: States
+    row: Rows
+    chain: Rows
+    closed: Mask
+
+    def __len__(self) -> int:
+        return len(self.row)
+
+    def __getitem__(self, chosen: Rows | Mask) -> Outline:
+        """Some of the elements; the numbers of their chains stay."""
+        return Outline(
+            self.start[chosen],
+            self.end[chosen],
+            self.center[chosen],
+            self.kind[chosen],
+            self.row[chosen],
+            self.chain[chosen],
+            self.closed,
+        )
+
+    @property
+    def is_arc(self) -> Mask:
+        """The element is an arc."""
+        return np.asarray(self.kind != Motion.LINE)
+
+    @property
+    def radius(self) -> Floats:
+        """Of arcs [mm], NaN for lines."""
+        return np.asarray(np.abs(self.start - self.center))
+
+    @property
+    def length(self) -> Floats:
+        """Of each element [mm]."""
+        sweep = arc_sweep(self.start, self.end, self.center, self.kind)
+        return np.where(self.is_arc, np.abs(sweep) * self.radius, np.abs(self.end - self.start))
+
+
+def outline_of(start: Points, end: Points, move: Rows, curves: Curves) -> Outline:
+    """
+    The outline that these chords make. start, end: of chords with the part on their left, those in a row one after
+    another. move: the curve that each is part of.
+    """
+    if not len(move):
+        none = np.zeros(0, np.int64)
+        nowhere = np.zeros(0, complex)
+        return Outline(nowhere, nowhere, nowhere, none.astype(np.int16), none, none, np.zeros(0, bool))
+    first = np.append(0, np.flatnonzero(np.abs(start[1:] - end[:-1]) > _SAME) + 1)
+    count = np.diff(np.append(first, len(move)))
+    closed = np.abs(end[first + count - 1] - start[first]) <= _SAME
+    chain = np.repeat(np.arange(len(first)), count)
+    order = _from_block(move, first, count, closed)
+    start, end, move = start[order], end[order], move[order]
+    begins = np.flatnonzero(np.append(True, (np.diff(move) != 0) | (np.diff(chain) != 0)))
+    last = np.append(begins[1:], len(move)) - 1
+    of = move[begins]
+    center = np.where(curves.kind[of] == Motion.LINE, np.nan, curves.center[of])
+    turns = ((start[begins] - center).conj() * (end[begins] - center)).imag
+    kind = np.where(np.isnan(center), Motion.LINE, np.where(turns > 0, Motion.CCW, Motion.CW)).astype(np.int16)
+    return Outline(start[begins], end[last], center, kind, curves.row[of], chain[begins], closed)
+
+
+def _from_block(move: Rows, first: Rows, count: Rows, closed: Mask) -> Rows:
+    """The order in which closed chains begin where a block does; a face begins them anywhere."""
+    order = np.arange(len(move))
+    last = first + count - 1
+    for begin, end in zip(first[closed].tolist(), last[closed].tolist(), strict=True):
+        other = np.flatnonzero(move[begin : end + 1] != move[begin])
+        if move[begin] == move[end] and len(other):
+            order[begin : end + 1] = np.roll(order[begin : end + 1], -int(other[0]))
+    return order

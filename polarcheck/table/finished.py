@@ -1,0 +1,91 @@
+"""
+The finished part: what the contours that are programmed in offset mode leave standing at each depth of each section.
+
+Import late: shapely takes its time.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+import shapely  # type: ignore[import-untyped]
+
+from polarcheck.arrays import Mask, Rows
+from polarcheck.geometry.finished_part import Contours, FinishedParts, finished_parts
+from polarcheck.geometry.outline import Outline, outline_of
+from polarcheck.geometry.segments import Curves
+from polarcheck.table.overcuts import Overcuts
+from polarcheck.table.trace import Trace
+
+
+class Level(NamedTuple):
+    """
+    What the contours at one Z of one section leave standing.
+
+    section: its number. z: [mm], NaN where it is not known. radius: |R| of the cutter, the largest [mm]. polygon: what
+    stands (shapely, mm, x and c as its x and y), with chords for arcs; empty where nothing does. open: the polygon ends
+    somewhere beyond the walls, where nobody knows what the part is like. gap: what was closed [mm], 0 for none.
+    tangled: the walls cross so often that they are no contour. outline: what of the polygon is programmed, as lines and
+    arcs. walls: the programmed contours, leads in offset mode included; left: bool, the tool runs left of each.
+    """
+
+    section: int
+    z: float
+    radius: float
+    polygon: Any
+    open: bool
+    gap: float
+    tangled: bool
+    outline: Outline
+    walls: Curves
+    left: Mask
+
+
+class Finished:
+    """The finished part of one trace."""
+
+    def __init__(self, trace: Trace, overcuts: Overcuts) -> None:
+        self.trace = trace
+        self.overcuts = overcuts
+
+    @cached_property
+    def levels(self) -> list[Level]:
+        """
+        One for each section and Z with contours in offset mode whose R is known, in the order of the program.
+
+        Raises TooHardError where their faces cannot be computed.
+        """
+        walls, left = self.overcuts.walls
+        if not len(walls):
+            return []
+        trace, level = self.trace, self.overcuts.level
+        # Levels in the order in which the program comes to them.
+        _, first, level = np.unique(level, return_index=True, return_inverse=True)
+        place = np.argsort(np.argsort(first))[level]
+        radius = np.zeros(len(first))
+        np.maximum.at(radius, place, np.abs(trace.radius[walls.row]))
+        begins = np.flatnonzero(np.diff(walls.loop, prepend=-1))
+        order = np.argsort(place[begins], kind="stable")
+        loops, groups = walls.loop[begins][order], place[begins][order]
+        tolerance = trace.machine.compensation.overcut_tolerance
+        parts = finished_parts(Contours(walls, left, loops, groups, radius, self.overcuts.bar, tolerance))
+        rows = [np.flatnonzero(place == number) for number in range(len(radius))]
+        return [self._level(parts, number, radius, walls, left, chosen) for number, chosen in enumerate(rows)]
+
+    def _level(self, parts: FinishedParts, number: int, radius: Any, walls: Curves, left: Mask, chosen: Rows) -> Level:
+        own, shift = parts.group == number, parts.pitch * number
+        row = int(walls.row[chosen[0]])
+        return Level(
+            section=int(self.trace.section[row]),
+            z=float(self.trace.z[row]),
+            radius=float(radius[number]),
+            polygon=shapely.transform(parts.polygon[number], lambda points: points - [shift, 0.0]),
+            open=bool(parts.open[number]),
+            gap=float(parts.gap[number]),
+            tangled=bool(parts.tangled[number]),
+            outline=outline_of(parts.start[own] - shift, parts.end[own] - shift, parts.move[own], walls),
+            walls=walls[chosen],
+            left=left[chosen],
+        )
