@@ -20,7 +20,8 @@ class Points(msgspec.Struct, frozen=True, kw_only=True):
     """
     A path as points, arcs thinned to chords; where a move begins elsewhere than the last one ended there is a null.
 
-    x, c: [mm]. move: the move of each point in the table of moves; of the programmed path its block's first move.
+    x, c: [mm]. move: the move of each point in the table of moves; of the programmed path its block's first move. What
+    leads up to a point is of the point's move, so that the first point of a stretch has the move that begins there.
     """
 
     x: list[float | None]
