@@ -1,0 +1,329 @@
+// ---- face: the view onto the face, X to the right with its labels as in the program, C upwards ----
+
+const DASHES = { positioning: "dash", "start up": "dashdot", cancel: "dashdot", unknown: "dot" };
+const OPTIONS = { displaylogo: false, responsive: true, modeBarButtonsToRemove: ["select2d", "lasso2d", "autoScale2d"] };
+/** So many arrows tell the direction of a path. */
+const ARROWS = 14;
+/** So many points of it, at least, can be pointed at. */
+const POINTED = 3000;
+
+/** All that is drawn of a section, but for what is chosen. */
+function faceTraces(section, level, coloring) {
+  const units = unitsOf(section);
+  return [
+    ...parts(section, units, level),
+    ...surroundings(section, units),
+    ...colorBar(section, coloring),
+    line("programmed contour", section.programmed.x.map(units.x), section.programmed.c.map(units.c), { color: INK, width: 1 }),
+    ...toolPath(section, units, coloring),
+    ...directions(section, units),
+    ...marks(section, units),
+    ...ends(section, units),
+    ...toPointAt(section, units),
+  ];
+}
+
+function line(name, x, y, style, more = {}) {
+  return { type: "scatter", mode: "lines", name, x, y, line: style, hoverinfo: "skip", ...more };
+}
+
+/** Rings one after another, with gaps; the outside of each polygon runs one way and its holes the other. */
+function rings(polygons, units) {
+  const x = [];
+  const y = [];
+  for (const polygon of polygons) {
+    polygon.forEach((ring, place) => {
+      const way = turnOf(ring) > 0 === (place === 0) ? ring : [...ring].reverse();
+      x.push(...way.map((point) => units.x(point[0])), null);
+      y.push(...way.map((point) => units.c(point[1])), null);
+    });
+  }
+  return { x, y };
+}
+
+/** Twice the area of a ring, positive where it runs counterclockwise. */
+function turnOf(ring) {
+  return ring.reduce((sum, [x, c], place) => {
+    const [nextX, nextC] = ring[(place + 1) % ring.length];
+    return sum + x * nextC - nextX * c;
+  }, 0);
+}
+
+function parts(section, units, level) {
+  return section.parts.filter((part, place) => place === level && part.polygons.length).map((part) => ({
+    ...line("finished part", ...Object.values(rings(part.polygons, units)), { color: "#9db0c2", width: part.known_outside ? 1 : 0 }),
+    fill: "toself", fillcolor: "#dde6ee",
+  }));
+}
+
+function circle(radius, units) {
+  const angles = Array.from({ length: 145 }, (_, place) => (place * Math.PI) / 72);
+  return [angles.map((angle) => units.x(radius * Math.cos(angle))), angles.map((angle) => units.c(radius * Math.sin(angle)))];
+}
+
+/** Stock, keep-out, the center of the spindle, and the ray from there on which C is 0. */
+function surroundings(section, units) {
+  const found = [];
+  if (section.stock !== null) {
+    found.push(line("stock", ...circle(section.stock / 2, units), { color: "#8a6d3b", width: 1.5, dash: "6px,3px" }));
+  }
+  if (section.keep_out !== null) {
+    found.push(line("keep-out", ...circle(section.keep_out, units), { color: ABOVE, width: 1, dash: "dot" }, { fill: "toself", fillcolor: "rgba(213,94,0,0.15)" }));
+  }
+  const reach = 1.12 * reachOf(section);
+  found.push({
+    ...line("C = 0", [0, units.x(reach)], [0, 0], { color: "#595959", width: 1, dash: "longdashdot" }, { showlegend: false }),
+    mode: "lines+text", text: ["", "C = 0"], textposition: "middle right", textfont: { color: "#444", size: 11 },
+  });
+  found.push({
+    type: "scatter", mode: "markers", name: "spindle center", x: [0], y: [0], hoverinfo: "skip",
+    marker: { symbol: "cross-thin", size: 18, line: { color: INK, width: 1.5 } },
+  });
+  return found;
+}
+
+/** How far from the center anything is drawn. */
+function reachOf(section) {
+  let reach = section.stock === null ? 0 : section.stock / 2;
+  for (const path of [section.programmed, section.tool]) {
+    path.x.forEach((x, place) => {
+      reach = x === null ? reach : Math.max(reach, Math.hypot(x, path.c[place]));
+    });
+  }
+  return reach || 1;
+}
+
+/** The path of the tool center, a trace for each kind of move and class of color. */
+function toolPath(section, units, coloring) {
+  const classes = classesOf(section, coloring);
+  const { tool, moves } = section;
+  const groups = new Map();
+  for (let place = 1; place < tool.x.length; place += 1) {
+    if (tool.x[place] === null || tool.x[place - 1] === null) {
+      continue;
+    }
+    const move = tool.move[place];
+    const role = moves.role[move];
+    const kind = role === "positioning" && classes[move] !== "above" ? "plain" : classes[move];
+    const key = `${role} ${kind}`;
+    if (!groups.has(key)) {
+      groups.set(key, { role, kind, x: [], y: [], last: -1 });
+    }
+    const group = groups.get(key);
+    if (group.last !== place - 1) {
+      group.x.push(null, units.x(tool.x[place - 1]));
+      group.y.push(null, units.c(tool.c[place - 1]));
+    }
+    group.x.push(units.x(tool.x[place]));
+    group.y.push(units.c(tool.c[place]));
+    group.last = place;
+  }
+  const named = new Set();
+  const limited = [...groups.values()].some(({ kind }) => kind === "above")
+    ? [line("above the limit of C", [null], [null], { color: ABOVE, width: 5 })] : [];
+  return [...limited, ...[...groups.values()].map(({ role, kind, x, y }) => {
+    const name = nameOf(role);
+    const isFirst = !named.has(name);
+    named.add(name);
+    const isCut = role === "cut" || role === "corner";
+    const width = kind === "above" ? 5 : isCut ? 3 : role === "positioning" ? 1.3 : 2.2;
+    const style = { color: role === "unknown" ? UNKNOWN : colorOf(kind), width, dash: DASHES[role] || "solid" };
+    return line(name, x, y, style, { legendgroup: name, showlegend: isFirst });
+  })];
+}
+
+function nameOf(role) {
+  const names = { cut: "tool center", corner: "tool center", "start up": "ramp on", cancel: "ramp off", unknown: "tool center not known" };
+  return names[role] || role;
+}
+
+/** Arrows along the path, as far from each other as its length allows; ramps have theirs, open ones. */
+function directions(section, units) {
+  const { tool, moves } = section;
+  const chosen = { solid: [], ramp: [] };
+  let total = 0;
+  const pieces = [];
+  for (let place = 1; place < tool.x.length; place += 1) {
+    if (tool.x[place] === null || tool.x[place - 1] === null) {
+      continue;
+    }
+    const [dx, dc] = [tool.x[place] - tool.x[place - 1], tool.c[place] - tool.c[place - 1]];
+    const length = Math.hypot(dx, dc);
+    const role = moves.role[tool.move[place]];
+    if (!length) {
+      continue;
+    }
+    const isRamp = role === "start up" || role === "cancel";
+    // Ramps on and off may be one line; their arrows then stand apart.
+    const along = isRamp ? 0.35 : 0.5;
+    const middle = [units.x(tool.x[place - 1] + along * dx), units.c(tool.c[place - 1] + along * dc), (Math.atan2(dx, dc) * 180) / Math.PI];
+    if (isRamp) {
+      chosen.ramp.push(middle);
+    } else {
+      pieces.push({ middle, from: total, to: total + length });
+      total += length;
+    }
+  }
+  let next = total / ARROWS / 2;
+  for (const piece of pieces) {
+    if (piece.to >= next) {
+      chosen.solid.push(piece.middle);
+      next = piece.to + total / ARROWS / 2;
+    }
+  }
+  const evenly = chosen.ramp.filter((_, place) => place % Math.ceil(chosen.ramp.length / ARROWS) === 0);
+  return [arrows(chosen.solid, "arrow", 10), arrows(evenly, "arrow-open", 12)].filter((trace) => trace.x.length);
+}
+
+function arrows(places, symbol, size) {
+  return {
+    type: "scatter", mode: "markers", x: places.map((place) => place[0]), y: places.map((place) => place[1]),
+    hoverinfo: "skip", showlegend: false,
+    marker: { symbol, size, angle: places.map((place) => place[2]), color: INK, line: { color: INK, width: 1.5 } },
+  };
+}
+
+const MARKED = {
+  overcut: { name: "cut too much", color: ABOVE, shape: "/" },
+  left: { name: "left standing", color: "#0072b2", shape: "\\" },
+};
+
+/** What is cut too much or left standing: hatched, with its number in the table at its place. */
+function marks(section, units) {
+  return Object.entries(MARKED).flatMap(([kind, { name, color, shape }]) => {
+    const own = section.marks.map((mark, place) => ({ ...mark, number: place + 1 })).filter((mark) => mark.kind === kind);
+    if (!own.length) {
+      return [];
+    }
+    const areas = rings(own.map((mark) => mark.rings).filter((some) => some.length), units);
+    const hatched = {
+      ...line(name, areas.x, areas.y, { color, width: 1 }, { legendgroup: name, showlegend: false }),
+      fill: "toself", fillcolor: "rgba(255,255,255,0)", fillpattern: { shape, fgcolor: color, bgcolor: "rgba(255,255,255,0.3)", size: 6, solidity: 0.35 },
+    };
+    const places = {
+      type: "scatter", mode: "markers+text", name, legendgroup: name, hoverinfo: "none",
+      x: own.map((mark) => units.x(mark.place[0])), y: own.map((mark) => units.c(mark.place[1])),
+      text: own.map((mark) => String(mark.number)), textposition: "top right", textfont: { color, size: 13 },
+      customdata: own.map((mark) => ({ mark: mark.number - 1 })),
+      marker: { symbol: kind === "overcut" ? "x-thin" : "star-triangle-down-open", size: 10, color, line: { color, width: 2 } },
+    };
+    return areas.x.length ? [hatched, places] : [places];
+  });
+}
+
+/** Where the path begins and ends. */
+function ends(section, units) {
+  const path = section.tool.x.length ? section.tool : section.programmed;
+  const known = path.x.map((_, place) => place).filter((place) => path.x[place] !== null);
+  if (!known.length) {
+    return [];
+  }
+  return [[known[0], "start", "top right", "circle-open"], [known[known.length - 1], "end", "bottom right", "square-open"]].map(
+    ([place, text, textposition, symbol]) => ({
+      type: "scatter", mode: "markers+text", x: [units.x(path.x[place])], y: [units.c(path.c[place])],
+      text: [text], textposition, hoverinfo: "skip", showlegend: false, textfont: { color: INK, size: 12 },
+      marker: { symbol, size: text === "start" ? 12 : 9, color: INK, line: { color: INK, width: 2 } },
+    }),
+  );
+}
+
+/** Points along the path that the pointer finds; nothing is seen of them. */
+function toPointAt(section, units) {
+  const path = section.tool.x.length ? section.tool : section.programmed;
+  let total = 0;
+  for (let place = 1; place < path.x.length; place += 1) {
+    if (path.x[place] !== null && path.x[place - 1] !== null) {
+      total += Math.hypot(path.x[place] - path.x[place - 1], path.c[place] - path.c[place - 1]);
+    }
+  }
+  const found = { x: [], y: [], move: [] };
+  for (let place = 1; place < path.x.length; place += 1) {
+    if (path.x[place] === null || path.x[place - 1] === null) {
+      continue;
+    }
+    const [dx, dc] = [path.x[place] - path.x[place - 1], path.c[place] - path.c[place - 1]];
+    const count = Math.max(Math.ceil((Math.hypot(dx, dc) / total) * POINTED) || 1, 1);
+    for (let part = 0; part < count; part += 1) {
+      const along = (part + 0.5) / count;
+      found.x.push(units.x(path.x[place - 1] + along * dx));
+      found.y.push(units.c(path.c[place - 1] + along * dc));
+      found.move.push(path.move[place]);
+    }
+  }
+  return [line("", found.x, found.y, { width: 0, color: "rgba(0,0,0,0)" }, {
+    hoverinfo: "none", showlegend: false, customdata: found.move.map((move) => ({ move })),
+  })];
+}
+
+/** The chosen move and the cutter at its end, as shapes: these alone are drawn again where another one is chosen. */
+function chosenOnFace(section, move) {
+  if (move === null) {
+    return [];
+  }
+  const units = unitsOf(section);
+  const way = wayOf(section, move).map(([x, c]) => [units.x(x), units.c(c)]);
+  const path = way.map(([x, y], place) => `${place ? "L" : "M"}${x},${y}`).join(" ");
+  const found = way.length > 1 ? [
+    { type: "path", path, line: { color: "#fff", width: 9 }, layer: "above" },
+    { type: "path", path, line: { color: "#000", width: 4.5 }, layer: "above" },
+  ] : [];
+  const [x, c] = section.moves.end[move];
+  const radius = section.radius;
+  if (x !== null && c !== null && radius !== null && section.moves.role[move] !== "unknown") {
+    found.push({
+      type: "circle", x0: units.x(x - radius), x1: units.x(x + radius), y0: units.c(c - radius), y1: units.c(c + radius),
+      line: { color: "#000", width: 1.5 }, fillcolor: "rgba(230,159,0,0.22)", layer: "above",
+    });
+  }
+  return found;
+}
+
+/** The points of a move; where thinning has left none of it, its ends. */
+function wayOf(section, move) {
+  const { tool, moves } = section;
+  const first = firstAt(tool.move, move);
+  const way = [];
+  for (let place = first; place < tool.x.length && (tool.move[place] === move || tool.move[place] === null); place += 1) {
+    if (tool.move[place] === move && tool.x[place] !== null) {
+      if (!way.length && place > 0 && tool.x[place - 1] !== null) {
+        way.push([tool.x[place - 1], tool.c[place - 1]]);
+      }
+      way.push([tool.x[place], tool.c[place]]);
+    }
+  }
+  return way.length > 1 ? way : [moves.start[move], moves.end[move]].filter(([x, c]) => x !== null && c !== null);
+}
+
+/** The first place of a column that rises, with gaps, at which it has reached a value. */
+function firstAt(column, value) {
+  let [low, high] = [0, column.length];
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    let known = middle;
+    while (known < high && column[known] === null) {
+      known += 1;
+    }
+    if (known < high && column[known] < value) {
+      low = known + 1;
+    } else {
+      high = middle;
+    }
+  }
+  while (low < column.length && column[low] === null) {
+    low += 1;
+  }
+  return low;
+}
+
+function faceLayout(section) {
+  const units = unitsOf(section);
+  const axis = { showgrid: true, gridcolor: "#e4e4e4", zeroline: true, zerolinecolor: "#9a9a9a", showline: true, linecolor: "#888", mirror: true, ticks: "outside", nticks: 11 };
+  return {
+    margin: { l: 62, r: 12, t: 8, b: 48 }, paper_bgcolor: "#fff", plot_bgcolor: "#fff", hovermode: "closest", hoverdistance: 24,
+    font: { family: "system-ui, sans-serif", size: 12, color: INK }, dragmode: "zoom",
+    legend: { orientation: "h", x: 0, y: 1.01, yanchor: "bottom", xanchor: "left", font: { size: 11 } },
+    xaxis: { ...axis, title: { text: `X [${units.name}, ${section.diameter ? "diameter" : "radius"}]`, standoff: 8 } },
+    yaxis: { ...axis, title: { text: `C [${units.name}]`, standoff: 8 }, scaleanchor: "x", scaleratio: units.ratio },
+    shapes: [],
+  };
+}

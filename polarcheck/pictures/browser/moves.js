@@ -1,0 +1,80 @@
+// ---- moves: the table of all moves, of which only the rows in sight are made ----
+
+const ROW = 24;
+/** Rows that are made above and below those in sight. */
+const SPARE = 12;
+
+function moveTable(box, section, choose) {
+  const units = unitsOf(section);
+  const { moves } = section;
+  const count = moves.line.length;
+  const table = element("table");
+  const head = element("tr");
+  const hasLimit = moves.share.some((share) => share !== null);
+  const heads = [["line", ""], ["block", ""], ["Z", units.name], ["F", `${units.name}/min`], ["C", "deg/min"], ["C %", "of its limit"], ["time", "s"]];
+  for (const [label, unit] of heads.filter(([label]) => hasLimit || label !== "C %")) {
+    const cell = element("th", label);
+    cell.scope = "col";
+    cell.title = unit;
+    head.append(cell);
+  }
+  const body = element("tbody");
+  table.append(element("thead", "", head), body);
+  table.setAttribute("aria-rowcount", String(count + 1));
+  box.replaceChildren(table);
+  let chosen = null;
+
+  const number = (value, told) => (value === null ? "" : told(value));
+  function row(move) {
+    const values = [
+      String(moves.line[move]), moves.block[move], number(moves.z[move][1], units.length),
+      number(moves.feed[move], (feed) => rounded(feed / section.scale)), number(moves.c_feed[move], rounded),
+      ...(hasLimit ? [number(moves.share[move], (share) => String(Math.round(100 * share)))] : []),
+      number(moves.time[move], (time) => time.toFixed(2)),
+    ];
+    const made = element("tr", "", ...values.map((value) => element("td", value)));
+    made.dataset.move = String(move);
+    made.setAttribute("aria-rowindex", String(move + 2));
+    made.title = `${moves.role[move]}: ${moves.block[move]}`;
+    made.className = [move === chosen ? "is-chosen" : "", moves.share[move] > 1 ? "above" : ""].join(" ").trim();
+    return made;
+  }
+
+  function gap(rows) {
+    const made = element("tr");
+    made.style.height = `${rows * ROW}px`;
+    made.setAttribute("aria-hidden", "true");
+    return made;
+  }
+
+  function fill() {
+    const first = Math.max(Math.floor(box.scrollTop / ROW) - SPARE, 0);
+    const last = Math.min(first + Math.ceil((box.clientHeight || 400) / ROW) + 2 * SPARE, count);
+    const rows = [];
+    for (let move = first; move < last; move += 1) {
+      rows.push(row(move));
+    }
+    body.replaceChildren(gap(first), ...rows, gap(count - last));
+  }
+
+  function show(move) {
+    chosen = move;
+    if (move !== null) {
+      const room = box.clientHeight - 2 * ROW;
+      if (move * ROW < box.scrollTop || move * ROW > box.scrollTop + room) {
+        box.scrollTop = Math.max(move * ROW - room / 2, 0);
+      }
+    }
+    fill();
+  }
+
+  box.addEventListener("scroll", () => requestAnimationFrame(fill));
+  body.addEventListener("click", (event) => {
+    const found = event.target.closest("tr[data-move]");
+    if (found) {
+      choose(Number(found.dataset.move));
+    }
+  });
+  fill();
+  return show;
+}

@@ -1,0 +1,87 @@
+// ---- rates: C, X and F over the time of a section, with the limits of the machine ----
+
+/** Below this share of its limit a curve would be flattened by the line of the limit, which is then told only. */
+const NEAR_LIMIT = 0.3;
+
+function rateRows(section) {
+  const units = unitsOf(section);
+  const { rates } = section;
+  const inUnits = (column) => column.map((value) => (value === null ? null : value / section.scale));
+  const limit = (value, scale) => (value === null ? null : value / scale);
+  return [
+    { label: "C", unit: "deg/min", values: rates.c_feed, limit: limit(section.c_limit, 1), axis: "y", domain: [0.7, 1], color: "#414487" },
+    { label: "X", unit: `${units.name}/min`, values: inUnits(rates.x_feed), limit: limit(section.x_limit, section.scale), axis: "y2", domain: [0.36, 0.64], color: "#00795b" },
+    { label: "F", unit: `${units.name}/min`, values: inUnits(rates.feed), limit: limit(section.feed_limit, section.scale), axis: "y3", domain: [0, 0.3], color: "#8f4a00" },
+  ];
+}
+
+function rateTraces(section) {
+  const customdata = section.rates.move.map((move) => ({ move }));
+  return rateRows(section).map((row) => ({
+    type: "scatter", mode: "lines", name: row.label, x: section.rates.t, y: row.values, yaxis: row.axis,
+    line: { color: row.color, width: 1.6 }, hoverinfo: "none", showlegend: false, customdata,
+  }));
+}
+
+function highest(values) {
+  return values.reduce((most, value) => (value === null ? most : Math.max(most, Math.abs(value))), 0);
+}
+
+/** The limits as lines, on both sides where the curve has both. */
+function limitsOf(section) {
+  const shapes = [];
+  const annotations = [];
+  for (const row of rateRows(section)) {
+    const isNear = row.limit !== null && highest(row.values) >= NEAR_LIMIT * row.limit;
+    const told = row.limit === null ? "no limit given" : `limit ${rounded(row.limit)}`;
+    const hasBoth = row.values.some((value) => value < 0);
+    for (const side of isNear ? [1, -1].slice(0, hasBoth ? 2 : 1) : []) {
+      shapes.push({
+        type: "line", xref: "paper", x0: 0, x1: 1, yref: row.axis, y0: side * row.limit, y1: side * row.limit,
+        line: { color: ABOVE, width: 1.5, dash: "dash" },
+      });
+    }
+    annotations.push({
+      xref: "paper", x: 1, xanchor: "right", yref: `${row.axis} domain`, y: 1, yanchor: "bottom", showarrow: false,
+      text: isNear ? `- - ${told}` : told, font: { size: 10, color: isNear ? "#a34700" : "#555" },
+    });
+  }
+  return { shapes, annotations };
+}
+
+function rateLayout(section) {
+  const axis = { gridcolor: "#e4e4e4", zerolinecolor: "#9a9a9a", showline: true, linecolor: "#888", mirror: true, ticks: "outside" };
+  const { shapes, annotations } = limitsOf(section);
+  const layout = {
+    margin: { l: 78, r: 12, t: 16, b: 40 }, paper_bgcolor: "#fff", plot_bgcolor: "#fff", hovermode: "x", hoverdistance: -1,
+    font: { family: "system-ui, sans-serif", size: 11, color: INK }, dragmode: "zoom", shapes, annotations,
+    xaxis: { ...axis, title: { text: "time [s]", standoff: 4 }, anchor: "y3", rangemode: "tozero" },
+  };
+  rateRows(section).forEach((row, place) => {
+    // A limit that is drawn belongs to what the axis shows.
+    const known = row.values.filter((value) => value !== null);
+    let [low, high] = known.reduce(([least, most], value) => [Math.min(least, value), Math.max(most, value)], [0, 0]);
+    if (row.limit !== null && highest(row.values) >= NEAR_LIMIT * row.limit) {
+      [low, high] = [low < 0 ? Math.min(low, -row.limit) : low, Math.max(high, row.limit)];
+    }
+    const room = 0.08 * (high - low) || 1;
+    layout[place ? `yaxis${place + 1}` : "yaxis"] = {
+      ...axis, domain: row.domain, nticks: 5, title: { text: `${row.label} [${row.unit}]`, standoff: 4 },
+      range: [low < 0 ? low - room : low, high + room],
+    };
+  });
+  return layout;
+}
+
+/** The limits, and a band over the time of the chosen move. */
+function chosenInRates(section, move) {
+  const { shapes } = limitsOf(section);
+  const begin = move === null ? null : section.moves.begin[move];
+  if (begin === null || begin === undefined) {
+    return shapes;
+  }
+  return [...shapes, {
+    type: "rect", xref: "x", x0: begin, x1: begin + (section.moves.time[move] || 0), yref: "paper", y0: 0, y1: 1,
+    fillcolor: "rgba(230,159,0,0.3)", line: { color: "#000", width: 1 }, layer: "below",
+  }];
+}

@@ -1,0 +1,71 @@
+// ---- words: how values are told, in the units of the program ----
+
+/** What turns mm of the polar plane into what stands in the program, and into words. */
+function unitsOf(section) {
+  const { scale, units } = section;
+  const factor = (section.diameter ? 2 : 1) / scale;
+  const digits = units === "inch" ? 4 : 3;
+  const length = (value) => (value === null ? "not known" : (value / scale).toFixed(digits));
+  return {
+    name: units,
+    x: (value) => (value === null ? null : value * factor),
+    c: (value) => (value === null ? null : value / scale),
+    /** How many times as long one unit of C is as one of X: what equal scales need. */
+    ratio: section.diameter ? 2 : 1,
+    length,
+    point: ([x, c]) => `X${length(x === null ? null : x * factor * scale)} C${length(c)}`,
+    feed: (value) => (value === null ? "not known" : `${rounded(value / scale)} ${units}/min`),
+    span: ([from, to]) => (from === to ? length(to) : `${length(from)} to ${length(to)}`),
+  };
+}
+
+/** A number with as many digits as one looks at. */
+function rounded(value) {
+  const digits = Math.abs(value) >= 100 ? 0 : Math.abs(value) >= 10 ? 1 : 2;
+  return value.toFixed(digits);
+}
+
+function rateOfC(value) {
+  return value === null ? "not known" : `${rounded(value)} deg/min`;
+}
+
+/** Label and text of all that is known of a move. */
+function factsOf(section, move) {
+  const { moves } = section;
+  const units = unitsOf(section);
+  const feed = units.feed(moves.feed[move]);
+  const real = moves.true_feed[move];
+  const share = moves.share[move];
+  return [
+    ["line", moves.number[move] ? `${moves.line[move]}, ${moves.number[move]}` : String(moves.line[move])],
+    ["block", moves.block[move]],
+    ["move", moves.role[move]],
+    ["to", units.point(moves.end[move])],
+    ["Z", units.span(moves.z[move])],
+    ["F", real === null || real === moves.feed[move] ? feed : `${feed}, in truth ${units.feed(real)}`],
+    ["nearest", `${units.length(moves.nearest[move])} ${units.name}`],
+    ["C", rateOfC(moves.c_feed[move]) + (share === null ? "" : `, ${Math.round(100 * share)} % of its limit`)],
+    ["X", units.feed(moves.x_feed[move])],
+    ["time", timeOf(moves.begin[move], moves.time[move])],
+  ];
+}
+
+function timeOf(begin, time) {
+  if (time === null) {
+    return "not known";
+  }
+  return begin === null ? `${time.toFixed(2)} s` : `${time.toFixed(2)} s, from ${begin.toFixed(2)} s`;
+}
+
+/** A new element; what it says is text, whatever stands in it. */
+function element(name, text = "", ...children) {
+  const made = document.createElement(name);
+  made.textContent = text;
+  made.append(...children);
+  return made;
+}
+
+/** Pairs of label and text as the entries of a list of definitions. */
+function pairs(facts) {
+  return facts.flatMap(([label, told]) => [element("dt", label), element("dd", told)]);
+}

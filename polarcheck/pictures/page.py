@@ -1,0 +1,201 @@
+"""
+The page of pictures: HTML that says all in words and tables, and draws where a browser runs its scripts.
+
+Nothing in it asks for anything from the network. What stands in a program is text there, never markup: what Python
+writes is escaped, what the scripts write is the text of an element.
+"""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+from collections.abc import Iterable, Iterator, Sequence
+from html import escape
+from importlib import resources
+from string import Template
+from typing import Any
+
+import msgspec
+
+from polarcheck.pictures.picture import FindingPicture, Mark, Picture, SectionPicture
+from polarcheck.reading.excerpt import visible
+
+#: The scripts in the order in which each builds upon those before.
+_SCRIPTS = ("words", "colors", "face", "rates", "moves", "section", "choosing", "printing", "start")
+#: Scripts run if they are those of this page, and nothing is loaded but a library beside it. plotly sets styles.
+_POLICY = (
+    "default-src 'none'; script-src {}; style-src 'unsafe-inline'; img-src data: blob:; base-uri 'none'; "
+    "form-action 'none'"
+)
+#: What would end a script in HTML, or is no character of one.
+_IN_SCRIPT = str.maketrans({mark: f"\\u{ord(mark):04x}" for mark in "<>&\u2028\u2029"})
+_NO_SCRIPTS = "The pictures need a browser that runs scripts; all findings are in the table."
+
+
+def page(pictures: Sequence[Picture], library: str = "", beside: str = "") -> str:
+    """
+    The page of one program, or of several one below the other.
+
+    library: plotly's JavaScript, which then stands in the page. beside: otherwise the name of the file that holds it,
+    in the folder of the page.
+    """
+    scripts = "\n".join(_part(f"{name}.js") for name in _SCRIPTS)
+    script = f'\n(() => {{\n"use strict";\n{scripts}}})();\n'
+    own = library.replace("</script", "<\\/script")
+    allowed = [_hash(script), _hash(own) if own else "'self' file:"]
+    loaded = f"<script>{own}</script>" if own else f'<script src="{_text(beside)}"></script>'
+    return Template(_part("page.html")).substitute(
+        policy=_POLICY.format(" ".join(allowed)),
+        title=_text(", ".join(picture.path for picture in pictures)),
+        style=_part("page.css"),
+        body="\n".join(_program(number, picture) for number, picture in enumerate(pictures)),
+        data=_data(pictures),
+        library=loaded,
+        script=script,
+    )
+
+
+def _part(name: str) -> str:
+    return resources.files("polarcheck.pictures").joinpath("browser", name).read_text("utf-8")
+
+
+def _hash(script: str) -> str:
+    """The name by which a page allows one script and no other."""
+    return f"'sha256-{base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()}'"
+
+
+# ---- data for the scripts ----
+
+
+def _data(pictures: Sequence[Picture]) -> str:
+    """What is drawn, as JSON that may stand in HTML; what stands in words already is left out."""
+    drawn = [{"findings": _shown(picture.findings), "sections": _shown(picture.sections)} for picture in pictures]
+    return msgspec.json.encode(drawn).decode().translate(_IN_SCRIPT)
+
+
+def _shown(value: Any) -> Any:
+    """The value with each text in it as it can be shown; columns of numbers stay as they are."""
+    if isinstance(value, str):
+        return visible(value)
+    if isinstance(value, msgspec.Struct):
+        return {name: _shown(getattr(value, name)) for name in value.__struct_fields__}
+    if isinstance(value, list) and value and isinstance(value[0], str | msgspec.Struct):
+        return [_shown(element) for element in value]
+    return value
+
+
+# ---- what is read without scripts ----
+
+
+def _text(text: str) -> str:
+    """Text from anywhere as text in HTML."""
+    return escape(visible(text.replace("\t", " ")))
+
+
+def _program(number: int, picture: Picture) -> str:
+    sections = "\n".join(_section(number, place, section) for place, section in enumerate(picture.sections))
+    lacking = "".join(f"<li>{_text(reason)}</li>" for reason in picture.not_evaluated)
+    return (
+        f'<main class="program" id="p{number}">\n<header>\n<h1>{_text(picture.path)}</h1>\n'
+        f'<p class="verdict {_text(picture.verdict.split()[0] if picture.verdict else "")}">'
+        f"<strong>{_text(picture.verdict)}</strong> {_text(picture.summary)}</p>\n"
+        f"<dl>{_pairs(picture.head)}</dl>\n"
+        + (f'<h2>Not evaluated</h2>\n<ul class="lacking">{lacking}</ul>\n' if lacking else "")
+        + f"<noscript><p>{_NO_SCRIPTS}</p></noscript>\n</header>\n"
+        + _findings(number, picture.findings)
+        + f"{sections}\n</main>"
+    )
+
+
+def _pairs(pairs: Iterable[tuple[str, str]]) -> str:
+    return "".join(f"<dt>{_text(label)}</dt><dd>{_text(told)}</dd>" for label, told in pairs)
+
+
+def _findings(number: int, findings: Sequence[FindingPicture]) -> str:
+    if not findings:
+        return '<p class="none">No findings.</p>\n'
+    rows = "\n".join(_finding(number, place, finding) for place, finding in enumerate(findings))
+    heads = "".join(f'<th scope="col">{head}</th>' for head in ("Line", "Severity", "What is wrong", "Rule"))
+    return (
+        f'<h2>Findings</h2>\n<table class="findings">\n<thead><tr>{heads}</tr></thead>\n<tbody>\n{rows}\n</tbody>\n'
+        "</table>\n"
+    )
+
+
+def _finding(number: int, place: int, finding: FindingPicture) -> str:
+    severity = f"{finding.severity}, silenced ({finding.silenced})" if finding.silenced else finding.severity
+    more = [("Why", finding.why), ("Fix", finding.fix)]
+    told = "".join(f'<p class="more"><span>{label}</span> {_text(text)}</p>' for label, text in more if text)
+    alarm = f'<p class="more">alarm {_text(finding.alarm)}</p>' if finding.alarm else ""
+    state = " silenced" if finding.silenced else ""
+    return (
+        f'<tr class="{_text(finding.severity)}{state}" data-picture="{number}" data-finding="{place}">'
+        f'<td class="line">{finding.line}</td><td class="severity">{_text(severity)}</td>'
+        f"<td><p>{_text(finding.message)}</p><code>{_text(finding.block)}</code>{told}</td>"
+        f"<td>{_text(finding.rule)}{alarm}</td></tr>"
+    )
+
+
+def _section(number: int, place: int, section: SectionPicture) -> str:
+    return Template(_part("section.html")).substitute(
+        picture=number,
+        section=place,
+        title=_text(section.title),
+        facts=_pairs(_facts(section)),
+        told=_told(number, section),
+    )
+
+
+def _facts(section: SectionPicture) -> Iterator[tuple[str, str]]:
+    """What the pictures of a section are drawn from."""
+    if section.channel:
+        yield "channel", section.channel
+    yield "units", f"{section.units}, X as a {'diameter' if section.diameter else 'radius'}"
+    if section.radius is not None:
+        yield "cutter", f"R {_length(section.radius, section)} ({section.radius_source})"
+    if section.stock is not None:
+        yield "stock", f"{_length(section.stock, section)} across"
+    if section.keep_out is not None:
+        yield "keep-out", f"{_length(section.keep_out, section)} round the center"
+    limits = [
+        f"{axis} {value / scale:.0f} {unit}/min"
+        for axis, value, scale, unit in (
+            ("C", section.c_limit, 1.0, "deg"),
+            ("X", section.x_limit, section.scale, section.units),
+            ("F", section.feed_limit, section.scale, section.units),
+        )
+        if value is not None
+    ]
+    yield "limits", ", ".join(limits) or "none given"
+    if section.time is not None:
+        yield "time", f"{section.time:.1f} s"
+    if section.thinned > 0:
+        yield "drawn", f"within {_length(section.thinned, section)} of the path"
+
+
+def _length(value: float, section: SectionPicture) -> str:
+    """A length [mm] in the units of the program."""
+    return f"{value / section.scale:.{4 if section.units == 'inch' else 3}f} {section.units}"
+
+
+def _told(number: int, section: SectionPicture) -> str:
+    """Why there is no tool path, what the section makes, and what it cuts too much or leaves."""
+    told = f'<p class="missing">{_text(section.needs_radius)}</p>\n' if section.needs_radius else ""
+    if section.parts:
+        parts = "".join(f"<li>{_text(part.text)}</li>" for part in section.parts)
+        told += f'<ul class="parts">{parts}</ul>\n'
+    if section.marks:
+        rows = "".join(_mark(number, place, mark, section) for place, mark in enumerate(section.marks))
+        heads = "".join(f'<th scope="col">{head}</th>' for head in ("", "Lines", "Where", "By how much"))
+        told += f'<table class="marks"><thead><tr>{heads}</tr></thead><tbody>{rows}</tbody></table>\n'
+    return told
+
+
+def _mark(number: int, place: int, mark: Mark, section: SectionPicture) -> str:
+    x, c = mark.place[0] * (2 if section.diameter else 1) / section.scale, mark.place[1] / section.scale
+    digits = 4 if section.units == "inch" else 3
+    return (
+        f'<tr data-picture="{number}" data-mark="{place}"><td class="line">{place + 1}</td>'
+        f'<td class="line">{", ".join(map(str, mark.lines))}</td><td>X{x:.{digits}f} C{c:.{digits}f}</td>'
+        f"<td>{_text(mark.text)}</td></tr>"
+    )
