@@ -36,7 +36,7 @@ class MoveTable(msgspec.Struct, frozen=True, kw_only=True):
     line: in the file. number: the N word as written, empty without. block: text of the block, cut at 120 characters.
     role, z, feed [mm/min]: programmed F as a rate along the path. true_feed: what override and clamp leave of it.
     nearest [mm], c_feed [deg/min], x_feed [mm/min]: the highest at the true feed. share: of the limit of C, null
-    without one. begin, time: when it begins in the section, and how long it takes [s].
+    without one. begin, time: when it begins in the section, as in Rates, and how long it takes [s].
     """
 
     line: list[int]
@@ -57,7 +57,11 @@ class MoveTable(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Rates(msgspec.Struct, frozen=True, kw_only=True):
-    """Curves over the time of a section: t [s], c_feed [deg/min] with its sign, x_feed, feed [mm/min], the move."""
+    """
+    Curves over the time of a section: t [s], c_feed [deg/min] with its sign, x_feed, feed [mm/min], the move.
+
+    A move whose time is not known takes none, and has no point here.
+    """
 
     t: list[float | None]
     c_feed: list[float | None]
@@ -117,6 +121,7 @@ class SectionPicture(msgspec.Struct, frozen=True, kw_only=True):
     mm in one of them. radius of the cutter, stock (diameter), keep_out [mm]; c_limit [deg/min], x_limit [mm/min],
     feed_limit [mm/min]: those that the machine has. diameter: whether X is written as a diameter there. needs_radius:
     why no tool path is drawn, empty where it is. thinned: how far thinned paths lie off the true ones at most [mm].
+    move_count: of the section; in the table stand fewer where there are very many. remarks: what is not drawn, and why.
     """
 
     title: str
@@ -142,6 +147,8 @@ class SectionPicture(msgspec.Struct, frozen=True, kw_only=True):
     rates: Rates
     parts: list[PartPicture]
     marks: list[Mark]
+    move_count: int = 0
+    remarks: list[str] = []
 
 
 class Picture(msgspec.Struct, frozen=True, kw_only=True):
@@ -157,3 +164,14 @@ class Picture(msgspec.Struct, frozen=True, kw_only=True):
     not_evaluated: list[str]
     findings: list[FindingPicture]
     sections: list[SectionPicture]
+
+
+class Drawn(msgspec.Struct, frozen=True, kw_only=True):
+    """
+    What is drawn of a program, besides what its report says. skip: with which state of block skip it was run, empty
+    where that makes no difference. remarks: what is not drawn of the whole program, and why.
+    """
+
+    sections: list[SectionPicture]
+    skip: str
+    remarks: list[str]

@@ -1,0 +1,145 @@
+"""
+What is cut too much and what is left standing, as areas with the lines of both blocks.
+
+Import late: shapely takes its time.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+import shapely  # type: ignore[import-untyped]
+
+from polarcheck.arrays import Rows
+from polarcheck.checking.quantity import in_row
+from polarcheck.geometry import areas
+from polarcheck.geometry.faces import GRID
+from polarcheck.geometry.segments import segments
+from polarcheck.geometry.tolerances import ROUNDING
+from polarcheck.pictures.moves import LENGTH
+from polarcheck.pictures.parts import Ring, polygons_of, rings
+from polarcheck.pictures.picture import Mark
+from polarcheck.table.coverage import Coverage, Left
+from polarcheck.table.finished import Level
+from polarcheck.table.moves import Moves
+from polarcheck.table.overcuts import Cuts, Overcuts, curves_of
+from polarcheck.table.trace import Trace
+from polarcheck.time_limit import keep_time
+
+#: Marks of one kind in a section; beyond them the deepest ones are told.
+MOST = 300
+#: Corners of the cutter in a quarter.
+_CORNERS = 32
+
+
+def overcut_marks(
+    trace: Trace, moves: Moves, overcuts: Overcuts, levels: Sequence[Level]
+) -> Iterator[tuple[int, Mark]]:
+    """The cuts into each contour, ramps included: the section, and what a block takes off another's wall."""
+    for cuts, depth, verb in (
+        (overcuts.cuts, overcuts.depth, "cuts"),
+        (overcuts.sweeps, overcuts.sweep_depth, "sweeps"),
+    ):
+        chosen = _deepest(trace, cuts.some(depth[cuts.row] > 0))
+        for row, into, deep, place in zip(
+            chosen.row.tolist(), chosen.into.tolist(), chosen.depth.tolist(), chosen.place.tolist(), strict=True
+        ):
+            keep_time()
+            lines = [int(trace.line_in_file[one]) for one in (row, into)]
+            told = f"line {lines[0]} {verb} {in_row(deep, trace, row):length} deep into the contour of line {lines[1]}"
+            yield (
+                int(trace.section[row]),
+                Mark(
+                    kind="overcut",
+                    text=told,
+                    lines=lines,
+                    place=_pair(place),
+                    depth=round(deep, LENGTH),
+                    rings=_taken(trace, moves, row, into, levels, place),
+                ),
+            )
+
+
+def left_marks(trace: Trace, coverage: Coverage) -> Iterator[tuple[int, Mark]]:
+    """The ribs and strips that no tool takes off, each behind the block that leaves it."""
+    for left, noun in ((coverage.ribs, "a rib"), (coverage.strips, "a strip")):
+        for row in _largest(trace, left).tolist():
+            line, height = int(trace.line_in_file[row]), float(left.height[row])
+            wide = f" and {in_row(left.width[row], trace, row):length} wide" if left.width[row] > 0 else ""
+            measure = "high" if left is coverage.ribs else "thick"
+            yield (
+                int(trace.section[row]),
+                Mark(
+                    kind="left",
+                    text=f"{noun} {in_row(height, trace, row):length} {measure}{wide} stays behind line {line}",
+                    lines=[line],
+                    place=_pair(complex(left.place[row])),
+                    depth=round(height, LENGTH),
+                    rings=[],
+                ),
+            )
+
+
+def _deepest(trace: Trace, cuts: Cuts) -> Cuts:
+    """Of the cuts of one line into another the deepest, of each section those that are told."""
+    order = np.lexsort((-cuts.depth, trace.line_in_file[cuts.into], trace.line_in_file[cuts.row]))
+    order = order[
+        _first_of_each(trace.section[cuts.row], trace.line_in_file[cuts.row], trace.line_in_file[cuts.into], order)
+    ]
+    order = order[np.lexsort((-cuts.depth[order], trace.section[cuts.row[order]]))]
+    section = trace.section[cuts.row[order]]
+    told = np.zeros(len(cuts.row), bool)
+    told[order[np.arange(len(order)) - np.searchsorted(section, section) < MOST]] = True
+    return cuts.some(told)
+
+
+def _first_of_each(section: Rows, one: Rows, other: Rows, order: Rows) -> Rows:
+    """Which of the ordered pairs are the first of theirs."""
+    keys = np.stack([section[order], one[order], other[order]], axis=1)
+    _, first = np.unique(keys, axis=0, return_index=True)
+    return np.sort(first)
+
+
+def _largest(trace: Trace, left: Left) -> Rows:
+    """The rows behind which something is left, of each section the largest ones."""
+    rows = np.flatnonzero(left.height > 0)
+    rows = rows[np.lexsort((-left.height[rows], trace.section[rows]))]
+    section = trace.section[rows]
+    return np.sort(rows[np.arange(len(rows)) - np.searchsorted(section, section) < MOST])
+
+
+def _taken(trace: Trace, moves: Moves, row: int, into: int, levels: Sequence[Level], place: complex) -> list[Ring]:
+    """What the cutter takes off the part in the moves of a row, about this place."""
+    part = _level_of(trace, into, levels)
+    radius = abs(float(trace.radius_of_move[row]))
+    if part is None or np.isnan(radius):
+        return []
+    own = moves.row == row
+    tolerance = trace.machine.compensation.overcut_tolerance
+    pieces = segments(curves_of(moves, np.zeros(len(moves), np.int64), own), tolerance)
+    if not len(pieces):
+        return []
+    ends = np.stack([pieces.start, pieces.end], axis=1)
+    lines = shapely.multilinestrings(shapely.linestrings(np.stack([ends.real, ends.imag], axis=2)))
+    swept = areas.buffer(lines, radius, quad_segs=_CORNERS)
+    taken = areas.intersection(part.polygon, swept, grid_size=GRID)
+    # Beside the cut the cutter touches the walls that it is meant to touch: slivers of chords.
+    cut = [one for one in polygons_of(shapely.buffer(taken, -tolerance / 2)) if not one.is_empty]
+    point = shapely.Point(place.real, place.imag)
+    near = min(cut, key=point.distance, default=None)
+    return [] if near is None else rings(shapely.simplify(shapely.buffer(near, tolerance / 2), tolerance / 2))
+
+
+def _level_of(trace: Trace, row: int, levels: Sequence[Level]) -> Level | None:
+    """The finished part that a wall is of."""
+    z = float(trace.z[row])
+    for level in levels:
+        is_same = abs(level.z - z) <= ROUNDING or (np.isnan(z) and np.isnan(level.z))
+        if level.section == trace.section[row] and is_same:
+            return level
+    return None
+
+
+def _pair(point: complex) -> tuple[float, float]:
+    return round(point.real, LENGTH), round(point.imag, LENGTH)

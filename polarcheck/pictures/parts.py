@@ -1,0 +1,87 @@
+"""
+The finished part of each depth as rings of points.
+
+Import late: shapely takes its time.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import numpy as np
+import shapely  # type: ignore[import-untyped]
+
+from polarcheck.checking.quantity import Quantity, in_row
+from polarcheck.geometry import areas
+from polarcheck.geometry.faces import GRID
+from polarcheck.geometry.segments import segments
+from polarcheck.pictures.moves import LENGTH
+from polarcheck.pictures.picture import PartPicture
+from polarcheck.table.finished import Level
+from polarcheck.table.trace import Trace
+
+#: How far beyond its walls a part is shown whose outside is not known, as a share of their extent.
+_AROUND = 0.1
+
+Ring = list[tuple[float, float]]
+
+
+def parts(trace: Trace, levels: Sequence[Level], tolerance: float) -> Iterator[PartPicture]:
+    """What stands at each of some depths, its outline thinned by the tolerance [mm] at most."""
+    for level in levels:
+        shown, is_known = within_window(level, trace.machine.compensation.overcut_tolerance)
+        polygons = [rings(polygon) for polygon in polygons_of(shapely.simplify(shown, tolerance))]
+        if polygons:
+            yield PartPicture(
+                z=None if np.isnan(level.z) else round(level.z, LENGTH),
+                polygons=polygons,
+                text=_text(trace, level, shown, is_known),
+                known_outside=is_known,
+            )
+
+
+def within_window(level: Level, tolerance: float) -> tuple[Any, bool]:
+    """What stands, cut off a little beyond its walls where it goes on from there, and whether it does not."""
+    walls = segments(level.walls, tolerance)
+    point = np.concatenate([walls.start, walls.end])
+    if level.polygon.is_empty or level.tangled or not len(point):
+        return shapely.Polygon(), True
+    x, c = point.real, point.imag
+    around = max(2 * level.radius, _AROUND * max(float(np.ptp(x)), float(np.ptp(c))))
+    window = shapely.box(x.min() - around, c.min() - around, x.max() + around, c.max() + around)
+    if not level.open and window.covers(level.polygon):
+        return level.polygon, True
+    return areas.intersection(level.polygon, window, grid_size=GRID), False
+
+
+def polygons_of(area: Any) -> list[Any]:
+    """The polygons of an area, those with some extent, the largest first."""
+    found = [one for one in shapely.get_parts(area) if isinstance(one, shapely.Polygon) and not one.is_empty]
+    return sorted(found, key=lambda one: (-one.area, one.bounds))
+
+
+def rings(polygon: Any) -> list[Ring]:
+    """The rings of a polygon, its outside first."""
+    return [_points(ring) for ring in (polygon.exterior, *polygon.interiors)]
+
+
+def _points(ring: Any) -> Ring:
+    return [(x, c) for x, c in (np.round(shapely.get_coordinates(ring), LENGTH) + 0.0).tolist()]
+
+
+def _text(trace: Trace, level: Level, shown: Any, is_known: bool) -> str:
+    row = int(level.walls.row[0])
+
+    def length(value: float) -> str:
+        return f"{in_row(value, trace, row):length}"
+
+    z = "" if np.isnan(level.z) else f"Z{_number(in_row(level.z, trace, row))}: "
+    if not is_known:
+        return f"{z}what surrounds the contour"
+    x_from, c_from, x_to, c_to = shown.bounds
+    return f"{z}{length(x_to - x_from)} in X, {length(c_to - c_from)} in C"
+
+
+def _number(quantity: Quantity) -> str:
+    return f"{quantity:length}".removesuffix(f" {quantity.unit}")

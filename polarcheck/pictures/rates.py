@@ -1,0 +1,128 @@
+"""The rates of C and X over time: points of a curve for each move, closer together where it bends."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from polarcheck.arrays import Floats, Mask, Rows
+from polarcheck.geometry.plane import arc_sweep, cross, dot, quiet
+from polarcheck.machines.modal import Motion
+from polarcheck.table.moves import Moves
+
+#: Points for each turn of C by so much, and of an arc about its own center [rad].
+_STEP = np.radians(6.0)
+#: Points of one move.
+_MOST_OF_MOVE = 120
+
+
+@dataclass(frozen=True, slots=True)
+class Samples:
+    """
+    Points of curves, n of them: of which move, t: after the begin of the first one [s], c_feed [deg/min], above 0 where
+    C rises, x_feed [mm/min], above 0 outward, feed along the path [mm/min].
+    """
+
+    move: Rows
+    t: Floats
+    c_feed: Floats
+    x_feed: Floats
+    feed: Floats
+
+    def some(self, chosen: Rows) -> Samples:
+        """Some of the points."""
+        return Samples(*(getattr(self, name)[chosen] for name in Samples.__slots__))
+
+
+@quiet
+def samples(moves: Moves, begin: Floats, time: Floats) -> Samples:
+    """
+    The curves of some moves, those left out whose time is not known. begin, time: of each [s].
+
+    The feed is the same along a move, so that its way goes with the time. Half of the points divide the way evenly, the
+    other half the turn of C, lest a narrow peak where the tool passes the center fall between them: on a line that is
+    seen under the angle w from the foot of the perpendicular d, at the way d tan(w) from it; on an arc, with v from the
+    point nearest to the center of C about its own, at tan(v / 2) = |R - e| / (R + e) tan(w / 2), by which r^2 dw is
+    proportional to dv. Rates as in geometry/polar.
+    """
+    chosen = np.flatnonzero(~np.isnan(time))
+    start, end, center, kind = moves.start[chosen], moves.end[chosen], moves.center[chosen], moves.kind[chosen]
+    is_arc = kind != Motion.LINE
+    sweep = arc_sweep(start, end, center, kind)
+    long = np.where(is_arc, 1.0, np.abs(end - start))
+    u = np.where(long > 0, (end - start) / long, 0)
+    offset, foot = np.abs(cross(start, u)), dot(start, u)
+    # Of arcs: the angle from the nearest point to the start, in the direction of travel, and how the turn of C grows.
+    radius, away = np.abs(start - center), np.abs(center)
+    to_near = np.where(away > 0, -center, 1.0)
+    first = np.copysign(1.0, sweep) * np.angle((start - center) / to_near)
+    narrow = np.abs(radius - away) / (radius + away)
+    seen_first = np.where(is_arc, _turned(first, 1 / narrow), np.arctan2(foot, offset))
+    seen_last = np.where(is_arc, _turned(first + np.abs(sweep), 1 / narrow), np.arctan2(foot + long, offset))
+    turn = np.nan_to_num(seen_last - seen_first)
+    count = np.ceil(np.maximum(turn, np.where(is_arc, np.abs(sweep), 0)) / _STEP)
+    count = np.clip(np.nan_to_num(count), 1, _MOST_OF_MOVE).astype(np.int64)
+
+    # Each move has its two ends, count - 1 points that divide its way, and as many that divide the turn of C.
+    each = 2 * count
+    of = np.repeat(np.arange(len(chosen)), each)
+    place = np.arange(len(of)) - np.repeat(np.cumsum(each) - each, each)
+    evenly = place <= count[of]
+    share = np.where(evenly, place / count[of], (place - count[of]) / count[of])
+    seen = seen_first[of] + share * turn[of]
+    of_line = np.where(offset[of] > 0, (offset[of] * np.tan(seen) - foot[of]) / long[of], share)
+    of_arc = (_turned(seen, narrow[of]) - first[of]) / np.abs(sweep[of])
+    by_turn = np.where(is_arc[of], of_arc, of_line)
+    share = np.clip(np.where(evenly | ~np.isfinite(by_turn), share, by_turn), 0.0, 1.0)
+    order = np.lexsort((share, of))
+    of, share = of[order], share[order]
+
+    spoke = (start - center)[of] * np.exp(1j * sweep[of] * share)
+    point = np.where(is_arc[of], center[of] + spoke, start[of] + share * (end - start)[of])
+    along = np.where(is_arc[of], 1j * np.sign(sweep[of]) * spoke / radius[of], u[of])
+    feed = np.where(long > 0, moves.feed[chosen], 0.0)[of]
+    far = np.abs(point)
+    move = chosen[of]
+    return Samples(
+        move=move,
+        t=begin[move] + share * time[move],
+        c_feed=np.degrees(np.where(along == 0, 0.0, feed * cross(point, along) / far**2)),
+        x_feed=np.where(along == 0, 0.0, feed * dot(point, along) / far),
+        feed=moves.feed[move],
+    )
+
+
+def _turned(angle: Floats, factor: Floats) -> Floats:
+    """2 arctan(factor tan(angle / 2)), whole turns kept [rad]."""
+    whole = 2 * np.pi * np.round(angle / (2 * np.pi))
+    half = (angle - whole) / 2
+    return np.asarray(whole + 2 * np.arctan2(factor * np.sin(half), np.cos(half)))
+
+
+def fewer(curves: Samples, kept: Mask, most: int) -> Samples:
+    """
+    At most about so many points: of each short time the first, and the highest and lowest of each curve.
+
+    kept: bool[moves], no point of these is left out.
+    """
+    count = len(curves.move)
+    if count <= most:
+        return curves
+    columns: Sequence[Floats] = (curves.c_feed, curves.x_feed, curves.feed)
+    bins = max(most // (2 * len(columns) + 1), 1)
+    whole = float(curves.t[-1] - curves.t[0])
+    # Where nothing takes time the points are divided by their number.
+    part = (curves.t - curves.t[0]) / whole if whole > 0 else np.arange(count) / count
+    number = np.minimum((part * bins).astype(np.int64), bins - 1)
+    chosen = kept[curves.move]
+    begins = np.append(True, np.diff(number) != 0)
+    chosen[begins] = True
+    ends = np.append(begins[1:], True)
+    for column in columns:
+        order = np.lexsort((column, number))
+        chosen[order[begins]] = True
+        chosen[order[ends]] = True
+    chosen[-1] = True
+    return curves.some(np.flatnonzero(chosen))
