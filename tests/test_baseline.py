@@ -532,7 +532,7 @@ def test_a_verdict_says_what_it_does_not_rest_on() -> None:
 
 
 def test_it_takes_all_options_that_decide_what_is_found() -> None:
-    assert set(Options.__struct_fields__) - {"use_config", "baseline", "strict", "fail_on"} <= set(
+    assert set(Options.__struct_fields__) - {"use_config", "baseline", "strict", "fail_on", "extras"} <= set(
         baseline_command.DECIDING
     )
     for command in ("create", "update", "prune"):
