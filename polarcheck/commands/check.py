@@ -41,6 +41,7 @@ def _outputs(ctx: click.Context, parameter: click.Parameter, values: tuple[str, 
 @click.argument("paths", nargs=-1, required=True, metavar="PATH...")
 @options.executing("programs")
 @options.judging
+@options.drawing
 @option(
     "--format",
     "form",

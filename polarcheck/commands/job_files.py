@@ -12,7 +12,7 @@ import msgspec
 
 from polarcheck import bounded
 from polarcheck.commands import job_layers
-from polarcheck.commands.job_layers import Layer, Merged, Written
+from polarcheck.commands.job_layers import Layer, Merged, PartLayer, Written
 from polarcheck.errors import JobError
 from polarcheck.machines import toml_text
 from polarcheck.machines.fitting import MisfitError, fitted, shown
@@ -29,11 +29,13 @@ _LONGEST_CHAIN = 10
 class _Part(NamedTuple):
     """
     One file of a chain: what it says of all programs, its entries, the patterns of these, with the entry and the text
-    of each, and what it excludes; None of these where it does not say.
+    of each, and what it excludes; None of these where it does not say. parts: its [[part]] entries, with the patterns
+    of each, None for all programs.
     """
 
     own: Layer
     entries: tuple[Layer, ...]
+    parts: tuple[tuple[PartLayer, Globs | None], ...]
     files: Globs | None
     patterns: tuple[tuple[Layer, str], ...]
     exclude: Globs | None
@@ -53,17 +55,21 @@ class JobFile(msgspec.Struct, frozen=True):
     @property
     def has_entries(self) -> bool:
         """Whether what applies hangs on the name of the program."""
-        return any(part.patterns for part in self.parts)
+        return any(part.patterns or any(files for _, files in part.parts) for part in self.parts)
 
     def layers(self, folder: str, name: str) -> tuple[tuple[int, int], ...]:
         """
-        Which layers apply to a program, by file and entry (0 for the file itself), the nearest last.
+        Which layers apply to a program, by file and entry (0 for the file itself, -1 for its first [[part]]), the
+        nearest last.
 
         folder: its real path. name: empty for what applies to the folder itself.
         """
         found: list[tuple[int, int]] = []
         for number, part in enumerate(self.parts):
             found.append((number, 0))
+            for entry, (_, files) in enumerate(part.parts, 1):
+                if files is None or (name and files.of_file(folder, name)):
+                    found.append((number, -entry))
             if part.files is not None and name:
                 matched = {part.patterns[index][0].entry for index in part.files.of_file(folder, name)}
                 found += [(number, entry) for entry in sorted(matched)]
@@ -84,6 +90,8 @@ class JobFile(msgspec.Struct, frozen=True):
 
     def _layer(self, number: int, entry: int) -> Layer:
         part = self.parts[number]
+        if entry < 0:
+            return part.parts[-entry - 1][0]
         return part.entries[entry - 1] if entry else part.own
 
     @property
@@ -226,9 +234,18 @@ def _part(path: Path, asked_by: str, *, pipes: bool) -> tuple[_Part, str | None]
     files = exclude = None
     if owners:
         files = _globs(base, [pattern for _, pattern in owners], lambda number: owners[number][0].at("files"), "files")
+    parts = []
+    for number, (part, entry) in enumerate(zip(job.part, table.get("part", ()), strict=True), 1):
+        layer = PartLayer(written, entry, number)
+        of_part = _globs(base, part.files, _place_of(layer), f"part.{number}.files") if part.files else None
+        parts.append((layer, of_part))
     if "exclude" in table:
         exclude = _globs(base, job.exclude, lambda _: own.at("exclude"), "exclude")
-    return _Part(own, tuple(entries), files, tuple(owners), exclude), job.extend
+    return _Part(own, tuple(entries), tuple(parts), files, tuple(owners), exclude), job.extend
+
+
+def _place_of(layer: PartLayer) -> Callable[[int], str]:
+    return lambda _: layer.at("part.files")
 
 
 def _globs(base: str, patterns: Sequence[str], at: Callable[[int], str], key: str) -> Globs:

@@ -19,9 +19,10 @@ from polarcheck.machines.fitting import shown
 from polarcheck.machines.job import Job, Tool, from_table
 from polarcheck.machines.modal import MM_PER_INCH
 from polarcheck.machines.offset_keys import canonical
+from polarcheck.machines.part import LENGTHS, Part
 
 #: Keys that say which files are meant, and nothing of a program.
-_OF_FILES = ("extend", "exclude", "programs", "files")
+_OF_FILES = ("extend", "exclude", "programs", "files", "part")
 #: Of a length that was converted: more are noise of the arithmetic.
 _DECIMALS = 9
 #: Keys of lengths, which are in the units of their file, by table.
@@ -141,6 +142,26 @@ def _machine(name: str, folder: Path) -> str:
     return name
 
 
+class PartLayer(Layer):
+    """One [[part]] entry of a job file, the n-th."""
+
+    def __init__(self, written: Written, table: Mapping[str, Any], number: int) -> None:
+        super().__init__(written, {})
+        self.number, self._part = number, table
+
+    @cached_property
+    def table(self) -> dict[str, Any]:
+        """The entry, in a list of its own."""
+        entry = dict(self._part)
+        if "drawing" in entry:
+            entry["drawing"] = str(beside(self.written.path.parent, entry["drawing"]))
+        return {"part": [entry]}
+
+    def at(self, key: str) -> str:
+        """Where a key of the entry stands, or the entry itself."""
+        return self.written.at(f"part.{self.number}{key.removeprefix('part')}")
+
+
 class Merged(msgspec.Struct, frozen=True):
     """The job of some layers; layers: the nearest last. origins: which of them said the value of a key."""
 
@@ -166,8 +187,12 @@ def merged(layers: Sequence[Layer]) -> Merged:
     table: dict[str, Any] = {}
     origins: dict[str, Layer] = {}
     listed: dict[str, Tool] = {}
+    owners: list[Layer] = []
     for layer in layers:
         values = layer.table
+        if "part" in values:
+            owners.append(layer)
+            values = {"part": [*table.get("part", ()), *values["part"]]}
         if layer.says_units:
             listed = _in_units(values["units"], table, listed, layer, origins)
         if "offsets" in values:
@@ -183,7 +208,19 @@ def merged(layers: Sequence[Layer]) -> Merged:
     job = from_table(table, str(layers[-1].written.path) if layers else "")
     if listed:
         job = msgspec.structs.replace(job, tools={**listed, **job.tools})
+    if any(part.drawing is not None for part in job.part):
+        drawn = [_drawn(part, layer) for part, layer in zip(job.part, owners, strict=True)]
+        job = msgspec.structs.replace(job, part=drawn)
     return Merged(job, tuple(layers), origins)
+
+
+def _drawn(part: Part, layer: Layer) -> Part:
+    """A part with its drawing, where it has one."""
+    if part.drawing is None:
+        return part
+    from polarcheck.machines import drawing
+
+    return drawing.part_of(Path(part.drawing), f"{layer.at('part.drawing')}: drawing: {part.drawing}", part)
 
 
 def _leaves(table: Mapping[str, Any]) -> Iterator[tuple[tuple[str, ...], Any]]:
@@ -221,7 +258,9 @@ def _in_units(
     Raises JobError where nobody knows what they are.
     """
     before = table.get("units")
+    parts_of_job = table.get("part", ())
     lengths = [parts for parts, _ in _leaves(table) if parts[-1] in _LENGTHS.get(parts[0], ())]
+    lengths += [("part",)] if any(key in part for part in parts_of_job for key in LENGTHS) else []
     if before == units or not (lengths or listed):
         return listed
     if before is None:
@@ -233,10 +272,26 @@ def _in_units(
         inner = table
         for part in parts[:-1]:
             inner = inner[part]
-        inner[parts[-1]] = round(inner[parts[-1]] * factor, _DECIMALS)
+        if parts == ("part",):
+            table["part"] = [_converted(part, factor) for part in parts_of_job]
+        else:
+            inner[parts[-1]] = round(inner[parts[-1]] * factor, _DECIMALS)
     return {
         key: msgspec.structs.replace(
             tool, radius=round(tool.radius * factor, _DECIMALS), x_wear=round(tool.x_wear * factor, _DECIMALS)
         )
         for key, tool in listed.items()
     }
+
+
+def _converted(part: Mapping[str, Any], factor: float) -> dict[str, Any]:
+    """A [[part]] entry with its lengths in other units."""
+    found = dict(part)
+    for key in found.keys() & LENGTHS:
+        value = found[key]
+        found[key] = (
+            [round(one * factor, _DECIMALS) for one in value]
+            if isinstance(value, list)
+            else round(value * factor, _DECIMALS)
+        )
+    return found

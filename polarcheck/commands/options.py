@@ -105,6 +105,10 @@ tools = option(
 offsets = option(
     "--offsets", type=click.Path(exists=True, dir_okay=False, path_type=Path), help="Offset table from the control."
 )
+drawing = option(
+    "--drawing", type=click.Path(exists=True, dir_okay=False, path_type=Path), metavar="FILE.dxf",
+    help="What the programs should make, in place of [[part]] in polarcheck.toml.",
+)  # fmt: skip
 subprograms = option(
     "--subprograms", type=click.Path(exists=True, file_okay=False), multiple=True, metavar="FOLDER",
     help="Where programs that are called lie.",

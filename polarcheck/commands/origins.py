@@ -7,11 +7,12 @@ from typing import Any, NamedTuple
 
 import msgspec
 
-from polarcheck.commands.job_layers import Layer, Merged
+from polarcheck.commands.job_layers import Layer, Merged, PartLayer
 from polarcheck.commands.settings import Applied
 from polarcheck.machines import profiles, toml_lines
 from polarcheck.machines.job import Job, PunchedTool
 from polarcheck.machines.parameters import Origin
+from polarcheck.machines.part import Part
 
 
 class Value(NamedTuple):
@@ -86,6 +87,9 @@ def _flat(job: Job) -> dict[str, Any]:
         elif field.name == "work_offsets":
             for key, offset in value.items():
                 found[f"work_offsets.{key}.x"] = offset.x
+        elif field.name == "part":
+            for number, part in enumerate(value, 1):
+                found |= _differing(f"part.{number}", part)
         elif field.name == "severities":
             found |= {f"severities.{name}": level for name, level in value.items()}
         elif isinstance(value, msgspec.Struct):
@@ -99,8 +103,8 @@ def _flat(job: Job) -> dict[str, Any]:
 def _differing(key: str, table: msgspec.Struct) -> dict[str, Any]:
     return {
         f"{key}.{field.name}": value
-        for field in msgspec.structs.fields(type(table))
-        if (value := getattr(table, field.name)) == value and value is not None and value != field.default
+        for field in msgspec.structs.fields(Part if isinstance(table, Part) else type(table))
+        if (value := getattr(table, field.name)) == value and value not in (None, [], field.default)
     }
 
 
@@ -110,8 +114,18 @@ def _origin(key: str, job: Job, merged: Merged, given: Given) -> tuple[str, str]
         return _of_option(name, option, given)
     if key.startswith("tools."):
         return _of_tool(key, job, merged, given)
+    if key.startswith("part."):
+        return _of_part(key, merged, given)
     layer = merged.origins.get(key)
     return _of_layer(layer, key) if layer else _DEFAULT
+
+
+def _of_part(key: str, merged: Merged, given: Given) -> tuple[str, str]:
+    if "drawing" in given:
+        return _of_option("drawing", "--drawing", given)
+    _, number, last = key.split(".")
+    layer = [layer for layer in merged.layers if isinstance(layer, PartLayer)][int(number) - 1]
+    return "file", layer.at(f"part.{last}")
 
 
 def _of_tool(key: str, job: Job, merged: Merged, given: Given) -> tuple[str, str]:

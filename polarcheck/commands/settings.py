@@ -48,6 +48,7 @@ class Options(msgspec.Struct, frozen=True):
     encoding: str | None = None
     inline: bool | None = None
     baseline: Path | None = None
+    drawing: Path | None = None
     #: What the command itself adds to the reports of files.
     extras: Sequence[Extra] = ()
 
@@ -246,6 +247,10 @@ def _changed(job: Job, options: Options) -> Job:
         job = msgspec.structs.replace(job, tools={**own, **listed})
     for tool in options.tools:
         job = with_tool(job, tool)
+    if options.drawing is not None:
+        from polarcheck.machines import drawing
+
+        job = msgspec.structs.replace(job, part=[drawing.part_of(options.drawing, str(options.drawing))])
     asked = {key: value for key in _OVER_JOB if (value := getattr(options, key)) is not None}
     if options.units:
         asked["program_units"] = options.units
@@ -264,7 +269,8 @@ _OVER_JOB = ("radius_from_comments", "fail_on", "strict", "encoding", "inline")
 def _read(options: Options, job: Job, profile: profiles.Profile, found: JobFile) -> list[Path]:
     """The job files, the offset tables, the baseline and the machine files of the user's own."""
     own = [Path(title) for title in profile.chain if title not in profiles.names()]
-    tables = [path for path in (options.offsets, options.baseline) if path]
+    tables = [path for path in (options.offsets, options.baseline, options.drawing) if path]
+    tables += [Path(part.drawing) for part in job.part if part.drawing is not None and options.drawing is None]
     return [*own, *tables, *found.read, *([Path(job.offsets)] if job.offsets else [])]
 
 

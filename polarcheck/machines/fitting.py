@@ -40,6 +40,17 @@ class MisfitError(Exception):
         self.key = key
 
 
+class KeyedError(ValueError):
+    """
+    What a type objects to when all its values fit by themselves; key: that of the table which is at fault, empty for
+    the table as a whole.
+    """
+
+    def __init__(self, key: str, text: str) -> None:
+        super().__init__(text)
+        self.key = key
+
+
 class _Part(NamedTuple):
     """A value within a table, its key, and the type that it should fit."""
 
@@ -120,6 +131,8 @@ def _of_dict(part: _Part, kind: Any) -> Iterator[MisfitError]:
 def _misfit(part: _Part, error: Exception | None = None) -> MisfitError:
     if isinstance(part.value, Mapping) and error is not None and isinstance(error.__cause__, ValueError):
         text = _plain(error)  # what the type itself objects to
+        if isinstance(error.__cause__, KeyedError) and error.__cause__.key:
+            part = part._replace(key=_below(part.key, error.__cause__.key))
     else:
         text = f"expected {_expected(part.kind)}{_beyond(part)}, found {shown(part.value)}{_with_point(part)}"
     return MisfitError(part.key, f"{part.key}: {text}" if part.key else text)
@@ -158,7 +171,7 @@ def _expected(kind: Any) -> str:
         said = [meta.extra[EXPECTED] for meta in metas if meta.extra and EXPECTED in meta.extra]
         return str(said[0]) if said else _expected(given[0]) + "".join(map(_bounds, metas))
     if get_origin(kind) is Literal:
-        return _alternatives(map(str, given))
+        return listed(map(str, given))
     if get_origin(kind) in (list, tuple):
         of_what = _PLURAL.get(_bare(given[0]), "values")
         return f"a list of {of_what}, of length {len(given)}" if get_origin(kind) is tuple else f"a list of {of_what}"
@@ -189,7 +202,8 @@ def _named(limit: float) -> str:
     return f"{limit:g}" if limit != SMALLEST else "0"
 
 
-def _alternatives(names: Iterable[str]) -> str:
+def listed(names: Iterable[str]) -> str:
+    """`a, b or c`."""
     *others, last = names
     return f"{', '.join(others)} or {last}" if others else last
 

@@ -13,6 +13,7 @@ from polarcheck.errors import JobError, UsageError, suggestion
 from polarcheck.machines.fitting import MisfitError, fitted
 from polarcheck.machines.machine import Machine
 from polarcheck.machines.offset_keys import OffsetKey, canonical, is_plain_number
+from polarcheck.machines.part import Part
 from polarcheck.machines.values import Variable
 
 #: The file that a job stands in, and the one in which a table [tool.polarcheck] may hold it.
@@ -167,6 +168,10 @@ class Job(OfPrograms, frozen=True):
     extend: (
         Annotated[str, msgspec.Meta(description="another job file, whose values apply where this one has none")] | None
     ) = None
+    part: Annotated[
+        list[Part],
+        msgspec.Meta(description="what programs should make; of entries for one section and Z the last one counts"),
+    ] = []
     programs: Annotated[
         list[Programs], msgspec.Meta(description="entries for some of the programs, in their order")
     ] = []

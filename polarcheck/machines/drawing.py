@@ -1,0 +1,208 @@
+"""
+A drawing (DXF) as the curves that it shows, for a part to be compared with; ezdxf reads it, and is loaded late.
+
+The origin is the spindle axis, x runs towards C0 and is a radius.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections import Counter
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from polarcheck import bounded
+from polarcheck.errors import JobError
+from polarcheck.machines.chains import joined
+from polarcheck.machines.modal import MM_PER_INCH
+from polarcheck.machines.part import DrawnPart, Part
+
+#: A drawing of one part has some kB [bytes].
+_LARGEST = 16_000_000
+#: What blocks, which may stand in blocks, are resolved to; points that the curves may have; blocks in each other.
+_MOST_ENTITIES, _MOST_POINTS, _DEEPEST = 50_000, 400_000, 16
+#: By how much chords may leave their curves, and ends may be apart that are one point [mm].
+_SAGITTA, _GAP = 2e-4, 0.01
+#: Farther from the axis [mm] reaches no lathe, nor the frame of any sheet.
+_FARTHEST = 1e5
+_BINARY = b"AutoCAD Binary DXF\r\n\x1a\0"
+#: mm per unit by $INSUNITS; others are none, or none that anybody draws a part in.
+_UNITS = {1: MM_PER_INCH, 2: 12 * MM_PER_INCH, 4: 1.0, 5: 10.0, 6: 1000.0, 9: MM_PER_INCH / 1000, 13: 1e-3, 14: 100.0}
+_LISTED = 4
+_HINT = 'pip install "polarcheck[drawing]"'
+
+
+class Drawing(NamedTuple):
+    """
+    What a drawing shows. curves: the points of each, x + 1j*c in its units; one that ends where it begins is closed.
+    scale: mm per unit, NaN where the drawing does not say.
+    """
+
+    curves: tuple[tuple[complex, ...], ...]
+    scale: float
+
+
+def part_of(path: Path, title: str, part: Part | None = None) -> DrawnPart:
+    """The part of a drawing, with what else is said of it. Raises JobError as read does."""
+    drawing = read(path, title)
+    said = {} if part is None else {name: getattr(part, name) for name in Part.__struct_fields__}
+    return DrawnPart(**{**said, "drawing": str(path)}, curves=drawing.curves, scale=drawing.scale)
+
+
+def read(path: Path, title: str) -> Drawing:
+    """
+    The lines and curves of the model space of a DXF file, of R12 or later, as text or binary.
+
+    Blocks are resolved. Text, dimensions, points and hatches are none of the part, nor what stands on a layer that is
+    off or frozen, on DEFPOINTS, or has a broken line as centers have. Raises JobError, one line that begins with the
+    title, for a file that cannot be read or shows no curve.
+    """
+    try:
+        data = bounded.read(path, _LARGEST, "no drawing of a part is")
+    except OSError as error:
+        raise JobError(f"{title}: {error.strerror}") from None
+    try:
+        import ezdxf  # noqa: F401
+    except ImportError:
+        raise JobError(f"{title}: reading a drawing needs ezdxf, which is not installed: {_HINT}") from None
+    try:
+        # The reader takes meters where a file does not say.
+        return _drawing(_document(data), says_units=b"$INSUNITS" in data)
+    except _NoDrawingError as error:
+        raise JobError(f"{title}: {error}") from None
+    except Exception as error:
+        # A file that nobody vouches for can make the reader raise anything.
+        said = " ".join(str(error).split())[:80]
+        raise JobError(f"{title}: is no DXF file that can be read{f': {said}' if said else ''}") from None
+
+
+class _NoDrawingError(Exception):
+    """Why a file shows no part, in plain words."""
+
+
+_TOO_FAR = _NoDrawingError(f"shows what is farther than {_FARTHEST:g} mm from its origin, the spindle axis")
+
+
+def _document(data: bytes) -> Any:
+    import io
+    import logging
+
+    from ezdxf.document import Drawing as Document
+    from ezdxf.filemanagement import dxf_stream_info
+    from ezdxf.lldxf.tagger import binary_tags_loader
+
+    logging.getLogger("ezdxf").setLevel(logging.CRITICAL)  # what it would say of a doubtful file is no report of ours
+    if data.startswith(_BINARY):
+        return Document.load(binary_tags_loader(data))
+    text = data.decode("utf-8", "ignore")
+    if not text.lstrip("\ufeff \t").startswith(("0", "999")):
+        raise _NoDrawingError("is no DXF file; save the drawing as DXF")
+    encoding = dxf_stream_info(io.StringIO(text, None)).encoding
+    return Document.read(io.StringIO(data.decode(encoding, "surrogateescape").lstrip("\ufeff"), None))
+
+
+def _drawing(document: Any, *, says_units: bool) -> Drawing:
+    scale = _UNITS.get(int(document.header.get("$INSUNITS", 0)), math.nan) if says_units else math.nan
+    unit = 1.0 if math.isnan(scale) else scale
+    # Of a drawing without units chords are as short as inches ask for.
+    sagitta = _SAGITTA / (MM_PER_INCH if math.isnan(scale) else scale)
+    ignored = Counter[str]()
+    curves, points = [], 0
+    for entity in _shown(document, ignored):
+        curve = tuple(itertools.islice(_points(entity, sagitta, _FARTHEST / unit), _MOST_POINTS))
+        points += len(curve)
+        if points >= _MOST_POINTS:
+            raise _NoDrawingError(f"has curves of more than {_MOST_POINTS} points: no drawing of a part has")
+        if len(curve) > 1:
+            curves.append(curve)
+    if not curves:
+        raise _NoDrawingError(f"shows no line, arc or curve of a part{_told(ignored)}")
+    return Drawing(joined(curves, _GAP / unit), scale)
+
+
+def _told(ignored: Counter[str]) -> str:
+    if not ignored:
+        return ": its model space is empty"
+    return f"; ignored: {', '.join(f'{count} {what}' for what, count in ignored.most_common(_LISTED))}"
+
+
+#: What is a curve, and what is resolved to some.
+_CURVES = ("LINE", "ARC", "CIRCLE", "ELLIPSE", "SPLINE")
+_POLYLINES = ("LWPOLYLINE", "POLYLINE")
+
+
+def _shown(document: Any, ignored: Counter[str]) -> Iterator[Any]:
+    """The curves of the model space, blocks and polylines resolved, one after the other."""
+    hidden = {layer.dxf.name.lower() for layer in document.layers if layer.is_off() or layer.is_frozen()}
+    hidden.add("defpoints")
+    broken = {
+        layer.dxf.name.lower() for layer in document.layers if _is_broken(layer.dxf.get("linetype", "CONTINUOUS"))
+    }
+    waiting: list[Iterator[Any]] = [iter(document.modelspace())]
+    count = 0
+    while waiting:
+        entity = next(waiting[-1], None)
+        if entity is None:
+            waiting.pop()
+            continue
+        count += 1
+        if count > _MOST_ENTITIES:
+            raise _NoDrawingError(f"has more than {_MOST_ENTITIES} lines, arcs and blocks: no drawing of a part has")
+        kind, layer = entity.dxftype(), str(entity.dxf.get("layer", "0")).lower()
+        line = str(entity.dxf.get("linetype", "BYLAYER")).upper()
+        if layer in hidden or entity.dxf.get("invisible", 0):
+            ignored["on layers that are off, frozen or DEFPOINTS"] += 1
+        elif kind not in ("INSERT", *_CURVES, *_POLYLINES):
+            ignored[kind[:_LONGEST]] += 1
+        elif kind != "INSERT" and (layer in broken if line == "BYLAYER" else _is_broken(line)):
+            ignored["with a broken line"] += 1
+        elif kind in _CURVES:
+            yield entity
+        elif len(waiting) > _DEEPEST:
+            raise _NoDrawingError(f"has blocks in each other more than {_DEEPEST} deep")
+        elif kind == "INSERT" and entity.mcount > 1:
+            waiting.append(entity.multi_insert())
+        else:
+            waiting.append(iter(entity.virtual_entities()))
+
+
+#: Of the name of a kind of entity that is told [characters].
+_LONGEST = 20
+
+
+def _is_broken(linetype: str) -> bool:
+    """Centers and hidden edges are drawn so; a contour is not."""
+    return linetype.upper() not in ("CONTINUOUS", "BYLAYER", "BYBLOCK")
+
+
+def _points(entity: Any, sagitta: float, farthest: float) -> Iterator[complex]:
+    """The points of a curve with chords that leave it by no more than the sagitta; lengths in units of the drawing."""
+    for point in _vertices(entity, sagitta, farthest):
+        found = complex(point[0], point[1])
+        if not abs(found) <= farthest:
+            raise _TOO_FAR
+        yield found
+
+
+def _vertices(entity: Any, sagitta: float, farthest: float) -> Iterable[Any]:
+    kind = entity.dxftype()
+    if kind == "LINE":
+        return entity.dxf.start, entity.dxf.end
+    if kind in ("ARC", "CIRCLE"):
+        radius = abs(entity.dxf.radius)
+        sweep = (entity.dxf.end_angle - entity.dxf.start_angle) % 360 or 360 if kind == "ARC" else 360
+        count = math.ceil(math.radians(sweep) / 2 / math.acos(1 - min(sagitta / radius, 0.25))) if radius else 0
+        if count > _MOST_POINTS or not radius:
+            return ()
+        first = entity.dxf.start_angle if kind == "ARC" else 0
+        return entity.vertices(first + sweep * number / count for number in range(count + 1))  # type: ignore[no-any-return]
+    corners = (
+        [entity.dxf.center, entity.dxf.major_axis]
+        if kind == "ELLIPSE"
+        else [*entity.control_points, *entity.fit_points]
+    )
+    if not all(abs(coordinate) <= farthest for corner in corners for coordinate in list(corner)[:2]):
+        raise _TOO_FAR
+    return entity.flattening(sagitta)  # type: ignore[no-any-return]
