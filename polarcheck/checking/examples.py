@@ -6,7 +6,9 @@ import re
 
 import msgspec
 
-_HEADING = re.compile(r"^(Bad|Good)((?:, (?:machine|tool|set) [^\n,:]+(?:[:=][^\n,]*)?)*):$", re.MULTILINE)
+#: An option of a heading: commas stand in the braces of a table alone.
+_OPTION = r", (machine|tool|set) ([^\n,:=]+(?:[:=](?:[^\n,{]|\{[^}\n]*\})*)?)"
+_HEADING = re.compile(rf"^(Bad|Good)((?:{_OPTION})*):$", re.MULTILINE)
 _EXPECT = re.compile(r"\(expect: ([a-z0-9, -]+)\)")
 
 
@@ -26,6 +28,11 @@ class Example(msgspec.Struct, frozen=True):
     expected: tuple[tuple[int, str], ...]
 
 
+def options_of(heading: str) -> list[tuple[str, str]]:
+    """The kind and the value of each option in a heading: `, machine haas-lathe, tool 8:radius=4`."""
+    return [(found[1], found[2]) for found in re.finditer(_OPTION, heading)]
+
+
 def examples(page: str) -> list[Example]:
     """The Bad and Good programs of a manual page, in order."""
     found = []
@@ -42,7 +49,7 @@ def examples(page: str) -> list[Example]:
             for match_ in _EXPECT.finditer(line)
             for name in match_[1].split(",")
         ]
-        options = [option.partition(" ")[::2] for option in match[2].split(", ")[1:]]
+        options = options_of(match[2])
         program = re.sub(r"[ \t]*\(expect: [^)\n]*\)[ \t]*$", "", text, flags=re.MULTILINE)
         found.append(
             Example(

@@ -12,6 +12,7 @@ from polarcheck.arrays import Floats, Mask, Rows
 from polarcheck.checking.finding import NotEvaluated
 from polarcheck.checking.macro_faults import reason_of
 from polarcheck.checking.phrases.common import block_and_line, linear
+from polarcheck.checking.phrases.drawing import compared_with
 from polarcheck.checking.phrases.offsets import called_tool, example, offset, to_give
 from polarcheck.checking.phrases.polar import (
     axes_not_followed,
@@ -235,6 +236,19 @@ def _contours_given_up(tables: Tables, rule: Rule) -> Iterator[NotEvaluated]:
     )
 
 
+def _parts_not_compared(tables: Tables, rule: Rule) -> Iterator[NotEvaluated]:
+    """What the job asks for and no contour was compared with; contours of which no part can be told."""
+    deviations = tables["deviations"]
+    if not deviations.parts:
+        return
+    crosses = f"crosses itself or others more than {CROSSINGS} times a block: no part can be told from it"
+    yield from _loops_given_up(tables, rule, deviations.asked & tables["overcuts"].tangled, crosses)
+    for number, why in deviations.missing():
+        reason = f"{compared_with(deviations, number)} was compared with nothing: {why}"
+        rows = deviations.asked if deviations.asked.any() else tables["trace"].in_polar
+        yield NotEvaluated(rule=rule.name, reason=reason, blocks=int(np.count_nonzero(rows)))
+
+
 def _contours_beside(tables: Tables, rule: Rule) -> Iterator[NotEvaluated]:
     """The same for loops that only together are too hard."""
     asked = _TOGETHER[rule.name](tables)
@@ -370,6 +384,7 @@ _SAID_OF: dict[str, Callable[[Tables, Rule], Iterator[NotEvaluated]]] = {
     "slot-narrower-than-cutter": _contours_beside,
     "uncompensated-cut-into-part": _contours_beside,
     "material-left": _strips_beside,
+    "part-differs-from-drawing": _parts_not_compared,
 }
 
 _TOGETHER: dict[str, Callable[[Tables], Mask]] = {

@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from polarcheck.table.arcs import Arcs as Arcs
     from polarcheck.table.center import Center as Center
     from polarcheck.table.coverage import Coverage as Coverage
+    from polarcheck.table.deviations import Deviations as Deviations
     from polarcheck.table.dialect import Dialect as Dialect
     from polarcheck.table.entry import Entry as Entry
     from polarcheck.table.feed_ranges import FeedRanges as FeedRanges

@@ -34,6 +34,7 @@ MAKERS = {
     "slots": "polarcheck.table.slots:Slots",
     "uncompensated_cuts": "polarcheck.table.uncompensated_cuts:UncompensatedCuts",
     "finished": "polarcheck.table.finished:Finished",
+    "deviations": "polarcheck.table.deviations:Deviations",
     "coverage": "polarcheck.table.coverage:Coverage",
     "arcs": "polarcheck.table.arcs:Arcs",
     "senses": "polarcheck.table.senses:Senses",

@@ -1,23 +1,20 @@
-"""
-The finished part: what the contours that are programmed in offset mode leave standing at each depth of each section.
-
-Import late: shapely takes its time.
-"""
+"""The finished part: what contours that are programmed in offset mode leave standing at each depth of each section."""
 
 from __future__ import annotations
 
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-import shapely  # type: ignore[import-untyped]
 
 from polarcheck.arrays import Mask, Rows
-from polarcheck.geometry.finished_part import Contours, FinishedParts, finished_parts
-from polarcheck.geometry.outline import Outline, outline_of
-from polarcheck.geometry.segments import Curves
 from polarcheck.table.overcuts import Overcuts
 from polarcheck.table.trace import Trace
+
+if TYPE_CHECKING:
+    from polarcheck.geometry.finished_part import FinishedParts
+    from polarcheck.geometry.outline import Outline
+    from polarcheck.geometry.segments import Curves
 
 
 class Level(NamedTuple):
@@ -60,6 +57,8 @@ class Finished:
         walls, left = self.overcuts.walls
         if not len(walls):
             return []
+        from polarcheck.geometry.finished_part import Contours, finished_parts
+
         trace, level = self.trace, self.overcuts.level
         # Levels in the order in which the program comes to them.
         _, first, level = np.unique(level, return_index=True, return_inverse=True)
@@ -75,6 +74,10 @@ class Finished:
         return [self._level(parts, number, radius, walls, left, chosen) for number, chosen in enumerate(rows)]
 
     def _level(self, parts: FinishedParts, number: int, radius: Any, walls: Curves, left: Mask, chosen: Rows) -> Level:
+        import shapely  # type: ignore[import-untyped]
+
+        from polarcheck.geometry.outline import outline_of
+
         own, shift = parts.group == number, parts.pitch * number
         row = int(walls.row[chosen[0]])
         return Level(

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from polarcheck.checking import check
-from polarcheck.checking.examples import Example, examples
+from polarcheck.checking.examples import Example, examples, options_of
 from polarcheck.checking.finding import Finding
 from polarcheck.checking.rule import Rule, load_all
 from polarcheck.machines import profiles, toml_text
@@ -128,7 +128,7 @@ def _body(rule: Rule) -> Iterator[str]:
 
 def _judged(given: str | None) -> Iterator[str]:
     """For which machine, and with what, an example is judged."""
-    options = [option.partition(" ")[::2] for option in given.split(", ")] if given else []
+    options = options_of(f", {given}") if given else []
     lathe = "".join(f" for [{value}](../../machines/{value}.md)" for key, value in options if key == "machine")
     words = [f"`--tool {value}`" for key, value in options if key == "tool"]
     words += [f"`--set {value}`" for key, value in options if key == "set" and not value.startswith("job.")]

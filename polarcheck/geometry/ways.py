@@ -1,0 +1,82 @@
+"""Ways of straight segments that are measured to: points along them, and the nearest of them; lengths in mm."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import shapely  # type: ignore[import-untyped]
+
+from polarcheck.arrays import Floats, Points, Rows
+from polarcheck.geometry.outline import Outline
+from polarcheck.geometry.segments import Curves, segments
+from polarcheck.time_limit import keep_time
+
+#: Points along a way, beside the ends of its segments.
+_SAMPLES = 2000
+#: Four times by how much a chord may leave its arc [mm].
+_TOLERANCE = 4e-4
+
+
+@dataclass(frozen=True, slots=True)
+class Way:
+    """
+    Segments, n of them. start, end: complex128[n] [mm]. of: int[n], the element or curve that each is part of. until:
+    float64[n], the length of the way up to the end of each [mm]. tree: of the segments.
+    """
+
+    start: Points
+    end: Points
+    of: Rows
+    until: Floats
+    tree: Any = field(repr=False)
+
+    @property
+    def length(self) -> float:
+        """All of it [mm]."""
+        return float(self.until[-1]) if len(self.until) else 0.0
+
+    def at(self, along: Floats) -> tuple[Points, Rows]:
+        """The points so far along the way [mm], and the segment of each."""
+        which = np.minimum(np.searchsorted(self.until, along), len(self.until) - 1)
+        size = np.abs(self.end - self.start)[which]
+        share = np.clip(1 - (self.until[which] - along) / size, 0, 1)
+        return self.start[which] + (self.end - self.start)[which] * share, which
+
+    def samples(self, count: int = _SAMPLES) -> Floats:
+        """How far along the way points lie that show all its corners: the ends of segments and others between [mm]."""
+        between = np.linspace(0, self.length, count)
+        return np.unique(np.concatenate([between, np.append(0.0, self.until)]))
+
+    def nearest(self, points: Points) -> tuple[Floats, Points, Rows]:
+        """For each point how far the way is [mm], the point of it that is nearest, and the segment of that."""
+        keep_time()
+        _, which = self.tree.query_nearest(shapely.points(points.real, points.imag), all_matches=False)
+        start, along = self.start[which], (self.end - self.start)[which]
+        share = np.clip(((points - start) * along.conj()).real / np.abs(along) ** 2, 0, 1)
+        there = start + along * share
+        return np.abs(points - there), there, which
+
+
+def way_of(start: Points, end: Points, of: Rows) -> Way:
+    """The way of some segments; those without a length are left out."""
+    long = np.abs(end - start) > 0
+    start, end, of = start[long], end[long], of[long]
+    ends = np.stack([start, end], axis=1)
+    tree = shapely.STRtree(shapely.linestrings(np.stack([ends.real, ends.imag], axis=2)))
+    return Way(start, end, of, np.cumsum(np.abs(end - start)), tree)
+
+
+def way_of_outline(outline: Outline) -> Way:
+    """The way of an outline, with fine chords for its arcs; `of` are its elements."""
+    chain, row = outline.chain, np.arange(len(outline))
+    chords = segments(Curves(outline.start, outline.end, outline.center, outline.kind, chain, row), _TOLERANCE)
+    return way_of(chords.start, chords.end, chords.move)
+
+
+def way_of_curves(curves: list[Points]) -> Way:
+    """The way of the curves of a drawing; `of` are these."""
+    of = np.repeat(np.arange(len(curves)), [len(curve) - 1 for curve in curves])
+    start, end = (np.concatenate([curve[part] for curve in curves]) for part in (slice(None, -1), slice(1, None)))
+    return way_of(start, end, of)
