@@ -26,17 +26,17 @@ def square(approach: float, half: float, feed: float, depth: str = "Z-5.", off: 
     )
 
 
-def closed_form(approach: float, half: float, feed: float, radius: float) -> dict[str, float]:
+def closed_form(approach: float, half: float, feed: float, radius: float, deep: float = 7) -> dict[str, float]:
     """
     Lengths in the unit of feed and radius: the tool center goes round a square larger by R, and turns at the corner of
-    two outside walls in one point.
+    two outside walls in one point. deep: the way of Z down, which it goes up again.
     """
     away, ramp = half + radius, approach / 2 - half
     return {
         "nearest": away,
         "c_feed": math.degrees(feed / away),
         "ramp_used": radius / ramp,
-        "time": 60 * (8 * away + 2 * (ramp - radius)) / feed,
+        "time": 60 * (8 * away + 2 * (ramp - radius) + 2 * deep) / feed,
     }
 
 
@@ -66,7 +66,7 @@ def test_the_numbers_of_a_square(approach: float, half: float, feed: float, radi
 @pytest.mark.parametrize(("approach", "half", "feed", "radius"), [(4, 1, 10, 0.25), (3, 0.5, 7.5, 0.375)])
 def test_the_same_in_inch(approach: float, half: float, feed: float, radius: float) -> None:
     [found] = sections(f"{INCH}{square(approach, half, feed, 'Z-.2')}M30\n", f"1:radius={radius}")
-    expected = closed_form(approach, half, feed, radius)
+    expected = closed_form(approach, half, feed, radius, deep=2.2)
     expected["nearest"] *= 25.4
     assert values(found) == pytest.approx(expected, abs=2e-6)
     assert (found.units, found.radius) == ("inch", pytest.approx(25.4 * radius))
@@ -201,9 +201,10 @@ def test_a_mode_around_a_called_contour() -> None:
 def test_block_skip_that_changes_the_feed_tells_the_worst_of_both() -> None:
     program = PROGRAM.replace("Z-5. F200.0000\n", "Z-5. F200.0000\n/F100\n")
     found = sections(program, "1:radius=4")
-    expected = [closed_form(80, 20, feed, 4) for feed in (100, 200)]
-    assert [one.time for one in found] == pytest.approx([max(one["time"] for one in expected)])
-    assert [one.c_feed for one in found] == pytest.approx([max(one["c_feed"] for one in expected)])
+    # Z goes down at 200 before the block that is skipped, and up again at 100.
+    slowest = closed_form(80, 20, 100, 4, deep=3.5)["time"] + 60 * 7 / 200
+    assert [one.time for one in found] == pytest.approx([slowest])
+    assert [one.c_feed for one in found] == pytest.approx([closed_form(80, 20, 200, 4)["c_feed"]])
 
 
 def test_block_skip_that_moves_nothing_makes_one() -> None:

@@ -117,8 +117,8 @@ class PolarSection(msgspec.Struct, frozen=True, kw_only=True):
     and edge (MILL_8/1); null for none. radius [mm] and where it comes from: command line, job, offset table,
     program, comment, none. nearest: the smallest distance of the tool center to the center of C in a cutting move
     [mm]. c_feed: highest rate of C [deg/min], its line and the limit of the machine. ramp_used: how much of a
-    start-up or offset cancel its radius needs, the highest; 1 at the limit. time: of all moves on the plane [s].
-    null is not known, or not there.
+    start-up or offset cancel its radius needs, the highest; 1 at the limit. time: of its moves at the F that
+    runs, Z alone and dwells included [s]. null is not known, or not there.
     """
 
     line: int

@@ -12,10 +12,9 @@ from polarcheck.checking.tables import Tables
 from polarcheck.errors import TooHardError
 from polarcheck.machines.modal import Units
 from polarcheck.table.center import Center
-from polarcheck.table.moves import Moves
+from polarcheck.table.dynamics import Dynamics
 from polarcheck.table.ramps import Ramps
 from polarcheck.table.sections import Sections
-from polarcheck.table.tool_center import ToolCenter
 from polarcheck.table.trace import Trace
 
 
@@ -25,20 +24,19 @@ def polar_sections(tables: Tables) -> list[PolarSection]:
     if not len(trace.sections):
         return []
     try:
-        return _polar_sections(trace, tables["tool_center"], tables["center"], tables["ramps"])
+        return _polar_sections(trace, tables["dynamics"], tables["center"], tables["ramps"])
     except TooHardError:
         return []  # what the verdict does not rest on; what was given up stands under "not evaluated"
 
 
-def _polar_sections(trace: Trace, tool_center: ToolCenter, center: Center, ramps: Ramps) -> list[PolarSection]:
-    sections = trace.sections
+def _polar_sections(trace: Trace, dynamics: Dynamics, center: Center, ramps: Ramps) -> list[PolarSection]:
+    sections, tool_center = trace.sections, dynamics.tool_center
     c_feed = np.where(center.cuts_off_center, tool_center.c_feed, -np.inf)
     highest = _of_sections(sections, c_feed, np.maximum, -np.inf)
     fastest = _fastest(trace, c_feed, highest)
     at_entry = _offset_rows(trace)
     nearest = _of_sections(sections, np.where(trace.cuts, tool_center.nearest, np.inf), np.minimum, np.inf)
     ramp = _ramp_used(trace, ramps)
-    time = _time(tool_center.moves, len(sections))
     limit = rounded(trace.machine.limits.c_feed)
     last = np.where(sections.left & ~sections.returned, sections.leave, sections.leave - 1)
     found = []
@@ -58,7 +56,7 @@ def _polar_sections(trace: Trace, tool_center: ToolCenter, center: Center, ramps
                 c_feed_line=int(trace.line_in_file[fast]) if fast >= 0 else None,
                 c_feed_limit=limit,
                 ramp_used=rounded(ramp[index]),
-                time=rounded(time[index]),
+                time=rounded(dynamics.section_time[index]),
             )
         )
     return found
@@ -106,10 +104,3 @@ def _ramp_used(trace: Trace, ramps: Ramps) -> Floats:
     """Per section how much of a start-up or offset cancel its R needs, the highest."""
     is_ramp = (trace.starts_up | trace.cancels) & (trace.length != 0)
     return _of_sections(trace.sections, np.where(is_ramp, ramps.used, -np.inf), np.maximum, -np.inf)
-
-
-def _time(moves: Moves, count: int) -> Floats:
-    """Per section how long its moves on the plane take [s]; NaN where that of one of them is not known."""
-    return np.asarray(
-        np.bincount(moves.section, np.where(moves.known, moves.time, np.nan), minlength=count), np.float64
-    )

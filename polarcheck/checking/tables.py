@@ -19,6 +19,7 @@ MAKERS = {
     "trace": "polarcheck.table.trace:Trace",
     "infeed": "polarcheck.table.infeed:Infeed",
     "tool_center": "polarcheck.table.tool_center:ToolCenter",
+    "dynamics": "polarcheck.table.dynamics:Dynamics",
     "mode_words": "polarcheck.table.mode_words:ModeWords",
     "switch_words": "polarcheck.table.switch_words:SwitchWords",
     "other_mode": "polarcheck.table.other_mode:OtherMode",

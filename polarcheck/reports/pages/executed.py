@@ -14,6 +14,7 @@ from msgspec import UNSET, UnsetType
 from polarcheck.checking.phrases.offsets import called_tool, key_of, option
 from polarcheck.checking.quantity import rounded
 from polarcheck.machines.modal import FeedMode, Motion, Side
+from polarcheck.table.dynamics import Dynamics
 from polarcheck.table.moves import Moves, programmed_moves, z_along
 from polarcheck.table.tool_center import ToolCenter
 from polarcheck.table.trace import Trace
@@ -31,10 +32,11 @@ class Move(msgspec.Struct, frozen=True):
     "programmed" where it is run in offset mode, start-up and offset cancel included, and R (or the position) is not
     known, so that the programmed one stands in its place. Without G41 and G42 both are one. radius: R of the offset in
     force [mm], whether it is used or not. x_axis: X of the machine as a radius [mm], never negative. c_axis: C of the
-    machine [deg], continuous along the section. feed [mm/min], time [s]; of the tool center nearest [mm], c_feed
-    [deg/min], x_feed [mm/min], c_acceleration [deg/s2], x_acceleration [mm/s2]: the highest on the way. null is
-    unknown; a rate is null where it has no bound, too, through the center of C. channel: as `$2`, where the file has
-    several; the sections of each are counted from 0.
+    machine [deg], continuous along the section. feed: F in force, clamped where the control does so [mm/min]; time [s];
+    of the tool center nearest [mm], c_feed [deg/min], x_feed [mm/min], c_acceleration [deg/s2], x_acceleration [mm/s2]:
+    the highest on the way. Of the tool's path time and these are as automatic override leaves them; null in rapid
+    traverse. null is unknown; a rate is null where it has no bound, too, through the center of C. channel:
+    as `$2`, where the file has several; the sections of each are counted from 0.
     """
 
     line: int
@@ -67,6 +69,8 @@ def moves(trace: Trace, tool_center: ToolCenter, path: str) -> Iterator[Move]:
     table: Moves = tool_center.moves if path == "tool" else programmed_moves(trace)
     c_from, c_to = table.c_angles
     z_from, z_to = z_along(trace, table)
+    runs = Dynamics(trace, tool_center) if path == "tool" else table
+    time = runs.move_time if isinstance(runs, Dynamics) else table.time
     for index in range(len(table)):
         center, row = table.center[index], table.row[index]
         yield Move(
@@ -83,11 +87,11 @@ def moves(trace: Trace, tool_center: ToolCenter, path: str) -> Iterator[Move]:
             x_axis=[rounded(abs(table.start[index])), rounded(abs(table.end[index]))],
             c_axis=[rounded(c_from[index]), rounded(c_to[index])],
             nearest=rounded(table.nearest[index]),
-            c_feed=rounded(table.c_feed[index]),
-            x_feed=rounded(table.x_feed[index]),
-            c_acceleration=rounded(table.c_acceleration[index]),
-            x_acceleration=rounded(table.x_acceleration[index]),
-            time=rounded(table.time[index]),
+            c_feed=rounded(runs.c_feed[index]),
+            x_feed=rounded(runs.x_feed[index]),
+            c_acceleration=rounded(runs.c_acceleration[index]),
+            x_acceleration=rounded(runs.x_acceleration[index]),
+            time=rounded(time[index]),
             channel=trace.text.source.channel or UNSET,
         )
 

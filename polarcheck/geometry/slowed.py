@@ -1,0 +1,194 @@
+"""
+Moves on which the control slows the tool down by itself, so that C turns no faster than a rate: automatic override.
+
+FANUC B-64120EN/01 p. 280, B-63324EN/03 p. 192: where C would turn faster than a share of its limit, override is what
+is allowed divided by what is asked for. It follows the rate at each moment, so that C turns at the allowed rate all
+the while, and F comes back by itself behind the center. Moves are given as in `polar`; each is parted where override
+begins and ends, which is a distance from the center of C: on a line r^2 = d / q, on an arc r^2 = (R^2 - e^2) /
+(+-2Rq - 1), with q the turn of C per way that F leaves room for.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import msgspec
+import numpy as np
+
+from polarcheck.arrays import Floats, Mask, Points, Rows, States
+from polarcheck.geometry import polar, rates
+from polarcheck.geometry.plane import arcs_from_center, cross, dot, lines_from_center, quiet, rows_of_arcs
+from polarcheck.machines.modal import Motion
+
+#: Pieces shorter than this are left out [mm]: an arc of no length would be a full circle.
+_SHORTEST = 1e-7
+#: In so many points of a piece the axes are looked at, closer to its ends, where most extremes are.
+_POINTS = 257
+#: So many pieces are looked at in one go.
+_AT_ONCE = 1024
+
+#: Of points, directions and curvature [mm, 1/mm] something of the axes.
+_OfPoint = Callable[[Points, Points, Floats], Floats]
+
+
+class Pieces(msgspec.Struct, frozen=True):
+    """
+    Parts of moves in their order. move: the one that each is of. held: C turns at the rate that is allowed [deg/min],
+    else the tool runs at F [mm/min].
+    """
+
+    move: Rows
+    start: Points
+    end: Points
+    center: Points
+    kind: States
+    held: Mask
+    feed: Floats
+    allowed: float
+
+    @property
+    def shape(self) -> tuple[Points, Points, Points, States]:
+        """start, end, center, kind: what the functions of `polar` take."""
+        return self.start, self.end, self.center, self.kind
+
+    def time(self) -> Floats:
+        """How long each piece takes [s]; at the center itself the tool waits until C has made its half turn."""
+        turning = np.abs(polar.c_sweep(*self.shape)) / self.allowed
+        waiting = np.where(np.isinf(rates.c_feed(*self.shape, self.feed)), 180 / self.allowed, 0.0)
+        moving = polar.time(polar.length(*self.shape), self.feed) / 60
+        return np.asarray(60 * np.where(self.held, turning, moving + waiting))
+
+    def c_feed(self) -> Floats:
+        """Highest rate of C on each [deg/min]."""
+        return np.where(self.held, self.allowed, np.minimum(rates.c_feed(*self.shape, self.feed), self.allowed))
+
+    def c_acceleration(self) -> Floats:
+        """Highest acceleration of C within each [deg/s2]: none where its rate is held."""
+        return np.where(self.held, 0.0, rates.c_acceleration(*self.shape, self.feed))
+
+    def x_feed(self) -> Floats:
+        """Highest rate of X on each [mm/min, radius]."""
+        return np.where(self.held, self._of_held(_x_per_turn) * self._turn, rates.x_feed(*self.shape, self.feed))
+
+    def x_acceleration(self) -> Floats:
+        """Highest acceleration of X within each [mm/s2, radius]."""
+        bend = self._of_held(_x_bend_per_turn) * (self._turn / 60) ** 2
+        return np.where(self.held, bend, rates.x_acceleration(*self.shape, self.feed))
+
+    @property
+    def _turn(self) -> float:
+        """The rate at which C is held [rad/min]."""
+        return float(np.radians(self.allowed))
+
+    @quiet
+    def _of_held(self, of_point: _OfPoint) -> Floats:
+        """The largest value of the points of each piece on which C is held; 0 on the others."""
+        found = np.zeros(len(self.move))
+        held = np.flatnonzero(self.held)
+        share = (1 - np.cos(np.linspace(0.0, np.pi, _POINTS)[:, None])) / 2
+        for first in range(0, len(held), _AT_ONCE):
+            rows = held[first : first + _AT_ONCE]
+            start, end, center = self.start[rows], self.end[rows], self.center[rows]
+            spokes = _Spokes.of(start, end, center, self.kind[rows])
+            found[rows] = np.abs(of_point(*spokes.at(share * spokes.length), spokes.bend)).max(axis=0)
+        return found
+
+
+class _Spokes(msgspec.Struct, frozen=True):
+    """
+    Moves by their way: where they begin, whereto, and how they bend [1/mm], to the left above 0.
+
+    toward: the direction of a line; of an arc that from its center to its start.
+    """
+
+    start: Points
+    toward: Points
+    center: Points
+    radius: Floats
+    bend: Floats
+    length: Floats
+    is_arc: Mask
+
+    @classmethod
+    @quiet
+    def of(cls, start: Points, end: Points, center: Points, kind: States) -> _Spokes:
+        is_arc = (kind == Motion.CW) | (kind == Motion.CCW)
+        spoke = np.where(is_arc, start - center, end - start)
+        radius = np.where(is_arc, np.abs(spoke), np.inf)
+        bend = np.where(is_arc, np.where(kind == Motion.CCW, 1.0, -1.0) / radius, 0.0)
+        length = polar.length(start, end, center, kind)
+        return cls(start, np.asarray(spoke / np.abs(spoke), np.complex128), center, radius, bend, length, is_arc)
+
+    @quiet
+    def at(self, way: Floats) -> tuple[Points, Points]:
+        """Points and directions at these ways from the start [mm]."""
+        turned = self.toward * np.exp(1j * way * self.bend)
+        on_arc = self.center + np.where(self.is_arc, self.radius, 0.0) * turned
+        point = np.where(self.is_arc, on_arc, self.start + way * self.toward)
+        return point, np.where(self.is_arc, turned * 1j * np.sign(self.bend), self.toward)
+
+
+def _c_per_way(point: Points, direction: Points) -> Floats:
+    """Turn of C per way, signed [rad/mm]."""
+    return np.asarray(cross(point, direction) / np.abs(point) ** 2)
+
+
+def _x_per_turn(point: Points, direction: Points, bend: Floats) -> Floats:
+    """Way of X per turn of C [mm/rad]: r (p . u) / (p x u)."""
+    return np.asarray(np.abs(point) * dot(point, direction) / cross(point, direction))
+
+
+def _x_bend_per_turn(point: Points, direction: Points, bend: Floats) -> Floats:
+    """
+    Its change per turn of C [mm/rad^2].
+
+    With a = p . u and b = p x u on a path of the curvature k: a' = 1 - k b, b' = k a and r' = a / r per way.
+    """
+    r, a, b = np.abs(point), dot(point, direction), cross(point, direction)
+    slope = a**2 / (r * b) + r * (1 - bend * b) / b - r * bend * a**2 / b**2
+    return np.asarray(slope * r**2 / b)
+
+
+@quiet
+def pieces(start: Points, end: Points, center: Points, kind: States, feed: Floats, allowed: float) -> Pieces:
+    """The moves in parts; all is known, and F [mm/min] and the rate of C that is allowed [deg/min] are above 0."""
+    room = np.radians(allowed) / feed
+    spokes = _Spokes.of(start, end, center, kind)
+    way = _ways(start, end, center, kind, room)
+    length = spokes.length[:, None]
+    way = np.where((way > 0) & (way < length), way, length)
+    way = np.sort(np.concatenate((np.zeros((len(start), 1)), way, length), axis=1), axis=1)
+    is_piece = np.diff(way, axis=1) > _SHORTEST
+    is_piece[:, 0] |= ~is_piece.any(axis=1)
+    move, at = np.nonzero(is_piece)
+    last = np.append(move[1:] != move[:-1], True)[: len(move)]
+    # What is too short to be a piece belongs to the one before it.
+    finish = np.where(last, spokes.length[move], np.append(way[move[1:], at[1:]], 0.0))
+    own = _Spokes(**{name: getattr(spokes, name)[move] for name in spokes.__struct_fields__})
+    begin = np.where(np.append(True, move[1:] != move[:-1])[: len(move)], 0.0, way[move, at])
+    points = np.where(begin == 0, start[move], own.at(begin)[0])
+    ends = np.where(last, end[move], own.at(finish)[0])
+    middle = own.at((begin + finish) / 2)
+    held = np.abs(_c_per_way(*middle)) > room[move]
+    return Pieces(move, points, ends, center[move], kind[move], held, feed[move], allowed)
+
+
+def _ways(start: Points, end: Points, center: Points, kind: States, room: Floats) -> Floats:
+    """Where C would turn as fast as there is room for [mm from the start]: four values for each move, NaN for none."""
+    lines = lines_from_center(start, end)
+    # Through the center itself C makes half a turn in one point, and none beside it.
+    reach = np.where(lines.offset == 0, np.nan, np.sqrt(lines.offset / room - lines.offset**2))
+    none = np.full(len(start), np.nan)
+    way = np.stack((-lines.before - reach, -lines.before + reach, none, none), axis=1)
+    arcs = arcs_from_center(start, end, center, kind, rows := rows_of_arcs(kind))
+    power, asked = arcs.inside * arcs.around, 2 * arcs.radius * room[rows]
+    sign = np.copysign(1.0, arcs.sweep)
+    found = []
+    for turn in (asked, -asked):
+        angle = np.arccos((power / (turn - 1) - arcs.radius**2 - arcs.away**2) / (2 * arcs.radius * arcs.away))
+        for side in (angle, -angle):
+            ahead = np.angle(arcs.center * np.exp(1j * side) / (arcs.start - arcs.center)) * sign
+            ahead = np.where(ahead < 0, ahead + 2 * np.pi, ahead)
+            found.append(np.where(arcs.through, np.nan, ahead * arcs.radius))
+    way[rows] = np.stack(found, axis=1)
+    return way
