@@ -41,7 +41,7 @@ def test_what_is_shown_is_what_is_printed(line: str, shown: str) -> None:
 def test_each_format_is_told_of() -> None:
     text = REPORTS.read_text("utf-8")
     assert re.findall(r"^\| `(\w+)` \|", text, re.MULTILINE) == [
-        *("text", "short", "concise", "json", "jsonl", "sarif", "github", "gitlab", "junit", "checkstyle")
+        *("text", "short", "concise", "json", "jsonl", "sarif", "github", "gitlab", "junit", "checkstyle", "html")
     ]
     assert {*re.findall(r"^\| `(\w+)` \|", text, re.MULTILINE)} == {*formats()}
     assert len(examples()) == 6

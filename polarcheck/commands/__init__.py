@@ -30,6 +30,7 @@ NAMES = (
     "explain",
     "init",
     "machines",
+    "plot",
     "rules",
     "schema",
     "server",

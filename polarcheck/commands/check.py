@@ -8,7 +8,17 @@ from typing import Any, NamedTuple
 
 import click
 
-from polarcheck.commands import fixing, jobs, options, reporting, running, silencing, standard_input, watching
+from polarcheck.commands import (
+    fixing,
+    jobs,
+    options,
+    picturing,
+    reporting,
+    running,
+    silencing,
+    standard_input,
+    watching,
+)
 from polarcheck.commands.diff_base import diff_base, narrowed
 from polarcheck.commands.exit_codes import COULD_NOT_RUN
 from polarcheck.commands.options import option
@@ -160,7 +170,9 @@ def _check(asked: _Asked, seen: watching.Seen | None) -> int:
 
     keep_within_memory()
     reporting.refuse(asked.form, asked.statistics)
-    applies = settings.Options(use_config=not asked.no_config, **asked.more)
+    wants_pictures = picturing.FORMAT in (asked.form, *(form for form, _ in asked.outputs))
+    extras = picturing.extras() if wants_pictures else ()
+    applies = settings.Options(use_config=not asked.no_config, extras=extras, **asked.more)
     faults = running.Faults(asked.debug)
     tasks = running.planned(
         asked.paths,
@@ -170,7 +182,8 @@ def _check(asked: _Asked, seen: watching.Seen | None) -> int:
         force_exclude=asked.force_exclude,
         named=standard_input.judged_as(asked.paths, asked.stdin_filename),
     )
-    overwriting.refuse([path for _, path in asked.outputs], tasks)
+    pictures, outputs, written = picturing.of_outputs(asked.outputs, asked.form == picturing.FORMAT, tasks, "-o html:")
+    overwriting.refuse(written, tasks)
     tasks = narrowed(tasks, asked.diff_base, asked.max_size, not asked.quiet)
     is_colored = in_color(asked.color)
     shown_in = fixing.Shown(asked.quiet, is_colored, asked.debug, bool(asked.outputs))
@@ -190,6 +203,7 @@ def _check(asked: _Asked, seen: watching.Seen | None) -> int:
             silenced=asked.silenced,
             fixed=made.fixed,
             has_baseline=applies.baseline is not None,
+            drawn=pictures.drawn,
         ),
         tasks,
         went_wrong,
@@ -200,7 +214,9 @@ def _check(asked: _Asked, seen: watching.Seen | None) -> int:
         form, shown, len(tasks), bar.hide, in_place_of_findings=asked.statistics, to_error=made.has_output
     )
     crew = running.Crew(asked.max_size, asked.workers, asked.cluster, seen)
-    checked = crew.check(tasks, bar, faults, known, shower.file)
+    pictures.begin(plain)
+    checked = crew.check(tasks, bar, faults, known, shower.file, pictures.taken)
+    pictures.end()
     report = batch.report(checked.files, applies.machine or (tasks[0].settings.name if tasks else profiles.DEFAULT))
     status = max(int(checked.failed), made.status, faults.told())
     went_wrong += [*faults.failures, *faults.bugs]
@@ -210,7 +226,7 @@ def _check(asked: _Asked, seen: watching.Seen | None) -> int:
         say(went_wrong[-1])
     elif asked.diff_base is None:
         running.tell_unused(applies.tools, checked.called)
-    for error in reporting.written(asked.outputs, form, report, plain._replace(lines=checked.lines)):
+    for error in reporting.written(outputs, form, report, plain._replace(lines=checked.lines)):
         say(str(error))
         status = max(status, COULD_NOT_RUN)
     shower.end(report, checked.lines)

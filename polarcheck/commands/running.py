@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from polarcheck.commands import jobs, silencing
@@ -11,7 +11,7 @@ from polarcheck.commands.exit_codes import BUG, CLEAN, COULD_NOT_RUN
 from polarcheck.commands.output import said_of_bug, say, say_lines, warn
 
 if TYPE_CHECKING:
-    from polarcheck.checking.batch import Checked, Task
+    from polarcheck.checking.batch import Checked, Outcome, Task
     from polarcheck.checking.finding import FileReport
     from polarcheck.commands.progress import Bar
     from polarcheck.commands.settings import OfPrograms
@@ -84,11 +84,13 @@ class Crew:
         faults: Faults,
         baseline: silencing.Known | None = None,
         show: Callable[[FileReport, Mapping[int, str]], None] | None = None,
+        taken: Callable[[Iterable[Outcome]], Iterator[Outcome]] | None = None,
     ) -> Checked:
         """
         What came of the programs, up to an interrupt.
 
         baseline: the file of known findings, which are silenced. show: gets each report when it is its turn.
+        taken: takes off the reports what is not told.
         """
         from polarcheck.checking import batch
 
@@ -97,7 +99,8 @@ class Crew:
             contextlib.closing(bar.watched(outcomes)) as watched,
         ):
             answered = silencing.answered(watched, tasks, baseline)
-            return batch.gather(answered, faults.failures.append, faults.bug, show)
+            told = answered if taken is None else taken(answered)
+            return batch.gather(told, faults.failures.append, faults.bug, show)
 
 
 def tell_unused(tools: Iterable[str], called: set[str]) -> None:

@@ -26,8 +26,8 @@ EXTENSIONS = (
     *(".ptp", ".dnc", ".fnc", ".iso", ".din", ".pim", ".gcode", ".gco", ".g"),
 )
 _SKIPPED_FOLDERS = frozenset(("node_modules", "__pycache__"))
-#: O1234, O0001(SB12 RG FRONT), O1234.bak: as controls and transfer programs name what they punch out.
-_O_NAME = r"(?i)O\d{2,8}(?:\([^)]*\))?(?:\.(?!orig$)[^.]*)?"
+#: O1234, O0001(SB12 RG FRONT), O1234.bak: as controls and transfer programs name what they punch out; but no pages.
+_O_NAME = r"(?i)O\d{2,8}(?:\([^)]*\))?(?:\.(?!orig$|html?$)[^.]*)?"
 _SNIFFED = frozenset(("", ".txt"))
 _SNIFFED_BYTES = 4096
 _HEAD = r"%(?!PDF|!|%)|[O:]\s?\d{1,8}\b"

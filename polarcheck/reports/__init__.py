@@ -12,10 +12,13 @@ if TYPE_CHECKING:
     from polarcheck.checking.finding import FileReport, Report
     from polarcheck.checking.rule import Rule
     from polarcheck.checking.settings import Settings
+    from polarcheck.pictures.picture import Drawn
 
 SEVERITIES = ("error", "warning", "note")
 #: Formats that come in the encoding of a terminal, and that one looks for first; all others are UTF-8, for programs.
 FOR_PEOPLE = ("text", "short", "concise")
+#: Formats that hold one file; many need a folder.
+OF_ONE = ("html",)
 _STYLES = {
     "error": "1;31",
     "warning": "1;33",
@@ -39,7 +42,8 @@ class Background(NamedTuple):
     from a finding is shown, too. silenced: whether what is silenced is. settings: what applied to a file, by its path.
     failures: a line each on what could not be read, or went wrong. root, folder: of the repository, and the one that
     paths begin in; absolute, with slashes, empty where they are not known. fixed: how many fixes were written into the
-    files before. has_baseline: whether findings of a baseline are silenced, so that others are new.
+    files before. has_baseline: whether findings of a baseline are silenced, so that others are new. drawn: by path,
+    what is drawn of a program, where that was asked for.
     """
 
     lines: Mapping[str, Mapping[int, str]] = MappingProxyType({})
@@ -56,6 +60,7 @@ class Background(NamedTuple):
     folder: str = ""
     fixed: int = 0
     has_baseline: bool = False
+    drawn: Mapping[str, Drawn] = MappingProxyType({})
 
 
 class Parts(NamedTuple):

@@ -1,0 +1,97 @@
+"""`polarcheck plot`: what programs make and how the tool runs, as pages."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import click
+
+from polarcheck.commands import jobs, options, picturing
+from polarcheck.commands.options import option
+
+
+@click.command(short_help="Draw what a program makes and how the tool runs, as a page.")
+@click.argument("paths", nargs=-1, required=True, metavar="PATH...")
+@options.executing("programs")
+@option(
+    "-o",
+    "--output",
+    metavar="FILE",
+    help="The page; or a folder, for a page of each program and index.html.",
+)
+@options.extensions
+@options.max_size
+@jobs.jobs
+@options.debug
+@click.pass_context
+def plot(
+    ctx: click.Context,
+    /,
+    paths: tuple[str, ...],
+    output: str | None,
+    extensions: tuple[str, ...],
+    max_size: int,
+    workers: int,
+    no_config: bool,
+    **asked: Any,
+) -> None:
+    """
+    Draw what programs make and how the tool runs: files, folders, or - for standard input.
+
+    The page holds all that it needs, and works without a network: of each polar section the programmed contour, the
+    path of the tool center, the finished part and the cutter, with the rates of C and X over time; and the findings of
+    `check`. It is written to FILE, or to standard output. In FOLDER, one that is there or a new one whose name has no
+    ending, each of several programs gets its page, beside an index.html that leads to them.
+
+    Ends with 0 where all pages were made, whatever was found, 2 if something could not be read or written, 3 for a
+    bug.
+    """
+    ctx.exit(_plot(paths, output, extensions, max_size, workers, no_config, options.DEBUG in ctx.meta, asked))
+
+
+def _plot(
+    paths: tuple[str, ...],
+    output: str | None,
+    extensions: tuple[str, ...],
+    max_size: int,
+    workers: int,
+    no_config: bool,
+    debug: bool,
+    asked: dict[str, Any],
+) -> int:
+    from polarcheck import reports
+    from polarcheck.checking import batch, rule
+    from polarcheck.commands import overwriting, progress, reporting, running, settings, signals
+    from polarcheck.commands.memory import keep_within_memory
+    from polarcheck.commands.output import say, show
+    from polarcheck.machines import profiles
+    from polarcheck.reading import files
+
+    keep_within_memory()
+    applies = settings.Options(use_config=not no_config, extras=picturing.extras(), **asked)
+    faults = running.Faults(debug)
+    tasks = running.planned(paths, settings.OfPrograms(applies), extensions, faults)
+    outputs = [] if output is None else [(picturing.FORMAT, Path(output))]
+    pictures, pages, written = picturing.of_outputs(outputs, output is None, tasks, "-o ")
+    overwriting.refuse(written, tasks)
+    plain = reports.Background(rules=rule.load_all(), drawn=pictures.drawn)
+    background = reporting.background(plain, tasks, [])
+    pictures.begin(background)
+    bar = progress.Bar(len(tasks), True)
+    checked = running.Crew(max_size, workers, None).check(tasks, bar, faults, taken=pictures.taken)
+    status = faults.told()
+    if checked.stopped is not None:
+        status, how = signals.told(checked.stopped)
+        say(f"{how} after {len(checked.files)} of {len(tasks)} files")
+    pictures.end()
+    if len(checked.files) and (pages or output is None):
+        report = batch.report(checked.files, applies.machine or profiles.DEFAULT)
+        page = reports.render(picturing.FORMAT, report, background)
+        for _, path in pages:
+            files.write(path, page)
+        if output is None:
+            show(page.encode())
+    if checked.stopped is None:
+        running.tell_unused(applies.tools, checked.called)
+    return status

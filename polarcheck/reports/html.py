@@ -1,0 +1,19 @@
+"""The report as a page that needs no network: findings as a table, and pictures of the polar sections."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from polarcheck.checking.finding import Report
+    from polarcheck.reports import Background
+
+
+def html(report: Report, background: Background) -> str:
+    """One page of all files; plotly stands in it where anything is drawn."""
+    from polarcheck.pictures.library import library
+    from polarcheck.pictures.page import page
+    from polarcheck.reports.pages.pictured import picture
+
+    pictures = [picture(file, background) for file in report.files]
+    return page(pictures, library() if any(one.sections for one in pictures) else "")
