@@ -1,32 +1,46 @@
-"""`polarcheck trace`: the executed table, or the moves of a path, as CSV or JSON lines."""
+"""`polarcheck trace`: the executed table, or the moves of a path, as a table, CSV or JSON lines."""
 
 from __future__ import annotations
 
+import shutil
+import sys
+from collections.abc import Iterator, Sequence
 from itertools import chain
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from polarcheck.commands import options
 from polarcheck.commands.options import narrower, option
-from polarcheck.commands.output import show, warn
+from polarcheck.commands.output import is_terminal, show, warn
+
+if TYPE_CHECKING:
+    from polarcheck.table.tool_center import ToolCenter
+    from polarcheck.table.trace import Trace
 
 
 @click.command(short_help="Show what a program does, block by block or move by move.")
 @click.argument("path", metavar="FILE")
 @options.executing("program", both=False)
 @option("--path", "which", type=click.Choice(["tool", "programmed"]), help="The moves of a path, not the blocks.")
-@narrower("--format", "form", type=click.Choice(["csv", "jsonl"]), default="csv", show_default=True)
+@narrower(
+    "--format",
+    "form",
+    type=click.Choice(["table", "csv", "jsonl"]),
+    show_default="table on a terminal, else csv",
+    help="A table for people, or one for programs.",
+)
 @options.max_size
 @options.debug
-def trace(path: str, which: str | None, form: str, no_config: bool, max_size: int, **asked: Any) -> None:
+def trace(path: str, which: str | None, form: str | None, no_config: bool, max_size: int, **asked: Any) -> None:
     """
     Show what FILE does, block by block or, with --path, move by move inside polar sections.
 
     Lengths are mm, X as a radius, angles deg, feeds mm/min. Of a file with several channels one follows the other, and
-    each line names its own. --path tool is the path of the tool center. What is run
-    with G41 or G42 while the radius is not known is shown as programmed: those moves have "programmed" under path, and
-    a line on standard error says what to give.
+    each line names its own. A table leaves out what says nothing and, on a terminal, what there is no room for.
+
+    --path tool is the path of the tool center. What is run with G41 or G42 while the radius is not known is shown as
+    programmed: those moves have "programmed" under path, and a line on standard error says what to give.
     """
     from polarcheck.checking import check
     from polarcheck.commands import settings
@@ -44,7 +58,26 @@ def trace(path: str, which: str | None, form: str, no_config: bool, max_size: in
             unknown = executed.without_radius(*of_path)
             if unknown:
                 warn(unknown)
+        on_terminal = is_terminal(sys.stdout)
+        if form == "table" or (form is None and on_terminal):
+            for text in _table(paths, which, on_terminal):
+                if not show(text):
+                    break
+            return
         items = chain.from_iterable(executed.moves(*one, which) if which else executed.rows(*one) for one in paths)
-        for line in (executed.as_csv if form == "csv" else executed.as_jsonl)(items):
+        for line in (executed.as_jsonl if form == "jsonl" else executed.as_csv)(items):
             if not show(line.encode()):
                 break
+
+
+def _table(paths: Sequence[tuple[Trace, ToolCenter]], which: str | None, on_terminal: bool) -> Iterator[str]:
+    """Each channel as a table, as wide as the terminal and its head on every page of it; elsewhere all columns."""
+    from polarcheck.reports.pages.trace_columns import moves_table, rows_table
+
+    size = shutil.get_terminal_size()
+    room, height = (size.columns, size.lines) if on_terminal else (None, None)
+    for trace, tool_center in paths:
+        if which:
+            yield from moves_table(trace, tool_center, which, room, height)
+        else:
+            yield from rows_table(trace, tool_center, room, height)

@@ -19,7 +19,7 @@ from polarcheck.table.moves import Moves, programmed_moves, z_along
 from polarcheck.table.tool_center import ToolCenter
 from polarcheck.table.trace import Trace
 
-_KINDS = {Motion.CW: "cw", Motion.CCW: "ccw"}
+KINDS = {Motion.CW: "cw", Motion.CCW: "ccw"}
 
 
 class Move(msgspec.Struct, frozen=True):
@@ -76,7 +76,7 @@ def moves(trace: Trace, tool_center: ToolCenter, path: str) -> Iterator[Move]:
         yield Move(
             line=int(trace.line_in_file[row]),
             section=int(table.section[index]),
-            kind=_KINDS.get(Motion(int(table.kind[index])), "line"),
+            kind=KINDS.get(Motion(int(table.kind[index])), "line"),
             start=_point(table.start[index]),
             end=_point(table.end[index]),
             center=None if np.isnan(center) else _point(center),
@@ -115,8 +115,8 @@ def without_radius(trace: Trace, tool_center: ToolCenter) -> str:
     return f"{', '.join(causes)}: {said}; {', '.join(remedies)}" if causes else ""
 
 
-_SIDES = {Side.OFF: "G40", Side.LEFT: "G41", Side.RIGHT: "G42"}
-_FEED_MODES = {
+SIDES = {Side.OFF: "G40", Side.LEFT: "G41", Side.RIGHT: "G42"}
+FEED_MODES = {
     FeedMode.PER_MINUTE: "per minute",
     FeedMode.PER_REVOLUTION: "per revolution",
     FeedMode.INVERSE_TIME: "inverse time",
@@ -142,11 +142,11 @@ def rows(trace: Trace, tool_center: ToolCenter) -> Iterator[dict[str, Any]]:
             "depth": int(trace.run.depth[row]),
             "section": int(trace.section[row]),
             "motion": Motion(int(trace.motion[row])).name.lower(),
-            "side": _SIDES[Side(int(trace.side[row]))],
+            "side": SIDES[Side(int(trace.side[row]))],
             "tool": trace.run.names.get(int(trace.tool[row]), int(trace.tool[row])),
             "offset_number": key_of(trace, int(trace.offset_number[row])) or 0,
             "radius": rounded(trace.radius[row]),
-            "feed_mode": _FEED_MODES[mode],
+            "feed_mode": FEED_MODES[mode],
             "feed": rounded(trace.feed[row]),
             "f": rounded((trace.feed if mode == FeedMode.PER_MINUTE else trace.feed_number)[row]),
             "x": rounded(trace.x[row]),

@@ -1,0 +1,139 @@
+"""The executed table and the moves of a path as a table for people: which columns there are, and what matters most."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from polarcheck.arrays import Mask
+from polarcheck.checking.phrases.offsets import key_of
+from polarcheck.machines.modal import FeedMode, Motion, Side
+from polarcheck.reading.excerpt import visible
+from polarcheck.reports.pages.aligned import Column, table
+from polarcheck.reports.pages.executed import FEED_MODES, KINDS, SIDES
+from polarcheck.table.moves import Moves, programmed_moves, z_along
+from polarcheck.table.tool_center import ToolCenter
+from polarcheck.table.trace import Trace
+
+MM, FEED, DEG, C_FEED = "mm", "mm/min", "deg", "deg/min"
+#: Rates and accelerations of axes need no more digits.
+_RATE = 1
+
+
+def rows_table(trace: Trace, tool_center: ToolCenter, room: int | None, height: int | None) -> Iterator[str]:
+    """The executed table, as `executed.rows` has it, with the text of each block; see `aligned.table`."""
+    yield from _channel(trace)
+    yield from table(_of_rows(trace, tool_center), lambda row: _block(trace, row), room, height)
+
+
+def moves_table(
+    trace: Trace, tool_center: ToolCenter, path: str, room: int | None, height: int | None
+) -> Iterator[str]:
+    """The moves of the tool center path ("tool") or of the programmed one, as `executed.moves` has them."""
+    moves = tool_center.moves if path == "tool" else programmed_moves(trace)
+    yield from _channel(trace)
+    yield from table(_of_moves(trace, moves, path), lambda move: _block(trace, int(moves.row[move])), room, height)
+
+
+def _channel(trace: Trace) -> Iterator[str]:
+    if trace.text.source.channel:
+        yield f"channel {visible(trace.text.source.channel)}\n"
+
+
+def _block(trace: Trace, row: int) -> str:
+    return trace.text.source.line_text(int(trace.line[row])).lstrip()
+
+
+def _of_rows(trace: Trace, tool_center: ToolCenter) -> list[Column]:
+    moving = trace.in_polar & trace.moves_plane
+    mode = trace.feed_mode
+    number = np.where(mode == FeedMode.PER_MINUTE, trace.feed, trace.feed_number)
+    own = {tool: str(trace.run.names.get(tool, tool)) for tool in _distinct(trace.tool)}
+    keys = {offset: str(key_of(trace, offset) or 0) for offset in _distinct(trace.offset_number)}
+    return [
+        _count("line", 0, trace.line_in_file),
+        _count("program", 8, trace.program, usual=0),
+        _count("depth", 8, trace.run.depth, usual=0),
+        _count("section", 5, trace.section, usual=-1, is_blank=trace.section < 0),
+        _words("motion", 1, trace.motion, {kind: Motion(kind).name.lower() for kind in _distinct(trace.motion)},
+               is_blank=trace.motion == Motion.NONE),
+        _words("side", 2, trace.side, SIDES, usual=Side.OFF),
+        _words("tool", 6, trace.tool, own, usual=0),
+        _words("offset_number", 7, trace.offset_number, keys, usual=0),
+        Column("radius", MM, 5, trace.radius, is_blank=trace.offset_number == 0),
+        _words("feed_mode", 8, mode, FEED_MODES, usual=FeedMode.PER_MINUTE),
+        Column("feed", FEED, 1, trace.feed),
+        Column("f", "", 8, number, is_blank=mode == FeedMode.PER_MINUTE),
+        Column("x", MM, 1, trace.x),
+        Column("z", MM, 1, trace.z),
+        Column("c", DEG, 1, trace.c_angle),
+        Column("plane_x", MM, 3, trace.end.real, is_blank=~trace.in_polar),
+        Column("plane_c", MM, 3, trace.end.imag, is_blank=~trace.in_polar),
+        Column("nearest", MM, 4, tool_center.nearest, is_blank=~moving),
+        Column("c_feed", C_FEED, 2, tool_center.c_feed, _RATE, is_blank=~moving),
+    ]  # fmt: skip
+
+
+def _of_moves(trace: Trace, moves: Moves, path: str) -> list[Column]:
+    c_from, c_to = moves.c_angles
+    z_from, z_to = z_along(trace, moves)
+    is_arc = ~np.isnan(moves.center)
+    first = int(moves.section[0]) if len(moves) else 0
+    own = np.where(moves.is_of_tool, 1, 0) if path == "tool" else np.ones(len(moves), np.int64)
+    return [
+        _count("line", 0, trace.line_in_file[moves.row]),
+        _count("section", 5, moves.section, usual=first),
+        _words("kind", 1, moves.kind, {kind: KINDS.get(Motion(kind), "line") for kind in _distinct(moves.kind)}),
+        _words("path", 1, own, {0: "programmed", 1: path}, usual=1),
+        *_point("start", 4, moves.start),
+        *_point("end", 1, moves.end),
+        *_point("center", 6, moves.center, is_blank=~is_arc),
+        Column("z_from", MM, 7, z_from),
+        Column("z_to", MM, 2, z_to),
+        Column("radius", MM, 6, trace.radius_of_move[moves.row]),
+        Column("feed", FEED, 1, moves.feed),
+        Column("x_axis_from", MM, 8, np.abs(moves.start)),
+        Column("x_axis_to", MM, 7, np.abs(moves.end)),
+        Column("c_axis_from", DEG, 8, c_from),
+        Column("c_axis_to", DEG, 3, c_to),
+        Column("nearest", MM, 3, moves.nearest),
+        Column("c_feed", C_FEED, 2, moves.c_feed, _RATE),
+        Column("x_feed", FEED, 4, moves.x_feed, _RATE),
+        Column("c_acceleration", "deg/s2", 7, moves.c_acceleration, _RATE),
+        Column("x_acceleration", "mm/s2", 7, moves.x_acceleration, _RATE),
+        Column("time", "s", 4, moves.time),
+    ]
+
+
+def _count(
+    name: str, rank: int, values: NDArray[np.integer], is_blank: Mask | None = None, usual: float | None = None
+) -> Column:
+    return Column(name, "", rank, np.asarray(values, np.float64), 0, is_blank=is_blank, usual=usual)
+
+
+def _words(
+    name: str,
+    rank: int,
+    values: NDArray[np.integer],
+    words: Mapping[Any, str],
+    is_blank: Mask | None = None,
+    usual: float | None = None,
+) -> Column:
+    """A column of words, which may come from the program."""
+    told = {int(key): visible(word) for key, word in words.items()}
+    return Column(name, "", rank, values, words=told, is_blank=is_blank, usual=usual)
+
+
+def _point(name: str, rank: int, point: NDArray[np.complex128], is_blank: Mask | None = None) -> list[Column]:
+    return [
+        Column(f"{name}_{axis}", MM, rank, values, is_blank=is_blank)
+        for axis, values in (("x", point.real), ("c", point.imag))
+    ]
+
+
+def _distinct(values: NDArray[np.integer]) -> list[int]:
+    found: list[int] = np.unique(values).tolist()
+    return found
