@@ -1,0 +1,1 @@
+"""What an outline is, as a drawing would say it: a circle, a hexagon, a slot, with its sizes."""

@@ -1,0 +1,107 @@
+"""The straight sides of a ring with their corners: sharp, round, chamfered; lengths in mm."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from polarcheck.arrays import Floats, Mask, Points, Rows
+from polarcheck.geometry.shapes.rings import Ring
+from polarcheck.geometry.shapes.shape import SAME
+
+#: How far the circle of a round corner may be from the lines beside it [mm].
+_TANGENT = 3 * SAME
+#: A chamfer is shorter than this share of either side beside it, and turns as much at both of its ends [rad].
+_CHAMFER, _EVEN = 0.6, 0.02
+
+
+@dataclass(frozen=True, slots=True)
+class Sides:
+    """
+    Straight sides of a closed ring that runs counterclockwise, n of them.
+
+    start, end: complex128[n]. row: int[n]. radius, chamfer: float64[n], of the corner behind each, 0 where there is
+    none; of a chamfer how much of the side it takes.
+    """
+
+    start: Points
+    end: Points
+    row: Rows
+    radius: Floats
+    chamfer: Floats
+
+    def __len__(self) -> int:
+        return len(self.row)
+
+    @property
+    def normal(self) -> Points:
+        """Away from what they enclose; length 1."""
+        way = self.end - self.start
+        return np.asarray(-1j * way / np.abs(way))
+
+    @property
+    def middle(self) -> Points:
+        """Of each side."""
+        return np.asarray((self.start + self.end) / 2)
+
+    @property
+    def turn(self) -> Floats:
+        """From each side to the next [rad], above 0 to the left."""
+        return np.asarray(np.angle(np.roll(self.normal, -1) * self.normal.conj()))
+
+    @property
+    def is_convex(self) -> bool:
+        """It turns to the left at each corner, and once round."""
+        return len(self) > 2 and bool((self.turn > 0).all()) and abs(float(self.turn.sum()) - 2 * np.pi) < 1
+
+    def corner_values(self) -> dict[str, float]:
+        """How large the corners are, as values of a shape; nothing where all are sharp."""
+        for name, size in (("corner_radius", self.radius), ("corner_chamfer", self.chamfer)):
+            if size.any():
+                least, most = float(size.min()), float(size.max())
+                return {name: float(size.mean())} if most - least <= 2 * SAME else {name: most, "corner_least": least}
+        return {}
+
+
+def sides_of(ring: Ring) -> Sides | None:
+    """The sides of a closed ring of lines whose arcs round their corners alone; None where an arc does more."""
+    line = ring.is_line
+    if not ring.closed or np.count_nonzero(line) < 3:
+        return None
+    radius = np.zeros(len(ring))
+    for at in np.flatnonzero(~line).tolist():
+        before, behind = at - 1, (at + 1) % len(ring)
+        if not (line[before] and line[behind]) or not 0 < ring.sweep[at] < np.pi * 0.99:
+            return None
+        beside = [abs(_distance(ring, other, ring.center[at]) - ring.radius[at]) for other in (before, behind)]
+        if max(beside) > _TANGENT:
+            return None
+        radius[before] = ring.radius[at]
+    rows = np.flatnonzero(line)
+    return Sides(ring.start[rows], ring.end[rows], ring.row[rows], radius[rows], np.zeros(len(rows)))
+
+
+def _distance(ring: Ring, side: int, point: complex) -> float:
+    """How far a point lies within the line of a side."""
+    return float(((ring.start[side] - point) * ring.normal[side].conjugate()).real)
+
+
+def without_chamfers(sides: Sides) -> Sides | None:
+    """The sides without those that chamfer the corner between two longer ones; None where there are none."""
+    if len(sides) < 6 or sides.radius.any():
+        return None
+    length, turn = np.abs(sides.end - sides.start), sides.turn
+    shorter = length < _CHAMFER * np.minimum(np.roll(length, 1), np.roll(length, -1))
+    chamfers = shorter & (np.abs(turn - np.roll(turn, 1)) < _EVEN)
+    kept = np.flatnonzero(~chamfers)
+    if not chamfers.any() or len(kept) < 3 or (chamfers & np.roll(chamfers, 1)).any():
+        return None
+    leg: Floats = length / (2 * np.cos(np.abs(turn)))
+    chamfer = np.where(np.roll(chamfers, -1), np.roll(leg, -1), 0.0)[kept]
+    return Sides(sides.start[kept], sides.end[kept], sides.row[kept], np.zeros(len(kept)), chamfer)
+
+
+def is_at(values: Floats, size: float) -> Mask:
+    """The values that are this size."""
+    return np.asarray(np.abs(values - size) <= SAME)

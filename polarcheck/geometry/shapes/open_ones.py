@@ -1,0 +1,84 @@
+"""Contours that end beyond the bar: flats, open slots, keyways; lengths in mm."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from polarcheck.arrays import Floats
+from polarcheck.geometry.shapes.rings import Ring
+from polarcheck.geometry.shapes.shape import SAME, SAME_DIRECTION, Shape, off_axis, polygon_name, turned_by
+
+#: Walls that are nearer to parallel than this are so [rad].
+_PARALLEL = 5 * SAME_DIRECTION
+
+
+def flats_of(found: Sequence[Ring]) -> list[Shape]:
+    """What open rings of one straight side each make together: flats, or the walls of a slot."""
+    if not found:
+        return []
+    normal = np.array([ring.normal[0] for ring in found])
+    out = np.array([float(((ring.start[0] + ring.end[0]) / 2 * ring.normal[0].conjugate()).real) for ring in found])
+    row = int(found[0].row[0])
+    # A wall that another one interrupts is one flat.
+    again = (np.abs(np.angle(normal[:, None] * normal.conj())) <= _PARALLEL) & (np.abs(out[:, None] - out) <= SAME)
+    first = np.argmax(again, axis=1) == np.arange(len(found))
+    normal, out, count = normal[first], out[first], int(np.count_nonzero(first))
+    order = np.argsort(np.angle(normal * normal[0].conjugate()) % (2 * np.pi - _PARALLEL), kind="stable")
+    normal, out = normal[order], out[order]
+    even = np.abs(np.angle(normal * normal[0].conjugate() * np.exp(-2j * np.pi * np.arange(count) / count)))
+    even = even.max() <= _PARALLEL
+    if count == 2 and even:
+        apart = float(out.sum())
+        if apart < 0:
+            return [_slot(complex(normal[0]), out, row)]
+        values = {"flats": 2.0, "apart": apart, "turned": turned_by(normal[0], 2)}
+        values |= {"distance": apart / 2} if abs(out[0] - out[1]) <= 2 * SAME else _sizes(out)
+        return [Shape("flats", False, values, row=row, is_open=True)]
+    if count > 2 and even and np.ptp(out) <= 2 * SAME:
+        values = {"across_flats": 2 * float(out.mean()), "sides": float(count), "turned": turned_by(normal[0], count)}
+        return [Shape(polygon_name(count), False, values, row=row, is_open=True)]
+    values = {"flats": float(count), "turned": turned_by(normal[0], 1)}
+    values |= {"distance": float(out.mean())} if np.ptp(out) <= 2 * SAME else _sizes(out)
+    return [Shape("flats", False, values, row=row, is_open=True)]
+
+
+def _sizes(out: Floats) -> dict[str, float]:
+    return {"least": float(out.min()), "most": float(out.max())}
+
+
+def _slot(normal: complex, out: Floats, row: int) -> Shape:
+    """A slot right through; its walls face each other."""
+    middle = normal * complex(out[0] - out[1]) / 2
+    values = {"width": -float(out.sum()), "turned": turned_by(1j * normal, 2), **off_axis(middle)}
+    return Shape("slot", True, values, row=row, is_open=True)
+
+
+def keyway_of(ring: Ring) -> Shape | None:
+    """A slot that is open at one end: two parallel walls and what ends them."""
+    if ring.closed or len(ring) != 3 or not ring.is_line[[0, 2]].all():
+        return None
+    normal = ring.normal
+    if abs(np.angle(-normal[0] * normal[2].conjugate())) > _PARALLEL:
+        return None
+    out = ((ring.start + ring.end) / 2 * normal.conj()).real[[0, 2]]
+    width = -float(out.sum())
+    # The way in, along the walls to the bottom.
+    along = complex(ring.end[0] - ring.start[0])
+    along /= abs(along)
+    if width <= 0:
+        return None
+    values = {"width": width, "turned": turned_by(-along, 1)}
+    if ring.is_line[1]:
+        if abs(np.angle(normal[1] * -along)) > _PARALLEL and abs((normal[1] * along.conjugate()).imag) > _PARALLEL:
+            return None
+        bottom = (ring.start[1] + ring.end[1]) / 2
+    else:
+        if ring.sweep[1] > 0 or abs(ring.radius[1] - width / 2) > 3 * SAME:
+            return None
+        bottom = ring.center[1] + ring.radius[1] * along
+        values["radius"] = float(ring.radius[1])
+    values["distance"] = -float((bottom * along.conjugate()).real)
+    values |= off_axis(complex(normal[0]) * complex(out[0] - out[1]) / 2)
+    return Shape("keyway", True, values, row=int(ring.row[0]), is_open=True)

@@ -1,0 +1,238 @@
+"""
+Outlines as rings of sides: what several blocks make of one line or of one circle is one side again.
+
+Plane points complex, x + 1j*c [mm].
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import Self
+
+import numpy as np
+
+from polarcheck.arrays import Floats, Mask, Points, Rows
+from polarcheck.geometry.outline import Outline
+from polarcheck.geometry.plane import arc_sweep
+from polarcheck.geometry.rounding import kept_ends
+from polarcheck.geometry.shapes.shape import SAME
+
+#: A side shorter than this is what rounding leaves between two others [mm].
+_STUB = 1e-3
+#: A side is short beside another one of which it is less than this share; and how often sides are put together.
+_SHORT, _LOOKS = 0.25, 50
+#: Half of the strip in which blocks make one straight line, as rounding.kept_ends wants it [mm].
+_HALF = SAME / 8 * (1 + 1j)
+
+
+@dataclass(frozen=True, slots=True)
+class Ring:
+    """
+    Sides in the order in which they run, n of them.
+
+    start, end: complex128[n]. center: complex128[n], NaN for lines. sweep: float64[n] [rad], 0 for lines, above 0
+    counterclockwise. row: int[n], of the first block of each. closed: the last one ends where the first one starts.
+    inside: it bounds a pocket; it was turned round, so that what it encloses is on its left in either case.
+    """
+
+    start: Points
+    end: Points
+    center: Points
+    sweep: Floats
+    row: Rows
+    closed: bool
+    inside: bool = False
+
+    def __len__(self) -> int:
+        return len(self.row)
+
+    @property
+    def is_line(self) -> Mask:
+        """The side is straight."""
+        return np.asarray(self.sweep == 0)
+
+    @property
+    def radius(self) -> Floats:
+        """Of arcs [mm], NaN for lines."""
+        return np.asarray((np.abs(self.start - self.center) + np.abs(self.end - self.center)) / 2)
+
+    @property
+    def length(self) -> Floats:
+        """Of each side [mm]."""
+        chord = np.abs(self.end - self.start)
+        return np.where(self.is_line, chord, np.abs(self.sweep) * np.nan_to_num(self.radius))
+
+    @property
+    def normal(self) -> Points:
+        """Of each side of a line, or of the chord of an arc, away from what is on its left; length 1."""
+        way = self.end - self.start
+        return np.asarray(-1j * way / np.maximum(np.abs(way), 1e-12))
+
+    @property
+    def area(self) -> float:
+        """What a closed ring encloses [mm2], above 0 where it runs counterclockwise."""
+        chords = (self.start.conj() * self.end).imag
+        bows = np.where(self.is_line, 0.0, np.nan_to_num(self.radius) ** 2 * (self.sweep - np.sin(self.sweep)))
+        return float(np.sum(chords + bows)) / 2
+
+    def some(self, chosen: Rows | Mask, closed: bool | None = None) -> Self:
+        """Some of the sides, in this order."""
+        columns = {name: getattr(self, name)[chosen] for name in ("start", "end", "center", "sweep", "row")}
+        return replace(self, closed=self.closed if closed is None else closed, **columns)
+
+    def turned_round(self) -> Self:
+        """The same run the other way."""
+        back = np.arange(len(self))[::-1]
+        own = self.some(back)
+        return replace(own, start=self.end[back], end=self.start[back], sweep=-self.sweep[back])
+
+
+def rings(outline: Outline, gap: float = 0.0, bar: float = np.nan) -> Iterator[Ring]:
+    """
+    The rings of an outline, one of each chain, but for what lies outside the bar.
+
+    gap: what of a chain was closed by a straight line [mm]. bar: diameter [mm], NaN if not known.
+    """
+    for number in range(len(outline.closed)):
+        part = outline[outline.chain == number]
+        for ring in _within(_ring_of(part, bool(outline.closed[number]), gap), bar):
+            whole = _whole(ring)
+            yield replace(whole.turned_round(), inside=True) if whole.closed and whole.area < 0 else whole
+
+
+def _ring_of(part: Outline, closed: bool, gap: float) -> Ring:
+    sweep = np.where(part.is_arc, arc_sweep(part.start, part.end, part.center, part.kind), 0.0)
+    start, end, center, row = part.start, part.end, part.center, part.row
+    left = abs(end[-1] - start[0]) if len(row) else 0.0
+    if not closed and 0 < left <= gap + SAME:
+        start, end = np.append(start, end[-1]), np.append(end, start[0])
+        center, sweep, row = np.append(center, np.nan), np.append(sweep, 0.0), np.append(row, row[-1])
+        closed = True
+    ring = Ring(start, end, center, sweep, row, closed)
+    return ring.some(ring.length > _STUB)
+
+
+def _within(ring: Ring, bar: float) -> Iterator[Ring]:
+    """What of a ring cuts into the bar; where it runs outside, it is in pieces."""
+    if np.isnan(bar) or not len(ring):
+        yield ring
+        return
+    out = _nearest(ring) >= bar / 2 - SAME
+    if not out.any():
+        yield ring
+        return
+    if ring.closed:
+        first = int(np.argmax(out))
+        order = np.roll(np.arange(len(ring)), -first)
+        ring, out = ring.some(order), out[order]
+    number = np.cumsum(np.diff(out, prepend=True) != 0)
+    for piece in np.unique(number[~out]):
+        yield ring.some(np.flatnonzero((number == piece) & ~out), closed=False)
+
+
+def _nearest(ring: Ring) -> Floats:
+    """How near each side comes to the axis, arcs as their ends and middles [mm]."""
+    way = ring.end - ring.start
+    share = np.clip(-(ring.start * way.conj()).real / np.maximum(np.abs(way) ** 2, 1e-12), 0, 1)
+    on_line = np.abs(ring.start + share * way)
+    middle = np.abs(ring.center + (ring.start - ring.center) * np.exp(0.5j * ring.sweep))
+    on_arc = np.minimum(np.minimum(np.abs(ring.start), np.abs(ring.end)), middle)
+    nearest: Floats = np.where(ring.is_line, on_line, on_arc)
+    return nearest
+
+
+def _whole(ring: Ring) -> Ring:
+    """The ring with each line and each arc as one side."""
+    for _ in range(_LOOKS):
+        ring = _merged_arcs(_straightened(_begun_at_corner(ring)))
+        taken = _taken_over(ring)
+        if taken is None:
+            break
+        ring = taken
+    return ring
+
+
+def _taken_over(ring: Ring) -> Ring | None:
+    """
+    The ring with short sides as parts of the long ones beside them on whose curves they lie; None where there are none.
+
+    Two passes round one contour, or a lead that touches it, cut into each other by what their points are rounded by.
+    """
+    if len(ring) < 2:
+        return None
+    center, sweep, row = ring.center.copy(), ring.sweep.copy(), ring.row.copy()
+    half = np.exp(0.5j * ring.sweep)
+    middle = np.where(ring.is_line, (ring.start + ring.end) / 2, ring.center + (ring.start - ring.center) * half)
+    points, length = np.stack([ring.start, middle, ring.end]), ring.length
+    for step in (1, -1):
+        beside = np.roll(np.arange(len(ring)), step)
+        if not ring.closed:
+            beside[0 if step > 0 else -1] = 0 if step > 0 else len(ring) - 1
+        on_circle = np.abs(np.abs(points - ring.center[beside]) - ring.radius[beside])
+        on_line = np.abs(((points - ring.start[beside]) * ring.normal[beside].conj()).real)
+        line = ring.is_line[beside]
+        off = np.where(line, on_line, np.nan_to_num(on_circle, nan=np.inf)).max(axis=0)
+        taken = (off <= SAME) & (length < _SHORT * length[beside])
+        about = ring.center[beside]
+        turn = np.angle((ring.end - about) * (ring.start - about).conj())
+        center[taken], sweep[taken] = about[taken], np.where(line, 0.0, np.nan_to_num(turn))[taken]
+        row[taken] = ring.row[beside][taken]
+    if np.array_equal(sweep, ring.sweep):
+        return None
+    return replace(ring, center=center, sweep=sweep, row=row)
+
+
+def _begun_at_corner(ring: Ring) -> Ring:
+    """A closed ring begun where it turns most, so that no side is torn."""
+    if not ring.closed or len(ring) < 2:
+        return ring
+    into, out = directions(ring)
+    turn = np.abs(np.angle(out * np.roll(into, 1).conj()))
+    kinds = ring.is_line != np.roll(ring.is_line, 1)
+    other = np.nan_to_num(np.abs(ring.center - np.roll(ring.center, 1))) > SAME
+    best = int(np.argmax(turn + 0.1 * (kinds | other)))
+    return ring.some(np.roll(np.arange(len(ring)), -best))
+
+
+def directions(ring: Ring) -> tuple[Points, Points]:
+    """Unit vectors in which each side ends, and in which it begins."""
+    way = ring.end - ring.start
+    turning = 1j * np.sign(ring.sweep)
+    into = np.where(ring.is_line, way, turning * (ring.end - np.nan_to_num(ring.center)))
+    out = np.where(ring.is_line, way, turning * (ring.start - np.nan_to_num(ring.center)))
+    unit: list[Points] = [np.asarray(one / np.maximum(np.abs(one), 1e-12), np.complex128) for one in (into, out)]
+    return unit[0], unit[1]
+
+
+def _straightened(ring: Ring) -> Ring:
+    """Lines in a row that are straight but for the rounding of their ends as one."""
+    if len(ring) < 2:
+        return ring
+    line = ring.is_line
+    joins = np.append(False, line[1:] & line[:-1])
+    kept = kept_ends(ring.start, ring.end, joins, np.full(len(ring), _HALF)) | ~line
+    return _joined(ring, np.append(True, kept[:-1]))
+
+
+def _merged_arcs(ring: Ring) -> Ring:
+    """Arcs in a row of one circle as one; a whole circle is one arc."""
+    if len(ring) < 2:
+        return ring
+    arc = ~ring.is_line
+    center, radius = np.nan_to_num(ring.center), np.nan_to_num(ring.radius)
+    same = (np.abs(np.diff(center)) <= 2 * SAME) & (np.abs(np.diff(radius)) <= SAME)
+    turns = np.sign(ring.sweep)
+    short = np.minimum(ring.length[1:], ring.length[:-1]) < 2 * SAME  # what rounding leaves may run back
+    same &= arc[1:] & arc[:-1] & ((turns[1:] == turns[:-1]) | short)
+    return _joined(ring, np.append(True, ~same))
+
+
+def _joined(ring: Ring, begins: Mask) -> Ring:
+    first = np.flatnonzero(begins)
+    last = np.append(first[1:], len(ring)) - 1
+    weight = np.maximum(np.abs(ring.sweep), 1e-12)
+    center: Points = np.add.reduceat(np.asarray(ring.center * weight, np.complex128), first)
+    center = center / np.add.reduceat(weight, first)
+    sweep = np.add.reduceat(ring.sweep, first)
+    return Ring(ring.start[first], ring.end[last], center, sweep, ring.row[first], ring.closed, ring.inside)

@@ -1,0 +1,75 @@
+"""A shape: its name and its numbers; lengths in mm, angles in degrees against C0, points x + 1j*c."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from typing import NamedTuple
+
+#: Sizes and places that agree in this [mm] are the same: what the last digit of a program in inches may move a side by.
+SAME = 0.004
+#: Directions that agree in this are the same, where a length gives no better measure [rad].
+SAME_DIRECTION = 2e-3
+
+#: Of polygons with so many sides; those with more are told by their number.
+POLYGONS = {
+    3: "triangle",
+    4: "square",
+    5: "pentagon",
+    6: "hexagon",
+    7: "heptagon",
+    8: "octagon",
+    9: "nonagon",
+    10: "decagon",
+    12: "dodecagon",
+}
+
+
+class OddSide(NamedTuple):
+    """A side that differs from the others: the row of its block and its size as it is told of the others [mm]."""
+
+    row: int
+    size: float
+
+
+class Shape(NamedTuple):
+    """
+    What one outline is.
+
+    name: circle, triangle to dodecagon or `11-sided`, rectangle, polygon, round with flats, flats, slot, keyway, cam,
+    cross, contour. inside: it is a pocket. values: its numbers [mm, mm2, deg], each only where it applies:
+
+    diameter; across_flats (of an odd number of sides twice the distance of a side from the middle), width, length,
+    sides, flats, distance (of a flat from the axis), apart (of parallel flats, of the circles of a cam), corner_radius
+    or corner_chamfer, and corner_least where corners differ; radius, radius_small (of a cam, of the end of a slot);
+    turned (the direction of the first side's normal or of the length); center_x, center_c, where it is off the axis;
+    x_least, x_most, c_least, c_most, area, inside_radius of contours; least, most where sides differ.
+
+    odd: the sides that differ from the others. row: of its first block. is_regular: False where what has the name of a
+    regular polygon is none. is_open: nobody knows what the part is like beyond its ends.
+    """
+
+    name: str
+    inside: bool
+    values: dict[str, float]
+    odd: tuple[OddSide, ...] = ()
+    row: int = -1
+    is_regular: bool = True
+    is_open: bool = False
+
+
+def polygon_name(sides: int) -> str:
+    """The name of a regular polygon."""
+    return POLYGONS.get(sides, f"{sides}-sided")
+
+
+def turned_by(direction: complex, count: int) -> float:
+    """The direction of what looks the same `count` times in a turn [deg], the least above 0."""
+    step = 360 / count
+    turned = math.degrees(cmath.phase(direction)) % step
+    return 0.0 if min(turned, step - turned) < math.degrees(SAME_DIRECTION) / 4 else turned
+
+
+def off_axis(center: complex) -> dict[str, float]:
+    """Where the middle of a shape is, if it is off the axis."""
+    return {} if abs(center) <= SAME else {"center_x": float(center.real), "center_c": float(center.imag)}

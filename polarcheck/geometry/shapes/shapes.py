@@ -1,0 +1,68 @@
+"""The shapes of an outline."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from polarcheck.geometry.outline import Outline
+from polarcheck.geometry.plane import passes_toward
+from polarcheck.geometry.shapes.corners import sides_of
+from polarcheck.geometry.shapes.open_ones import flats_of, keyway_of
+from polarcheck.geometry.shapes.polygons import cross_of, in_chords, polygon_of
+from polarcheck.geometry.shapes.rings import Ring, directions, rings
+from polarcheck.geometry.shapes.rounds import round_of, two_rounds_of
+from polarcheck.geometry.shapes.shape import SAME_DIRECTION, Shape
+
+
+def shapes_of(outline: Outline, gap: float = 0.0, bar: float = np.nan) -> list[Shape]:
+    """
+    What an outline is, a shape for each boss and each pocket, open ones first.
+
+    gap: what of it was closed by a straight line [mm]. bar: diameter [mm], NaN if not known.
+    """
+    found = [ring for ring in rings(outline, gap, bar) if len(ring)]
+    single = [ring for ring in found if not ring.closed and len(ring) == 1 and ring.is_line[0]]
+    others = [ring for ring in found if not any(ring is one for one in single)]
+    return [*flats_of(single), *(_shape_of(ring) for ring in others)]
+
+
+def _shape_of(ring: Ring) -> Shape:
+    sides = sides_of(ring)
+    of_sides = sides and (in_chords(ring, sides) or polygon_of(ring, sides) or cross_of(ring, sides))
+    return round_of(ring) or two_rounds_of(ring) or of_sides or keyway_of(ring) or _contour(ring)
+
+
+def _contour(ring: Ring) -> Shape:
+    """Anything else, by its extents."""
+    x, c = _extents(ring, 1), _extents(ring, 1j)
+    values = {"x_least": x[0], "x_most": x[1], "c_least": c[0], "c_most": c[1]}
+    if ring.closed:
+        values["area"] = ring.area
+    values |= _inside_radius(ring)
+    return Shape("contour", ring.inside, values, row=int(ring.row[0]), is_open=not ring.closed)
+
+
+def _extents(ring: Ring, axis: complex) -> tuple[float, float]:
+    """The least and the largest coordinate along an axis, those of arcs between their ends included."""
+    ends = np.concatenate([ring.start, ring.end])
+    places = [(ends * np.conj(axis)).real]
+    arcs = np.flatnonzero(~ring.is_line)
+    for sign in (1, -1):
+        toward = np.full(len(arcs), sign * axis, np.complex128)
+        there = passes_toward(ring.start[arcs] - ring.center[arcs], ring.sweep[arcs], toward)
+        top = ring.center[arcs] + sign * axis * ring.radius[arcs]
+        places.append((top[there] * np.conj(axis)).real)
+    along = np.concatenate(places)
+    return float(along.min()), float(along.max())
+
+
+def _inside_radius(ring: Ring) -> dict[str, float]:
+    """The smallest radius into which the tool has to go [mm], 0 for a sharp inside corner; none where there is none."""
+    air = 1 if ring.inside else -1
+    hollow = ring.radius[(ring.sweep * air) > 0]
+    into, out = directions(ring)
+    turn = np.angle(np.roll(out, -1) * into.conj()) * air
+    sharp = (turn if ring.closed else turn[:-1]) > 20 * SAME_DIRECTION
+    if sharp.any():
+        return {"inside_radius": 0.0}
+    return {"inside_radius": float(hollow.min())} if len(hollow) else {}
