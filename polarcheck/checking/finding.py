@@ -136,10 +136,58 @@ class PolarSection(msgspec.Struct, frozen=True, kw_only=True):
     channel: str | UnsetType = UNSET
 
 
+class OddSide(msgspec.Struct, frozen=True, kw_only=True):
+    """A side of a part that differs from the others: the line of its block and its size [mm]."""
+
+    line: int
+    size: float
+
+
+class LeftStanding(msgspec.Struct, frozen=True, kw_only=True):
+    """
+    What the tool leaves beside the finished part. kind: corner, rib or strip. text: the same in words. line: of the
+    block with which the tool leaves it, null for corners. size: R of corners, else how high or thick it is [mm].
+    count: of corners. place: [x, c], null for corners.
+    """
+
+    kind: str
+    text: str
+    line: int | None
+    size: float
+    count: int = 1
+    place: tuple[float, float] | None = None
+
+
+class MadeShape(msgspec.Struct, frozen=True, kw_only=True):
+    """
+    What a polar section makes at one or more depths.
+
+    Lines: of its G12.1 and of its end. depths: Z of each pass [mm], in the order of the program; z: the deepest, null
+    where it is not known. shape: hexagon, circle, flats, slot, contour, ...; inside: a pocket. values: its sizes [mm,
+    mm2, deg], see docs/part.md. odd: sides that differ from the others. text: all of it in words. left_standing: what
+    the tool does not take off. needs: why nothing, or not all, is known, and what to give; null where all is.
+    """
+
+    line: int
+    end_line: int
+    z: float | None
+    depths: list[float]
+    shape: str | None
+    inside: bool
+    is_regular: bool
+    values: dict[str, float]
+    odd: list[OddSide]
+    text: str
+    left_standing: list[LeftStanding] = []
+    needs: str | None = None
+    channel: str | UnsetType = UNSET
+
+
 class FileReport(msgspec.Struct, frozen=True, kw_only=True):
     """
     All about one file. machine: its name, as it was asked for. Verdict: pass, fail or unverified. polar_sections: what
-    it rests on. looked_at: at what of the file was looked; outside polar sections text, flow and position only.
+    it rests on. looked_at: at what of the file was looked; outside polar sections text, flow and position only. part:
+    what the program makes, where that was asked for.
     """
 
     path: str
@@ -153,6 +201,7 @@ class FileReport(msgspec.Struct, frozen=True, kw_only=True):
     not_evaluated: list[NotEvaluated]
     looked_at: list[str] = []
     silenced: list[Silenced] = []
+    part: list[MadeShape] | UnsetType = UNSET
 
 
 class Producer(msgspec.Struct, frozen=True):

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from polarcheck.arrays import Mask, Rows
-from polarcheck.table.overcuts import Overcuts
+from polarcheck.table.overcuts import Overcuts, level_of
 from polarcheck.table.trace import Trace
 
 if TYPE_CHECKING:
@@ -54,17 +54,24 @@ class Finished:
 
         Raises TooHardError where their faces cannot be computed.
         """
-        walls, left = self.overcuts.walls
+        return self._levels_of(*self.overcuts.walls)
+
+    @cached_property
+    def meant(self) -> list[Level]:
+        """The same of contours whose R is not known, which is 0 in them: what the program is meant to make."""
+        return self._levels_of(*self.overcuts.walls_of_unknown_radius)
+
+    def _levels_of(self, walls: Curves, left: Mask) -> list[Level]:
         if not len(walls):
             return []
         from polarcheck.geometry.finished_part import Contours, finished_parts
 
-        trace, level = self.trace, self.overcuts.level
+        trace, level = self.trace, level_of(self.trace, walls)
         # Levels in the order in which the program comes to them.
         _, first, level = np.unique(level, return_index=True, return_inverse=True)
         place = np.argsort(np.argsort(first))[level]
         radius = np.zeros(len(first))
-        np.maximum.at(radius, place, np.abs(trace.radius[walls.row]))
+        np.maximum.at(radius, place, np.nan_to_num(np.abs(trace.radius[walls.row])))
         begins = np.flatnonzero(np.diff(walls.loop, prepend=-1))
         order = np.argsort(place[begins], kind="stable")
         loops, groups = walls.loop[begins][order], place[begins][order]

@@ -31,6 +31,18 @@ def loop_of_row(trace: Trace) -> Rows:
     return np.where(trace.compensates, np.cumsum(begins), -1)
 
 
+def level_of(trace: Trace, walls: Curves) -> Rows:
+    """For each of these walls the number of the section and the Z that its loop begins at."""
+    first = np.flatnonzero(np.diff(walls.loop, prepend=-1))
+    row = walls.row[first]
+    z = np.round(trace.z[row] / ROUNDING)
+    # Where Z is not known, what lies between two Z moves is at one level.
+    moved = np.where(np.isnan(z), np.cumsum(trace.moves_z & ~trace.travels)[row], 0)
+    keys = np.stack([trace.section[row], np.nan_to_num(z), moved], axis=1)
+    _, number = np.unique(keys, axis=0, return_inverse=True)
+    return np.asarray(number[np.cumsum(np.diff(walls.loop, prepend=-1) != 0) - 1])
+
+
 class Cuts(NamedTuple):
     """Cuts into the contour, one element each: the row that cuts, the row cut into, depth [mm], place (plane point)."""
 
@@ -147,11 +159,28 @@ class Overcuts:
 
     @cached_property
     def _all_walls(self) -> Curves:
+        return self._walls_of(self.has_walls)
+
+    def _walls_of(self, rows_of_cutters: Mask) -> Curves:
         trace = self.trace
         programmed = programmed_moves(trace)
         rows = programmed.row
-        chosen = (self.loop[rows] >= 0) & ~trace.starts_up[rows] & programmed.known & self.has_walls[rows]
+        chosen = (self.loop[rows] >= 0) & ~trace.starts_up[rows] & programmed.known & rows_of_cutters[rows]
         return curves_of(programmed, self.loop[rows], chosen)
+
+    @cached_property
+    def walls_of_unknown_radius(self) -> tuple[Curves, Mask]:
+        """
+        The same of rows whose R is not known: what they are programmed to make if R is that of a cutter.
+
+        A part hangs on the side of the tool, not on its R, unless R is negative.
+        """
+        from polarcheck.geometry import bounds
+
+        walls = self._walls_of(np.isnan(self.radius) & ~self.trace.sides_are_open)
+        far = bounds.far_loops(walls, walls) if len(walls) else np.zeros(0, np.int64)
+        walls = walls[~np.isin(walls.loop, far)]
+        return walls, self.trace.side[walls.row] == Side.LEFT
 
     @cached_property
     def path(self) -> tuple[Curves, Mask]:
@@ -210,15 +239,7 @@ class Overcuts:
     @cached_property
     def level(self) -> Rows:
         """For each of the walls the number of the section and the Z that its loop begins at."""
-        walls, _ = self.walls
-        first = np.flatnonzero(np.diff(walls.loop, prepend=-1))
-        row = walls.row[first]
-        z = np.round(self.trace.z[row] / ROUNDING)
-        # Where Z is not known, what lies between two Z moves is at one level.
-        moved = np.where(np.isnan(z), np.cumsum(self.trace.moves_z & ~self.trace.travels)[row], 0)
-        keys = np.stack([self.trace.section[row], np.nan_to_num(z), moved], axis=1)
-        _, number = np.unique(keys, axis=0, return_inverse=True)
-        return np.asarray(number[np.cumsum(np.diff(walls.loop, prepend=-1) != 0) - 1])
+        return level_of(self.trace, self.walls[0])
 
     @cached_property
     def cuts(self) -> Cuts:

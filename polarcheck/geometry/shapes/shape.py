@@ -43,7 +43,9 @@ class Shape(NamedTuple):
     sides, flats, distance (of a flat from the axis), apart (of parallel flats, of the circles of a cam), corner_radius
     or corner_chamfer, and corner_least where corners differ; radius, radius_small (of a cam, of the end of a slot);
     turned (the direction of the first side's normal or of the length); center_x, center_c, where it is off the axis;
-    x_least, x_most, c_least, c_most, area, inside_radius of contours; least, most where sides differ.
+    x_least, x_most, c_least, c_most, area, inside_radius of contours; least, most where sides differ;
+    inside_corners: how many sharp ones the cutter cannot reach into; regular_by_x: by what X is to be multiplied to
+    make it regular.
 
     odd: the sides that differ from the others. row: of its first block. is_regular: False where what has the name of a
     regular polygon is none. is_open: nobody knows what the part is like beyond its ends.

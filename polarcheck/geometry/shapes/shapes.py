@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from polarcheck.arrays import Mask
 from polarcheck.geometry.outline import Outline
 from polarcheck.geometry.plane import passes_toward
 from polarcheck.geometry.shapes.corners import sides_of
@@ -27,6 +28,12 @@ def shapes_of(outline: Outline, gap: float = 0.0, bar: float = np.nan) -> list[S
 
 
 def _shape_of(ring: Ring) -> Shape:
+    found = _recognised(ring)
+    sharp = int(np.count_nonzero(_is_sharp_inside(ring)))
+    return found._replace(values={**found.values, "inside_corners": float(sharp)}) if sharp else found
+
+
+def _recognised(ring: Ring) -> Shape:
     sides = sides_of(ring)
     of_sides = sides and (in_chords(ring, sides) or polygon_of(ring, sides) or cross_of(ring, sides))
     return round_of(ring) or two_rounds_of(ring) or of_sides or keyway_of(ring) or _contour(ring)
@@ -58,11 +65,21 @@ def _extents(ring: Ring, axis: complex) -> tuple[float, float]:
 
 def _inside_radius(ring: Ring) -> dict[str, float]:
     """The smallest radius into which the tool has to go [mm], 0 for a sharp inside corner; none where there is none."""
-    air = 1 if ring.inside else -1
-    hollow = ring.radius[(ring.sweep * air) > 0]
-    into, out = directions(ring)
-    turn = np.angle(np.roll(out, -1) * into.conj()) * air
-    sharp = (turn if ring.closed else turn[:-1]) > 20 * SAME_DIRECTION
-    if sharp.any():
+    hollow = ring.radius[(ring.sweep * _air(ring)) > 0]
+    if _is_sharp_inside(ring).any():
         return {"inside_radius": 0.0}
     return {"inside_radius": float(hollow.min())} if len(hollow) else {}
+
+
+def _is_sharp_inside(ring: Ring) -> Mask:
+    """The sides behind which the tool finds a sharp inside corner."""
+    into, out = directions(ring)
+    turn = np.angle(np.roll(out, -1) * into.conj()) * _air(ring)
+    sharp = turn > 20 * SAME_DIRECTION
+    sharp[-1] &= ring.closed
+    return np.asarray(sharp)
+
+
+def _air(ring: Ring) -> int:
+    """On which side of a ring the tool is: 1 for its left."""
+    return 1 if ring.inside else -1

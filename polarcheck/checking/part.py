@@ -1,0 +1,244 @@
+"""What a program makes: the shapes of its finished part, section by section and depth by depth."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, NamedTuple
+
+import msgspec
+import numpy as np
+
+from polarcheck.checking.finding import FileReport, LeftStanding, MadeShape, OddSide
+from polarcheck.checking.phrases.offsets import called_tool, to_give
+from polarcheck.checking.phrases.part import Sizes, shape_in_words
+from polarcheck.checking.quantity import rounded
+from polarcheck.checking.tables import Tables
+from polarcheck.errors import TooHardError
+from polarcheck.geometry.shapes.shape import SAME, Shape
+from polarcheck.geometry.tolerances import ROUNDING
+from polarcheck.machines.modal import Units
+
+if TYPE_CHECKING:
+    from polarcheck.table.finished import Finished, Level
+    from polarcheck.table.overcuts import Overcuts
+    from polarcheck.table.trace import Trace
+
+
+def part_of(report: FileReport, runs: Sequence[tuple[str, Tables]]) -> FileReport:
+    """The report with what the program makes, in its first run and in each channel."""
+    made: list[MadeShape] = []
+    channels: list[str] = []
+    for _, tables in runs:
+        channel = tables["text"].source.channel
+        if channel in channels:
+            continue
+        channels.append(channel)
+        made += [msgspec.structs.replace(one, channel=channel) if channel else one for one in made_by(tables)]
+    return msgspec.structs.replace(report, part=made)
+
+
+class _Depth(NamedTuple):
+    """What one depth of a section makes. radius: R of the cutter [mm], NaN if not known. needs: as in MadeShape."""
+
+    section: int
+    z: float
+    radius: float
+    shapes: list[Shape]
+    needs: str | None
+
+
+def made_by(tables: Tables) -> list[MadeShape]:
+    """What one run makes, an entry for each shape of each section, with all its depths."""
+    trace: Trace = tables["trace"]
+    if not len(trace.sections):
+        return []
+    from polarcheck.checking.tool_paths import depths_of_paths
+
+    found: list[_Depth] = []
+    try:
+        found = [*_of_contours(tables), *(_Depth(*one) for one in depths_of_paths(tables))]
+        standing = _ribs_and_strips(tables)
+    except TooHardError as error:
+        return [_nothing(trace, section, str(error)) for section in range(len(trace.sections))]
+    made = []
+    for section in range(len(trace.sections)):
+        own = [depth for depth in found if depth.section == section]
+        entries = [*_merged(trace, own)]
+        left = [one for number, one in standing if number == section]
+        if left and entries:
+            entries[0] = msgspec.structs.replace(entries[0], left_standing=[*entries[0].left_standing, *left])
+        made += entries or [_nothing(trace, section, _why_nothing(tables, section))]
+    return made
+
+
+def shapes_of_level(trace: Trace, level: Level) -> list[Shape]:
+    """What the contours of one depth make."""
+    from polarcheck.geometry.shapes.shapes import shapes_of
+
+    return [] if level.tangled else shapes_of(level.outline, level.gap, _bar(trace))
+
+
+def level_in_words(trace: Trace, level: Level) -> str:
+    """The same as text, in the units of the program; empty where nothing is to be told."""
+    shapes = shapes_of_level(trace, level)
+    return "; ".join(_words(trace, shape, int(level.walls.row[0])) for shape in shapes)
+
+
+def _bar(trace: Trace) -> float:
+    diameter = trace.stock_diameter[trace.compensates]
+    return float(diameter[0]) if len(diameter) else np.nan
+
+
+def _words(trace: Trace, shape: Shape, row: int) -> str:
+    sizes = Sizes(bool(trace.units[row] == Units.INCH))
+    return shape_in_words(shape, lambda at: int(trace.line_in_file[at]), sizes)
+
+
+# ---- contours with G41 and G42 ----
+
+
+def _of_contours(tables: Tables) -> Iterator[_Depth]:
+    trace: Trace = tables["trace"]
+    finished: Finished = tables["finished"]
+    for level in finished.levels:
+        why = "its contour crosses itself too often to say what it makes" if level.tangled else None
+        yield _Depth(level.section, level.z, level.radius, shapes_of_level(trace, level), why)
+    for level in finished.meant:
+        row = int(level.walls.row[0])
+        why = f"R of {called_tool(trace, row)} is not known, so whether the tool makes it was not looked at"
+        shapes = shapes_of_level(trace, level)
+        yield _Depth(level.section, level.z, np.nan, shapes, f"{why}: {to_give(trace, row, 'radius')}")
+
+
+def _ribs_and_strips(tables: Tables) -> list[tuple[int, LeftStanding]]:
+    """What the tool leaves between passes and where it comes and goes; with the section."""
+    trace: Trace = tables["trace"]
+    overcuts: Overcuts = tables["overcuts"]
+    if not overcuts.compensates:
+        return []
+    coverage = tables["coverage"]
+    found = []
+    for kind, left in (("rib", coverage.ribs), ("strip", coverage.strips)):
+        for row in np.flatnonzero(left.height > 0).tolist():
+            sizes = Sizes(bool(trace.units[row] == Units.INCH))
+            place, line = complex(left.place[row]), int(trace.line_in_file[row])
+            size = float(left.height[row])
+            how = "high" if kind == "rib" else "thick"
+            text = f"a {kind} {sizes(size)} {how} behind line {line}, at x {sizes(place.real)} c {sizes(place.imag)}"
+            told = LeftStanding(
+                kind=kind, text=text, line=line, size=round(size, 6), place=(round(place.real, 6), round(place.imag, 6))
+            )
+            found.append((int(trace.section[row]), told))
+    return found
+
+
+# ---- entries ----
+
+
+def _merged(trace: Trace, depths: Sequence[_Depth]) -> Iterator[MadeShape]:
+    """One entry for each shape, whatever the number of depths at which it is made."""
+    groups: list[list[_Depth]] = []
+    for depth in depths:
+        same = next((group for group in groups if _are_same(group[0], depth)), None)
+        if same is None:
+            groups.append([depth])
+        else:
+            same.append(depth)
+    for group in groups:
+        first = group[0]
+        if not first.shapes and first.needs:
+            yield _nothing(trace, first.section, first.needs)
+        for shape in first.shapes:
+            yield _entry(trace, group, shape)
+
+
+def _are_same(one: _Depth, other: _Depth) -> bool:
+    return (
+        len(one.shapes) == len(other.shapes) and one.needs == other.needs and all(map(_alike, one.shapes, other.shapes))
+    )
+
+
+def _alike(one: Shape, other: Shape) -> bool:
+    if (one.name, one.inside, len(one.odd)) != (other.name, other.inside, len(other.odd)):
+        return False
+    if one.values.keys() != other.values.keys():
+        return False
+    return all(abs(value - other.values[name]) <= 2 * SAME for name, value in one.values.items() if name != "area")
+
+
+def _entry(trace: Trace, group: Sequence[_Depth], shape: Shape) -> MadeShape:
+    first = group[0]
+    row = shape.row if shape.row >= 0 else int(trace.sections.enter[first.section])
+    sizes = Sizes(bool(trace.units[row] == Units.INCH))
+    known = [depth.z for depth in group if not np.isnan(depth.z)]
+    line, end_line = _lines(trace, first.section)
+    odd = [OddSide(line=int(trace.line_in_file[side.row]), size=round(side.size, 6)) for side in shape.odd]
+    words = _words(trace, shape, row)
+    return MadeShape(
+        line=line,
+        end_line=end_line,
+        z=rounded(min(known)) if known else None,
+        depths=[round(z, 6) for z in known],
+        shape=shape.name,
+        inside=shape.inside,
+        is_regular=shape.is_regular,
+        values={name: round(value, 6) + 0.0 for name, value in shape.values.items()},
+        odd=odd,
+        text=f"{words}; {_depths_in_words(known, sizes)}" if known else words,
+        left_standing=[*_corners_left(shape, first.radius, sizes)],
+        needs=first.needs,
+    )
+
+
+def _depths_in_words(depths: Sequence[float], sizes: Sizes) -> str:
+    """`to Z-6.000 in 3 passes, 2.000 each`; the passes of one depth count once."""
+    deep = sorted({round(z, 6) for z in depths}, reverse=True)
+    text = f"to Z{sizes(deep[-1])}"
+    if len(deep) == 1:
+        return text
+    steps = -np.diff(deep)
+    even = f", {sizes(float(steps.mean()))} each" if np.ptp(steps) <= ROUNDING + SAME and len(deep) > 2 else ""
+    return f"{text} in {len(deep)} passes from Z{sizes(deep[0])}{even}"
+
+
+def _corners_left(shape: Shape, radius: float, sizes: Sizes) -> Iterator[LeftStanding]:
+    """The inside corners that no round cutter reaches into."""
+    count = int(shape.values.get("inside_corners", 0))
+    if count and radius > ROUNDING:
+        where = "1 inside corner" if count == 1 else f"{count} inside corners"
+        text = f"R{sizes(radius)} of the cutter in {where}"
+        yield LeftStanding(kind="corner", text=text, line=None, size=round(radius, 6), count=count)
+
+
+def _lines(trace: Trace, section: int) -> tuple[int, int]:
+    """Of the G12.1 and of the end of a section."""
+    sections = trace.sections
+    last = int(sections.leave[section]) - int(not (sections.left[section] and not sections.returned[section]))
+    return tuple(int(trace.line_in_file[row]) for row in (sections.enter[section], min(last, len(trace) - 1)))  # type: ignore[return-value]
+
+
+def _nothing(trace: Trace, section: int, needs: str) -> MadeShape:
+    line, end_line = _lines(trace, section)
+    return MadeShape(
+        line=line,
+        end_line=end_line,
+        z=None,
+        depths=[],
+        shape=None,
+        inside=False,
+        is_regular=False,
+        values={},
+        odd=[],
+        text=f"not known: {needs}",
+        needs=needs,
+    )
+
+
+def _why_nothing(tables: Tables, section: int) -> str:
+    trace: Trace = tables["trace"]
+    own = trace.section == section
+    if not (own & trace.cuts & trace.on_plane).any():
+        return "it cuts nothing in the plane"
+    if not (own & trace.compensates).any():
+        return "its path goes round nothing, and is not straight"
+    return "its contour leaves nothing standing that could be told: a position is not known, or it does not close"

@@ -1,0 +1,199 @@
+"""What a program makes, in the words and numbers of a drawing."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import NamedTuple
+
+from polarcheck.geometry.shapes.shape import Shape
+from polarcheck.machines.modal import MM_PER_INCH
+
+
+class Sizes(NamedTuple):
+    """How lengths are shown: in inch, with four digits behind the point, or in mm with three."""
+
+    inch: bool
+
+    def __call__(self, value: float) -> str:
+        """A length [mm]."""
+        return f"{value / MM_PER_INCH:.4f}" if self.inch else f"{value:.3f}"
+
+    def area(self, value: float) -> str:
+        """An area [mm2]."""
+        return f"{value / MM_PER_INCH**2:.4f} inch2" if self.inch else f"{value:.1f} mm2"
+
+
+def shape_in_words(shape: Shape, line_of: Callable[[int], int], sizes: Sizes) -> str:
+    """
+    A shape as a note on a drawing: `hexagon, 27.000 across flats, corners R0.500, turned by 30 deg`.
+
+    line_of: the line of a row of the program.
+    """
+    value = shape.values
+    told = _TOLD.get(shape.name, _polygon)(shape, line_of, sizes)
+    told += _corners(value, sizes)
+    if shape.name != "circle" and "turned" in value:
+        told += _turned(shape)
+    told += _off_axis(value, shape, sizes)
+    if shape.name in ("contour", "polygon") or "regular_by_x" in value or ("x_least" in value and not shape.is_regular):
+        told += _extents(value, sizes)
+    if shape.is_open and shape.name == "contour":
+        told.append("open: beyond its ends the part is not known")
+    text = ", ".join(told)
+    return f"pocket: {text}" if shape.inside and not shape.is_open else text
+
+
+_Told = list[str]
+_Line = Callable[[int], int]
+
+
+def _circle(shape: Shape, line_of: _Line, sizes: Sizes) -> _Told:
+    value = shape.values
+    chords = [f"in {value['chords']:.0f} straight lines"] if "chords" in value else []
+    return [f"circle {sizes(value['diameter'])}", *chords]
+
+
+def _polygon(shape: Shape, line_of: _Line, sizes: Sizes) -> _Told:
+    value = shape.values
+    if "across_flats" not in value or "regular_by_x" in value:
+        return _uneven(shape, sizes)
+    count, across = int(value["sides"]), value["across_flats"]
+    told = [shape.name, f"{sizes(across)} across flats"]
+    if shape.odd:
+        told = [f"{shape.name}, not quite regular", f"{count - len(shape.odd)} sides of {sizes(across)}"]
+        told += [f"one of {sizes(odd.size)} (line {line_of(odd.row)})" for odd in shape.odd]
+    elif "least" in value:
+        told = [f"{shape.name}, not quite regular", f"{sizes(value['least'])} to {sizes(value['most'])} across flats"]
+    if count % 2 or shape.odd:
+        told.append("sizes are twice the distance of a side from the middle")
+    if "corner_diameter" in value:
+        told.append(f"corners round at {sizes(value['corner_diameter'])}")
+    return told
+
+
+def _uneven(shape: Shape, sizes: Sizes) -> _Told:
+    value = shape.values
+    told = [f"{shape.name} with {value['sides']:.0f} sides" if shape.name == "polygon" else shape.name, "not regular"]
+    if "least" in value:
+        told.append(f"{sizes(value['least'])} to {sizes(value['most'])} across flats")
+    if "regular_by_x" in value:
+        how = "doubled" if value["regular_by_x"] > 1 else "halved"
+        told.append(
+            f"with X {how} it would be regular and {sizes(value['across_flats'])} across flats: "
+            "do its words mix radius and diameter?"
+        )
+    return told
+
+
+def _rectangle(shape: Shape, line_of: _Line, sizes: Sizes) -> _Told:
+    return [f"rectangle {sizes(shape.values['length'])} x {sizes(shape.values['width'])}"]
+
+
+def _round_with_flats(shape: Shape, line_of: _Line, sizes: Sizes) -> _Told:
+    value = shape.values
+    count = int(value["flats"])
+    told = [f"round {sizes(value['diameter'])} with {'one flat' if count == 1 else f'{count} flats'}"]
+    if "apart" in value:
+        told[0] += f" {sizes(value['apart'])} apart"
+    middle = "center of the circle" if "center_x" in value else "center"
+    if "distance" in value and "apart" not in value:
+        told[0] += f", {sizes(value['distance'])} from the {middle}"
+    if "least" in value:
+        told.append(f"{sizes(value['least'])} to {sizes(value['most'])} from the {middle}")
+    return told
+
+
+def _flats(shape: Shape, line_of: _Line, sizes: Sizes) -> _Told:
+    value = shape.values
+    count = int(value["flats"])
+    if "apart" in value:
+        told = [f"flats {sizes(value['apart'])} apart"]
+        return told + ([] if "distance" in value else [_from_to(value, sizes)])
+    if count == 1:
+        return [f"flat {sizes(value['distance'])} from the center"]
+    where = f"{sizes(value['distance'])} from the center" if "distance" in value else _from_to(value, sizes)
+    return [f"{count} flats", where]
+
+
+def _from_to(value: Mapping[str, float], sizes: Sizes) -> str:
+    return f"{sizes(value['least'])} and {sizes(value['most'])} from the center"
+
+
+def _slot(shape: Shape, line_of: _Line, sizes: Sizes) -> _Told:
+    value = shape.values
+    if "length" not in value:
+        return [f"slot {sizes(value['width'])} wide", "open at both ends"]
+    kind = "slot" if shape.inside else "oblong"
+    return [f"{kind} {sizes(value['width'])} x {sizes(value['length'])}", f"ends R{sizes(value['radius'])}"]
+
+
+def _keyway(shape: Shape, line_of: _Line, sizes: Sizes) -> _Told:
+    value = shape.values
+    end = f"round end R{sizes(value['radius'])}" if "radius" in value else "square end"
+    return [f"keyway {sizes(value['width'])} wide", f"its bottom {sizes(value['distance'])} from the center", end]
+
+
+def _cam(shape: Shape, line_of: _Line, sizes: Sizes) -> _Told:
+    value = shape.values
+    return [f"cam R{sizes(value['radius'])} and R{sizes(value['radius_small'])}", f"{sizes(value['apart'])} apart"]
+
+
+def _cross(shape: Shape, line_of: _Line, sizes: Sizes) -> _Told:
+    value = shape.values
+    one = f"{sizes(value['length'])} x {sizes(value['width'])}"
+    other = f"{sizes(value['other_length'])} x {sizes(value['other_width'])}"
+    return [f"cross, arms {one}" if one == other else f"cross, arms {one} and {other}"]
+
+
+def _contour(shape: Shape, line_of: _Line, sizes: Sizes) -> _Told:
+    return ["contour"]
+
+
+_TOLD: Mapping[str, Callable[[Shape, _Line, Sizes], _Told]] = {
+    "circle": _circle,
+    "rectangle": _rectangle,
+    "round with flats": _round_with_flats,
+    "flats": _flats,
+    "slot": _slot,
+    "keyway": _keyway,
+    "cam": _cam,
+    "cross": _cross,
+    "contour": _contour,
+}
+
+
+def _corners(value: Mapping[str, float], sizes: Sizes) -> _Told:
+    for name, mark in (("corner_radius", "R"), ("corner_chamfer", "chamfered ")):
+        if name in value:
+            if "corner_least" in value:
+                least = f"{mark}{sizes(value['corner_least'])}" if value["corner_least"] else "sharp"
+                return [f"corners from {least} to {mark}{sizes(value[name])}"]
+            return [f"corners {mark}{sizes(value[name])}"]
+    return []
+
+
+def _turned(shape: Shape) -> _Told:
+    turned = f"{shape.values['turned']:.3f}".rstrip("0").rstrip(".")
+    return [f"turned by {turned} deg"] if turned != "0" else []
+
+
+def _off_axis(value: Mapping[str, float], shape: Shape, sizes: Sizes) -> _Told:
+    if "center_x" not in value:
+        return []
+    x, c = value["center_x"], value["center_c"]
+    what = "its middle line" if shape.is_open else "center"
+    return [f"{what} {sizes(abs(complex(x, c)))} off the axis (x {sizes(x)}, c {sizes(c)})"]
+
+
+def _extents(value: Mapping[str, float], sizes: Sizes) -> _Told:
+    told = []
+    if "x_least" in value:
+        told.append(f"x from {sizes(value['x_least'])} to {sizes(value['x_most'])}")
+        told.append(f"c from {sizes(value['c_least'])} to {sizes(value['c_most'])}")
+    if value.get("inside_radius"):
+        told.append(f"smallest inside radius {sizes(value['inside_radius'])}")
+    elif "inside_radius" in value:
+        told.append("inside corners sharp")
+    if "area" in value:
+        told.append(f"area {sizes.area(value['area'])}")
+    return told
