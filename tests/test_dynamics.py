@@ -160,7 +160,7 @@ def test_what_is_not_known_of_a_time_is_said(block: str, reason: str | None) -> 
         assert math.isinf(dynamics.time[row])
         return
     assert math.isnan(dynamics.time[row])
-    told = dynamics.times(dynamics.trace.section >= 0)
+    told = dynamics.times(np.flatnonzero(dynamics.trace.section >= 0))
     assert [(one[0], one[2]) for one in told.unknown][:1] == [(reason, row)]
     assert told.known == pytest.approx(60 * 10 / 200)
     assert math.isnan(told.whole)
@@ -170,7 +170,7 @@ def test_what_is_not_known_of_a_time_is_said(block: str, reason: str | None) -> 
 def test_the_time_of_a_program_with_rapids_and_turning() -> None:
     program = "O1\nG98 G0 X60. Z2. C0\nG1 X40. Z-13. F100\nG0 X100. Z50.\nM30\n"
     dynamics = dynamics_of(program, changes=RAPIDS)
-    rows = np.ones(len(dynamics.trace), bool)
+    rows = np.arange(len(dynamics.trace))
     told = dynamics.times(rows)
     # Nobody knows where the lathe stands before the first block.
     assert [one[:2] for one in told.unknown] == [("rapid traverse", 1)]

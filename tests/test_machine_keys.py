@@ -13,6 +13,7 @@ import msgspec
 import pytest
 from programs import report_of, tables_of
 
+from polarcheck.checking.feed_table import feed_table
 from polarcheck.machines.machine import Machine
 from polarcheck.reports.pages import executed
 
@@ -92,11 +93,11 @@ class Use:
 
 
 def outcome(use: Use, changes: dict[str, Any]) -> tuple[Any, ...]:
-    """What is reported and traced of the program."""
+    """What is reported and traced of the program, and the highest F of its blocks."""
     report = report_of(use.program, use.machine, *use.tools, changes=changes)
     tables = tables_of(use.program, use.machine, *use.tools, changes=changes)
     traced = tables["trace"], tables["tool_center"]
-    return report, list(executed.rows(*traced)), list(executed.moves(*traced, "tool"))
+    return report, list(executed.rows(*traced)), list(executed.moves(*traced, "tool")), feed_table(tables)
 
 
 FLAT = "O1\nG98 G0 X60. C0\nG12.1\nG1 X40. F200\nC10.\nX60.\nG13.1\nM30\n"
@@ -305,6 +306,7 @@ USES = {
     "limits.c_feed_harmless": Use(100, FLAT),
     "limits.c_feed_suspicious": Use(100, FLAT),
     "limits.c_acceleration": Use(0.01, FLAT),
+    "limits.x_feed": Use(100, FLAT),
     "limits.x_rapid": Use(5000, inside("G0 X50.\nG1"), also={"limits": {"c_rapid": 9000}}),
     "limits.z_rapid": Use(5000, inside("G0 Z6.\nG1")),
     "limits.c_rapid": Use(9000, inside("G0 C10.\nG1"), also={"limits": {"x_rapid": 5000}}),

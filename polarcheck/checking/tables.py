@@ -20,6 +20,7 @@ MAKERS = {
     "infeed": "polarcheck.table.infeed:Infeed",
     "tool_center": "polarcheck.table.tool_center:ToolCenter",
     "dynamics": "polarcheck.table.dynamics:Dynamics",
+    "highest_feeds": "polarcheck.table.highest_feeds:HighestFeeds",
     "mode_words": "polarcheck.table.mode_words:ModeWords",
     "switch_words": "polarcheck.table.switch_words:SwitchWords",
     "other_mode": "polarcheck.table.other_mode:OtherMode",

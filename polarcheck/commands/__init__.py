@@ -28,6 +28,7 @@ NAMES = (
     "completion",
     "config",
     "explain",
+    "feeds",
     "init",
     "machines",
     "plot",

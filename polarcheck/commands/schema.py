@@ -8,11 +8,11 @@ from polarcheck.commands import options
 from polarcheck.commands.output import show
 
 
-@click.command(short_help="Show the JSON Schema of the report, the job or the machine.")
-@click.argument("name", type=click.Choice(["report", "job", "machine"]), default="report")
+@click.command(short_help="Show the JSON Schema of the report, the job, the machine or the feed table.")
+@click.argument("name", type=click.Choice(["report", "job", "machine", "feeds"]), default="report")
 @options.debug
 def schema(name: str) -> None:
-    """Show the JSON Schema of the JSON report, of polarcheck.toml (job) or of a machine profile."""
+    """Show the JSON Schema of the JSON report, of polarcheck.toml (job), of a machine profile or of a feed table."""
     from polarcheck.reports.pages import schema as schemas
 
     show(schemas.text(name).encode())

@@ -89,12 +89,12 @@ class Pieces(msgspec.Struct, frozen=True):
         for first in range(0, len(held), _AT_ONCE):
             rows = held[first : first + _AT_ONCE]
             start, end, center = self.start[rows], self.end[rows], self.center[rows]
-            spokes = _Spokes.of(start, end, center, self.kind[rows])
+            spokes = Spokes.of(start, end, center, self.kind[rows])
             found[rows] = np.abs(of_point(*spokes.at(share * spokes.length), spokes.bend)).max(axis=0)
         return found
 
 
-class _Spokes(msgspec.Struct, frozen=True):
+class Spokes(msgspec.Struct, frozen=True):
     """
     Moves by their way: where they begin, whereto, and how they bend [1/mm], to the left above 0.
 
@@ -111,7 +111,7 @@ class _Spokes(msgspec.Struct, frozen=True):
 
     @classmethod
     @quiet
-    def of(cls, start: Points, end: Points, center: Points, kind: States) -> _Spokes:
+    def of(cls, start: Points, end: Points, center: Points, kind: States) -> Spokes:
         is_arc = (kind == Motion.CW) | (kind == Motion.CCW)
         spoke = np.where(is_arc, start - center, end - start)
         radius = np.where(is_arc, np.abs(spoke), np.inf)
@@ -128,7 +128,7 @@ class _Spokes(msgspec.Struct, frozen=True):
         return point, np.where(self.is_arc, turned * 1j * np.sign(self.bend), self.toward)
 
 
-def _c_per_way(point: Points, direction: Points) -> Floats:
+def c_per_way(point: Points, direction: Points) -> Floats:
     """Turn of C per way, signed [rad/mm]."""
     return np.asarray(cross(point, direction) / np.abs(point) ** 2)
 
@@ -153,7 +153,7 @@ def _x_bend_per_turn(point: Points, direction: Points, bend: Floats) -> Floats:
 def pieces(start: Points, end: Points, center: Points, kind: States, feed: Floats, allowed: float) -> Pieces:
     """The moves in parts; all is known, and F [mm/min] and the rate of C that is allowed [deg/min] are above 0."""
     room = np.radians(allowed) / feed
-    spokes = _Spokes.of(start, end, center, kind)
+    spokes = Spokes.of(start, end, center, kind)
     way = _ways(start, end, center, kind, room)
     length = spokes.length[:, None]
     way = np.where((way > 0) & (way < length), way, length)
@@ -164,12 +164,12 @@ def pieces(start: Points, end: Points, center: Points, kind: States, feed: Float
     last = np.append(move[1:] != move[:-1], True)[: len(move)]
     # What is too short to be a piece belongs to the one before it.
     finish = np.where(last, spokes.length[move], np.append(way[move[1:], at[1:]], 0.0))
-    own = _Spokes(**{name: getattr(spokes, name)[move] for name in spokes.__struct_fields__})
+    own = Spokes(**{name: getattr(spokes, name)[move] for name in spokes.__struct_fields__})
     begin = np.where(np.append(True, move[1:] != move[:-1])[: len(move)], 0.0, way[move, at])
     points = np.where(begin == 0, start[move], own.at(begin)[0])
     ends = np.where(last, end[move], own.at(finish)[0])
     middle = own.at((begin + finish) / 2)
-    held = np.abs(_c_per_way(*middle)) > room[move]
+    held = np.abs(c_per_way(*middle)) > room[move]
     return Pieces(move, points, ends, center[move], kind[move], held, feed[move], allowed)
 
 

@@ -45,6 +45,7 @@ class Tool(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     ] = math.nan
     mount: Literal["axial", "radial"] | None = None
     shape: Literal["flat", "ball"] | None = None
+    teeth: Annotated[int, msgspec.Meta(ge=1, le=1000, description="of the cutter, for the chip load")] | None = None
 
 
 class AskedTool(Tool, frozen=True):

@@ -157,6 +157,7 @@ class Limits(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     c_feed_harmless: feed of the C axis that every lathe manages, so that its limit does not matter [deg/min]
     c_feed_suspicious: feed of the C axis that is suspicious where its limit is not known [deg/min]
     c_acceleration: largest acceleration of the C axis [deg/s2]
+    x_feed: largest cutting feed of X, as a radius [mm/min]
     x_rapid: rapid traverse of X, as a radius [mm/min]
     z_rapid: rapid traverse of Z [mm/min]
     c_rapid: rapid traverse of the C axis [deg/min]
@@ -175,6 +176,7 @@ class Limits(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     c_feed_harmless: Positive
     c_feed_suspicious: Positive
     c_acceleration: NotNegative = math.nan
+    x_feed: Positive = math.nan
     x_rapid: Positive = math.nan
     z_rapid: Positive = math.nan
     c_rapid: Positive = math.nan

@@ -243,10 +243,10 @@ class Dynamics:
                 missing &= ~rows
         return tuple(found)
 
-    def times(self, rows: Mask) -> Times:
+    def times(self, rows: Rows) -> Times:
         """How long these rows take together."""
         known = float(np.nansum(self.time[rows]))
-        hit = ((reason, np.flatnonzero(mask & rows)) for reason, mask in self.unknown)
+        hit = ((reason, rows[mask[rows]]) for reason, mask in self.unknown)
         return Times(known, tuple((reason, len(found), int(found[0])) for reason, found in hit if len(found)))
 
     @cached_property

@@ -111,6 +111,11 @@ class ToolOffsets(RotaryAxis):
         given = self._offset_column({n: tool.diameter for n, tool in self.tools.items()}) * self.job_scale
         return np.where(np.isnan(given) & (self.radius_of_offset > 0), 2 * self.radius_of_offset, given)
 
+    @cached_property
+    def teeth(self) -> Floats:
+        """Teeth of the cutter in force; NaN where the job does not give them."""
+        return self._offset_column({n: tool.teeth or np.nan for n, tool in self.tools.items()})
+
     # ---- what is given ----
 
     def _offset_column(self, values: Mapping[int, float]) -> Floats:

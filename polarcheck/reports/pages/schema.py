@@ -18,8 +18,8 @@ Schema = dict[str, Any]
 
 
 def schema(name: str) -> Schema:
-    """The schema of `report`, `job` or `machine`."""
-    made = {"report": _report, "job": _job, "machine": _machine}[name]()
+    """The schema of `report`, `job`, `machine` or `feeds`."""
+    made = {"report": _report, "job": _job, "machine": _machine, "feeds": _feeds}[name]()
     return {"$schema": DIALECT, "$id": f"urn:polarcheck:{name}:1", **made}
 
 
@@ -36,6 +36,15 @@ def _report() -> Schema:
     definitions["Silenced"]["properties"]["by"] = {"enum": list(SILENCED_BY)}
     definitions["FileReport"]["properties"]["verdict"] = {"enum": list(VERDICTS)}
     definitions["Report"]["properties"]["schema"] = {"const": 1}
+    return made
+
+
+def _feeds() -> Schema:
+    from polarcheck.checking.feed_table import LIMITED_BY, FeedReport  # with NumPy, which the others do without
+
+    made: Schema = msgspec.json.schema(FeedReport)
+    made["$defs"]["FeedReport"]["properties"]["schema"] = {"const": 1}
+    made["$defs"]["FeedRow"]["properties"]["limited_by"] = {"enum": list(LIMITED_BY)}
     return made
 
 

@@ -1,0 +1,133 @@
+"""The feed table written into its program: F lowered where it has to be, and restored behind."""
+
+from __future__ import annotations
+
+import msgspec
+import numpy as np
+
+from polarcheck.arrays import Floats, Mask, Rows
+from polarcheck.checking.editing import Replace, in_place_of, is_plain, with_word, written_word
+from polarcheck.checking.feed_edits import takes_feed
+from polarcheck.checking.feed_table import feed_number, highest, writes_points
+from polarcheck.checking.tables import Tables
+from polarcheck.errors import TooHardError
+from polarcheck.table.highest_feeds import HighestFeeds
+from polarcheck.table.trace import Trace
+
+#: So often blocks are looked for whose runs need one F each; each time at least one more gets the lowest.
+_ROUNDS = 50
+
+
+class FeedWords(msgspec.Struct, frozen=True):
+    """
+    edits: of the text. lowest: lines of blocks that run with different F, or need it, and get the lowest of them.
+    left: lines of blocks in which F cannot be written: of a macro, or of a program in another file.
+    """
+
+    edits: tuple[Replace, ...]
+    lowest: tuple[int, ...]
+    left: tuple[int, ...]
+
+
+def feed_words(tables: Tables) -> FeedWords:
+    """What to write into the program of one run."""
+    trace: Trace = tables["trace"]
+    feeds: HighestFeeds = tables["highest_feeds"]
+    asked = highest(trace, feeds)
+    lowered = feeds.must_be_lower & ~np.isnan(asked)
+    if not lowered.any():
+        return FeedWords((), (), ())
+    # As a number of F in force, whatever it is per: outside the mode it stays as it was.
+    wanted = np.where(lowered, asked, trace.written_feed)
+    return _Plan(trace, wanted).words()
+
+
+class _Plan:
+    """Which rows move at F or write it, with the F that each is to have [mm]; blocks stand for their runs."""
+
+    def __init__(self, trace: Trace, wanted: Floats) -> None:
+        self.trace = trace
+        self.wanted = wanted
+        self.moving = takes_feed(trace)
+        self.writes = trace.has("F") & (trace.feed_word == self._own_word)
+        self.lowest: set[int] = set()
+
+    @property
+    def _own_word(self) -> Rows:
+        trace = self.trace
+        words, at = trace.word_indices("F"), np.full(len(trace), -2, np.int64)
+        at[trace.run.row[words]] = trace.run.words.start[words]
+        return at
+
+    def words(self) -> FeedWords:
+        """
+        The edits: F in the first run of each block that needs another one than is in force there.
+
+        What cannot be written leaves the F in force to the blocks behind it, so that others may need one.
+        """
+        trace, block = self.trace, self.trace.run.block
+        left = set[int]()
+        for _ in range(_ROUNDS):
+            written = np.isin(block, block[self._needs()]) & self.moving
+            several = self._differ(np.flatnonzero(written))
+            if len(several):
+                self._take_lowest(several)
+                continue
+            rows = np.flatnonzero(written)
+            edits = {row: self._edit(row) for row in rows[np.unique(block[rows], return_index=True)[1]].tolist()}
+            fixed = [row for row, edit in edits.items() if edit is None]
+            if not fixed:
+                made = {edit for edit in edits.values() if edit is not None}
+                return FeedWords(tuple(sorted(made)), tuple(sorted(self.lowest)), tuple(sorted(left)))
+            left |= {int(trace.line_in_file[row]) for row in fixed}
+            self.moving &= ~np.isin(block, block[fixed])
+        raise TooHardError("F of too many blocks hangs on that of others")
+
+    def _needs(self) -> Mask:
+        """Rows that move with another F than the one that is in force before them, or write another one."""
+        events = np.flatnonzero(self.moving | self.writes)
+        after = np.where(self.moving[events], self.wanted[events], self.trace.written_feed[events])
+        starts = np.cumsum(self.trace.starts)[events]
+        before = np.append(np.nan, after[:-1])
+        before[1:][starts[1:] != starts[:-1]] = np.nan
+        own = self.writes[events]
+        asked = np.where(own, self.trace.written_feed[events], before)
+        needs = np.zeros(len(self.trace), bool)
+        needs[events] = self.moving[events] & (asked != after) & ~(np.isnan(asked) & np.isnan(after))
+        return needs
+
+    def _differ(self, rows: Rows) -> Rows:
+        """Of these rows the blocks whose runs are to have different F."""
+        block = self.trace.run.block[rows]
+        order = np.argsort(block, kind="stable")
+        block, wanted = block[order], self.wanted[rows[order]]
+        return np.unique(block[1:][(block[1:] == block[:-1]) & (wanted[1:] != wanted[:-1])])
+
+    def _take_lowest(self, blocks: Rows) -> None:
+        """All runs of these blocks have the lowest F of any."""
+        for one in blocks.tolist():
+            rows = np.flatnonzero((self.trace.run.block == one) & self.moving)
+            self.wanted[rows] = np.nanmin(self.wanted[rows])
+            self.lowest.add(int(self.trace.line_in_file[rows[0]]))
+
+    def _edit(self, row: int) -> Replace | None:
+        trace = self.trace
+        value = float(self.wanted[row])
+        source, block = trace.text.source, int(trace.run.block[row])
+        of_others = int(source.line_starts[source.parts[0].first_line - 1]) if source.parts else len(source.code)
+        is_own = int(trace.text.blocks.end[block]) <= of_others
+        if not is_own or not is_plain(trace, row) or not value > 0:
+            return None
+        words = trace.word_indices("F")
+        own = words[trace.run.row[words] == row]
+        text = self._text(row, value)
+        return in_place_of(trace, int(own[-1]), text) if len(own) else with_word(trace, row, text)
+
+    def _text(self, row: int, value: float) -> str:
+        """The F word: as it stands in the program, where it is the one that was in force."""
+        trace = self.trace
+        words = trace.word_indices("F")
+        found = words[trace.run.words.start[words] == trace.feed_word[row]]
+        if value == trace.written_feed[row] and len(found) and is_plain(trace, int(trace.run.row[found[0]])):
+            return written_word(trace, int(found[0]))
+        return f"F{feed_number(round(value / float(trace.scale[row]), 6), bool(writes_points(trace)[row]))}"

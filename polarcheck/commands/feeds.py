@@ -1,0 +1,89 @@
+"""`polarcheck feeds`: the highest F of each block, what limits it, and what that costs."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from polarcheck.commands import options
+from polarcheck.commands.exit_codes import CLEAN, COULD_NOT_RUN
+from polarcheck.commands.options import narrower, option
+from polarcheck.commands.output import say, show, warn
+from polarcheck.errors import UsageError
+
+if TYPE_CHECKING:
+    from polarcheck.checking.tables import Tables
+
+
+@click.command(short_help="Show the highest F of each block that keeps C and X within their limits.")
+@click.argument("path", metavar="FILE")
+@options.executing("program", both=False)
+@narrower(
+    "--format", "form", type=click.Choice(["text", "json", "csv"]), default="text", show_default=True,
+    help="csv is the curve of F and of the rate of C over time.",
+)  # fmt: skip
+@option("--diff", is_flag=True, help="Show the program with the F of the table, as a diff, and no table.")
+@options.max_size
+@options.debug
+def feeds(path: str, form: str, diff: bool, no_config: bool, max_size: int, **asked: Any) -> int:
+    """
+    Show for each cutting block of the polar sections of FILE the highest F, up to the programmed one, that keeps C and
+    X within their limits; what limits it; what F the limits would allow; and the time that this costs.
+
+    The limits are limits.c_feed, limits.c_acceleration, limits.x_feed and limits.polar_feed of the machine. With teeth
+    of the tool, `--tool 8:radius=4,teeth=3`, and S in the program the chip load is told, too. --diff shows the program
+    with these F; it writes nothing.
+    """
+    from polarcheck.checking import check
+    from polarcheck.commands import settings
+    from polarcheck.reading import files
+    from polarcheck.reports.pages import executed
+    from polarcheck.time_limit import seconds_for, time_limit
+
+    if diff and form != "text":
+        raise UsageError(f"--diff shows a diff: leave out --format {form}")
+    found = settings.OfPrograms(settings.Options(use_config=not no_config, **asked))(path)
+    data, title = files.read(path, max_size), files.shown(path)
+    with time_limit(seconds_for(len(data), found.job.run.max_seconds)):
+        runs = [tables for _, tables in check.read(data, found.machine, found.job, title, found.encoding)]
+        for tables in runs:
+            unknown = executed.without_radius(tables["trace"], tables["tool_center"])
+            if unknown:
+                warn(unknown)
+        if diff:
+            return _show_diff(title, data, runs, found.encoding)
+        _show_table(title, runs, form)
+    return CLEAN
+
+
+def _show_table(title: str, runs: list[Tables], form: str) -> None:
+    import msgspec
+
+    from polarcheck.checking.feed_table import FeedReport, feed_table
+    from polarcheck.reports.pages import feeds as pages
+
+    if form == "csv":
+        for line in pages.as_csv(runs):
+            if not show(line.encode()):
+                break
+        return
+    machine = runs[0]["machine"].title
+    report = FeedReport(schema=1, path=title, machine=machine, tables=[feed_table(tables) for tables in runs])
+    encoded = msgspec.json.format(msgspec.json.encode(report), indent=2) + b"\n"
+    show(encoded if form == "json" else pages.text(report).encode())
+
+
+def _show_diff(title: str, data: bytes, runs: list[Tables], encoding: str | None) -> int:
+    from polarcheck.fixes.feeds import with_feeds
+
+    made = with_feeds(title, data, runs, encoding)
+    if made is None:
+        say(f"{title}: its encoding does not give all characters back as they are")
+        return COULD_NOT_RUN
+    show("".join(f"{line}\n" for line in made.difference).encode())
+    for line in made.lowest:
+        warn(f"{title}:{line}: its runs need different F, and it has the lowest of them")
+    for line in made.left:
+        warn(f"{title}:{line}: F cannot be written there: a macro, another language or another file has the block")
+    return CLEAN
