@@ -71,7 +71,7 @@ def _sections(tables: Tables, lines: Any, remarks: list[str]) -> list[SectionPic
     from polarcheck.pictures.sections import Beside, section_picture
     from polarcheck.table.moves import programmed_moves
 
-    moves = SectionMoves(trace, tables["tool_center"])
+    moves = SectionMoves(trace, tables["dynamics"])
     programmed = programmed_moves(trace)
     levels = _unless_too_hard(lambda: tables["finished"].levels, "the finished part", remarks)
     marks: list[tuple[int, Mark]] = [

@@ -6,16 +6,14 @@ from functools import cached_property
 from typing import Any, cast, get_args
 
 import numpy as np
-from msgspec.structs import replace
 
 from polarcheck.arrays import Floats, Mask, Points, Rows, States
 from polarcheck.checking.places import block_in_line
-from polarcheck.geometry import polar
 from polarcheck.geometry.compensation import Phase
 from polarcheck.machines.modal import Motion
 from polarcheck.pictures.picture import MoveTable, Role
+from polarcheck.table.dynamics import Dynamics
 from polarcheck.table.moves import Moves, z_along
-from polarcheck.table.tool_center import ToolCenter
 from polarcheck.table.trace import Trace
 
 ROLES = get_args(Role)
@@ -30,16 +28,37 @@ class SectionMoves:
     """
     Columns over the moves of a trace, those of Z alone included, section after section.
 
-    moves: with the feed that override and clamp leave. On those of Z alone x and c stand still.
+    On those of Z alone, and in dwells, x and c stand still. of_path: the move of the tool center path that each is, -1
+    where it stands still.
     """
 
-    def __init__(self, trace: Trace, tool_center: ToolCenter) -> None:
+    def __init__(self, trace: Trace, dynamics: Dynamics) -> None:
         self.trace = trace
-        moves = _with_z_alone(trace, tool_center.moves)
-        self.moves = replace(moves, feed=tool_center.true_feed[moves.row])
+        self.dynamics = dynamics
+        self.moves, self.of_path = _with_standing(trace, dynamics)
 
     def __len__(self) -> int:
         return len(self.moves)
+
+    def _from_path(self, column: Floats, standing: Floats | float) -> Floats:
+        """A column over the moves of the path, with values for those that stand still."""
+        found = np.append(column, np.nan)[self.of_path]
+        return np.where(self.of_path >= 0, found, standing)
+
+    @cached_property
+    def true_feed(self) -> Floats:
+        """F that runs, the lowest on the way [mm/min]."""
+        return self._from_path(self.dynamics.true_feed, self.trace.feed[self.moves.row])
+
+    @cached_property
+    def c_feed(self) -> Floats:
+        """Highest rate of C [deg/min]."""
+        return self._from_path(self.dynamics.c_feed, 0.0)
+
+    @cached_property
+    def x_feed(self) -> Floats:
+        """Highest rate of X [mm/min]."""
+        return self._from_path(self.dynamics.x_feed, 0.0)
 
     def of_section(self, section: int) -> Rows:
         """The moves of a section, in order."""
@@ -76,9 +95,11 @@ class SectionMoves:
     @cached_property
     def time(self) -> Floats:
         """How long each takes [s]; NaN where that is not known, or has no end."""
-        z_from, z_to = self.z
-        way = np.where(self.moves.length > 0, self.moves.length, np.abs(z_to - z_from))
-        time = polar.time(way, self.moves.feed)
+        of_row = self.dynamics.time[self.moves.row]
+        # The time of a rapid is that of its row, where this is one move.
+        alone = np.bincount(self.moves.row, minlength=len(self.trace))[self.moves.row] == 1
+        moving = np.append(self.dynamics.at_feed, False)[self.of_path]
+        time = np.where(moving, self._from_path(self.dynamics.move_time, np.nan), np.where(alone, of_row, np.nan))
         return np.where(np.isfinite(time) & self.is_known, time, np.nan)
 
     @cached_property
@@ -106,21 +127,26 @@ class SectionMoves:
             end=pairs(moves.end[chosen]),
             z=pairs(self.z[0][chosen] + 1j * self.z[1][chosen]),
             feed=numbers_of(trace.programmed_feed[row], RATE),
-            true_feed=numbers_of(moves.feed[chosen], RATE),
+            true_feed=numbers_of(self.true_feed[chosen], RATE),
             nearest=numbers_of(moves.nearest[chosen], LENGTH),
-            c_feed=numbers_of(moves.c_feed[chosen], RATE),
-            x_feed=numbers_of(moves.x_feed[chosen], RATE),
-            share=numbers_of(moves.c_feed[chosen] / limit, RATE + 1),
+            c_feed=numbers_of(self.c_feed[chosen], RATE),
+            x_feed=numbers_of(self.x_feed[chosen], RATE),
+            share=numbers_of(self.c_feed[chosen] / limit, RATE + 1),
             begin=numbers_of(self.begin[chosen], TIME),
             time=numbers_of(self.time[chosen], TIME),
         )
 
 
-def _with_z_alone(trace: Trace, moves: Moves) -> Moves:
-    """The moves of the plane and, where they stand among them, those of Z alone, from a point to the same one."""
-    row = np.setdiff1d(np.flatnonzero(trace.in_polar & trace.moves_z & ~trace.travels), moves.row)
+def _with_standing(trace: Trace, dynamics: Dynamics) -> tuple[Moves, Rows]:
+    """
+    The moves of the plane and, where they stand among them, those of Z alone and dwells, from a point to the same one;
+    and which move of the plane each is, -1 for the others.
+    """
+    moves = dynamics.moves
+    standing = trace.in_polar & ((trace.moves_z & ~trace.travels) | dynamics.dwells)
+    row = np.setdiff1d(np.flatnonzero(standing), moves.row)
     if not len(row):
-        return moves
+        return moves, np.arange(len(moves))
     # A pass of an infeed cycle runs over rows that the one before it has run over.
     at = np.searchsorted(np.maximum.accumulate(moves.row), row)
     last = np.append(moves.end, complex(np.nan, np.nan))[at - 1]
@@ -129,7 +155,7 @@ def _with_z_alone(trace: Trace, moves: Moves) -> Moves:
     nowhere = np.full(len(row), complex(np.nan, np.nan))
     off = np.where(trace.compensates[row], Phase.OFFSET, Phase.CANCELLED)
     known = np.append(moves.known, True)[at - 1]
-    z_alone: dict[str, Any] = {
+    still: dict[str, Any] = {
         "row": row,
         "section": trace.section[row],
         "kind": np.int16(Motion.LINE),
@@ -142,8 +168,8 @@ def _with_z_alone(trace: Trace, moves: Moves) -> Moves:
         "corner": False,
         "allowance": 0.0,
     }
-    columns = {name: np.insert(getattr(moves, name), at, values) for name, values in z_alone.items()}
-    return Moves(entry=moves.entry, **columns)
+    columns = {name: np.insert(getattr(moves, name), at, values) for name, values in still.items()}
+    return Moves(entry=moves.entry, **columns), np.insert(np.arange(len(moves)), at, -1)
 
 
 def _sequence_numbers(trace: Trace) -> dict[int, str]:

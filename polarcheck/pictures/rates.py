@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Rows
+from polarcheck.arrays import Floats, Mask, Points, Rows, States
 from polarcheck.geometry.plane import arc_sweep, cross, dot, quiet
 from polarcheck.machines.modal import Motion
-from polarcheck.table.moves import Moves
+from polarcheck.pictures.moves import SectionMoves
 
 #: Points for each turn of C by so much, and of an arc about its own center [rad].
 _STEP = np.radians(6.0)
@@ -36,19 +36,68 @@ class Samples:
         return Samples(*(getattr(self, name)[chosen] for name in Samples.__slots__))
 
 
-@quiet
-def samples(moves: Moves, begin: Floats, time: Floats) -> Samples:
+@dataclass(frozen=True, slots=True)
+class Ways:
     """
-    The curves of some moves, those left out whose time is not known. begin, time: of each [s].
+    Ways of one kind, k of them, each of a move or of a part of one: start, end, center [mm], kind as in polar.
+    feed [mm/min]. begin, time [s]. held: C turns at a rate that is held, and the feed goes with it. move: of each.
+    """
 
-    The feed is the same along a move, so that its way goes with the time. Half of the points divide the way evenly, the
-    other half the turn of C, lest a narrow peak where the tool passes the center fall between them: on a line that is
-    seen under the angle w from the foot of the perpendicular d, at the way d tan(w) from it; on an arc, with v from the
-    point nearest to the center of C about its own, at tan(v / 2) = |R - e| / (R + e) tan(w / 2), by which r^2 dw is
-    proportional to dv. Rates as in geometry/polar.
+    start: Points
+    end: Points
+    center: Points
+    kind: States
+    feed: Floats
+    begin: Floats
+    time: Floats
+    held: Mask
+    move: Rows
+
+
+def ways(found: SectionMoves, chosen: Rows) -> Ways:
+    """Of some moves, those left out whose time is not known; the parts of one on which automatic override acts."""
+    pieces = found.dynamics.pieces
+    moves, time, begin = found.moves, found.time, found.begin
+    of_path = found.of_path[chosen]
+    slowed = (of_path >= 0) & np.append(found.dynamics.is_slowed, False)[of_path]
+    plain = chosen[~slowed & ~np.isnan(time[chosen])]
+    # Where in the order of the chosen moves the one of each piece stands.
+    number = np.full(len(found.dynamics.moves) + 1, -1)
+    number[of_path] = chosen
+    number[-1] = -1
+    move = number[pieces.move]
+    part = np.flatnonzero(move >= 0)
+    part = part[~np.isnan(time[move[part]])]
+    own, part_time = move[part], pieces.time()[part]
+    done = np.cumsum(part_time) - part_time
+    first = np.searchsorted(own, own)
+    rows = np.concatenate([plain, own])
+    order = np.argsort(rows, kind="stable")
+    return Ways(
+        start=np.concatenate([moves.start[plain], pieces.start[part]])[order],
+        end=np.concatenate([moves.end[plain], pieces.end[part]])[order],
+        center=np.concatenate([moves.center[plain], pieces.center[part]])[order],
+        kind=np.concatenate([moves.kind[plain], pieces.kind[part]])[order],
+        feed=np.concatenate([found.true_feed[plain], pieces.feed[part]])[order],
+        begin=np.concatenate([begin[plain], begin[own] + done - done[first]])[order],
+        time=np.concatenate([time[plain], part_time])[order],
+        held=np.concatenate([np.zeros(len(plain), bool), pieces.held[part]])[order],
+        move=rows[order],
+    )
+
+
+@quiet
+def samples(path: Ways, held_at: float) -> Samples:
     """
-    chosen = np.flatnonzero(~np.isnan(time))
-    start, end, center, kind = moves.start[chosen], moves.end[chosen], moves.center[chosen], moves.kind[chosen]
+    The curves of some ways. held_at: the rate at which C is held [deg/min].
+
+    Half of the points of a way divide it evenly, the other half the turn of C, lest a narrow peak where the tool passes
+    the center fall between them: on a line that is seen under the angle w from the foot of the perpendicular d, at the
+    way d tan(w) from it; on an arc, with v from the point nearest to the center of C about its own, at tan(v / 2) =
+    |R - e| / (R + e) tan(w / 2), by which r^2 dw is proportional to dv. Rates as in geometry/polar. Time goes with the
+    way or, where C is held, with its turn.
+    """
+    start, end, center, kind = path.start, path.end, path.center, path.kind
     is_arc = kind != Motion.LINE
     sweep = arc_sweep(start, end, center, kind)
     long = np.where(is_arc, 1.0, np.abs(end - start))
@@ -59,15 +108,21 @@ def samples(moves: Moves, begin: Floats, time: Floats) -> Samples:
     to_near = np.where(away > 0, -center, 1.0)
     first = np.copysign(1.0, sweep) * np.angle((start - center) / to_near)
     narrow = np.abs(radius - away) / (radius + away)
-    seen_first = np.where(is_arc, _turned(first, 1 / narrow), np.arctan2(foot, offset))
-    seen_last = np.where(is_arc, _turned(first + np.abs(sweep), 1 / narrow), np.arctan2(foot + long, offset))
-    turn = np.nan_to_num(seen_last - seen_first)
+
+    def seen_at(share: Floats, of: Rows) -> Floats:
+        """The angle from the nearest point under which a point of the way is seen from the center of C [rad]."""
+        of_arc = _turned(first[of] + share * np.abs(sweep[of]), 1 / narrow[of])
+        return np.where(is_arc[of], of_arc, np.arctan2(foot[of] + share * long[of], offset[of]))
+
+    every = np.arange(len(start))
+    seen_first = seen_at(np.zeros(len(start)), every)
+    turn = np.nan_to_num(seen_at(np.ones(len(start)), every) - seen_first)
     count = np.ceil(np.maximum(turn, np.where(is_arc, np.abs(sweep), 0)) / _STEP)
     count = np.clip(np.nan_to_num(count), 1, _MOST_OF_MOVE).astype(np.int64)
 
-    # Each move has its two ends, count - 1 points that divide its way, and as many that divide the turn of C.
+    # Each way has its two ends, count - 1 points that divide it, and as many that divide the turn of C.
     each = 2 * count
-    of = np.repeat(np.arange(len(chosen)), each)
+    of = np.repeat(np.arange(len(start)), each)
     place = np.arange(len(of)) - np.repeat(np.cumsum(each) - each, each)
     evenly = place <= count[of]
     share = np.where(evenly, place / count[of], (place - count[of]) / count[of])
@@ -82,15 +137,17 @@ def samples(moves: Moves, begin: Floats, time: Floats) -> Samples:
     spoke = (start - center)[of] * np.exp(1j * sweep[of] * share)
     point = np.where(is_arc[of], center[of] + spoke, start[of] + share * (end - start)[of])
     along = np.where(is_arc[of], 1j * np.sign(sweep[of]) * spoke / radius[of], u[of])
-    feed = np.where(long > 0, moves.feed[chosen], 0.0)[of]
     far = np.abs(point)
-    move = chosen[of]
+    stands = along == 0
+    per_way = np.where(stands, 0.0, np.degrees(cross(point, along) / far**2))
+    feed = np.where(path.held[of], held_at / np.abs(per_way), path.feed[of])
+    passed = np.where(path.held[of] & (turn[of] > 0), (seen_at(share, of) - seen_first[of]) / turn[of], share)
     return Samples(
-        move=move,
-        t=begin[move] + share * time[move],
-        c_feed=np.degrees(np.where(along == 0, 0.0, feed * cross(point, along) / far**2)),
-        x_feed=np.where(along == 0, 0.0, feed * dot(point, along) / far),
-        feed=moves.feed[move],
+        move=path.move[of],
+        t=path.begin[of] + passed * path.time[of],
+        c_feed=np.where(stands, 0.0, feed * per_way),
+        x_feed=np.where(stands, 0.0, feed * dot(point, along) / far),
+        feed=feed,
     )
 
 

@@ -7,6 +7,7 @@ Import late: shapely takes its time.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -61,11 +62,13 @@ def section_picture(
     unseen = paths.unseen(_shown(moves, role))
     tool, off = _path(moves, known, kept, role, unseen, most)
     contour, off_contour = _path(own, own.known, np.isin(own.row, moves.row[kept]), own.phase, unseen, most)
-    curves = rates.samples(moves, found.begin[chosen], found.time[chosen])
+    path = rates.ways(found, chosen)
+    curves = rates.samples(replace(path, move=np.searchsorted(chosen, path.move)), found.dynamics.c_limit)
     curves = rates.fewer(curves, kept, most)
     # Of the moves of each block the first.
     first = _first_of(moves.row, own.row[contour.move])
-    listed = _listed(moves, kept, [tool.move, first, curves.move], most)
+    extremes = (found.c_feed[chosen], found.x_feed[chosen], -moves.nearest)
+    listed = _listed(kept, [tool.move, first, curves.move, *map(_highest, extremes)], most)
     enter = int(trace.sections.enter[section])
     limits = trace.machine.limits
     return SectionPicture(
@@ -85,7 +88,7 @@ def section_picture(
         feed_limit=rounded(limits.polar_feed),
         needs_radius=why_unknown(trace, found.moves, chosen),
         thinned=round(max(off, off_contour), LENGTH),
-        time=rounded(float(found.time[chosen].sum())),
+        time=told.time,
         programmed=_points(contour, _place(listed, first)),
         tool=_points(tool, _place(listed, tool.move)),
         moves=found.table(chosen[listed]),
@@ -131,21 +134,20 @@ def _first_of(row: Rows, wanted: Rows) -> Rows:
     return np.asarray(first[np.minimum(np.searchsorted(rows, wanted), len(rows) - 1)]) if len(rows) else wanted[:0]
 
 
-def _listed(moves: Moves, kept: Mask, shown: Sequence[Rows], most: int) -> Rows:
+def _listed(kept: Mask, shown: Sequence[Rows], most: int) -> Rows:
     """The moves that the table lists: all of them or, of very many, those that are drawn, or stand at an extreme."""
-    if len(moves) <= most:
-        return np.arange(len(moves))
+    if len(kept) <= most:
+        return np.arange(len(kept))
     is_listed = kept.copy()
     is_listed[[0, -1]] = True
-    for extreme in (moves.c_feed, moves.x_feed, -moves.nearest):
-        is_listed[_argmax(extreme)] = True
     for one in shown:
         is_listed[one] = True
     return np.flatnonzero(is_listed)
 
 
-def _argmax(values: Floats) -> int:
-    return int(np.argmax(np.where(np.isnan(values), -np.inf, values)))
+def _highest(values: Floats) -> Rows:
+    """The place of the highest value."""
+    return np.atleast_1d(np.argmax(np.where(np.isnan(values), -np.inf, values)))
 
 
 def _place(listed: Rows, move: Rows) -> Rows:
