@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import shlex
+import shutil
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
@@ -155,22 +156,29 @@ SAMPLES = "sample_programs"
 
 @cache
 def ran(line: str) -> tuple[int, str, str]:
-    """Exit code, output and standard error of a command line, in the folder of the checkout."""
+    """Exit code, output and standard error of a command line, beside the sample programs."""
     result = CliRunner().invoke(main, shlex.split(line)[1:])
     return result.exit_code, result.stdout, result.stderr
 
 
-def test_those_on_sample_programs_run(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(ROOT)
+@pytest.fixture
+def beside_samples(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A folder with the sample programs, and with what commands write."""
+    shutil.copytree(ROOT / SAMPLES, tmp_path / SAMPLES)
+    monkeypatch.chdir(tmp_path)
+
+
+@pytest.mark.usefixtures("beside_samples")
+def test_those_on_sample_programs_run() -> None:
     lines = {line for page in written_pages() for line, _ in commands(page) if SAMPLES in line}
     assert len(lines) >= 4
     failed = [line for line in lines if ran(line)[0] > 1 or ran(line)[2]]
     assert not failed
 
 
-def test_shown_reports_are_what_is_said_today(pytestconfig: pytest.Config, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.usefixtures("beside_samples")
+def test_shown_reports_are_what_is_said_today(pytestconfig: pytest.Config) -> None:
     """`pytest --accept` writes them into the pages."""
-    monkeypatch.chdir(ROOT)
     for page in written_pages():
         text = shown = text_of(page)
         for block in blocks(text):

@@ -50,5 +50,5 @@ def lines(file: FileReport) -> Iterator[dict[str, Any]]:
         yield {"type": "finding", "path": file.path, **msgspec.to_builtins(found)}
     for found in file.silenced:
         yield {"type": "silenced", "path": file.path, **msgspec.to_builtins(found)}
-    fields = {name: getattr(file, name) for name in file.__struct_fields__ if name not in _LISTED}
-    yield {"type": "file", **msgspec.to_builtins(fields)}
+    fields = msgspec.to_builtins(msgspec.structs.replace(file, findings=[], silenced=[]))
+    yield {"type": "file", **{name: value for name, value in fields.items() if name not in _LISTED}}
