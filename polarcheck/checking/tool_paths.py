@@ -36,10 +36,21 @@ def depths_of_paths(tables: Tables) -> Iterator[_Depth]:
         path = _outline(moves, way)
         section, z = int(trace.section[row]), float(trace.z[row])
         if np.isnan(radius[row]) or not radius[row]:
-            missing = f"the path is that of the tool, and R of {called_tool(trace, row)} is not known"
-            yield section, z, np.nan, [], f"{missing}: {to_give(trace, row, 'radius')}"
+            yield section, z, np.nan, [], _needs_radius(trace, row)
             continue
-        yield section, z, float(radius[row]), _left(path, float(radius[row])), None
+        if float(moves.length[way].sum()) < 2 * radius[row]:
+            continue  # a step aside, or what is left of a ramp
+        shapes = _left(path, float(radius[row]))
+        begin, end = (int(trace.line_in_file[moves.row[at]]) for at in (way[0], way[-1]))
+        why = f"the path of lines {begin} to {end} goes round nothing and is not straight: what it leaves is not told"
+        yield section, z, float(radius[row]), shapes, None if shapes else why
+
+
+def _needs_radius(trace: Trace, row: int) -> str:
+    if not trace.offset_number[row]:
+        return "the path is that of the tool, whose R is not known: no tool offset is in force"
+    missing = f"the path is that of the tool, and R of {called_tool(trace, row)} is not known"
+    return f"{missing}: {to_give(trace, row, 'radius')}"
 
 
 def _ways(trace: Trace, moves: Moves, rows: Rows) -> Iterator[Rows]:

@@ -31,6 +31,7 @@ NAMES = (
     "feeds",
     "init",
     "machines",
+    "part",
     "plot",
     "rules",
     "schema",

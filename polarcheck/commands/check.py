@@ -81,6 +81,7 @@ def _outputs(ctx: click.Context, parameter: click.Parameter, values: tuple[str, 
 @option("--color", type=click.Choice(["auto", "always", "never"]), default="auto", show_default=True)
 @option("--show-following", "following", is_flag=True, help="In text, what follows from a finding, too.")
 @silencing.show_silenced
+@option("--part", "part", is_flag=True, help="In text, JSON and pages, what the program makes, too.")
 @option("-q", "--quiet", is_flag=True, help="Findings only.")
 @fixing.wanted
 @options.debug
@@ -134,6 +135,7 @@ class _Asked(NamedTuple):
     following: bool
     silenced: bool
     statistics: bool
+    part: bool
     fixes: fixing.Wanted
     diff_base: str | None
 
@@ -172,6 +174,10 @@ def _check(asked: _Asked, seen: watching.Seen | None) -> int:
     reporting.refuse(asked.form, asked.statistics)
     wants_pictures = picturing.FORMAT in (asked.form, *(form for form, _ in asked.outputs))
     extras = picturing.extras() if wants_pictures else ()
+    if asked.part:
+        from polarcheck.checking.part import part_of
+
+        extras = (*extras, part_of)
     applies = settings.Options(use_config=not asked.no_config, extras=extras, **asked.more)
     faults = running.Faults(asked.debug)
     tasks = running.planned(

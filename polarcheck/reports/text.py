@@ -84,6 +84,7 @@ def _parts(background: Background, are_listed: bool) -> Parts:
             explained[found.rule] = None
         if are_listed and not background.quiet:
             shown += _not_evaluated([file], page)
+        shown += _made(file, page)
         if background.silenced:
             shown += _silenced(file, page)
         return "".join(line + "\n" for line in shown)
@@ -109,6 +110,18 @@ def _silenced(file: FileReport, page: _Page) -> Iterator[str]:
     yield from page.heading("silenced", counted(len(file.silenced), "finding"))
     for found in file.silenced:
         yield from page.labelled("at", f"{file.path}:{found.line}:{found.column}: {why_silenced(found)}")
+    yield ""
+
+
+def _made(file: FileReport, page: _Page) -> Iterator[str]:
+    """What a file makes, where that was asked for."""
+    if not file.part:
+        return
+    from polarcheck.reports.pages.made import made
+
+    yield from page.heading("part", file.path)
+    for label, said in made(file):
+        yield from page.labelled(label, said)
     yield ""
 
 

@@ -108,7 +108,8 @@ def _flats(shape: Shape, line_of: _Line, sizes: Sizes) -> _Told:
     count = int(value["flats"])
     if "apart" in value:
         told = [f"flats {sizes(value['apart'])} apart"]
-        return told + ([] if "distance" in value else [_from_to(value, sizes)])
+        told += [] if "distance" in value else [_from_to(value, sizes)]
+        return told + ([f"an arc R{sizes(value['joined'])} from one to the other"] if "joined" in value else [])
     if count == 1:
         return [f"flat {sizes(value['distance'])} from the center"]
     where = f"{sizes(value['distance'])} from the center" if "distance" in value else _from_to(value, sizes)

@@ -55,8 +55,17 @@ def _slot(normal: complex, out: Floats, row: int) -> Shape:
     return Shape("slot", True, values, row=row, is_open=True)
 
 
+def _joined_flats(ring: Ring, normal: complex, out: Floats) -> Shape | None:
+    """Two flats that are cut in one way, with an arc from one to the other that goes round the bar."""
+    if ring.is_line[1] or ring.sweep[1] < 0:
+        return None
+    values = {"flats": 2.0, "apart": float(out.sum()), "turned": turned_by(normal, 2), "joined": float(ring.radius[1])}
+    values |= {"distance": float(out.mean())} if abs(out[0] - out[1]) <= 2 * SAME else _sizes(out)
+    return Shape("flats", False, values, row=int(ring.row[0]), is_open=True)
+
+
 def keyway_of(ring: Ring) -> Shape | None:
-    """A slot that is open at one end: two parallel walls and what ends them."""
+    """A slot that is open at one end: two parallel walls and what ends them; or two flats and what joins them."""
     if ring.closed or len(ring) != 3 or not ring.is_line[[0, 2]].all():
         return None
     normal = ring.normal
@@ -68,7 +77,7 @@ def keyway_of(ring: Ring) -> Shape | None:
     along = complex(ring.end[0] - ring.start[0])
     along /= abs(along)
     if width <= 0:
-        return None
+        return _joined_flats(ring, complex(normal[0]), out)
     values = {"width": width, "turned": turned_by(-along, 1)}
     if ring.is_line[1]:
         if abs(np.angle(normal[1] * -along)) > _PARALLEL and abs((normal[1] * along.conjugate()).imag) > _PARALLEL:

@@ -42,6 +42,7 @@ class Shape(NamedTuple):
     diameter; across_flats (of an odd number of sides twice the distance of a side from the middle), width, length,
     sides, flats, distance (of a flat from the axis), apart (of parallel flats, of the circles of a cam), corner_radius
     or corner_chamfer, and corner_least where corners differ; radius, radius_small (of a cam, of the end of a slot);
+    joined (R of the arc between two flats);
     turned (the direction of the first side's normal or of the length); center_x, center_c, where it is off the axis;
     x_least, x_most, c_least, c_most, area, inside_radius of contours; least, most where sides differ;
     inside_corners: how many sharp ones the cutter cannot reach into; regular_by_x: by what X is to be multiplied to

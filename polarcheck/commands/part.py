@@ -1,0 +1,69 @@
+"""`polarcheck part`: what programs make, in the words and numbers of a drawing."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import click
+
+from polarcheck.commands import jobs, options
+from polarcheck.commands.options import narrower
+
+#: The rule that compares a part with its drawing; it alone is asked here.
+_RULE = "part-differs-from-drawing"
+
+
+@click.command(short_help="Tell what a program makes: hexagon, 27.000 across flats.")
+@click.argument("paths", nargs=-1, required=True, metavar="PATH...")
+@options.executing("programs")
+@options.drawing
+@narrower("--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True)
+@options.extensions
+@options.max_size
+@jobs.jobs
+@options.debug
+@click.pass_context
+def part(ctx: click.Context, /, paths: tuple[str, ...], **asked: Any) -> None:
+    """
+    Tell what programs make: files, folders, or - for standard input.
+
+    Of each polar section and depth the shape of the finished part with its sizes, and what the cutter leaves standing.
+    Sizes are in the program's own units. With G41 and G42 the programmed contour is the part; without them the cutter
+    runs along the path, and its radius must be known. Where a drawing is given, or polarcheck.toml says what a program
+    should make, it is told where the part differs.
+
+    Ends with 0, with 1 where a part differs from its drawing, 2 if something could not be read, 3 for a bug.
+    """
+    ctx.exit(_part(paths, debug=options.DEBUG in ctx.meta, **asked))
+
+
+def _part(
+    paths: tuple[str, ...],
+    *,
+    debug: bool,
+    form: str,
+    extensions: tuple[str, ...],
+    max_size: int,
+    workers: int,
+    no_config: bool,
+    **asked: Any,
+) -> int:
+    from polarcheck.checking.part import part_of
+    from polarcheck.commands import progress, running, settings, signals
+    from polarcheck.commands.memory import keep_within_memory
+    from polarcheck.commands.output import columns, say, show
+    from polarcheck.reports.pages import made
+
+    keep_within_memory()
+    applies = settings.Options(use_config=not no_config, select=(_RULE,), extras=(part_of,), **asked)
+    faults = running.Faults(debug)
+    tasks = running.planned(paths, settings.OfPrograms(applies), extensions, faults)
+    checked = running.Crew(max_size, workers, None).check(tasks, progress.Bar(len(tasks), True), faults)
+    status = max(int(checked.failed), faults.told())
+    if checked.stopped is not None:
+        status, how = signals.told(checked.stopped)
+        say(f"{how} after {len(checked.files)} of {len(tasks)} files; these are reported")
+    else:
+        running.tell_unused(applies.tools, checked.called)
+    show((made.json(list(checked.files)) if form == "json" else made.text(list(checked.files), columns())).encode())
+    return status

@@ -1,0 +1,60 @@
+"""What programs make, as text for people and as JSON for other programs."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import msgspec
+
+from polarcheck.checking.finding import FileReport, MadeShape
+from polarcheck.reading.excerpt import visible
+from polarcheck.reports.json import encoded
+
+#: Lines of the text begin with the label, right-aligned up to here; what it labels stands three further.
+_GUTTER = 10
+
+
+def made(file: FileReport) -> Iterator[tuple[str, str]]:
+    """Label and text of each line on what a file makes: `line 9`, and what is made there."""
+    if isinstance(file.part, msgspec.UnsetType):
+        return
+    if not file.part:
+        yield "", "no polar section"
+    for shape in file.part:
+        channel = f"{shape.channel} " if shape.channel else ""
+        yield f"{channel}line {shape.line}", shape.text
+        for left in shape.left_standing:
+            yield "left", left.text
+        if shape.needs and shape.shape is not None:
+            yield "but", shape.needs
+
+
+def text(files: Sequence[FileReport], columns: int) -> str:
+    """Of each file its path, and below it what it makes; then where it differs from its drawing."""
+    shown = []
+    for file in files:
+        shown.append(visible(file.path))
+        for label, said in made(file):
+            room = columns - _GUTTER - 3
+            first, *more = textwrap.wrap(visible(said), room, break_long_words=False, break_on_hyphens=False) or [""]
+            shown.append(f"{label:>{_GUTTER}}   {first}")
+            shown += [" " * (_GUTTER + 3) + line for line in more]
+        for found in file.findings:
+            shown.append(f"{found.severity:>{_GUTTER}}   line {found.line}: {visible(found.message)}")
+        shown.append("")
+    return "".join(line + "\n" for line in shown)
+
+
+def json(files: Sequence[FileReport]) -> str:
+    """The same as data, in the terms of the JSON report of `check`."""
+    told: list[dict[str, Any]] = [
+        {"path": file.path, "machine": file.machine, "part": _list(file.part), "findings": file.findings}
+        for file in files
+    ]
+    return encoded({"schema": 1, "files": told}, indent=2) + "\n"
+
+
+def _list(part: Any) -> list[MadeShape]:
+    return part if isinstance(part, list) else []
