@@ -10,7 +10,7 @@ from polarcheck.geometry.ways import Way
 #: In how many directions a way is looked at, and at how many points of it.
 _DIRECTIONS, _POINTS = 3600, 20_000
 #: Turns that are looked at more closely, at how many points, and how often.
-_TURNS, _FEW, _STEPS = 24, 400, 22
+_TURNS, _FEW, _STEPS = 12, 400, 22
 #: Mean distances that differ by less [mm] are the same.
 _SAME = 1e-3
 #: What is farther out than this many times the part, such as a line without end, is as good as there.

@@ -21,8 +21,8 @@ from polarcheck.machines.part import DrawnPart, Part
 
 #: A drawing of one part has some kB [bytes].
 _LARGEST = 16_000_000
-#: What blocks, which may stand in blocks, are resolved to; points that the curves may have; blocks in each other.
-_MOST_ENTITIES, _MOST_POINTS, _DEEPEST = 50_000, 400_000, 16
+#: Lines and arcs, points of the curves, places at which a block stands, blocks in each other: more has no drawing.
+_MOST_ENTITIES, _MOST_POINTS, _MOST_BLOCKS, _DEEPEST = 50_000, 400_000, 2000, 16
 #: By how much chords may leave their curves, and ends may be apart that are one point [mm].
 _SAGITTA, _GAP = 2e-4, 0.01
 #: Farther from the axis [mm] reaches no lathe, nor the frame of any sheet.
@@ -141,7 +141,7 @@ def _shown(document: Any, ignored: Counter[str]) -> Iterator[Any]:
         layer.dxf.name.lower() for layer in document.layers if _is_broken(layer.dxf.get("linetype", "CONTINUOUS"))
     }
     waiting: list[Iterator[Any]] = [iter(document.modelspace())]
-    count = 0
+    count = blocks = 0
     while waiting:
         entity = next(waiting[-1], None)
         if entity is None:
@@ -149,7 +149,7 @@ def _shown(document: Any, ignored: Counter[str]) -> Iterator[Any]:
             continue
         count += 1
         if count > _MOST_ENTITIES:
-            raise _NoDrawingError(f"has more than {_MOST_ENTITIES} lines, arcs and blocks: no drawing of a part has")
+            raise _NoDrawingError(f"has more than {_MOST_ENTITIES} lines and arcs: no drawing of a part has")
         kind, layer = entity.dxftype(), str(entity.dxf.get("layer", "0")).lower()
         line = str(entity.dxf.get("linetype", "BYLAYER")).upper()
         if layer in hidden or entity.dxf.get("invisible", 0):
@@ -160,12 +160,15 @@ def _shown(document: Any, ignored: Counter[str]) -> Iterator[Any]:
             ignored["with a broken line"] += 1
         elif kind in _CURVES:
             yield entity
-        elif len(waiting) > _DEEPEST:
-            raise _NoDrawingError(f"has blocks in each other more than {_DEEPEST} deep")
-        elif kind == "INSERT" and entity.mcount > 1:
-            waiting.append(entity.multi_insert())
-        else:
+        elif kind != "INSERT":
             waiting.append(iter(entity.virtual_entities()))
+        else:
+            blocks += max(int(entity.dxf.row_count * entity.dxf.column_count), 1)
+            if blocks > _MOST_BLOCKS or len(waiting) > _DEEPEST:
+                raise _NoDrawingError(
+                    f"has blocks at more than {_MOST_BLOCKS} places, or more than {_DEEPEST} in each other"
+                )
+            waiting.append(entity.multi_insert() if entity.mcount > 1 else iter(entity.virtual_entities()))
 
 
 #: Of the name of a kind of entity that is told [characters].

@@ -38,9 +38,10 @@ _NEAREST = 4
 
 class Fit(NamedTuple):
     """
-    How a part would have to be placed to agree.
+    How a part would have to be changed to agree.
 
-    turned: [rad]. mirrored: C with the other sign. factor: X times this. largest: by how much it then differs [mm].
+    mirrored: C with the other sign. turned: after that [rad]. factor: X times this. largest: by how much it then
+    differs [mm].
     """
 
     turned: float
@@ -179,6 +180,14 @@ class Deviations:
             column[row] = one.difference.largest
         return column
 
+    @cached_property
+    def tolerance(self) -> Floats:
+        """By how much it may differ there [mm], NaN elsewhere."""
+        column = np.full(len(self.trace), np.nan)
+        for row, one in self._worst.items():
+            column[row] = one.tolerance
+        return column
+
     def of_row(self, row: int) -> Comparison:
         """The comparison that is told in a row which differs."""
         return self._worst[row]
@@ -297,6 +306,10 @@ class Deviations:
             one = difference(chain.made, way, both_ways=both)
             row = int(chain.made.outline.row[max(one.of, 0)])
             wrong = chain.is_closed and target.is_closed and part.drawing is None and part.is_pocket != chain.is_pocket
+            if wrong:
+                # Not even the middle is as it should be.
+                depth = float(np.abs(way.start - way.start.mean()).min())
+                one = one._replace(deep=depth) if chain.is_pocket else one._replace(proud=depth)
             given = part.tolerance * self._scale(part, row)
             tolerance = (TOLERANCE if math.isnan(given) else given) + ROUNDING
             where = chain.level.section, chain.level.z, tolerance
@@ -345,7 +358,7 @@ class Deviations:
                 turned = _placed(way, angle, False, 1.0, center)
                 found = difference(chain.made, turned, both_ways=target.is_closed and chain.is_closed)
                 if found.length and found.largest <= enough:
-                    return Fit(angle, mirrored, factor, found.largest)
+                    return Fit(angle if mirrored else -angle, mirrored, 1 / factor, found.largest)
         return None
 
 

@@ -6,6 +6,7 @@ import numpy as np
 
 from polarcheck.checking.phrases.common import block_and_line, code_of
 from polarcheck.checking.phrases.drawing import deviation as deviation
+from polarcheck.checking.phrases.drawing import drawing as drawing
 from polarcheck.checking.phrases.offsets import called_tool
 from polarcheck.checking.phrases.offsets import offset as offset
 from polarcheck.checking.quantity import in_row

@@ -13,37 +13,38 @@ from polarcheck.table.trace import Trace
 _NO_TURN = 1e-5
 
 
+def drawing(deviations: Deviations, row: int) -> str:
+    """What the part of a row should be: the name of the drawing, or the shape."""
+    return short(deviations.of_row(row).title)
+
+
 def deviation(trace: Trace, deviations: Deviations, row: int) -> str:
     """How the part of a row differs from what it should be, where, and how it would fit."""
-    return told(trace, deviations.of_row(row))
+    return _deviation(trace, deviations.of_row(row))
 
 
 def told(trace: Trace, one: Comparison) -> str:
-    """The same of a comparison, in the units of the program."""
-    tolerance = in_row(one.tolerance, trace, one.row)
-    found, row = one.difference, one.row
-    title = short(one.title)
+    """A comparison in words, in the units of the program; also one that agrees."""
+    title, found = short(one.title), one.difference
+    largest, tolerance = in_row(found.largest, trace, one.row), in_row(one.tolerance, trace, one.row)
+    if not one.agrees:
+        by = f"by {largest.beside(tolerance, 'length')}, {tolerance:length} is allowed"
+        return f"differs from {title} {by}: {_deviation(trace, one)}"
+    where = f", largest at {_where(trace, one, found.at)} by line {int(trace.line[one.row])}" if found.largest else ""
+    return f"agrees with {title} within {largest:length} (tolerance {tolerance:length}){where}"
+
+
+def _deviation(trace: Trace, one: Comparison) -> str:
+    found = one.difference
     if one.is_other_way_round:
-        kinds = ("a boss", "a pocket")
-        should, does = kinds if not one.part.is_pocket else kinds[::-1]
-        return f"the contour makes {does} where {title} is {should}: the tool is on the wrong side"
-    if one.agrees:
-        size = f"{in_row(found.largest, trace, row):length}"
-        if found.largest <= 0:
-            return f"agrees with {title}, tolerance {tolerance:length}"
-        return (
-            f"agrees with {title} within {size}, tolerance {tolerance:length}, worst at {_where(trace, one, found.at)}"
-        )
-    sides = [
-        (found.proud, found.proud_at, "too much stays"),
-        (found.deep, found.deep_at, "too much is cut away"),
-    ]
-    sides = [side for side in sorted(sides, key=lambda side: -side[0]) if side[0] > one.tolerance]
-    places = ", and ".join(
-        f"{in_row(size, trace, row).beside(tolerance, 'length')} {what} at {_where(trace, one, at)}"
-        for size, at, what in sides
-    )
-    return f"the part differs from {title}: {places}; {tolerance:length} is allowed{_fit(trace, one, one.fit)}"
+        does, should = ("a boss", "a pocket") if one.part.is_pocket else ("a pocket", "a boss")
+        return f"it is {does}, and {should} is asked for: the tool is on the wrong side"
+    sides = [(found.proud, found.proud_at, "too much stays"), (found.deep, found.deep_at, "too much is cut away")]
+    (_, worst, what), (size, place, other) = sorted(sides, key=lambda side: -side[0])
+    more = ""
+    if size > one.tolerance:
+        more = f", and {in_row(size, trace, one.row):length} {other} at {_where(trace, one, place)}"
+    return f"{what} at {_where(trace, one, worst)}{more}{_fit(trace, one, one.fit)}"
 
 
 def _where(trace: Trace, one: Comparison, point: complex) -> str:

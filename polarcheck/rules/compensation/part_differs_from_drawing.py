@@ -6,7 +6,8 @@ from polarcheck.checking.rule import ERROR, Deviations, Mask, rule
 
 @rule(
     ERROR,
-    "{deviation}",
+    "the part differs from {drawing} by {deviations.largest:length/deviations.tolerance}, "
+    "{deviations.tolerance:length} is allowed: {deviation}",
     needs=("trace.radius",),
     where="deviations.asked",
     follows={

@@ -1,0 +1,361 @@
+"""
+The finished part beside drawings and shapes: parts known by construction, twins of a program, slips of a known size.
+
+What is expected is measured by shapely, between the outlines of two polygons, or follows from the numbers.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from pathlib import Path
+from typing import Any
+
+import ezdxf
+import msgspec
+import numpy as np
+import pytest
+import shapely
+from click.testing import CliRunner
+from contour_families import FAMILIES, Program, Twin, program_of
+from part_reference import judge
+from programs import job_of, report_of, tables_of
+
+from polarcheck.checking.compared import compared
+from polarcheck.commands import main
+from polarcheck.machines import drawing
+from polarcheck.machines.job import Job
+from polarcheck.machines.part import DrawnPart
+from polarcheck.table.deviations import Comparison, Deviations
+
+HEAD = "O1\nG21 G40 G97 G98 G18\nT0101\nG0 X150. Z2. C0\nG12.1\n"
+TAIL = "G13.1\nG0 X160.\nM30\n"
+RULE = "part-differs-from-drawing"
+
+
+def program(points: list[complex], code: str = "G42", scale: float = 1.0, z: float = -3.0) -> str:
+    """A contour from the middle of its last side round all of its points and back; the tool outside for G42."""
+    middle = (points[-1] + points[0]) / 2
+    away = middle * (1 + 25 / abs(middle)) if code == "G42" else middle * 0.3
+
+    def at(point: complex) -> str:
+        return f"X{2 * point.real / scale:.5f} C{point.imag / scale:.5f}"
+
+    head = HEAD if scale == 1 else HEAD.replace("G21", "G20").replace("X150. Z2.", "X5.9 Z.08")
+    blocks = [f"G1 {at(away)} F{300 / scale:.2f}", f"Z{z / scale:.4f}", f"{code} {at(middle)}", *map(at, points)]
+    blocks += [at(middle), f"G40 {at(away)}", f"Z{2 / scale:.4f}"]
+    return head + "\n".join(blocks) + "\n" + (TAIL if scale == 1 else TAIL.replace("X160.", "X6.3"))
+
+
+def polygon(count: int, apothem: float, off: dict[int, float] | None = None, turn: float = 0.0) -> list[complex]:
+    """The corners of a polygon whose sides lie so far from the center; off: what single ones lie farther out."""
+    far = [apothem + (off or {}).get(side, 0.0) for side in range(count)]
+    normals = [cmath.exp(1j * (turn + 2 * math.pi * side / count)) for side in range(count)]
+    corners = []
+    for side in range(count):
+        one, other = normals[side - 1], normals[side]
+        lines = np.array([[one.real, one.imag], [other.real, other.imag]])
+        corners.append(complex(*np.linalg.solve(lines, [far[side - 1], far[side]])))
+    return [*corners[1:], corners[0]]
+
+
+def drawn(geometry: Any, scale: float = 1.0) -> Job:
+    """A job with a drawing of the outlines of a geometry [mm], in units of so many mm."""
+    rings = [
+        ring for part in getattr(geometry, "geoms", [geometry]) for ring in (part.exterior, *part.interiors)
+    ]  # fmt: skip
+    curves = tuple(tuple((np.array(ring.coords) @ np.array([1, 1j]) / scale).tolist()) for ring in rings)
+    return msgspec.structs.replace(
+        job_of(job={"units": "mm"}), part=[DrawnPart(drawing="a.dxf", curves=curves, scale=scale)]
+    )
+
+
+def comparisons(text: str, radius: float, job: Any, machine: str = "fanuc-30i") -> list[Comparison]:
+    tables = tables_of(text, machine, f"1:radius={radius:.6f}", job=job)
+    deviations: Deviations = tables["deviations"]
+    return deviations.comparisons
+
+
+def is_sound(one: Program) -> bool:
+    verdict = judge(one.text, one.radius, one.part)
+    return not verdict.alarms and verdict.depth < 0.003 and not verdict.through and not verdict.wrong_side
+
+
+def sound_seeds(count: int) -> list[int]:
+    """Of each family the first seeds."""
+    return [number * len(FAMILIES) + place for place in range(len(FAMILIES)) for number in range(count)]
+
+
+# ---- parts known by construction ----
+
+
+@pytest.mark.parametrize("seed", sound_seeds(2))
+def test_programs_of_all_families_agree_with_their_parts(seed: int) -> None:
+    one = program_of(seed)
+    found = comparisons(one.text, one.radius, drawn(one.part))
+    assert found
+    if is_sound(one):
+        assert max(comparison.difference.largest for comparison in found) < 0.005
+
+
+@pytest.mark.parametrize("seed", sound_seeds(1))
+@pytest.mark.parametrize(
+    "twin", [Twin(turn=0.7), Twin(mirror=True), Twin(inch=True)], ids=["turned", "mirrored", "inch"]
+)
+def test_so_do_their_twins_with_the_drawing_of_the_twin(seed: int, twin: Twin) -> None:
+    one = program_of(seed, twin)
+    if not is_sound(one):
+        return
+    radius = one.radius / 25.4 if "G20" in one.text else one.radius
+    job = msgspec.structs.replace(drawn(one.part, 25.4 if twin.inch else 1.0), units=None)
+    found = comparisons(one.text, radius, job)
+    assert max(comparison.difference.largest for comparison in found) < 0.005
+
+
+@pytest.mark.parametrize("by", [0.3, -0.2])
+@pytest.mark.parametrize("family", ["polygons", "crosses", "cams", "eccentrics"])
+def test_a_larger_or_smaller_drawing_differs_by_what_shapely_says(family: str, by: float) -> None:
+    made = (program_of(seed, family=family) for seed in range(100))
+    # Pockets are in a plate without end.
+    one = next(one for one in made if is_sound(one) and shapely.area(one.wide) < 1e6)
+    other = one.wide.buffer(by, quad_segs=200)
+    (ring,) = [part.exterior for part in getattr(one.wide, "geoms", [one.wide])]
+    (found, *_) = comparisons(one.text, one.radius, drawn(other))
+    expected = shapely.hausdorff_distance(ring, other.exterior, densify=0.5 if len(ring.coords) > 99 else 0.002)
+    assert found.difference.largest == pytest.approx(expected, abs=0.005)
+    assert (found.difference.deep > found.difference.proud) == (by > 0)
+
+
+# ---- slips of a known size ----
+
+
+@pytest.mark.parametrize("side", range(6))
+@pytest.mark.parametrize("off", [0.05, -0.05])
+@pytest.mark.parametrize("turned", [None, 10.0])
+def test_a_side_that_is_off_is_told_with_its_block(side: int, off: float, turned: float | None) -> None:
+    text = program(polygon(6, 13.5, {side: off}, math.radians(10)))
+    expected = {"shape": "hexagon", "across_flats": 27.0, **({} if turned is None else {"turned": turned})}
+    (found,) = report_of(text, "fanuc-30i", "1:radius=4", job={"part": [expected]}, only=[RULE]).findings
+    # The contour begins and ends in the middle of the first side.
+    lines = {9 + side} | ({15} if side == 0 else set())
+    assert found.line in lines
+    assert found.values["largest"] == pytest.approx(0.05, abs=0.001)
+    assert ("too much stays" if off > 0 else "too much is cut away") in found.message
+
+
+def test_a_part_agrees_within_the_tolerance_that_is_given() -> None:
+    text = program(polygon(6, 13.5, {2: 0.05}))
+    for tolerance, count in ((None, 1), (0.049, 1), (0.051, 0)):
+        part = {"shape": "hexagon", "across_flats": 27.0, **({} if tolerance is None else {"tolerance": tolerance})}
+        findings = report_of(text, "fanuc-30i", "1:radius=4", job={"units": "mm", "part": [part]}, only=[RULE]).findings
+        assert len(findings) == count
+
+
+def test_lengths_are_in_the_units_of_the_program_unless_the_file_says_others() -> None:
+    text = program(polygon(6, 12.7), scale=25.4)
+    for job, agrees in (({}, True), ({"units": "mm"}, False)):
+        part = {"shape": "hexagon", "across_flats": 1.0}
+        (found,) = comparisons(text, 4 / 25.4 if not job else 4, {**job, "part": [part]})
+        assert found.agrees == agrees
+
+
+# ---- how it would fit ----
+
+EGG = shapely.Polygon([(20, -9), (20, 12), (-12, 18), (-15, -11)])
+CORNERS = [complex(x, c) for x, c in EGG.exterior.coords[:-1]]
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        # How the part would have to be changed, where the drawing is changed.
+        (lambda point: point * cmath.exp(0.3j), "turned by 17.189 deg"),
+        (lambda point: point.conjugate(), "mirrored, with C of the other sign"),
+        (lambda point: complex(2 * point.real, point.imag), "with twice its X, as diameter and radius are mixed up"),
+        (lambda point: complex(point.real / 2, point.imag), "with half of its X, as diameter and radius are mixed up"),
+    ],
+    ids=["turned", "mirrored", "doubled", "halved"],
+)
+def test_a_part_that_would_fit_is_told_how(change: Any, said: str) -> None:
+    corners = [change(point) for point in CORNERS]
+    other = shapely.Polygon([(point.real, point.imag) for point in corners])
+    (found,) = report_of(program(CORNERS), "fanuc-30i", "1:radius=3", job=drawn(other), only=[RULE]).findings
+    assert said in found.message
+
+
+def test_a_shape_that_is_turned_is_told_by_how_much() -> None:
+    text = program(polygon(6, 13.5, turn=math.radians(7)))
+    part = {"shape": "hexagon", "across_flats": 27.0, "turned": 0.5}
+    (found,) = report_of(text, "fanuc-30i", "1:radius=4", job={"part": [part]}, only=[RULE]).findings
+    assert "would fit turned by -6.5 deg" in found.message
+
+
+# ---- which contour, which depth ----
+
+
+def test_a_boss_is_no_pocket() -> None:
+    part = {"shape": "square", "across_flats": 40.0, "inside": True}
+    (found,) = report_of(
+        program(polygon(4, 20.0)), "fanuc-30i", "1:radius=3", job={"part": [part]}, only=[RULE]
+    ).findings
+    assert "it is a boss, and a pocket is asked for" in found.message
+    pocket = program(polygon(4, 20.0), "G41")
+    assert [one.agrees for one in comparisons(pocket, 3, {"part": [part]})] == [True]
+
+
+def test_roughing_is_no_difference_and_a_cut_too_deep_is() -> None:
+    rough, final = program(polygon(4, 20.5), z=-3.0), program(polygon(4, 20.0), z=-3.0)
+    part = {"shape": "square", "across_flats": 40.0}
+    both = rough.replace(TAIL, "G13.1\n") + final.removeprefix("O1\n")
+    assert [one.differs for one in comparisons(both, 3, {"part": [part]})] == [False, False]
+    deep = program(polygon(4, 19.9), z=-3.0).replace(TAIL, "G13.1\n") + final.removeprefix("O1\n")
+    assert [one.differs for one in comparisons(deep, 3, {"part": [part]})] == [True, False]
+    second = {"part": [{**part, "section": 2}]}
+    assert [one.section for one in comparisons(deep, 3, second)] == [1]
+
+
+def test_each_contour_is_compared_with_the_curve_that_comes_nearest() -> None:
+    text = program(polygon(6, 13.5)).replace(TAIL, "G13.1\n") + program(polygon(4, 20.0)).removeprefix("O1\n")
+    both = drawn(shapely.MultiPolygon([shapely.Polygon([(p.real, p.imag) for p in polygon(6, 13.5)])]))
+    square = drawn(shapely.Polygon([(p.real, p.imag) for p in polygon(4, 20.0)])).part[0]
+    curves = (*both.part[0].curves, *square.curves)  # type: ignore[attr-defined]
+    job = msgspec.structs.replace(both, part=[DrawnPart(drawing="a.dxf", curves=curves, scale=1.0)])
+    found = comparisons(text, 4, job)
+    assert [(one.section, one.curve, one.agrees) for one in found] == [(0, 0, True), (1, 1, True)]
+
+
+@pytest.mark.parametrize(
+    ("part", "said"),
+    [
+        ({"section": 2}, "it is for section 2, and the program has 1"),
+        ({"z": -9.0}, "no contour lies at its Z"),
+    ],
+)
+def test_what_nothing_is_compared_with_is_not_evaluated(part: dict[str, Any], said: str) -> None:
+    job = {"part": [{"shape": "hexagon", "across_flats": 27.0, **part}]}
+    report = report_of(program(polygon(6, 13.5)), "fanuc-30i", "1:radius=4", job=job, only=[RULE])
+    assert [one.reason for one in report.not_evaluated] == [f"the hexagon asked for was compared with nothing: {said}"]
+
+
+def test_without_r_nobody_knows_what_is_left() -> None:
+    job = {"part": [{"shape": "hexagon", "across_flats": 27.0}]}
+    report = report_of(program(polygon(6, 13.5)), "fanuc-30i", job=job, only=[RULE])
+    assert [one.reason.partition(":")[0] for one in report.not_evaluated] == ["no radius for T0101"]
+    assert not report_of(program(polygon(6, 13.5)), "fanuc-30i", only=[RULE]).not_evaluated
+
+
+# ---- shapes by their numbers ----
+
+
+def shaped(part: dict[str, Any], text: str, radius: float = 2.0) -> list[float]:
+    return [one.difference.largest for one in comparisons(text, radius, {"part": [part]})]
+
+
+def test_flats_and_slots_are_compared_along_their_walls() -> None:
+    flats = "G1 X60. C10. F300/Z-1./G42 X40./X-40./G40 X-60./G1 C-10./G42 X-40./X40./G40 X60."
+    text = HEAD + flats.replace("/", "\n") + "\n" + TAIL
+    quarter = {"turned": 90.0}
+    assert shaped({"shape": "flats", "across_flats": 20.0, **quarter}, text) == pytest.approx([0], abs=1e-4)
+    assert shaped({"shape": "flats", "across_flats": 20.1, **quarter}, text) == pytest.approx([0.05], abs=1e-3)
+    assert shaped({"shape": "flats", "across_flats": 20.1, "diameter": 30.0}, text) == pytest.approx([0.05], abs=1e-3)
+    assert shaped({"shape": "flats", "distance": 10.0}, text) == pytest.approx([0], abs=1e-4)
+    slot = "G1 X80. C0. F300/Z-1./G41 X60. C3./X-60./G40 X-80. C0./G41 X-60. C-3./X60./G40 X80. C0."
+    text = HEAD + slot.replace("/", "\n") + "\n" + TAIL
+    assert shaped({"shape": "slot", "width": 6.0}, text) == pytest.approx([0], abs=1e-4)
+    assert shaped({"shape": "slot", "width": 6.1, "turned": 0.0}, text) == pytest.approx([0.05], abs=1e-3)
+
+
+def test_round_corners_and_chamfers() -> None:
+    """A square of 20 with R3: written as arcs, by itself, and as a sharp one, which has sqrt(2) - 1 of R more."""
+    ends = [(10, 7), (7, 10), (-7, 10), (-10, 7), (-10, -7), (-7, -10), (7, -10), (10, -7)]
+    blocks = [
+        f"{'G1' if number % 2 == 0 else 'G3'} X{2 * x}. C{c}.{' R3.' if number % 2 else ''}"
+        for number, (x, c) in enumerate(ends)
+    ]
+    text = HEAD + "\n".join(["G1 X60. C0 F300", "Z-1.", "G42 X20. C0", *blocks, "G1 X20. C0", "G40 X60.", ""]) + TAIL
+    square = {"shape": "square", "across_flats": 20.0}
+    assert shaped({**square, "corner_radius": 3.0}, text) == pytest.approx([0], abs=1e-3)
+    assert shaped(square, text) == pytest.approx([3 * (math.sqrt(2) - 1)], abs=1e-3)
+    chamfered = 3 * math.sqrt(2) / 2
+    assert shaped({**square, "chamfer": 3.0}, text) == pytest.approx([chamfered - 3 * (math.sqrt(2) - 1)], abs=1e-3)
+    rectangle = {"shape": "rectangle", "width": 20.0, "length": 20.0, "corner_radius": 3.0, "turned": 90.0}
+    assert shaped(rectangle, text) == pytest.approx([0], abs=1e-3)
+
+
+def test_circles_off_the_center() -> None:
+    text = HEAD + "G1 X80. C5. F300\nZ-1.\nG42 X30. C5.\nG3 X30. C5. I-12. J0\nG1 G40 X80.\n" + TAIL
+    assert shaped({"shape": "circle", "diameter": 24.0, "center": [3.0, 5.0]}, text) == pytest.approx([0], abs=1e-3)
+    assert shaped({"shape": "circle", "diameter": 24.0, "center": [3.0, 4.9]}, text) == pytest.approx([0.1], abs=1e-3)
+    assert shaped({"shape": "circle", "diameter": 24.2, "center": [3.0, 5.0]}, text) == pytest.approx([0.1], abs=1e-3)
+
+
+# ---- from the file to the report ----
+
+
+def test_arcs_are_bulges_in_a_file_and_agreement_is_told_with_its_worst_place(tmp_path: Path) -> None:
+    """A D shaft of 30 with its flat 9 from the center."""
+    half = math.acos(9 / 15)
+    document = ezdxf.new("R2010")
+    document.header["$INSUNITS"] = 1
+    bulge = math.tan((2 * math.pi - 2 * half) / 4)
+    points = [(9 / 25.4, -12 / 25.4, 0, 0, 0), (9 / 25.4, 12 / 25.4, 0, 0, bulge)]
+    document.modelspace().add_lwpolyline(points, close=True)
+    document.saveas(tmp_path / "d.dxf")
+    text = HEAD + "G1 X80. C0. F300\nZ-1.\nG42 X18. C0\nC12.\nG3 X18. C-12. I-9. J-12.\nG1 C0\nG40 X80.\n" + TAIL
+    job = msgspec.structs.replace(job_of(), part=[drawing.part_of(tmp_path / "d.dxf", "d.dxf")])
+    (found,) = compared(tables_of(text, "fanuc-30i", "1:radius=4", job=job))
+    assert found.agrees
+    assert found.largest == pytest.approx(0, abs=1e-3)
+    assert found.text.startswith("agrees with d.dxf within ")
+    off = text.replace("X18. C0\nC12.", "X18.1 C0\nC12.").replace("G3 X18.", "G3 X18.").replace("G1 C0", "G1 X18.1 C0")
+    (found,) = compared(tables_of(off, "fanuc-30i", "1:radius=4", job=job))
+    assert not found.agrees
+    assert found.too_much == pytest.approx(0.05, abs=2e-3)
+
+
+PAGE = Path(__file__).parent.parent / "docs" / "drawing.md"
+
+
+@pytest.mark.skipif(not PAGE.exists(), reason="the pages lie in a checkout")
+def test_the_page_shows_what_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    text = (PAGE.parent.parent / "sample_programs" / "hexagon.nc").read_text()
+    (tmp_path / "O1001.NC").write_text(text.replace("\nC-8.660\n", "\nC-8.610\n"))
+    document = ezdxf.new("R2010")
+    document.header["$INSUNITS"] = 4
+    corners = [corner * cmath.exp(1j * math.pi / 3) for corner in polygon(6, 15.0)]
+    document.modelspace().add_lwpolyline([(corner.real, corner.imag) for corner in corners], close=True)
+    document.saveas(tmp_path / "part.dxf")
+    monkeypatch.chdir(tmp_path)
+    lines = [line.strip() for line in PAGE.read_text("utf-8").splitlines()]
+    command = next(line for line in lines if line.startswith("$ polarcheck"))
+    result = CliRunner().invoke(main, command.split()[2:])
+    assert result.exit_code == 1
+    assert lines[lines.index(command) + 1] == result.stdout.strip()
+
+
+def test_a_job_file_names_drawings_of_some_programs(tmp_path: Path) -> None:
+    """Those of other programs are not read; a drawing lies beside its job file, whose line is told for a broken one."""
+    for name in ("O1.NC", "O2.NC"):
+        (tmp_path / name).write_text(program(polygon(6, 13.5)))
+    document = ezdxf.new("R2010")
+    document.header["$INSUNITS"] = 4
+    document.modelspace().add_circle((0, 0), 13.5)
+    document.saveas(tmp_path / "a.dxf")
+    entries = '[tools.1]\nradius = 4.0\n\n[[part]]\ndrawing = "a.dxf"\ntolerance = {}\nfiles = ["O1*"]\n'
+    job = tmp_path / "polarcheck.toml"
+
+    def checked(name: str) -> Any:
+        command = ["check", "--format", "concise", "--select", RULE, str(tmp_path / name)]
+        return CliRunner().invoke(main, command)
+
+    job.write_text(entries.format(0.02))
+    assert "the part differs from a.dxf by 2.088 mm" in checked("O1.NC").stdout.replace("2.089", "2.088")
+    assert checked("O2.NC").exit_code == 0
+    job.write_text(entries.format(3.0))
+    assert checked("O1.NC").exit_code == 0
+    (tmp_path / "a.dxf").write_text("G0 X10.\n")
+    assert (
+        checked("O1.NC").stderr
+        == f"polarcheck: {job}:5: drawing: {tmp_path / 'a.dxf'}: is no DXF file; save the drawing as DXF\n"
+    )
+    assert checked("O2.NC").exit_code == 0
