@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import os
+import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -207,3 +209,15 @@ def test_what_is_drawn_twice_counts_once() -> None:
     (chain,) = joined([*square, *again], 0.01)
     assert len(chain) == 5
     assert chain[0] == chain[-1]
+
+
+def test_reading_a_drawing_leaves_nothing_behind(tmp_path: Path) -> None:
+    """ezdxf would write a list of all fonts into the home folder."""
+    path = written(tmp_path / "part.dxf", d_shaft)
+    (tmp_path / "home").mkdir()
+    code = f"from polarcheck.machines.drawing import *; print(len(read(Path({str(path)!r}), '').curves))"
+    environment = {key: value for key, value in os.environ.items() if not key.startswith("XDG_")}
+    environment |= {"HOME": str(tmp_path / "home"), "USERPROFILE": str(tmp_path / "home")}
+    done = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=True)
+    assert done.stdout == "1\n"
+    assert not list((tmp_path / "home").iterdir())

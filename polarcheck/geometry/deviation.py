@@ -19,6 +19,8 @@ from polarcheck.geometry.ways import Way, way_of_outline
 
 #: Points that lie so far [mm] from a circle about the axis are on it.
 _ON_CIRCLE = 2e-3
+#: By so much [mm] the chords of the bar leave it, at most.
+_CHORDS = 0.01
 #: An arc whose center is so near to the axis [mm] is meant to be about it.
 _ABOUT_AXIS = 0.1
 #: What reaches farther beyond the round of the drawing than this [mm] is the way of the tool in the air.
@@ -97,7 +99,9 @@ def difference(made: Made, drawn: Way, *, both_ways: bool) -> Difference:
     along = drawn.samples()
     points, _ = drawn.at(along)
     # What lies on the round of the drawing is turned, where the part is not milled there.
-    compared = (np.abs(points) < turned - _ON_CIRCLE) | ~_within(made.polygon, points)
+    on_round = np.abs(points) >= turned - _ON_CIRCLE
+    inward = np.where(on_round, points * (1 - _CHORDS / np.maximum(np.abs(points), _CHORDS)), points)
+    compared = ~(on_round & _within(made.polygon, inward))
     second = _extremes(drawn, lambda points: _from_drawing(made, points), (along, compared))
     if not second.length:
         return found

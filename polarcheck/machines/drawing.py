@@ -64,7 +64,7 @@ def read(path: Path, title: str) -> Drawing:
     except OSError as error:
         raise JobError(f"{title}: {error.strerror}") from None
     try:
-        import ezdxf  # noqa: F401
+        _load_reader()
     except ImportError:
         raise JobError(f"{title}: reading a drawing needs ezdxf, which is not installed: {_HINT}") from None
     try:
@@ -83,6 +83,36 @@ class _NoDrawingError(Exception):
 
 
 _TOO_FAR = _NoDrawingError(f"shows what is farther than {_FARTHEST:g} mm from its origin, the spindle axis")
+
+
+def _load_reader() -> None:
+    """
+    Import ezdxf, which would look through all fonts of the computer and write down, in the home folder, what it found:
+    of a drawing only the lines are asked for.
+    """
+    import os
+    import sys
+    import tempfile
+
+    if sys.modules.get("ezdxf") is not None:
+        return
+    before = os.environ.get(_CACHE)
+    with tempfile.TemporaryDirectory() as folder:
+        (Path(folder) / "ezdxf").mkdir()
+        (Path(folder) / "ezdxf" / "font_manager_cache.json").write_text(_NO_FONTS, "utf-8")
+        os.environ[_CACHE] = folder
+        try:
+            import ezdxf  # noqa: F401
+        finally:
+            os.environ.pop(_CACHE)
+            if before is not None:
+                os.environ[_CACHE] = before
+
+
+#: Names the folder in which ezdxf looks for what it has written down.
+_CACHE = "XDG_CACHE_HOME"
+#: Whatever the version is; where it is another one, it has no fonts either.
+_NO_FONTS = '{"version": 2, "font-faces": []}'
 
 
 def _document(data: bytes) -> Any:
