@@ -129,15 +129,17 @@ class Dynamics:
     @cached_property
     def move_time(self) -> Floats:
         """How long each move takes [s]; NaN where it is not known. That of a rapid is a matter of its row."""
-        return self.time_at(self.moves.feed)
-
-    def time_at(self, feed: Floats) -> Floats:
-        """How long each move takes at another F [mm/min], override left out but where it is the F in force [s]."""
-        found = np.where(self.at_feed & self.moves.is_of_tool, polar.time(self.moves.length, feed), np.nan)
-        if feed is self.moves.feed and self.is_slowed.any():
+        found = self.time_without_override.copy()
+        if self.is_slowed.any():
             found[self.is_slowed] = 0.0
             np.add.at(found, self.pieces.move, self.pieces.time())
         return found
+
+    @cached_property
+    def time_without_override(self) -> Floats:
+        """The same, did the tool run at F in force all the way."""
+        is_known = self.at_feed & self.moves.is_of_tool
+        return np.where(is_known, polar.time(self.moves.length, self.moves.feed), np.nan)
 
     # ---- the rows ----
 

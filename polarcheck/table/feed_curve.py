@@ -12,6 +12,8 @@ from polarcheck.table.dynamics import Dynamics
 
 #: Points of each move besides the nearest of a line: shares of its way, its ends included.
 _POINTS = 17
+#: A change of the rate of C by less than this share of it is nearly even along a move, and its ends tell it.
+_LITTLE = 0.1
 
 
 class FeedCurve(msgspec.Struct, frozen=True):
@@ -51,7 +53,10 @@ def feed_curve(dynamics: Dynamics) -> FeedCurve:
     share = np.where(share[-1] > 0, share / share[-1], 0.0)
     rate = np.where(np.isnan(feed), np.nan, np.where(feed == 0, dynamics.c_limit, turn * feed))
     time = _begun(dynamics, moves.row, whole) + share * whole
-    is_new = np.concatenate((np.ones((1, len(moves)), bool), np.diff(way, axis=0) > 0)).T
+    is_new = np.concatenate((np.ones((1, len(moves)), bool), np.diff(way, axis=0) > 0))
+    changes = (turn.max(axis=0) - turn.min(axis=0)) * moves.feed > _LITTLE * rate.max(axis=0)
+    is_new[1:-1] &= changes
+    is_new = is_new.T
     row = np.repeat(moves.row, len(way)).reshape(is_new.shape)
     return FeedCurve(row[is_new], time.T[is_new], feed.T[is_new], rate.T[is_new])
 

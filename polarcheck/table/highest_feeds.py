@@ -99,7 +99,7 @@ class HighestFeeds:
     def time(self) -> Floats:
         """How long each row takes at F as programmed and clamped, were there no override [s]; NaN unknown."""
         moves = self.dynamics.moves
-        of_moves = np.where(self.dynamics.at_feed, self.dynamics.time_at(moves.feed.copy()), 0.0)
+        of_moves = np.where(self.dynamics.at_feed, self.dynamics.time_without_override, 0.0)
         on_path = np.bincount(moves.row, of_moves, minlength=len(self.trace))
         return np.where(self.dynamics.on_path, on_path, self.dynamics.time)
 
