@@ -30,7 +30,8 @@ Ring = list[tuple[float, float]]
 def parts(trace: Trace, levels: Sequence[Level], tolerance: float) -> Iterator[PartPicture]:
     """What stands at each of some depths, its outline thinned by the tolerance [mm] at most."""
     for level in levels:
-        shown, is_known = within_window(level, trace.machine.compensation.overcut_tolerance)
+        bar = trace.stock_diameter[level.walls.row[0]]
+        shown, is_known = within_window(level, bar, trace.machine.compensation.overcut_tolerance)
         polygons = [rings(polygon) for polygon in polygons_of(shapely.simplify(shown, tolerance))]
         if polygons:
             yield PartPicture(
@@ -41,8 +42,11 @@ def parts(trace: Trace, levels: Sequence[Level], tolerance: float) -> Iterator[P
             )
 
 
-def within_window(level: Level, tolerance: float) -> tuple[Any, bool]:
-    """What stands, cut off a little beyond its walls where it goes on from there, and whether it does not."""
+def within_window(level: Level, bar: float, tolerance: float) -> tuple[Any, bool]:
+    """
+    What stands, cut off a little beyond its walls where it goes on from there without an end that is known, and
+    whether it does not. bar: diameter of the stock, which is such an end [mm]; NaN unknown.
+    """
     walls = segments(level.walls, tolerance)
     point = np.concatenate([walls.start, walls.end])
     if level.polygon.is_empty or level.tangled or not len(point):
@@ -50,7 +54,7 @@ def within_window(level: Level, tolerance: float) -> tuple[Any, bool]:
     x, c = point.real, point.imag
     around = max(2 * level.radius, _AROUND * max(float(np.ptp(x)), float(np.ptp(c))))
     window = shapely.box(x.min() - around, c.min() - around, x.max() + around, c.max() + around)
-    if not level.open and window.covers(level.polygon):
+    if not level.open and (not np.isnan(bar) or window.covers(level.polygon)):
         return level.polygon, True
     return areas.intersection(level.polygon, window, grid_size=GRID), False
 

@@ -13,7 +13,7 @@ from polarcheck.machines.modal import Motion
 from polarcheck.pictures.moves import SectionMoves
 
 #: Points for each turn of C by so much, and of an arc about its own center [rad].
-_STEP = np.radians(6.0)
+_STEP = np.radians(4.0)
 #: Points of one move.
 _MOST_OF_MOVE = 120
 
@@ -120,8 +120,12 @@ def samples(path: Ways, held_at: float) -> Samples:
     count = np.ceil(np.maximum(turn, np.where(is_arc, np.abs(sweep), 0)) / _STEP)
     count = np.clip(np.nan_to_num(count), 1, _MOST_OF_MOVE).astype(np.int64)
 
-    # Each way has its two ends, count - 1 points that divide it, and as many that divide the turn of C.
-    each = 2 * count
+    # The nearest point, where rates are highest.
+    ahead = np.where(is_arc, np.where(first <= 0, -first, 2 * np.pi - first) / np.abs(sweep), -foot / long)
+    passes = (ahead > 0) & (ahead < 1)
+
+    # Each way has its two ends, count - 1 points that divide it, as many that divide the turn of C, and the nearest.
+    each = 2 * count + passes
     of = np.repeat(np.arange(len(start)), each)
     place = np.arange(len(of)) - np.repeat(np.cumsum(each) - each, each)
     evenly = place <= count[of]
@@ -131,6 +135,7 @@ def samples(path: Ways, held_at: float) -> Samples:
     of_arc = (_turned(seen, narrow[of]) - first[of]) / np.abs(sweep[of])
     by_turn = np.where(is_arc[of], of_arc, of_line)
     share = np.clip(np.where(evenly | ~np.isfinite(by_turn), share, by_turn), 0.0, 1.0)
+    share = np.where(place == 2 * count[of], ahead[of], share)
     order = np.lexsort((share, of))
     of, share = of[order], share[order]
 
