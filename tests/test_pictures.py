@@ -15,6 +15,7 @@ from programs import job_of, machine_of, report_of
 
 from polarcheck.checking import check
 from polarcheck.checking.rule import load_all
+from polarcheck.errors import TooHardError
 from polarcheck.geometry.segments import Curves
 from polarcheck.machines.modal import Motion
 from polarcheck.pictures import paths
@@ -254,7 +255,7 @@ def test_a_dwell_takes_its_time() -> None:
 def test_the_finished_part_is_filled() -> None:
     (part,) = section_of(HEXAGON, "8:radius=4").parts
     assert part.known_outside
-    assert part.z == -2
+    assert (part.z, part.text) == (-2, "Z-2 mm: hexagon, 30.000 across flats")
     ((ring,),) = part.polygons
     assert shapely.Polygon(ring).area == pytest.approx(6 * 15**2 * math.tan(math.pi / 6), rel=1e-4)
 
@@ -303,7 +304,9 @@ def test_without_r_no_tool_path_is_drawn_in_offset_mode() -> None:
     assert "--tool 8:radius=..." in section.needs_radius
     assert len(section.programmed.x) == 10
     assert section.time is None
-    assert not section.parts
+    # What the program is meant to make is known all the same.
+    assert [part.text for part in section.parts] == ["Z-2 mm: hexagon, 30.000 across flats"]
+    assert "whether the tool makes it was not looked at" in section.makes[0]
 
 
 def test_a_section_without_compensation_is_run_as_programmed() -> None:
@@ -317,6 +320,16 @@ def test_without_f_there_are_no_rates_but_paths() -> None:
     assert section.moves.time[:3] == [None] * 3
     assert section.time is None
     assert len(section.tool.x) == 10
+
+
+def test_where_the_part_is_too_hard_the_path_is_drawn_and_it_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
+    def never(*arguments: Any) -> Any:
+        raise TooHardError("its walls cross too often")
+
+    monkeypatch.setattr("polarcheck.table.finished.Finished._levels_of", never)
+    found = drawn_of(HEXAGON, "8:radius=4")
+    assert len(found.sections[0].tool.x) == 10
+    assert found.remarks == ["the finished part is not drawn: its walls cross too often"]
 
 
 def test_a_program_without_a_section_has_no_picture() -> None:
@@ -372,6 +385,9 @@ def test_findings_are_never_thinned(monkeypatch: pytest.MonkeyPatch) -> None:
     section = section_of(program)
     assert section.move_count > 400
     assert len(section.moves.line) < 100
+    assert section.remarks == [
+        f"the table lists {len(section.moves.line)} of {section.move_count} moves: those that are drawn"
+    ]
     assert program.split("\n").index(blocks[137].split("\n")[0]) + 1 in section.moves.line
 
 

@@ -8,7 +8,8 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from polarcheck.checking.finding import FileReport, Finding
+from polarcheck.checking.finding import FileReport, Finding, MadeShape
+from polarcheck.checking.part import made_by
 from polarcheck.checking.polar_sections import polar_sections
 from polarcheck.checking.tables import Tables
 from polarcheck.errors import TooHardError
@@ -74,6 +75,8 @@ def _sections(tables: Tables, lines: Any, remarks: list[str]) -> list[SectionPic
     moves = SectionMoves(trace, tables["dynamics"])
     programmed = programmed_moves(trace)
     levels = _unless_too_hard(lambda: tables["finished"].levels, "the finished part", remarks)
+    meant = _unless_too_hard(lambda: tables["finished"].meant, "the finished part", remarks)
+    makes = _unless_too_hard(lambda: made_by(tables), "what the program makes", remarks)
     marks: list[tuple[int, Mark]] = [
         *_unless_too_hard(
             lambda: list(overcut_marks(trace, tables["moves"], tables["overcuts"], levels)), "what is overcut", remarks
@@ -89,13 +92,19 @@ def _sections(tables: Tables, lines: Any, remarks: list[str]) -> list[SectionPic
             number,
             lines,
             Beside(
-                [level for level in levels if level.section == number],
+                [level for level in (*levels, *meant) if level.section == number],
                 [mark for section, mark in marks if section == number],
-                [],
+                list(dict.fromkeys(_in_words(made) for made in makes if made.line == one.line)),
             ),
         )
         for number, one in enumerate(told[:_MOST])
     ]
+
+
+def _in_words(made: MadeShape) -> str:
+    left = "".join(f"; left standing: {one.text}" for one in made.left_standing)
+    needs = f"; {made.needs}" if made.needs and made.shape is not None else ""
+    return f"{made.text}{left}{needs}"
 
 
 def _unless_too_hard(make: Callable[[], list[Made]], what: str, remarks: list[str]) -> list[Made]:

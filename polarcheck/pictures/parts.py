@@ -12,7 +12,8 @@ from typing import Any
 import numpy as np
 import shapely  # type: ignore[import-untyped]
 
-from polarcheck.checking.quantity import Quantity, in_row
+from polarcheck.checking.part import level_in_words
+from polarcheck.checking.quantity import in_row
 from polarcheck.geometry import areas
 from polarcheck.geometry.faces import GRID
 from polarcheck.geometry.segments import segments
@@ -37,7 +38,7 @@ def parts(trace: Trace, levels: Sequence[Level], tolerance: float) -> Iterator[P
             yield PartPicture(
                 z=None if np.isnan(level.z) else round(level.z, LENGTH),
                 polygons=polygons,
-                text=_text(trace, level, shown, is_known),
+                text=_text(trace, level),
                 known_outside=is_known,
             )
 
@@ -74,18 +75,7 @@ def _points(ring: Any) -> Ring:
     return [(x, c) for x, c in (np.round(shapely.get_coordinates(ring), LENGTH) + 0.0).tolist()]
 
 
-def _text(trace: Trace, level: Level, shown: Any, is_known: bool) -> str:
-    row = int(level.walls.row[0])
-
-    def length(value: float) -> str:
-        return f"{in_row(value, trace, row):length}"
-
-    z = "" if np.isnan(level.z) else f"Z{_number(in_row(level.z, trace, row))}: "
-    if not is_known:
-        return f"{z}what surrounds the contour"
-    x_from, c_from, x_to, c_to = shown.bounds
-    return f"{z}{length(x_to - x_from)} in X, {length(c_to - c_from)} in C"
-
-
-def _number(quantity: Quantity) -> str:
-    return f"{quantity:length}".removesuffix(f" {quantity.unit}")
+def _text(trace: Trace, level: Level) -> str:
+    """`Z-2 mm: hexagon, ...`"""
+    words = level_in_words(trace, level) or "what its contour leaves standing"
+    return words if np.isnan(level.z) else f"Z{in_row(level.z, trace, int(level.walls.row[0])):length}: {words}"

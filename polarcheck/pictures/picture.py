@@ -121,7 +121,8 @@ class SectionPicture(msgspec.Struct, frozen=True, kw_only=True):
     mm in one of them. radius of the cutter, stock (diameter), keep_out [mm]; c_limit [deg/min], x_limit [mm/min],
     feed_limit [mm/min]: those that the machine has. diameter: whether X is written as a diameter there. needs_radius:
     why no tool path is drawn, empty where it is. thinned: how far thinned paths lie off the true ones at most [mm].
-    move_count: of the section; in the table stand fewer where there are very many. remarks: what is not drawn, and why.
+    move_count: of the section; in the table stand fewer where there are very many. makes: what it makes, all depths
+    together, as in `polarcheck part`, with what is left standing. remarks: what is not drawn, and why.
     """
 
     title: str
@@ -148,6 +149,7 @@ class SectionPicture(msgspec.Struct, frozen=True, kw_only=True):
     parts: list[PartPicture]
     marks: list[Mark]
     move_count: int = 0
+    makes: list[str] = []
     remarks: list[str] = []
 
 

@@ -40,10 +40,10 @@ _FINEST = 1 / 16
 class Beside:
     """What stands beside the moves of a section in its picture."""
 
-    def __init__(self, levels: Sequence[Level], marks: Sequence[Mark], remarks: Sequence[str]) -> None:
+    def __init__(self, levels: Sequence[Level], marks: Sequence[Mark], makes: Sequence[str]) -> None:
         self.levels = levels
         self.marks = marks
-        self.remarks = remarks
+        self.makes = makes
 
 
 def section_picture(
@@ -84,7 +84,7 @@ def section_picture(
         stock=rounded(trace.stock_diameter[enter]),
         keep_out=rounded(limits.keep_out),
         c_limit=rounded(limits.c_feed),
-        x_limit=None,
+        x_limit=rounded(limits.x_feed),
         feed_limit=rounded(limits.polar_feed),
         needs_radius=why_unknown(trace, found.moves, chosen),
         thinned=round(max(off, off_contour), LENGTH),
@@ -102,7 +102,8 @@ def section_picture(
         ),
         parts=list(parts(trace, beside.levels, unseen)),
         marks=list(beside.marks),
-        remarks=[*beside.remarks],
+        makes=list(beside.makes),
+        remarks=_remarks(len(chosen), len(listed)),
     )
 
 
@@ -166,6 +167,10 @@ def _points(path: Chords, move: Rows) -> Points:
         c=numbers_of(point.imag, LENGTH),
         move=[None if number is None else int(number) for number in numbers],
     )
+
+
+def _remarks(count: int, listed: int) -> list[str]:
+    return [f"the table lists {listed} of {count} moves: those that are drawn"] if listed < count else []
 
 
 def _title(told: PolarSection) -> str:
