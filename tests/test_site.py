@@ -157,7 +157,7 @@ SAMPLES = "sample_programs"
 @cache
 def ran(line: str) -> tuple[int, str, str]:
     """Exit code, output and standard error of a command line, beside the sample programs."""
-    result = CliRunner().invoke(main, shlex.split(line)[1:])
+    result = CliRunner().invoke(main, shlex.split(line)[1:], env={"TERM": "xterm"})
     return result.exit_code, result.stdout, result.stderr
 
 

@@ -22,14 +22,14 @@ from polarcheck.commands import (
 from polarcheck.commands.diff_base import diff_base, narrowed
 from polarcheck.commands.exit_codes import COULD_NOT_RUN
 from polarcheck.commands.options import option
-from polarcheck.commands.output import COLUMNS, columns, in_color, say, warn
+from polarcheck.commands.output import COLUMNS, columns, draws_dots, in_color, say, warn
 from polarcheck.reports import formats
 
 #: Of more files than this the report is short, if no format is asked for.
 _LONG = 3
 #: Options that change how a report looks or where it goes, who makes it or which files it is of, but not what it says.
 _OF_OUTPUT = (
-    *("stdin_filename", "form", "outputs", "color", "quiet", "following", "silenced", "statistics"),
+    *("stdin_filename", "form", "outputs", "color", "quiet", "following", "silenced", "statistics", "shown_too"),
     *("diff_base", "workers", "cluster", "watch", *fixing.NAMES),
 )
 _FORMATS = formats()
@@ -82,6 +82,7 @@ def _outputs(ctx: click.Context, parameter: click.Parameter, values: tuple[str, 
 @option("--show-following", "following", is_flag=True, help="In text, what follows from a finding, too.")
 @silencing.show_silenced
 @option("--part", "part", is_flag=True, help="In text, JSON and pages, what the program makes, too.")
+@reporting.paths
 @option("-q", "--quiet", is_flag=True, help="Findings only.")
 @fixing.wanted
 @options.debug
@@ -136,6 +137,7 @@ class _Asked(NamedTuple):
     silenced: bool
     statistics: bool
     part: bool
+    shown_too: str | None
     fixes: fixing.Wanted
     diff_base: str | None
 
@@ -173,7 +175,8 @@ def _check(asked: _Asked, seen: watching.Seen | None) -> int:
     keep_within_memory()
     reporting.refuse(asked.form, asked.statistics)
     wants_pictures = picturing.FORMAT in (asked.form, *(form for form, _ in asked.outputs))
-    extras = picturing.extras() if wants_pictures else ()
+    extras = reporting.extras(asked.shown_too, asked.form, asked.outputs)
+    extras += picturing.extras() if wants_pictures else ()
     if asked.part:
         from polarcheck.checking.part import part_of
 
@@ -197,7 +200,7 @@ def _check(asked: _Asked, seen: watching.Seen | None) -> int:
     made = fixing.make(asked.fixes, tasks, asked.max_size, shown_in, silencing.answers(tasks, known))
     if made.ends:
         return max(faults.told(), made.status)
-    form = asked.form or ("text" if len(tasks) <= _LONG else "short")
+    form = asked.form or ("text" if len(tasks) <= _LONG or asked.shown_too else "short")
     went_wrong: list[str] = []
     plain = reporting.background(
         reports.Background(
@@ -208,6 +211,7 @@ def _check(asked: _Asked, seen: watching.Seen | None) -> int:
             following=asked.following,
             silenced=asked.silenced,
             fixed=made.fixed,
+            dots=draws_dots(),
             has_baseline=applies.baseline is not None,
             drawn=pictures.drawn,
         ),

@@ -124,3 +124,12 @@ def columns() -> int:
     import shutil
 
     return min(shutil.get_terminal_size().columns, COLUMNS)
+
+
+def draws_dots() -> bool:
+    """Whether standard output takes characters that are made of dots and blocks, and not ASCII alone."""
+    import codecs
+
+    encoding = getattr(sys.stdout, "encoding", None) or "ascii"
+    is_unicode = codecs.lookup(encoding).name.startswith("utf")
+    return is_unicode and os.environ.get("TERM") != "dumb"

@@ -8,6 +8,8 @@ from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import click
+
 from polarcheck.commands import silencing
 from polarcheck.commands.options import option
 from polarcheck.errors import OutputError, UsageError
@@ -15,6 +17,7 @@ from polarcheck.errors import OutputError, UsageError
 if TYPE_CHECKING:
     from polarcheck.checking.batch import Task
     from polarcheck.checking.finding import Report
+    from polarcheck.checking.settings import Extra
     from polarcheck.reports import Background
 
 #: Where GitHub Actions takes the summary of a step from, and the report that is for GitHub Actions.
@@ -29,6 +32,23 @@ def refuse(form: str | None, wants_statistics: bool) -> None:
     """Raises UsageError where counts are asked for in a format that has no place for them."""
     if wants_statistics and form not in (None, *_WITH_COUNTS):
         raise UsageError(f"--statistics: expected --format {', '.join(_WITH_COUNTS)}, found {form}")
+
+
+#: The format that can show paths.
+_WITH_PATHS = "text"
+paths = option("--show", "shown_too", type=click.Choice(["path"]), help="In text, the paths of each section, too.")
+
+
+def extras(shown_too: str | None, form: str | None, outputs: Iterable[tuple[str, Path]]) -> tuple[Extra, ...]:
+    """What adds the paths to reports. Raises UsageError where they are asked for in a format that cannot show them."""
+    if shown_too is None:
+        return ()
+    for other in (form or _WITH_PATHS, *(form for form, _ in outputs)):
+        if other != _WITH_PATHS:
+            raise UsageError(f"--show {shown_too}: expected --format {_WITH_PATHS}, found {other}")
+    from polarcheck.pictures.section_view import with_views
+
+    return (with_views,)
 
 
 def background(plain: Background, tasks: Iterable[Task], failures: Sequence[str]) -> Background:

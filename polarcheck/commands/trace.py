@@ -12,9 +12,11 @@ import click
 
 from polarcheck.commands import options
 from polarcheck.commands.options import narrower, option
-from polarcheck.commands.output import is_terminal, show, warn
+from polarcheck.commands.output import COLUMNS, draws_dots, in_color, is_terminal, show, warn
+from polarcheck.errors import UsageError
 
 if TYPE_CHECKING:
+    from polarcheck.checking.tables import Tables
     from polarcheck.table.tool_center import ToolCenter
     from polarcheck.table.trace import Trace
 
@@ -30,9 +32,20 @@ if TYPE_CHECKING:
     show_default="table on a terminal, else csv",
     help="A table for people, or one for programs.",
 )
+@option("--show", "shown_too", type=click.Choice(["path"]), help="A picture of each section in place of the table.")
+@option("--color", type=click.Choice(["auto", "always", "never"]), default="auto", show_default=True)
 @options.max_size
 @options.debug
-def trace(path: str, which: str | None, form: str | None, no_config: bool, max_size: int, **asked: Any) -> None:
+def trace(
+    path: str,
+    which: str | None,
+    form: str | None,
+    shown_too: str | None,
+    color: str,
+    no_config: bool,
+    max_size: int,
+    **asked: Any,
+) -> None:
     """
     Show what FILE does, block by block or, with --path, move by move inside polar sections.
 
@@ -48,17 +61,22 @@ def trace(path: str, which: str | None, form: str | None, no_config: bool, max_s
     from polarcheck.reports.pages import executed
     from polarcheck.time_limit import seconds_for, time_limit
 
+    if shown_too and form not in (None, "table"):
+        raise UsageError(f"--show {shown_too}: expected --format table, found {form}")
     found = settings.OfPrograms(settings.Options(use_config=not no_config, **asked))(path)
     data = files.read(path, max_size)
     with time_limit(seconds_for(len(data), found.job.run.max_seconds)):
         # One run for each channel: --block-skip asks for one state.
         runs = check.read(data, found.machine, found.job, files.shown(path), found.encoding)
         paths = [(tables["trace"], tables["tool_center"]) for _, tables in runs]
-        for of_path in paths if which == "tool" else ():
+        for of_path in paths if which == "tool" or shown_too else ():
             unknown = executed.without_radius(*of_path)
             if unknown:
                 warn(unknown)
         on_terminal = is_terminal(sys.stdout)
+        if shown_too:
+            _show_paths([tables for _, tables in runs], in_color(color))
+            return
         if form == "table" or (form is None and on_terminal):
             for text in _table(paths, which, on_terminal):
                 if not show(text):
@@ -68,6 +86,22 @@ def trace(path: str, which: str | None, form: str | None, no_config: bool, max_s
         for line in (executed.as_jsonl if form == "jsonl" else executed.as_csv)(items):
             if not show(line.encode()):
                 break
+
+
+def _show_paths(channels: Sequence[Tables], is_colored: bool) -> None:
+    """What is seen of each section, as wide as the terminal."""
+    from polarcheck.pictures.painting import plain
+    from polarcheck.pictures.section_view import views_of
+    from polarcheck.reports import painted
+    from polarcheck.reports.pages.path_view import path_view
+
+    columns = shutil.get_terminal_size().columns if is_terminal(sys.stdout) else COLUMNS
+    dots, paint = draws_dots(), painted if is_colored else plain
+    for view in (view for tables in channels for view in views_of(tables)):
+        if not show(
+            "".join(f"{line}\n" for line in path_view(view, columns, dots=dots, paint=paint)), is_colored or None
+        ):
+            return
 
 
 def _table(paths: Sequence[tuple[Trace, ToolCenter]], which: str | None, on_terminal: bool) -> Iterator[str]:

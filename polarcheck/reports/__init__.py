@@ -39,11 +39,12 @@ class Background(NamedTuple):
 
     lines: by path and line number, those that findings stand in. rules: by name. columns: the width of the terminal.
     quiet: findings only. command: what checks a file behind it as these were checked. following: whether what follows
-    from a finding is shown, too. silenced: whether what is silenced is. settings: what applied to a file, by its path.
-    failures: a line each on what could not be read, or went wrong. root, folder: of the repository, and the one that
-    paths begin in; absolute, with slashes, empty where they are not known. fixed: how many fixes were written into the
-    files before. has_baseline: whether findings of a baseline are silenced, so that others are new. drawn: by path,
-    what is drawn of a program, where that was asked for.
+    from a finding is shown, too. silenced: whether what is silenced is. dots: whether paths are drawn with characters
+    of dots and blocks, else ASCII. settings: what applied to a file, by its path. failures: a line each on what could
+    not be read, or went wrong. root, folder: of the repository, and the one that paths begin in; absolute, with
+    slashes, empty where they are not known. fixed: how many fixes were written into the files before. has_baseline:
+    whether findings of a baseline are silenced, so that others are new. drawn: by path, what is drawn of a program,
+    where that was asked for.
     """
 
     lines: Mapping[str, Mapping[int, str]] = MappingProxyType({})
@@ -54,6 +55,7 @@ class Background(NamedTuple):
     command: str = "polarcheck check"
     following: bool = False
     silenced: bool = False
+    dots: bool = False
     settings: Mapping[str, Settings] = MappingProxyType({})
     failures: Sequence[str] = ()
     root: str = ""

@@ -87,6 +87,7 @@ def _parts(background: Background, are_listed: bool) -> Parts:
         shown += _made(file, page)
         if background.silenced:
             shown += _silenced(file, page)
+        shown += _views(file, page, background.dots)
         return "".join(line + "\n" for line in shown)
 
     def end(report: Report) -> str:
@@ -99,6 +100,17 @@ def _parts(background: Background, are_listed: bool) -> Parts:
         return "".join(line + "\n" for line in shown)
 
     return Parts(of_file, end)
+
+
+def _views(file: FileReport, page: _Page, dots: bool) -> Iterator[str]:
+    """The paths of each section, where they were asked for."""
+    views = getattr(file, "views", ())
+    if not views:
+        return
+    from polarcheck.reports.pages.path_view import path_view
+
+    for view in views:
+        yield from path_view(view, page.columns, dots=dots, paint=page.paint, path=file.path)
 
 
 def _silenced(file: FileReport, page: _Page) -> Iterator[str]:
