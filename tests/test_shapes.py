@@ -9,7 +9,9 @@ from typing import Any
 import numpy as np
 import pytest
 import shapely  # type: ignore[import-untyped]
-from contour_families import FAMILIES, Program, program_of
+from contour_families import FAMILIES, Program, Twin, program_of
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from programs import tables_of
 from shapely import affinity
 
@@ -124,7 +126,7 @@ def boundary(program: Program) -> Any:
 @pytest.mark.parametrize("family", FAMILIES)
 def test_what_is_drawn_from_a_shape_is_the_part(family: str) -> None:
     told = []
-    for seed in range(10):
+    for seed in range(7):
         program = program_of(seed, family=family)
         level = levels_of(program)[0]
         if not is_as_meant(level, program):
@@ -140,3 +142,125 @@ def test_what_is_drawn_from_a_shape_is_the_part(family: str) -> None:
             assert shapely.hausdorff_distance(outline, drawn(known[0], program.bar or math.nan).boundary) < NEAR, seed
         told += known
     assert len(told) >= 2
+
+
+#: Sizes that do not hang on where the part is, or which way it is turned.
+SIZES = ("across_flats", "diameter", "width", "length", "apart", "distance", "radius", "corner_radius")
+
+
+TWINS = {"turned": Twin(0.7), "mirror": Twin(mirror=True), "inch": Twin(inch=True), "steps": Twin(incremental=True)}
+
+
+@pytest.mark.parametrize("twin", TWINS.values(), ids=list(TWINS))
+def test_twins_have_the_same_shape(twin: Twin) -> None:
+    compared = 0
+    for family, seed in (
+        ("polygons", 0),
+        ("d_shafts", 2),
+        ("cams", 1),
+        ("eccentrics", 4),
+        ("keyways", 3),
+        ("pockets", 4),
+    ):
+        plain, other = program_of(seed, Twin(inch=False), family), program_of(seed, twin, family)
+        (one,), (two,) = (
+            shapes_of(levels_of(program)[0].outline, 0.0, program.bar or math.nan) for program in (plain, other)
+        )
+        assert (one.name, one.inside, one.is_regular) == (two.name, two.inside, two.is_regular)
+        for name in SIZES:
+            if name in one.values:
+                assert one.values[name] == pytest.approx(two.values[name], abs=0.008), (family, name)
+                compared += 1
+    assert compared >= 6
+
+
+# ---- parts that shapely makes ----
+
+
+def shape_of(area: Any) -> Shape:
+    """What a program round an area makes, written in mm with X as a diameter."""
+    points = shapely.get_coordinates(shapely.geometry.polygon.orient(area).exterior)
+    begin = (points[0] + points[1]) / 2
+    way = [*points[1:], begin]
+    words = "\n".join(f"X{2 * x:.3f} C{c:.3f}" for x, c in way)
+    text = (
+        f"G21 G98 G40 T0101\nG0 X900. C0\nG12.1\nG1 Z-2. F300\nG42 X{2 * begin[0]:.3f} C{begin[1]:.3f} F100\n{words}\n"
+    )
+    (level,) = tables_of(text + "G40 X900.\nG13.1\n", "fanuc", "1:radius=4")["finished"].levels
+    (shape,) = shapes_of(level.outline)
+    return shape
+
+
+def regular(sides: int, across: float, turned: float = 0.0) -> Any:
+    """A polygon whose first side lies in this direction [deg]."""
+    return affinity.rotate(_cut(shapely.box(-FAR, -FAR, FAR, FAR), [across / 2] * sides), turned, origin=(0, 0))
+
+
+@settings(max_examples=25, deadline=None)
+@given(
+    st.integers(3, 12), st.floats(8, 80), st.floats(0, 360), st.floats(-15, 15), st.floats(-15, 15)
+)  # fmt: skip
+def test_regular_polygons_are_told(sides: int, across: float, turned: float, x: float, c: float) -> None:
+    found = shape_of(affinity.translate(regular(sides, across, turned), x, c))
+    assert (found.name, found.is_regular, found.odd) == (POLYGONS.get(sides, "11-sided"), True, ())
+    assert found.values["across_flats"] == pytest.approx(across, abs=0.005)
+    step = 360 / sides
+    assert abs((found.values["turned"] - turned + step / 2) % step - step / 2) < 0.05
+    middle = complex(found.values.get("center_x", 0), found.values.get("center_c", 0))
+    assert abs(middle - complex(x, c)) < 0.005
+
+
+@settings(max_examples=15, deadline=None)
+@given(st.floats(10, 60), st.floats(1.05, 4), st.floats(0, 180), st.floats(-9, 9))
+def test_rectangles_are_told(width: float, share: float, turned: float, aside: float) -> None:
+    length = width * share
+    box = affinity.translate(shapely.box(-length / 2, -width / 2, length / 2, width / 2), aside, 2 * aside)
+    found = shape_of(affinity.rotate(box, turned, origin=(0, 0)))
+    assert found.name == "rectangle"
+    assert found.values["length"] == pytest.approx(length, abs=0.005)
+    assert found.values["width"] == pytest.approx(width, abs=0.005)
+    assert abs((found.values["turned"] - turned + 90) % 180 - 90) < 0.05
+
+
+@pytest.mark.parametrize(("sides", "at"), [(6, 0), (6, 2), (4, 1), (8, 5), (5, 3)])
+def test_one_side_that_is_off_is_told_with_its_size(sides: int, at: int) -> None:
+    sizes = [13.5] * sides
+    sizes[at] = 13.55
+    found = shape_of(_cut(shapely.box(-FAR, -FAR, FAR, FAR), sizes))
+    assert found.name == POLYGONS[sides]
+    assert not found.is_regular
+    assert found.values["across_flats"] == pytest.approx(27, abs=0.005)
+    assert [round(odd.size, 2) for odd in found.odd] == [27.1]
+
+
+def test_an_octagon_of_mixed_words_is_not_regular_and_says_so() -> None:
+    found = shape_of(affinity.scale(regular(8, 40.0), 0.5, 1.0, origin=(0, 0)))
+    assert (found.name, found.is_regular) == ("octagon", False)
+    assert found.values["least"] == pytest.approx(20, abs=0.005)
+    assert found.values["most"] == pytest.approx(40, abs=0.005)
+    assert found.values["regular_by_x"] == 2
+    assert found.values["across_flats"] == pytest.approx(40, abs=0.005)
+
+
+def test_a_square_with_chamfers_is_a_square() -> None:
+    box = shapely.box(-15, -15, 15, 15).intersection(affinity.rotate(shapely.box(-19, -19, 19, 19), 45))
+    found = shape_of(box)
+    assert found.name == "square"
+    assert found.values["corner_chamfer"] == pytest.approx(30 - 19 * math.sqrt(2), abs=0.005)
+
+
+def test_many_chords_are_a_circle() -> None:
+    found = shape_of(shapely.Point(3, 4).buffer(12, quad_segs=20))
+    assert found.name == "circle"
+    assert found.values["diameter"] == pytest.approx(24, abs=0.005)
+    assert (round(found.values["center_x"], 2), round(found.values["center_c"], 2)) == (3, 4)
+
+
+def test_a_contour_has_its_extents_and_its_area() -> None:
+    area = shapely.box(-20, -10, 15, 12).difference(shapely.box(-5, 2, 4, 20))
+    found = shape_of(area)
+    assert found.name == "contour"
+    extents = [found.values[name] for name in ("x_least", "c_least", "x_most", "c_most")]
+    assert extents == pytest.approx(list(area.bounds), abs=0.001)
+    assert found.values["area"] == pytest.approx(area.area, abs=0.05)
+    assert found.values["inside_corners"] == 2

@@ -4,30 +4,46 @@ from __future__ import annotations
 
 import numpy as np
 
+from polarcheck.arrays import Floats
 from polarcheck.geometry.outline import Outline
+from polarcheck.geometry.plane import arc_sweep
 from polarcheck.geometry.shapes.shape import SAME, Shape, off_axis, turned_by
 from polarcheck.geometry.shapes.shapes import shapes_of
 
 #: The sizes of a shape that lose R on both sides, and those that lose it once, where a cutter runs round it.
 _BOTH = ("diameter", "across_flats", "width", "length", "apart", "least", "most", "corner_diameter")
 _ONCE = ("corner_radius", "radius", "radius_small", "distance", "corner_least")
+#: A loop within another one that encloses at least this share of it is meant [share].
+_MOST = 0.7
 #: Shapes that stay what they are when all their sides move inwards.
 _KEPT = ("circle", "rectangle", "round with flats", "slot")
 
 
 def closed_part(path: Outline) -> Outline | None:
-    """What of one way is a loop: from a point to where it comes back to it, the longest; None where it does not."""
+    """What of one way is a loop: from a point to where it comes back to it, without leads; None where it does not."""
     keys = np.round(np.concatenate([path.start, path.end]) / SAME)
     _, number = np.unique(keys, return_inverse=True)
     begins, ends = number[: len(path)], number[len(path) :]
     last = np.full(int(number.max(initial=-1)) + 1, -1)
     last[ends] = np.arange(len(path))
     count = last[begins] - np.arange(len(path)) + 1
-    if not len(path) or count.max() < 1:
+    closes = np.flatnonzero(count > 0)
+    if not len(closes):
         return None
-    first = int(np.argmax(count))
+    # Of loops that enclose the same, with leads or without, the shortest.
+    until = np.append(0, np.cumsum(_areas(path)))
+    area = np.abs(until[closes + count[closes]] - until[closes])
+    large = closes[area >= _MOST * area.max()]
+    first = int(large[np.argmin(count[large])])
     loop = path[np.arange(first, first + int(count[first]))]
     return Outline(loop.start, loop.end, loop.center, loop.kind, loop.row, loop.chain * 0, np.array([True]))
+
+
+def _areas(path: Outline) -> Floats:
+    """Of the moves of a loop, the sum is what it encloses [mm2]."""
+    sweep = arc_sweep(path.start, path.end, path.center, path.kind)
+    bows = np.where(path.is_arc, np.nan_to_num(path.radius) ** 2 * (sweep - np.sin(sweep)), 0.0)
+    return np.asarray(((path.start.conj() * path.end).imag + bows) / 2)
 
 
 def left_inside(loop: Outline, radius: float) -> Shape | None:

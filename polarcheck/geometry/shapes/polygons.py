@@ -13,8 +13,9 @@ from polarcheck.geometry.shapes.shape import SAME, SAME_DIRECTION, OddSide, Shap
 
 #: With more sides than this equal ones stand for a circle.
 _MOST_SIDES = 12
-#: A side that differs by no more than this share of the size was meant to be as the others.
-_NEARLY = 0.03
+#: A side that differs by no more than this share of the size was meant to be as most others are; and where no most
+#: agree, sides that differ by no more than this [mm].
+_NEARLY, _NEARLY_ALL = 0.03, 0.1
 #: How much less than regular along X what becomes regular by doubling or halving its X is.
 _MIXED = (2.0, 0.5)
 
@@ -102,8 +103,11 @@ def _fitted(sides: Sides) -> _Fit | None:
         if best.good.all():
             break
     assert best is not None
-    near = np.abs(best.sizes - best.distance).max() <= _NEARLY * best.distance
-    return best if best.good.all() or near else None
+    most = np.count_nonzero(best.good) > count / 2
+    slack = _NEARLY * best.distance if most else _NEARLY_ALL
+    # Two sides each of four are those of a rectangle.
+    is_near = np.abs(best.sizes - best.distance).max() <= slack and (most or count > 4)
+    return best if best.good.all() or is_near else None
 
 
 def _laid(sides: Sides, first: float, chosen: Mask, on_axis: bool) -> _Fit:

@@ -32,7 +32,7 @@ class Ring:
     Sides in the order in which they run, n of them.
 
     start, end: complex128[n]. center: complex128[n], NaN for lines. sweep: float64[n] [rad], 0 for lines, above 0
-    counterclockwise. row: int[n], of the first block of each. closed: the last one ends where the first one starts.
+    counterclockwise. row: int[n], of the longest block of each. closed: the last one ends where the first one starts.
     inside: it bounds a pocket; it was turned round, so that what it encloses is on its left in either case.
     """
 
@@ -210,7 +210,10 @@ def _straightened(ring: Ring) -> Ring:
     if len(ring) < 2:
         return ring
     line = ring.is_line
-    joins = np.append(False, line[1:] & line[:-1])
+    chord = ring.end[1:] - ring.start[:-1]
+    off = np.abs(((ring.start[1:] - ring.start[:-1]) * chord.conj()).imag) / np.maximum(np.abs(chord), 1e-12)
+    # Across what is a corner for itself no stretch is looked at as a whole.
+    joins = np.append(False, line[1:] & line[:-1] & (off <= SAME))
     kept = kept_ends(ring.start, ring.end, joins, np.full(len(ring), _HALF)) | ~line
     return _joined(ring, np.append(True, kept[:-1]))
 
@@ -235,4 +238,6 @@ def _joined(ring: Ring, begins: Mask) -> Ring:
     center: Points = np.add.reduceat(np.asarray(ring.center * weight, np.complex128), first)
     center = center / np.add.reduceat(weight, first)
     sweep = np.add.reduceat(ring.sweep, first)
-    return Ring(ring.start[first], ring.end[last], center, sweep, ring.row[first], ring.closed, ring.inside)
+    # The block that says most of the side; the first of those that say as much.
+    order = np.lexsort((ring.row, -np.round(ring.length, 3), np.cumsum(begins)))
+    return Ring(ring.start[first], ring.end[last], center, sweep, ring.row[order[first]], ring.closed, ring.inside)
