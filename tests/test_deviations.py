@@ -24,7 +24,7 @@ from programs import job_of, report_of, tables_of
 from polarcheck.checking.compared import compared
 from polarcheck.commands import main
 from polarcheck.machines import drawing
-from polarcheck.machines.job import Job
+from polarcheck.machines.job import Job, Stock
 from polarcheck.machines.part import DrawnPart
 from polarcheck.table.deviations import Comparison, Deviations
 
@@ -359,3 +359,29 @@ def test_a_job_file_names_drawings_of_some_programs(tmp_path: Path) -> None:
         == f"polarcheck: {job}:5: drawing: {tmp_path / 'a.dxf'}: is no DXF file; save the drawing as DXF\n"
     )
     assert checked("O2.NC").exit_code == 0
+
+
+def test_a_contour_that_does_not_close_is_said_to_be_compared_in_part() -> None:
+    """It ends 0.05 mm beside where it began: nobody knows what stays between."""
+    open_square = HEAD + "G1 X100. C-4. F500\nZ-1.\nG42 X40. C0\nC20.\nX-40.\nC-20.\nX40.1\nC0\nG40 X80. C5.\n" + TAIL
+    job = {"part": [{"shape": "square", "across_flats": 40.0}]}
+    report = report_of(open_square, "fanuc-30i", "1:radius=3", job=job, only=[RULE])
+    assert not report.findings
+    (said,) = [one.reason for one in report.not_evaluated]
+    assert said.endswith(
+        "does not come back to where it begins, and was compared with the square asked for along its walls alone: "
+        "end it where it began, or beyond"
+    )
+    closed = report_of(open_square.replace("X40.1", "X40."), "fanuc-30i", "1:radius=3", job=job, only=[RULE])
+    assert (closed.findings, closed.not_evaluated, closed.verdict) == ([], [], "pass")
+
+
+@pytest.mark.parametrize("seed", [1, 10, 11, 14])
+def test_the_bar_of_the_job_bounds_what_is_compared(seed: int) -> None:
+    """Flats, slots and keyways that end beyond it."""
+    one = program_of(seed)
+    assert one.bar is not None
+    assert is_sound(one)
+    job = msgspec.structs.replace(drawn(one.part), stock=Stock(diameter=one.bar))
+    found = comparisons(one.text, one.radius, job)
+    assert max(comparison.difference.largest for comparison in found) < 0.005

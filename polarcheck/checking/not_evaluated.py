@@ -243,6 +243,12 @@ def _parts_not_compared(tables: Tables, rule: Rule) -> Iterator[NotEvaluated]:
         return
     crosses = f"crosses itself or others more than {CROSSINGS} times a block: no part can be told from it"
     yield from _loops_given_up(tables, rule, deviations.asked & tables["overcuts"].tangled, crosses)
+    for one in deviations.comparisons:
+        if one.is_partial and one.agrees:
+            of_block = f"the contour of line {int(tables['trace'].line[one.row])} does not come back to where it begins"
+            compared = f"was compared with {compared_with(deviations, one.number)} along its walls alone"
+            reason = f"{of_block}, and {compared}: end it where it began, or beyond"
+            yield NotEvaluated(rule=rule.name, reason=reason, blocks=1)
     for number, why in deviations.missing():
         reason = f"{compared_with(deviations, number)} was compared with nothing: {why}"
         rows = deviations.asked if deviations.asked.any() else tables["trace"].in_polar

@@ -91,7 +91,7 @@ def difference(made: Made, drawn: Way, *, both_ways: bool) -> Difference:
 
     both_ways: whether the chains should make all of these curves; else only what they make is compared.
     """
-    turned = _turned_radius(drawn)
+    turned = turned_radius(drawn)
     first = _extremes(made.way, lambda points: _from_part(made, drawn, points), _compared(made, drawn, turned))
     found = _difference(made, first, lambda points: made.way.of[made.way.nearest(points)[2]])
     if not both_ways:
@@ -125,7 +125,7 @@ def _from_drawing(made: Made, points: Points) -> Floats:
     return np.where(_within(made.polygon, points), far, -far)
 
 
-def _turned_radius(drawn: Way) -> float:
+def turned_radius(drawn: Way) -> float:
     """The radius of the outermost circle about the axis that a drawing has an arc of [mm]; inf for none."""
     reach = float(np.abs(drawn.start).max(initial=0))
     on = (np.abs(drawn.start) > reach - _ON_CIRCLE) & (np.abs(drawn.end) > reach - _ON_CIRCLE)

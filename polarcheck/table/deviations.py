@@ -57,7 +57,8 @@ class Comparison(NamedTuple):
     number: of the part in the job. curve: which one of its drawing, -1 for all. section, z: of the contour. tolerance:
     [mm]. difference: of part and drawing. row: of the block where it is largest. turned: by how much a shape is turned
     that may be turned in any way [rad], NaN for others. is_other_way_round: a boss where a pocket should be, or the
-    reverse. is_superseded: roughing, or another contour than the one that comes nearest.
+    reverse. is_partial: a contour that does not close, along its walls alone, though all that is drawn does.
+    is_superseded: roughing, or another contour than the one that comes nearest.
     """
 
     number: int
@@ -70,6 +71,7 @@ class Comparison(NamedTuple):
     row: int
     turned: float
     is_other_way_round: bool
+    is_partial: bool
     is_superseded: bool
     fit: Fit | None
 
@@ -95,7 +97,10 @@ def title_of(part: Part) -> str:
 
 
 class _Target(NamedTuple):
-    """A curve of a drawing, or all of them (-1), that a contour may be. scale: [mm] per unit of the part."""
+    """
+    A curve of a drawing, or all of them (-1), that a contour may be. scale: [mm] per unit of the part. is_closed: the
+    curve is. rings: all of its curves are.
+    """
 
     number: int
     part: Part
@@ -103,6 +108,7 @@ class _Target(NamedTuple):
     way: Way
     scale: float
     is_closed: bool
+    rings: bool
 
 
 class _Chain(NamedTuple):
@@ -272,10 +278,10 @@ class Deviations:
             rings = [number for number, curve in enumerate(curves) if curve[0] == curve[-1]]
             if not is_closed or not rings:
                 way = way_of_curves(curves)
-                self._known[key] = [_Target(number, part, -1, way, scale, False)]
+                self._known[key] = [_Target(number, part, -1, way, scale, False, len(rings) == len(curves))]
             else:
                 self._known[key] = [
-                    _Target(number, part, ring, way_of_curves([curves[ring]]), scale, True) for ring in rings
+                    _Target(number, part, ring, way_of_curves([curves[ring]]), scale, True, True) for ring in rings
                 ]
         return self._known[key]
 
@@ -294,7 +300,7 @@ class Deviations:
 
     def _compared(self, chain: _Chain) -> Comparison | None:
         """The contour beside the curve that comes nearest to it."""
-        from polarcheck.geometry.deviation import difference
+        from polarcheck.geometry.deviation import difference, turned_radius
 
         found: list[Comparison] = []
         for target in self._targets(chain):
@@ -313,7 +319,10 @@ class Deviations:
             given = part.tolerance * self._scale(part, row)
             tolerance = (TOLERANCE if math.isnan(given) else given) + ROUNDING
             where = chain.level.section, chain.level.z, tolerance
-            found.append(Comparison(target.number, part, target.curve, *where, one, row, angle, wrong, False, None))
+            partial = not chain.is_closed and target.rings and math.isinf(min(turned_radius(way), chain.made.bar))
+            found.append(
+                Comparison(target.number, part, target.curve, *where, one, row, angle, wrong, partial, False, None)
+            )
             self._chain_of[target.number, target.curve, row, one.at] = chain, target
         found = [one for one in found if one.difference.length]
         return min(found, key=lambda one: one.difference.mean, default=None)
