@@ -14,6 +14,7 @@ from programs import tables_of
 
 from polarcheck.geometry import polar, slowed
 from polarcheck.machines.modal import Motion
+from polarcheck.reports.pages import executed, trace_columns
 from polarcheck.table.dynamics import Dynamics
 
 RATES = ("c_feed", "x_feed", "c_acceleration", "x_acceleration")
@@ -104,6 +105,20 @@ def test_override_on_a_line_in_closed_form() -> None:
     assert dynamics.c_share[move] == pytest.approx(0.9)
     plain = dynamics_of(program, changes={"limits": {"c_feed": 3600}})
     assert plain.move_time[move] == pytest.approx(60 * 20 / 1000)
+
+
+def test_the_trace_shows_what_runs() -> None:
+    tables = tables_of(
+        inside("G1 X20. C1. F1000", "X-20."), "fanuc", changes={"limits": {"c_feed": 3600, "automatic_override": True}}
+    )
+    runs, trace = tables["dynamics"], (tables["trace"], tables["tool_center"])
+    shown = list(executed.moves(*trace, "tool"))
+    assert [one.time for one in shown] == pytest.approx(runs.move_time.tolist(), abs=1e-6)
+    assert shown[1].c_feed == pytest.approx(3240)
+    aligned = "".join(trace_columns.moves_table(*trace, "tool", None, None))
+    assert "3240" in aligned
+    # What is programmed asks for more.
+    assert list(executed.moves(*trace, "programmed"))[1].c_feed == pytest.approx(math.degrees(1000))
 
 
 def test_through_the_center_the_tool_waits_for_half_a_turn() -> None:

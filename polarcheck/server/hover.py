@@ -137,6 +137,9 @@ def _facts(tables: Tables, trace: Trace, row: int) -> Iterator[tuple[str, str]]:
         yield "feed", feed
     if inside and trace.moves_plane[row]:
         yield from _of_tool_center(tables["tool_center"], trace, row)
+    seconds = float(tables["dynamics"].time[row])
+    if inside and seconds > 0 and math.isfinite(seconds):
+        yield "time", f"{seconds:.2f} s"
 
 
 def _position(trace: Trace, row: int) -> Iterator[str]:
@@ -177,7 +180,7 @@ def _feed(trace: Trace, row: int) -> str:
 
 
 def _of_tool_center(tool_center: ToolCenter, trace: Trace, row: int) -> Iterator[tuple[str, str]]:
-    """What the move asks of C, where it comes nearest to its center, the highest F, and how long it takes."""
+    """What the move asks of C, where it comes nearest to its center, and the highest F."""
     c_feed = float(tool_center.c_feed[row])
     limit = trace.machine.limits.c_feed
     of_limit = f" of {limit:.0f}" if math.isfinite(limit) else ""
@@ -186,7 +189,3 @@ def _of_tool_center(tool_center: ToolCenter, trace: Trace, row: int) -> Iterator
     allowed = in_row(float(tool_center.feed_allowed[row]), trace, row)
     if of_limit and np.isfinite(allowed.value):
         yield "highest F here", f"{allowed:highest}"
-    moves = tool_center.moves
-    time = float(np.sum(moves.time[(moves.row == row) & moves.known]))
-    if time > 0:
-        yield "time", f"{time:.2f} s"

@@ -11,6 +11,7 @@ import msgspec
 import numpy as np
 from msgspec import UNSET, UnsetType
 
+from polarcheck.arrays import Floats
 from polarcheck.checking.phrases.offsets import called_tool, key_of, option
 from polarcheck.checking.quantity import rounded
 from polarcheck.machines.modal import FeedMode, Motion, Side
@@ -64,13 +65,27 @@ def _point(value: complex) -> list[float | None]:
     return [rounded(value.real), rounded(value.imag)]
 
 
+def running(trace: Trace, tool_center: ToolCenter, path: str) -> tuple[Moves, dict[str, Floats]]:
+    """
+    The moves of a path with the highest rates on each, by the names of Move, and its time.
+
+    Of the tool center ("tool") they are those at the F that runs, of the programmed path those at F in force.
+    """
+    if path != "tool":
+        table = programmed_moves(trace)
+        return table, {name: getattr(table, name) for name in (*_RATES, "time")}
+    runs = Dynamics(trace, tool_center)
+    return runs.moves, {**{name: getattr(runs, name) for name in _RATES}, "time": runs.move_time}
+
+
+_RATES = ("c_feed", "x_feed", "c_acceleration", "x_acceleration")
+
+
 def moves(trace: Trace, tool_center: ToolCenter, path: str) -> Iterator[Move]:
     """The moves of the tool center path ("tool") or of the programmed path ("programmed"), in order."""
-    table: Moves = tool_center.moves if path == "tool" else programmed_moves(trace)
+    table, runs = running(trace, tool_center, path)
     c_from, c_to = table.c_angles
     z_from, z_to = z_along(trace, table)
-    runs = Dynamics(trace, tool_center) if path == "tool" else table
-    time = runs.move_time if isinstance(runs, Dynamics) else table.time
     for index in range(len(table)):
         center, row = table.center[index], table.row[index]
         yield Move(
@@ -87,11 +102,11 @@ def moves(trace: Trace, tool_center: ToolCenter, path: str) -> Iterator[Move]:
             x_axis=[rounded(abs(table.start[index])), rounded(abs(table.end[index]))],
             c_axis=[rounded(c_from[index]), rounded(c_to[index])],
             nearest=rounded(table.nearest[index]),
-            c_feed=rounded(runs.c_feed[index]),
-            x_feed=rounded(runs.x_feed[index]),
-            c_acceleration=rounded(runs.c_acceleration[index]),
-            x_acceleration=rounded(runs.x_acceleration[index]),
-            time=rounded(time[index]),
+            c_feed=rounded(runs["c_feed"][index]),
+            x_feed=rounded(runs["x_feed"][index]),
+            c_acceleration=rounded(runs["c_acceleration"][index]),
+            x_acceleration=rounded(runs["x_acceleration"][index]),
+            time=rounded(runs["time"][index]),
             channel=trace.text.source.channel or UNSET,
         )
 

@@ -8,13 +8,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from polarcheck.arrays import Mask
+from polarcheck.arrays import Floats, Mask
 from polarcheck.checking.phrases.offsets import key_of
 from polarcheck.machines.modal import FeedMode, Motion, Side
 from polarcheck.reading.excerpt import visible
 from polarcheck.reports.pages.aligned import Column, table
-from polarcheck.reports.pages.executed import FEED_MODES, KINDS, SIDES
-from polarcheck.table.moves import Moves, programmed_moves, z_along
+from polarcheck.reports.pages.executed import FEED_MODES, KINDS, SIDES, running
+from polarcheck.table.moves import Moves, z_along
 from polarcheck.table.tool_center import ToolCenter
 from polarcheck.table.trace import Trace
 
@@ -33,9 +33,11 @@ def moves_table(
     trace: Trace, tool_center: ToolCenter, path: str, room: int | None, height: int | None
 ) -> Iterator[str]:
     """The moves of the tool center path ("tool") or of the programmed one, as `executed.moves` has them."""
-    moves = tool_center.moves if path == "tool" else programmed_moves(trace)
+    moves, runs = running(trace, tool_center, path)
     yield from _channel(trace)
-    yield from table(_of_moves(trace, moves, path), lambda move: _block(trace, int(moves.row[move])), room, height)
+    yield from table(
+        _of_moves(trace, moves, runs, path), lambda move: _block(trace, int(moves.row[move])), room, height
+    )
 
 
 def _channel(trace: Trace) -> Iterator[str]:
@@ -77,7 +79,7 @@ def _of_rows(trace: Trace, tool_center: ToolCenter) -> list[Column]:
     ]  # fmt: skip
 
 
-def _of_moves(trace: Trace, moves: Moves, path: str) -> list[Column]:
+def _of_moves(trace: Trace, moves: Moves, runs: Mapping[str, Floats], path: str) -> list[Column]:
     c_from, c_to = moves.c_angles
     z_from, z_to = z_along(trace, moves)
     is_arc = ~np.isnan(moves.center)
@@ -100,11 +102,11 @@ def _of_moves(trace: Trace, moves: Moves, path: str) -> list[Column]:
         Column("c_axis_from", DEG, 8, c_from),
         Column("c_axis_to", DEG, 3, c_to),
         Column("nearest", MM, 3, moves.nearest),
-        Column("c_feed", C_FEED, 2, moves.c_feed, _RATE),
-        Column("x_feed", FEED, 4, moves.x_feed, _RATE),
-        Column("c_acceleration", "deg/s2", 7, moves.c_acceleration, _RATE),
-        Column("x_acceleration", "mm/s2", 7, moves.x_acceleration, _RATE),
-        Column("time", "s", 4, moves.time),
+        Column("c_feed", C_FEED, 2, runs["c_feed"], _RATE),
+        Column("x_feed", FEED, 4, runs["x_feed"], _RATE),
+        Column("c_acceleration", "deg/s2", 7, runs["c_acceleration"], _RATE),
+        Column("x_acceleration", "mm/s2", 7, runs["x_acceleration"], _RATE),
+        Column("time", "s", 4, runs["time"]),
     ]
 
 
