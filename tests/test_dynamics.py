@@ -52,7 +52,7 @@ def contours(draw: st.DrawFn) -> str:
     return inside(*blocks, "G1 G40 X80.")
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=20, deadline=None)
 @given(contours(), st.integers(0, 5))
 def test_moves_agree_with_dense_sampling(program: str, radius: int) -> None:
     dynamics = dynamics_of(program, f"1:radius={radius}")
@@ -68,7 +68,7 @@ def test_moves_agree_with_dense_sampling(program: str, radius: int) -> None:
 points = st.tuples(coordinates, coordinates).map(lambda pair: complex(*pair))
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=20, deadline=None)
 @given(points, points, st.floats(-2, 2), st.sampled_from([Motion.LINE, Motion.CW, Motion.CCW]), st.floats(0.03, 0.95))
 def test_override_agrees_with_dense_sampling(
     start: complex, end: complex, away: float, kind: int, share: float

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import re
+
 import msgspec
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Rows
-from polarcheck.checking.editing import Replace, in_place_of, is_plain, with_word, written_word
+from polarcheck.checking.editing import Replace, in_place_of, is_plain, with_word, words_of, written_word
 from polarcheck.checking.feed_edits import takes_feed
 from polarcheck.checking.feed_table import feed_number, highest, writes_points
 from polarcheck.checking.tables import Tables
@@ -14,6 +16,7 @@ from polarcheck.errors import TooHardError
 from polarcheck.table.highest_feeds import HighestFeeds
 from polarcheck.table.trace import Trace
 
+_NUMBER = re.compile(r"F\+?[0-9.]+", re.IGNORECASE)
 #: So often blocks are looked for whose runs need one F each; each time at least one more gets the lowest.
 _ROUNDS = 50
 
@@ -21,7 +24,7 @@ _ROUNDS = 50
 class FeedWords(msgspec.Struct, frozen=True):
     """
     edits: of the text. lowest: lines of blocks that run with different F, or need it, and get the lowest of them.
-    left: lines of blocks in which F cannot be written: of a macro, or of a program in another file.
+    left: lines of blocks in which F cannot be written: it is an expression, or they are of another language or file.
     """
 
     edits: tuple[Replace, ...]
@@ -116,10 +119,11 @@ class _Plan:
         source, block = trace.text.source, int(trace.run.block[row])
         of_others = int(source.line_starts[source.parts[0].first_line - 1]) if source.parts else len(source.code)
         is_own = int(trace.text.blocks.end[block]) <= of_others
-        if not is_own or not is_plain(trace, row) or not value > 0:
-            return None
         words = trace.word_indices("F")
         own = words[trace.run.row[words] == row]
+        takes = is_plain(trace, row) or (_is_as_written(trace, row) and all(_is_number(trace, one) for one in own))
+        if not is_own or not takes or not value > 0:
+            return None
         text = self._text(row, value)
         return in_place_of(trace, int(own[-1]), text) if len(own) else with_word(trace, row, text)
 
@@ -128,6 +132,20 @@ class _Plan:
         trace = self.trace
         words = trace.word_indices("F")
         found = words[trace.run.words.start[words] == trace.feed_word[row]]
-        if value == trace.written_feed[row] and len(found) and is_plain(trace, int(trace.run.row[found[0]])):
+        if value == trace.written_feed[row] and len(found) and _is_number(trace, int(found[0])):
             return written_word(trace, int(found[0]))
         return f"F{feed_number(round(value / float(trace.scale[row]), 6), bool(writes_points(trace)[row]))}"
+
+
+def _is_as_written(trace: Trace, row: int) -> bool:
+    """Each word of a block of a macro stands in it under its address, be it with an expression."""
+    words, source = trace.run.words, trace.text.source
+    return all(
+        source.excerpt(int(words.start[index]), int(words.end[index])).upper().startswith(chr(words.address[index]))
+        for index in words_of(trace, row)
+    )
+
+
+def _is_number(trace: Trace, index: int) -> bool:
+    """An F word is written as a number."""
+    return _NUMBER.fullmatch(written_word(trace, index)) is not None

@@ -85,5 +85,5 @@ def _show_diff(title: str, data: bytes, runs: list[Tables], encoding: str | None
     for line in made.lowest:
         warn(f"{title}:{line}: its runs need different F, and it has the lowest of them")
     for line in made.left:
-        warn(f"{title}:{line}: F cannot be written there: a macro, another language or another file has the block")
+        warn(f"{title}:{line}: F cannot be written there: an expression, or a block of another language or file")
     return CLEAN
