@@ -88,6 +88,13 @@ def test_each_move_is_told_with_what_it_is() -> None:
     assert moves.begin[1:] == pytest.approx(np.cumsum(column(moves.time))[:-1], abs=1e-3)
 
 
+def test_in_rapid_traverse_f_says_nothing() -> None:
+    moves = section_of(HEXAGON.replace("G1 Z-2. F300\n", "G1 Z-2. F300\nG0 X70.\nG1 X60.\n"), "8:radius=4").moves
+    assert moves.feed[:3] == [300, None, 300]
+    assert moves.role[:3] == ["positioning"] * 3
+    assert moves.c_feed[1] is moves.true_feed[1] is moves.time[1] is None
+
+
 def test_sequence_numbers_are_as_they_are_written() -> None:
     numbered = "".join(f"N{10 * number:04} {line}\n" for number, line in enumerate(HEXAGON.splitlines()))
     assert section_of(numbered, "8:radius=4").moves.number[:2] == ["N0030", "N0040"]

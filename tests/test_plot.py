@@ -76,6 +76,7 @@ def test_a_page_holds_findings_and_pictures_whatever_is_found() -> None:
     found = page("part.html")
     assert "the cutter goes 2 mm deep into the contour of line 13" in found.text
     assert "offset 8 with R 4 mm (command line)" in found.text
+    assert "left standing: R4.000 of the cutter in 4 inside corners" in found.text
     ((section,),) = [picture["sections"] for picture in json.loads(found.data)]
     assert section["marks"][0]["lines"] == [7, 13]
     (finding,) = json.loads(found.data)[0]["findings"]

@@ -126,7 +126,7 @@ class SectionMoves:
             start=pairs(moves.start[chosen]),
             end=pairs(moves.end[chosen]),
             z=pairs(self.z[0][chosen] + 1j * self.z[1][chosen]),
-            feed=numbers_of(trace.programmed_feed[row], RATE),
+            feed=numbers_of(np.where(trace.motion[row] == Motion.RAPID, np.nan, trace.programmed_feed[row]), RATE),
             true_feed=numbers_of(self.true_feed[chosen], RATE),
             nearest=numbers_of(moves.nearest[chosen], LENGTH),
             c_feed=numbers_of(self.c_feed[chosen], RATE),

@@ -181,9 +181,10 @@ def _length(value: float, section: SectionPicture) -> str:
 def _told(number: int, section: SectionPicture) -> str:
     """Why there is no tool path, what the section makes, and what it cuts too much or leaves."""
     told = f'<p class="missing">{_text(section.needs_radius)}</p>\n' if section.needs_radius else ""
-    if section.parts:
-        parts = "".join(f"<li>{_text(part.text)}</li>" for part in section.parts)
-        told += f'<ul class="parts">{parts}</ul>\n'
+    made = section.makes or [part.text for part in section.parts]
+    if made:
+        told += f'<ul class="parts">{"".join(f"<li>{_text(text)}</li>" for text in made)}</ul>\n'
+    told += "".join(f'<p class="remark">{_text(remark)}</p>\n' for remark in section.remarks)
     if section.marks:
         rows = "".join(_mark(number, place, mark, section) for place, mark in enumerate(section.marks))
         heads = "".join(f'<th scope="col">{head}</th>' for head in ("", "Lines", "Where", "By how much"))
