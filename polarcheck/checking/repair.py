@@ -15,6 +15,7 @@ import msgspec
 import numpy as np
 
 from polarcheck.checking import places
+from polarcheck.checking.documented import Documented
 from polarcheck.checking.editing import Replace
 from polarcheck.checking.finding import Edit, Fix
 from polarcheck.checking.message import called
@@ -39,30 +40,17 @@ class Mended(msgspec.Struct, frozen=True):
     edits: tuple[Replace, ...]
 
 
-class Repair(msgspec.Struct, frozen=True):
+class Repair(Documented, frozen=True):
     """
-    How the findings of one rule are mended.
+    How the findings of one rule are mended; its page says what is written, why it is safe or not, and shows programs
+    before and after.
 
     function: takes by their names the tables that it needs, and place, row, index, at and count as phrases do, and
     `hit`, the mask of the rule; gives a Mended, or None where nobody can say what to write. changes: what of the path
     of the tool center differs in the lines that it edits (CHANGES); nothing does elsewhere.
     """
 
-    name: str
-    function: Callable[..., Mended | None]
     changes: tuple[str, ...]
-
-    @property
-    def page(self) -> str:
-        """The docstring: what is written, why it is safe or not; Bad and Good programs before and after."""
-        import inspect
-
-        return inspect.getdoc(self.function) or ""
-
-    @property
-    def title(self) -> str:
-        """The first line of the page, without the full stop."""
-        return self.page.partition("\n")[0].rstrip(".")
 
 
 def repair(*changes: str) -> Callable[[Callable[..., Mended | None]], Repair]:

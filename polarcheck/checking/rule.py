@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 
+from polarcheck.checking.documented import Documented
 from polarcheck.checking.finding import ERROR as ERROR
 from polarcheck.checking.finding import NOTE as NOTE
 from polarcheck.checking.finding import WARNING as WARNING
@@ -127,7 +128,7 @@ def graded(
     return Hits(severity > 0, severity, at, values or {}, follows or {}, undecided)
 
 
-class Rule(msgspec.Struct, frozen=True):
+class Rule(Documented, frozen=True):
     """
     One rule: its function and what is said about it.
 
@@ -142,11 +143,9 @@ class Rule(msgspec.Struct, frozen=True):
     is_advice: off where neither the machine nor the user names a severity for it.
     """
 
-    name: str
     group: str
     severity: Severity
     message: str
-    function: Callable[..., Any]
     over: str
     at: tuple[str, ...]
     needs: tuple[str, ...]
@@ -174,18 +173,6 @@ class Rule(msgspec.Struct, frozen=True):
         """What the rule finds in some tables."""
         found = self.function(*(tables[name] for name in self.parameters))
         return found if isinstance(found, Hits) else Hits(found)
-
-    @property
-    def page(self) -> str:
-        """The manual page: the docstring."""
-        import inspect
-
-        return inspect.getdoc(self.function) or ""
-
-    @property
-    def title(self) -> str:
-        """The first line of the page, without the full stop."""
-        return self.page.partition("\n")[0].rstrip(".")
 
     @property
     def source(self) -> str:
@@ -219,10 +206,10 @@ def rule(
         parameters = parameters_of(function)
         return Rule(
             name,
+            function,
             group,
             severity,
             message,
-            function,
             over,
             at,
             needs,
