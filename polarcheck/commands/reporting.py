@@ -66,11 +66,10 @@ def background(plain: Background, tasks: Iterable[Task], failures: Sequence[str]
 
 def _root(folder: str) -> str:
     """The folder of the repository, else the one that is checked."""
-    for outer in (Path(folder), *Path(folder).parents) if folder else ():
-        with contextlib.suppress(OSError):
-            if (outer / ".git").exists():
-                return str(outer)
-    return folder
+    from polarcheck.reading.files import RealPaths
+    from polarcheck.reading.git import Repositories
+
+    return (Repositories(RealPaths()).root_above(folder) if folder else None) or folder
 
 
 def written(outputs: Iterable[tuple[str, Path]], form: str, report: Report, plain: Background) -> Iterator[OutputError]:

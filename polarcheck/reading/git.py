@@ -26,8 +26,12 @@ class Repositories:
 
     def root(self, folder: str) -> str | None:
         """The real path of the folder that holds .git, at this one or above; None where there is none."""
+        return self.root_above(self._real.folder(folder or os.curdir))
+
+    def root_above(self, folder: str) -> str | None:
+        """The same for an absolute path, as it is written."""
         passed: list[str] = []
-        here = self._real.folder(folder or os.curdir)
+        here = folder
         while here not in self._roots:
             passed.append(here)
             outer = os.path.dirname(here)  # noqa: PTH120  long paths of pathlib are slow
