@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import contextlib
 import os
-import stat
 import sys
 import time
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
@@ -21,6 +20,7 @@ from polarcheck.commands.exit_codes import CLEAN, COULD_NOT_RUN, INTERRUPTED
 from polarcheck.commands.options import option
 from polarcheck.commands.output import is_terminal, say
 from polarcheck.errors import PolarcheckError, UsageError
+from polarcheck.reading.files import State, state
 
 if TYPE_CHECKING:
     from polarcheck.checking.batch import Outcome, Task
@@ -34,8 +34,6 @@ _SETTLING, _LONGEST = 0.1, 5.0
 #: Of the files that have changed so many are named.
 _NAMED = 3
 
-#: What changes with a file: None where it cannot be looked at.
-State = tuple[int, int, int] | None
 Look = dict[str, State]
 #: The outcomes of some tasks.
 Check = Callable[[Sequence["Task"]], contextlib.AbstractContextManager[Generator["Outcome", None, None]]]
@@ -93,17 +91,14 @@ class Seen:
         self._look = {path: self._state(path) for path in self._look}
 
     def _state(self, path: str) -> State:
-        try:
-            status = os.stat(path)  # noqa: PTH116  thousands of them
-            if stat.S_ISDIR(status.st_mode):
-                # Of a folder it counts what lies in it: its time changes with each report that is written there.
-                with os.scandir(path) as entries:
-                    names = sorted(one.name for one in entries if not one.name.startswith("."))
-                written = [name for name in names if os.path.realpath(os.path.join(path, name)) not in self._written]  # noqa: PTH118
-                return hash(tuple(written)), 0, status.st_ino
-        except (OSError, ValueError):
-            return None
-        return status.st_mtime_ns, status.st_size, status.st_ino
+        return state(path, self._of_folder)
+
+    def _of_folder(self, path: str, number: int) -> State:
+        """Of a folder it counts what lies in it: its time changes with each report that is written there."""
+        with os.scandir(path) as entries:
+            names = sorted(one.name for one in entries if not one.name.startswith("."))
+        written = [name for name in names if os.path.realpath(os.path.join(path, name)) not in self._written]  # noqa: PTH118
+        return hash(tuple(written)), 0, number
 
 
 def _numbered(tasks: Sequence[Task]) -> Iterator[tuple[int, Task]]:

@@ -225,6 +225,21 @@ class RealPaths:
         return self._folders[inside[0] if inside else folder]
 
 
+#: What tells whether a file has changed: when it was written, its size and its number; None where there is none.
+State = tuple[int, int, int] | None
+
+
+def state(path: str | Path, of_folder: Callable[[str, int], State] | None = None) -> State:
+    """How a file is now. of_folder: tells it of a folder, by its path and number; else a folder is as any file."""
+    try:
+        found = os.stat(path)  # noqa: PTH116  thousands of them
+        if of_folder is not None and stat.S_ISDIR(found.st_mode):
+            return of_folder(os.fspath(path), found.st_ino)
+    except (OSError, ValueError):
+        return None
+    return found.st_mtime_ns, found.st_size, found.st_ino
+
+
 def write(path: Path, text: str | bytes | Iterable[str], last: Callable[[], None] | None = None) -> None:
     """
     Write a file whole or not at all, whoever reads it at that moment; a text in UTF-8, which may come in pieces.

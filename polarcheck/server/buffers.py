@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 from polarcheck.errors import StoppedError
 from polarcheck.machines.job import FILE_NAME, PROJECT
+from polarcheck.reading.files import State, state
 from polarcheck.server.open_text import OpenText
 from polarcheck.server.worker import Worker
 
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
 #: How long nobody must have typed before a check begins, at least and at most [s]; in between as long as the last took.
 _CALM, _LONGEST_CALM = 0.25, 2.0
 
-Signature = tuple[tuple[str, int, int] | None, ...]
+Signature = tuple[State, ...]
 
 
 class Buffer:
@@ -164,12 +165,4 @@ class Buffers:
 
 def signature(paths: Sequence[Path]) -> Signature:
     """What tells whether one of some files has changed, come or gone."""
-    found: list[tuple[str, int, int] | None] = []
-    for path in paths:
-        try:
-            status = path.stat()
-        except (OSError, ValueError):
-            found.append(None)
-        else:
-            found.append((str(path), status.st_mtime_ns, status.st_size))
-    return tuple(found)
+    return tuple(map(state, paths))
