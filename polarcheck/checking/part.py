@@ -17,6 +17,7 @@ from polarcheck.errors import TooHardError
 from polarcheck.geometry.shapes.shape import SAME, Shape
 from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.machines.modal import Units
+from polarcheck.time_limit import keep_time
 
 if TYPE_CHECKING:
     from polarcheck.table.finished import Finished, Level
@@ -139,6 +140,7 @@ def _merged(trace: Trace, depths: Sequence[_Depth]) -> Iterator[MadeShape]:
     """One entry for each shape, whatever the number of depths at which it is made."""
     groups: list[list[_Depth]] = []
     for depth in depths:
+        keep_time()
         same = next((group for group in groups if _are_same(group[0], depth)), None)
         if same is None:
             groups.append([depth])

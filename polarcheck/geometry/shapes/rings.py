@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import Self
 
 import numpy as np
@@ -94,8 +95,9 @@ def rings(outline: Outline, gap: float = 0.0, bar: float = np.nan) -> Iterator[R
 
     gap: what of a chain was closed by a straight line [mm]. bar: diameter [mm], NaN if not known.
     """
-    for number in range(len(outline.closed)):
-        part = outline[outline.chain == number]
+    until = np.searchsorted(outline.chain, np.arange(len(outline.closed) + 1))
+    for number, (begin, end) in enumerate(pairwise(until.tolist())):
+        part = outline[np.arange(begin, end)]
         for ring in _within(_ring_of(part, bool(outline.closed[number]), gap), bar):
             whole = _whole(ring)
             yield replace(whole.turned_round(), inside=True) if whole.closed and whole.area < 0 else whole

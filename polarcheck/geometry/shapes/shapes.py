@@ -12,7 +12,11 @@ from polarcheck.geometry.shapes.open_ones import flats_of, keyway_of
 from polarcheck.geometry.shapes.polygons import cross_of, in_chords, polygon_of
 from polarcheck.geometry.shapes.rings import Ring, directions, rings
 from polarcheck.geometry.shapes.rounds import round_of, two_rounds_of
-from polarcheck.geometry.shapes.shape import SAME_DIRECTION, Shape
+from polarcheck.geometry.shapes.shape import Shape
+from polarcheck.time_limit import keep_time
+
+#: Chords of a curve turn by less than a corner does [rad].
+_SHARP = 0.26
 
 
 def shapes_of(outline: Outline, gap: float = 0.0, bar: float = np.nan) -> list[Shape]:
@@ -21,10 +25,15 @@ def shapes_of(outline: Outline, gap: float = 0.0, bar: float = np.nan) -> list[S
 
     gap: what of it was closed by a straight line [mm]. bar: diameter [mm], NaN if not known.
     """
-    found = [ring for ring in rings(outline, gap, bar) if len(ring)]
-    single = [ring for ring in found if not ring.closed and len(ring) == 1 and ring.is_line[0]]
-    others = [ring for ring in found if not any(ring is one for one in single)]
-    return [*flats_of(single), *(_shape_of(ring) for ring in others)]
+    single: list[Ring] = []
+    others: list[Shape] = []
+    for ring in rings(outline, gap, bar):
+        keep_time()
+        if len(ring) == 1 and not ring.closed and ring.is_line[0]:
+            single.append(ring)
+        elif len(ring):
+            others.append(_shape_of(ring))
+    return [*flats_of(single), *others]
 
 
 def _shape_of(ring: Ring) -> Shape:
@@ -75,7 +84,7 @@ def _is_sharp_inside(ring: Ring) -> Mask:
     """The sides behind which the tool finds a sharp inside corner."""
     into, out = directions(ring)
     turn = np.angle(np.roll(out, -1) * into.conj()) * _air(ring)
-    sharp = turn > 20 * SAME_DIRECTION
+    sharp = turn > _SHARP
     sharp[-1] &= ring.closed
     return np.asarray(sharp)
 
