@@ -10,8 +10,10 @@ import pytest
 from programs import tables_of
 from test_cli import call
 
+from polarcheck.checking.examples import examples
 from polarcheck.checking.finding import MadeShape
 from polarcheck.checking.part import made_by
+from polarcheck.checking.rule import load_all
 
 pytestmark = pytest.mark.usefixtures("own_folder")
 
@@ -167,6 +169,25 @@ def test_check_tells_it_where_it_is_asked_to(program: Path) -> None:
     as_data = json.loads(call("check", "--part", "--format", "json", str(program)).stdout)
     assert as_data["files"][0]["part"][0]["shape"] == "hexagon"
     assert "part" not in json.loads(call("check", "--format", "json", str(program)).stdout)["files"][0]
+
+
+def test_it_is_compared_with_what_was_asked_for(program: Path) -> None:
+    Path("polarcheck.toml").write_text('[[part]]\nshape = "hexagon"\nacross_flats = 30.1\n', "utf-8")
+    differs = call("part", str(program), "--tool", "8:radius=4")
+    assert differs.exit_code == 1
+    assert "     error   line " in differs.stdout
+    unknown = call("part", str(program))
+    assert unknown.exit_code == 0
+    assert "not judged   " in unknown.stdout
+
+
+def test_a_rib_is_told_where_it_stands() -> None:
+    """The example of the rule on it, and the one beside it that leaves nothing."""
+    bad, good = examples(load_all()["material-left"].page)[:2]
+    found = [made_by(tables_of(one.program, "fanuc", *one.tools))[0] for one in (bad, good)]
+    assert [one.shape for one in found] == ["square", "square"]
+    assert [left.text for left in found[0].left_standing] == ["a rib 1.342 high behind line 11, at x 20.000 c 0.500"]
+    assert found[1].left_standing == []
 
 
 def test_a_program_without_sections_and_one_that_is_not_there() -> None:

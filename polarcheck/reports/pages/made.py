@@ -32,17 +32,19 @@ def made(file: FileReport) -> Iterator[tuple[str, str]]:
 
 
 def text(files: Sequence[FileReport], columns: int) -> str:
-    """Of each file its path, and below it what it makes; then where it differs from its drawing."""
+    """Of each file its path, below it what it makes, where that differs from its drawing, what could not be judged."""
     shown = []
     for file in files:
         shown.append(visible(file.path))
-        for label, said in made(file):
+        labelled = [*made(file)]
+        labelled += [(found.severity, f"line {found.line}: {found.told}") for found in file.findings]
+        missing = dict.fromkeys(missing.reason for missing in file.not_evaluated if missing.matters)
+        labelled += [("not judged", reason) for reason in missing]
+        for label, said in labelled:
             room = columns - _GUTTER - 3
             first, *more = textwrap.wrap(visible(said), room, break_long_words=False, break_on_hyphens=False) or [""]
             shown.append(f"{label:>{_GUTTER}}   {first}")
             shown += [" " * (_GUTTER + 3) + line for line in more]
-        for found in file.findings:
-            shown.append(f"{found.severity:>{_GUTTER}}   line {found.line}: {visible(found.message)}")
         shown.append("")
     return "".join(line + "\n" for line in shown)
 
@@ -50,7 +52,13 @@ def text(files: Sequence[FileReport], columns: int) -> str:
 def json(files: Sequence[FileReport]) -> str:
     """The same as data, in the terms of the JSON report of `check`."""
     told: list[dict[str, Any]] = [
-        {"path": file.path, "machine": file.machine, "part": _list(file.part), "findings": file.findings}
+        {
+            "path": file.path,
+            "machine": file.machine,
+            "part": _list(file.part),
+            "findings": file.findings,
+            "not_evaluated": file.not_evaluated,
+        }
         for file in files
     ]
     return encoded({"schema": 1, "files": told}, indent=2) + "\n"
