@@ -306,8 +306,12 @@ def test_arcs_are_bulges_in_a_file_and_agreement_is_told_with_its_worst_place(tm
     (found,) = compared(tables_of(text, "fanuc-30i", "1:radius=4", job=job))
     assert found.agrees
     assert found.largest == pytest.approx(0, abs=1e-3)
-    assert found.text.startswith("agrees with d.dxf within ")
-    off = text.replace("X18. C0\nC12.", "X18.1 C0\nC12.").replace("G3 X18.", "G3 X18.").replace("G1 C0", "G1 X18.1 C0")
+    assert found.text == "agrees with d.dxf within 0.001 mm (tolerance 0.02 mm)"
+    near = text.replace("X18. C0\nC12.", "X18.02 C0\nC12.").replace("G1 C0", "G1 X18.02 C0")
+    (found,) = compared(tables_of(near, "fanuc-30i", "1:radius=4", job=job))
+    # The arc begins 0.01 farther out as well, about a center that is so much nearer.
+    assert found.text.startswith("agrees with d.dxf within 0.013 mm (tolerance 0.02 mm), largest at X-29.")
+    off = text.replace("X18. C0\nC12.", "X18.1 C0\nC12.").replace("G1 C0", "G1 X18.1 C0")
     (found,) = compared(tables_of(off, "fanuc-30i", "1:radius=4", job=job))
     assert not found.agrees
     assert found.too_much == pytest.approx(0.05, abs=2e-3)
@@ -317,20 +321,23 @@ PAGE = Path(__file__).parent.parent / "docs" / "drawing.md"
 
 
 @pytest.mark.skipif(not PAGE.exists(), reason="the pages lie in a checkout")
-def test_the_page_shows_what_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize(("command", "slip"), [("check", "-8.610"), ("part", "-8.660")])
+def test_the_page_shows_what_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, command: str, slip: str) -> None:
     text = (PAGE.parent.parent / "sample_programs" / "hexagon.nc").read_text()
-    (tmp_path / "O1001.NC").write_text(text.replace("\nC-8.660\n", "\nC-8.610\n"))
+    (tmp_path / "O1001.NC").write_text(text.replace("\nC-8.660\n", f"\nC{slip}\n"))
     document = ezdxf.new("R2010")
     document.header["$INSUNITS"] = 4
     corners = [corner * cmath.exp(1j * math.pi / 3) for corner in polygon(6, 15.0)]
     document.modelspace().add_lwpolyline([(corner.real, corner.imag) for corner in corners], close=True)
     document.saveas(tmp_path / "part.dxf")
     monkeypatch.chdir(tmp_path)
-    lines = [line.strip() for line in PAGE.read_text("utf-8").splitlines()]
-    command = next(line for line in lines if line.startswith("$ polarcheck"))
-    result = CliRunner().invoke(main, command.split()[2:])
-    assert result.exit_code == 1
-    assert lines[lines.index(command) + 1] == result.stdout.strip()
+    lines = [line.removeprefix("    ") for line in PAGE.read_text("utf-8").splitlines()]
+    shown = next(line for line in lines if line.startswith(f"$ polarcheck {command}"))
+    result = CliRunner().invoke(main, shown.split()[2:])
+    assert result.exit_code == (command == "check")
+    said = result.stdout.rstrip().splitlines()
+    at = lines.index(shown) + 1
+    assert lines[at : at + len(said)] == said
 
 
 def test_a_job_file_names_drawings_of_some_programs(tmp_path: Path) -> None:

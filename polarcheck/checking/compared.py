@@ -2,38 +2,32 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
+from collections.abc import Sequence
 
 import msgspec
 
+from polarcheck.checking.finding import FileReport, PartComparison
 from polarcheck.checking.phrases.drawing import told
 from polarcheck.checking.quantity import rounded
 from polarcheck.checking.tables import Tables
+from polarcheck.errors import TooHardError
 from polarcheck.table.deviations import Deviations
 from polarcheck.table.trace import Trace
 
 
-class PartComparison(msgspec.Struct, frozen=True):
-    """
-    One contour beside a drawing or a shape; lengths in mm, points [x, c] with x as a radius.
-
-    title: the name of the drawing, or the shape. section_line: of the code that begins the section. z: of the contour,
-    None if unknown. line: of the block where it differs most, at: where. too_much, cut_away: by how much, at most.
-    turned: the angle of a shape that may be turned in any way [deg]. text: all of it in words, in the program's units.
-    """
-
-    title: str
-    section_line: int
-    z: float | None
-    agrees: bool
-    largest: float | None
-    tolerance: float | None
-    too_much: float | None
-    cut_away: float | None
-    at: list[float | None]
-    line: int
-    turned: float | None
-    text: str
+def compared_in(report: FileReport, runs: Sequence[tuple[str, Tables]]) -> FileReport:
+    """The report with the contours that are compared, in its first run and in each channel."""
+    found: list[PartComparison] = []
+    channels: list[str] = []
+    for _, tables in runs:
+        channel = tables["text"].source.channel
+        if channel not in channels:
+            channels.append(channel)
+            with contextlib.suppress(TooHardError):  # the rule says so
+                found += compared(tables)
+    return msgspec.structs.replace(report, compared=found)
 
 
 def compared(tables: Tables) -> list[PartComparison]:
@@ -53,7 +47,7 @@ def compared(tables: Tables) -> list[PartComparison]:
             tolerance=rounded(one.tolerance),
             too_much=rounded(one.difference.proud),
             cut_away=rounded(one.difference.deep),
-            at=[rounded(one.difference.at.real), rounded(one.difference.at.imag)],
+            at=(rounded(one.difference.at.real), rounded(one.difference.at.imag)),
             line=int(trace.line[one.row]),
             turned=rounded(math.degrees(one.turned)),
             text=told(trace, one),

@@ -183,11 +183,34 @@ class MadeShape(msgspec.Struct, frozen=True, kw_only=True):
     channel: str | UnsetType = UNSET
 
 
+class PartComparison(msgspec.Struct, frozen=True, kw_only=True):
+    """
+    One contour beside a drawing or a shape; lengths in mm, points [x, c] with x as a radius.
+
+    title: the name of the drawing, or the shape. section_line: of the code that begins the section. z: of the contour,
+    None if unknown. line: of the block where it differs most, at: where. too_much, cut_away: by how much, at most.
+    turned: the angle of a shape that may be turned in any way [deg]. text: all of it in words, in the program's units.
+    """
+
+    title: str
+    section_line: int
+    z: float | None
+    agrees: bool
+    largest: float | None
+    tolerance: float | None
+    too_much: float | None
+    cut_away: float | None
+    at: tuple[float | None, float | None]
+    line: int
+    turned: float | None
+    text: str
+
+
 class FileReport(msgspec.Struct, frozen=True, kw_only=True):
     """
     All about one file. machine: its name, as it was asked for. Verdict: pass, fail or unverified. polar_sections: what
     it rests on. looked_at: at what of the file was looked; outside polar sections text, flow and position only. part:
-    what the program makes, where that was asked for.
+    what the program makes, where that was asked for; compared: its contours beside what they should be, likewise.
     """
 
     path: str
@@ -202,6 +225,7 @@ class FileReport(msgspec.Struct, frozen=True, kw_only=True):
     looked_at: list[str] = []
     silenced: list[Silenced] = []
     part: list[MadeShape] | UnsetType = UNSET
+    compared: list[PartComparison] | UnsetType = UNSET
 
 
 class Producer(msgspec.Struct, frozen=True):

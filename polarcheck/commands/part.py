@@ -30,7 +30,7 @@ def part(ctx: click.Context, /, paths: tuple[str, ...], **asked: Any) -> None:
     Of each polar section and depth the shape of the finished part with its sizes, and what the cutter leaves standing.
     Sizes are in the program's own units. With G41 and G42 the programmed contour is the part; without them the cutter
     runs along the path, and its radius must be known. Where a drawing is given, or polarcheck.toml says what a program
-    should make, it is told where the part differs.
+    should make, it is told how far the part agrees with that, or where it differs.
 
     Ends with 0, with 1 where a part differs from its drawing, 2 if something could not be read, 3 for a bug.
     """
@@ -48,6 +48,7 @@ def _part(
     no_config: bool,
     **asked: Any,
 ) -> int:
+    from polarcheck.checking.compared import compared_in
     from polarcheck.checking.part import part_of
     from polarcheck.commands import progress, running, settings, signals
     from polarcheck.commands.memory import keep_within_memory
@@ -55,7 +56,7 @@ def _part(
     from polarcheck.reports.pages import made
 
     keep_within_memory()
-    applies = settings.Options(use_config=not no_config, select=(_RULE,), extras=(part_of,), **asked)
+    applies = settings.Options(use_config=not no_config, select=(_RULE,), extras=(part_of, compared_in), **asked)
     faults = running.Faults(debug)
     tasks = running.planned(paths, settings.OfPrograms(applies), extensions, faults)
     checked = running.Crew(max_size, workers, None).check(tasks, progress.Bar(len(tasks), True), faults)

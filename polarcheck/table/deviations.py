@@ -78,7 +78,7 @@ class Comparison(NamedTuple):
     @property
     def agrees(self) -> bool:
         """Within the tolerance."""
-        return not self.is_other_way_round and self.difference.largest <= self.tolerance
+        return not self.is_other_way_round and self.difference.largest <= self.tolerance + ROUNDING
 
     @property
     def differs(self) -> bool:
@@ -317,7 +317,7 @@ class Deviations:
                 depth = float(np.abs(way.start - way.start.mean()).min())
                 one = one._replace(deep=depth) if chain.is_pocket else one._replace(proud=depth)
             given = part.tolerance * self._scale(part, row)
-            tolerance = (TOLERANCE if math.isnan(given) else given) + ROUNDING
+            tolerance = TOLERANCE if math.isnan(given) else given
             where = chain.level.section, chain.level.z, tolerance
             partial = not chain.is_closed and target.rings and math.isinf(min(turned_radius(way), chain.made.bar))
             found.append(

@@ -11,6 +11,8 @@ from polarcheck.table.trace import Trace
 
 #: A turn below this is none [rad].
 _NO_TURN = 1e-5
+#: A smaller difference [mm] is none that anybody measures.
+_LEAST = 1e-3
 
 
 def drawing(deviations: Deviations, row: int) -> str:
@@ -30,8 +32,12 @@ def told(trace: Trace, one: Comparison) -> str:
     if not one.agrees:
         by = f"by {largest.beside(tolerance, 'length')}, {tolerance:length} is allowed"
         return f"differs from {title} {by}: {_deviation(trace, one)}"
-    where = f", largest at {_where(trace, one, found.at)} by line {int(trace.line[one.row])}" if found.largest else ""
-    return f"agrees with {title} within {largest:length} (tolerance {tolerance:length}){where}"
+    shown = in_row(max(found.largest, _LEAST), trace, one.row)
+    where = f", largest at {_where(trace, one, found.at)} by line {int(trace.line[one.row])}"
+    return (
+        f"agrees with {title} within {shown:length} (tolerance {tolerance:length})"
+        f"{where if found.largest > _LEAST else ''}"
+    )
 
 
 def _deviation(trace: Trace, one: Comparison) -> str:

@@ -8,10 +8,12 @@ from typing import Any
 
 import msgspec
 
-from polarcheck.checking.finding import FileReport, MadeShape
+from polarcheck.checking.finding import FileReport
 from polarcheck.reading.excerpt import visible
 from polarcheck.reports.json import encoded
 
+#: The rule that compares a part with its drawing.
+_RULE = "part-differs-from-drawing"
 #: Lines of the text begin with the label, right-aligned up to here; what it labels stands three further.
 _GUTTER = 10
 
@@ -29,6 +31,13 @@ def made(file: FileReport) -> Iterator[tuple[str, str]]:
             yield "left", left.text
         if shape.needs and shape.shape is not None:
             yield "but", shape.needs
+    for one in file.compared or []:
+        if one.agrees:  # else a finding says so
+            yield f"line {one.section_line}", one.text
+    for missing in file.not_evaluated:
+        # That R is not known, or walls are tangled, is said of the shape.
+        if file.compared is not msgspec.UNSET and missing.rule == _RULE and "compared with" in missing.reason:
+            yield "but", missing.reason
 
 
 def text(files: Sequence[FileReport], columns: int) -> str:
@@ -56,6 +65,7 @@ def json(files: Sequence[FileReport]) -> str:
             "path": file.path,
             "machine": file.machine,
             "part": _list(file.part),
+            "compared": _list(file.compared),
             "findings": file.findings,
             "not_evaluated": file.not_evaluated,
         }
@@ -64,5 +74,5 @@ def json(files: Sequence[FileReport]) -> str:
     return encoded({"schema": 1, "files": told}, indent=2) + "\n"
 
 
-def _list(part: Any) -> list[MadeShape]:
+def _list(part: Any) -> list[Any]:
     return part if isinstance(part, list) else []
