@@ -129,9 +129,10 @@ def test_a_larger_or_smaller_drawing_differs_by_what_shapely_says(family: str, b
 # ---- slips of a known size ----
 
 
-@pytest.mark.parametrize("side", range(6))
-@pytest.mark.parametrize("off", [0.05, -0.05])
-@pytest.mark.parametrize("turned", [None, 10.0])
+@pytest.mark.parametrize(
+    ("side", "off", "turned"),
+    [(0, 0.05, None), (1, -0.05, 10.0), (2, 0.05, 10.0), (3, -0.05, None), (4, 0.05, None), (5, -0.05, 10.0)],
+)
 def test_a_side_that_is_off_is_told_with_its_block(side: int, off: float, turned: float | None) -> None:
     text = program(polygon(6, 13.5, {side: off}, math.radians(10)))
     expected = {"shape": "hexagon", "across_flats": 27.0, **({} if turned is None else {"turned": turned})}

@@ -34,7 +34,7 @@ HEXAGON = {"shape": "hexagon", "across_flats": 27.0}
         ({"shape": "polygon", "across_flats": 6.0}, "", "the shape polygon needs sides"),
         ({"shape": "slot", "width": 6.0, "length": 5.0}, ".length", "a slot is at least as long as it is wide"),
         ({"shape": "slot", "width": 6.0, "corner_radius": 1.0}, ".corner_radius", "a slot without length goes through"),
-        ({"shape": "flats", "across_flats": 30.0, "diameter": 29.0}, ".diameter", "a round of this diameter has no flat"),
+        ({"shape": "flats", "across_flats": 30.0, "diameter": 29.0}, ".diameter", "a round of this diameter has no"),
         ({"drawing": "a.dxf", "width": 3.0}, ".width", "a part has a drawing or a shape, not both"),
         ({"drawing": "a.dxf", "shape": "circle"}, ".shape", "a part has a drawing or a shape, not both"),
     ],
