@@ -30,7 +30,7 @@ def point_at(start: complex, end: complex, center: complex, kind: int) -> tuple[
 
 
 def sampled(
-    move: tuple[complex, complex, complex, int], feed: float, c_allowed: float = math.inf, count: int = 10_001
+    move: tuple[complex, complex, complex, int], feed: float, c_allowed: float = math.inf, count: int = 20_001
 ) -> dict[str, float]:
     """
     time [s], and the largest c_feed [deg/min], x_feed [mm/min], c_acceleration [deg/s2] and x_acceleration [mm/s2].
