@@ -297,7 +297,21 @@ def test_what_is_left_standing_has_its_place_and_line() -> None:
         "\n".join(line.strip() for line in program.splitlines()), "fanuc", "1:radius=3", only=["material-left"]
     ).findings
     assert (mark.kind, mark.lines) == ("left", [found.line])
+    # The part ends at X40: from there the rib is as high as it is told.
+    (ring,) = mark.rings
+    assert max(x for x, _ in ring) - 20 == pytest.approx(mark.depth, abs=1e-3)
+    assert min(x for x, _ in ring) == 20
     assert "stays behind line" in mark.text
+
+
+def test_a_strip_between_passes_is_as_thick_as_it_is_told() -> None:
+    """Round passes at R 30 and R 21.5 with a cutter of 8: half a mm stays between 29.5 and 30."""
+    rounds = "G42 X60. F200\nG3 X60. C0 I-30. J0\nG1 X43.\nG3 X43. C0 I-21.5 J0\nG1\n"
+    marks = section_of(HEAD + "G1 Z-1. F300\n" + rounds + END, "8:radius=4").marks
+    (strip,) = [mark for mark in marks if "strip" in mark.text]
+    far = np.abs([complex(*point) for point in strip.rings[0]])
+    assert (far.min(), far.max()) == pytest.approx((29.5, 30), abs=5e-3)
+    assert strip.depth == pytest.approx(0.5, abs=5e-3)
 
 
 # ---- what is not known ----

@@ -81,7 +81,9 @@ def _sections(tables: Tables, lines: Any, remarks: list[str]) -> list[SectionPic
         *_unless_too_hard(
             lambda: list(overcut_marks(trace, tables["moves"], tables["overcuts"], levels)), "what is overcut", remarks
         ),
-        *_unless_too_hard(lambda: list(left_marks(trace, tables["coverage"])), "what is left standing", remarks),
+        *_unless_too_hard(
+            lambda: list(left_marks(trace, tables["coverage"], levels)), "what is left standing", remarks
+        ),
     ]
     return [
         section_picture(

@@ -11,7 +11,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 import shapely  # type: ignore[import-untyped]
 
-from polarcheck.arrays import Rows
+from polarcheck.arrays import Floats, Points, Rows
 from polarcheck.checking.quantity import in_row
 from polarcheck.geometry import areas
 from polarcheck.geometry.faces import GRID
@@ -31,6 +31,8 @@ from polarcheck.time_limit import keep_time
 MOST = 300
 #: Corners of the cutter in a quarter.
 _CORNERS = 32
+#: So many times as far as a rib is high or wide, and a strip is thick, it is shown about its place.
+_AROUND_RIB, _AROUND_STRIP = 1.5, 10.0
 
 
 def overcut_marks(
@@ -61,13 +63,15 @@ def overcut_marks(
             )
 
 
-def left_marks(trace: Trace, coverage: Coverage) -> Iterator[tuple[int, Mark]]:
+def left_marks(trace: Trace, coverage: Coverage, levels: Sequence[Level]) -> Iterator[tuple[int, Mark]]:
     """The ribs and strips that no tool takes off, each behind the block that leaves it."""
-    for left, noun in ((coverage.ribs, "a rib"), (coverage.strips, "a strip")):
+    ribs, strips = (coverage.ribs, "a rib", "high", _AROUND_RIB), (coverage.strips, "a strip", "thick", _AROUND_STRIP)
+    for left, noun, measure, around in (ribs, strips):
         for row in _largest(trace, left).tolist():
+            keep_time()
             line, height = int(trace.line_in_file[row]), float(left.height[row])
             wide = f" and {in_row(left.width[row], trace, row):length} wide" if left.width[row] > 0 else ""
-            measure = "high" if left is coverage.ribs else "thick"
+            reach = around * max(height, float(np.nan_to_num(left.width[row])))
             yield (
                 int(trace.section[row]),
                 Mark(
@@ -76,7 +80,7 @@ def left_marks(trace: Trace, coverage: Coverage) -> Iterator[tuple[int, Mark]]:
                     lines=[line],
                     place=_pair(complex(left.place[row])),
                     depth=round(height, LENGTH),
-                    rings=[],
+                    rings=_untouched(trace, coverage, row, levels, complex(left.place[row]), reach),
                 ),
             )
 
@@ -129,6 +133,33 @@ def _taken(trace: Trace, moves: Moves, row: int, into: int, levels: Sequence[Lev
     point = shapely.Point(place.real, place.imag)
     near = min(cut, key=point.distance, default=None)
     return [] if near is None else rings(shapely.simplify(shapely.buffer(near, tolerance / 2), tolerance / 2))
+
+
+def _untouched(
+    trace: Trace, coverage: Coverage, row: int, levels: Sequence[Level], place: complex, reach: float
+) -> list[Ring]:
+    """What neither belongs to the part nor is taken off by any tool, so far about a place [mm]."""
+    part = _level_of(trace, row, levels)
+    if part is None:
+        return []
+    swept = coverage.swept
+    near = swept[swept.at_depth(trace.z[row], trace.program[row])]
+    near = near[_distance(place, near.start, near.end) < near.radius + reach]
+    ends = np.stack([near.start, near.end], axis=1)
+    lines = shapely.linestrings(np.stack([ends.real, ends.imag], axis=2))
+    taken = areas.union_all(areas.buffer(lines, near.radius, quad_segs=_CORNERS), grid_size=GRID)
+    point = shapely.Point(place.real, place.imag)
+    about = shapely.buffer(point, reach, quad_segs=_CORNERS)
+    left = areas.difference(areas.difference(about, part.polygon, grid_size=GRID), taken, grid_size=GRID)
+    nearest = min(polygons_of(left), key=point.distance, default=None)
+    return [] if nearest is None else rings(nearest)
+
+
+def _distance(point: complex, start: Points, end: Points) -> Floats:
+    """From a point to each of some straight ways [mm]."""
+    way = end - start
+    share = ((point - start) * way.conj()).real / np.maximum(np.abs(way) ** 2, ROUNDING**2)
+    return np.asarray(np.abs(point - start - np.clip(share, 0, 1) * way))
 
 
 def _level_of(trace: Trace, row: int, levels: Sequence[Level]) -> Level | None:

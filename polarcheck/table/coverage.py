@@ -155,9 +155,7 @@ class Coverage:
         corners = corners[~(part.open | part.tangled | (part.gap > CLOSED) | self._unsure(judged))[corners.loop]]
         if not len(corners.loop):
             return left, none
-        found = ribs(
-            part, corners, judged.loops.radius, self._own(judged.number), judged.z, judged.program, self._swept
-        )
+        found = ribs(part, corners, judged.loops.radius, self._own(judged.number), judged.z, judged.program, self.swept)
         left.height[found.row], left.width[found.row], left.place[found.row] = found.height, found.width, found.place
         return left, judged.number[found.given_up]
 
@@ -184,7 +182,7 @@ class Coverage:
         return np.fmax(np.abs(trace.radius_of_move), trace.cutter_diameter / 2)
 
     @cached_property
-    def _swept(self) -> Swept:
+    def swept(self) -> Swept:
         """All moves in the mode, ramps and those without compensation included."""
         from polarcheck.geometry.ribs import Swept
         from polarcheck.geometry.segments import segments
@@ -291,7 +289,7 @@ class Coverage:
         rows, _ = loops.rows()
         curves = loops.curves[rows]
         walls = segments(replace(curves, loop=np.zeros(len(curves), np.int64)), tolerance)
-        swept = self._swept[self._swept.at_depth(judged.z[level[:1]], judged.program[level[:1]])]
+        swept = self.swept[self.swept.at_depth(judged.z[level[:1]], judged.program[level[:1]])]
         row, left = curves.row[walls.move], loops.left[rows][walls.move]
         found = strips(part.polygon[0], walls, row, left, swept, float(radius[0]), bar)
         return GivenUp.LONG if found is None else found
