@@ -45,6 +45,10 @@ CASES = {
         "G42 X24. F100\nC9.\nG3 X24. C-9. I-12. J-9.\nG1 C0",
         "round 30.000 with one flat, 12.000 from the center",
     ),
+    "one flat beyond the center": (
+        "G42 X-8. F100\nC14.457\nG3 X-8. C-14.457 I4. J-14.457\nG1 C0",
+        "round 30.000 with one flat, 4.000 beyond the center",
+    ),
     "two flats": (
         "G42 X24. F100\nC9.\nG3 X-24. C9. I-12. J-9.\nG1 C-9.\nG3 X24. C-9. I12. J9.\nG1 C0",
         "round 30.000 with 2 flats 24.000 apart",

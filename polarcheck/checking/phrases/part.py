@@ -97,7 +97,7 @@ def _round_with_flats(shape: Shape, line_of: _Line, sizes: Sizes) -> _Told:
         told[0] += f" {sizes(value['apart'])} apart"
     middle = "center of the circle" if "center_x" in value else "center"
     if "distance" in value and "apart" not in value:
-        told[0] += f", {sizes(value['distance'])} from the {middle}"
+        told[0] += f", {_away(value['distance'], middle, sizes)}"
     if "least" in value:
         told.append(f"{sizes(value['least'])} to {sizes(value['most'])} from the {middle}")
     return told
@@ -111,9 +111,14 @@ def _flats(shape: Shape, line_of: _Line, sizes: Sizes) -> _Told:
         told += [] if "distance" in value else [_from_to(value, sizes)]
         return told + ([f"an arc R{sizes(value['joined'])} from one to the other"] if "joined" in value else [])
     if count == 1:
-        return [f"flat {sizes(value['distance'])} from the center"]
-    where = f"{sizes(value['distance'])} from the center" if "distance" in value else _from_to(value, sizes)
+        return [f"flat {_away(value['distance'], 'center', sizes)}"]
+    where = _away(value["distance"], "center", sizes) if "distance" in value else _from_to(value, sizes)
     return [f"{count} flats", where]
+
+
+def _away(distance: float, middle: str, sizes: Sizes) -> str:
+    """How far a flat is from the middle; beyond it where the part does not reach that far."""
+    return f"{sizes(abs(distance))} {'from' if distance >= 0 else 'beyond'} the {middle}"
 
 
 def _from_to(value: Mapping[str, float], sizes: Sizes) -> str:
