@@ -57,7 +57,9 @@ def contours(draw: st.DrawFn) -> str:
 def test_moves_agree_with_dense_sampling(program: str, radius: int) -> None:
     dynamics = dynamics_of(program, f"1:radius={radius}")
     moves = dynamics.moves
-    for index in np.flatnonzero(moves.known & (moves.length > 0.5) & (moves.nearest > 1)).tolist():
+    # On a longer one, as of a spike that compensation makes, differences of positions have too few digits.
+    is_sampled = moves.known & (moves.length > 0.5) & (moves.length < 100) & (moves.nearest > 1)
+    for index in np.flatnonzero(is_sampled).tolist():
         move = tuple(column[index] for column in moves.shape)
         expected = sampled(move, float(moves.feed[index]))
         told = {name: float(getattr(dynamics, name)[index]) for name in RATES}
