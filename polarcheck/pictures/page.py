@@ -188,7 +188,7 @@ def _told(number: int, section: SectionPicture) -> str:
     if section.marks:
         rows = "".join(_mark(number, place, mark, section) for place, mark in enumerate(section.marks))
         heads = "".join(f'<th scope="col">{head}</th>' for head in ("", "Lines", "Where", "By how much"))
-        told += f'<table class="marks"><thead><tr>{heads}</tr></thead><tbody>{rows}</tbody></table>\n'
+        told += f'<div class="marks"><table><thead><tr>{heads}</tr></thead><tbody>{rows}</tbody></table></div>\n'
     return told
 
 
