@@ -1,7 +1,9 @@
 // ---- face: the view onto the face, X to the right with its labels as in the program, C upwards ----
 
 const DASHES = { positioning: "dash", "start up": "dashdot", cancel: "dashdot", unknown: "dot" };
-const OPTIONS = { displaylogo: false, responsive: true, modeBarButtonsToRemove: ["select2d", "lasso2d", "autoScale2d"] };
+/** These buttons alone: by itself the library offers one that sends the picture to its maker. */
+const BUTTONS = [["toImage", "zoom2d", "pan2d", "zoomIn2d", "zoomOut2d", "resetScale2d"]];
+const OPTIONS = { displaylogo: false, responsive: true, modeBarButtons: BUTTONS };
 /** So many arrows tell the direction of a path. */
 const ARROWS = 14;
 /** So many points of it, at least, can be pointed at. */
