@@ -104,6 +104,25 @@ def test_words_that_mix_radius_and_diameter_are_told() -> None:
     )
 
 
+OCTAGON = [
+    *("G42 X40. C0 F100", "C8.284", "X16.568 C20.", "X-16.568 C20.", "X-40. C8.284", "X-40. C-8.284"),
+    *("X-16.568 C-20.", "X16.568 C-20.", "X40. C-8.284", "C0"),
+]
+
+
+@pytest.mark.parametrize(
+    ("block", "written", "how"),
+    [(4, "X-20. C8.284", "doubled"), (7, "X33.136 C-20.", "halved"), (6, "X-8.284 C-20.", "doubled")],
+)
+def test_of_an_octagon_the_x_of_one_corner_may_be_a_radius(block: int, written: str, how: str) -> None:
+    blocks = [*OCTAGON[:block], written, *OCTAGON[block + 1 :]]
+    (found,) = made("\n".join(blocks), "8:radius=2")
+    line = HEAD.count("\n") + block + 1
+    told = f"with X of line {line} {how} it would be regular and 40.000 across flats"
+    assert found.text.startswith("octagon, not regular")
+    assert told in found.text
+
+
 def test_the_cutter_stays_in_the_corners_of_a_pocket() -> None:
     inside = {"head": HEAD.replace("X80.", "X0"), "end": END.replace("X80.", "X0")}
     (found,) = made(CASES["pocket"][0], "8:radius=2", **inside)

@@ -56,7 +56,7 @@ def _circle(shape: Shape, line_of: _Line, sizes: Sizes) -> _Told:
 def _polygon(shape: Shape, line_of: _Line, sizes: Sizes) -> _Told:
     value = shape.values
     if "across_flats" not in value or "regular_by_x" in value:
-        return _uneven(shape, sizes)
+        return _uneven(shape, line_of, sizes)
     count, across = int(value["sides"]), value["across_flats"]
     told = [shape.name, f"{sizes(across)} across flats"]
     if shape.odd:
@@ -71,16 +71,18 @@ def _polygon(shape: Shape, line_of: _Line, sizes: Sizes) -> _Told:
     return told
 
 
-def _uneven(shape: Shape, sizes: Sizes) -> _Told:
+def _uneven(shape: Shape, line_of: _Line, sizes: Sizes) -> _Told:
     value = shape.values
     told = [f"{shape.name} with {value['sides']:.0f} sides" if shape.name == "polygon" else shape.name, "not regular"]
     if "least" in value:
         told.append(f"{sizes(value['least'])} to {sizes(value['most'])} across flats")
     if "regular_by_x" in value:
         how = "doubled" if value["regular_by_x"] > 1 else "halved"
+        lines = [line_of(row) for row in shape.mixed]
+        of_lines = f" of line{'s' if len(lines) > 1 else ''} {', '.join(map(str, lines))}" if lines else ""
         told.append(
-            f"with X {how} it would be regular and {sizes(value['across_flats'])} across flats: "
-            "do its words mix radius and diameter?"
+            f"with X{of_lines} {how} it would be regular and {sizes(value['across_flats'])} across flats "
+            "(words that mix radius and diameter)"
         )
     return told
 

@@ -18,6 +18,8 @@ _MOST_SIDES = 12
 _NEARLY, _NEARLY_ALL = 0.03, 0.1
 #: How much less than regular along X what becomes regular by doubling or halving its X is.
 _MIXED = (2.0, 0.5)
+#: How far a corner may be off its place in a regular polygon whose words are rounded [mm].
+_IN_PLACE = 0.02
 
 
 class _Fit(NamedTuple):
@@ -31,9 +33,10 @@ class _Fit(NamedTuple):
 
 
 def polygon_of(ring: Ring, sides: Sides) -> Shape | None:
-    """What polygon these sides make; None where they bend inwards."""
+    """What polygon these sides make; None where they bend inwards, but by words that mix radius and diameter."""
     if not sides.is_convex:
-        return None
+        uneven = _uneven(ring, sides) if 5 <= len(sides) else None
+        return uneven if uneven and "regular_by_x" in uneven.values else None
     plain = _regular(ring, sides)
     if plain is not None and plain.is_regular:
         return plain
@@ -170,18 +173,55 @@ def _uneven(ring: Ring, sides: Sides) -> Shape | None:
     points = np.concatenate([sides.start, sides.end])
     values |= {"x_least": float(points.real.min()), "x_most": float(points.real.max())}
     values |= {"c_least": float(points.imag.min()), "c_most": float(points.imag.max())}
-    values |= {"area": ring.area, **_mixed(sides)}
-    return Shape(polygon_name(count) if count > 4 else "polygon", ring.inside, values, (), int(sides.row[0]), False)
+    mixed, rows = _mixed(sides)
+    values |= {"area": ring.area, **mixed}
+    name = polygon_name(count) if count > 4 else "polygon"
+    return Shape(name, ring.inside, values, (), int(sides.row[0]), False, mixed=rows)
 
 
-def _mixed(sides: Sides) -> dict[str, float]:
-    """What X has to be taken by to make a regular polygon of it: where its words mix radius and diameter."""
+def _mixed(sides: Sides) -> tuple[dict[str, float], tuple[int, ...]]:
+    """
+    What X has to be taken by to make a regular polygon of it, where words mix radius and diameter: that of all words,
+    or of some; then the rows of the blocks that end there, too.
+    """
     for share in _MIXED:
-        start, end = (complex_of(points.real * share, points.imag) for points in (sides.start, sides.end))
-        fit = _fitted(Sides(start, end, sides.row, sides.radius, sides.chamfer))
+        fit = _fitted(_with_x(sides, np.full(len(sides), share)))
         if fit is not None and fit.good.all():
-            return {"regular_by_x": share, "across_flats": 2 * fit.distance}
-    return {}
+            return {"regular_by_x": share, "across_flats": 2 * fit.distance}, ()
+    if sides.radius.any() or sides.chamfer.any():
+        return {}, ()
+    for share in _MIXED:
+        for taken in _where_regular(sides.end, share):
+            fit = _fitted(_with_x(sides, np.where(taken, share, 1.0)))
+            if fit is not None and fit.good.all():
+                return {"regular_by_x": share, "across_flats": 2 * fit.distance}, tuple(sides.row[taken].tolist())
+    return {}, ()
+
+
+def _with_x(sides: Sides, share: Floats) -> Sides:
+    """The sides with X of the corner behind each so many times as large."""
+    end = complex_of(sides.end.real * share, sides.end.imag)
+    before = np.roll(share, 1)
+    return Sides(complex_of(sides.start.real * before, sides.start.imag), end, sides.row, sides.radius, sides.chamfer)
+
+
+def _where_regular(corner: Points, share: float) -> list[Mask]:
+    """
+    Which corners, some but not all, must have X so many times as large for all to be those of a regular polygon about
+    the center; the fewest first.
+    """
+    count = len(corner)
+    other = complex_of(corner.real * share, corner.imag)
+    turn = np.exp(2j * np.pi * np.arange(count) / count)
+    # Whichever corner is right as it is, or with its X otherwise, tells where all the others are.
+    wanted = (
+        np.concatenate([corner, other])[:, None]
+        * turn[(np.arange(count) - np.arange(count)[:, None]) % count][np.tile(np.arange(count), 2)]
+    )
+    as_written = np.abs(corner - wanted) <= _IN_PLACE
+    fits = (as_written | (np.abs(other - wanted) <= _IN_PLACE)).all(axis=1) & as_written.any(axis=1)
+    found = [~row for row in as_written[fits] if not row.all()]
+    return sorted(found, key=lambda taken: int(taken.sum()))
 
 
 def complex_of(x: Floats, c: Floats) -> Points:

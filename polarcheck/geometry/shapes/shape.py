@@ -49,7 +49,8 @@ class Shape(NamedTuple):
     make it regular.
 
     odd: the sides that differ from the others. row: of its first block. is_regular: False where what has the name of a
-    regular polygon is none. is_open: nobody knows what the part is like beyond its ends.
+    regular polygon is none. is_open: nobody knows what the part is like beyond its ends. mixed:
+    the rows of the blocks whose X regular_by_x is of, none where it is of all.
     """
 
     name: str
@@ -59,6 +60,7 @@ class Shape(NamedTuple):
     row: int = -1
     is_regular: bool = True
     is_open: bool = False
+    mixed: tuple[int, ...] = ()
 
 
 def polygon_name(sides: int) -> str:
