@@ -35,7 +35,7 @@ class _Fit(NamedTuple):
 def polygon_of(ring: Ring, sides: Sides) -> Shape | None:
     """What polygon these sides make; None where they bend inwards, but by words that mix radius and diameter."""
     if not sides.is_convex:
-        uneven = _uneven(ring, sides) if 5 <= len(sides) else None
+        uneven = _uneven(ring, sides) if len(sides) >= 5 else None
         return uneven if uneven and "regular_by_x" in uneven.values else None
     plain = _regular(ring, sides)
     if plain is not None and plain.is_regular:
