@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 #: What of `check` decides what is found: its argument and options by name.
 DECIDING = (
     *("paths", "machine", "changes", "tools", "offsets", "units", "select", "ignore", "severities", "inline"),
-    *("config", "no_config", "block_skip", "subprograms", "max_blocks", "max_statements", "max_seconds"),
+    *("config", "no_config", "drawing", "block_skip", "subprograms", "max_blocks", "max_statements", "max_seconds"),
     *("radius_from_comments", "extensions", "encoding", "max_size", "workers", "cluster"),
 )
 _FILE = "polarcheck-baseline.json"
