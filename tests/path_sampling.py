@@ -39,12 +39,12 @@ def sampled(
     """
     length, at = point_at(*move)
     share = np.linspace(0, 1, count)
-    near, far = 1e-5 / length, 1e-4 / length
+    near, far = 1e-4 / length, 1e-3 / length
 
     def rates(share: Floats) -> tuple[Floats, Floats, Floats]:
         """F, and the rates of C [rad/min] and X [mm/min]."""
         ahead, behind = at(share + near), at(share - near)
-        c_way, x_way = np.angle(ahead / behind) / 2e-5, (np.abs(ahead) - np.abs(behind)) / 2e-5
+        c_way, x_way = np.angle(ahead / behind) / 2e-4, (np.abs(ahead) - np.abs(behind)) / 2e-4
         allowed = math.radians(c_allowed) / np.maximum(np.abs(c_way), 1e-12)
         f = np.minimum(feed, allowed)
         return f, c_way * f, x_way * f
@@ -52,7 +52,7 @@ def sampled(
     before, here, after = rates(share - far), rates(share), rates(share + far)
     # Where override begins and ends the rates have a bend, and a change across it is neither side's.
     one_side = (before[0] < feed) == (after[0] < feed)
-    c_change, x_change = (np.abs(after[axis] - before[axis])[one_side] / 2e-4 for axis in (1, 2))
+    c_change, x_change = (np.abs(after[axis] - before[axis])[one_side] / 2e-3 for axis in (1, 2))
     f = here[0]
     each = length / (count - 1) * (1 / f[1:] + 1 / f[:-1]) / 2
     return {
