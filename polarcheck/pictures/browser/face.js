@@ -321,9 +321,9 @@ function faceLayout(section) {
   const units = unitsOf(section);
   const axis = { showgrid: true, gridcolor: "#e4e4e4", zeroline: true, zerolinecolor: "#9a9a9a", showline: true, linecolor: "#888", mirror: true, ticks: "outside", nticks: 11 };
   return {
-    margin: { l: 62, r: 12, t: 8, b: 48 }, paper_bgcolor: "#fff", plot_bgcolor: "#fff", hovermode: "closest", hoverdistance: 24,
+    margin: { l: 62, r: 12, t: 30, b: 48 }, paper_bgcolor: "#fff", plot_bgcolor: "#fff", hovermode: "closest", hoverdistance: 24,
     font: { family: "system-ui, sans-serif", size: 12, color: INK }, dragmode: "zoom",
-    legend: { orientation: "h", x: 0, y: 1.01, yanchor: "bottom", xanchor: "left", font: { size: 11 } },
+    legend: { orientation: "h", x: 0, y: -0.13, yanchor: "top", xanchor: "left", font: { size: 11 } },
     xaxis: { ...axis, title: { text: `X [${units.name}, ${section.diameter ? "diameter" : "radius"}]`, standoff: 8 } },
     yaxis: { ...axis, title: { text: `C [${units.name}]`, standoff: 8 }, scaleanchor: "x", scaleratio: units.ratio },
     shapes: [],

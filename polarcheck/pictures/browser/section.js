@@ -27,7 +27,7 @@ function sectionView(root, section, choose) {
     Plotly.newPlot(face, faceTraces(section, level(), find("coloring").value), layout, OPTIONS);
     listen(face);
     if (hasRates) {
-      Plotly.newPlot(rates, rateTraces(section), { ...rateLayout(section), shapes: chosenInRates(section, shown) }, OPTIONS);
+      Plotly.newPlot(rates, rateTraces(section), { ...rateLayout(section), shapes: chosenInRates(section, shown) }, { ...OPTIONS, displayModeBar: false });
       listen(rates);
     }
   }
