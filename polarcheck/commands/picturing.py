@@ -51,14 +51,16 @@ class Apart:
 
     def taken(self, outcomes: Iterable[Outcome]) -> Iterator[Outcome]:
         """The outcomes as they are told."""
-        import msgspec
-
-        from polarcheck.pictures.drawing import apart
+        from polarcheck.checking.finding import FileReport
 
         for outcome in outcomes:
-            if outcome.report is None:
+            if outcome.report is None or type(outcome.report) is FileReport:
                 yield outcome
                 continue
+            import msgspec
+
+            from polarcheck.pictures.drawing import apart  # a check without pictures does without
+
             report, drawn = apart(outcome.report)
             told = msgspec.structs.replace(outcome, report=report)
             if drawn is not None:
