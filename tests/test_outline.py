@@ -30,7 +30,7 @@ def test_arcs_are_one_element_with_their_center_and_the_part_on_the_left() -> No
     (level,) = levels("G42 X20. F100\nG3 X20. C0 I-10. J0\nG1", 4.0)
     assert len(level.outline) == 1
     assert level.outline.radius[0] == pytest.approx(10)
-    assert level.outline.length[0] == pytest.approx(20 * np.pi)
+    assert level.polygon.area == pytest.approx(100 * np.pi, rel=1e-3)
 
 
 def test_each_depth_of_a_section_is_one_level() -> None:

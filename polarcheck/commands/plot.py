@@ -47,19 +47,6 @@ def plot(
     Ends with 0 where all pages were made, whatever was found, 2 if something could not be read or written, 3 for a
     bug.
     """
-    ctx.exit(_plot(paths, output, extensions, max_size, workers, no_config, options.DEBUG in ctx.meta, asked))
-
-
-def _plot(
-    paths: tuple[str, ...],
-    output: str | None,
-    extensions: tuple[str, ...],
-    max_size: int,
-    workers: int,
-    no_config: bool,
-    debug: bool,
-    asked: dict[str, Any],
-) -> int:
     from polarcheck import reports
     from polarcheck.checking import batch, rule
     from polarcheck.commands import overwriting, progress, reporting, running, settings, signals
@@ -70,7 +57,7 @@ def _plot(
 
     keep_within_memory()
     applies = settings.Options(use_config=not no_config, extras=picturing.extras(), **asked)
-    faults = running.Faults(debug)
+    faults = running.Faults(options.DEBUG in ctx.meta)
     tasks = running.planned(paths, settings.OfPrograms(applies), extensions, faults)
     outputs = [] if output is None else [(picturing.FORMAT, Path(output))]
     pictures, pages, written = picturing.of_outputs(outputs, output is None, tasks, "-o ")
@@ -94,4 +81,4 @@ def _plot(
             show(page.encode())
     if checked.stopped is None:
         running.tell_unused(applies.tools, checked.called)
-    return status
+    ctx.exit(status)

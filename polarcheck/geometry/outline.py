@@ -13,7 +13,6 @@ import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Points, Rows, States
 from polarcheck.geometry.noding import TOUCH
-from polarcheck.geometry.plane import arc_sweep
 from polarcheck.geometry.segments import Curves
 from polarcheck.machines.modal import Motion
 
@@ -63,12 +62,6 @@ class Outline:
     def radius(self) -> Floats:
         """Of arcs [mm], NaN for lines."""
         return np.asarray(np.abs(self.start - self.center))
-
-    @property
-    def length(self) -> Floats:
-        """Of each element [mm]."""
-        sweep = arc_sweep(self.start, self.end, self.center, self.kind)
-        return np.where(self.is_arc, np.abs(sweep) * self.radius, np.abs(self.end - self.start))
 
 
 def outline_of(start: Points, end: Points, move: Rows, curves: Curves) -> Outline:
