@@ -141,7 +141,10 @@ def test_without_a_radius_a_contour_is_told_and_what_to_give() -> None:
     [
         ("G1 X40. F100\nG3 X40. C0 I-20. J0", "circle 32.000; to Z-2.000"),
         ("G1 X40. F100\nC20.\nX-40.\nC-20.\nX40.\nC0", "square, 32.000 across flats; to Z-2.000"),
-        ("G1 X6. F100\nG3 X6. C0 I-3. J0", "pocket: circle 14.000; to Z-2.000"),
+        (
+            "G1 X38. F100\nC10.\nX-38.\nC-10.\nX38.\nC0",
+            "rectangle 30.000 x 12.000; to Z-2.000",
+        ),
     ],
 )
 def test_without_compensation_the_path_is_that_of_the_tool(body: str, expected: str) -> None:

@@ -242,5 +242,5 @@ def _why_nothing(tables: Tables, section: int) -> str:
     if not (own & trace.cuts & trace.on_plane).any():
         return "it cuts nothing in the plane"
     if not (own & trace.compensates).any():
-        return "its path goes round nothing, and is not straight"
+        return "its path is nowhere as long as the cutter is wide at one Z"
     return "its contour leaves nothing standing that could be told: a position is not known, or it does not close"

@@ -7,82 +7,79 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from polarcheck.arrays import Rows
+from polarcheck.arrays import Floats, Mask, Rows
 from polarcheck.checking.phrases.offsets import called_tool, to_give
 from polarcheck.checking.tables import Tables
-from polarcheck.geometry.outline import Outline
+from polarcheck.geometry.segments import ZERO, Curves
 from polarcheck.geometry.shapes.shape import Shape
+from polarcheck.table.filling import before
+from polarcheck.time_limit import keep_time
 
 if TYPE_CHECKING:
     from polarcheck.table.moves import Moves
     from polarcheck.table.trace import Trace
-
-#: Ends of moves that are nearer to each other are one point [mm].
-_SAME = 1e-6
 
 #: Number of the section, Z and R [mm], the shapes, and what is to be given.
 _Depth = tuple[int, float, float, list[Shape], str | None]
 
 
 def depths_of_paths(tables: Tables) -> Iterator[_Depth]:
-    """Each way of a tool at one Z of a section that never uses compensation, with what it leaves."""
+    """Each Z of a section that never uses compensation, with what the cutter leaves and clears there."""
     trace: Trace = tables["trace"]
     moves: Moves = tables["tool_center"].moves
     plain = ~trace.anywhere_in_section(trace.compensates)[moves.row] & trace.cuts[moves.row]
-    rows = np.flatnonzero(plain & ~np.isnan(moves.start + moves.end) & (moves.length > _SAME))
-    radius = np.fmax(np.abs(trace.radius_of_move), trace.cutter_diameter / 2)
-    for way in _ways(trace, moves, rows):
-        row = int(moves.row[way[0]])
-        path = _outline(moves, way)
-        section, z = int(trace.section[row]), float(trace.z[row])
-        if np.isnan(radius[row]) or not radius[row]:
+    plain &= ~(_changes_depth(trace) | _above_part(trace))[moves.row]
+    chosen = np.flatnonzero(plain & ~np.isnan(moves.start + moves.end) & (moves.length > ZERO))
+    radius = np.fmax(np.abs(trace.radius_of_move), trace.cutter_diameter / 2)[moves.row]
+    for own in _levels(moves.section, trace.z[moves.row], radius, chosen):
+        keep_time()
+        row = int(moves.row[own[0]])
+        section, z, cutter = int(trace.section[row]), float(trace.z[row]), float(radius[own[0]])
+        if np.isnan(cutter) or not cutter:
             yield section, z, np.nan, [], _needs_radius(trace, row)
-            continue
-        if float(moves.length[way].sum()) < 2 * radius[row]:
-            continue  # a step aside, or what is left of a ramp
-        shapes = _left(path, float(radius[row]))
-        begin, end = (int(trace.line_in_file[moves.row[at]]) for at in (way[0], way[-1]))
-        why = f"the path of lines {begin} to {end} goes round nothing and is not straight: what it leaves is not told"
-        yield section, z, float(radius[row]), shapes, None if shapes else why
+        elif float(moves.length[own].sum()) >= 2 * cutter:  # less is a step aside, or what is left of a ramp
+            yield section, z, cutter, _left(moves, own, cutter, float(trace.stock_diameter[row])), None
 
 
-def _needs_radius(trace: Trace, row: int) -> str:
-    if not trace.offset_number[row]:
-        return "the path is that of the tool, whose R is not known: no tool offset is in force"
-    missing = f"the path is that of the tool, and R of {called_tool(trace, row)} is not known"
-    return f"{missing}: {to_give(trace, row, 'radius')}"
+def _changes_depth(trace: Trace) -> Mask:
+    """A ramp clears its way at the Z of its end at that end alone, where what follows begins."""
+    return np.asarray(trace.moves_z & (np.abs(trace.z - before(trace.z, trace.starts, np.nan)) > ZERO))
 
 
-def _ways(trace: Trace, moves: Moves, rows: Rows) -> Iterator[Rows]:
-    """The moves of each way at one Z of one section, which nothing interrupts."""
-    z, section = trace.z[moves.row[rows]], moves.section[rows]
-    begins = np.ones(len(rows), bool)
-    begins[1:] = (np.abs(moves.start[rows][1:] - moves.end[rows][:-1]) > _SAME) | (np.diff(section) != 0)
-    begins[1:] |= (z[1:] != z[:-1]) & ~(np.isnan(z[1:]) & np.isnan(z[:-1]))
-    for way in np.split(rows, np.flatnonzero(begins)[1:]):
-        if len(way):
-            yield way
+def _above_part(trace: Trace) -> Mask:
+    """
+    The ways from cut to cut, which are at a feed since polar mode forbids G0: at the Z of the G12.1, or farther out.
 
-
-def _outline(moves: Moves, way: Rows) -> Outline:
-    count = len(way)
-    return Outline(
-        moves.start[way],
-        moves.end[way],
-        moves.center[way],
-        moves.kind[way],
-        moves.row[way],
-        np.zeros(count, np.int64),
-        np.array([False]),
+    Where Z0 is the face, a section that begins below it begins at the depth of its first pass.
+    """
+    entry = trace.z[trace.sections.enter][trace.section]
+    return np.asarray(
+        (trace.section >= 0) & (entry > 0) & (trace.z >= entry) & trace.anywhere_in_section(trace.z < entry)
     )
 
 
-def _left(path: Outline, radius: float) -> list[Shape]:
-    from polarcheck.geometry.shapes import grooves
+def _levels(section: Rows, z: Floats, radius: Floats, chosen: Rows) -> Iterator[Rows]:
+    """The moves of one cutter at one Z of one section, in the order in which the program comes to them."""
+    if not len(chosen):
+        return
+    columns = np.stack([section[chosen], np.round(z[chosen], 6), radius[chosen]])
+    _, first, level = np.unique(columns, axis=1, return_index=True, return_inverse=True, equal_nan=True)
+    place = np.argsort(np.argsort(first))[level.ravel()]
+    order = np.argsort(place, kind="stable")
+    yield from np.split(chosen[order], np.flatnonzero(np.diff(place[order])) + 1)
 
-    loop = grooves.closed_part(path)
-    if loop is None:
-        slot = grooves.slot_along(path, radius)
-        return [slot] if slot else []
-    found = grooves.left_inside(loop, radius) or grooves.cleared(loop, radius)
-    return [found] if found else []
+
+def _left(moves: Moves, own: Rows, radius: float, bar: float) -> list[Shape]:
+    from polarcheck.geometry.cleared import cleared
+    from polarcheck.geometry.shapes.grooves import shapes_of_cleared
+
+    path = Curves(
+        moves.start[own], moves.end[own], moves.center[own], moves.kind[own], np.zeros(len(own), int), moves.row[own]
+    )
+    _, outline, across = cleared(path, radius)
+    return shapes_of_cleared(outline, across, radius, bar)
+
+
+def _needs_radius(trace: Trace, row: int) -> str:
+    missing = f"the path is that of the tool, and R of {called_tool(trace, row)} is not known"
+    return f"{missing}: {to_give(trace, row, 'radius')}"

@@ -56,7 +56,7 @@ def option(trace: Trace, row: int, key: str) -> str:
 def to_give(trace: Trace, row: int, key: str) -> str:
     """What to give where a value of the offset in force is not known."""
     number = int(trace.offset_number[row])
-    if not trace.offset_key(number):
+    if not number or not trace.offset_key(number):
         return f"call {example(trace.machine)} before it"
     name = str(key_of(trace, number))
     table = name if _BARE_KEY.fullmatch(name) else '"' + name.replace("\\", "\\\\") + '"'

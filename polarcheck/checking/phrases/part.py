@@ -35,12 +35,16 @@ def shape_in_words(shape: Shape, line_of: Callable[[int], int], sizes: Sizes) ->
     if shape.name != "circle" and "turned" in value:
         told += _turned(shape)
     told += _off_axis(value, shape, sizes)
-    if shape.name in ("contour", "polygon") or "regular_by_x" in value or ("x_least" in value and not shape.is_regular):
+    if (
+        shape.name in ("contour", "polygon", "groove")
+        or "regular_by_x" in value
+        or ("x_least" in value and not shape.is_regular)
+    ):
         told += _extents(value, sizes)
     if shape.is_open and shape.name == "contour":
         told.append("open: beyond its ends the part is not known")
     text = ", ".join(told)
-    return f"pocket: {text}" if shape.inside and not shape.is_open else text
+    return f"pocket: {text}" if shape.inside and not shape.is_open and shape.name != "groove" else text
 
 
 _Told = list[str]
@@ -157,6 +161,10 @@ def _contour(shape: Shape, line_of: _Line, sizes: Sizes) -> _Told:
     return ["contour"]
 
 
+def _groove(shape: Shape, line_of: _Line, sizes: Sizes) -> _Told:
+    return [f"groove {sizes(shape.values['width'])} wide"]
+
+
 _TOLD: Mapping[str, Callable[[Shape, _Line, Sizes], _Told]] = {
     "circle": _circle,
     "rectangle": _rectangle,
@@ -166,6 +174,7 @@ _TOLD: Mapping[str, Callable[[Shape, _Line, Sizes], _Told]] = {
     "keyway": _keyway,
     "cam": _cam,
     "cross": _cross,
+    "groove": _groove,
     "contour": _contour,
 }
 

@@ -37,7 +37,7 @@ class Shape(NamedTuple):
     What one outline is.
 
     name: circle, triangle to dodecagon or `11-sided`, rectangle, polygon, round with flats, flats, slot, keyway, cam,
-    cross, contour. inside: it is a pocket. values: its numbers [mm, mm2, deg], each only where it applies:
+    cross, groove, contour. inside: it is a pocket. values: its numbers [mm, mm2, deg], each only where it applies:
 
     diameter; across_flats (of an odd number of sides twice the distance of a side from the middle), width, length,
     sides, flats, distance (of a flat from the axis), apart (of parallel flats, of the circles of a cam), corner_radius

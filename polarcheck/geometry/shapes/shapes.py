@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 
 from polarcheck.arrays import Mask
@@ -25,9 +27,14 @@ def shapes_of(outline: Outline, gap: float = 0.0, bar: float = np.nan) -> list[S
 
     gap: what of it was closed by a straight line [mm]. bar: diameter [mm], NaN if not known.
     """
+    return shapes_of_rings(rings(outline, gap, bar))
+
+
+def shapes_of_rings(found: Iterable[Ring]) -> list[Shape]:
+    """The same of rings."""
     single: list[Ring] = []
     others: list[Shape] = []
-    for ring in rings(outline, gap, bar):
+    for ring in found:
         keep_time()
         if len(ring) == 1 and not ring.closed and ring.is_line[0]:
             single.append(ring)
@@ -45,10 +52,10 @@ def _shape_of(ring: Ring) -> Shape:
 def _recognised(ring: Ring) -> Shape:
     sides = sides_of(ring)
     of_sides = sides and (in_chords(ring, sides) or polygon_of(ring, sides) or cross_of(ring, sides))
-    return round_of(ring) or two_rounds_of(ring) or of_sides or keyway_of(ring) or _contour(ring)
+    return round_of(ring) or two_rounds_of(ring) or of_sides or keyway_of(ring) or contour_of(ring)
 
 
-def _contour(ring: Ring) -> Shape:
+def contour_of(ring: Ring) -> Shape:
     """Anything else, by its extents."""
     x, c = _extents(ring, 1), _extents(ring, 1j)
     values = {"x_least": x[0], "x_most": x[1], "c_least": c[0], "c_most": c[1]}

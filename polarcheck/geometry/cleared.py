@@ -1,0 +1,243 @@
+"""
+What a cutter clears whose center runs along a path, and its outline; lengths in mm, plane points complex, x + 1j*c.
+
+Each point of the outline is at R from what of the path is nearest to it: beside a line there is a parallel, beside an
+arc one about the same center, and round a corner one about that. So the chords of shapely give what bounds the area in
+which order, and the path gives the exact curves. Import late: shapely takes its time.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+import numpy as np
+import shapely  # type: ignore[import-untyped]
+
+from polarcheck.arrays import Floats, Mask, Points, Rows
+from polarcheck.geometry import areas
+from polarcheck.geometry.faces import coordinates, edges_of, lines_of
+from polarcheck.geometry.outline import Outline, outline_of
+from polarcheck.geometry.plane import arc_sweep
+from polarcheck.geometry.segments import Curves, Segments, segments
+from polarcheck.machines.modal import Motion
+from polarcheck.time_limit import keep_time
+
+#: Arcs of the path have chords with a quarter of this as sagitta at most, and round corners too [mm].
+_TOLERANCE = 0.004
+#: What is narrower than this is no part but rounding, where passes lie side by side [mm].
+_SLIT = 0.008
+#: Chords of a path that are widened at a time: the time for one area grows faster than its chords.
+_AT_A_TIME = 100
+#: Places of one chord beside which material is looked for, at most; R apart.
+_SAMPLES = 50
+#: A foot nearer to the end of a move than this is that end [mm].
+_END = 1e-6
+#: How often an end of two curves is put on one and on the other by turns.
+_TURNS = 30
+
+
+class Cleared(NamedTuple):
+    """
+    polygon: the area (shapely), with chords. outline: what bounds it, as lines and arcs with the cleared area on the
+    right. across: share of the path beside which there is material on both sides, so that a groove remains.
+    """
+
+    polygon: Any
+    outline: Outline
+    across: float
+
+
+def cleared(path: Curves, radius: float) -> Cleared:
+    """
+    What a cutter with this R [mm] clears on this path of its center. Moves without a length do not count.
+
+    Raises TooHardError for too many chords, and where the time is over.
+    """
+    chords = segments(path, _TOLERANCE)
+    polygon = _without_slits(_widened(chords, radius))
+    return Cleared(polygon, _outline(polygon, path, chords, radius), _across(polygon, chords, radius))
+
+
+def _widened(chords: Segments, radius: float) -> Any:
+    """The area within R of the chords."""
+    flat = np.clip(_TOLERANCE / 4 / radius, 1e-9, 0.25)
+    steps = int(np.ceil(np.pi / 4 / np.arccos(1 - flat)))
+    lines = lines_of(chords.start, chords.end)
+    portion = np.arange(len(lines)) // _AT_A_TIME
+    wide = areas.buffer(shapely.multilinestrings(lines, indices=portion), radius, quad_segs=steps)
+    return areas.union_all(wide)
+
+
+def _without_slits(area: Any) -> Any:
+    """The polygons of an area without the holes that are none."""
+    kept = []
+    for polygon in shapely.get_parts(area):
+        holes = shapely.get_rings(polygon)[1:]
+        width = 2 * shapely.area(shapely.polygons(holes)) / np.maximum(shapely.length(holes), _SLIT)
+        kept.append(shapely.polygons(shapely.get_exterior_ring(polygon), holes[width > _SLIT]))
+    return shapely.multipolygons(kept)
+
+
+def _across(polygon: Any, chords: Segments, radius: float) -> float:
+    keep_time()
+    way = chords.end - chords.start
+    count = np.clip(np.ceil(np.abs(way) / radius), 1, _SAMPLES).astype(np.int64)
+    of = np.repeat(np.arange(len(way)), count)
+    share = (np.arange(len(of)) - (np.cumsum(count) - count)[of] + 0.5) / count[of]
+    at = chords.start[of] + share * way[of]
+    aside = 1j * (way / np.abs(way))[of] * (radius + _TOLERANCE)
+    length = (np.abs(way) / count)[of]
+    shapely.prepare(polygon)
+    left, right = (~shapely.intersects_xy(polygon, side.real, side.imag) for side in (at + aside, at - aside))
+    return float(length[left & right].sum() / length.sum())
+
+
+# ---- the outline ----
+
+
+def _outline(polygon: Any, path: Curves, chords: Segments, radius: float) -> Outline:
+    """Its elements are of the moves of the path and, from len(path) on, of the points where these meet."""
+    start, end = edges_of(_part_on_left(polygon))
+    has_length = start != end
+    start, end = start[has_length], end[has_length]
+    keep_time()
+    middle = (start + end) / 2
+    tree = shapely.STRtree(lines_of(chords.start, chords.end))
+    edge, chord = tree.query_nearest(shapely.points(coordinates(middle)), all_matches=False)
+    near = np.empty(len(middle), np.int64)
+    near[edge] = chord
+    move, corner, at_corner = _sources(middle, near, path, chords)
+    source = np.where(at_corner, len(path) + corner, move)
+    curves = _curves(path, radius)
+    found = outline_of(start, end, source, curves)
+    of = found.row
+    exact = _exact_ends(found, _beside(found, of, path, curves, radius))
+    return replace(exact, row=np.append(path.row, np.repeat(path.row, 2))[exact.row])
+
+
+def _part_on_left(area: Any) -> Any:
+    """The polygons of an area, each with what is not of it on the left of its edges."""
+    polygons = shapely.get_parts(shapely.normalize(area))
+    exterior = shapely.get_exterior_ring(polygons)
+    # Normalized polygons have holes that run against their exteriors.
+    return np.where(shapely.is_ccw(exterior), shapely.reverse(polygons), polygons)
+
+
+def _sources(middle: Points, near: Rows, path: Curves, chords: Segments) -> tuple[Rows, Rows, Mask]:
+    """
+    The move beside which each edge lies, and the point of the path round which it does.
+
+    A point is told by the first of all ends of moves that lie there: 2 * move, and 2 * move + 1 for its end.
+    """
+    move = chords.move[near]
+    begin, way = chords.start[near], chords.end[near] - chords.start[near]
+    along = ((middle - begin) * way.conj()).real / np.abs(way)
+    before, behind = along <= _END, along >= np.abs(way) - _END
+    # Ends of chords within an arc are no corners: what is round there is the arc.
+    at_start = before & (np.abs(begin - path.start[move]) <= _END)
+    at_end = behind & (np.abs(begin + way - path.end[move]) <= _END)
+    ends = np.stack([path.start, path.end], axis=-1).ravel()
+    keys = np.round(ends / (10 * _END))
+    _, first, number = np.unique(keys, return_index=True, return_inverse=True)
+    corner = first[number][2 * move + at_end]
+    return move, corner, np.asarray(at_start | at_end)
+
+
+def _curves(path: Curves, radius: float) -> Curves:
+    """The moves and, behind them, the circles round their starts and ends; the row of each is its own number."""
+    ends = np.stack([path.start, path.end], axis=-1).ravel()
+    return Curves(
+        start=np.append(path.start, ends + radius),
+        end=np.append(path.end, ends + radius),
+        center=np.append(path.center, ends),
+        kind=np.append(path.kind, np.full(len(ends), Motion.CCW)).astype(np.int16),
+        loop=np.zeros(3 * len(path), np.int64),
+        row=np.arange(3 * len(path)),
+    )
+
+
+class _Beside(NamedTuple):
+    """
+    The exact curve of each element: a circle by its center and R, or a line by a point of it and its direction.
+
+    corner: the point of the path round which it runs, NaN for what lies beside a move. begin, end: of that move.
+    beyond: the circle is on the far side of its center, since R of the move is less than that of the cutter.
+    """
+
+    center: Points
+    radius: Floats
+    point: Points
+    along: Points
+    corner: Points
+    begin: Points
+    end: Points
+    beyond: Mask
+
+    def nearest(self, at: Points, of: Rows) -> Points:
+        """The points of these curves that are nearest to these."""
+        foot = self.point[of] + ((at - self.point[of]) * self.along[of].conj()).real * self.along[of]
+        spoke = at - self.center[of]
+        far = np.fmax(np.abs(spoke), _END)
+        return np.where(np.isnan(self.radius[of]), foot, at + spoke * (self.radius[of] / far - 1))
+
+    def touched(self, one: Rows, other: Rows) -> Points:
+        """Where the curve beside a move goes over into the circle round an end of that move; NaN where it does not."""
+        corner = self.corner[other]
+        at = self.nearest(corner, one)
+        at = np.where(self.beyond[one], 2 * self.center[one] - at, at)
+        own = np.minimum(np.abs(self.begin[one] - corner), np.abs(self.end[one] - corner)) <= 10 * _END
+        return np.where(own & np.isnan(self.corner[one]), at, np.nan)
+
+
+def _beside(found: Outline, of: Rows, path: Curves, curves: Curves, radius: float) -> _Beside:
+    """Parallel to its source, at R; on the side and at the distance at which the chords are."""
+    about = np.abs(found.start - found.center)
+    own = np.where(of < len(path), np.abs(curves.start[of] - curves.center[of]), 0.0)
+    outside, inside = own + radius, np.abs(own - radius)
+    circle = np.where(np.abs(about - outside) <= np.abs(about - inside), outside, inside)
+    way = curves.end[of] - curves.start[of]
+    along = way / np.maximum(np.abs(way), _END)
+    aside = ((found.start + found.end) / 2 - curves.start[of]) * along.conj()
+    point = curves.start[of] + 1j * along * np.sign(aside.imag) * radius
+    is_move = of < len(path)
+    return _Beside(
+        center=found.center,
+        radius=np.where(found.is_arc, circle, np.nan),
+        point=point,
+        along=along,
+        corner=np.where(is_move, np.nan, found.center),
+        begin=curves.start[of],
+        end=curves.end[of],
+        beyond=is_move & found.is_arc & (circle == inside) & (own < radius),
+    )
+
+
+def _exact_ends(found: Outline, beside: _Beside) -> Outline:
+    """
+    The same elements, with ends where the exact curves of two of them meet: on one and on the other by turns.
+
+    Round the points of a smooth path there is nothing but what its chords make: such elements are left out.
+    """
+    number = np.arange(len(found))
+    before, following = _beside_in_chain(found)
+    at = found.end
+    for _ in range(_TURNS):
+        at = beside.nearest(beside.nearest(at, following), number)
+    # Curves that hardly cross meet nowhere for sure; what is far from the chords is not where they meet.
+    at = np.where(np.abs(at - found.end) <= 10 * _TOLERANCE, at, found.end)
+    for touched in (beside.touched(number, following), beside.touched(following, number)):
+        at = np.where(np.isnan(touched), at, touched)
+    exact = replace(found, start=at[before], end=at)
+    sweeps = [arc_sweep(one.start, one.end, one.center, one.kind) for one in (found, exact)]
+    kept = exact[~(found.is_arc & (np.abs(sweeps[1] - sweeps[0]) > np.pi))]
+    before, _ = _beside_in_chain(kept)
+    return replace(kept, start=kept.end[before])
+
+
+def _beside_in_chain(found: Outline) -> tuple[Rows, Rows]:
+    """The element before each of a closed chain, and the one behind it."""
+    number = np.arange(len(found))
+    first = np.searchsorted(found.chain, found.chain, side="left")
+    last = np.searchsorted(found.chain, found.chain, side="right") - 1
+    return np.where(number == first, last, number - 1), np.where(number == last, first, number + 1)
