@@ -13,6 +13,7 @@ from test_cli import call
 from polarcheck.checking.examples import examples
 from polarcheck.checking.finding import MadeShape
 from polarcheck.checking.part import made_by
+from polarcheck.checking.phrases.part import Sizes
 from polarcheck.checking.rule import load_all
 
 pytestmark = pytest.mark.usefixtures("own_folder")
@@ -159,6 +160,41 @@ def test_a_straight_path_makes_a_slot_as_wide_as_the_cutter() -> None:
     assert texts("X-30. F100", "8:radius=4", head=head, end="\nZ2.\nG13.1\nM30\n") == [
         "pocket: slot 8.000 x 38.000, ends R4.000; to Z-2.000"
     ]
+
+
+def test_what_g1_does_before_the_face_is_no_slot() -> None:
+    # The slot begins at x 20, where G1 at Z2 takes the tool from x 40.
+    body, end = "X40. F1000\nZ-2. F100\nX-40.", "\nZ2.\nX80. F1000\nG13.1\nM30\n"
+    head = "G21 G98 G40 T0808\nG0 X80. Z2. C0\nG12.1\nG1 "
+    assert texts(body, "8:radius=4", head=head, end=end) == ["pocket: slot 8.000 x 48.000, ends R4.000; to Z-2.000"]
+    # Deeper than Z0 the same moves cut.
+    deep = [head.replace("Z2.", "Z-1."), end.replace("Z2.", "Z-1.")]
+    assert "to Z-1.000" in texts(body, "8:radius=4", head=deep[0], end=deep[1])[0]
+    # Nobody knows where the face is if the section stays above Z0.
+    assert len(texts(body.replace("Z-2.", "Z1."), "8:radius=4", head=head, end=end)) > 1
+
+
+def test_a_hole_without_a_way_cuts_nothing_in_the_plane() -> None:
+    head = "G21 G98 G40 T0808\nG0 X80. Z2. C0\nG12.1\nG1 "
+    (found,) = texts("X0 F1000\nZ-2. F100", "8:radius=4", head=head, end="\nZ2.\nG13.1\nM30\n")
+    assert found == "not known: it cuts nothing in the plane"
+
+
+def test_the_bottom_of_a_keyway_beyond_the_center() -> None:
+    body = "G41 X80. C3.01 F100\nX-60.\nC-3.01\nX80."
+    assert texts(body, "8:radius=2", head=HEAD.replace("X80.", "X120."), end=END.replace("X80.", "X120.")) == [
+        "keyway 6.020 wide, its bottom 30.000 beyond the center, square end; to Z-2.000"
+    ]
+
+
+def test_a_zero_has_no_sign_and_an_angle_no_digits_of_rounding() -> None:
+    # Corners of a hexagon of 27 across flats, turned by 15 deg, rounded to 0.001 as a program has them.
+    body = "G42 X26.080 C3.494 F100\nX22.045 C11.023\nX-8.069 C15.057\nX-30.115 C4.035\nX-22.045 C-11.023\n"
+    assert texts(f"{body}X8.069 C-15.057\nX30.115 C-4.035\nX26.080 C3.494", "8:radius=2") == [
+        "hexagon, 27.000 across flats, turned by 15 deg; to Z-2.000"
+    ]
+    assert Sizes(inch=False)(-0.0004) == "0.000"
+    assert Sizes(inch=True)(-0.0004) == "0.0000"
 
 
 def test_in_inch_sizes_have_four_digits() -> None:

@@ -238,8 +238,10 @@ def _nothing(trace: Trace, section: int, needs: str) -> MadeShape:
 
 def _why_nothing(tables: Tables, section: int) -> str:
     trace: Trace = tables["trace"]
+    from polarcheck.checking.tool_paths import above_the_face
+
     own = trace.section == section
-    if not (own & trace.cuts & trace.on_plane).any():
+    if not (own & trace.cuts & trace.on_plane & ~above_the_face(trace)).any():
         return "it cuts nothing in the plane"
     if not (own & trace.compensates).any():
         return "its path is nowhere as long as the cutter is wide at one Z"

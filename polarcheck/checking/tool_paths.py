@@ -28,7 +28,7 @@ def depths_of_paths(tables: Tables) -> Iterator[_Depth]:
     trace: Trace = tables["trace"]
     moves: Moves = tables["tool_center"].moves
     plain = ~trace.anywhere_in_section(trace.compensates)[moves.row] & trace.cuts[moves.row]
-    plain &= ~(_changes_depth(trace) | _above_part(trace))[moves.row]
+    plain &= ~(_changes_depth(trace) | above_the_face(trace))[moves.row]
     chosen = np.flatnonzero(plain & ~np.isnan(moves.start + moves.end) & (moves.length > ZERO))
     radius = np.fmax(np.abs(trace.radius_of_move), trace.cutter_diameter / 2)[moves.row]
     for own in _levels(moves.section, trace.z[moves.row], radius, chosen):
@@ -46,16 +46,20 @@ def _changes_depth(trace: Trace) -> Mask:
     return np.asarray(trace.moves_z & (np.abs(trace.z - before(trace.z, trace.starts, np.nan)) > ZERO))
 
 
-def _above_part(trace: Trace) -> Mask:
+def above_the_face(trace: Trace) -> Mask:
     """
-    The ways from cut to cut, which are at a feed since polar mode forbids G0: at the Z of the G12.1, or farther out.
+    Rows in the air, one for each: where G0 is not allowed, G1 takes the tool to its place.
 
-    Where Z0 is the face, a section that begins below it begins at the depth of its first pass.
+    They are no deeper than the tool came to the section, before the face of the part, at Z0, and their section goes on
+    to Z0 or deeper. Where the whole section lies on one side of Z0 nobody knows where the face is, and none is.
     """
-    entry = trace.z[trace.sections.enter][trace.section]
-    return np.asarray(
-        (trace.section >= 0) & (entry > 0) & (trace.z >= entry) & trace.anywhere_in_section(trace.z < entry)
-    )
+    inside = np.flatnonzero(trace.section >= 0)
+    deepest = np.full(len(trace.sections), np.inf)
+    np.fmin.at(deepest, trace.section[inside], trace.z[inside])
+    above = np.zeros(len(trace), bool)
+    section, z = trace.section[inside], trace.z[inside]
+    above[inside] = (z > 0) & (z >= trace.z[trace.sections.enter[section]]) & (deepest[section] <= 0)
+    return above
 
 
 def _levels(section: Rows, z: Floats, radius: Floats, chosen: Rows) -> Iterator[Rows]:

@@ -16,7 +16,9 @@ class Sizes(NamedTuple):
 
     def __call__(self, value: float) -> str:
         """A length [mm]."""
-        return f"{value / MM_PER_INCH:.4f}" if self.inch else f"{value:.3f}"
+        shown = round(value / MM_PER_INCH, 4) if self.inch else round(value, 3)
+        # A rounded -0.0 would show as -0.000.
+        return f"{shown + 0.0:.{4 if self.inch else 3}f}"
 
     def area(self, value: float) -> str:
         """An area [mm2]."""
@@ -123,7 +125,7 @@ def _flats(shape: Shape, line_of: _Line, sizes: Sizes) -> _Told:
 
 
 def _away(distance: float, middle: str, sizes: Sizes) -> str:
-    """How far a flat is from the middle; beyond it where the part does not reach that far."""
+    """How far a flat or a bottom is from the middle; beyond it where the part does not reach that far."""
     return f"{sizes(abs(distance))} {'from' if distance >= 0 else 'beyond'} the {middle}"
 
 
@@ -142,7 +144,8 @@ def _slot(shape: Shape, line_of: _Line, sizes: Sizes) -> _Told:
 def _keyway(shape: Shape, line_of: _Line, sizes: Sizes) -> _Told:
     value = shape.values
     end = f"round end R{sizes(value['radius'])}" if "radius" in value else "square end"
-    return [f"keyway {sizes(value['width'])} wide", f"its bottom {sizes(value['distance'])} from the center", end]
+    bottom = f"its bottom {_away(value['distance'], 'center', sizes)}"
+    return [f"keyway {sizes(value['width'])} wide", bottom, end]
 
 
 def _cam(shape: Shape, line_of: _Line, sizes: Sizes) -> _Told:
@@ -190,7 +193,8 @@ def _corners(value: Mapping[str, float], sizes: Sizes) -> _Told:
 
 
 def _turned(shape: Shape) -> _Told:
-    turned = f"{shape.values['turned']:.3f}".rstrip("0").rstrip(".")
+    # Words with three digits turn a side of some millimetres by some thousandths of a degree.
+    turned = f"{shape.values['turned']:.2f}".rstrip("0").rstrip(".")
     return [f"turned by {turned} deg"] if turned != "0" else []
 
 
