@@ -170,7 +170,7 @@ CORNERS = [complex(x, c) for x, c in EGG.exterior.coords[:-1]]
     ("change", "said"),
     [
         # How the part would have to be changed, where the drawing is changed.
-        (lambda point: point * cmath.exp(0.3j), "turned by 17.189 deg"),
+        (lambda point: point * cmath.exp(0.3j), "turned by 17.19 deg"),
         (lambda point: point.conjugate(), "mirrored, with C of the other sign"),
         (lambda point: complex(2 * point.real, point.imag), "with twice its X, as diameter and radius are mixed up"),
         (lambda point: complex(point.real / 2, point.imag), "with half of its X, as diameter and radius are mixed up"),

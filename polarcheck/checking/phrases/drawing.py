@@ -63,7 +63,7 @@ def _fit(trace: Trace, one: Comparison, fit: Fit | None) -> str:
         return ""
     ways = ["mirrored, with C of the other sign"] if fit.mirrored else []
     if abs(fit.turned) > _NO_TURN:
-        ways.append(f"turned by {math.degrees(fit.turned):.3f}".rstrip("0").rstrip(".") + " deg")
+        ways.append(f"turned by {math.degrees(fit.turned):.2f}".rstrip("0").rstrip(".") + " deg")
     if fit.factor != 1:
         ways.append(f"with {'twice' if fit.factor > 1 else 'half of'} its X, as diameter and radius are mixed up")
     return f". The part would fit {' and '.join(ways)}: within {in_row(fit.largest, trace, one.row):length}"
