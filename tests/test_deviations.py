@@ -215,6 +215,16 @@ def test_roughing_is_no_difference_and_a_cut_too_deep_is() -> None:
     assert [one.section for one in comparisons(deep, 3, second)] == [1]
 
 
+@pytest.mark.parametrize(("apothem", "told"), [(14.0, []), (13.0, [True])])
+def test_what_a_contour_of_unknown_r_may_take_off_is_no_difference(apothem: float, told: list[bool]) -> None:
+    # Of the tool that finishes nobody has said R; what is cut too deep by the first one stays so.
+    first, last = program(polygon(6, apothem)), program(polygon(6, 13.5))
+    text = first.removesuffix("M30\n") + last.removeprefix("O1\n").replace("T0101", "T0202")
+    job = job_of(job={"part": [{"shape": "hexagon", "across_flats": 27.0}]})
+    assert [one.differs for one in comparisons(text, 2, job) if one.differs] == told
+    assert [one.differs for one in comparisons(first, 2, job)] == [True]
+
+
 def test_each_contour_is_compared_with_the_curve_that_comes_nearest() -> None:
     text = program(polygon(6, 13.5)).replace(TAIL, "G13.1\n") + program(polygon(4, 20.0)).removeprefix("O1\n")
     both = drawn(shapely.MultiPolygon([shapely.Polygon([(p.real, p.imag) for p in polygon(6, 13.5)])]))

@@ -58,7 +58,8 @@ class Comparison(NamedTuple):
     [mm]. difference: of part and drawing. row: of the block where it is largest. turned: by how much a shape is turned
     that may be turned in any way [rad], NaN for others. is_other_way_round: a boss where a pocket should be, or the
     reverse. is_partial: a contour that does not close, along its walls alone, though all that is drawn does.
-    is_superseded: roughing, or another contour than the one that comes nearest.
+    is_superseded: roughing, or another contour than the one that comes nearest; or it leaves more than is asked for,
+    and a contour whose R is not known may take that off.
     """
 
     number: int
@@ -160,6 +161,8 @@ class Deviations:
             for index in members:
                 if index != best and self._is_superseded(found[index], found[best]):
                     found[index] = found[index]._replace(is_superseded=True)
+        if np.isnan(self.trace.radius[self.asked]).any():
+            found = [one._replace(is_superseded=one.is_superseded or self._only_leaves_more(one)) for one in found]
         return [one._replace(fit=self._fit(one)) if one.differs else one for one in found]
 
     @cached_property
@@ -346,6 +349,9 @@ class Deviations:
         _, target = self._chain_of[one.number, one.curve, one.row, one.difference.at]
         size = float(np.abs(target.way.start - target.way.start.mean()).max())
         return one.difference.deep <= one.tolerance or one.difference.largest > _OTHER * size
+
+    def _only_leaves_more(self, one: Comparison) -> bool:
+        return not one.agrees and not one.is_other_way_round and one.difference.deep <= one.tolerance
 
     def _fit(self, one: Comparison) -> Fit | None:
         """How the part would have to be placed to agree, or nearly so; None where it would not."""
