@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 
 import msgspec
 import numpy as np
@@ -54,6 +55,13 @@ class _Plan:
         self.moving = takes_feed(trace)
         self.writes = trace.has("F") & (trace.feed_word == self._own_word)
         self.lowest: set[int] = set()
+        self.writes_points = writes_points(trace)
+        #: The F words of each row, and the first one at each place of the text.
+        self.words_of_row: dict[int, list[int]] = {}
+        self.word_at: dict[int, int] = {}
+        for index, row, place in self._feed_words():
+            self.words_of_row.setdefault(row, []).append(index)
+            self.word_at.setdefault(place, index)
 
     @property
     def _own_word(self) -> Rows:
@@ -61,6 +69,11 @@ class _Plan:
         words, at = trace.word_indices("F"), np.full(len(trace), -2, np.int64)
         at[trace.run.row[words]] = trace.run.words.start[words]
         return at
+
+    def _feed_words(self) -> Iterator[tuple[int, int, int]]:
+        """The index of each F word, its row and its place in the text."""
+        run, words = self.trace.run, self.trace.word_indices("F")
+        return zip(words.tolist(), run.row[words].tolist(), run.words.start[words].tolist(), strict=True)
 
     def words(self) -> FeedWords:
         """
@@ -119,22 +132,20 @@ class _Plan:
         source, block = trace.text.source, int(trace.run.block[row])
         of_others = int(source.line_starts[source.parts[0].first_line - 1]) if source.parts else len(source.code)
         is_own = int(trace.text.blocks.end[block]) <= of_others
-        words = trace.word_indices("F")
-        own = words[trace.run.row[words] == row]
+        own = self.words_of_row.get(row, [])
         takes = is_plain(trace, row) or (_is_as_written(trace, row) and all(_is_number(trace, one) for one in own))
         if not is_own or not takes or not value > 0:
             return None
         text = self._text(row, value)
-        return in_place_of(trace, int(own[-1]), text) if len(own) else with_word(trace, row, text)
+        return in_place_of(trace, own[-1], text) if own else with_word(trace, row, text)
 
     def _text(self, row: int, value: float) -> str:
         """The F word: as it stands in the program, where it is the one that was in force."""
         trace = self.trace
-        words = trace.word_indices("F")
-        found = words[trace.run.words.start[words] == trace.feed_word[row]]
-        if value == trace.written_feed[row] and len(found) and _is_number(trace, int(found[0])):
-            return written_word(trace, int(found[0]))
-        return f"F{feed_number(round(value / float(trace.scale[row]), 6), bool(writes_points(trace)[row]))}"
+        found = self.word_at.get(int(trace.feed_word[row]))
+        if value == trace.written_feed[row] and found is not None and _is_number(trace, found):
+            return written_word(trace, found)
+        return f"F{feed_number(round(value / float(trace.scale[row]), 6), bool(self.writes_points[row]))}"
 
 
 def _is_as_written(trace: Trace, row: int) -> bool:
