@@ -200,9 +200,9 @@ def _mixed(sides: Sides) -> tuple[dict[str, float], tuple[int, ...]]:
 
 def _with_x(sides: Sides, share: Floats) -> Sides:
     """The sides with X of the corner behind each so many times as large."""
-    end = complex_of(sides.end.real * share, sides.end.imag)
+    end = _points_of(sides.end.real * share, sides.end.imag)
     before = np.roll(share, 1)
-    return Sides(complex_of(sides.start.real * before, sides.start.imag), end, sides.row, sides.radius, sides.chamfer)
+    return Sides(_points_of(sides.start.real * before, sides.start.imag), end, sides.row, sides.radius, sides.chamfer)
 
 
 def _where_regular(corner: Points, share: float) -> list[Mask]:
@@ -211,7 +211,7 @@ def _where_regular(corner: Points, share: float) -> list[Mask]:
     the center; the fewest first.
     """
     count = len(corner)
-    other = complex_of(corner.real * share, corner.imag)
+    other = _points_of(corner.real * share, corner.imag)
     turn = np.exp(2j * np.pi * np.arange(count) / count)
     # Whichever corner is right as it is, or with its X otherwise, tells where all the others are.
     wanted = (
@@ -224,7 +224,7 @@ def _where_regular(corner: Points, share: float) -> list[Mask]:
     return sorted(found, key=lambda taken: int(taken.sum()))
 
 
-def complex_of(x: Floats, c: Floats) -> Points:
+def _points_of(x: Floats, c: Floats) -> Points:
     """Points of these coordinates."""
     return np.asarray(x + 1j * c)
 
