@@ -7,6 +7,7 @@ from pathlib import Path
 
 import msgspec
 import pytest
+from click.testing import CliRunner
 from programs import tables_of
 from test_cli import call
 
@@ -15,6 +16,7 @@ from polarcheck.checking.finding import MadeShape
 from polarcheck.checking.part import made_by
 from polarcheck.checking.phrases.part import Sizes
 from polarcheck.checking.rule import load_all
+from polarcheck.commands import main
 
 pytestmark = pytest.mark.usefixtures("own_folder")
 
@@ -258,3 +260,19 @@ def test_a_program_without_sections_and_one_that_is_not_there() -> None:
     missing = call("part", "missing.nc")
     assert missing.exit_code == 2
     assert "missing.nc" in missing.stderr
+
+
+OF_ANOTHER = (
+    "G21 G98\nT0101\nG0 X60. Y0\nG112\nG1 G42 X30. F200\nY8.66\nX0 Y17.321\nX-30. Y8.66\nG40 X-60.\nG113\nM30\n"
+)
+
+
+@pytest.mark.parametrize("command", ["part", "feeds"])
+def test_of_a_program_for_another_control_it_is_said_that_nothing_can_be_believed(command: str) -> None:
+    Path("haas.nc").write_bytes(OF_ANOTHER.encode())
+    result = CliRunner().invoke(main, [command, "haas.nc", "--machine", "fanuc-30i", "--tool", "1:radius=4"])
+    assert "haas-lathe" in " ".join(result.output.split())
+    assert result.exit_code == (1 if command == "part" else 0)
+    own = CliRunner().invoke(main, [command, "haas.nc", "--machine", "haas-lathe", "--tool", "1:radius=4"])
+    assert own.exit_code == 0
+    assert "wrong-axis" not in own.output

@@ -33,20 +33,29 @@ def feeds(path: str, form: str, diff: bool, no_config: bool, max_size: int, **as
 
     The limits are limits.c_feed, limits.c_acceleration, limits.x_feed and limits.polar_feed of the machine. With teeth
     of the tool, `--tool 8:radius=4,teeth=3`, and S in the program the chip load is told, too. --diff shows the program
-    with these F; it writes nothing.
+    with these F; it writes nothing. Where the program is for another control, so that nothing of the table can be
+    believed, standard error says so.
     """
     from polarcheck.checking import check
+    from polarcheck.checking.causes import READ_OTHERWISE
+    from polarcheck.checking.rule import load_all
     from polarcheck.commands import settings
+    from polarcheck.commands.memory import keep_within_memory
     from polarcheck.reading import files
     from polarcheck.reports.pages import executed
     from polarcheck.time_limit import seconds_for, time_limit
 
+    keep_within_memory()
     if diff and form != "text":
         raise UsageError(f"--diff shows a diff: leave out --format {form}")
     found = settings.OfPrograms(settings.Options(use_config=not no_config, **asked))(path)
     data, title = files.read(path, max_size), files.shown(path)
     with time_limit(seconds_for(len(data), found.job.run.max_seconds)):
-        runs = [tables for _, tables in check.read(data, found.machine, found.job, title, found.encoding)]
+        read = check.read(data, found.machine, found.job, title, found.encoding)
+        rules = [rule for name, rule in load_all().items() if name in READ_OTHERWISE]
+        for doubt in check.check_runs(read, rules, found.severities).findings:
+            warn(f"{title}:{doubt.line}: {doubt.told} [{doubt.rule}]")
+        runs = [tables for _, tables in read]
         for tables in runs:
             unknown = executed.without_radius(tables["trace"], tables["tool_center"])
             if unknown:

@@ -9,7 +9,7 @@ import click
 from polarcheck.commands import jobs, options
 from polarcheck.commands.options import narrower
 
-#: The rule that compares a part with its drawing; it alone is asked here.
+#: The rule that compares a part with its drawing; beside it those are asked that leave nothing of it to believe.
 _RULE = "part-differs-from-drawing"
 
 
@@ -32,7 +32,8 @@ def part(ctx: click.Context, /, paths: tuple[str, ...], **asked: Any) -> None:
     runs along the path, and its radius must be known. Where a drawing is given, or polarcheck.toml says what a program
     should make, it is told how far the part agrees with that, or where it differs.
 
-    Ends with 0, with 1 where a part differs from its drawing, 2 if something could not be read, 3 for a bug.
+    Ends with 0; with 1 where a part differs from its drawing, or a program is for another control, so that nothing that
+    is told can be believed; 2 if something could not be read, 3 for a bug.
     """
     ctx.exit(_part(paths, debug=options.DEBUG in ctx.meta, **asked))
 
@@ -48,6 +49,7 @@ def _part(
     no_config: bool,
     **asked: Any,
 ) -> int:
+    from polarcheck.checking.causes import READ_OTHERWISE
     from polarcheck.checking.compared import compared_in
     from polarcheck.checking.part import part_of
     from polarcheck.commands import progress, running, settings, signals
@@ -56,7 +58,9 @@ def _part(
     from polarcheck.reports.pages import made
 
     keep_within_memory()
-    applies = settings.Options(use_config=not no_config, select=(_RULE,), extras=(part_of, compared_in), **asked)
+    applies = settings.Options(
+        use_config=not no_config, select=(_RULE, *READ_OTHERWISE), extras=(part_of, compared_in), **asked
+    )
     faults = running.Faults(debug)
     tasks = running.planned(paths, settings.OfPrograms(applies), extensions, faults)
     checked = running.Crew(max_size, workers, None).check(tasks, progress.Bar(len(tasks), True), faults)

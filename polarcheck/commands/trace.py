@@ -57,10 +57,12 @@ def trace(
     """
     from polarcheck.checking import check
     from polarcheck.commands import settings
+    from polarcheck.commands.memory import keep_within_memory
     from polarcheck.reading import files
     from polarcheck.reports.pages import executed
     from polarcheck.time_limit import seconds_for, time_limit
 
+    keep_within_memory()
     if shown_too and form not in (None, "table"):
         raise UsageError(f"--show {shown_too}: expected --format table, found {form}")
     found = settings.OfPrograms(settings.Options(use_config=not no_config, **asked))(path)
