@@ -15,7 +15,7 @@ function faceTraces(section, level, coloring) {
   return [
     ...parts(section, units, level),
     ...surroundings(section, units),
-    ...colorBar(section, coloring),
+    ...(section.needs_radius ? [] : colorBar(section, coloring)),
     line("programmed contour", section.programmed.x.map(units.x), section.programmed.c.map(units.c), { color: INK, width: 1 }),
     ...toolPath(section, units, coloring),
     ...directions(section, units),
