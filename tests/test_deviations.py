@@ -303,6 +303,15 @@ def test_circles_off_the_center() -> None:
 # ---- from the file to the report ----
 
 
+@pytest.mark.parametrize(("code", "across", "within"), [("G21", 40.0, "0.001 mm"), ("G20", 2.0, "0.0001 inch")])
+def test_nothing_agrees_by_less_than_the_last_digit(code: str, across: float, within: str) -> None:
+    words = [f"X{across}", f"C{across / 2}", f"X-{across}", f"C-{across / 2}", f"X{across}", "C0."]
+    text = HEAD.replace("G21", code) + f"G1 X{2 * across} C0. F100.\nG42 " + "\n".join(words) + f"\nG40 X{2 * across}\n"
+    job = {"part": [{"shape": "square", "across_flats": across}]}
+    (found,) = compared(tables_of(text + TAIL, "fanuc-30i", "1:radius=0.1", job=job))
+    assert found.text.startswith(f"agrees with the square asked for within {within} (tolerance ")
+
+
 def test_arcs_are_bulges_in_a_file_and_agreement_is_told_with_its_worst_place(tmp_path: Path) -> None:
     """A D shaft of 30 with its flat 9 from the center."""
     half = math.acos(9 / 15)

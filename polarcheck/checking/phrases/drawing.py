@@ -6,13 +6,14 @@ import math
 
 from polarcheck.checking.phrases.common import short
 from polarcheck.checking.quantity import in_row
+from polarcheck.machines.modal import MM_PER_INCH
 from polarcheck.table.deviations import Comparison, Deviations, Fit, title_of
 from polarcheck.table.trace import Trace
 
 #: A turn below this is none [rad].
 _NO_TURN = 1e-5
-#: A smaller difference [mm] is none that anybody measures.
-_LEAST = 1e-3
+#: A smaller difference is none that anybody measures: the last digit of a size in mm, and in inch [mm].
+_LEAST = 1e-3, 1e-4 * MM_PER_INCH
 
 
 def drawing(deviations: Deviations, row: int) -> str:
@@ -32,11 +33,12 @@ def told(trace: Trace, one: Comparison) -> str:
     if not one.agrees:
         by = f"by {largest.beside(tolerance, 'length')}, {tolerance:length} is allowed"
         return f"differs from {title} {by}: {_deviation(trace, one)}"
-    shown = in_row(max(found.largest, _LEAST), trace, one.row)
+    least = _LEAST[largest.inch]
+    shown = in_row(max(found.largest, least), trace, one.row)
     where = f", largest at {_where(trace, one, found.at)} by line {int(trace.line[one.row])}"
     return (
         f"agrees with {title} within {shown:length} (tolerance {tolerance:length})"
-        f"{where if found.largest > _LEAST else ''}"
+        f"{where if found.largest > least else ''}"
     )
 
 
