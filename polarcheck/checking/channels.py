@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from itertools import chain
 from operator import attrgetter
-from typing import TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 from msgspec.structs import replace
 
@@ -14,10 +14,21 @@ from polarcheck.checking.finding import FileReport, Finding, NotEvaluated, Polar
 from polarcheck.reading.channels import stands_in
 from polarcheck.reading.source import Source
 
+if TYPE_CHECKING:
+    from polarcheck.checking.tables import Tables
+
 Part = TypeVar("Part", NotEvaluated, PolarSection)
 Found = TypeVar("Found", bound=Finding)
 
 _Reports = Sequence[tuple[Source, FileReport]]
+
+
+def first_runs(runs: Sequence[tuple[str, Tables]]) -> list[tuple[str, Tables]]:
+    """Of the runs of a file (check.read) the first one of each channel, which is that with block skip off."""
+    first: dict[str, tuple[str, Tables]] = {}
+    for state, tables in runs:
+        first.setdefault(tables["text"].source.channel, (state, tables))
+    return list(first.values())
 
 
 def united(reports: _Reports) -> FileReport:

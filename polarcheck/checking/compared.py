@@ -8,6 +8,7 @@ from collections.abc import Sequence
 
 import msgspec
 
+from polarcheck.checking.channels import first_runs
 from polarcheck.checking.finding import FileReport, PartComparison
 from polarcheck.checking.phrases.drawing import told
 from polarcheck.checking.quantity import rounded
@@ -20,13 +21,9 @@ from polarcheck.table.trace import Trace
 def compared_in(report: FileReport, runs: Sequence[tuple[str, Tables]]) -> FileReport:
     """The report with the contours that are compared, in its first run and in each channel."""
     found: list[PartComparison] = []
-    channels: list[str] = []
-    for _, tables in runs:
-        channel = tables["text"].source.channel
-        if channel not in channels:
-            channels.append(channel)
-            with contextlib.suppress(TooHardError):  # the rule says so
-                found += compared(tables)
+    for _, tables in first_runs(runs):
+        with contextlib.suppress(TooHardError):  # the rule says so
+            found += compared(tables)
     return msgspec.structs.replace(report, compared=found)
 
 

@@ -7,11 +7,11 @@ import numpy as np
 from polarcheck.arrays import Mask
 from polarcheck.checking.editing import Replace, is_plain, with_word, written_word
 from polarcheck.checking.quantity import in_row
-from polarcheck.machines.modal import Motion
+from polarcheck.machines.modal import Motion, Units
 from polarcheck.table.trace import Trace
 
-#: Below this a number of F is not rounded down to whole ones.
-_LEAST_WHOLE = 10.0
+#: Below this a number of F without a point is not rounded down to whole ones.
+LEAST_WHOLE = 10.0
 
 
 def takes_feed(trace: Trace) -> Mask:
@@ -39,9 +39,10 @@ def feed_below(trace: Trace, row: int, feed: float) -> str | None:
     text = f"{shown:below}".split()[0]
     if not float(text) > 0 or "e" in text:
         return None
+    has_point = bool(writes_points(trace)[row])
     if "." not in text:
-        return f"F{text}{'.' * _writes_points(trace, row)}"
-    if not _writes_points(trace, row) and float(text) >= _LEAST_WHOLE:
+        return f"F{text}{'.' * has_point}"
+    if not has_point and float(text) >= LEAST_WHOLE:
         return f"F{float(text):.0f}" if float(text).is_integer() else f"F{int(float(text))}"
     return f"F{text.lstrip('0')}" if text.startswith("0.") else f"F{text}"
 
@@ -49,13 +50,13 @@ def feed_below(trace: Trace, row: int, feed: float) -> str | None:
 def feed_text(trace: Trace, row: int, feed: float) -> str:
     """The F word of a feed [mm/min] in whole units of the program."""
     shown = in_row(feed, trace, row)
-    return f"F{round(shown.length(feed))}{'.' * _writes_points(trace, row)}"
+    return f"F{round(shown.length(feed))}{'.' * bool(writes_points(trace)[row])}"
 
 
-def _writes_points(trace: Trace, row: int) -> bool:
-    """Numbers of F have points: in inch, and where one of the program has."""
+def writes_points(trace: Trace) -> Mask:
+    """Rows in which F is written with a point: in inch, and where one of the program is."""
     words = trace.word_indices("F")
-    return bool(in_row(0.0, trace, row).inch or trace.run.words.has_point[words].any())
+    return np.asarray((trace.units == Units.INCH) | bool(trace.run.words.has_point[words].any()))
 
 
 def restored(trace: Trace, row: int) -> list[Replace] | None:

@@ -11,6 +11,7 @@ import msgspec
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Rows
+from polarcheck.checking.feed_edits import LEAST_WHOLE, writes_points
 from polarcheck.checking.quantity import rounded
 from polarcheck.checking.tables import Tables
 from polarcheck.machines.modal import Units
@@ -21,8 +22,6 @@ from polarcheck.table.trace import Trace
 #: What stands in the place of a limit.
 PROGRAMMED, CENTER, UNKNOWN = "programmed", "center", "not known"
 LIMITED_BY = (*LIMITS, PROGRAMMED, CENTER, UNKNOWN)
-#: Below this a number of F without a point is not rounded down to whole ones.
-_LEAST_WHOLE = 10.0
 #: Digits of F, as in messages (quantity).
 _DIGITS = 3
 
@@ -123,12 +122,6 @@ class FeedReport(msgspec.Struct, frozen=True, kw_only=True):
     tables: list[FeedTable]
 
 
-def writes_points(trace: Trace) -> Mask:
-    """Rows in which F is written with a point: in inch, and where one of the program is."""
-    words = trace.word_indices("F")
-    return np.asarray((trace.units == Units.INCH) | bool(trace.run.words.has_point[words].any()))
-
-
 def rounded_down(trace: Trace, feed: Floats, left_out: Mask) -> Floats:
     """
     F per row [mm/min] rounded down to three digits of the program's units, to whole ones where it writes no points.
@@ -140,7 +133,7 @@ def rounded_down(trace: Trace, feed: Floats, left_out: Mask) -> Floats:
         factor = 10.0 ** (_DIGITS - 1 - np.floor(np.log10(value)))
         whole = value * factor
         found = np.where(left_out, np.ceil(whole - 1e-6) - 1, np.floor(whole + 1e-9)) / factor
-        is_whole = ~writes_points(trace) & (found >= _LEAST_WHOLE)
+        is_whole = ~writes_points(trace) & (found >= LEAST_WHOLE)
         return np.where(is_whole, np.floor(found), found) * trace.scale
 
 

@@ -10,8 +10,8 @@ import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Rows
 from polarcheck.checking.editing import Replace, in_place_of, is_plain, with_word, words_of, written_word
-from polarcheck.checking.feed_edits import takes_feed
-from polarcheck.checking.feed_table import feed_number, highest, writes_points
+from polarcheck.checking.feed_edits import takes_feed, writes_points
+from polarcheck.checking.feed_table import feed_number, highest
 from polarcheck.checking.tables import Tables
 from polarcheck.errors import TooHardError
 from polarcheck.table.highest_feeds import HighestFeeds

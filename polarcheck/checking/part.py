@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import msgspec
 import numpy as np
 
+from polarcheck.checking.channels import first_runs
 from polarcheck.checking.finding import FileReport, LeftStanding, MadeShape, OddSide
 from polarcheck.checking.phrases.offsets import called_tool, to_give
 from polarcheck.checking.phrases.part import Sizes, shape_in_words
@@ -28,12 +29,8 @@ if TYPE_CHECKING:
 def part_of(report: FileReport, runs: Sequence[tuple[str, Tables]]) -> FileReport:
     """The report with what the program makes, in its first run and in each channel."""
     made: list[MadeShape] = []
-    channels: list[str] = []
-    for _, tables in runs:
+    for _, tables in first_runs(runs):
         channel = tables["text"].source.channel
-        if channel in channels:
-            continue
-        channels.append(channel)
         made += [msgspec.structs.replace(one, channel=channel) if channel else one for one in made_by(tables)]
     return msgspec.structs.replace(report, part=made)
 
@@ -215,8 +212,8 @@ def _corners_left(shape: Shape, radius: float, sizes: Sizes) -> Iterator[LeftSta
 def _lines(trace: Trace, section: int) -> tuple[int, int]:
     """Of the G12.1 and of the end of a section."""
     sections = trace.sections
-    last = int(sections.leave[section]) - int(not (sections.left[section] and not sections.returned[section]))
-    return tuple(int(trace.line_in_file[row]) for row in (sections.enter[section], min(last, len(trace) - 1)))  # type: ignore[return-value]
+    enter, last = int(sections.enter[section]), min(int(sections.last[section]), len(trace) - 1)
+    return int(trace.line_in_file[enter]), int(trace.line_in_file[last])
 
 
 def _nothing(trace: Trace, section: int, needs: str) -> MadeShape:

@@ -38,10 +38,9 @@ def _polar_sections(trace: Trace, dynamics: Dynamics, center: Center, ramps: Ram
     nearest = _of_sections(sections, np.where(trace.cuts, tool_center.nearest, np.inf), np.minimum, np.inf)
     ramp = _ramp_used(trace, ramps)
     limit = rounded(trace.machine.limits.c_feed)
-    last = np.where(sections.left & ~sections.returned, sections.leave, sections.leave - 1)
     found = []
     for index, (enter, end, row, fast) in enumerate(
-        zip(sections.enter.tolist(), last.tolist(), at_entry.tolist(), fastest.tolist(), strict=True)
+        zip(sections.enter.tolist(), sections.last.tolist(), at_entry.tolist(), fastest.tolist(), strict=True)
     ):
         found.append(
             PolarSection(

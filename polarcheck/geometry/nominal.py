@@ -9,6 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from polarcheck.arrays import Points
+from polarcheck.machines.chains import chord_count
 from polarcheck.machines.part import Part
 
 #: By how much a chord may leave its arc [mm].
@@ -85,7 +86,7 @@ def _cornered(corners: Sequence[complex], part: Part, sagitta: float, radius: fl
 def _arc(center: complex, start: complex, sweep: float, sagitta: float) -> list[complex]:
     """The points of an arc, both ends included."""
     spoke = start - center
-    count = max(math.ceil(sweep / 2 / math.acos(1 - min(sagitta / abs(spoke), 0.25))), 1)
+    count = max(chord_count(sweep, abs(spoke), sagitta), 1)
     return [center + spoke * cmath.rect(1, sweep * number / count) for number in range(count + 1)]
 
 

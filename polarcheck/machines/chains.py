@@ -33,6 +33,11 @@ def joined(curves: Iterable[Sequence[complex]], gap: float) -> tuple[Curve, ...]
     return tuple(chains)
 
 
+def chord_count(sweep: float, radius: float, sagitta: float) -> int:
+    """How many chords an arc of this sweep [rad] needs to lie no farther off it than the sagitta."""
+    return math.ceil(sweep / 2 / math.acos(1 - min(sagitta / radius, 0.25)))
+
+
 def _is_closed(chain: Sequence[complex], gap: float) -> bool:
     return len(chain) > 2 and abs(chain[-1] - chain[0]) <= gap
 

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 from polarcheck import bounded
 from polarcheck.errors import JobError
-from polarcheck.machines.chains import joined
+from polarcheck.machines.chains import chord_count, joined
 from polarcheck.machines.modal import MM_PER_INCH
 from polarcheck.machines.part import DrawnPart, Part
 
@@ -226,7 +226,7 @@ def _vertices(entity: Any, sagitta: float, farthest: float) -> Iterable[Any]:
     if kind in ("ARC", "CIRCLE"):
         radius = abs(entity.dxf.radius)
         sweep = (entity.dxf.end_angle - entity.dxf.start_angle) % 360 or 360 if kind == "ARC" else 360
-        count = math.ceil(math.radians(sweep) / 2 / math.acos(1 - min(sagitta / radius, 0.25))) if radius else 0
+        count = chord_count(math.radians(sweep), radius, sagitta) if radius else 0
         if count > _MOST_POINTS or not radius:
             return ()
         first = entity.dxf.start_angle if kind == "ARC" else 0

@@ -8,6 +8,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from polarcheck.checking.channels import first_runs
 from polarcheck.checking.finding import FileReport, Finding, MadeShape
 from polarcheck.checking.part import made_by
 from polarcheck.checking.polar_sections import polar_sections
@@ -30,13 +31,11 @@ class DrawnReport(FileReport, frozen=True, kw_only=True):
 
 def drawn(report: FileReport, runs: Sequence[tuple[str, Tables]]) -> FileReport:
     """The report with the pictures of the program; of the two runs with block skip those of the first."""
-    channels: dict[str, tuple[str, Tables]] = {}
-    for state, tables in runs:
-        channels.setdefault(tables["text"].source.channel, (state, tables))
+    channels = first_runs(runs)
     remarks: list[str] = []
     lines = np.array(sorted({found.line for found in _all([*report.findings, *report.silenced])}), np.int64)
     found: list[SectionPicture] = []
-    for _, tables in channels.values():
+    for _, tables in channels:
         try:
             found += _sections(tables, lines, remarks)
         except TooHardError as error:
@@ -44,7 +43,7 @@ def drawn(report: FileReport, runs: Sequence[tuple[str, Tables]]) -> FileReport:
     found.sort(key=lambda section: section.line)
     if len(found) > _MOST:
         remarks.append(f"only the first {_MOST} of {len(found)} polar sections are drawn")
-    states = dict.fromkeys(state for state, _ in channels.values() if state)
+    states = dict.fromkeys(state for state, _ in channels if state)
     shown = Drawn(sections=found[:_MOST], skip=next(iter(states), ""), remarks=list(dict.fromkeys(remarks)))
     fields = {name: getattr(report, name) for name in FileReport.__struct_fields__}
     return DrawnReport(**fields, drawn=shown)

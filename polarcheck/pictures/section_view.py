@@ -8,6 +8,7 @@ import msgspec
 import numpy as np
 
 from polarcheck.arrays import Floats, Points, Rows
+from polarcheck.checking.channels import first_runs
 from polarcheck.checking.finding import FileReport
 from polarcheck.checking.polar_sections import polar_sections
 from polarcheck.checking.tables import Tables
@@ -58,14 +59,14 @@ class ViewedReport(FileReport, frozen=True, kw_only=True):
 def with_views(report: FileReport, runs: Sequence[tuple[str, Tables]]) -> FileReport:
     """The report with the views of its sections; of two runs with block skip those of the first."""
     lines = {found.line for found in report.findings}
-    channels = {tables["text"].source.channel: tables for _, tables in reversed(runs)}
-    views = [view for _, tables in sorted(channels.items(), key=_name) for view in views_of(tables, lines)]
+    channels = sorted((tables for _, tables in first_runs(runs)), key=_channel)
+    views = [view for tables in channels for view in views_of(tables, lines)]
     fields = {name: getattr(report, name) for name in FileReport.__struct_fields__}
     return ViewedReport(**fields, views=views)
 
 
-def _name(channel: tuple[str | None, Tables]) -> str:
-    return channel[0] or ""
+def _channel(tables: Tables) -> str:
+    return tables["text"].source.channel or ""
 
 
 def views_of(tables: Tables, lines: Collection[int] = ()) -> Iterator[SectionView]:

@@ -48,6 +48,11 @@ class Sections(msgspec.Struct, frozen=True):
     def __len__(self) -> int:
         return len(self.enter)
 
+    @property
+    def last(self) -> Rows:
+        """The last row of each: its G13.1 or, where that is missing or the caller's, the row before `leave`."""
+        return np.where(self.left & ~self.returned, self.leave, self.leave - 1)
+
 
 def find_sections(marks: Marks) -> Sections:
     """
