@@ -66,6 +66,10 @@ class TooHardError(PolarcheckError):
     """
 
 
+class IsOneError(PolarcheckError):
+    """A large program that cannot be checked in pieces: all of it has to be known at once."""
+
+
 class RuleError(PolarcheckError):
     """A rule file that is not a rule; found when the rules are loaded."""
 

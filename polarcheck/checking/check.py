@@ -14,15 +14,14 @@ import msgspec
 from polarcheck.checking.called_files import in_the_file
 from polarcheck.checking.causes import READ_OTHERWISE
 from polarcheck.checking.channels import united
-from polarcheck.checking.engine import Engine, in_order, too_hard, with_following
+from polarcheck.checking.engine import Engine, in_order, with_following
 from polarcheck.checking.finding import ERROR, SEVERITIES, FileReport, Finding, NotEvaluated, PolarSection, Undecided
-from polarcheck.checking.not_evaluated import unevaluated, unexecuted
+from polarcheck.checking.not_evaluated import all_unevaluated
 from polarcheck.checking.other_machine import OtherMachine
 from polarcheck.checking.polar_sections import polar_sections
 from polarcheck.checking.rule import Hits, Rule, load_all
 from polarcheck.checking.silence import UNUSED, Used, divided, mentions_allow
 from polarcheck.checking.tables import Tables
-from polarcheck.errors import TooHardError
 from polarcheck.execution.run import is_code
 from polarcheck.execution.runs import runs
 from polarcheck.machines.job import Job
@@ -152,12 +151,13 @@ def engine_of(
     severities: Mapping[str, str] | None = None,
     known: Mapping[str, Hits] | None = None,
     inline: bool = True,
+    own: range | None = None,
 ) -> Engine:
     """
     The rules that are not off, over the tables of one run.
 
     known: what is known already of some of them. inline: whether allow comments are heeded; without any there is
-    nothing to ask the rules about them.
+    nothing to ask the rules about them. own: the blocks that are judged.
     """
     machine: Machine = tables["machine"]
     levels = {**machine.severities, **(severities or {})}
@@ -167,26 +167,20 @@ def engine_of(
     if of_dialect and tables["dialect"].recognised is not None:
         # Where that is told, nothing that the words of another language seem to say is worth telling.
         asked = of_dialect
-    if inline and mentions_allow(tables["text"]):
+    if inline and mentions_allow(tables["text"].source):
         from polarcheck.checking.allows import Allows  # most files have none
 
         allows = Allows(tables["text"], {rule.name: rule.group for rule in load_all().values()})
         tables.give("allows", allows)
         return Engine(tables, levels, asked, known, allows)
-    return Engine(tables, levels, [rule for rule in asked if "allows" not in rule.parameters], known)
+    return Engine(tables, levels, [rule for rule in asked if "allows" not in rule.parameters], known, own=own)
 
 
 def report_of(engine: Engine) -> FileReport:
     """All that is found in one run, and what of it could not be evaluated."""
     tables, trace = engine.tables, engine.trace
     findings, silenced = divided(in_order(in_the_file(engine.findings(), trace, engine.answered)))
-    not_evaluated = [*unexecuted(tables)]
-    for rule in engine.rules.values():
-        try:
-            not_evaluated += unevaluated(tables, rule)
-        except TooHardError as error:
-            not_evaluated.append(too_hard(rule, error, trace))
-    not_evaluated = list(dict.fromkeys((*not_evaluated, *engine.unlisted)))
+    not_evaluated = list(dict.fromkeys((*all_unevaluated(tables, engine.rules.values()), *engine.unlisted)))
     text = trace.text
     own = [name for block, name in engine.heads if not text.source.part_of(int(text.blocks.line[block]))]
     return FileReport(
@@ -198,12 +192,13 @@ def report_of(engine: Engine) -> FileReport:
         polar_sections=polar_sections(tables),
         findings=findings,
         not_evaluated=not_evaluated,
-        looked_at=_looked_at(tables),
+        looked_at=looked_at(tables),
         silenced=silenced,
     )
 
 
-def _looked_at(tables: Tables) -> list[str]:
+def looked_at(tables: Tables) -> list[str]:
+    """At what of a run is looked."""
     if tables["dialect"].recognised is not None:
         return []
     return ["polar sections", *LOOKED_AT] if len(tables["sections"]) else [*LOOKED_AT]

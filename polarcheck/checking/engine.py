@@ -55,8 +55,11 @@ class Engine:
     The hits of one run, each rule run once.
 
     severities: by rule, where it is not the rule's own. rules: those that are asked; none that is off. known: the hits
-    of some of them. allows: the allow comments that are heeded. used: their names that have silenced something, each
-    with the position of its comment. heads: the block and the name of each program.
+    of some of them. allows: the allow comments that are heeded. own: the blocks that are judged, of a piece of a large
+    program (pieces); those around them only tell what is in force there. used: the names of allow comments that have
+    silenced something, each with the position of its comment. heads: the block and the name of each program.
+    continued: the rules that have found something in what began before their own blocks. shown: by rule the lines of
+    the blocks outside of polar sections that it has hit, those around them, too.
     """
 
     def __init__(
@@ -66,6 +69,7 @@ class Engine:
         rules: Iterable[Rule],
         known: Mapping[str, Hits] | None = None,
         allows: Allows | None = None,
+        own: range | None = None,
     ) -> None:
         self.tables = tables
         self.trace: Trace = tables["trace"]
@@ -73,6 +77,9 @@ class Engine:
         self.rules = {rule.name: rule for rule in rules}
         self.unlisted: list[NotEvaluated] = []
         self.allows = allows
+        self.own = own
+        self.continued: set[str] = set()
+        self.shown: dict[str, Rows] = {}
         self.used: set[Used] = set()
         self._hits: dict[str, Hits] = dict(known or {})
         self._found: dict[str, _Listed | None] = {}
@@ -142,7 +149,7 @@ class Engine:
 
     def _looked_for(self, rule: Rule) -> _Listed | None:
         hits = self.hits(rule)
-        index = np.flatnonzero(hits.mask)
+        index = self._own(rule, np.flatnonzero(hits.mask))
         if not len(index):
             return None
         self._asking.add(rule.name)
@@ -175,6 +182,34 @@ class Engine:
                 if len(own) > LISTED:
                     self.unlisted.append(_unlisted(rule, len(own)))
         return _Listed(index, finding, silent, findings, causes)
+
+    def _own(self, rule: Rule, index: Rows) -> Rows:
+        """Those of the elements of a rule that are judged here."""
+        if self.own is None or not len(index):
+            return index
+        blocks = places.blocks(rule.over, self.tables)[index]
+        is_own = (blocks >= self.own.start) & (blocks < self.own.stop)
+        self.shown[rule.name] = np.unique(self.trace.text.blocks.line[blocks[self._is_outside[blocks]]])
+        if rule.over not in ("rows", "sections"):
+            if np.any(blocks < self.own.start):
+                self.continued.add(rule.name)  # the first of them stands for all
+        elif rule.once and is_own.any() and self.own.start:
+            span = places.span_of(rule.once, rule.over, self.tables)[index[is_own]]
+            in_force = places.span_of(rule.once, "rows", self.tables)[self._own_row - 1]
+            if np.any((span == in_force) & (span >= 0)):
+                self.continued.add(rule.name)
+        return index[is_own]
+
+    @cached_property
+    def _is_outside(self) -> Mask:
+        """Per block: it is no part of a polar section, of which all is found where it stands."""
+        outside = np.ones(len(self.trace.text.blocks), bool)
+        outside[self.trace.run.block[(self.trace.whole_section >= 0) | self.trace.enters]] = False
+        return outside
+
+    @cached_property
+    def _own_row(self) -> int:
+        return int(np.searchsorted(self.trace.run.block, 0 if self.own is None else self.own.start))
 
     def _silenced(self, rule: Rule, index: Rows) -> Mask:
         """Which of these elements an allow comment silences, where they stand."""
@@ -216,7 +251,7 @@ class Engine:
                 if name not in self.rules:
                     continue
                 other = self.rules[name]
-                hit = self._told(other, np.flatnonzero(self.hits(other).mask))
+                hit = self._told(other, self._own(other, np.flatnonzero(self.hits(other).mask)))
                 if not len(hit):
                     continue
                 try:

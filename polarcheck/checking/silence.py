@@ -7,7 +7,7 @@ from collections.abc import Iterable
 import msgspec
 
 from polarcheck.checking.finding import ALLOW, Finding, Silenced
-from polarcheck.reading.words import Text
+from polarcheck.reading.source import Source
 
 #: With what an allow comment begins.
 WORD = b"POLARCHECK"
@@ -17,9 +17,9 @@ UNUSED = "unused_allows"
 Used = tuple[int, str]
 
 
-def mentions_allow(text: Text) -> bool:
+def mentions_allow(source: Source) -> bool:
     """Whether there can be any allow comments: most files have none, and need nothing of what reads them."""
-    return WORD in text.source.code.tobytes().upper()
+    return WORD in source.code.tobytes().upper()
 
 
 def silenced(finding: Finding, by: str, reason: str) -> Silenced:

@@ -118,6 +118,10 @@ class Tables(Mapping[str, Any]):
         """Add a table that was made elsewhere."""
         self._made[name] = table
 
+    def forget(self) -> None:
+        """Let go of all tables: some of them know these, so that nothing else would free their columns at once."""
+        self._made.clear()
+
     def _make(self, name: str) -> Any:
         if name not in MAKERS:
             raise RuleError(f"there is no table {name!r}; tables are {', '.join(sorted(self))}")

@@ -96,7 +96,7 @@ def read(data: bytes, path: str = "-", encoding: str | None = None) -> Source:
     """
     bom, name = _recognised(data, path, encoding)
     code = _codes(data, bom, name)
-    return Source(path, data, name, bom, code, _line_starts(code))
+    return Source(path, data, name, bom, code, line_starts_of(code))
 
 
 def is_encoding(name: str) -> bool:
@@ -143,7 +143,7 @@ def _codes(data: bytes, bom: bytes, encoding: str) -> Bytes:
     return code
 
 
-def _line_starts(code: Bytes) -> Positions:
+def line_starts_of(code: Bytes) -> Positions:
     """
     Lines end at LF; CR is ignored, unless the file has no LF at all.
 

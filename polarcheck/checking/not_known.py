@@ -1,0 +1,146 @@
+"""Why a column is not known in a row, and what to give."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from polarcheck.arrays import Rows
+from polarcheck.checking.phrases.common import block_and_line, linear
+from polarcheck.checking.phrases.offsets import called_tool, example, offset, to_give
+from polarcheck.checking.places import block_in_line
+from polarcheck.checking.tables import Tables
+from polarcheck.table.trace import Trace
+
+#: Why a column is not known in a row.
+_Reason: TypeAlias = Callable[[Tables, int], str]
+
+#: Columns that hang on the offset in force, and those that hang on the whole move.
+_OF_OFFSETS = ("trace.radius", "trace.cutter_diameter", "trace.nose")
+OF_MOVES = ("tool_center.c_feed", "tool_center.c_acceleration")
+#: What to give where a value of the program is not known.
+OF_VARIABLES = "give its variables as [run.variables] in polarcheck.toml, or write the number"
+#: Causes, beside the offset numbers, for which a move is not known.
+_POSITION, _NO_FEED, _FEED_OF_SPINDLE = -3, -2, -1
+#: Of a block that is named; more is cut off [characters].
+_BLOCK_LENGTH = 40
+
+
+def why(name: str, tables: Tables, row: int) -> str:
+    """Why a column, as in `trace.radius`, is not known in a row."""
+    return _REASONS.get(name, _plain(name))(tables, row)
+
+
+def cause_of(trace: Trace, name: str, rows: Any) -> Any:
+    """A number for each row, the same for the same reason."""
+    if name in _OF_OFFSETS:
+        return trace.offset_number[rows]
+    if name in OF_MOVES:
+        stands_nowhere, has_feed = np.isnan(trace.start + trace.end)[rows], ~np.isnan(trace.feed[rows])
+        of_feed = np.where(trace.per_minute[rows], _NO_FEED, _FEED_OF_SPINDLE)
+        of_tool = np.where(np.isnan(trace.radius[rows]), trace.offset_number[rows], _POSITION)
+        return np.where(stands_nowhere, _POSITION, np.where(has_feed, of_tool, of_feed))
+    return np.zeros(len(rows), np.int64)
+
+
+def _of_move(tables: Tables, row: int) -> str:
+    """Why the tool center path or the speed along it is not known."""
+    cause = int(cause_of(tables["trace"], "tool_center.c_feed", np.array([row]))[0])
+    if cause >= 0:
+        return _REASONS["trace.radius"](tables, row)
+    return _position(tables, row) if cause == _POSITION else _feed(tables, row)
+
+
+def _no_offset(what: str, key: str, of_program: Callable[[Trace], Rows] | None = None) -> _Reason:
+    """of_program: gives the row in which the program has set it, -1 where it has not."""
+
+    def reason(tables: Tables, row: int) -> str:
+        trace: Trace = tables["trace"]
+        number = int(trace.offset_number[row])
+        if not number:
+            how = example(trace.machine)
+            return f"no {what}: no tool offset is in force; call one before the polar mode, as in {how}"
+        setter = int(of_program(trace)[row]) if of_program else -1
+        if setter >= 0:
+            return _not_known_from_program(trace, row, setter, what, key)
+        return f"no {what} for {called_tool(trace, row)}: {to_give(trace, row, key)}"
+
+    return reason
+
+
+def _not_known_from_program(trace: Trace, row: int, setter: int, what: str, key: str) -> str:
+    """Why what the program itself sets of an offset is not known: by which block, and what to give."""
+    unknown = trace.row_of_unknown_setting(int(trace.offset_number[row]), setter, key)
+    missing = f"no {what} for offset {offset(trace, row)}"
+    if unknown >= 0:
+        return f"{missing}: {block_and_line(trace, unknown)} sets what is not known; {OF_VARIABLES}"
+    setting = block_and_line(trace, setter)
+    return f"{missing}: {setting} sets wear or a difference alone; {to_give(trace, row, key)}"
+
+
+def _position(tables: Tables, row: int) -> str:
+    trace: Trace = tables["trace"]
+    if trace.frames is not None and not trace.frames.is_known[row]:
+        return "the position is not known: the frame in force is not simulated"
+    open_ends = np.flatnonzero(trace.in_polar & np.isnan(trace.end) & ~np.isnan(trace.start))
+    at_or_before = open_ends[open_ends <= row]
+    if not np.isnan(trace.end[row]) and (open_ends > row).any():
+        row = int(open_ends[open_ends > row][0])  # a corner hangs on the block behind it
+    elif len(at_or_before):
+        row = int(at_or_before[-1])
+    if row in open_ends and not trace.run.unknown[row]:
+        return (
+            f"the position is not known: {block_and_line(trace, row)} leaves open where the tool goes; {OF_VARIABLES}"
+        )
+    lost = np.flatnonzero((trace.run.unknown & (trace.program == trace.program[row]))[: row + 1])
+    if not len(lost):
+        axis = linear(trace, row)
+        loses = np.isnan(trace.x) & (~np.isnan(trace.x_before) | (trace.uses_axes & trace.has(axis)))
+        loses &= (trace.program == trace.program[row]) & ~trace.in_polar & ~trace.enters
+        if loses[: row + 1].any():
+            setting = block_and_line(trace, int(np.flatnonzero(loses[: row + 1])[-1]))
+            return f"the position is not known: {setting} leaves open where {axis} stands; write G0 {axis}... after it"
+        return (
+            f"the position is not known: {axis} was not programmed before the polar mode; write G0 {axis}... before it"
+        )
+    at = int(lost[-1])
+    written = f"line {int(trace.line[at])}, {block_in_line(trace, at, _BLOCK_LENGTH)}"
+    axes = f"X and {trace.machine.polar.rotary_address}"
+    remedy = f"--subprograms FOLDER says where called programs lie, or program {axes} after it"
+    return f"the position is not known after {written}, which is not executed; {remedy}"
+
+
+def _origin(tables: Tables, row: int) -> str:
+    causes = " and ".join(tables["entry"].origin.unknown_causes(row))
+    return f"where X0 lies is not known: {causes} sets X to what is not known; {OF_VARIABLES}"
+
+
+def _feed(tables: Tables, row: int) -> str:
+    trace: Trace = tables["trace"]
+    if trace.per_minute[row]:
+        return "the feed is not known: no F is in force; write one before the cutting move"
+    codes = " or ".join(trace.machine.codes("feed_per_minute"))
+    return f"the feed is not known: F is per revolution of a spindle; write feed per minute before it, {codes}"
+
+
+def _plain(name: str) -> _Reason:
+    return lambda tables, row: f"{name.rpartition('.')[2].replace('_', ' ')} is not known"
+
+
+_REASONS: dict[str, _Reason] = {
+    "trace.radius": _no_offset("radius", "radius", lambda trace: trace.radius_set_in),
+    "trace.cutter_diameter": _no_offset("cutter diameter", "diameter"),
+    "trace.nose": _no_offset("nose type", "nose", lambda trace: trace.nose_set_in),
+    "trace.length": _position,
+    "trace.start": _position,
+    "trace.end": _position,
+    "arcs.end_radius": _position,
+    "arcs.chord": _position,
+    "travel.most_x": _of_move,
+    "tool_center.c_feed": _of_move,
+    "tool_center.c_acceleration": _of_move,
+    "trace.feed": _feed,
+    "entry.origin_shift": _origin,
+}
