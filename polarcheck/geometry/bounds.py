@@ -8,8 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from polarcheck.arrays import Rows
-from polarcheck.geometry.finished_part import first_of_its_kind
-from polarcheck.geometry.segments import Curves, chord_counts
+from polarcheck.geometry.segments import Curves, chord_counts, first_of_its_kind
 from polarcheck.geometry.tolerances import CHORDS, CHORDS_OF_FILE, FARTHEST, FARTHEST_CENTER
 
 

@@ -11,8 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Points, Rows, States
-from polarcheck.geometry.finished_part import directions, first_of_its_kind
-from polarcheck.geometry.segments import Curves, segments
+from polarcheck.geometry.segments import Curves, directions, first_of_its_kind, segments
 
 #: Height [mm] from which on a rib is one: below it no hand feels it, and the wear of a cutter leaves as much.
 WITNESS = 0.02

@@ -17,12 +17,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 import shapely  # type: ignore[import-untyped]
 
-from polarcheck.arrays import Floats, Mask, Points, Rows, States
+from polarcheck.arrays import Floats, Mask, Points, Rows
 from polarcheck.geometry import areas
 from polarcheck.geometry.faces import GRID, Geometries, Standing, Walls, standing
-from polarcheck.geometry.noding import TOUCH
-from polarcheck.geometry.segments import ZERO, Curves, Segments, members, segments
-from polarcheck.machines.modal import Motion
+from polarcheck.geometry.segments import Curves, Segments, directions, first_of_its_kind, members, segments
+from polarcheck.geometry.tolerances import TOUCH
 
 #: How many walls from either end of a contour may be leads.
 _LEADS = 4
@@ -175,24 +174,6 @@ def _lengths(parts: Segments, which: Rows) -> tuple[Floats, Floats]:
     return np.append(0, until)[: len(loop)] - begin, until[last - 1] - begin
 
 
-def first_of_its_kind(curves: Curves) -> Mask:
-    """Of curves of one loop that are the same the first; a pass that is written once more needs no second look."""
-    center = np.where(np.isnan(curves.center), 0, curves.center)
-    columns = [
-        *(np.rint(part / TOUCH) for point in (curves.start, curves.end, center) for part in (point.real, point.imag))
-    ]
-    columns += [curves.loop, np.where(np.isnan(curves.center), 0, curves.kind)]
-    key = np.zeros(len(curves), np.uint64)
-    for column in columns:
-        # An odd number without a pattern: different curves have different sums but for a chance of 2 ** -64.
-        key = (key + column.astype(np.int64).view(np.uint64)) * np.uint64(0x9E3779B97F4A7C15)
-        key ^= key >> np.uint64(29)
-    _, first = np.unique(key, return_index=True)
-    result = np.zeros(len(curves), bool)
-    result[first] = True
-    return result
-
-
 def _lines(start: Points, end: Points, group: Rows, pitch: float, joins: bool) -> Walls:
     """Lines that are no walls, each moved to the place of its group."""
     neither = np.zeros(len(start), bool)
@@ -245,21 +226,6 @@ def _standing(plane: _Plane, lines: Walls | None, asked: Mask, thinnest: float) 
 
 
 # ---- contours that do not close ----
-
-
-def directions(start: Points, end: Points, center: Points, kind: States) -> tuple[Points, Points]:
-    """Unit vectors along which curves begin and end."""
-    turning = np.where(kind == Motion.CCW, 1j, -1j)
-    is_arc = ~np.isnan(center)
-    way = end - start
-    before = np.where(is_arc, turning * (start - center), way)
-    after = np.where(is_arc, turning * (end - center), way)
-    return _unit(before), _unit(after)
-
-
-def _unit(way: Points) -> Points:
-    unit: Points = way / np.maximum(np.abs(way), ZERO)
-    return unit
 
 
 def _bridges(plane: _Plane, contours: Contours) -> tuple[Walls, Floats]:

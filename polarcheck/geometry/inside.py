@@ -10,8 +10,8 @@ import shapely  # type: ignore[import-untyped]
 from polarcheck.arrays import Floats, Mask, Points, Rows
 from polarcheck.geometry import areas
 from polarcheck.geometry.faces import coordinates
-from polarcheck.geometry.finished_part import Contours, FinishedParts, finished_parts, first_of_its_kind
-from polarcheck.geometry.segments import Curves, members, segments
+from polarcheck.geometry.finished_part import Contours, FinishedParts, finished_parts
+from polarcheck.geometry.segments import Curves, first_of_its_kind, members, segments
 
 #: How near its ends must come to the farthest point of a contour that ends outside the bar [share].
 _OUTSIDE = 0.95

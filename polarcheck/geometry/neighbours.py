@@ -16,10 +16,9 @@ import shapely  # type: ignore[import-untyped]
 from polarcheck.arrays import Floats, Mask, Rows
 from polarcheck.geometry import areas
 from polarcheck.geometry.faces import lines_of
-from polarcheck.geometry.finished_part import Contours, finished_parts, first_of_its_kind
+from polarcheck.geometry.finished_part import Contours, finished_parts
 from polarcheck.geometry.reach import NOTHING, Reached, reached, shortened
-from polarcheck.geometry.segments import Curves, segments
-from polarcheck.machines.modal import Motion
+from polarcheck.geometry.segments import Curves, boxes, first_of_its_kind, segments
 
 
 def cuts_into_others(
@@ -98,18 +97,3 @@ def _joined_boxes(box: Floats, path: Curves, loops: Rows) -> Floats:
     box[:2, at] = np.minimum(box[:2, at], of_path[:2])
     box[2:, at] = np.maximum(box[2:, at], of_path[2:])
     return box
-
-
-def boxes(curves: Curves, first: Rows) -> Floats:
-    """Of curves from each of these on to the next: least x and c, greatest x and c [mm]."""
-    low, high = (
-        [extreme(at(curves.start), at(curves.end)) for at in (np.real, np.imag)] for extreme in (np.minimum, np.maximum)
-    )
-    arcs = np.flatnonzero(((curves.kind == Motion.CW) | (curves.kind == Motion.CCW)) & ~np.isnan(curves.center))
-    if len(arcs):
-        middle = curves.center[arcs]
-        reach = np.maximum(np.abs(curves.start[arcs] - middle), np.abs(curves.end[arcs] - middle))
-        for side, at in enumerate((middle.real, middle.imag)):
-            low[side][arcs], high[side][arcs] = at - reach, at + reach
-    sides = [np.minimum.reduceat(side, first) for side in low] + [np.maximum.reduceat(side, first) for side in high]
-    return np.array(sides)

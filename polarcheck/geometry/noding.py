@@ -14,11 +14,9 @@ import numpy as np
 import shapely  # type: ignore[import-untyped]
 
 from polarcheck.arrays import Floats, Mask, Points, Rows
-from polarcheck.geometry.tolerances import CROSSINGS, FREE_CROSSINGS
+from polarcheck.geometry.tolerances import CROSSINGS, FREE_CROSSINGS, TOUCH
 from polarcheck.time_limit import keep_time
 
-#: Points nearer than this [mm] are one.
-TOUCH = 2e-6
 #: Pairs of walls to compare for each wall of a group, and beyond that, before it is taken to cross too often.
 _PAIRS, _FREE_PAIRS = 64, 4_000_000
 #: Walls of a run at most, and how far it may turn [rad]; a run or two neighbours below half a turn cross nowhere.

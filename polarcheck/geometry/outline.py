@@ -12,8 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Points, Rows, States
-from polarcheck.geometry.noding import TOUCH
 from polarcheck.geometry.segments import Curves
+from polarcheck.geometry.tolerances import TOUCH
 from polarcheck.machines.modal import Motion
 
 #: Ends of chords that are nearer to each other are one point [mm].

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from polarcheck.arrays import Floats, Mask, Points, Rows, States
 from polarcheck.errors import TooHardError
 from polarcheck.geometry.plane import arc_sweep
-from polarcheck.geometry.tolerances import CHORDS_OF_FILE
+from polarcheck.geometry.tolerances import CHORDS_OF_FILE, TOUCH
 from polarcheck.machines.modal import Motion
 from polarcheck.time_limit import keep_time
 
@@ -122,6 +122,54 @@ def chord_counts(moves: Curves, tolerance: float) -> Floats:
     unit = _angle_of_chords(np.maximum(np.abs(start - center), np.abs(end - center)), tolerance)
     result[arcs] = np.abs(arc_sweep(start, end, center, moves.kind[arcs])) / unit
     return result
+
+
+def first_of_its_kind(curves: Curves) -> Mask:
+    """Of curves of one loop that are the same the first; a pass that is written once more needs no second look."""
+    center = np.where(np.isnan(curves.center), 0, curves.center)
+    columns = [
+        *(np.rint(part / TOUCH) for point in (curves.start, curves.end, center) for part in (point.real, point.imag))
+    ]
+    columns += [curves.loop, np.where(np.isnan(curves.center), 0, curves.kind)]
+    key = np.zeros(len(curves), np.uint64)
+    for column in columns:
+        # An odd number without a pattern: different curves have different sums but for a chance of 2 ** -64.
+        key = (key + column.astype(np.int64).view(np.uint64)) * np.uint64(0x9E3779B97F4A7C15)
+        key ^= key >> np.uint64(29)
+    _, first = np.unique(key, return_index=True)
+    result = np.zeros(len(curves), bool)
+    result[first] = True
+    return result
+
+
+def directions(start: Points, end: Points, center: Points, kind: States) -> tuple[Points, Points]:
+    """Unit vectors along which curves begin and end."""
+    turning = np.where(kind == Motion.CCW, 1j, -1j)
+    is_arc = ~np.isnan(center)
+    way = end - start
+    before = np.where(is_arc, turning * (start - center), way)
+    after = np.where(is_arc, turning * (end - center), way)
+    return _unit(before), _unit(after)
+
+
+def _unit(way: Points) -> Points:
+    unit: Points = way / np.maximum(np.abs(way), ZERO)
+    return unit
+
+
+def boxes(curves: Curves, first: Rows) -> Floats:
+    """Of curves from each of these on to the next: least x and c, greatest x and c [mm]."""
+    low, high = (
+        [extreme(at(curves.start), at(curves.end)) for at in (np.real, np.imag)] for extreme in (np.minimum, np.maximum)
+    )
+    arcs = np.flatnonzero(((curves.kind == Motion.CW) | (curves.kind == Motion.CCW)) & ~np.isnan(curves.center))
+    if len(arcs):
+        middle = curves.center[arcs]
+        reach = np.maximum(np.abs(curves.start[arcs] - middle), np.abs(curves.end[arcs] - middle))
+        for side, at in enumerate((middle.real, middle.imag)):
+            low[side][arcs], high[side][arcs] = at - reach, at + reach
+    sides = [np.minimum.reduceat(side, first) for side in low] + [np.maximum.reduceat(side, first) for side in high]
+    return np.array(sides)
 
 
 def members(loop: Rows, wanted: Rows) -> tuple[Rows, Rows]:

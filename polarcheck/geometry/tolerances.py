@@ -10,6 +10,8 @@ SHARE = 1e-9
 ADJUSTMENT = 0.254
 #: A length below this [mm] is no movement.
 ZERO = 1e-9
+#: Points nearer than this [mm] are one.
+TOUCH = 2e-6
 #: Crossings that a contour may have for each of its walls, and beyond that.
 CROSSINGS, FREE_CROSSINGS = 4, 1000
 #: Farther from the center than this [mm] reaches no lathe; what is there would take the digits of all else.

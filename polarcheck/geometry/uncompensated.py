@@ -14,11 +14,11 @@ import numpy as np
 import shapely  # type: ignore[import-untyped]
 
 from polarcheck.arrays import Floats, Mask, Rows
+from polarcheck.geometry.bare import Bare, FlatLoops
 from polarcheck.geometry.faces import coordinates, lines_of
 from polarcheck.geometry.finished_part import Contours, FinishedParts, finished_parts
-from polarcheck.geometry.neighbours import boxes
 from polarcheck.geometry.reach import NOTHING, Reached, endless, reached, shortened
-from polarcheck.geometry.segments import ZERO, Curves, Segments, members, segments
+from polarcheck.geometry.segments import ZERO, Curves, Segments, boxes, members, segments
 from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.time_limit import keep_time
 
@@ -32,40 +32,20 @@ _BATCH = 1024
 _DEPTHS = 8
 
 
-@dataclass(frozen=True, slots=True)
-class Bare:
-    """
-    Moves without compensation. curves: with their section as the loop. z: float64[n] [mm], the highest on the way;
-    of a move of Z alone where it ends. radius: float64[n] [mm], |R|. plunges: bool[n], Z alone moves.
-    """
-
-    curves: Curves
-    z: Floats
-    radius: Floats
-    plunges: Mask
-
-    def __getitem__(self, rows: Rows | Mask) -> Bare:
-        return Bare(self.curves[rows], self.z[rows], self.radius[rows], self.plunges[rows])
-
-
-def cuts_into_part(contour: Contours, section: Rows, z: Floats, bare: Bare) -> tuple[Reached, Rows]:
+def cuts_into_part(contour: Contours, loops: FlatLoops, bare: Bare) -> tuple[Reached, Rows]:
     """
     Where moves without compensation come nearer than R to the part of a contour at their Z or above it; the worst place
     of each. And the loops that cross each other too often to tell.
 
-    contour: the programmed blocks in offset mode, its loops, groups and radius are not asked. section: int[curves],
-    z: float64[curves], NaN unknown. Of a move of Z alone within the part, away from its walls, nothing is said: it
-    begins a hole; nor of what comes out of surroundings without an end, as to a pocket.
+    contour: the programmed blocks in offset mode, its loops, groups and radius are not asked. loops: those of it that
+    stay at one Z. bare: what may reach them. Of a move of Z alone within the part, away from its walls, nothing is
+    said: it begins a hole; nor of what comes out of surroundings without an end, as to a pocket.
     """
-    found, none = _loops(contour.curves, section, z), np.zeros(0, np.int64)
-    candidate = np.flatnonzero(_may_reach(found, bare))
-    if not len(candidate):
-        return NOTHING, none
-    groups = _groups(contour.curves, found, bare[candidate])
+    none = np.zeros(0, np.int64)
+    groups = _groups(contour.curves, loops, bare)
     if not len(groups.top):
         return NOTHING, none
-    move, group = _pairs(groups, bare[candidate])
-    move = candidate[move]
+    move, group = _pairs(groups, bare)
     ways, group = _ways(bare, move, group, contour.tolerance)
     radius = np.zeros(len(groups.top))
     np.maximum.at(radius, group, bare.radius[ways.move])
@@ -94,45 +74,6 @@ def _begins_in(part: FinishedParts, cuts: Reached, ways: Segments) -> Mask:
     return np.asarray(beyond | shapely.intersects(part.polygon[cuts.group], points))
 
 
-# ---- what may come near what ----
-
-
-@dataclass(frozen=True, slots=True)
-class _Loops:
-    """Loops that stay at one Z, in their order: number, section, Z and box of each."""
-
-    loop: Rows
-    section: Rows
-    z: Floats
-    box: Floats
-
-
-def _loops(curves: Curves, section: Rows, z: Floats) -> _Loops:
-    first = np.flatnonzero(np.diff(curves.loop, prepend=-1))
-    low, high = np.minimum.reduceat(z, first), np.maximum.reduceat(z, first)
-    flat = high - low <= ROUNDING
-    return _Loops(curves.loop[first][flat], section[first][flat], low[flat], boxes(curves, first)[:, flat])
-
-
-def _may_reach(loops: _Loops, bare: Bare) -> Mask:
-    """Moves whose box comes within R of that of the contours of their section, not above the highest of these."""
-    result = np.zeros(len(bare.z), bool)
-    if not len(loops.loop):
-        return result
-    first = np.flatnonzero(np.diff(loops.section, prepend=-1))
-    known = loops.section[first]
-    at = np.minimum(np.searchsorted(known, bare.curves.loop), len(known) - 1)
-    top = np.maximum.reduceat(loops.z, first)[at]
-    box = np.concatenate(
-        [np.minimum.reduceat(loops.box[:2], first, axis=1), np.maximum.reduceat(loops.box[2:], first, axis=1)]
-    )[:, at]
-    own = boxes(bare.curves, np.arange(len(bare.z)))
-    result = (known[at] == bare.curves.loop) & (bare.z <= top + ROUNDING)
-    for side in (0, 1):
-        result &= (own[side] <= box[side + 2] + bare.radius) & (own[side + 2] >= box[side] - bare.radius)
-    return np.asarray(result)
-
-
 @dataclass(frozen=True, slots=True)
 class _Groups:
     """Groups of loops that bound one part: section and highest Z of each, the loops and their groups."""
@@ -143,7 +84,7 @@ class _Groups:
     group: Rows
 
 
-def _groups(curves: Curves, loops: _Loops, bare: Bare) -> _Groups:
+def _groups(curves: Curves, loops: FlatLoops, bare: Bare) -> _Groups:
     """
     For each depth of the contours that a move may cut the loops that bound the part there.
 

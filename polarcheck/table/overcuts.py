@@ -205,15 +205,20 @@ class Overcuts:
     @cached_property
     def _found(self) -> tuple[Cuts, Mask, Mask]:
         """The cuts of all moves of the tool center, which of them are by ramps, and the rows of tangled loops."""
+        nothing = _NOTHING, np.zeros(0, bool), np.zeros(len(self.trace), bool)
         if not self.compensates:
-            return _NOTHING, np.zeros(0, bool), np.zeros(len(self.trace), bool)
-        from polarcheck.geometry import contour
+            return nothing
+        from polarcheck.geometry.clearance import keeps_away
 
         path, is_ramp = self.path
         # What is left on the contour, the cutter stays away from it.
         radius = np.abs((self.radius - self.trace.allowance)[path.row])
         tolerance = self.trace.machine.compensation.overcut_tolerance
         walls, left = self.walls
+        if keeps_away(walls, path, radius, tolerance):
+            return nothing
+        from polarcheck.geometry import contour
+
         around = self._air(walls), self.level
         found = contour.overcuts(walls, left, *around, path, radius, is_ramp, tolerance, self.bar)
         cuts = Cuts(path.row[found.move], found.row, found.depth, found.place)

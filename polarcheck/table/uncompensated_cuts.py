@@ -7,6 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Points, Rows
+from polarcheck.geometry.bare import Bare, flat_loops, may_reach
 from polarcheck.geometry.compensation import Phase
 from polarcheck.geometry.segments import Curves
 from polarcheck.geometry.tolerances import ADJUSTMENT, ROUNDING
@@ -87,16 +88,20 @@ class UncompensatedCuts:
         known = np.flatnonzero(known & ((z < -ROUNDING) | self._is_behind_contour[row]))
         if not len(known) or not len(walls):
             return nothing
-        from polarcheck.geometry import uncompensated
-        from polarcheck.geometry.finished_part import Contours
-
         kind = np.where(np.isnan(center), Motion.LINE, trace.motion[row]).astype(np.int16)
         plunges = np.abs(end - start) == 0
         plunges &= np.isnan(center)
-        bare = uncompensated.Bare(Curves(start, end, center, kind, section, row), z, radius, plunges)[known]
+        bare = Bare(Curves(start, end, center, kind, section, row), z, radius, plunges)[known]
+        loops = flat_loops(walls, trace.section[walls.row], trace.z[walls.row])
+        bare = bare[may_reach(loops, bare)]
+        if not len(bare.z):
+            return nothing
+        from polarcheck.geometry.finished_part import Contours
+        from polarcheck.geometry.uncompensated import cuts_into_part
+
         none, tolerance = np.zeros(0, np.int64), trace.machine.compensation.overcut_tolerance
         contours = Contours(walls, left, none, none, np.zeros(0), self.overcuts.bar, tolerance)
-        found, tangled = uncompensated.cuts_into_part(contours, trace.section[walls.row], trace.z[walls.row], bare)
+        found, tangled = cuts_into_part(contours, loops, bare)
         return Cuts(bare.curves.row[found.move], walls.row[found.wall], found.depth, found.place), tangled
 
     @property
