@@ -1,11 +1,14 @@
-"""The array types of the tables, each defined once: what a column, a mask or a list of plane points is; a look-up."""
+"""The array types of the tables, each defined once: what a column, a mask or a list of plane points is; look-ups."""
 
 from __future__ import annotations
 
-from typing import Any, TypeAlias
+from collections.abc import Sequence
+from typing import Any, TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
+
+_Number = TypeVar("_Number", bound=np.generic)
 
 #: Whether: one bool per row, word, move or section.
 Mask: TypeAlias = NDArray[np.bool_]
@@ -27,3 +30,20 @@ def stretch(column: NDArray[np.signedinteger[Any]], first: int, end: int) -> tup
     """
     low, high = column.searchsorted(np.array((first, end), column.dtype)).tolist()
     return low, high
+
+
+# np.unique and, for some arguments, np.isin load masked arrays to ask for them: a tenth of a small check.
+
+
+def different(values: NDArray[_Number]) -> NDArray[_Number]:
+    """The different ones of these values, rising; none of them is NaN."""
+    rising = np.sort(values, axis=None)
+    return rising[np.append(True, rising[1:] != rising[:-1])] if len(rising) else rising
+
+
+def is_among(values: NDArray[Any], wanted: Sequence[float | str]) -> Mask:
+    """Which of these values are one of those wanted."""
+    if not len(wanted):
+        return np.zeros(np.shape(values), bool)
+    known = np.sort(np.array(wanted))
+    return np.asarray(known[np.minimum(known.searchsorted(values), len(known) - 1)] == values)

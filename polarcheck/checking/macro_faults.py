@@ -14,7 +14,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from polarcheck.arrays import Mask
+from polarcheck.arrays import Mask, is_among
 from polarcheck.execution.kinds import FaultKind, RemarkKind
 from polarcheck.execution.programs import find_programs
 from polarcheck.execution.run import Remark, Run
@@ -179,7 +179,7 @@ class Faults:
     @property
     def is_bound(self) -> Mask:
         """Where a run was broken off at a bound of this check, which the control does not have."""
-        return np.isin(self.kind, _BOUNDS)
+        return is_among(self.kind, _BOUNDS)
 
     @cached_property
     def _first_blocks(self) -> list[int]:

@@ -9,7 +9,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from polarcheck.arrays import Mask, Rows, stretch
+from polarcheck.arrays import Mask, Rows, different, stretch
 from polarcheck.execution.run import Assigned, FlowFault, Remark, Run, is_code
 from polarcheck.execution.statement import Statement, Word
 from polarcheck.machines.axes import AXIS_LETTERS
@@ -46,7 +46,7 @@ class ExecutedRows:
         self.kept = _kept(words) if skip else np.ones(len(words), bool)
         self.ending = set(words.block[is_code(words, ends) & self.kept].tolist())
         self._units = np.flatnonzero(is_code(words, (*inch, *mm)) & self.kept)
-        self.moving = np.unique(words.block[np.isin(words.address, list(map(ord, machine.axis_words))) & self.kept])
+        self.moving = different(words.block[np.isin(words.address, list(map(ord, machine.axis_words))) & self.kept])
         self.ranges: dict[tuple[int, int], _Range] = {}
         self.words: list[Rows] = []
         self.row: list[Rows] = []
@@ -84,7 +84,7 @@ class ExecutedRows:
         words = self.text.words.block
         low, high = stretch(words, first, end)
         macro = np.flatnonzero(self.text.blocks.is_macro[first:end]) + first
-        return [int(block) for block in np.union1d(words[low:high], macro)]
+        return [int(block) for block in different(np.append(words[low:high], macro))]
 
     def first_moving(self, first: int, end: int) -> int | None:
         """The first block of a range with words of an axis."""

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from polarcheck.arrays import Rows
+from polarcheck.arrays import Rows, different
 from polarcheck.geometry.segments import Curves, chord_counts, first_of_its_kind
 from polarcheck.geometry.tolerances import CHORDS, CHORDS_OF_FILE, FARTHEST, FARTHEST_CENTER
 
@@ -23,7 +23,7 @@ def far_loops(*curves: Curves) -> Rows:
         for points, limit in ((some.start, FARTHEST), (some.end, FARTHEST), (some.center, FARTHEST_CENTER)):
             far |= (np.abs(points.real) > limit) | (np.abs(points.imag) > limit)
         found.append(some.loop[far])
-    return np.unique(np.concatenate(found))
+    return different(np.concatenate(found))
 
 
 def long_loops(curves: Curves, tolerance: float) -> Rows:

@@ -11,6 +11,7 @@ import re
 
 import numpy as np
 
+from polarcheck.arrays import different
 from polarcheck.reading.source import DASH, LF, Bytes, Positions
 
 _SEMICOLON, _SMALL = ord(";"), 0x20
@@ -59,7 +60,7 @@ def read_as_digits(code: Bytes) -> Positions:
     if not len(suspects):
         return suspects
     breaks = np.append(np.flatnonzero((code == LF) | (code == _SEMICOLON)), len(code))
-    index = np.unique(np.searchsorted(breaks, suspects))
+    index = different(np.searchsorted(breaks, suspects))
     starts = np.append(0, breaks + 1)[index]
     found = [
         start + place

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Points, Rows
+from polarcheck.arrays import Floats, Mask, Points, Rows, different
 from polarcheck.table.filling import before
 from polarcheck.table.overcuts import Overcuts, curves_of, loop_of_row
 from polarcheck.table.tool_center import ToolCenter
@@ -69,7 +69,7 @@ class Coverage:
         first = np.flatnonzero(np.diff(walls.loop, prepend=-1))
         last = np.append(first[1:], len(walls)) - 1
         loops = Loops(walls, left, first, last, np.abs(trace.radius[walls.row[first]]))
-        faulty = np.unique(walls.loop[self.overcuts.objected[walls.row]])
+        faulty = different(walls.loop[self.overcuts.objected[walls.row]])
         sound = np.flatnonzero(~np.isin(walls.loop[first], faulty))
         if not len(sound):
             return None
@@ -228,7 +228,7 @@ class Coverage:
                 if strip.thickness > left.height[strip.row]:
                     left.height[strip.row], left.place[strip.row] = strip.thickness, strip.place
         section = self.trace.whole_section
-        for number in np.unique(section[left.height > 0]):
+        for number in different(section[left.height > 0]):
             rows = np.flatnonzero((section == number) & (left.height > 0))
             left.height[rows[rows != rows[np.argmax(left.height[rows])]]] = 0
         return left, np.concatenate(tangled), np.concatenate(long)

@@ -13,7 +13,7 @@ from typing import TypeVar, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from polarcheck.arrays import Floats, Mask, Points, States
+from polarcheck.arrays import Floats, Mask, Points, States, different, is_among
 from polarcheck.geometry import polar
 from polarcheck.machines.axes import AXES, INCREMENTS, numbers_of
 from polarcheck.machines.modal import Distance
@@ -137,7 +137,7 @@ class LinearAxis(Lengths):
         """
         mode, axes = self.machine.polar, self.machine.control.axes
         p, q = self.axes_written
-        is_pair = np.isin(p, numbers_of(axes, "linear")) & np.isin(q, numbers_of(axes, "rotary")) & (p != q)
+        is_pair = is_among(p, numbers_of(axes, "linear")) & is_among(q, numbers_of(axes, "rotary")) & (p != q)
         is_pair &= self.takes_axes
         return np.where(is_pair, p, mode.linear_axis), np.where(is_pair, q, mode.rotary_axis)
 
@@ -154,7 +154,7 @@ class LinearAxis(Lengths):
     @cached_property
     def _named_axis(self) -> States:
         """The character of the linear axis, from a G12.1 up to its G13.1; that of X elsewhere, 0 where unknown."""
-        numbers = np.unique(self.linear_number[self.switches_on]).tolist()
+        numbers = different(self.linear_number[self.switches_on]).tolist()
         addresses = {number: self.machine.linear_address_of(number) for number in numbers}
         other = self.enters_other_axes
         if set(addresses.values()) <= {"X"} and not other.any():

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from polarcheck.arrays import Mask, Rows
+from polarcheck.arrays import Mask, Rows, is_among
 from polarcheck.machines import profiles
 from polarcheck.machines.axes import AXES
 from polarcheck.machines.code_lists import is_code
@@ -211,7 +211,7 @@ class OtherMode:
         """Per stray character of the file: begins a comment on such a control."""
         text = self.trace.text
         signs = [profile.machine.control.line_comments for switch in self.switches for profile in switch.known_by]
-        return np.isin(text.source.code[text.strays.start], [ord(sign) for sign in signs if sign])
+        return is_among(text.source.code[text.strays.start], [ord(sign) for sign in signs if sign])
 
     # ---- codes and native words alike ----
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Points, Rows
+from polarcheck.arrays import Floats, Mask, Points, Rows, different
 from polarcheck.geometry.compensation import Phase
 from polarcheck.geometry.tolerances import ADJUSTMENT, ROUNDING
 from polarcheck.machines.modal import Side
@@ -135,7 +135,7 @@ class Overcuts:
         walls, path = self._all_walls, self._whole_path[0]
         far = bounds.far_loops(walls, path)
         near = [curves[~np.isin(curves.loop, far)] if len(far) else curves for curves in (walls, path)]
-        return far, np.union1d(*(bounds.long_loops(curves, tolerance) for curves in near))
+        return far, different(np.concatenate([bounds.long_loops(curves, tolerance) for curves in near]))
 
     @property
     def too_far(self) -> Mask:

@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask
+from polarcheck.arrays import Floats, Mask, is_among
 from polarcheck.machines.axes import INCREMENTS, numbers_of
 from polarcheck.machines.modal import Distance
 from polarcheck.reading.words import NumberFault
@@ -56,7 +56,7 @@ class SwitchWords:
         words, axes = self.trace.run.words, self.trace.machine.control.axes
         found = self.names_axis & ~self.names_no_axis
         for address, kind in _KINDS.items():
-            found &= (words.address != ord(address)) | ~np.isin(words.value, numbers_of(axes, kind))
+            found &= (words.address != ord(address)) | ~is_among(words.value, numbers_of(axes, kind))
         return np.asarray(found)
 
     @cached_property

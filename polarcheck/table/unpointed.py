@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from polarcheck.arrays import Mask, Rows
+from polarcheck.arrays import Mask, Rows, different
 from polarcheck.machines.modal import FeedMode, Units
 from polarcheck.table.lengths import MEANT_IN_INCREMENTS
 from polarcheck.table.trace import Trace
@@ -72,7 +72,7 @@ class Unpointed:
         own = self._sections == self._sections[trace.run.row[executed[0]]]
         words = trace.is_unpointed & ~trace.is_large_unpointed & own[trace.run.row]
         at, _ = self._in_file(np.flatnonzero(words))
-        found: list[int] = np.unique(at).tolist()
+        found: list[int] = different(at).tolist()
         return found
 
     @cached_property

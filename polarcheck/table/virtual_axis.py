@@ -15,7 +15,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from polarcheck.arrays import Mask, Rows
+from polarcheck.arrays import Mask, Rows, different
 from polarcheck.machines.axes import axis_of
 from polarcheck.table.filling import fill_down
 from polarcheck.table.linear_axis import LinearAxis
@@ -42,7 +42,7 @@ class VirtualAxis(LinearAxis):
         mode, axes = self.machine.polar, self.machine.axes
         if mode.virtual_axis != mode.rotary_address or not axes or not self.takes_axes:
             return []
-        numbers = np.unique(self.rotary_number[self.switches_on]).tolist()
+        numbers = different(self.rotary_number[self.switches_on]).tolist()
         names = [axis_of(axes, number) for number in numbers if number != mode.rotary_axis]
         return [(name, "") for name in names if name]
 
