@@ -138,7 +138,11 @@ def run() -> None:
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="backslashreplace")
     signals.listen()
-    main(prog_name="polarcheck")
+    try:
+        main(prog_name="polarcheck")
+    finally:
+        # The process gives everything back; to look for circles in it first is a tenth of a small check.
+        gc.freeze()
 
 
 @click.group(
