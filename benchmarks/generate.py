@@ -29,6 +29,8 @@ from pathlib import Path
 
 FEWEST_BLOCKS = 1000
 MOST_STEPS = 25
+LONGEST_SECTION = 100_000
+"""Blocks of a polar section; a step that needs more has several, one below the other."""
 PASS_BLOCKS = 397
 SECTION_FRAME, PASS_FRAME = 18, 3
 """Blocks of a polar section beside its passes, and of a pass beside its contour."""
@@ -149,8 +151,10 @@ def profile(steps: list[Step], bar: float, allowance: float, feed: str) -> Itera
     yield "G0 Z2."
 
 
-def polar_section(rng: random.Random, number: int, step: Step, bar: float, passes: list[int]) -> Iterator[str]:
-    """One milling tool, from its call to the reference point; `passes` are the contour blocks of each pass."""
+def polar_section(
+    rng: random.Random, number: int, step: Step, bar: float, passes: list[tuple[float, int]]
+) -> Iterator[str]:
+    """One milling tool, from its call to the reference point; `passes` are the depth [mm] and the blocks of each."""
     side = ("G42", "G41")[number % 2]
     feed = pick(rng, range(140, 241, 10))
     tool = 4 + number % 9
@@ -161,8 +165,7 @@ def polar_section(rng: random.Random, number: int, step: Step, bar: float, passe
     yield "G12.1"
     ramp = word("X", step.diameter + 2 * CUTTER_RADIUS + CLEARANCE)
     yield f"G1 {ramp} {POSITIONING}"
-    for count, blocks in enumerate(passes, start=1):
-        depth = CONTOUR_DEPTH * count / len(passes)
+    for depth, blocks in passes:
         contour = Contour(step.contour.mean + DRAFT * depth, step.contour.waves)
         yield f"G1 {word('Z', step.top - depth)}"
         yield f"G1 {side} {word('X', 2 * contour.radius(0.0))} F{feed}."
@@ -210,11 +213,16 @@ def program(blocks: int = 200_000, seed: int = 1) -> bytes:
     steps = shaft(rng, min(max(blocks // 8000, 2), MOST_STEPS))
     bar = steps[-1].diameter + 3.0
     text = [f"O0001 (LOBED SHAFT, {len(steps)} STEPS)", "G18 G21 G40", "G28 U0 W0", *turning(steps, bar)]
-    left = blocks - len(text) - len(steps) * SECTION_FRAME
+    # No pass is parted, so that a section can be longer than the others by one.
+    sections = math.ceil(blocks / (len(steps) * (LONGEST_SECTION - 2 * PASS_BLOCKS)))
+    left = blocks - len(text) - len(steps) * sections * SECTION_FRAME
     passes = max(len(steps), round(left / (PASS_BLOCKS + PASS_FRAME)))
     contour_blocks = shares(left - passes * PASS_FRAME, passes)
     for number, (step, count) in enumerate(zip(steps, shares(passes, len(steps)), strict=True)):
-        text += polar_section(rng, number, step, bar, [contour_blocks.pop() for _ in range(count)])
+        whole = [(CONTOUR_DEPTH * done / count, contour_blocks.pop()) for done in range(1, count + 1)]
+        for part, size in enumerate(shares(count, sections)):
+            own, whole = whole[:size], whole[size:]
+            text += polar_section(rng, number * sections + part, step, bar, own)
     text[-1] = "M30"
     numbered = [f"N{number % 99999 + 1} {block}" for number, block in enumerate(text[1:])]
     return "\n".join(["%", text[0], *numbered, "%", ""]).encode("ascii")
