@@ -20,7 +20,10 @@ COMMENT = re.compile(r"\([^)]*\)")
 #: Codes of a lathe and of its builder, and what stands for each; nothing where that is left out.
 CODES = {
     **dict.fromkeys(("G50", "G96", "G97", "M33", "M34", "M35"), ""),
-    **{"G12.1": "G17", "G13.1": "G18", "G98": "G94", "G99": "G95"},
+    "G12.1": "G17",
+    "G13.1": "G18",
+    "G98": "G94",
+    "G99": "G95",
 }
 REFERENCE_RETURN = "G28"
 SIDES = {"G41", "G42"}
