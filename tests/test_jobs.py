@@ -420,7 +420,8 @@ def test_a_run_begins_alone_and_calls_others_where_they_pay(monkeypatch: pytest.
     make(60)
     tasks = planned("f")
     assert forms_of(tasks, 0.001, monkeypatch) == (60, 0)
-    assert forms_of(tasks, 0.05, monkeypatch) == (5, 55)
+    assert forms_of(tasks, 0.05, monkeypatch) == (1, 59)
+    assert forms_of(tasks[:20], 0.05, monkeypatch) == (1, 19)  # a hook with 20 programs of 500 blocks
     assert forms_of(tasks[:6], 0.05, monkeypatch) == (6, 0)
     assert forms_of(tasks[:2], 3.0, monkeypatch) == (2, 0)
     assert forms_of(tasks[:3], 3.0, monkeypatch) == (1, 2)

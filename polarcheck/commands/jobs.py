@@ -18,9 +18,8 @@ if TYPE_CHECKING:
     from polarcheck.checking.batch import Outcome, Task
     from polarcheck.commands.watching import Seen
 
-#: This process begins alone. Others are started once it was at it for so long [s],
-_ALONE = 0.25
-#: and if that saves more than it costs [s]: to fork costs hardly anything, elsewhere each loads the libraries anew.
+#: This process begins alone. Others are started once it is known that they save more than they cost [s]: to fork costs
+#: hardly anything, elsewhere each loads the libraries anew.
 _COST = {"fork": 0.1, "spawn": 1.5}
 #: A file of this size is a reason by itself not to let the others wait [bytes].
 _LARGE = 200_000
@@ -102,14 +101,12 @@ def _pays(left: Sequence[Task], done: int, seconds: float, workers: int) -> bool
     """Whether others should be started; seconds: that those that are done took."""
     if len(left) == 1:
         return False
-    if seconds < _ALONE or not done:
-        from polarcheck.reading import files
-
-        return files.size(left[0].path) >= _LARGE
     from polarcheck.checking import crews
+    from polarcheck.reading import files
 
-    saved = seconds / done * len(left) * (1 - 1 / min(workers, len(left)))
-    return saved > _COST[crews.start_method()]
+    # The first file counts twice: what it loads and compiles the others find there.
+    saved = seconds / (done + 1) * len(left) * (1 - 1 / min(workers, len(left)))
+    return saved > _COST[crews.start_method()] or files.size(left[0].path) >= _LARGE
 
 
 def _by_pool(tasks: Sequence[Task], most: int, workers: int) -> Generator[Outcome, None, None]:
