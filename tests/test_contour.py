@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import itertools
 import math
-from dataclasses import replace
 from typing import NamedTuple
 
+import msgspec
 import numpy as np
 import pytest
 import shapely
@@ -278,8 +278,8 @@ def together(*loops: Loop) -> tuple[Curves, np.ndarray, Curves, np.ndarray]:
     """Several loops in one call, rows counted through."""
 
     def joined(parts: list[Curves]) -> Curves:
-        shifted = [replace(part, row=part.row + 100 * k) for k, part in enumerate(parts)]
-        return Curves(*(np.concatenate([getattr(part, name) for part in shifted]) for name in Curves.__slots__))
+        shifted = [msgspec.structs.replace(part, row=part.row + 100 * k) for k, part in enumerate(parts)]
+        return Curves(*(np.concatenate([getattr(part, name) for part in shifted]) for name in Curves.__struct_fields__))
 
     return (
         joined([each.contour for each in loops]),
@@ -291,7 +291,7 @@ def together(*loops: Loop) -> tuple[Curves, np.ndarray, Curves, np.ndarray]:
 
 def numbered(of: Loop, number: int) -> Loop:
     def moves(part: Curves) -> Curves:
-        return replace(part, loop=np.full(len(part.row), number))
+        return msgspec.structs.replace(part, loop=np.full(len(part.row), number))
 
     return of._replace(contour=moves(of.contour), path=moves(of.path), ramps=moves(of.ramps))
 
@@ -343,7 +343,7 @@ def test_a_loop_is_judged_by_its_own_radius() -> None:
 
 def test_without_moves() -> None:
     none = loop(45, *SQUARE, 45)
-    empty = Curves(*(getattr(none.path, name)[:0] for name in Curves.__slots__))
+    empty = Curves(*(getattr(none.path, name)[:0] for name in Curves.__struct_fields__))
     nothing = np.zeros(0)
     assert len(along(none.contour, none.left, empty, nothing).row) == 0
     assert len(along(empty, none.left[:0], none.path, np.full(len(none.path.row), 5.0)).row) == 0
@@ -357,11 +357,11 @@ def test_what_is_unknown_is_left_out() -> None:
     assert len(slot.overcuts(math.nan).row) == 0
     assert len(slot.overcuts(0.0).row) == 0
     gone = slot.contour.row == 2
-    hidden = replace(slot.contour, end=np.where(gone, NAN, slot.contour.end))
+    hidden = msgspec.structs.replace(slot.contour, end=np.where(gone, NAN, slot.contour.end))
     found = along(hidden, slot.left, slot.path, np.full(len(slot.path.row), 5.0))
     assert not len(found.row)  # what lies behind the hole is not known
     arcs = LEGAL["full circle"]
-    unknown = replace(arcs.contour, center=np.full(1, NAN))
+    unknown = msgspec.structs.replace(arcs.contour, center=np.full(1, NAN))
     assert len(along(unknown, arcs.left, arcs.path, np.full(1, 9.0)).row) == 0
 
 
@@ -370,7 +370,7 @@ def test_a_gap_in_the_path_cuts_nothing() -> None:
     square = LEGAL["square"]
     kept = np.isin(square.path.row, [1, 3])
     path = Curves(*(getattr(square.path, name)[kept] for name in ("start", "end", "center", "kind", "loop", "row")))
-    shortened = replace(path, end=np.where(path.row == 1, path.start + 1j, path.end))
+    shortened = msgspec.structs.replace(path, end=np.where(path.row == 1, path.start + 1j, path.end))
     assert list(along(square.contour, square.left, shortened, np.full(2, 5.0)).row) == []
 
 

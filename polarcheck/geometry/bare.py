@@ -6,8 +6,7 @@ Floats in mm, plane points complex, x + 1j*c.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+import msgspec
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Rows
@@ -15,8 +14,7 @@ from polarcheck.geometry.segments import Curves, boxes
 from polarcheck.geometry.tolerances import ROUNDING
 
 
-@dataclass(frozen=True, slots=True)
-class Bare:
+class Bare(msgspec.Struct, frozen=True):
     """
     Moves without compensation. curves: with their section as the loop. z: float64[n] [mm], the highest on the way;
     of a move of Z alone where it ends. radius: float64[n] [mm], |R|. plunges: bool[n], Z alone moves.
@@ -31,8 +29,7 @@ class Bare:
         return Bare(self.curves[rows], self.z[rows], self.radius[rows], self.plunges[rows])
 
 
-@dataclass(frozen=True, slots=True)
-class FlatLoops:
+class FlatLoops(msgspec.Struct, frozen=True):
     """Loops that stay at one Z, in their order: number, section, Z and box of each."""
 
     loop: Rows

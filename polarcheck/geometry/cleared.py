@@ -8,9 +8,9 @@ which order, and the path gives the exact curves. Import late: shapely takes its
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any, NamedTuple
 
+import msgspec
 import numpy as np
 import shapely  # type: ignore[import-untyped]
 
@@ -113,7 +113,7 @@ def _outline(polygon: Any, path: Curves, chords: Segments, radius: float) -> Out
     found = outline_of(start, end, source, curves)
     of = found.row
     exact = _exact_ends(found, _beside(found, of, path, curves, radius))
-    return replace(exact, row=np.append(path.row, np.repeat(path.row, 2))[exact.row])
+    return msgspec.structs.replace(exact, row=np.append(path.row, np.repeat(path.row, 2))[exact.row])
 
 
 def _part_on_left(area: Any) -> Any:
@@ -228,11 +228,11 @@ def _exact_ends(found: Outline, beside: _Beside) -> Outline:
     at = np.where(np.abs(at - found.end) <= 10 * _TOLERANCE, at, found.end)
     for touched in (beside.touched(number, following), beside.touched(following, number)):
         at = np.where(np.isnan(touched), at, touched)
-    exact = replace(found, start=at[before], end=at)
+    exact = msgspec.structs.replace(found, start=at[before], end=at)
     sweeps = [arc_sweep(one.start, one.end, one.center, one.kind) for one in (found, exact)]
     kept = exact[~(found.is_arc & (np.abs(sweeps[1] - sweeps[0]) > np.pi))]
     before, _ = _beside_in_chain(kept)
-    return replace(kept, start=kept.end[before])
+    return msgspec.structs.replace(kept, start=kept.end[before])
 
 
 def _beside_in_chain(found: Outline) -> tuple[Rows, Rows]:

@@ -6,8 +6,7 @@ Lengths in mm, plane points complex, x + 1j*c.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-
+import msgspec
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Points, Rows, States
@@ -31,8 +30,7 @@ _ONE = 1e-5
 _SHARPEST = 2.65
 
 
-@dataclass(frozen=True, slots=True)
-class Loops:
+class Loops(msgspec.Struct, frozen=True):
     """
     The loops of a contour: their first and last curves, int[loops] each, and R of each [mm].
 
@@ -80,8 +78,7 @@ def distinct(loops: Loops, program: Rows, z: Floats) -> Rows:
     return np.sort(order[np.append(np.diff(shape.ravel()[order]) != 0, True)])
 
 
-@dataclass(frozen=True, slots=True)
-class Corners:
+class Corners(msgspec.Struct, frozen=True):
     """Inside corners that keep the tool off what lies beside them: point, how far [mm], its turn [rad], its loop."""
 
     point: Points
@@ -169,7 +166,7 @@ def winds(loops: Loops) -> Mask:
     """Whether a loop goes round its middle more than once; the same arcs again do not count."""
     rows, of = loops.rows()
     curves = loops.curves if len(rows) == len(loops.curves) else loops.curves[rows]
-    start, end, of = chords(replace(curves, loop=of), float(loops.radius.min(initial=1.0)) / 4)
+    start, end, of = chords(msgspec.structs.replace(curves, loop=of), float(loops.radius.min(initial=1.0)) / 4)
     axis, at, _ = crossings(start, end, of, middles(start, of))
     count = np.bincount(4 * at + axis, minlength=4 * len(loops)).reshape(-1, 4)
     return np.asarray(count.min(axis=1) > 1)

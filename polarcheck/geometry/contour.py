@@ -12,8 +12,7 @@ Most loops are let off without a part: where the tool center stays at R from eve
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-
+import msgspec
 import numpy as np
 import shapely  # type: ignore[import-untyped]
 
@@ -36,8 +35,7 @@ _RUN, _BATCH = 64, 4096
 _LONG_RUN, _PIECES = 1024, 2048
 
 
-@dataclass(frozen=True, slots=True)
-class Overcut:
+class Overcut(msgspec.Struct, frozen=True):
     """
     Cuts into contours, k of them, and the loops that nothing can be said of.
 
@@ -142,7 +140,7 @@ def _left_at_level(
     ways = Segments(ways.start, ways.end, moves[ways.move], ways.loop).shifted(levels.pitch * group)
     again = _worst(_cuts(levels, ways, group, smallest, tolerance))
     before = cuts.depth[np.searchsorted(cuts.move, again.move)]
-    return ~told, replace(again, depth=np.minimum(again.depth, before))
+    return ~told, msgspec.structs.replace(again, depth=np.minimum(again.depth, before))
 
 
 def _overcut(contour: Curves, tangled: Rows, *found: tuple[FinishedParts, _Cuts]) -> Overcut:
@@ -194,7 +192,7 @@ def _comes_close(walls: Segments, ways: Segments, again: Mask, is_ramp: Mask, li
         near, of_way = np.zeros(len(own), bool), number
         path, number = path[~again[~is_ramp]], number[~again[~is_ramp]]
         run = np.cumsum((np.diff(number, prepend=-1) != 0) | (np.arange(len(number)) % _LONG_RUN == 0))
-        lines, of = _polylines(replace(path, loop=run)), number[np.diff(run, prepend=0) != 0]
+        lines, of = _polylines(msgspec.structs.replace(path, loop=run)), number[np.diff(run, prepend=0) != 0]
         # Of a loop that comes close at one place no other one is asked; a long one takes long where it does not.
         share = np.cumsum(shapely.get_num_coordinates(lines)) // _PIECES
         for part in np.split(np.arange(len(of)), np.flatnonzero(np.diff(share)) + 1):
@@ -227,8 +225,7 @@ def _polylines(parts: Segments) -> Geometries:
 # ---- cuts ----
 
 
-@dataclass(frozen=True, slots=True)
-class _Cuts:
+class _Cuts(msgspec.Struct, frozen=True):
     """
     Pieces of way that cut, on the shifted parts: the move that each is of, its group, the depth, the place on the part
     and the tool center then.
@@ -241,11 +238,11 @@ class _Cuts:
     tool: Points
 
     def __getitem__(self, rows: Rows | Mask) -> _Cuts:
-        return _Cuts(*(getattr(self, name)[rows] for name in _Cuts.__slots__))
+        return _Cuts(*(getattr(self, name)[rows] for name in _Cuts.__struct_fields__))
 
 
 def _joined(*parts: _Cuts) -> _Cuts:
-    return _Cuts(*(np.concatenate([getattr(part, name) for part in parts]) for name in _Cuts.__slots__))
+    return _Cuts(*(np.concatenate([getattr(part, name) for part in parts]) for name in _Cuts.__struct_fields__))
 
 
 def _worst(cuts: _Cuts) -> _Cuts:
@@ -254,8 +251,7 @@ def _worst(cuts: _Cuts) -> _Cuts:
     return cuts[order[np.diff(cuts.move[order], prepend=-1) != 0]]
 
 
-@dataclass(frozen=True, slots=True)
-class _Outline:
+class _Outline(msgspec.Struct, frozen=True):
     """
     What is not to be cut. whole: shapely geometry[groups], prepared; of a part that is open its walls alone.
 
@@ -314,8 +310,7 @@ _NO_CUTS = _Cuts(np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0), _NOW
 # ---- ramps of contours that end in the open ----
 
 
-@dataclass(frozen=True, slots=True)
-class _Ramps:
+class _Ramps(msgspec.Struct, frozen=True):
     """
     Straight ramps and their groups.
 

@@ -8,10 +8,10 @@ that ends in the middle of the part.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields, replace
 from itertools import pairwise
 from typing import Any, Self
 
+import msgspec
 import numpy as np
 import shapely  # type: ignore[import-untyped]
 from numpy.typing import NDArray
@@ -28,8 +28,7 @@ _FEW, _RINGS = 32, 256
 GRID = 1e-6
 
 
-@dataclass(frozen=True, slots=True)
-class Walls:
+class Walls(msgspec.Struct, frozen=True):
     """
     Straight walls, n of them, those of one group together and in the order in which they run.
 
@@ -46,8 +45,7 @@ class Walls:
     group: Rows
 
 
-@dataclass(frozen=True, slots=True)
-class Standing:
+class Standing(msgspec.Struct, frozen=True):
     """
     What the walls of each group leave standing.
 
@@ -86,8 +84,7 @@ def standing(walls: Walls, groups: int, thinnest: float) -> Standing:
     return Standing(polygon, start, end, edges.wall[edge], tangled)
 
 
-@dataclass(frozen=True, slots=True)
-class _Sides:
+class _Sides(msgspec.Struct, frozen=True):
     """For each edge: the tool is left of it, right of it; it only joins."""
 
     left: Mask
@@ -95,8 +92,7 @@ class _Sides:
     joins: Mask
 
 
-@dataclass(frozen=True, slots=True)
-class _Lines:
+class _Lines(msgspec.Struct, frozen=True):
     """
     Edges in a row between branchings, from `first` on, `count` of them.
 
@@ -122,7 +118,7 @@ class _Lines:
 
     def some(self, chosen: Mask) -> Self:
         """Some of the lines."""
-        return replace(self, **{field.name: getattr(self, field.name)[chosen] for field in fields(self)})
+        return type(self)(*(getattr(self, name)[chosen] for name in self.__struct_fields__))
 
 
 # ---- edges to lines ----
@@ -141,7 +137,7 @@ def _distinct(edges: Edges, walls: Walls) -> tuple[Edges, _Sides]:
     first = first[order]
     low_side, high_side, joins, turned = low_side[order], high_side[order], joins[order], turned[first]
     sides = _Sides(np.where(turned, high_side, low_side), np.where(turned, low_side, high_side), joins)
-    return replace(edges, start=edges.start[first], end=edges.end[first], wall=edges.wall[first]), sides
+    return msgspec.structs.replace(edges, start=edges.start[first], end=edges.end[first], wall=edges.wall[first]), sides
 
 
 def _lines(edges: Edges, sides: _Sides, walls: Walls) -> _Lines:

@@ -12,8 +12,7 @@ known, but where the bar is, beyond which there is nothing.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-
+import msgspec
 import numpy as np
 import shapely  # type: ignore[import-untyped]
 
@@ -31,8 +30,7 @@ _AHEAD = 0.87
 _BAR_CORNERS = 256
 
 
-@dataclass(frozen=True, slots=True)
-class Contours:
+class Contours(msgspec.Struct, frozen=True):
     """
     Programmed walls with the groups that are looked at together.
 
@@ -49,8 +47,7 @@ class Contours:
     tolerance: float
 
 
-@dataclass(frozen=True, slots=True)
-class FinishedParts:
+class FinishedParts(msgspec.Struct, frozen=True):
     """
     The finished part of each group, groups side by side: everything of group k is shifted by pitch * k along X.
 
@@ -110,8 +107,7 @@ def finished_parts(contours: Contours) -> FinishedParts:
     return FinishedParts(polygon, is_open, gap, tangled, start, end, move, group, along, ahead, plane.pitch)
 
 
-@dataclass(frozen=True, slots=True)
-class _Plane:
+class _Plane(msgspec.Struct, frozen=True):
     """
     All groups side by side.
 
@@ -144,7 +140,7 @@ def _plane(contours: Contours) -> _Plane:
     known = ~np.isnan(curves.start[here] + curves.end[here])
     here, which = here[known], which[known]
     group = contours.group[which]
-    chosen = replace(curves[here], loop=group)
+    chosen = msgspec.structs.replace(curves[here], loop=group)
 
     parts = segments(chosen, contours.tolerance)
     reach = float(np.abs([parts.start.real, parts.start.imag, parts.end.real, parts.end.imag]).max(initial=1.0))
@@ -185,7 +181,7 @@ def _together(lines: list[Walls]) -> tuple[Walls, Rows]:
     """All these walls, those of one group together; and which each was when counted through."""
     group = np.concatenate([part.group for part in lines])
     order = np.argsort(group, kind="stable")
-    columns = (np.concatenate([getattr(part, name) for part in lines])[order] for name in Walls.__slots__)
+    columns = (np.concatenate([getattr(part, name) for part in lines])[order] for name in Walls.__struct_fields__)
     return Walls(*columns), order
 
 
@@ -218,7 +214,7 @@ def _standing(plane: _Plane, lines: Walls | None, asked: Mask, thinnest: float) 
     if lines is not None:
         walls, origin = _together([walls, lines])
         kept = asked[walls.group]
-        walls, origin = Walls(*(getattr(walls, name)[kept] for name in Walls.__slots__)), origin[kept]
+        walls, origin = Walls(*(getattr(walls, name)[kept] for name in Walls.__struct_fields__)), origin[kept]
     found = standing(walls, len(asked), thinnest)
     wall = origin[found.wall]
     of_curve = np.append(plane.move, np.full(len(origin), -1))[wall] >= 0

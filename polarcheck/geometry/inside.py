@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
+import msgspec
 import numpy as np
 import shapely  # type: ignore[import-untyped]
 
@@ -81,7 +80,7 @@ def _is_whole(part: FinishedParts, contour: Curves, loops: Rows, tolerance: floa
 def _retraced(contour: Curves, loops: Rows, tolerance: float) -> Floats:
     """How long each loop runs where it has run before, by other blocks [mm]."""
     here, group = members(contour.loop, loops)
-    chosen = replace(contour[here], loop=group)
+    chosen = msgspec.structs.replace(contour[here], loop=group)
     walls = segments(chosen[first_of_its_kind(chosen)], tolerance)
     lines = shapely.linestrings(coordinates(np.stack([walls.start, walls.end], axis=1)))
     every = shapely.multilinestrings(lines, indices=walls.loop)

@@ -8,8 +8,7 @@ tool does not fit between them. Floats in mm, plane points complex, x + 1j*c. Im
 
 from __future__ import annotations
 
-from dataclasses import replace
-
+import msgspec
 import numpy as np
 import shapely  # type: ignore[import-untyped]
 
@@ -43,7 +42,7 @@ def cuts_into_others(
     np.minimum.at(smallest, of_move[chosen], radius[chosen])
     order = np.argsort(group, kind="stable")
     smallest = np.where(np.isfinite(smallest), smallest, 0.0)
-    part = finished_parts(replace(contour, loop=loops[order], group=group[order], radius=smallest))
+    part = finished_parts(msgspec.structs.replace(contour, loop=loops[order], group=group[order], radius=smallest))
     tangled = loops[part.tangled[group]]
     ways = segments(path, contour.tolerance)
     ways = ways[of_move[ways.move] >= 0]
@@ -51,7 +50,7 @@ def cuts_into_others(
     for of_ramps, outline in ((False, part), (True, shortened(part, smallest))):
         some = ways[is_ramp[ways.move] == of_ramps]
         found.append(reached(outline, some, of_move[some.move], smallest, contour.tolerance))
-    cuts = Reached(*(np.concatenate([getattr(one, name) for one in found]) for name in Reached.__slots__))
+    cuts = Reached(*(np.concatenate([getattr(one, name) for one in found]) for name in Reached.__struct_fields__))
     return cuts[contour.curves.loop[cuts.wall] != path.loop[cuts.move]].worst(), tangled
 
 
@@ -65,7 +64,7 @@ def _together(curves: Curves, level: Rows, path: Curves, reach: float) -> tuple[
     several = np.bincount(number, minlength=len(of_level))[number] > 1
     if not several.any():
         return loops[several], loops[several]
-    fresh = first_of_its_kind(replace(curves, loop=number[which]))
+    fresh = first_of_its_kind(msgspec.structs.replace(curves, loop=number[which]))
     distinct = np.bincount(which[fresh], minlength=len(loops)) > 0
     several &= np.bincount(number[distinct], minlength=len(of_level))[number] > 1
     box = _joined_boxes(boxes(curves, first), path, loops)

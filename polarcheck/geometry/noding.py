@@ -8,8 +8,8 @@ that does is no contour, and its faces would grow with the square of its blocks.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
 
+import msgspec
 import numpy as np
 import shapely  # type: ignore[import-untyped]
 
@@ -25,8 +25,7 @@ _RUN, _BEND, _HALF_TURN = 16, np.pi / 4, 3.0
 _LEAST_AT_A_TIME, _PAIRS_AT_A_TIME = 16, 100_000
 
 
-@dataclass(frozen=True, slots=True)
-class Edges:
+class Edges(msgspec.Struct, frozen=True):
     """
     Parts of walls between nodes, in the order of the walls.
 
@@ -60,7 +59,7 @@ def noded(start: Points, end: Points, group: Rows) -> Edges:
         tangled |= left < 0
         keep_time()
     edges = _cut(walls, _joined(found), tangled)
-    return replace(edges, wall=long[edges.wall])
+    return msgspec.structs.replace(edges, wall=long[edges.wall])
 
 
 def _vertices(points: Points) -> tuple[Points, Rows]:
@@ -73,8 +72,7 @@ def _vertices(points: Points) -> tuple[Points, Rows]:
     return points[first], which
 
 
-@dataclass(frozen=True, slots=True)
-class _Walls:
+class _Walls(msgspec.Struct, frozen=True):
     """nodes: points [mm]; a, b: the nodes of both ends of each wall; group."""
 
     nodes: Points
@@ -86,8 +84,7 @@ class _Walls:
 # ---- which walls may meet ----
 
 
-@dataclass(frozen=True, slots=True)
-class _Runs:
+class _Runs(msgspec.Struct, frozen=True):
     """
     Walls that go on from each other and bend little, from `first` on, `size` of them.
 
@@ -212,8 +209,7 @@ def _beside(walls: _Walls, i: Rows, j: Rows) -> Mask:
 # ---- where they meet ----
 
 
-@dataclass(frozen=True, slots=True)
-class _Meetings:
+class _Meetings(msgspec.Struct, frozen=True):
     """
     What walls have in common.
 
@@ -233,7 +229,9 @@ class _Meetings:
 def _joined(parts: list[_Meetings]) -> _Meetings:
     none = np.zeros(0, np.int64)
     parts = [_Meetings(none, none, np.zeros(0), none, none, np.zeros((2, 0)), np.zeros((2, 0), np.int64)), *parts]
-    return _Meetings(*(np.concatenate([getattr(p, name) for p in parts], axis=-1) for name in _Meetings.__slots__))
+    return _Meetings(
+        *(np.concatenate([getattr(p, name) for p in parts], axis=-1) for name in _Meetings.__struct_fields__)
+    )
 
 
 def _meetings(walls: _Walls, i: Rows, j: Rows) -> _Meetings:

@@ -7,8 +7,7 @@ with the center that is programmed, so that a size is as exact as the program.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+import msgspec
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Points, Rows, States
@@ -20,8 +19,7 @@ from polarcheck.machines.modal import Motion
 _SAME = 10 * TOUCH
 
 
-@dataclass(frozen=True, slots=True)
-class Outline:
+class Outline(msgspec.Struct, frozen=True):
     """
     Lines and arcs with the part on their left, n of them, those of one chain in the order in which they run.
 

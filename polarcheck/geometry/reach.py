@@ -8,8 +8,7 @@ alone count: nobody knows what is there else. Floats in mm, plane points complex
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-
+import msgspec
 import numpy as np
 import shapely  # type: ignore[import-untyped]
 
@@ -25,8 +24,7 @@ _BATCH = 4096
 _CORNER = 1e-5
 
 
-@dataclass(frozen=True, slots=True)
-class Reached:
+class Reached(msgspec.Struct, frozen=True):
     """
     Pieces of way that cut, once for each wall that is cut at the place: k of them.
 
@@ -44,7 +42,7 @@ class Reached:
     place: Points
 
     def __getitem__(self, chosen: Rows | Mask) -> Reached:
-        return Reached(*(getattr(self, name)[chosen] for name in Reached.__slots__))
+        return Reached(*(getattr(self, name)[chosen] for name in Reached.__struct_fields__))
 
     def worst(self) -> Reached:
         """The deepest cut of each move."""
@@ -79,7 +77,7 @@ def reached(part: FinishedParts, ways: Segments, group: Rows, radius: Floats, to
         depth = radius[group[rows]] - np.where(shapely.intersects(solid[group[rows]], line), 0, aside)
         none = np.full(len(rows), -1)
         found.append(Reached(number[rows], ways.move[rows], group[rows], none, depth, aside, place))
-    cuts = Reached(*(np.concatenate([getattr(one, name) for one in found]) for name in Reached.__slots__))
+    cuts = Reached(*(np.concatenate([getattr(one, name) for one in found]) for name in Reached.__struct_fields__))
     return _with_walls(part, cuts)
 
 
@@ -95,7 +93,9 @@ def shortened(part: FinishedParts, radius: Floats) -> FinishedParts:
     kept = (high - low) * np.abs(way) > ZERO
     kept &= reach < total - reach
     columns = {name: getattr(part, name)[kept] for name in ("move", "group", "along", "ahead")}
-    return replace(part, start=(part.start + low * way)[kept], end=(part.start + high * way)[kept], **columns)
+    return msgspec.structs.replace(
+        part, start=(part.start + low * way)[kept], end=(part.start + high * way)[kept], **columns
+    )
 
 
 def endless(part: FinishedParts) -> Mask:
@@ -156,4 +156,4 @@ def _with_walls(part: FinishedParts, cuts: Reached) -> Reached:
     kept = part.group[wall] == cuts.group[cut]
     cut, wall = cut[kept], wall[kept]
     place = cuts.place - part.pitch * cuts.group
-    return replace(cuts[cut], wall=part.move[wall], place=place[cut])
+    return msgspec.structs.replace(cuts[cut], wall=part.move[wall], place=place[cut])

@@ -10,8 +10,7 @@ R reaches more, so that nothing is missing there.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-
+import msgspec
 import numpy as np
 import shapely  # type: ignore[import-untyped]
 
@@ -41,8 +40,7 @@ _PAIRS_AT_A_TIME, _PAIRS = 500_000, 50_000_000
 _SAMPLES, _POINTS = 8, 33
 
 
-@dataclass(frozen=True, slots=True)
-class Swept:
+class Swept(msgspec.Struct, frozen=True):
     """
     Where tools run, as straight pieces: start, end [mm], of which row of the program, and R of the cutter there [mm].
 
@@ -60,15 +58,14 @@ class Swept:
         return len(self.row)
 
     def __getitem__(self, rows: Rows | Mask) -> Swept:
-        return Swept(*(getattr(self, name)[rows] for name in Swept.__slots__))
+        return Swept(*(getattr(self, name)[rows] for name in Swept.__struct_fields__))
 
     def at_depth(self, z: Floats, program: Rows) -> Mask:
         """Whether each runs in that program at that Z or deeper; where one of the two is not known, it does."""
         return np.asarray((self.program == program) & ~(self.z > z + _ONE))
 
 
-@dataclass(frozen=True, slots=True)
-class Ribs:
+class Ribs(msgspec.Struct, frozen=True):
     """
     Ribs, k of them: the group, where it stands on the outline, how high it is, how wide at its foot [mm], and the row
     of the program with which the tool leaves it. given_up: groups that were not looked at any more, since so many tools
@@ -83,8 +80,7 @@ class Ribs:
     given_up: Rows
 
 
-@dataclass(frozen=True, slots=True)
-class _Samples:
+class _Samples(msgspec.Struct, frozen=True):
     """Points of an outline with the direction there, the part on its left; the corner that each is near, its group."""
 
     point: Points
@@ -96,7 +92,7 @@ class _Samples:
         return len(self.corner)
 
     def __getitem__(self, rows: Rows | Mask | slice) -> _Samples:
-        return _Samples(*(getattr(self, name)[rows] for name in _Samples.__slots__))
+        return _Samples(*(getattr(self, name)[rows] for name in _Samples.__struct_fields__))
 
 
 def ribs(
@@ -132,7 +128,7 @@ def ribs(
         pairs += compared
         if rib is not None:
             found.append((group, *rib))
-    return replace(_one_each(found, radius), given_up=np.unique(np.concatenate(given_up)))
+    return msgspec.structs.replace(_one_each(found, radius), given_up=np.unique(np.concatenate(given_up)))
 
 
 def _without_fins(part: FinishedParts, radius: Floats) -> FinishedParts:
@@ -148,7 +144,7 @@ def _without_fins(part: FinishedParts, radius: Floats) -> FinishedParts:
         thin = 2 * shapely.length(areas.maximum_inscribed_circle(pieces)) < radius[group]
         fins = pieces[thin & (shapely.distance(pieces, main) < _ONE) & (pieces != main)]
         polygon[group] = areas.difference(polygon[group], areas.union_all(fins, grid_size=GRID), grid_size=GRID)
-    return replace(part, polygon=polygon)
+    return msgspec.structs.replace(part, polygon=polygon)
 
 
 def _none() -> Ribs:

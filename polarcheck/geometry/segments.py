@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
@@ -20,8 +19,7 @@ ZERO = 1e-9
 _STUB = 1e-3
 
 
-@dataclass(frozen=True, slots=True)
-class Curves:
+class Curves(msgspec.Struct, frozen=True):
     """
     Curves of a contour or of a tool center path, n of them in the order in which they run.
 
@@ -40,11 +38,10 @@ class Curves:
         return len(self.row)
 
     def __getitem__(self, rows: Rows | Mask) -> Curves:
-        return Curves(*(getattr(self, name)[rows] for name in Curves.__slots__))
+        return Curves(*(getattr(self, name)[rows] for name in Curves.__struct_fields__))
 
 
-@dataclass(frozen=True, slots=True)
-class Segments:
+class Segments(msgspec.Struct, frozen=True):
     """Straight parts of moves, those of one loop together: start, end [mm], the move they are of, its loop."""
 
     start: Points

@@ -10,9 +10,9 @@ round, as the middle of a pocket, has been drilled, or falls out.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
+import msgspec
 import numpy as np
 import shapely  # type: ignore[import-untyped]
 
@@ -36,8 +36,7 @@ _CLOSING = 1.1
 _LONG, _EVEN = 6, 0.75
 
 
-@dataclass(frozen=True, slots=True)
-class Strip:
+class Strip(msgspec.Struct, frozen=True):
     """A strip: how thick it is, the row of the pass behind which it stands, and where."""
 
     thickness: float

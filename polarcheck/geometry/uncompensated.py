@@ -8,8 +8,7 @@ move cuts the part of each contour at its own Z or above it. Floats in mm, plane
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-
+import msgspec
 import numpy as np
 import shapely  # type: ignore[import-untyped]
 
@@ -56,14 +55,14 @@ def cuts_into_part(contour: Contours, loops: FlatLoops, bare: Bare) -> tuple[Rea
     kept = np.isin(groups.group, asked)
     number = np.searchsorted(asked, groups.group[kept])
     radius = radius[asked]
-    part = finished_parts(replace(contour, loop=groups.loop[kept], group=number, radius=radius))
+    part = finished_parts(msgspec.structs.replace(contour, loop=groups.loop[kept], group=number, radius=radius))
     tangled = groups.loop[kept][part.tangled[number]]
     ways, group = ways[near], np.searchsorted(asked, group[near])
     cuts = reached(shortened(part, radius), ways, group, radius, contour.tolerance)
     deep = ~bare.plunges[cuts.move] | (cuts.aside < radius[cuts.group] - contour.tolerance)
     depth = cuts.depth - radius[cuts.group] + bare.radius[cuts.move]
     deep &= (depth > contour.tolerance) & ~(endless(part)[cuts.group] & _begins_in(part, cuts, ways))
-    return replace(cuts, depth=depth)[deep].worst(), np.unique(tangled)
+    return msgspec.structs.replace(cuts, depth=depth)[deep].worst(), np.unique(tangled)
 
 
 def _begins_in(part: FinishedParts, cuts: Reached, ways: Segments) -> Mask:
@@ -74,8 +73,7 @@ def _begins_in(part: FinishedParts, cuts: Reached, ways: Segments) -> Mask:
     return np.asarray(beyond | shapely.intersects(part.polygon[cuts.group], points))
 
 
-@dataclass(frozen=True, slots=True)
-class _Groups:
+class _Groups(msgspec.Struct, frozen=True):
     """Groups of loops that bound one part: section and highest Z of each, the loops and their groups."""
 
     section: Rows
@@ -136,7 +134,7 @@ def _pairs(groups: _Groups, bare: Bare) -> tuple[Rows, Rows]:
 
 def _ways(bare: Bare, move: Rows, group: Rows, tolerance: float) -> tuple[Segments, Rows]:
     """The moves as straight ways, those of Z alone as points, and the group of each."""
-    curves = replace(bare.curves[move], loop=np.arange(len(move)))
+    curves = msgspec.structs.replace(bare.curves[move], loop=np.arange(len(move)))
     parts = segments(curves, tolerance)
     point = np.flatnonzero(bare.plunges[move])
     number = np.concatenate([parts.move, point])
@@ -152,7 +150,7 @@ def _comes_near(contour: Contours, groups: _Groups, ways: Segments, group: Rows,
     there any that is known outside of the box round all walls, and of the bar.
     """
     here, which = members(contour.curves.loop, groups.loop)
-    curves = replace(contour.curves[here], loop=groups.group[which])
+    curves = msgspec.structs.replace(contour.curves[here], loop=groups.group[which])
     box = boxes(curves, np.flatnonzero(np.diff(curves.loop, prepend=-1)))[:, group]
     inside = (ways.start.real >= box[0]) & (ways.start.real <= box[2])
     inside &= (ways.start.imag >= box[1]) & (ways.start.imag <= box[3])

@@ -6,6 +6,7 @@ from enum import Enum
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
+import msgspec
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Points, Rows, different
@@ -251,14 +252,13 @@ class Coverage:
         asked = np.flatnonzero(((members[level] > 1) | np.isin(level, level[self._winds])) & sure)
         if not len(asked):
             return []
-        from dataclasses import replace
 
         from polarcheck.geometry.closing import chords, may_leave_strips
 
         moves, loop = self.tool_center.moves, loop_of_row(self.trace)
         path = curves_of(moves, loop[moves.row], moves.known & np.isin(loop[moves.row], judged.number[asked]))
         path = path[np.argsort(level[asked][np.searchsorted(judged.number[asked], path.loop)], kind="stable")]
-        path = replace(path, loop=level[asked][np.searchsorted(judged.number[asked], path.loop)])
+        path = msgspec.structs.replace(path, loop=level[asked][np.searchsorted(judged.number[asked], path.loop)])
         radius = np.zeros(len(members))
         np.maximum.at(radius, level, judged.loops.radius)
         found = may_leave_strips(*chords(path, float(judged.loops.radius.min()) / 16), radius)
@@ -269,7 +269,6 @@ class Coverage:
         return self._judged.number if self._judged else np.zeros(0, np.int64)
 
     def _strips_of(self, level: Rows) -> list[Strip] | GivenUp:
-        from dataclasses import replace
 
         from polarcheck.geometry.finished_part import Contours, finished_parts
         from polarcheck.geometry.segments import segments
@@ -288,7 +287,7 @@ class Coverage:
             return []
         rows, _ = loops.rows()
         curves = loops.curves[rows]
-        walls = segments(replace(curves, loop=np.zeros(len(curves), np.int64)), tolerance)
+        walls = segments(msgspec.structs.replace(curves, loop=np.zeros(len(curves), np.int64)), tolerance)
         swept = self.swept[self.swept.at_depth(judged.z[level[:1]], judged.program[level[:1]])]
         row, left = curves.row[walls.move], loops.left[rows][walls.move]
         found = strips(part.polygon[0], walls, row, left, swept, float(radius[0]), bar)
