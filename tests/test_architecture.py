@@ -219,6 +219,38 @@ def test_what_reads_no_program_loads_no_numpy(arguments: list[str]) -> None:
     subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, cwd=PACKAGE.parent)
 
 
+#: What only findings, other options, many faces or drawings need; each takes longer than the check of a small file.
+LATE = (
+    *("shapely", "numpy.ma", "rich", "plotly", "ezdxf", "multiprocessing"),
+    *("polarcheck.geometry.faces", "polarcheck.geometry.contour", "polarcheck.geometry.finished_part"),
+    *("polarcheck.checking.message", "polarcheck.checking.repair", "polarcheck.checking.allows"),
+    *("polarcheck.checking.baseline", "polarcheck.checking.part", "polarcheck.checking.pool"),
+    *("polarcheck.execution.macro", "polarcheck.pictures", "polarcheck.fixes", "polarcheck.server"),
+)
+#: Modules of the package beside those of rules, of which each takes a third of a millisecond: 170 are what the path of
+#: a program with one compensated contour goes through, and a few more may come.
+MODULES_OF_A_SMALL_CHECK = 180
+
+
+def test_a_clean_check_of_a_small_program_loads_little() -> None:
+    code = (
+        "import sys, polarcheck.commands\n"
+        "sys.argv = ['polarcheck', 'check', 'sample_programs/hexagon.nc']\n"
+        "try:\n    polarcheck.commands.run()\nexcept SystemExit as end:\n    assert not end.code, end.code\n"
+        "print(*sys.modules, sep='\\n', file=sys.stderr)\n"
+    )
+    run = subprocess.run(
+        [sys.executable, "-c", code], check=True, capture_output=True, text=True, cwd=PACKAGE.parent, encoding="utf-8"
+    )
+    loaded = run.stderr.split()
+    assert "polarcheck.table.overcuts" in loaded
+    ours = {name.removeprefix("polarcheck.") for name in LATE if name.startswith("polarcheck.")}
+    assert ours <= set(modules(PACKAGE))
+    assert not set(LATE) & set(loaded)
+    own = [name for name in loaded if name.startswith("polarcheck.") and not name.startswith("polarcheck.rules.")]
+    assert len(own) <= MODULES_OF_A_SMALL_CHECK
+
+
 def test_no_control_is_named_in_code() -> None:
     """A difference between controls is data; only comments and docstrings name a control, as their source."""
     controls = ("fanuc", "haas", "gsk", "mitsubishi", "okuma", "mazak", "siemens", "citizen", "doosan", "lsis", "hurco")
