@@ -25,11 +25,11 @@ from polarcheck.reading.words import Text, read_words
 
 #: No control has a program or sequence number of so many digits; beyond it, values are only about right.
 _NUMBER_LIMIT = 1e15
-_SEQUENCE_NUMBER = re.compile(r"[\s/]*(?:/\s*\d\s*)?(?:[O:]\s*\d+\s*)?N\s*(\d+)", re.IGNORECASE)
+#: Compiled where they are looked for, since most programs jump nowhere.
+_SEQUENCE_NUMBER = r"[\s/]*(?:/\s*\d\s*)?(?:[O:]\s*\d+\s*)?N\s*(\d+)"
 #: A label: ANF: at the head of a block or behind its number, or a sequence name, N with letters.
-_LABEL = re.compile(
-    r"[\s/]*(?:/\s*\d\s*)?(?:N\s*\d+\s*)?(?:([A-Z_][A-Z0-9_]+)\s*:(?!=)|(N(?!OEX\b)[A-Z][A-Z0-9]{0,3})(?![A-Z0-9=]))",
-    re.IGNORECASE,
+_LABEL = (
+    r"[\s/]*(?:/\s*\d\s*)?(?:N\s*\d+\s*)?(?:([A-Z_][A-Z0-9_]+)\s*:(?!=)|(N(?!OEX\b)[A-Z][A-Z0-9]{0,3})(?![A-Z0-9=]))"
 )
 
 
@@ -127,8 +127,9 @@ class Programs:
         names = self.text.labels
         columns = (names.block.tolist(), names.start.tolist(), names.end.tolist())
         places = [(block, self.text.source.excerpt(*place).upper()) for block, *place in zip(*columns, strict=True)]
+        pattern = re.compile(_LABEL, re.IGNORECASE)
         for block in np.flatnonzero(self.text.blocks.is_macro).tolist():
-            found = _LABEL.match(block_text(self.text, block))
+            found = pattern.match(block_text(self.text, block))
             if found:
                 places.append((block, (found[1] or found[2]).upper()))
         labels: dict[int, dict[str, list[int]]] = {}
@@ -158,8 +159,9 @@ class Programs:
             for block, value in zip(text.words.block[numbered], text.words.value[numbered], strict=True)
             if value < _NUMBER_LIMIT
         ]
+        pattern = re.compile(_SEQUENCE_NUMBER, re.IGNORECASE)
         for block in np.flatnonzero(text.blocks.is_macro).tolist():
-            found = _SEQUENCE_NUMBER.match(block_text(text, block))
+            found = pattern.match(block_text(text, block))
             if found and len(found[1]) < 10:
                 places.append((block, int(found[1])))
         targets: dict[int, dict[int, list[int]]] = {}
