@@ -10,6 +10,9 @@ from numpy.typing import NDArray
 
 _Number = TypeVar("_Number", bound=np.generic)
 
+#: So many values are looked for one after the other, which is the fastest.
+_FEW = 4
+
 #: Whether: one bool per row, word, move or section.
 Mask: TypeAlias = NDArray[np.bool_]
 #: Values: NaN where one is not known.
@@ -43,7 +46,14 @@ def different(values: NDArray[_Number]) -> NDArray[_Number]:
 
 def is_among(values: NDArray[Any], wanted: Sequence[float | str]) -> Mask:
     """Which of these values are one of those wanted."""
-    if not len(wanted):
-        return np.zeros(np.shape(values), bool)
+    if len(wanted) <= _FEW:
+        found = np.zeros(np.shape(values), bool)
+        for one in wanted:
+            found |= values == one
+        return found
+    if values.dtype == np.uint8:
+        table = np.zeros(256, bool)
+        table[np.array(wanted, np.intp)] = True
+        return np.asarray(table[values])
     known = np.sort(np.array(wanted))
     return np.asarray(known[np.minimum(known.searchsorted(values), len(known) - 1)] == values)

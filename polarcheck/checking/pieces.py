@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Rows
+from polarcheck.arrays import Floats, Mask, Rows, is_among
 from polarcheck.checking.tables import Tables
 from polarcheck.errors import IsOneError
 from polarcheck.execution.programs import needs_flow, read_text
@@ -22,7 +22,7 @@ from polarcheck.machines.codes import modal_tables
 from polarcheck.machines.job import Job
 from polarcheck.machines.machine import Machine
 from polarcheck.reading.source import Bytes, Source
-from polarcheck.reading.stretches import can_be_parted, joined, only, read_stretch
+from polarcheck.reading.stretches import between, can_be_parted, joined, only, read_stretch
 from polarcheck.reading.words import Text
 from polarcheck.table.filling import happened
 from polarcheck.table.trace import Trace
@@ -104,7 +104,7 @@ def in_pieces(source: Source, machine: Machine, job: Job) -> Iterator[Piece]:
         ended = _ended(known, own, machine, job)
         if ended is not None:
             piece, carried = ended
-            pending = only(known, np.arange(len(known.blocks)) >= piece.own.stop)
+            pending = between(known, piece.own.stop, len(known.blocks))
             yield piece
 
 
@@ -132,7 +132,7 @@ def _ended(text: Text, own: int, machine: Machine, job: Job) -> tuple[Piece, Tex
         end = int(run.block[row])
         if text.blocks.start[end] - text.blocks.start[own] < SIZE // _LEAST_SHARE:
             continue
-        known = only(text, np.arange(len(text.blocks)) < _ahead(trace, row))
+        known = between(text, 0, _ahead(trace, row))
         tables = _tables(known, machine, job)
         of_piece: Trace = tables["trace"]
         kept = _still_counts(of_piece, end)
@@ -184,7 +184,7 @@ def _still_counts(trace: Trace, end: int) -> Mask:
     words = text.words
     before = np.arange(np.searchsorted(words.block, end))
     address = words.address[before]
-    is_of_move = np.isin(address, list(_OF_MOVES))
+    is_of_move = is_among(address, list(_OF_MOVES))
     for one in np.unique(address).tolist():
         kept[words.block[np.flatnonzero(address == one)[-1]]] = True
     others = before[~is_of_move]

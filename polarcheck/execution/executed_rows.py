@@ -9,7 +9,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from polarcheck.arrays import Mask, Rows, different, stretch
+from polarcheck.arrays import Mask, Rows, different, is_among, stretch
 from polarcheck.execution.run import Assigned, FlowFault, Remark, Run, is_code
 from polarcheck.execution.statement import Statement, Word
 from polarcheck.machines.axes import AXIS_LETTERS
@@ -141,7 +141,7 @@ class ExecutedRows:
         low, high = stretch(self.text.words.block, block, block + 1)
         index = np.arange(low, high)[self.kept[low:high]]
         if has_arguments:
-            index = index[np.isin(self.text.words.address[index], list(b"NG"))]
+            index = index[is_among(self.text.words.address[index], list(b"NG"))]
         self._add(index, np.zeros(len(index), np.int64), np.array([block], np.int64), depth)
         self._set_units(index)
 

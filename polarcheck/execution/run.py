@@ -8,7 +8,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from polarcheck.arrays import Mask, Rows
+from polarcheck.arrays import Mask, Rows, is_among
 from polarcheck.execution.kinds import FaultKind, RemarkKind
 from polarcheck.machines.codes import code_numbers, code_set
 from polarcheck.reading.words import Text, Words
@@ -139,7 +139,7 @@ def begins_program(words: Words) -> Mask:
     first = np.searchsorted(words.block, words.block[at])
     inside = at > first
     if np.any(inside):
-        before = np.append(0, np.cumsum(np.isin(words.address, list(b"N/"))))
-        is_end = (words.address[at - 1] == ord("M")) & np.isin(words.value[at - 1], _ENDS)
+        before = np.append(0, np.cumsum(is_among(words.address, list(b"N/"))))
+        is_end = (words.address[at - 1] == ord("M")) & is_among(words.value[at - 1], _ENDS)
         found[at] = (before[at] - before[first] == at - first) | (inside & is_end)
     return np.asarray(found)

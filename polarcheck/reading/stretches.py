@@ -13,7 +13,7 @@ import numpy as np
 from msgspec.structs import replace
 from numpy.typing import NDArray
 
-from polarcheck.arrays import Mask
+from polarcheck.arrays import Mask, stretch
 from polarcheck.reading.source import CTRL_Z, LF, Source, line_starts_of
 from polarcheck.reading.words import Blocks, Spans, Text, Words
 
@@ -23,6 +23,8 @@ _MARK = b"%\n"
 _SPANS = ("comments", "names", "strays", "foreign", "prose", "dots", "outside", "labels")
 #: Those with one element per comment.
 _OF_COMMENTS = ("unclosed", "nested")
+#: Those that are positions alone.
+_POSITIONS = ("tape_marks", "letters")
 
 
 def can_be_parted(source: Source) -> bool:
@@ -43,7 +45,7 @@ def read_stretch(source: Source, start: int, end: int, read: Callable[[Source], 
     data = mark.decode().encode(source.encoding) + source.excerpt(start, until).encode(source.encoding, "surrogatepass")
     text = read(replace(source, data=data, bom=b"", code=code, line_starts=line_starts_of(code)))
     if mark:
-        text = only(text, np.arange(len(text.blocks)) > 0)
+        text = between(text, 1, len(text.blocks))
     lines = int(np.searchsorted(source.line_starts, start, side="right")) - 1
     return _at_place(text, source, start - len(mark), lines - bool(mark))
 
@@ -69,20 +71,34 @@ def _at_place(text: Text, source: Source, by: int, lines: int) -> Text:
 def only(text: Text, kept: Mask) -> Text:
     """Some of the blocks of a text, with all that stands in them."""
     number = np.cumsum(kept) - 1
-    block = text.words.block
-    chosen = kept[block]
-    words = Words(*(column[chosen] for column in _columns(text.words)))
-    words = replace(words, block=number[words.block].astype(block.dtype))
+
+    def some(table: Any) -> Any:
+        chosen = kept[table.block]
+        found = type(table)(*(column[chosen] for column in _columns(table)))
+        return replace(found, block=number[found.block].astype(table.block.dtype))
+
     blocks = Blocks(*(column[kept] for column in _columns(text.blocks)))
-    spans: dict[str, Any] = {}
-    for name in _SPANS:
-        own: Spans = getattr(text, name)
-        in_kept = kept[own.block]
-        spans[name] = Spans(own.start[in_kept], own.end[in_kept], number[own.block[in_kept]])
     in_kept = kept[text.comments.block]
-    spans |= {name: getattr(text, name)[in_kept] for name in _OF_COMMENTS}
-    spans |= {name: _within(getattr(text, name), blocks) for name in ("tape_marks", "letters")}
-    return replace(text, words=words, blocks=blocks, **spans)
+    parts: dict[str, Any] = {name: some(getattr(text, name)) for name in ("words", *_SPANS)}
+    parts |= {name: getattr(text, name)[in_kept] for name in _OF_COMMENTS}
+    parts |= {name: _within(getattr(text, name), blocks) for name in _POSITIONS}
+    return replace(text, blocks=blocks, **parts)
+
+
+def between(text: Text, first: int, end: int) -> Text:
+    """The blocks of a text from `first` to before `end`, whose columns are those of the text: nothing is copied."""
+
+    def some(table: Any) -> Any:
+        low, high = stretch(table.block, first, end)
+        found = type(table)(*(column[low:high] for column in _columns(table)))
+        return replace(found, block=found.block - found.block.dtype.type(first)) if first else found
+
+    blocks = Blocks(*(column[first:end] for column in _columns(text.blocks)))
+    low, high = stretch(text.comments.block, first, end)
+    parts: dict[str, Any] = {name: some(getattr(text, name)) for name in ("words", *_SPANS)}
+    parts |= {name: getattr(text, name)[low:high] for name in _OF_COMMENTS}
+    parts |= {name: _within(getattr(text, name), blocks) for name in _POSITIONS}
+    return replace(text, blocks=blocks, **parts)
 
 
 def joined(first: Text, second: Text) -> Text:
@@ -94,7 +110,7 @@ def joined(first: Text, second: Text) -> Text:
         other = replace(other, block=other.block + other.block.dtype.type(by))
         together[name] = _both(getattr(first, name), other)
     together["blocks"] = _both(first.blocks, second.blocks)
-    for name in (*_OF_COMMENTS, "tape_marks", "letters"):
+    for name in (*_OF_COMMENTS, *_POSITIONS):
         together[name] = np.concatenate((getattr(first, name), getattr(second, name)))
     return replace(first, **together)
 

@@ -14,7 +14,7 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from polarcheck.arrays import Mask
+from polarcheck.arrays import Mask, is_among
 from polarcheck.reading.source import CR, LF, Bytes, Positions
 
 BLANKS = bytes(character for character in (*range(33), 0x7F, 0xA0) if character != LF)
@@ -228,7 +228,7 @@ def _line_comments(code: Bytes, lines: Positions, characters: str) -> list[Range
     """Comments of other dialects, from a character to the end of its line; not inside parentheses."""
     if not characters:
         return []
-    at = np.flatnonzero(np.isin(code, list(characters.encode("latin-1"))))
+    at = np.flatnonzero(is_among(code, list(characters.encode("latin-1"))))
     brackets = np.flatnonzero((code == _OPEN) | (code == _CLOSE) | (code == LF))
     inside = np.append(LF, code[brackets])[np.searchsorted(brackets, at)] == _OPEN
     remarks = _first_of_line(at[~inside], lines)

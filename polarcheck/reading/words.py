@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import re
+from functools import cached_property
 from typing import Any
 
 import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from polarcheck.arrays import Floats, Mask
+from polarcheck.arrays import Floats, Mask, is_among
 from polarcheck.reading.characters import KINDS, Character
 from polarcheck.reading.language_blocks import take_out
 from polarcheck.reading.letters import read_as_digits
@@ -32,7 +33,7 @@ _STATEMENTS = {b"GOTO": False, b"GO": True, b"DO": True, b"END": True, b"EN": Tr
 _BEGINS_STATEMENT = np.isin(np.arange(256), [letters[0] for letters in _STATEMENTS])
 
 
-class Words(msgspec.Struct, frozen=True):
+class Words(msgspec.Struct, frozen=True, dict=True):
     """
     The words of a file in order, one element each.
 
@@ -54,7 +55,7 @@ class Words(msgspec.Struct, frozen=True):
     def __len__(self) -> int:
         return len(self.address)
 
-    @property
+    @cached_property
     def is_unreadable(self) -> Mask:
         """The control cannot read the number; of a run of words without digits, as in prose, only the first."""
         bad = (self.fault != NumberFault.NONE) & (self.fault != NumberFault.WRONG_DASH)
@@ -294,7 +295,7 @@ def _without_others(marks: _Marks) -> tuple[_Marks, Positions, Mask, Positions]:
     before, follower = kind[others - 1], code[others + 1]
     kind[others[(code[others] == _COLON) & (before == Character.BREAK)]] = Character.LETTER  # stands for O
     kind[others[(code[others] == _STAR) & (kind[others + 1] == Character.BREAK)]] = Character.STRAY
-    commas = others[(code[others] == _COMMA) & np.isin(follower, list(b"CRAcra"))]
+    commas = others[(code[others] == _COMMA) & is_among(follower, list(b"CRAcra"))]
     kind[commas] = Character.COMMA
     start[commas + 1] = marks.at[commas]
     strays = np.flatnonzero(kind == Character.STRAY)
@@ -375,7 +376,7 @@ def _begins_statement(words: Words) -> Mask:
     bare = np.flatnonzero((words.fault == NumberFault.NO_DIGITS) & _BEGINS_STATEMENT[words.address])
     if len(bare):
         is_head = np.append(True, words.block[1:] != words.block[:-1])
-        is_head[1:] |= np.isin(words.address[:-1], list(b"N/"))
+        is_head[1:] |= is_among(words.address[:-1], list(b"N/"))
         bare = bare[is_head[bare]]
     for letters, has_number in _STATEMENTS.items():
         last = bare + len(letters) - 1

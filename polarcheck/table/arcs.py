@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Points, Rows
+from polarcheck.arrays import Floats, Mask, Points, Rows, is_among
 from polarcheck.geometry import plane
 from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.machines.modal import Motion
@@ -28,7 +28,7 @@ class Arcs:
     def in_force(self) -> Mask:
         """G2 or G3 is in force in the polar mode, so that axis words would be those of an arc."""
         trace = self.trace
-        return np.asarray(trace.in_polar & trace.uses_axes & np.isin(trace.state("motion"), (Motion.CW, Motion.CCW)))
+        return np.asarray(trace.in_polar & trace.uses_axes & is_among(trace.state("motion"), (Motion.CW, Motion.CCW)))
 
     @cached_property
     def by_radius(self) -> Mask:

@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from polarcheck.arrays import Floats, Mask, Rows, States
+from polarcheck.arrays import Floats, Mask, Rows, States, is_among
 from polarcheck.execution.programs import find_programs
 from polarcheck.execution.run import Run
 from polarcheck.machines.axes import FIRST_NAMED, NO_AXIS, NOT_NAMED
@@ -175,12 +175,35 @@ class Columns:
         for letter, indices, numbers in (("G", self.g_words, self.g_codes), ("M", self.m_words, self.m_codes)):
             asked = [word for word in words if word[0] == letter and " " not in word]
             if asked:
-                is_asked = code_set(asked)[numbers]
-                found.append(indices[is_asked & ~self._with_own_word if letter == "M" else is_asked])
+                found.append(self._of_codes(letter, code_set(asked)))
             found += [
                 indices[self._beside(word, indices, numbers)] for word in words if word[0] == letter and " " in word
             ]
         return np.concatenate(found)
+
+    def _of_codes(self, letter: str, asked: Mask) -> Rows:
+        """The G or M words, in order, whose codes are asked for (codes.code_set), and listed without another word."""
+        order, present, begins = self._by_code[letter]
+        found = [
+            order[begin:end] for begin, end in (begins[at : at + 2] for at in np.flatnonzero(asked[present]).tolist())
+        ]
+        if not found:
+            return order[:0]
+        at = found[0] if len(found) == 1 else np.sort(np.concatenate(found))
+        if letter == "G":
+            return self.g_words[at]
+        return self.m_words[at[~self._with_own_word[at]]]
+
+    @cached_property
+    def _by_code(self) -> dict[str, tuple[Rows, NDArray[np.int32], Rows]]:
+        """By letter the G or M words grouped by their codes, the codes that there are, and where each begins."""
+        found = {}
+        for letter, numbers in (("G", self.g_codes), ("M", self.m_codes)):
+            order = np.argsort(numbers.astype(np.int16), kind="stable")  # of small numbers in linear time
+            rising = numbers[order]
+            begins = np.flatnonzero(np.append(True, rising[1:] != rising[:-1])) if len(rising) else order
+            found[letter] = order, rising[begins], np.append(begins, len(order))
+        return found
 
     def _beside(self, word: str, indices: Rows, numbers: NDArray[np.int32]) -> Mask:
         """Per G or M word: it is the code of `M3 P12`, and that other word stands in its row."""
@@ -219,7 +242,7 @@ class Columns:
     def has_state(self, group: str, codes: Sequence[str]) -> Mask:
         """Whether the state of a modal group is one that these codes set."""
         _, _, state_of = self._modal
-        return np.isin(self.state(group), [state_of[code(word)] for word in codes])
+        return is_among(self.state(group), [state_of[code(word)] for word in codes])
 
     def sets(self, group: str) -> Mask:
         """Whether a row has a code of the group."""

@@ -15,7 +15,7 @@ from functools import cached_property
 import msgspec
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Rows
+from polarcheck.arrays import Floats, Mask, Rows, is_among
 from polarcheck.geometry import polar, slowed
 from polarcheck.geometry.tolerances import SHARE, ZERO
 from polarcheck.machines.modal import FeedMode, Motion
@@ -158,7 +158,7 @@ class Dynamics:
         time = np.asarray(np.bincount(self.moves.row, of_moves, minlength=len(trace)), np.float64)
         switches = trace.enters | trace.leaves
         rest = np.flatnonzero(~self.on_path & ~switches & (trace.moves | self.dwells | self._returns))
-        at_feed = np.isin(trace.motion[rest], (Motion.LINE, Motion.CW, Motion.CCW))
+        at_feed = is_among(trace.motion[rest], (Motion.LINE, Motion.CW, Motion.CCW))
         time[rest] = np.where(at_feed, self._time_of_way(rest), np.nan)
         rapids = rest[trace.motion[rest] == Motion.RAPID]
         time[rapids] = self._time_of_rapids(rapids)

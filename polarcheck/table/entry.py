@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask
+from polarcheck.arrays import Floats, Mask, is_among
 from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.machines.modal import STATES
 from polarcheck.table.filling import happened
@@ -73,7 +73,7 @@ class Entry:
         codes = [code for group in _BESIDE_D for key in STATES[group] for code in machine.codes(key)]
         codes += [code for name in m_codes.__struct_fields__ for code in getattr(m_codes, name)]
         plain = trace.words_at(trace.code_indices(*codes))
-        has_other_code = trace.with_words(np.isin(trace.run.words.address, list(b"GM")) & ~plain)
+        has_other_code = trace.with_words(is_among(trace.run.words.address, list(b"GM")) & ~plain)
         calls = (
             trace.means_cutter_by_d
             & trace.consists_of("D", *_WORDS_BESIDE_D, *machine.polar.rotary_words)

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import msgspec
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Points
+from polarcheck.arrays import Floats, Mask, Points, is_among
 from polarcheck.table.filling import fill_down, positions
 from polarcheck.table.virtual_axis import VirtualAxis
 
@@ -74,7 +74,7 @@ def find_frames(columns: VirtualAxis, x_factor: Floats, in_polar: Mask) -> Frame
     written = columns.has(own.angle_word)
     # About X or Y nothing turns within the plane; and another plane than that of the mode is turned in none.
     lost |= turns & ~written & (columns.has("X") | columns.has_virtual_word)
-    lost |= turns & in_polar & np.isin(columns.state("plane"), _OTHER_PLANES)
+    lost |= turns & in_polar & is_among(columns.state("plane"), _OTHER_PLANES)
     angle = _or_nothing(np.where(written, columns.word(own.angle_word), columns.word("Z")), written | columns.has("Z"))
     virtual = columns.of_virtual_axis(columns.length_of) * (
         0.5 if polar.virtual_axis_programming == "diameter" else 1.0

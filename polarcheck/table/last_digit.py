@@ -26,7 +26,9 @@ def half_of_last_digit(trace: Trace) -> Points:
 def _last_digit(trace: Trace, words: Rows) -> Floats:
     """Of these words the finest digit in each section, per row."""
     section = trace.section[trace.run.row[words]]
-    decimals = np.zeros(len(trace.sections) + 1, np.int64)
-    np.maximum.at(decimals, section, np.where(section >= 0, trace.run.words.decimals[words], 0))
-    written, least = decimals[trace.section], trace.least_increment
-    return np.where(written > 0, np.minimum(10.0**-written, _COARSEST * least), least)
+    own = trace.run.words.decimals[words]
+    decimals = np.zeros(len(trace.sections) + 1, own.dtype)
+    np.maximum.at(decimals, section, np.where(section >= 0, own, 0))
+    finest, least = 10.0**-decimals, trace.least_increment
+    is_written = (decimals > 0)[trace.section]
+    return np.where(is_written, np.minimum(finest[trace.section], _COARSEST * least), least)

@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Rows
+from polarcheck.arrays import Floats, Mask, Rows, is_among
 from polarcheck.machines.modal import Units
 from polarcheck.table.called_tools import CalledTools
 from polarcheck.table.filling import fill_down
@@ -25,7 +25,7 @@ class Lengths(CalledTools):
         """Per word: the end, the center or the radius of a move, or the infeed beside G12.1."""
         words = self.run.words
         mode = self.machine.polar
-        is_length = np.isin(words.address, [*b"XYZUVWIJKR", *map(self.machine.address_number, mode.axis_addresses)])
+        is_length = is_among(words.address, [*b"XYZUVWIJKR", *map(self.machine.address_number, mode.axis_addresses)])
         is_offset_number = (words.address == ord("H")) & self.switches_length_offset[self.run.row]
         moves = self.uses_axes & ~self.in_cycle
         found = np.asarray(is_length & ~is_offset_number & moves[self.run.row])

@@ -141,7 +141,7 @@ class OtherMode:
         begins = self.trace.mask_of(switch.rows)
         ends = self._ends(switch)
         axes = {axis for profile in switch.known_by for axis in profile.machine.polar.virtual_axes}
-        at_feed = np.isin(self.trace.motion, (Motion.LINE, Motion.CW, Motion.CCW))
+        at_feed = is_among(self.trace.motion, (Motion.LINE, Motion.CW, Motion.CCW))
         at_feed |= self._has(code for profile in switch.known_by for code in profile.machine.control.motion_codes)
         return begins, at_feed & self.trace.has(*axes) & self._within(begins, ends), ends
 

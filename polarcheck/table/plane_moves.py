@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Points, States
+from polarcheck.arrays import Floats, Mask, Points, States, is_among
 from polarcheck.geometry import polar
 from polarcheck.geometry.tolerances import ZERO
 from polarcheck.machines.modal import Distance, Motion
@@ -63,7 +63,7 @@ class PlaneMoves(Positions):
     @cached_property
     def is_arc(self) -> Mask:
         """An arc on the polar plane."""
-        return self.in_polar & self.moves_plane & np.isin(self.motion, (Motion.CW, Motion.CCW))
+        return self.in_polar & self.moves_plane & is_among(self.motion, (Motion.CW, Motion.CCW))
 
     @cached_property
     def travels(self) -> Mask:

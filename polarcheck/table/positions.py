@@ -10,7 +10,7 @@ from functools import cached_property
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Points, Rows, States
+from polarcheck.arrays import Floats, Mask, Points, Rows, States, is_among
 from polarcheck.machines.axes import INCREMENTS
 from polarcheck.machines.code_lists import numbers
 from polarcheck.machines.modal import Motion
@@ -33,7 +33,7 @@ class Positions(VirtualAxis):
     @cached_property
     def moves_plane(self) -> Mask:
         """Programs the linear or the virtual axis, an arc by its center alone included."""
-        is_arc = np.isin(self.state("motion"), (Motion.CW, Motion.CCW))
+        is_arc = is_among(self.state("motion"), (Motion.CW, Motion.CCW))
         axes = self.programs_linear_axis | self.programs_virtual_axis
         return self.uses_axes & (axes | (is_arc & self.has("I", "J", "K") & ~self.programs_z)) & ~self.switches_on
 
@@ -62,7 +62,7 @@ class Positions(VirtualAxis):
     def sections(self) -> Sections:
         """The polar sections."""
         m_codes = self.machine.m_codes
-        cutting = np.isin(self.motion, (Motion.LINE, Motion.CW, Motion.CCW))
+        cutting = is_among(self.motion, (Motion.LINE, Motion.CW, Motion.CCW))
         marks = Marks(
             on=self.switches_on & ~self.ends_mode,
             off=self.ends_mode,

@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from polarcheck.arrays import Mask, Rows
+from polarcheck.arrays import Mask, Rows, is_among
 from polarcheck.machines.code_lists import is_code
 from polarcheck.machines.modal import FeedMode, Motion, Side
 from polarcheck.table.filling import before, fill_down, happened, last_row
@@ -55,12 +55,12 @@ class Procedure:
         """Moves of the virtual axis at feed outside sections."""
         trace, mode = self.trace, self.trace.machine.polar
         turns = trace.has(mode.virtual_axis, mode.virtual_axis_incremental) & (trace.section < 0)
-        return np.asarray(turns & np.isin(trace.motion, _AT_FEED))
+        return np.asarray(turns & is_among(trace.motion, _AT_FEED))
 
     @property
     def _is_arc(self) -> Mask:
         """Arcs, where the virtual axis is the rotary one: a Y axis that moves on arcs is a real one."""
-        return np.isin(self.trace.motion, (Motion.CW, Motion.CCW)) & self._is_rotary
+        return is_among(self.trace.motion, (Motion.CW, Motion.CCW)) & self._is_rotary
 
     @property
     def _is_rotary(self) -> bool:
@@ -89,7 +89,7 @@ class Procedure:
         if not self._is_rotary:
             return np.full(len(trace), -1)
         plane = turns & ~self._is_arc
-        along_x = np.isin(trace.motion, _AT_FEED) & trace.has("X", "U")
+        along_x = is_among(trace.motion, _AT_FEED) & trace.has("X", "U")
         turning, moving = (before(_count(mask, stops), trace.starts, 0) for mask in (plane, along_x))
         first = _first(plane, stops, trace.starts)
         is_contour = (turning >= _MOVES_OF_CONTOUR) & (moving > 0) & ~self._is_angle(plane, stops)
@@ -135,7 +135,7 @@ class Procedure:
         takes = (trace.has("S") & ~trace.sets_coordinates) | trace.run.unknown
         is_own = (is_speed & (following | running)) | trace.run.unknown
         given = fill_down(takes & is_own, takes | trace.starts, False).astype(bool)
-        ends = np.isin(trace.motion, _AT_FEED) | trace.codes(*codes.live_tool_off) | trace.ends_program
+        ends = is_among(trace.motion, _AT_FEED) | trace.codes(*codes.live_tool_off) | trace.ends_program
         until = np.append(np.flatnonzero(ends), len(trace) - 1)[np.searchsorted(np.flatnonzero(ends), rows)]
         known = (trace.whole_program | trace.has_called_tool) & trace.anywhere_in_program(trace.enters)
         return np.asarray(started & ~given[until] & known)
@@ -191,7 +191,7 @@ class Procedure:
         trace = self.trace
         leads = trace.listed("thread_cutting", "threading_cycle", "feed_is_lead")
         threads = happened(leads, trace.sets("motion") | trace.starts)
-        at_feed = np.isin(trace.motion, _AT_FEED) & (trace.moves_plane | trace.moves_z) & ~self._turns
+        at_feed = is_among(trace.motion, _AT_FEED) & (trace.moves_plane | trace.moves_z) & ~self._turns
         cycle = (trace.motion == Motion.CYCLE) | (trace.listed("repetitive_cycle") & trace.has("F"))
         return np.asarray((trace.section < 0) & (at_feed | cycle) & ~threads)
 

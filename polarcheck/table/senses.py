@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Points, Rows, States
+from polarcheck.arrays import Floats, Mask, Points, Rows, States, is_among
 from polarcheck.geometry.plane import angle_between
 from polarcheck.machines.modal import Motion
 from polarcheck.table.arcs import Arcs
@@ -135,7 +135,7 @@ class Senses:
 def _tangents(start: Points, end: Points, center: Points, motion: States) -> tuple[Points, Points]:
     """Directions at start and end; not of length one."""
     turning = np.where(motion == Motion.CCW, 1j, -1j)
-    is_arc = np.isin(motion, (Motion.CW, Motion.CCW)) & ~np.isnan(center)
+    is_arc = is_among(motion, (Motion.CW, Motion.CCW)) & ~np.isnan(center)
     return (
         np.where(is_arc, turning * (start - center), end - start),
         np.where(is_arc, turning * (end - center), end - start),

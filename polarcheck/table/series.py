@@ -5,7 +5,7 @@ from __future__ import annotations
 import msgspec
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Rows
+from polarcheck.arrays import Floats, Mask, Rows, is_among
 from polarcheck.machines.modal import Motion
 from polarcheck.table.trace import Trace
 
@@ -64,7 +64,7 @@ def find_series(trace: Trace) -> Series:
     start = trace.start.imag / written
     rows = np.flatnonzero(trace.on_plane & (np.abs(end - start) > _SAME))
     start, end, x, section = start[rows], end[rows], trace.x[rows] / written[rows], trace.section[rows]
-    is_arc = np.isin(trace.motion[rows], (Motion.CW, Motion.CCW))
+    is_arc = is_among(trace.motion[rows], (Motion.CW, Motion.CCW))
     direction = np.where(is_arc, 0, np.sign(end - start))
     begins = np.ones(len(rows), bool)
     begins[1:] = (direction[1:] != direction[:-1]) | (section[1:] != section[:-1])

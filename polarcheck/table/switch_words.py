@@ -55,8 +55,9 @@ class SwitchWords:
         """Per word: P that names no linear axis, or Q that names no rotary one, by the names of the axes."""
         words, axes = self.trace.run.words, self.trace.machine.control.axes
         found = self.names_axis & ~self.names_no_axis
+        at = np.flatnonzero(found)
         for address, kind in _KINDS.items():
-            found &= (words.address != ord(address)) | ~is_among(words.value, numbers_of(axes, kind))
+            found[at] &= (words.address[at] != ord(address)) | ~is_among(words.value[at], numbers_of(axes, kind))
         return np.asarray(found)
 
     @cached_property

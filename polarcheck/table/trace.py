@@ -11,7 +11,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Rows, States
+from polarcheck.arrays import Floats, Mask, Rows, States, is_among
 from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.machines.codes import code_numbers, code_set
 from polarcheck.machines.modal import FeedMode, Motion, Side
@@ -77,7 +77,7 @@ class Trace(ToolOffsets):
         e = e[self.run.words.fault[e] == NumberFault.NONE]
         if not len(e):
             return np.zeros(len(self), bool)
-        moves = np.isin(self.state("motion"), (Motion.RAPID, Motion.LINE)) & self.uses_axes & ~self.in_cycle
+        moves = is_among(self.state("motion"), (Motion.RAPID, Motion.LINE)) & self.uses_axes & ~self.in_cycle
         return np.asarray(self.with_words(e) & moves & ~self.switches_on)
 
     # ---- tool offset ----
@@ -153,12 +153,12 @@ class Trace(ToolOffsets):
     @cached_property
     def cuts(self) -> Mask:
         """A move on the polar plane at feed."""
-        return self.in_polar & self.moves_plane & np.isin(self.motion, (Motion.LINE, Motion.CW, Motion.CCW))
+        return self.in_polar & self.moves_plane & is_among(self.motion, (Motion.LINE, Motion.CW, Motion.CCW))
 
     @cached_property
     def moves_at_feed(self) -> Mask:
         """A move in the polar mode at feed, that of Z alone included."""
-        return self.in_polar & self.moves & np.isin(self.motion, (Motion.LINE, Motion.CW, Motion.CCW))
+        return self.in_polar & self.moves & is_among(self.motion, (Motion.LINE, Motion.CW, Motion.CCW))
 
     @cached_property
     def starts_up(self) -> Mask:
