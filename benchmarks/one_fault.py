@@ -87,6 +87,8 @@ FAULTS = {
         "inside-arc-smaller-than-radius",
         r"radius|goug|concave|interfer",
     ),
-    "G17 in the mode": Fault("G1 X-40.\n", "G17\nG1 X-40.\n", "plane-selected-in-polar", r"g17|plane"),
-    "G41 behind G42": Fault("C-20.\n", "G41 C-20.\n", "side-changed-in-offset-mode", r"g41|side|compensation"),
+    "G17 in the mode": Fault(
+        "G1 X-40.\n", "G17\nG1 X-40.\n", "plane-selected-in-polar", r"plane|g17.*(mode|polar|g12)"
+    ),
+    "G41 behind G42": Fault("C-20.\n", "G41 C-20.\n", "side-changed-in-offset-mode", r"g41|side|compensation|comp on"),
 }

@@ -19,7 +19,7 @@ WORD = re.compile(r"([A-Z])([-+]?[0-9.]+)")
 COMMENT = re.compile(r"\([^)]*\)")
 #: Codes of a lathe and of its builder, and what stands for each; nothing where that is left out.
 CODES = {
-    **dict.fromkeys(("G50", "G96", "G97", "M33", "M34", "M35"), ""),
+    **dict.fromkeys(("G50", "G96", "G97", "M13", "M33", "M34", "M35"), ""),
     "G12.1": "G17",
     "G13.1": "G18",
     "G98": "G94",
@@ -76,6 +76,8 @@ def _words(words: list[tuple[str, str]], tool: str, compensated: bool, sinumerik
             yield "X" + f"{float(value) / 2:.4f}".rstrip("0")
         elif address == "C":
             yield f"Y{value}"
+        elif address == "K":  # the center of arcs in the mode; those of turning have R
+            yield f"J{value}"
         elif address == "R" and sinumerik:
             yield f"CR={value}"
         else:

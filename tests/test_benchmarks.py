@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import sys
+from pathlib import Path
 
 import pytest
 from programs import ROOT, report_of, said
@@ -11,6 +12,8 @@ from programs import ROOT, report_of, said
 sys.path.insert(0, str(ROOT / "benchmarks"))
 
 import generate
+import peers
+from measuring import exponent, measured, table
 from one_fault import FAULTS, GOOD, TOOL
 from xy_twin import tool_table, twin
 
@@ -56,3 +59,40 @@ def test_a_long_step_is_milled_in_several_sections(monkeypatch: pytest.MonkeyPat
     assert max(end - begin for begin, end in zip(begins, ends, strict=True)) <= 3000
     found = report_of(text, "fanuc", *(f"{number}:radius=2,nose=0" for number in range(4, 13)))
     assert said(found) == []
+
+
+def test_processes_are_measured_in_turn() -> None:
+    commands = {"one": [sys.executable, "-c", "pass"], "other": [sys.executable, "-c", "raise SystemExit(3)"]}
+    taken = measured(commands, 1)
+    assert [one.status for one in taken.values()] == [0, 3]
+    assert all(one.cpu > 0 and one.clock > 0 and one.peak > 1e6 for one in taken.values())
+
+
+def test_a_table_is_one_of_markdown() -> None:
+    assert table(["reader", "s"], [["one", "2"]]) == "| reader | s |\n| --- | ---: |\n| one | 2 |\n"
+
+
+@pytest.mark.parametrize(("power", "expected"), [(1, 1.0), (2, 2.0), (0, 0.0)])
+def test_the_exponent_is_that_of_the_growth(power: int, expected: float) -> None:
+    assert exponent([1e3, 1e4, 1e6], [5 * size**power for size in (1e3, 1e4, 1e6)]) == pytest.approx(expected)
+
+
+def test_what_a_reader_repeats_is_no_message(tmp_path: Path) -> None:
+    path = tmp_path / "one.nc"
+    path.write_text("G1 X1.\nG13.1\n")
+    said = "executing\n   12 N..... STRAIGHT_FEED(1)\nG1 X1.\n2 errors, 3 warnings\n  7 warning no G13.1 in line 4"
+    assert peers._messages(said, path) == {"executing", "warning no G13.1 in"}
+
+
+def test_the_page_is_written_without_any_peer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("RS274", "PEERS_PYTHON", "NCTAB", "NCPLOT7PY"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.setattr(peers, "FAULTS", dict([next(iter(FAULTS.items()))]))
+    page = tmp_path / "page.md"
+    monkeypatch.setattr(sys, "argv", ["peers", "--blocks", "1000", "--rounds", "1", "--quick", "-o", str(page)])
+    peers.main()
+    text = page.read_text()
+    assert "Not installed there, and left out: LinuxCNC rs274, nc-gcode-interpreter, pygcode, nctab, ncplot7py." in text
+    assert re.search(r"^\| polarcheck \| nothing \| 1 \| 1 \|$", text, re.MULTILINE)
+    assert text.count("1 file, 1,000 blocks, in one process") == 2

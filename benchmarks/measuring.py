@@ -1,0 +1,70 @@
+"""Whole processes in turn, by what the operating system says of them; tables of Markdown."""
+
+from __future__ import annotations
+
+import math
+import os
+import statistics
+import subprocess
+import time
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+ROOT = Path(__file__).resolve().parent.parent
+#: Code of Python is compiled once, as at a user's, and output has one width.
+_ENVIRONMENT = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"} | {
+    "COLUMNS": "200"
+}
+
+
+class Taken(NamedTuple):
+    """What a process has taken: time of the processor and on the clock [s], peak memory [bytes], and its exit code."""
+
+    cpu: float
+    clock: float
+    peak: int
+    status: int
+
+
+def run(command: Sequence[str]) -> Taken:
+    """Run a process to its end. Its peak is that of what starts it at least, which loads little for that reason."""
+    began = time.perf_counter()
+    running = subprocess.Popen(
+        command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, cwd=ROOT, env=_ENVIRONMENT
+    )
+    _, status, used = os.wait4(running.pid, 0)
+    running.returncode = os.waitstatus_to_exitcode(status)
+    return Taken(used.ru_utime + used.ru_stime, time.perf_counter() - began, used.ru_maxrss * 1024, running.returncode)
+
+
+def measured(commands: Mapping[str, Sequence[str]], rounds: int) -> dict[str, Taken]:
+    """The median of each figure over the rounds; in a round each command runs once."""
+    taken: dict[str, list[Taken]] = {name: [] for name in commands}
+    for _ in range(rounds):
+        for name, command in commands.items():
+            taken[name].append(run(command))
+    return {name: _middle(runs) for name, runs in taken.items()}
+
+
+def _middle(runs: Sequence[Taken]) -> Taken:
+    cpu, clock, peak, status = (statistics.median(column) for column in zip(*runs, strict=True))
+    return Taken(cpu, clock, int(peak), int(status))
+
+
+def output(command: Sequence[str]) -> tuple[int, str]:
+    """The exit code and all that a process says."""
+    done = subprocess.run(command, capture_output=True, check=False, cwd=ROOT, env=_ENVIRONMENT)
+    return done.returncode, (done.stdout + done.stderr).decode("utf-8", "replace")
+
+
+def table(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    """A table of Markdown; all columns but the first are figures."""
+    lines = [heads, ["---", *["---:"] * (len(heads) - 1)], *rows]
+    return "".join(f"| {' | '.join(line)} |\n" for line in lines)
+
+
+def exponent(sizes: Sequence[float], values: Sequence[float]) -> float:
+    """How a value grows with the size, by its logarithms: 1 where twice the size takes twice as much."""
+    found = statistics.linear_regression([*map(math.log, sizes)], [*map(math.log, values)])
+    return found.slope
