@@ -200,27 +200,45 @@ def _fix(fix: Fix) -> str:
     return f"{fix.title} ({'--fix writes it' if fix.safe else 'look at it first: --diff --unsafe-fixes'})"
 
 
+class _Reason:
+    """What was not evaluated for one reason: the rules, the first places with their blocks, and how many more."""
+
+    def __init__(self) -> None:
+        self.rules: dict[str, None] = {}
+        self.places: dict[str, int] = {}
+        self.more = 0
+
+    def add(self, file: FileReport, group: Sequence[NotEvaluated]) -> None:
+        """What a file has of it; none of that is held on to, however many files there are."""
+        self.rules |= dict.fromkeys(missing.rule for missing in group)
+        blocks: dict[str, int] = {}
+        for missing in group:
+            place = f"{file.path}, channel {missing.channel}" if missing.channel else file.path
+            blocks[place] = max(missing.blocks, blocks.get(place, 0))
+        for place, count in blocks.items():
+            if len(self.places) < _PLACES:
+                self.places[place] = count
+            else:
+                self.more += 1
+
+
 def _not_evaluated(files: Iterable[FileReport], page: _Page) -> Iterator[str]:
     """One paragraph for each reason, whatever the number of rules that it silences."""
-    reasons: dict[str, list[tuple[str, NotEvaluated]]] = {}
+    reasons: dict[str, _Reason] = {}
     for file in files:
+        groups: dict[str, list[NotEvaluated]] = {}
         for missing in (one for one in file.not_evaluated if one.matters):
-            channel = f", channel {missing.channel}" if missing.channel else ""
-            reasons.setdefault(missing.reason, []).append((f"{file.path}{channel}", missing))
-    for reason, group in reasons.items():
+            groups.setdefault(missing.reason, []).append(missing)
+        for reason, group in groups.items():
+            reasons.setdefault(reason, _Reason()).add(file, group)
+    for reason, found in reasons.items():
         yield from page.heading("not evaluated", reason)
-        paths = list(dict.fromkeys(path for path, _ in group))
-        for path in paths[:_PLACES]:
-            yield from page.labelled("at", _place(path, [missing for its, missing in group if its == path]))
-        if len(paths) > _PLACES:
-            yield from page.labelled("", f"and in {counted(len(paths) - _PLACES, 'more file')}")
-        rules = dict.fromkeys(missing.rule for _, missing in group)
-        yield from page.labelled("rule" if len(rules) == 1 else "rules", ", ".join(rules))
+        for place, blocks in found.places.items():
+            yield from page.labelled("at", f"{place}, {counted(blocks, 'block')}")
+        if found.more:
+            yield from page.labelled("", f"and in {counted(found.more, 'more file')}")
+        yield from page.labelled("rule" if len(found.rules) == 1 else "rules", ", ".join(found.rules))
         yield ""
-
-
-def _place(path: str, group: Sequence[NotEvaluated]) -> str:
-    return f"{path}, {counted(max(missing.blocks for missing in group), 'block')}"
 
 
 def _is_listed(file: FileReport, report: Report) -> bool:
