@@ -7,24 +7,33 @@ import os
 import statistics
 import subprocess
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 ROOT = Path(__file__).resolve().parent.parent
 #: Code of Python is compiled once, as at a user's, and output has one width.
 _ENVIRONMENT = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"} | {
     "COLUMNS": "200"
 }
+#: What takes longer on the clock [s] varies less, and runs less often.
+SLOW = 10
+SLOW_ROUNDS = 3
 
 
 class Taken(NamedTuple):
-    """What a process has taken: time of the processor and on the clock [s], peak memory [bytes], and its exit code."""
+    """
+    What a process has taken: time of the processor and on the clock [s], peak memory [bytes], and its exit code.
+
+    runs: of how many these are the median.
+    """
 
     cpu: float
     clock: float
     peak: int
     status: int
+    runs: int = 1
 
 
 def run(command: Sequence[str]) -> Taken:
@@ -39,17 +48,28 @@ def run(command: Sequence[str]) -> Taken:
 
 
 def measured(commands: Mapping[str, Sequence[str]], rounds: int) -> dict[str, Taken]:
-    """The median of each figure over the rounds; in a round each command runs once."""
+    """The median of each figure over the rounds; in a round each command runs once, a slow one in the first few."""
     taken: dict[str, list[Taken]] = {name: [] for name in commands}
-    for _ in range(rounds):
+    for finished in range(rounds):
         for name, command in commands.items():
-            taken[name].append(run(command))
+            if finished < SLOW_ROUNDS or taken[name][0].clock < SLOW:
+                taken[name].append(run(command))
     return {name: _middle(runs) for name, runs in taken.items()}
 
 
 def _middle(runs: Sequence[Taken]) -> Taken:
-    cpu, clock, peak, status = (statistics.median(column) for column in zip(*runs, strict=True))
-    return Taken(cpu, clock, int(peak), int(status))
+    cpu, clock, peak, status, _ = (statistics.median(column) for column in zip(*runs, strict=True))
+    return Taken(cpu, clock, int(peak), int(status), len(runs))
+
+
+def apart(function: Callable[..., Any], *arguments: Any) -> Any:
+    """
+    The result of a function that runs in a process of its own.
+
+    A process inherits the peak of what starts it: what measures others must never have held much itself.
+    """
+    with ProcessPoolExecutor(1) as other:
+        return other.submit(function, *arguments).result()
 
 
 def output(command: Sequence[str]) -> tuple[int, str]:

@@ -22,7 +22,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import NamedTuple
 
-from measuring import ROOT, Taken, exponent, measured, output, run, table
+from measuring import ROOT, SLOW, SLOW_ROUNDS, Taken, apart, exponent, measured, output, run, table
 from one_fault import FAULTS, GOOD, TOOL
 from xy_twin import tool_table, twin
 
@@ -120,16 +120,21 @@ def generated(folder: Path, blocks: int) -> Path:
     return path
 
 
+def large_inputs(folder: Path, blocks: int) -> dict[str, Path]:
+    """The benchmark program and its twins."""
+    return inputs(folder, "large", generated(folder, blocks).read_text("ascii"))
+
+
 def speed(asked: argparse.Namespace, folder: Path) -> str:
     """Whole processes on one large program."""
     for kind, radius in (("mill", 0.0), ("compensated", 2.0)):
         (folder / f"{kind}.tbl").write_text(tool_table(radius))
-    paths = inputs(folder, "large", generated(folder, asked.blocks).read_text("ascii"))
+    paths = apart(large_inputs, folder, asked.blocks)
     readers = peers(asked, folder)
     taken = measured({name: [*peer.command, str(paths[peer.kind])] for name, peer in readers.items()}, asked.rounds)
     size = paths["lathe"].stat().st_size
     return table(
-        ["reader", "input", "CPU s", "clock s", "CPU to rs274", "peak MB", "peak per byte", "exit"],
+        ["reader", "input", "runs", "CPU s", "clock s", "CPU to rs274", "peak MB", "peak per byte", "exit"],
         [_row(name, readers[name], one, taken.get(readers[name].rs274), size) for name, one in taken.items()],
     )
 
@@ -137,7 +142,7 @@ def speed(asked: argparse.Namespace, folder: Path) -> str:
 def _row(name: str, peer: Peer, one: Taken, rs274: Taken | None, size: int) -> list[str]:
     beside = f"{one.cpu / rs274.cpu:.2f}" if rs274 else "-"
     figures = f"{one.cpu:.2f}", f"{one.clock:.2f}", beside, f"{one.peak / 1e6:.0f}", f"{one.peak / size:.0f}"
-    return [name, peer.kind, *figures, str(one.status)]
+    return [name, peer.kind, str(one.runs), *figures, str(one.status)]
 
 
 def small(asked: argparse.Namespace, folder: Path) -> str:
@@ -235,8 +240,8 @@ def page(asked: argparse.Namespace, parts: dict[str, str]) -> str:
         "Whole processes": f"""\
 The program is that of `benchmarks/generate.py`: turning, then polar sections with G41/G42, {asked.blocks:,} blocks.
 Readers of mill programs have the same path in X and Y (`benchmarks/xy_twin.py`), block for block; rs274 with G41/G42 is
-what polarcheck with a cutter is put beside. Of a reader that needs little memory the peak is that of what started
-it.{left_out}""",
+what polarcheck with a cutter is put beside. A reader that takes longer than {SLOW} s runs {SLOW_ROUNDS} times at most.
+Of one that needs less memory than what starts it, the peak is that of what starts it.{left_out}""",
         "Small files": "On the clock, since that is what somebody waits for at a commit.",
         "Growth": "Without a cutter; from 1,000,000 blocks on one run each.",
         "What is found": f"""\

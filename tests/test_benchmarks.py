@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import sys
 from pathlib import Path
@@ -12,6 +13,7 @@ from programs import ROOT, report_of, said
 sys.path.insert(0, str(ROOT / "benchmarks"))
 
 import generate
+import measuring
 import peers
 from measuring import exponent, measured, table
 from one_fault import FAULTS, GOOD, TOOL
@@ -66,6 +68,17 @@ def test_processes_are_measured_in_turn() -> None:
     taken = measured(commands, 1)
     assert [one.status for one in taken.values()] == [0, 3]
     assert all(one.cpu > 0 and one.clock > 0 and one.peak > 1e6 for one in taken.values())
+
+
+def test_what_is_slow_runs_less_often(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(measuring, "run", lambda command: measuring.Taken(1.0, float(command[0]), 1, 0))
+    taken = measured({"quick": ["1"], "slow": ["60"]}, 7)
+    assert [one.runs for one in taken.values()] == [7, 3]
+
+
+def test_what_needs_memory_runs_in_another_process() -> None:
+    assert measuring.apart(os.getpid) != os.getpid()
+    assert measuring.apart(int, "7") == 7
 
 
 def test_a_table_is_one_of_markdown() -> None:
