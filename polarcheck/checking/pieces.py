@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Rows, is_among
+from polarcheck.checking.silence import mentions_allow
 from polarcheck.checking.tables import Tables
 from polarcheck.errors import IsOneError
 from polarcheck.execution.programs import needs_flow, read_text
@@ -81,18 +82,24 @@ def in_pieces(source: Source, machine: Machine, job: Job) -> Iterator[Piece]:
     The pieces of a program, each of about SIZE characters, or more where a polar section is longer.
 
     Raises IsOneError as soon as it shows that the program is to be one table: with macros, jumps, calls, block skip,
-    channels, offsets that it sets itself, or text between programs.
+    channels, allow comments, offsets that it sets itself, or text between programs.
     """
     control = machine.control
     if control.native_words or machine.macro.language != "custom-macro" or job.part or not can_be_parted(source):
         raise IsOneError
-    if control.channel_mark and control.channel_mark.encode("latin-1") in source.code.tobytes():
+    if control.channel_mark and control.channel_mark.encode("latin-1") in source.data:
         raise IsOneError
+
+    def read(part: Source) -> Text:
+        if mentions_allow(part):
+            raise IsOneError
+        return read_text(part, machine)
+
     carried = pending = None
     at = 0
     while True:
         end = _line_start(source, at + SIZE)
-        text = read_stretch(source, at, end, lambda part: read_text(part, machine))
+        text = read_stretch(source, at, end, read)
         if needs_flow(text, machine.macro.flow_codes):
             raise IsOneError
         at, pending = end, _both(pending, text)

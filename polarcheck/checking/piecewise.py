@@ -17,7 +17,6 @@ from polarcheck.checking.not_evaluated import NAMED, SAID, Missing, told, uneval
 from polarcheck.checking.pieces import Piece, in_pieces
 from polarcheck.checking.polar_sections import polar_sections
 from polarcheck.checking.rule import Rule
-from polarcheck.checking.silence import mentions_allow
 from polarcheck.errors import IsOneError
 from polarcheck.machines.job import Job
 from polarcheck.machines.machine import Machine
@@ -53,12 +52,10 @@ def check_in_pieces(
     source: Source, machine: Machine, job: Job, rules: Sequence[Rule], severities: Mapping[str, str] | None
 ) -> tuple[FileReport, set[str]]:
     """
-    All findings in a program without allow comments, and the keys of the offsets that it calls.
+    All findings in a program, and the keys of the offsets that it calls.
 
     Raises IsOneError where all of the program has to be known at once.
     """
-    if mentions_allow(source):
-        raise IsOneError
     judged: list[_Judged] = []
     shown: dict[str, Rows] = {}
     for piece in in_pieces(source, machine, job):

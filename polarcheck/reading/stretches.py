@@ -29,8 +29,7 @@ _POSITIONS = ("tape_marks", "letters")
 
 def can_be_parted(source: Source) -> bool:
     """Whether lines of a file mean the same by themselves: they end with LF, nothing ends the file before its end."""
-    data = source.code.tobytes()
-    return LF in data and CTRL_Z not in data
+    return LF in source.data and CTRL_Z not in source.data
 
 
 def read_stretch(source: Source, start: int, end: int, read: Callable[[Source], Text]) -> Text:
