@@ -207,8 +207,8 @@ def findings(asked: argparse.Namespace, folder: Path) -> str:
             new = _messages(said, path) - _messages(sound, path)
             told += code != status or bool(new)
             right += any(re.search(fault.says, line, re.IGNORECASE) for line in new)
-        rows.append([name, "nothing" if not status else "objects", str(told), str(right)])
-    return table(["reader", "of the sound program", f"says something of {len(FAULTS)}", "names the fault of"], rows)
+        rows.append([name, str(status), str(told), str(right)])
+    return table(["reader", "exit without a fault", f"says something of {len(FAULTS)}", "names the fault of"], rows)
 
 
 def _messages(said: str, path: Path) -> set[str]:

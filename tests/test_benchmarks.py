@@ -107,5 +107,5 @@ def test_the_page_is_written_without_any_peer(tmp_path: Path, monkeypatch: pytes
     peers.main()
     text = page.read_text()
     assert "Not installed there, and left out: LinuxCNC rs274, nc-gcode-interpreter, pygcode, nctab, ncplot7py." in text
-    assert re.search(r"^\| polarcheck \| nothing \| 1 \| 1 \|$", text, re.MULTILINE)
+    assert re.search(r"^\| polarcheck \| 0 \| 1 \| 1 \|$", text, re.MULTILINE)
     assert text.count("1 file, 1,000 blocks, in one process") == 2
