@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, TypeAlias, TypeVar
 
 import numpy as np
@@ -23,6 +23,27 @@ Points: TypeAlias = NDArray[np.complex128]
 Rows: TypeAlias = NDArray[np.int64]
 #: Small whole numbers: a state or a kind per row, such as Motion or Side.
 States: TypeAlias = NDArray[np.int16]
+
+
+def repeated(value: _Number, count: int) -> NDArray[_Number]:
+    """
+    A column that holds one value throughout, and takes no more memory than that one; it cannot be written to.
+
+    Not for masks: NumPy compares those whose elements stand side by side many at a time.
+    """
+    return np.ndarray(count, value.dtype, value.tobytes(), 0, (0,))
+
+
+def is_one(values: NDArray[Any]) -> bool:
+    """Whether some values are all the same, or all NaN."""
+    return bool((values == values[0]).all() or (values != values).all())
+
+
+def computed(function: Callable[..., NDArray[_Number]], *columns: NDArray[Any]) -> NDArray[_Number]:
+    """What a function makes of columns row by row; once where all of them are `repeated`."""
+    if all(column.strides == (0,) for column in columns) and len(columns[0]):
+        return repeated(function(*(column[:1] for column in columns))[0], len(columns[0]))
+    return function(*columns)
 
 
 def stretch(column: NDArray[np.signedinteger[Any]], first: int, end: int) -> tuple[int, int]:

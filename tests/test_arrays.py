@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from polarcheck.arrays import different, is_among
+from polarcheck.arrays import computed, different, is_among, is_one, repeated
 
 NUMBERS = st.lists(st.one_of(st.integers(-5, 5).map(float), st.floats(allow_nan=False)), max_size=9)
 
@@ -24,3 +24,28 @@ def test_values_among_others_are_those_of_numpy(values: list[float], wanted: lis
 def test_texts_are_found_whatever_their_lengths() -> None:
     assert is_among(np.array(["a", "longer", ""]), ("longer than all", "longer")).tolist() == [False, True, False]
     assert is_among(np.array([], np.str_), ("a",)).tolist() == []
+
+
+def test_a_column_of_one_value_takes_the_memory_of_one_and_cannot_be_written_to() -> None:
+    column = repeated(np.float64(2.5), 1000)
+    assert column.tolist() == [2.5] * 1000
+    assert not column.flags.writeable
+    assert isinstance(column.base, bytes)
+    assert len(column.base) == 8
+    assert repeated(np.int64(3), 0).tolist() == []
+
+
+@given(NUMBERS, st.floats(allow_nan=False))
+def test_what_is_computed_once_is_what_is_computed_row_by_row(values: list[float], one: float) -> None:
+    column = np.array(values)
+    with np.errstate(all="ignore"):
+        expected = column + np.full(len(values), one)
+        assert computed(np.add, column, repeated(np.float64(one), len(values))).tolist() == expected.tolist()
+        both = [repeated(np.float64(one), 4)] * 2
+        assert computed(np.add, *both).tolist() == [one + one] * 4
+    assert computed(np.add, *both).strides == (0,)
+
+
+@given(st.lists(st.sampled_from((1.0, 2.0, float("nan"))), min_size=1, max_size=5))
+def test_values_are_one_where_all_are_the_same_or_unknown(values: list[float]) -> None:
+    assert is_one(np.array(values)) == (len({str(value) for value in values}) == 1)

@@ -82,6 +82,7 @@ class Engine:
         self.shown: dict[str, Rows] = {}
         self.used: set[Used] = set()
         self._hits: dict[str, Hits] = dict(known or {})
+        self._nothing: dict[int, Hits] = {}
         self._found: dict[str, _Listed | None] = {}
         self._asking: set[str] = set()
         self.heads = program_heads(self.trace)
@@ -91,10 +92,17 @@ class Engine:
         if rule.name not in self._hits:
             keep_going()
             try:
-                self._hits[rule.name] = rule.hits(self.tables)
+                self._hits[rule.name] = self._kept(rule.hits(self.tables))
             except TooHardError as error:
                 self._give_up(rule, error)
         return self._hits[rule.name]
+
+    def _kept(self, hits: Hits) -> Hits:
+        """The hits as they are kept: most rules find nothing, and what they would have said of it is not needed."""
+        if hits.mask.any():
+            return hits
+        count = len(hits.mask)
+        return self._nothing.setdefault(count, Hits(np.zeros(count, np.bool_)))
 
     def _give_up(self, rule: Rule, error: TooHardError) -> None:
         self._hits[rule.name] = Hits(np.zeros(0, np.bool_))

@@ -8,7 +8,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from polarcheck.arrays import Mask, Rows, is_among
+from polarcheck.arrays import Mask, Rows, is_among, repeated
 from polarcheck.execution.kinds import FaultKind, RemarkKind
 from polarcheck.machines.codes import code_numbers, code_set
 from polarcheck.reading.words import Text, Words
@@ -115,7 +115,7 @@ def straight(text: Text, ends: Iterable[str]) -> Run:
         starts[row[begins_program(text.words)]] = True
         after = row[is_code(text.words, ends)] + 1
         starts[after[after < len(block)]] = True
-    return Run(text, text.words, row, block, starts, text.blocks.is_macro[block], np.zeros(len(block), np.int64))
+    return Run(text, text.words, row, block, starts, text.blocks.is_macro[block], repeated(np.int64(0), len(block)))
 
 
 def is_code(words: Words, codes: Iterable[str]) -> Mask:

@@ -161,7 +161,9 @@ def read_words(
     is_macro[_block_of(taken.statements, starts)] = True
     is_macro[table.words.block[_begins_statement(table.words)]] = True
     words = _only(table.words, ~is_macro[table.words.block])
-    blocks = Blocks(starts, np.append(breaks, len(code)), np.minimum(line, len(source.line_starts)), is_macro)
+    blocks = Blocks(
+        starts, np.append(breaks, breaks.dtype.type(len(code))), np.minimum(line, len(source.line_starts)), is_macro
+    )
 
     def spans(ranges: Ranges) -> Spans:
         return Spans(ranges.start, ranges.end, _block_of(ranges.start, starts))

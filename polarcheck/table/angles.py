@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask
+from polarcheck.arrays import Floats, Mask, repeated
 from polarcheck.machines.codes import code_set
 from polarcheck.table.series import Series, find_series
 from polarcheck.table.trace import Trace
@@ -84,7 +84,7 @@ class Angles:
         trace = self.trace
         may_be_angle = self.is_usual | self.in_series
         if not may_be_angle.any():
-            return np.full(len(trace), np.nan)
+            return repeated(np.float64(np.nan), len(trace))
         rows = np.flatnonzero(trace.anywhere_in_section(may_be_angle))
         section, virtual = trace.section[rows], np.where(may_be_angle[rows], np.nan, self.virtual_length[rows])
         farthest = np.zeros(len(trace.sections))

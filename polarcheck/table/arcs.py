@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Points, Rows, is_among
+from polarcheck.arrays import Floats, Mask, Points, Rows, is_among, repeated
 from polarcheck.geometry import plane
 from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.machines.modal import Motion
@@ -59,32 +59,42 @@ class Arcs:
 
     # ---- whether it is a circle ----
 
-    @cached_property
-    def _to_center(self) -> Points:
-        """I + jJ [mm]; what is not written is 0."""
+    def _to_center(self, rows: Rows) -> Points:
+        """I + jJ of some rows [mm]; what is not written is 0."""
         i, j = self.trace.to_center
-        return np.asarray(np.nan_to_num(i) + 1j * np.nan_to_num(j))
+        return np.asarray(np.nan_to_num(i[rows]) + 1j * np.nan_to_num(j[rows]))
+
+    def _of_arcs(self, rows: Rows, values: Floats) -> Floats:
+        """A column of the values of some rows; NaN for others."""
+        if not len(rows):
+            return repeated(np.float64(np.nan), len(self.trace))
+        column = np.full(len(self.trace), np.nan)
+        column[rows] = values
+        return column
 
     @cached_property
     def start_radius(self) -> Floats:
         """Distance of the start of an arc to its center by I and J [mm]; NaN for other rows."""
-        return np.where(self.by_center, np.abs(self._to_center), np.nan)
+        rows = np.flatnonzero(self.by_center)
+        return self._of_arcs(rows, np.abs(self._to_center(rows)))
 
     @cached_property
     def end_radius(self) -> Floats:
         """Distance of the end of an arc to its center by I and J [mm]; NaN for other rows and where it is not known."""
-        step = self.trace.end - self.trace.start
-        return np.where(self.by_center, np.abs(step - self._to_center), np.nan)
+        rows = np.flatnonzero(self.by_center)
+        return self._of_arcs(rows, np.abs(self.trace.end[rows] - self.trace.start[rows] - self._to_center(rows)))
 
     @cached_property
     def chord(self) -> Floats:
         """Distance from start to end of an arc by R [mm]; NaN for other rows and where it is not known."""
-        return np.where(self.by_radius, np.abs(self.trace.end - self.trace.start), np.nan)
+        rows = np.flatnonzero(self.by_radius)
+        return self._of_arcs(rows, np.abs(self.trace.end[rows] - self.trace.start[rows]))
 
     @cached_property
     def radius(self) -> Floats:
         """R of an arc as written, with its sign [mm]; NaN for other rows."""
-        return np.where(self.by_radius, self.trace.length_of(self.trace.machine.arcs.radius_word), np.nan)
+        rows = np.flatnonzero(self.by_radius)
+        return self._of_arcs(rows, self.trace.length_of(self.trace.machine.arcs.radius_word)[rows])
 
     @cached_property
     def is_off_plane(self) -> Mask:
@@ -121,10 +131,8 @@ class Arcs:
     def sweep(self) -> Floats:
         """Angle of each arc about its own center [deg], 360 for a full circle; NaN for other rows and unknown arcs."""
         trace, rows = self.trace, np.flatnonzero(self.trace.is_arc)
-        column = np.full(len(trace), np.nan)
         angle = plane.arc_sweep(trace.start[rows], trace.end[rows], trace.center[rows], trace.motion[rows])
-        column[rows] = np.abs(np.degrees(angle))
-        return column
+        return self._of_arcs(rows, np.abs(np.degrees(angle)))
 
     # ---- diameter or radius ----
 
@@ -142,7 +150,7 @@ class Arcs:
         if not len(arc):
             return np.zeros(len(trace), bool)
         tolerance = trace.machine.arcs.tolerance
-        to_center, step, other = self._to_center[arc], (trace.end - trace.start)[arc], self._step_otherwise[arc]
+        to_center, step, other = self._to_center(arc), trace.end[arc] - trace.start[arc], self._step_otherwise(arc)
         moves_x, moves_c = np.abs(step.real) > tolerance, np.abs(step.imag) > tolerance
         center, radius = (self.start_radius > ROUNDING)[arc], self.by_radius[arc]
         miss = np.abs(np.abs(to_center) - np.abs(step - to_center))
@@ -160,13 +168,12 @@ class Arcs:
         misread = (by_center | by_radius) & (count(closes | objects) == 0)
         return np.asarray((trace.section >= 0) & misread[trace.section])
 
-    @cached_property
-    def _step_otherwise(self) -> Points:
-        """From start to end [mm], were X in the mode the other of diameter and radius; X before G12.1 stays."""
+    def _step_otherwise(self, rows: Rows) -> Points:
+        """From start to end of some rows [mm], were X the other of diameter and radius; X before G12.1 stays."""
         trace = self.trace
-        factor = np.where(trace.x_factor < 1, 2.0, 0.5)
+        factor, start, end = np.where(trace.x_factor[rows] < 1, 2.0, 0.5), trace.start[rows], trace.end[rows]
         has_x = trace.has("X") & ~trace.is_step("X") & (trace.linear_axis == ord("X"))
         had_x = np.zeros(len(trace), bool)
         had_x[1:] = trace.given_in_section(has_x)[:-1]
-        x = trace.end.real * factor - trace.start.real * np.where(has_x & ~had_x, 1.0, factor)
-        return np.asarray(x + 1j * (trace.end - trace.start).imag)
+        x = end.real * factor - start.real * np.where((has_x & ~had_x)[rows], 1.0, factor)
+        return np.asarray(x + 1j * (end - start).imag)

@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, NamedTuple
 import msgspec
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Points, Rows, different
+from polarcheck.arrays import Floats, Mask, Points, Rows, computed, different, repeated
 from polarcheck.table.filling import before
 from polarcheck.table.overcuts import Overcuts, curves_of, loop_of_row
+from polarcheck.table.positions import NOWHERE
 from polarcheck.table.tool_center import ToolCenter
 from polarcheck.table.trace import Trace
 from polarcheck.time_limit import keep_time
@@ -30,6 +31,17 @@ class Left(NamedTuple):
     height: Floats
     width: Floats
     place: Points
+
+
+def _nothing_left(count: int) -> Left:
+    nothing = repeated(np.float64(0), count)
+    return Left(nothing, nothing, repeated(np.complex128(NOWHERE), count))
+
+
+def _to_fill(count: int) -> Left:
+    """Columns in which nothing is left so far."""
+    nothing = _nothing_left(count)
+    return Left(nothing.height.copy(), nothing.width.copy(), nothing.place.copy())
 
 
 class GivenUp(Enum):
@@ -123,14 +135,15 @@ class Coverage:
 
     @cached_property
     def _gaps(self) -> tuple[Floats, Points]:
-        length, begins = np.zeros(len(self.trace)), np.full(len(self.trace), complex(np.nan, np.nan))
         if self._parts is None:
-            return length, begins
+            nothing = _nothing_left(len(self.trace))
+            return nothing.height, nothing.place
         from polarcheck.geometry.closing import CLOSED, gaps_of
 
         judged, part, _ = self._parts
         is_open = np.flatnonzero(part.gap > CLOSED)
         to, of = gaps_of(judged.loops.some(is_open), part.gap[is_open])
+        length, begins = np.zeros(len(self.trace)), np.full(len(self.trace), NOWHERE)
         row = judged.loops.curves.row[of]
         length[row], begins[row] = part.gap[is_open], judged.loops.curves.start[to]
         return length, begins
@@ -145,17 +158,17 @@ class Coverage:
     @cached_property
     def _ribs(self) -> tuple[Left, Rows]:
         """The ribs, and the loops that were not looked at any more."""
-        count, none = len(self.trace), np.zeros(0, np.int64)
-        left = Left(np.zeros(count), np.zeros(count), np.full(count, complex(np.nan, np.nan)))
+        nothing, none = _nothing_left(len(self.trace)), np.zeros(0, np.int64)
         if self._parts is None:
-            return left, none
+            return nothing, none
         from polarcheck.geometry.closing import CLOSED
         from polarcheck.geometry.ribs import ribs
 
         judged, part, corners = self._parts
         corners = corners[~(part.open | part.tangled | (part.gap > CLOSED) | self._unsure(judged))[corners.loop]]
         if not len(corners.loop):
-            return left, none
+            return nothing, none
+        left = _to_fill(len(self.trace))
         found = ribs(part, corners, judged.loops.radius, self._own(judged.number), judged.z, judged.program, self.swept)
         left.height[found.row], left.width[found.row], left.place[found.row] = found.height, found.width, found.place
         return left, judged.number[found.given_up]
@@ -216,8 +229,7 @@ class Coverage:
     @cached_property
     def _strips(self) -> tuple[Left, Rows, Rows]:
         """The strips, the loops that cross too often to tell, and those beside paths that are too long for it."""
-        count = len(self.trace)
-        left = Left(np.zeros(count), np.zeros(count), np.full(count, complex(np.nan, np.nan)))
+        left = _to_fill(len(self.trace)) if self._levels else _nothing_left(len(self.trace))
         tangled, long = [np.zeros(0, np.int64)], [np.zeros(0, np.int64)]
         for level in self._levels:
             keep_time()
@@ -312,4 +324,4 @@ class Coverage:
     @cached_property
     def height(self) -> Floats:
         """Of what is left [mm], ribs and strips; 0 where nothing is."""
-        return np.maximum(self.ribs.height, self.strips.height)
+        return computed(np.maximum, self.ribs.height, self.strips.height)

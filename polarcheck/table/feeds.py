@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask
+from polarcheck.arrays import Floats, Mask, repeated
 from polarcheck.geometry.tolerances import SHARE
 from polarcheck.machines.modal import FeedMode, Units
 from polarcheck.table.filling import fill_down, happened
@@ -136,7 +136,7 @@ class Feeds:
         """
         trace, limit = self.trace, self.trace.machine.limits.c_acceleration
         if np.isnan(limit):
-            return np.full(len(trace), np.inf)
+            return repeated(np.float64(np.inf), len(trace))
         asked = self.tool_center.c_acceleration
         share = np.divide(limit, asked, out=np.ones(len(trace)), where=~(asked <= limit))
         return np.asarray(trace.feed * np.sqrt(share))

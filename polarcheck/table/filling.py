@@ -7,7 +7,7 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from polarcheck.arrays import Floats, Mask, Rows
+from polarcheck.arrays import Floats, Mask, Rows, is_one, repeated
 
 Scalar = TypeVar("Scalar", bound=np.generic)
 
@@ -20,6 +20,8 @@ def fill_down(values: NDArray[Scalar], written: Mask, before: object) -> NDArray
     start = np.array([before], values.dtype)
     at = np.flatnonzero(written)
     if len(at) * _SELDOM < len(values):
+        if len(at) and not at[0] and is_one(values[at]) and values.dtype != np.bool_:
+            return repeated(values[0], len(values))
         return np.repeat(np.concatenate((start, values[at])), np.diff(at, prepend=0, append=len(values)))
     last = np.maximum.accumulate(np.where(written, np.arange(1, len(values) + 1), 0))
     filled: NDArray[Scalar] = np.concatenate((start, values))[last]

@@ -73,7 +73,7 @@ def find_frames(columns: VirtualAxis, x_factor: Floats, in_polar: Mask) -> Frame
     ends = columns.starts | ((columns.switches_on | columns.switches_off) & own.ended_by_switch)
     written = columns.has(own.angle_word)
     # About X or Y nothing turns within the plane; and another plane than that of the mode is turned in none.
-    lost |= turns & ~written & (columns.has("X") | columns.has_virtual_word)
+    lost = lost | (turns & ~written & (columns.has("X") | columns.has_virtual_word))
     lost |= turns & in_polar & is_among(columns.state("plane"), _OTHER_PLANES)
     angle = _or_nothing(np.where(written, columns.word(own.angle_word), columns.word("Z")), written | columns.has("Z"))
     virtual = columns.of_virtual_axis(columns.length_of) * (

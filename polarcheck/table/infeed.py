@@ -25,7 +25,7 @@ from typing import NamedTuple
 import numpy as np
 from msgspec.structs import replace
 
-from polarcheck.arrays import Floats, Mask, Points, Rows, States
+from polarcheck.arrays import Floats, Mask, Points, Rows, States, repeated
 from polarcheck.geometry import enclosed, polar
 from polarcheck.geometry.compensation import ToolPath
 from polarcheck.machines.modal import Motion, Side
@@ -73,7 +73,7 @@ class Infeed:
         """E beside each G12.1 [mm, radius], without its sign and as it is written; NaN where there is none."""
         trace, word = self.trace, self.trace.machine.polar.infeed_word
         if not word:
-            return np.full(len(trace), np.nan)
+            return repeated(np.float64(np.nan), len(trace))
         return np.where(trace.enters, np.abs(trace.length_of(word)), np.nan)
 
     @cached_property
@@ -83,7 +83,10 @@ class Infeed:
 
         The control drops what is finer than its least increment, so that an E below that is none.
         """
-        return np.nan_to_num(np.floor(self.written / self.trace.least_step + CUT) * self.trace.least_step)
+        written, step = self.written, self.trace.least_step
+        if not np.any(written > 0):
+            return repeated(np.float64(0), len(written))
+        return np.nan_to_num(np.floor(written / step + CUT) * step)
 
     @cached_property
     def _begins(self) -> list[int]:
@@ -120,6 +123,8 @@ class Infeed:
         From the end of the contour behind each G12.1 with an E to its beginning [mm]; 0 where it is closed, NaN where
         there is no contour or a point of it is not known.
         """
+        if not self._contours:
+            return repeated(np.float64(np.nan), len(self.trace))
         gap = np.full(len(self.trace), np.nan)
         for row, (contour, closed) in self._contours.items():
             way = self.trace.end[contour] - self.trace.end[contour[:1]]
@@ -258,6 +263,8 @@ class Infeed:
     # ---- passes that do not fit ----
 
     def _counts(self, counts: dict[int, int]) -> Rows:
+        if not counts:
+            return repeated(np.int64(0), len(self.trace))
         column = np.zeros(len(self.trace), np.int64)
         column[list(counts)] = list(counts.values())
         return column

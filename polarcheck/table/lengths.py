@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Rows, is_among
+from polarcheck.arrays import Floats, Mask, Rows, computed, is_among
 from polarcheck.machines.modal import Units
 from polarcheck.table.called_tools import CalledTools
 from polarcheck.table.filling import fill_down
@@ -110,18 +110,23 @@ class Lengths(CalledTools):
 
     def length_of(self, address: str) -> Floats:
         """A word as a length [mm], as written: a diameter stays one."""
-        return self._column(f"length {address}", lambda: self._scatter(address, self._lengths) * self.scale)
+        return self._column(f"length {address}", lambda: self._length_of(address))
+
+    def _length_of(self, address: str) -> Floats:
+        if not len(self.word_indices(address)):
+            return self._scatter(address, self._lengths)
+        return self._scatter(address, self._lengths) * self.scale
 
     @cached_property
     def least_increment(self) -> Floats:
         """Per row: least input increment of lengths, in the units in force [mm or inch]."""
-        control = self.machine.control
-        return np.where(self.units == Units.INCH, control.least_increment_inch, control.least_increment)
+        least, of_inch = self.machine.control.least_increment, self.machine.control.least_increment_inch
+        return computed(lambda units: np.where(units == Units.INCH, of_inch, least), self.units)
 
     @cached_property
     def least_step(self) -> Floats:
         """Per row: the same [mm]."""
-        return self.least_increment * self.scale
+        return computed(np.multiply, self.least_increment, self.scale)
 
     @cached_property
     def _lengths(self) -> Floats:

@@ -13,7 +13,7 @@ from typing import TypeVar, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from polarcheck.arrays import Floats, Mask, Points, States, different, is_among
+from polarcheck.arrays import Floats, Mask, Points, States, computed, different, is_among, repeated
 from polarcheck.geometry import polar
 from polarcheck.machines.axes import AXES, INCREMENTS, numbers_of
 from polarcheck.machines.modal import Distance
@@ -70,7 +70,7 @@ class LinearAxis(Lengths):
         1, on the linear axis, where C turns the plane with it, where C is not known, and along another axis than X.
         """
         if self.machine.polar.zero_angle == "at-switch" or not self.switches_on.any():
-            return np.ones(len(self), np.complex128)
+            return repeated(np.complex128(1), len(self))
         axis, words = self.machine.polar.rotary_address, self.machine.polar.rotary_words
         referenced = self.listed("c_axis_reference") & self.has(*words)
         positioned = self.has(axis) & self.uses_axes & ~self.is_step(axis)
@@ -87,8 +87,9 @@ class LinearAxis(Lengths):
 
         0 on its negative side, too, where a section begins with C as it is (polar.c_angles).
         """
-        direction = self.c_direction
-        return np.where(direction.imag == 0, 0.0, np.degrees(np.angle(direction)))
+        return computed(
+            lambda direction: np.where(direction.imag == 0, 0.0, np.degrees(np.angle(direction))), self.c_direction
+        )
 
     @cached_property
     def on_sub_spindle(self) -> Mask:
@@ -124,7 +125,7 @@ class LinearAxis(Lengths):
         """Numbers that P and Q in the row give the linear and the rotary axis; those of the machine without them."""
         mode = self.machine.polar
         linear, rotary = (
-            np.where(np.isnan(word), float(own), word)
+            computed(lambda word, own=own: np.where(np.isnan(word), float(own), word), word)
             for word, own in ((self.word("P"), mode.linear_axis), (self.word("Q"), mode.rotary_axis))
         )
         return linear, rotary
@@ -136,10 +137,15 @@ class LinearAxis(Lengths):
         where one of them gives no such axis, or both give one, which is a finding.
         """
         mode, axes = self.machine.polar, self.machine.control.axes
-        p, q = self.axes_written
-        is_pair = is_among(p, numbers_of(axes, "linear")) & is_among(q, numbers_of(axes, "rotary")) & (p != q)
-        is_pair &= self.takes_axes
-        return np.where(is_pair, p, mode.linear_axis), np.where(is_pair, q, mode.rotary_axis)
+
+        def is_pair(p: Floats, q: Floats) -> Mask:
+            both = is_among(p, numbers_of(axes, "linear")) & is_among(q, numbers_of(axes, "rotary")) & (p != q)
+            return np.asarray(both & self.takes_axes)
+
+        return (
+            computed(lambda p, q: np.where(is_pair(p, q), p, float(mode.linear_axis)), *self.axes_written),
+            computed(lambda p, q: np.where(is_pair(p, q), q, float(mode.rotary_axis)), *self.axes_written),
+        )
 
     @property
     def linear_number(self) -> Floats:
@@ -158,7 +164,7 @@ class LinearAxis(Lengths):
         addresses = {number: self.machine.linear_address_of(number) for number in numbers}
         other = self.enters_other_axes
         if set(addresses.values()) <= {"X"} and not other.any():
-            return np.full(len(self), _X, np.int16)
+            return repeated(np.int16(_X), len(self))
         axis = np.full(len(self), _X, np.int16)
         for number, address in addresses.items():
             axis[self.switches_on & (self.linear_number == number)] = ord(address) if address else _UNKNOWN
@@ -177,7 +183,7 @@ class LinearAxis(Lengths):
 
         P beside G12.1 says it by the number of the axis, else the machine (parameter 5460).
         """
-        return np.where(self.linear_is_known, self._named_axis, _X).astype(np.int16)
+        return computed(lambda named: np.where(named != _UNKNOWN, named, _X).astype(np.int16), self._named_axis)
 
     @cached_property
     def other_linear_axes(self) -> list[str]:

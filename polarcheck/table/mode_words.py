@@ -26,7 +26,7 @@ class ModeWords:
 
     def in_rows(self, rows: Mask) -> Mask:
         """Stands in one of these rows."""
-        return rows[self.trace.run.row]
+        return rows[self.trace.run.row] if rows.any() else self.trace.no_words
 
     def codes(self, *names: str) -> Mask:
         """One of these G or M codes; `G54-G59` is a range."""
@@ -104,7 +104,7 @@ class ModeWords:
         )
         sets = self.sets_coordinates
         shifts = self.listed("local_shift", "machine_coordinates", "work_offset", "work_offset_extended")
-        shifts |= self.listed("coordinate_preset")
+        shifts = shifts | self.listed("coordinate_preset")
         shifts |= sets & self.in_rows(trace.has(*trace.machine.axis_words, *trace.machine.control.named_axes))
         shifts |= self.listed("data_input") & self.in_rows(is_work_offset)
         shifts &= self.not_allowed

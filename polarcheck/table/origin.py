@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Rows
+from polarcheck.arrays import Floats, Mask, Rows, repeated
 from polarcheck.machines.code_lists import numbers
 from polarcheck.machines.offsets import steps_above
 from polarcheck.machines.own_language import shown
@@ -159,7 +159,7 @@ class Origin:
     def _added(self, number: int) -> tuple[Floats, Rows]:
         if np.any(self._settings.number == number):
             return self._x_of(number)
-        return np.zeros(len(self.trace)), np.full(len(self.trace), -1)
+        return repeated(np.float64(0), len(self.trace)), repeated(np.int64(-1), len(self.trace))
 
     def _set_in(self, row: int, setter: int) -> str:
         """What has set a work offset that counts in a row: `G10 on G54`, `G10 P0`, `#5221`, or the job."""
@@ -194,7 +194,7 @@ class Origin:
         trace = self.trace
         sets = trace.sets_coordinates & trace.has("X", "U") & (trace.section < 0)
         if not sets.any():
-            return np.zeros(len(trace))
+            return repeated(np.float64(0), len(trace))
         is_step = trace.incremental | ~trace.has("X")
         step = -np.where(trace.has("X"), trace.length_of("X"), trace.length_of("U"))
         moved = np.where(is_step, step, trace.x_before / trace.x_factor + step)
@@ -209,7 +209,7 @@ class Origin:
         """X of the frame in force; 0 in the mode, where frames are meant, and where nobody knows it."""
         trace = self.trace
         if trace.frames is None:
-            return np.zeros(len(trace))
+            return repeated(np.float64(0), len(trace))
         return np.where(trace.in_polar, 0.0, np.nan_to_num(trace.frames.shift.real / trace.x_factor))
 
     # ---- all of them ----
@@ -226,7 +226,11 @@ class Origin:
             or trace.run.assigned
             or (shifts.any() and (shifts & trace.has("X", "U")).any())
         )
-        return sum((part for part, _ in self._parts), np.zeros(len(trace))) if is_shifted else np.zeros(len(trace))
+        return (
+            sum((part for part, _ in self._parts), np.zeros(len(trace)))
+            if is_shifted
+            else repeated(np.float64(0), len(trace))
+        )
 
     @cached_property
     def _parts(self) -> tuple[tuple[Floats, Callable[[int], str]], ...]:

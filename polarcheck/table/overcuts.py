@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Points, Rows, different
+from polarcheck.arrays import Floats, Mask, Points, Rows, different, repeated
 from polarcheck.geometry.compensation import Phase
 from polarcheck.geometry.tolerances import ADJUSTMENT, ROUNDING
 from polarcheck.machines.modal import Side
@@ -327,11 +327,15 @@ class Overcuts:
     @cached_property
     def sweep_depth(self) -> Floats:
         """Of the cut into the contour by a ramp [mm], in loops that are not overcut anyway."""
+        if not len(self.sweeps.row):
+            return repeated(np.float64(0), len(self.trace))
         loop = self._loop_of_ramps
         return np.where(np.isin(loop, loop[self.depth > 0]), 0.0, self._depth_of(self.sweeps))
 
     def _depth_of(self, cuts: Cuts) -> Floats:
         """Per row the depth of its worst cut [mm]; 0 for none, and where the control objects anyway."""
+        if not len(cuts.row):
+            return repeated(np.float64(0), len(self.trace))
         column = np.zeros(len(self.trace))
         np.maximum.at(column, cuts.row, cuts.depth)
         return np.where(self.objected, 0.0, column)

@@ -10,7 +10,7 @@ from functools import cached_property
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Points, Rows, States, is_among
+from polarcheck.arrays import Floats, Mask, Points, Rows, States, is_among, repeated
 from polarcheck.machines.axes import INCREMENTS
 from polarcheck.machines.code_lists import numbers
 from polarcheck.machines.modal import Motion
@@ -169,7 +169,7 @@ class Positions(VirtualAxis):
         broken = written & np.isnan(value)
         return absolute, np.where(broken, np.nan, steps)
 
-    @cached_property
+    @property
     def _virtual_coordinates(self) -> tuple[Floats, Floats]:
         """
         The virtual axis as _programmed gives an axis.
@@ -188,7 +188,7 @@ class Positions(VirtualAxis):
         """Rows after which an axis is not where its words say: references, shifts, cycles, blocks not executed."""
         named = self.has(axis, increment)
         lost = self.listed("data_input", "reference_return", "machine_coordinates", "coordinate_preset")
-        lost |= self.sets_coordinates | (self.listed("local_shift") & (axis != "X"))
+        lost = lost | self.sets_coordinates | (self.listed("local_shift") & (axis != "X"))
         lost &= named
         work_offset = self.state("work_offset")
         lost |= self.sets("work_offset") & (work_offset != before(work_offset, self.starts, 0))
@@ -256,10 +256,9 @@ class Positions(VirtualAxis):
         Where the program has the center of C on the polar plane of each row [mm]: at the origin, or at the coordinates
         beside G12.1 where the control knows such (5450#2 PLS; GSK: offsets of the linear and of the rotary axis).
         """
-        shift = np.zeros(len(self), np.complex128)
         own, takes = self.machine.polar, set(self.machine.polar.words_beside_switch)
         if not len(self.sections) or not takes:
-            return shift
+            return repeated(np.complex128(0), len(self))
         enter = self.sections.enter
         of_section = np.zeros(len(enter) + 1, np.complex128)
         if "X" in takes:
@@ -269,9 +268,9 @@ class Positions(VirtualAxis):
         if shifts.any():
             virtual = self.of_virtual_axis(self.length_of) * _FACTOR[own.virtual_axis_programming]
             of_section[:-1] += np.where(shifts, 1j * np.nan_to_num(virtual[enter]), 0)
-        return of_section[self.section]
+        return of_section[self.section] if of_section.any() else repeated(np.complex128(0), len(self))
 
-    @cached_property
+    @property
     def _linear_coordinates(self) -> tuple[Floats, Floats]:
         """The linear axis of each row as _programmed gives an axis; X outside the mode."""
         is_x = ~self.enters & (self.linear_axis == ord("X"))
@@ -287,6 +286,8 @@ class Positions(VirtualAxis):
     @cached_property
     def local_shift(self) -> Floats:
         """X of the G52 in force, as written [mm], by which the coordinate of a place is less; NaN where not known."""
+        if not self._shifts.any():
+            return repeated(np.float64(0), len(self))
         shift = np.where(self.listed("local_shift"), self.length_of("X"), 0.0)
         return fill_down(shift, self._shifts | self.starts, 0.0).astype(np.float64)
 

@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from polarcheck.arrays import Mask, Rows, is_among
+from polarcheck.arrays import Mask, Rows, is_among, repeated
 from polarcheck.machines.code_lists import is_code
 from polarcheck.machines.modal import FeedMode, Motion, Side
 from polarcheck.table.filling import before, fill_down, happened, last_row
@@ -40,7 +40,7 @@ class Procedure:
         """
         trace = self.trace
         if not np.any(trace.switches_off & ~trace.leaves):
-            return np.full(len(trace), -1)
+            return repeated(np.int64(-1), len(trace))
         since = trace.changes_tool | trace.ends_mode | trace.starts
         turns = self._turns & ~happened(self._may_begin, since)
         turns &= trace.whole_program | trace.has_called_tool
@@ -87,7 +87,7 @@ class Procedure:
         """The first row of C at feed of a stretch of moves at feed up to the row, if it is a contour; else -1."""
         trace = self.trace
         if not self._is_rotary:
-            return np.full(len(trace), -1)
+            return repeated(np.int64(-1), len(trace))
         plane = turns & ~self._is_arc
         along_x = is_among(trace.motion, _AT_FEED) & trace.has("X", "U")
         turning, moving = (before(_count(mask, stops), trace.starts, 0) for mask in (plane, along_x))
@@ -148,7 +148,7 @@ class Procedure:
         """
         trace, codes = self.trace, self.trace.machine.m_codes
         if not codes.live_tool_on:
-            return np.full(len(trace), -1)
+            return repeated(np.int64(-1), len(trace))
         ends = trace.changes_tool | trace.ends_program
         starts_tool, stops_tool = trace.codes(*codes.live_tool_on), trace.codes(*codes.live_tool_off)
         ran = before(trace.live_tool, trace.starts, False)

@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Rows
+from polarcheck.arrays import Floats, Mask, Rows, computed, repeated
 from polarcheck.table.overcuts import Cuts, Overcuts
 from polarcheck.table.trace import Trace
 
@@ -118,9 +118,11 @@ class Slots:
     @cached_property
     def ramp_depth(self) -> Floats:
         """Of the cut of a ramp into its own contour, or that of another loop [mm]."""
-        return np.maximum(self.overcuts.sweep_depth, self.sweep_depth)
+        return computed(np.maximum, self.overcuts.sweep_depth, self.sweep_depth)
 
     def _depth_of(self, cuts: Cuts) -> Floats:
+        if not len(cuts.row):
+            return repeated(np.float64(0), len(self.trace))
         column = np.zeros(len(self.trace))
         np.maximum.at(column, cuts.row, cuts.depth)
         return column

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Rows
+from polarcheck.arrays import Floats, Mask, Rows, computed, is_one, repeated
 from polarcheck.execution.run import NO_VARIABLE
 from polarcheck.machines.offsets import place_in
 from polarcheck.table.offset_settings import NOSE, RADIUS, RADIUS_WEAR, X_WEAR, Settings, Steps, X, in_order, of_list
@@ -122,11 +122,11 @@ class ToolOffsets(RotaryAxis):
         table = np.full(self.offset_count, np.nan)
         for number, value in values.items():
             table[number] = value
-        return table[self.offset_number]
+        return repeated(table[0], len(self)) if is_one(table) else table[self.offset_number]
 
     @cached_property
     def _radius_given(self) -> Floats:
-        return np.where(np.isnan(self._radius_of_job), self._radius_of_comments, self._radius_of_job)
+        return computed(_first_known, self._radius_of_job, self._radius_of_comments)
 
     @cached_property
     def _radius_of_job(self) -> Floats:
@@ -248,7 +248,7 @@ class ToolOffsets(RotaryAxis):
 
     @cached_property
     def _nothing_set(self) -> _Set:
-        return _Set(np.full(len(self), -1), np.full(len(self), np.nan))
+        return _Set(repeated(np.int64(-1), len(self)), repeated(np.float64(np.nan), len(self)))
 
     def _numbers_in_force(self, chosen: Settings) -> list[int]:
         """The offsets of some settings that are in force anywhere."""
@@ -295,3 +295,7 @@ class ToolOffsets(RotaryAxis):
             changes = is_absolute | (geometry + wear != 0) | np.isnan(given)
             rows[here], values[here] = np.where(changes, steps.last[0], -1), given + geometry + wear
         return _Set(rows, values)
+
+
+def _first_known(one: Floats, other: Floats) -> Floats:
+    return np.where(np.isnan(one), other, one)

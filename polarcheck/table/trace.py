@@ -11,7 +11,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Rows, States, is_among
+from polarcheck.arrays import Floats, Mask, Rows, States, is_among, repeated
 from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.machines.codes import code_numbers, code_set
 from polarcheck.machines.modal import FeedMode, Motion, Side
@@ -223,7 +223,7 @@ class Trace(ToolOffsets):
         word = self.machine.offsets.allowance_word
         written = self.has(word)
         if not written.any():
-            return np.zeros(len(self))
+            return repeated(np.float64(0), len(self))
         return fill_down(np.where(written, self.length_of(word), 0.0), written | self.starts, 0.0)
 
     @cached_property

@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask
+from polarcheck.arrays import Floats, Mask, repeated
 from polarcheck.table.tool_center import ToolCenter
 from polarcheck.table.trace import Trace
 
@@ -33,12 +33,20 @@ class Travel:
     @cached_property
     def least_x(self) -> Floats:
         """Smallest X of the machine axis on the way [mm, radius]; inf where it does not move or has no limits."""
-        return self._x(self.tool_center.nearest, np.inf) if self._limits_x else np.full(len(self.trace), np.inf)
+        return (
+            self._x(self.tool_center.nearest, np.inf)
+            if self._limits_x
+            else repeated(np.float64(np.inf), len(self.trace))
+        )
 
     @cached_property
     def most_x(self) -> Floats:
         """Largest X of the machine axis on the way [mm, radius]; -inf where it does not move or has no limits."""
-        return self._x(self.tool_center.farthest, -np.inf) if self._limits_x else np.full(len(self.trace), -np.inf)
+        return (
+            self._x(self.tool_center.farthest, -np.inf)
+            if self._limits_x
+            else repeated(np.float64(-np.inf), len(self.trace))
+        )
 
     def _x(self, inside: Floats, none: float) -> Floats:
         """Outside the mode the end of a move is one extreme, the end of the move before the other."""
@@ -49,7 +57,7 @@ class Travel:
     @cached_property
     def z(self) -> Floats:
         """Z of the machine axis after the row [mm]; NaN while unknown, and where it has no limits."""
-        return self.trace.z if self._limits_z else np.full(len(self.trace), np.nan)
+        return self.trace.z if self._limits_z else repeated(np.float64(np.nan), len(self.trace))
 
     @cached_property
     def moves_x(self) -> Mask:

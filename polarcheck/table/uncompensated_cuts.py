@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Points, Rows
+from polarcheck.arrays import Floats, Mask, Points, Rows, repeated
 from polarcheck.geometry.bare import Bare, flat_loops, may_reach
 from polarcheck.geometry.compensation import Phase
 from polarcheck.geometry.segments import Curves
@@ -146,6 +146,8 @@ class UncompensatedCuts:
     @cached_property
     def depth(self) -> Floats:
         """Of the cut of a move without compensation into the part of a contour [mm], R at most."""
+        if not len(self.cuts.row):
+            return repeated(np.float64(0), len(self.trace))
         column = np.zeros(len(self.trace))
         np.maximum.at(column, self.cuts.row, self.cuts.depth)
         if column.any():

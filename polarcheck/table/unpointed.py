@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from polarcheck.arrays import Mask, Rows, different
+from polarcheck.arrays import Mask, Rows, different, repeated
 from polarcheck.machines.modal import FeedMode, Units
 from polarcheck.table.lengths import MEANT_IN_INCREMENTS
 from polarcheck.table.trace import Trace
@@ -22,11 +22,16 @@ class Unpointed:
     def in_increments(self) -> Rows:
         """The first coordinate without a point of each program that is written in least increments, for all of it."""
         trace = self.trace
+        if not trace.in_increments.any():
+            return self._none
         reported = np.zeros(len(trace.text.words), np.int64)
-        if trace.in_increments.any():
-            words = trace.is_unpointed & trace.in_increments[trace.run.row]
-            self._add(reported, words, trace.program, np.ones(int(trace.program[-1]) + 1, bool))
+        words = trace.is_unpointed & trace.in_increments[trace.run.row]
+        self._add(reported, words, trace.program, np.ones(int(trace.program[-1]) + 1, bool))
         return reported
+
+    @property
+    def _none(self) -> Rows:
+        return repeated(np.int64(0), len(self.trace.text.words))
 
     @cached_property
     def slips(self) -> Rows:
@@ -39,10 +44,10 @@ class Unpointed:
         one, which is read otherwise. Beside a number that cannot be read nothing is: what the others mean is open, too.
         """
         trace, words = self.trace, self.trace.run.words
-        reported = np.zeros(len(trace.text.words), np.int64)
+        if not len(trace.sections) or trace.machine.control.number_without_point == "whole-unit":
+            return self._none
         count, section = len(trace.sections), self._sections
-        if not count or trace.machine.control.number_without_point == "whole-unit":
-            return reported
+        reported = np.zeros(len(trace.text.words), np.int64)
         slips = ~trace.in_increments[trace.run.row]
         if words.fault.any():
             slips &= ~trace.with_words(words.is_unreadable)[trace.run.row]
@@ -56,7 +61,7 @@ class Unpointed:
             section_or_rest = np.where(has_section & (section < 0), count, section)
             self._add(reported, slips & trace.is_unpointed & ~large, section, is_habit)
             self._add(reported, slips & large, section_or_rest, np.append(is_habit, False))
-        return reported
+        return reported if reported.any() else self._none
 
     def stands_for(self, index: int) -> list[int]:
         """

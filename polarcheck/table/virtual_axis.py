@@ -15,7 +15,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from polarcheck.arrays import Mask, Rows, different
+from polarcheck.arrays import Mask, Rows, different, repeated
 from polarcheck.machines.axes import axis_of
 from polarcheck.table.filling import fill_down
 from polarcheck.table.linear_axis import LinearAxis
@@ -64,7 +64,7 @@ class VirtualAxis(LinearAxis):
         for number, (name, _) in enumerate(self._by_number, len(self._forms)):
             form[self.switches_on & (np.array(names) == name)] = number
         if not form.any():
-            return form
+            return repeated(np.int64(0), len(self))
         return fill_down(form, self.switches_on | self.ends_mode | self.starts, 0).astype(np.int64)
 
     def _of_form(self, column: Callable[[Pair], NDArray[Element]]) -> NDArray[Element]:
@@ -158,7 +158,7 @@ class VirtualAxis(LinearAxis):
         """
         mode = self.machine.polar
         letters = dict.fromkeys(word[0] for word in mode.virtual_axis_by_word)
-        found = self.words_at(self.word_indices(*mode.not_simulated_beside))
+        found = self.words_at(self.word_indices(*mode.not_simulated_beside)).copy()
         for letter in letters:
             at = self.word_indices(letter)
             known = [float(word[1:]) for word in mode.virtual_axis_by_word if word[0] == letter]

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from polarcheck.arrays import Mask, Rows
+from polarcheck.arrays import Mask, Rows, repeated
 from polarcheck.execution.programs import block_text, find_programs
 from polarcheck.machines.code_lists import is_code
 from polarcheck.machines.codes import NO_CODE, code_numbers, code_set, modal_tables
@@ -57,9 +57,9 @@ class Written:
         block: of each element, where they are no words.
         """
         of_all = self.words.block if block is None else block
-        found = np.zeros(len(of_all), np.int64)
         if not len(index):
-            return found
+            return repeated(np.int64(0), len(of_all))
+        found = np.zeros(len(of_all), np.int64)
         order = np.lexsort((index, *kinds))
         at, begins = of_all[index[order]], np.zeros(len(index), bool)
         begins[0] = True
@@ -102,19 +102,12 @@ class Written:
         found[index[~self._in_broken_block(index)]] = True
         return found
 
-    @cached_property
-    def words_in_block(self) -> Rows:
-        """Per word: how many words its block has, block skip not counted."""
-        return self._in_block(self.words.address != ord("/"))
-
-    @cached_property
-    def m_codes_in_block(self) -> Rows:
-        """Per word: how many M words its block has."""
-        return self._in_block(self.words.address == ord("M"))
-
-    def _in_block(self, counted: Mask) -> Rows:
+    def in_block(self, counted: Mask, asked: Mask) -> Rows:
+        """Per word that is asked about: how many of the counted words its block has; 0 for others."""
+        if not asked.any():
+            return repeated(np.int64(0), len(asked))
         block = self.words.block
-        return np.bincount(block[counted], minlength=int(block[-1]) + 1 if len(block) else 0)[block]
+        return np.where(asked, np.bincount(block[counted], minlength=int(block[-1]) + 1)[block], 0)
 
     def _suspects(self, index: Rows, bits: NDArray[np.uint64]) -> Rows:
         """Of the words with bits those of blocks in which a bit stands twice, or something that cannot be read."""
@@ -178,6 +171,8 @@ class Written:
         suspects = self._suspects(self._g_words, bits)
         later, other = self._again(suspects, kind[np.searchsorted(self._g_words, suspects)])
         differs = self.words.value[other] != self.words.value[later]
+        if not differs.any():
+            return repeated(np.int64(-1), len(self.words))
         found = np.full(len(self.words), -1)
         found[later[differs]] = other[differs]
         return found
@@ -192,10 +187,11 @@ class Written:
         known = code_set((*listed, *native, *polar.on, *polar.off, *polar.ended_by, *polar.allowed_codes))
         wrong = ~known[self._g_codes] & (self.words.fault[self._g_words] == NumberFault.NONE)
         words = self._g_words[wrong]
+        if not len(words):
+            return repeated(np.int64(0), len(self.words))
         counts = np.zeros(len(self.words), np.int64)
-        if len(words):
-            _, first, count = np.unique(self.words.value[words], return_index=True, return_counts=True)
-            counts[words[first]] = count
+        _, first, count = np.unique(self.words.value[words], return_index=True, return_counts=True)
+        counts[words[first]] = count
         return counts
 
     @cached_property
@@ -221,6 +217,8 @@ class Written:
         # A number of more than 22 digits has a value that is only about right.
         is_large = np.abs(words.value[long]) >= 10.0 ** (control.digit_limit - counted)
         kept = (digits > control.digit_limit) & is_large & ~self._in_broken_block(long)
+        if not kept.any():
+            return repeated(np.int64(0), len(words))
         found = np.zeros(len(words), np.int64)
         found[long[kept]] = digits[kept]
         return found

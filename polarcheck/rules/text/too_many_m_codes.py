@@ -25,5 +25,6 @@ def too_many_m_codes(words: Words, written: Written, machine: Machine) -> Hits:
         M46
     """
     limit = machine.control.m_code_limit
-    beyond = written.first_beyond(words.address == ord("M"), limit)
-    return Hits(beyond, values={"count": written.m_codes_in_block, "limit": limit})
+    counted = words.address == ord("M")
+    beyond = written.first_beyond(counted, limit)
+    return Hits(beyond, values={"count": written.in_block(counted, beyond), "limit": limit})

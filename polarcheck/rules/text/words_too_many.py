@@ -22,5 +22,6 @@ def words_too_many(words: Words, written: Written, machine: Machine) -> Hits:
         M8
     """
     limit = machine.control.word_limit
-    beyond = written.first_beyond(words.address != ord("/"), limit)
-    return Hits(beyond, values={"count": written.words_in_block, "limit": limit})
+    counted = words.address != ord("/")
+    beyond = written.first_beyond(counted, limit)
+    return Hits(beyond, values={"count": written.in_block(counted, beyond), "limit": limit})
