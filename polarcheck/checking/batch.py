@@ -24,7 +24,7 @@ from polarcheck.time_limit import seconds_for, time_limit
 
 SCHEMA = 1
 #: A larger file [bytes] is checked in pieces, so that memory does not grow with it.
-LARGE = 1 << 21
+LARGE = 1 << 20
 
 Tell = Callable[[str], None]
 
