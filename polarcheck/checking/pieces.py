@@ -46,21 +46,9 @@ _AHEAD = 500
 _TRIES = 3
 #: What the trace has in force behind a row, beside its modal groups.
 _IN_FORCE = (
-    *(
-        "in_polar",
-        "x",
-        "z",
-        "c_angle",
-        "units",
-        "side",
-        "feed_mode",
-        "feed",
-        "written_feed",
-        "drilling",
-        "spindle",
-        "live_tool",
-    ),
-    *("tool", "offset_number", "radius_of_offset", "nose", "allowance", "local_shift", "center_shift", "kept_angle"),
+    *("in_polar", "x", "z", "c_angle", "units", "side", "feed_mode", "feed", "written_feed", "drilling"),
+    *("spindle", "live_tool", "tool", "offset_number", "radius_of_offset", "nose", "allowance", "local_shift"),
+    *("center_shift", "kept_angle"),
 )
 
 
@@ -96,9 +84,10 @@ def in_pieces(source: Source, machine: Machine, job: Job) -> Iterator[Piece]:
         return read_text(part, machine)
 
     carried = pending = None
-    at = 0
+    begin = at = 0
     while True:
-        end = _line_start(source, at + SIZE)
+        # What has no end yet is read twice as far: so much is looked at again, and no more.
+        end = _line_start(source, at + max(SIZE, at - begin))
         text = read_stretch(source, at, end, read)
         if needs_flow(text, machine.macro.flow_codes):
             raise IsOneError
@@ -112,6 +101,7 @@ def in_pieces(source: Source, machine: Machine, job: Job) -> Iterator[Piece]:
         if ended is not None:
             piece, carried = ended
             pending = between(known, piece.own.stop, len(known.blocks))
+            begin = int(pending.blocks.start[0])
             yield piece
 
 
@@ -135,7 +125,7 @@ def _ended(text: Text, own: int, machine: Machine, job: Job) -> tuple[Piece, Tex
     trace = Trace(run, machine, job)
     if len(text.outside) or trace.listed("data_input").any():
         raise IsOneError
-    for row in _ends(trace, own):
+    for row in _ends(trace, own) if len(trace) else ():
         end = int(run.block[row])
         if text.blocks.start[end] - text.blocks.start[own] < SIZE // _LEAST_SHARE:
             continue

@@ -64,8 +64,8 @@ def check_in_pieces(
         if judged[1:] and not _agree(shown, engine.shown, piece):
             raise IsOneError
         # At the very end of what it knows a piece finds that the program goes no further.
-        last = piece.tables["trace"].line[-1]
-        shown = {name: lines[lines < last] for name, lines in engine.shown.items()}
+        last = piece.tables["trace"].line[-1:]
+        shown = {name: lines[lines < last] for name, lines in engine.shown.items()} if len(last) else {}
         piece.tables.forget()
     if _hang_together(judged, rules):
         raise IsOneError
