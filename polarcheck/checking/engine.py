@@ -102,7 +102,9 @@ class Engine:
         if hits.mask.any():
             return hits
         count = len(hits.mask)
-        return self._nothing.setdefault(count, Hits(np.zeros(count, np.bool_)))
+        if count not in self._nothing:
+            self._nothing[count] = Hits(np.zeros(count, np.bool_))
+        return self._nothing[count]
 
     def _give_up(self, rule: Rule, error: TooHardError) -> None:
         self._hits[rule.name] = Hits(np.zeros(0, np.bool_))
@@ -157,6 +159,8 @@ class Engine:
 
     def _looked_for(self, rule: Rule) -> _Listed | None:
         hits = self.hits(rule)
+        if hits is self._nothing.get(len(hits.mask)):
+            return None
         index = self._own(rule, np.flatnonzero(hits.mask))
         if not len(index):
             return None

@@ -22,7 +22,9 @@ def fill_down(values: NDArray[Scalar], written: Mask, before: object) -> NDArray
     if len(at) * _SELDOM < len(values):
         if len(at) and not at[0] and is_one(values[at]) and values.dtype != np.bool_:
             return repeated(values[0], len(values))
-        return np.repeat(np.concatenate((start, values[at])), np.diff(at, prepend=0, append=len(values)))
+        count = np.append(at, len(values))
+        count[1:] -= at
+        return np.repeat(np.concatenate((start, values[at])), count)
     last = np.maximum.accumulate(np.where(written, np.arange(1, len(values) + 1), 0))
     filled: NDArray[Scalar] = np.concatenate((start, values))[last]
     return filled
