@@ -316,6 +316,24 @@ def test_only_the_loop_at_fault_is_found(numbers: tuple[int, ...]) -> None:
     assert found.place == pytest.approx(alone.place)
 
 
+def test_a_loop_behind_a_long_one_that_goes_round_twice_is_looked_at() -> None:
+    """What is written once more is left out, the walls of the loops behind it are not."""
+    round_twice = np.exp(2j * np.pi * np.arange(2 * 12_000 + 1) / 12_000)
+    rows = np.arange(len(round_twice) - 1)
+
+    def circles(radius: float) -> Curves:
+        points = radius * round_twice
+        kind = np.full(len(rows), Motion.LINE, np.int16)
+        return Curves(points[:-1], points[1:], np.full(len(rows), NAN), kind, np.zeros(len(rows), np.int64), rows)
+
+    slot = numbered(loop(-20, 0, 20, 20 - 4j, 26 - 4j, 26, 46, 60 + 20j, side=LEFT), 1)
+    shaft = slot._replace(contour=circles(100), left=np.zeros(len(rows), bool), path=circles(106))
+    found, alone = along(*together(shaft, slot)), slot.overcuts()
+    assert len(alone.row)
+    assert list(found.row) == [100 + row for row in alone.row]
+    assert found.depth == pytest.approx(alone.depth)
+
+
 @pytest.mark.parametrize("numbers", [(0, 1, 2), (7, 3, 5)])
 def test_loops_above_each_other_do_not_see_each_other(numbers: tuple[int, ...]) -> None:
     slots = [

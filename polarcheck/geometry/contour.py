@@ -27,8 +27,8 @@ __all__ = ["TOLERANCE", "Curves", "Overcut", "overcuts"]
 
 #: Depth [mm] up to which nothing is said; two roundings to the least increment.
 TOLERANCE = 0.002
-#: Moves of a loop, and pieces of all, from which on it is worth while to look for passes that are written once more.
-_MANY, _MANY_PIECES = 2000, 10_000
+#: Moves of a loop, or pieces of them, from which on it is worth while to look for passes that are written once more.
+_MANY = 2000
 #: Straight pieces of path that are looked at as one first; and worked on at a time, for the sake of memory.
 _RUN, _BATCH = 64, 4096
 #: The same for whole loops: pieces of a run, and of all runs between two looks at the clock.
@@ -79,12 +79,10 @@ def overcuts(
     """
     rows = np.flatnonzero(is_ramp | first_of_its_kind(path)) if _is_long(path) else np.arange(len(path))
     ways = segments(path[rows], tolerance)
-    walls = segments(contour[first_of_its_kind(contour)] if _is_long(contour) else contour, tolerance)
+    walls = _once(contour, tolerance)
     ways = Segments(ways.start, ways.end, rows[ways.move], ways.loop)
     ways = ways[(radius[ways.move] > tolerance) & np.isin(ways.loop, walls.loop)]
-    if len(walls) > _MANY_PIECES:
-        walls = walls[first_of_its_kind(contour)[walls.move]]
-    repeats = np.zeros(len(ways), bool) if len(ways) <= _MANY_PIECES else ~first_of_its_kind(path)[ways.move]
+    repeats = ~first_of_its_kind(path)[ways.move] if _is_long(ways) else np.zeros(len(ways), bool)
     ways = ways[_comes_close(walls, ways, repeats, is_ramp[ways.move], radius[ways.move] - tolerance)]
     if not len(ways):
         none = np.zeros(0, dtype=np.int64)
@@ -168,9 +166,17 @@ def _wall(part: FinishedParts, cuts: _Cuts) -> Rows:
 # ---- which loops to look at ----
 
 
-def _is_long(curves: Curves) -> bool:
+def _is_long(curves: Curves | Segments) -> bool:
     """Whether a loop is so long that it may well hold passes that are written once more."""
     return len(curves) >= _MANY and bool(np.bincount(curves.loop - curves.loop.min()).max() >= _MANY)
+
+
+def _once(curves: Curves, tolerance: float) -> Segments:
+    """The straight parts of curves, without what a long loop holds once more; their moves are not to be asked for."""
+    if _is_long(curves):
+        return segments(curves[first_of_its_kind(curves)], tolerance)
+    parts = segments(curves, tolerance)
+    return parts[first_of_its_kind(curves)[parts.move]] if _is_long(parts) else parts
 
 
 def _comes_close(walls: Segments, ways: Segments, again: Mask, is_ramp: Mask, limit: Floats) -> Mask:
