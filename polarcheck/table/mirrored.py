@@ -62,13 +62,22 @@ class Mirrored:
         if not asked.any():
             return asked
         asked = self._any(asked) & ~self._any(self.ramps.writes_side_again)
-        # From what costs little to what costs much.
-        ramp = self._trial(asked, 1).comes_out_of_part
-        asked &= self._any(ramp & trace.starts_up) & self._any(ramp & trace.cancels)
-        asked &= ~self._any(self._trial(asked, -1).objects)
-        asked &= ~self._any(self._trial(asked, -1).faulty)
-        asked &= self._any(self._trial(asked, _SMALL).faulty)
+        # From what costs little to what costs much, as long as any loop is left that it may be.
+        for is_so in (
+            self._comes_out_at_both_ends,
+            lambda rows: ~self._any(self._trial(rows, -1).objects),
+            lambda rows: ~self._any(self._trial(rows, -1).faulty),
+            lambda rows: self._any(self._trial(rows, _SMALL).faulty),
+        ):
+            if not asked.any():
+                break
+            asked &= is_so(asked)
         return np.asarray(asked & trace.writes_side)
+
+    def _comes_out_at_both_ends(self, rows: Mask) -> Mask:
+        """All rows of the loops whose start-up and offset cancel run through the part."""
+        ramp = self._trial(rows, 1).comes_out_of_part
+        return self._any(ramp & self.trace.starts_up) & self._any(ramp & self.trace.cancels)
 
     def _trial(self, rows: Mask, share: float) -> Trial:
         """These rows with a share of their R; below 0 it is the other side."""
