@@ -36,7 +36,10 @@ def repeated(value: _Number, count: int) -> NDArray[_Number]:
 
 def is_one(values: NDArray[Any]) -> bool:
     """Whether some values are all the same, or all NaN."""
-    return bool((values == values[0]).all() or (values != values).all())
+    first, last = values[0], values[-1]
+    if first == last:
+        return bool((values == first).all())
+    return bool(first != first and last != last and (values != values).all())
 
 
 def computed(function: Callable[..., NDArray[_Number]], *columns: NDArray[Any]) -> NDArray[_Number]:

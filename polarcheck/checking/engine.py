@@ -16,6 +16,7 @@ from polarcheck.checking import places
 from polarcheck.checking.finding import NOTE, SEVERITIES, Finding, NotEvaluated, Severity, Silenced, Undecided
 from polarcheck.checking.places import PLACES, Place
 from polarcheck.checking.rule import Hits, Rule
+from polarcheck.checking.settling import Settling
 from polarcheck.checking.silence import Used, allowed
 from polarcheck.checking.tables import OF_CAUSE, Tables
 from polarcheck.errors import TooHardError
@@ -33,6 +34,8 @@ if TYPE_CHECKING:
 LISTED = 1000
 #: Of the name of a program [characters].
 _NAME_LENGTH = 40
+#: From so many rows on the memory of the columns counts.
+_LARGE = 10_000
 Found = TypeVar("Found", bound=Finding)
 
 
@@ -83,6 +86,7 @@ class Engine:
         self.used: set[Used] = set()
         self._hits: dict[str, Hits] = dict(known or {})
         self._nothing: dict[int, Hits] = {}
+        self._settling = Settling(tables)
         self._found: dict[str, _Listed | None] = {}
         self._asking: set[str] = set()
         self.heads = program_heads(self.trace)
@@ -93,6 +97,8 @@ class Engine:
             keep_going()
             try:
                 self._hits[rule.name] = self._kept(rule.hits(self.tables))
+                if len(self.trace) > _LARGE:
+                    self._settling.settle()
             except TooHardError as error:
                 self._give_up(rule, error)
         return self._hits[rule.name]

@@ -9,6 +9,7 @@ into X and C of the lathe (B-62764EN p. 51).
 from __future__ import annotations
 
 import enum
+from itertools import pairwise
 
 import msgspec
 import numpy as np
@@ -65,6 +66,8 @@ class ToolPath(msgspec.Struct, frozen=True):
     arc_center_on_path: Mask
 
 
+#: So many rows at least are followed at once.
+_PART = 16_384
 #: What belongs to one block, in the order in which it is run.
 _LEAD, _CORNER, _BLOCK, _TRAIL = range(4)
 
@@ -110,6 +113,28 @@ def tool_center_path(path: Path, method: Method | None = None) -> ToolPath:
     Source of the rules: FANUC 16/18-C lathe manual, 16i-LB B-63664EN p. 170-184, 30i B-63944EN-2 p. 146-158.
     """
     method = method or Method()
+    parts: list[ToolPath] = []
+    for first, end in pairwise(_parts(path.section)):
+        part = _of_sections(Path(*(getattr(path, name)[first:end] for name in Path.__struct_fields__)), method)
+        parts.append(msgspec.structs.replace(part, row=part.row + first))
+    if len(parts) == 1:
+        return parts[0]
+    return ToolPath(*(np.concatenate([getattr(part, name) for part in parts]) for name in ToolPath.__struct_fields__))
+
+
+def _parts(section: Rows) -> list[int]:
+    """Where to part a path: sections know nothing of each other, and some at a time take less memory than all."""
+    begins = np.flatnonzero(section[1:] != section[:-1]) + 1
+    parts = [0]
+    while len(section) - parts[-1] > _PART:
+        next_ = begins[np.searchsorted(begins, parts[-1] + _PART) :]
+        if not len(next_):
+            break
+        parts.append(int(next_[0]))
+    return [*parts, len(section)]
+
+
+def _of_sections(path: Path, method: Method) -> ToolPath:
     with np.errstate(all="ignore"):
         programmed, center_on_path = moving_rows(path, method)
         vectors = end_vectors(programmed, method)

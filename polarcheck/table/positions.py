@@ -308,8 +308,8 @@ class Positions(VirtualAxis):
         return positions(*self._programmed(axis, INCREMENTS[axis], 1.0, where), resets, self._set_by(axis))
 
     @cached_property
-    def _plane(self) -> tuple[Points, Points]:
-        """Plane points after and before each row; the virtual coordinate is NaN outside the mode."""
+    def _after(self) -> Points:
+        """Plane point after each row; the virtual coordinate is NaN outside the mode."""
         shift, turn = self.center_shift, self.c_direction
         leave = self.sections.leave[self.sections.leave < len(self)]
         # Where C does not turn the plane, the tool stands at its angle there, and not on the linear axis.
@@ -340,7 +340,7 @@ class Positions(VirtualAxis):
         end = np.empty(len(self), np.complex128)
         end.real, end.imag = np.where(self.is_followed, x, np.nan), c
         end -= shift
-        return end, before(end, self.starts, NOWHERE)
+        return end
 
     def _virtual(self, words: Way) -> Floats:
         """The virtual axis after each row where no frame turns it; NaN outside the mode."""
@@ -356,25 +356,25 @@ class Positions(VirtualAxis):
     @cached_property
     def end(self) -> Points:
         """Programmed plane point after the row [mm]; NaN outside the mode or while unknown."""
-        return np.where(self.section >= 0, self._plane[0], NOWHERE)
+        return np.where(self.section >= 0, self._after, NOWHERE)
 
     @cached_property
     def start(self) -> Points:
         """Programmed plane point before the row [mm]."""
-        return np.where(self.in_polar, self._plane[1], NOWHERE)
+        return np.where(self.in_polar, before(self._after, self.starts, NOWHERE), NOWHERE)
 
     @cached_property
     def x(self) -> Floats:
         """X after the row as a radius [mm]; the programmed one, so that it may be negative in the mode."""
-        after, ahead = self._plane
+        after = self._after.real
         # A plane that does not turn with C has another X there than the lathe, which has not moved.
         turns = self.machine.polar.zero_angle == "at-switch"
-        return after.real if turns else np.where(self.enters, ahead.real, after.real)
+        return after if turns else np.where(self.enters, self.x_before, after)
 
     @cached_property
     def x_before(self) -> Floats:
         """X before the row as a radius [mm]."""
-        return self._plane[1].real
+        return before(self._after.real, self.starts, np.nan)
 
     @cached_property
     def z(self) -> Floats:

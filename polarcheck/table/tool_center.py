@@ -35,8 +35,9 @@ class ToolCenter:
         """The rows of the trace that are compensated: those in the mode."""
         return np.flatnonzero(self.trace.in_polar)
 
-    @cached_property
+    @property
     def _programmed(self) -> Path:
+        """Not kept: large, and asked for again only where the tool interferes."""
         return compensation_path(self.trace, self._rows)
 
     @cached_property
