@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from polarcheck.geometry.segments import Curves, segments
+from polarcheck.geometry.segments import Curves, reach_from_start, segments
 from polarcheck.machines.modal import Motion
 
 
@@ -81,3 +81,19 @@ def test_what_is_not_known_and_what_has_no_length_is_left_out() -> None:
         curves((0j, nowhere, None, Motion.LINE), (1j, 1j, None, Motion.LINE), (0j, 2j, None, Motion.CW), LINES[0]), 0.01
     )
     assert found.move.tolist() == [3]
+
+
+@pytest.mark.parametrize("kind", [Motion.CW, Motion.CCW])
+@pytest.mark.parametrize("growth", [0.9, 1.0, 1.1])
+@pytest.mark.parametrize("turn", [0, 1, 90, 179, 180, 181, 270, 359])
+def test_no_point_of_a_curve_is_farther_from_its_start_than_it_reaches(turn: int, growth: float, kind: Motion) -> None:
+    arc = curves((10 + 0j, 10 * growth * np.exp(1j * np.radians(turn)), 0j, kind))
+    parts = segments(arc, 1e-4)
+    (reach,) = reach_from_start(arc)
+    assert reach >= np.abs(parts.end - arc.start).max() - 1e-9
+    assert reach <= 20 * max(growth, 1) + 1e-9
+
+
+def test_a_short_arc_reaches_no_farther_than_its_chord() -> None:
+    arcs = curves((10 + 0j, 10j, 0j, Motion.CCW), (10 + 0j, 10j, 0j, Motion.CW), (10 + 0j, 10 + 3j, None, Motion.LINE))
+    assert reach_from_start(arcs) == pytest.approx([np.sqrt(200), 20, 3])

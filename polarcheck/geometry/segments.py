@@ -169,6 +169,19 @@ def boxes(curves: Curves, first: Rows) -> Floats:
     return np.array(sides)
 
 
+def reach_from_start(curves: Curves) -> Floats:
+    """How far from its start a curve gets at most: float64[curves] [mm]."""
+    reach = np.abs(curves.end - curves.start)
+    arcs = np.flatnonzero(~np.isnan(curves.center))
+    start, end, center = curves.start[arcs], curves.end[arcs], curves.center[arcs]
+    first, last = np.abs(start - center), np.abs(end - center)
+    # Up to half a turn an arc gets no farther than its end; one whose end is off the circle runs in a spiral.
+    short = np.abs(arc_sweep(start, end, center, curves.kind[arcs])) <= np.pi
+    of_short = np.where(short, reach[arcs] + 2 * np.abs(first - last), np.inf)
+    reach[arcs] = np.minimum(of_short, 2 * np.maximum(first, last))
+    return reach
+
+
 def members(loop: Rows, wanted: Rows) -> tuple[Rows, Rows]:
     """Rows of each wanted loop, one after the other, and which of the wanted each row is for."""
     low, high = np.searchsorted(loop, wanted), np.searchsorted(loop, wanted, side="right")

@@ -17,7 +17,7 @@ from polarcheck.geometry.bare import Bare, FlatLoops
 from polarcheck.geometry.faces import coordinates, lines_of
 from polarcheck.geometry.finished_part import Contours, FinishedParts, finished_parts
 from polarcheck.geometry.reach import NOTHING, Reached, endless, reached, shortened
-from polarcheck.geometry.segments import ZERO, Curves, Segments, boxes, members, segments
+from polarcheck.geometry.segments import ZERO, Curves, Segments, boxes, members, reach_from_start, segments
 from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.time_limit import keep_time
 
@@ -190,10 +190,7 @@ def _nearby(curves: Curves, ways: Segments, group: Rows, radius: Floats) -> Rows
     if count.sum() > _PAIRS:
         return np.arange(len(curves))
     curve, way = members(curves.loop, group)
-    arcs = ~np.isnan(curves.center)
-    # From its start a curve gets no farther than its chord, an arc than its diameter.
-    long = np.abs(curves.end - curves.start)
-    long[arcs] = 2 * np.maximum(*np.abs(np.stack([curves.start, curves.end])[:, arcs] - curves.center[arcs]))
+    long = reach_from_start(curves)
     far = curves.start[curve] - start[way]
     apart = np.abs(far)
     nearest = np.minimum.reduceat(apart, np.cumsum(count) - count)
@@ -201,7 +198,7 @@ def _nearby(curves: Curves, ways: Segments, group: Rows, radius: Floats) -> Rows
     length = np.maximum(np.abs(along), ZERO)
     place = np.clip((far * (along / length)[way].conj()).real, 0, length[way])
     aside = np.abs(far - place * (along / length)[way])
-    kept = (apart - long[curve] <= nearest[way] + ROUNDING) | (aside - long[curve] <= radius[group][way])
+    kept = (apart - long[curve] <= nearest[way] + ROUNDING) | (aside - long[curve] <= radius[group][way] + ROUNDING)
     chosen = np.zeros(len(curves), bool)
     chosen[curve[kept]] = True
     return np.flatnonzero(chosen)
