@@ -42,7 +42,7 @@ def changed(old: str, new: str, *numbers: int, count: int = 6) -> str:
 @pytest.mark.parametrize("rule", load_all().values(), ids=load_all())
 def test_examples_of_a_rule_among_sound_operations(rule: Rule) -> None:
     """Where a program can be cut, nothing is found otherwise, whatever stands in another piece."""
-    for text in islice(several(rule), 2):
+    for text in islice(several(rule), 1):
         found = in_pieces(text.encode(), "fanuc", "1:radius=4", size=600, near=16)
         assert found is None or found == report_of(text, "fanuc", "1:radius=4")
 
