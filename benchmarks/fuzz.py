@@ -29,9 +29,9 @@ from typing import IO, Any
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "tests"))
 
-TARGETS = ("whole", "reader", "statement", "trace", "command", "settings", "offsets")
+TARGETS = ("whole", "reader", "statement", "trace", "command", "commands", "settings", "offsets")
 #: The whole check is what people run.
-WEIGHTED = ("whole", "whole", "whole", "trace", "command", *TARGETS)
+WEIGHTED = ("whole", "whole", "whole", "trace", "command", "commands", *TARGETS)
 #: A process that says nothing for so many times the seconds of an input, or for so long [s], hangs.
 PATIENCE, MINIMISING = 4, 90
 

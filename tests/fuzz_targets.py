@@ -21,6 +21,7 @@ from pathlib import Path
 from random import Random
 from typing import Any, NamedTuple
 
+import deep_contours
 import jsonschema
 import msgspec
 import numpy as np
@@ -240,6 +241,25 @@ def command(data: bytes, setup: int) -> Iterable[str]:
     return [str(result.exit_code)]
 
 
+def commands(data: bytes, setup: int) -> Iterable[str]:
+    """Every command that follows the tool, in process: it ends with 0, 1 or 2, and says something."""
+    chosen = SETUPS[setup]
+    tools = [word for tool in chosen.tools for word in ("--tool", tool)]
+    endings = []
+    with tempfile.TemporaryDirectory() as folder:
+        page = str(Path(folder, "a.html"))
+        for words in (["check", "--part"], ["part"], ["feeds"], ["trace"], ["plot", "-o", page]):
+            arguments = [*words, "-", "--no-config", "--machine", chosen.machine, *tools, *_BOUNDS]
+            result = CliRunner().invoke(main, arguments, input=data)
+            if result.exception is not None and not isinstance(result.exception, SystemExit):
+                raise result.exception
+            name = words[0]
+            _expect(result.exit_code in (0, 1, 2), f"{name}: exit {result.exit_code}", result.stderr)
+            _expect("internal error" not in result.stderr, f"{name}: internal error", result.stderr)
+            endings.append(f"{name} {result.exit_code}")
+    return endings
+
+
 _BOUNDS = ("--max-blocks", "3000", "--max-statements", "2000", "--max-seconds", "5")
 
 
@@ -252,6 +272,7 @@ TARGETS: dict[str, Target] = {
     "statement": statement,
     "trace": trace,
     "command": command,
+    "commands": commands,
     "settings": settings,
     "offsets": offsets,
 }
@@ -325,6 +346,8 @@ def seeds(target: str) -> list[bytes]:
         return [*(_JOBS), *(path.read_bytes()[:6000] for path in files)]
     if target == "offsets":
         return [b"%\nG10 P1 X0. Z0. R5. Q0\nG10 P10001 X1.5 Z-2. R.4 Q3\n%\n", b"G10 L2 P1 X1.\nG10 P8 R9.525\n"]
+    if target == "commands":
+        return [deep_contours.program(Random(seed)) for seed in range(300)]  # noqa: S311
     pages = (one.program for rule in load_all().values() for one in examples(rule.page))
     samples = (path.read_bytes() for path in sorted((ROOT / "sample_programs").glob("*.nc")))
     real = sorted(path for path in CORPUS.rglob("*") if path.is_file() and path.suffix != ".tsv")

@@ -4,9 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
+from random import Random
 
+import deep_contours
+import fuzz_targets
 import msgspec
 import pytest
+from fuzz_targets import SETUPS
 from programs import report_of, said
 from test_cli import process
 
@@ -188,3 +192,38 @@ def test_a_section_that_is_begun_in_a_called_program(name: str, machine: str) ->
     program, expected = CALLED[name]
     report = report_of(HEAD + program, machine, "1:radius=0")
     assert {rule for _, rule in said(report)} == expected
+
+
+# ---- contours at several depths ----
+
+#: Contours that run over each other at four depths, none of which closes.
+DEPTHS = """T0101
+G12.1
+G1 G41 X103. C0. F200.
+G1 X-51. C-44.
+G1 X-51. C44.
+G1 X52. C-45.
+G1 Z-2.
+G1 X-100. C0.
+G1 X-53. C-46.
+G1 X51. C-44.
+G1 Z-3.
+G1 X-52. C-45.
+G3 X51. C-44. R36.
+G1 Z-4.
+G1 X-52. C45.
+G1 X-51. C-45.
+G1 X52. C-45.
+G1 Z-4.5
+G1 X107. C0.
+G1 G40 X129. C0."""
+
+
+#: The number of the setup with the machine `fanuc` and R 5 in offset 1.
+FANUC = next(n for n, setup in enumerate(SETUPS) if (setup.machine, setup.tools[:1]) == ("fanuc", ("1:radius=5",)))
+
+
+@pytest.mark.parametrize("seed", [None, *range(12)])
+def test_contours_at_several_depths_end_in_a_report(seed: int | None) -> None:
+    data = DEPTHS.encode() if seed is None else deep_contours.program(Random(seed))  # noqa: S311
+    fuzz_targets.commands(data, FANUC)

@@ -210,14 +210,15 @@ def _square(group: Rows, half: float, pitch: float) -> Walls:
 
 def _standing(plane: _Plane, lines: Walls | None, asked: Mask, thinnest: float) -> tuple[Standing, _Outline]:
     """What stands of the groups asked for, with these lines; and its outline, as far as it is of curves."""
-    walls, origin = plane.walls, np.arange(len(plane.move))
+    walls, origin, is_curve = plane.walls, np.arange(len(plane.move)), plane.move >= 0
     if lines is not None:
+        is_curve = np.append(is_curve, np.zeros(len(lines.group), bool))
         walls, origin = _together([walls, lines])
         kept = asked[walls.group]
         walls, origin = Walls(*(getattr(walls, name)[kept] for name in Walls.__struct_fields__)), origin[kept]
     found = standing(walls, len(asked), thinnest)
     wall = origin[found.wall]
-    of_curve = np.append(plane.move, np.full(len(origin), -1))[wall] >= 0
+    of_curve = is_curve[wall]
     return found, (found.start[of_curve], found.end[of_curve], wall[of_curve])
 
 
