@@ -11,6 +11,7 @@ What can go wrong on our side. What is wrong in a program is a finding, never an
     |-- BaselineError     a file of known findings
     |-- CrewError         those who should check many files cannot go on
     |-- TooHardError      a table that would take more than its bound of time or size
+    |   `-- NoAnswerError     areas for which the geometry library finds no answer
     `-- RuleError         a rule without severity, message, docstring: a bug in a rule file
 """
 
@@ -64,6 +65,10 @@ class TooHardError(PolarcheckError):
 
     The rules that compare it are not evaluated; all others are.
     """
+
+
+class NoAnswerError(TooHardError):
+    """Areas for which the geometry library finds no answer, since points of them all but meet."""
 
 
 class IsOneError(PolarcheckError):

@@ -15,7 +15,7 @@ import numpy as np
 import shapely  # type: ignore[import-untyped]
 from shapely.errors import GEOSException  # type: ignore[import-untyped]
 
-from polarcheck.errors import TooHardError
+from polarcheck.errors import NoAnswerError, TooHardError
 from polarcheck.time_limit import keep_time
 
 #: Points that go into one step at most, and of many areas at a time; about a second each.
@@ -32,7 +32,7 @@ def _asked(function: Callable[..., Any], points: int, *arguments: Any, **how: An
     try:
         return function(*arguments, **how)
     except GEOSException as error:
-        raise TooHardError("the areas of its contours cannot be computed: points of them all but meet") from error
+        raise NoAnswerError("the areas of its contours cannot be computed: points of them all but meet") from error
 
 
 def _of_each(function: Callable[..., Any]) -> Callable[..., Any]:

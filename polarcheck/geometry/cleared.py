@@ -15,11 +15,11 @@ import numpy as np
 import shapely  # type: ignore[import-untyped]
 
 from polarcheck.arrays import Floats, Mask, Points, Rows
-from polarcheck.geometry import areas
 from polarcheck.geometry.faces import coordinates, edges_of, lines_of
 from polarcheck.geometry.outline import Outline, outline_of
 from polarcheck.geometry.plane import arc_sweep
 from polarcheck.geometry.segments import Curves, Segments, segments
+from polarcheck.geometry.widened import widened
 from polarcheck.machines.modal import Motion
 from polarcheck.time_limit import keep_time
 
@@ -27,8 +27,6 @@ from polarcheck.time_limit import keep_time
 _TOLERANCE = 0.004
 #: What is narrower than this is no part but rounding, where passes lie side by side [mm].
 _SLIT = 0.008
-#: Chords of a path that are widened at a time: the time for one area grows faster than its chords.
-_AT_A_TIME = 100
 #: Places of one chord beside which material is looked for, at most; R apart.
 _SAMPLES = 50
 #: A foot nearer to the end of a move than this is that end [mm].
@@ -55,18 +53,8 @@ def cleared(path: Curves, radius: float) -> Cleared:
     Raises TooHardError for too many chords, and where the time is over.
     """
     chords = segments(path, _TOLERANCE)
-    polygon = _without_slits(_widened(chords, radius))
+    polygon = _without_slits(widened(path, chords, radius, _TOLERANCE))
     return Cleared(polygon, _outline(polygon, path, chords, radius), _across(polygon, chords, radius))
-
-
-def _widened(chords: Segments, radius: float) -> Any:
-    """The area within R of the chords."""
-    flat = np.clip(_TOLERANCE / 4 / radius, 1e-9, 0.25)
-    steps = int(np.ceil(np.pi / 4 / np.arccos(1 - flat)))
-    lines = lines_of(chords.start, chords.end)
-    portion = np.arange(len(lines)) // _AT_A_TIME
-    wide = areas.buffer(shapely.multilinestrings(lines, indices=portion), radius, quad_segs=steps)
-    return areas.union_all(wide)
 
 
 def _without_slits(area: Any) -> Any:
