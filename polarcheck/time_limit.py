@@ -1,4 +1,4 @@
-"""How long the check of one file may take: what could go on without end asks here, and gives up by an exception."""
+"""How long the check of one file may take. Code that could go on without end calls keep_time, which raises."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
-from typing import NamedTuple
+from typing import Any, Protocol, TypeVar
 
 from polarcheck.errors import StoppedError, TooHardError
 
@@ -19,34 +19,77 @@ def seconds_for(size: int, asked: float) -> float:
     return asked * max(1.0, size / _BYTES_OF_A_TURN)
 
 
-class _Limit(NamedTuple):
-    """When the time is over, on the clock of time.monotonic [s], how long it was [s], and who ends it before that."""
+class Closeable(Protocol):
+    """What lasts as long as a time limit."""
 
-    end: float
-    seconds: float
-    is_stopped: Callable[[], bool] | None
+    def close(self) -> None:
+        """The time limit has ended."""
 
 
-_LIMIT: ContextVar[_Limit | None] = ContextVar("limit", default=None)
+Helper = TypeVar("Helper", bound=Closeable)
+
+
+class Limit:
+    """
+    The time for one file.
+
+    end: when it is over, on the clock of time.monotonic [s].
+    seconds: how long it was at the start [s].
+    """
+
+    def __init__(self, seconds: float, is_stopped: Callable[[], bool] | None) -> None:
+        self.end = time.monotonic() + seconds
+        self.seconds = seconds
+        self._is_stopped = is_stopped
+        self._helpers: dict[Any, Closeable] = {}
+
+    def is_stopped(self) -> bool:
+        """Nobody waits for the outcome any more."""
+        return self._is_stopped is not None and self._is_stopped()
+
+    def is_over(self) -> bool:
+        """No more work should be done."""
+        return time.monotonic() > self.end or self.is_stopped()
+
+    def kept(self, make: Callable[[Limit], Helper]) -> Helper:
+        """The helper of this kind, made at the first call; it is closed when the limit ends."""
+        if make not in self._helpers:
+            self._helpers[make] = make(self)
+        return self._helpers[make]  # type: ignore[return-value]  # made by the line above
+
+    def close(self) -> None:
+        """Close all helpers."""
+        while self._helpers:
+            self._helpers.popitem()[1].close()
+
+
+_LIMIT: ContextVar[Limit | None] = ContextVar("limit", default=None)
 
 
 @contextmanager
 def time_limit(seconds: float, is_stopped: Callable[[], bool] | None = None) -> Iterator[None]:
     """
-    What is done inside has so long [s]; without it, as in most tests, there is no limit.
+    Limit the time of the code inside [s]; without it, as in most tests, there is no limit.
 
-    is_stopped: asked likewise; once it says so, nobody waits for the outcome any more.
+    is_stopped: also ends the work, by a StoppedError, once it returns True.
     """
-    token = _LIMIT.set(_Limit(time.monotonic() + seconds, seconds, is_stopped))
+    limit = Limit(seconds, is_stopped)
+    token = _LIMIT.set(limit)
     try:
         yield
     finally:
         _LIMIT.reset(token)
+        limit.close()
+
+
+def present() -> Limit | None:
+    """The limit that is in force."""
+    return _LIMIT.get()
 
 
 def keep_time() -> None:
     """
-    To be asked in each turn of a loop, and before each step whose cost grows faster than the program.
+    Call in every loop iteration, and before any step that is worse than linear.
 
     Raises TooHardError once the time is over, StoppedError where nobody waits for the outcome.
     """
@@ -58,10 +101,10 @@ def keep_time() -> None:
 
 def keep_going() -> None:
     """
-    To be asked where another bound keeps the time.
+    Only look for cancellation: for loops with a bound of their own.
 
     Raises StoppedError where nobody waits for the outcome any more.
     """
     limit = _LIMIT.get()
-    if limit is not None and limit.is_stopped is not None and limit.is_stopped():
+    if limit is not None and limit.is_stopped():
         raise StoppedError("stopped")

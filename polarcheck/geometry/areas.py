@@ -1,9 +1,9 @@
 """
 What shapely makes of areas: joined, cut out of each other, widened. The names are those of shapely.
 
-Each of these steps costs more than its share with the points that go in, cannot be interrupted, and may find no answer
-where points of areas all but meet. So the clock is asked before each, many areas are taken in portions, and one that is
-too large, or for which there is no answer, is a TooHardError. Import late.
+The cost of each of these steps grows faster than the points that go in, and it may find no answer where points of
+areas all but meet. So each is interrupted when the time is over, many areas are taken in portions, and one that is too
+large, or for which there is no answer, is a TooHardError. Import late.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ import shapely  # type: ignore[import-untyped]
 from shapely.errors import GEOSException  # type: ignore[import-untyped]
 
 from polarcheck.errors import NoAnswerError, TooHardError
+from polarcheck.geometry.interruption import interruptible
 from polarcheck.time_limit import keep_time
 
 #: Points that go into one step at most, and of many areas at a time; about a second each.
@@ -30,8 +31,10 @@ def _asked(function: Callable[..., Any], points: int, *arguments: Any, **how: An
     if points > _MOST:
         raise TooHardError(f"areas with {points} points are too many to compare: check fewer contours in a file")
     try:
-        return function(*arguments, **how)
+        with interruptible():
+            return function(*arguments, **how)
     except GEOSException as error:
+        keep_time()  # it was interrupted
         raise NoAnswerError("the areas of its contours cannot be computed: points of them all but meet") from error
 
 

@@ -1,0 +1,127 @@
+"""Steps of GEOS end when the time is over, nobody waits any more, or a signal comes; the others are left alone."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from typing import Any
+
+import numpy as np
+import pytest
+import shapely  # type: ignore[import-untyped]
+from test_cli import IMPORTED_FROM
+
+from polarcheck.errors import NoAnswerError, StoppedError, TooHardError
+from polarcheck.geometry import areas
+from polarcheck.geometry.interruption import interruptible
+from polarcheck.time_limit import time_limit
+
+not_on_windows = pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
+
+#: One step of GEOS that would take many minutes.
+TANGLE = """
+import numpy as np, shapely
+from polarcheck.geometry import areas
+from polarcheck.time_limit import time_limit
+ends = np.random.default_rng(1).uniform(-50, 50, (40000, 2, 2))
+tangle = shapely.multilinestrings(shapely.linestrings(ends))
+"""
+
+
+def tangle() -> Any:
+    values: dict[str, Any] = {}
+    exec(TANGLE, values)  # noqa: S102  the text above, which a process runs, too
+    return values["tangle"]
+
+
+def test_a_step_ends_when_the_time_is_over() -> None:
+    with pytest.raises(TooHardError, match=r"takes longer than 0\.2 s"), time_limit(0.2):
+        areas.with_itself(tangle())
+
+
+def test_a_step_ends_when_nobody_waits_any_more() -> None:
+    began = time.monotonic()
+    with pytest.raises(StoppedError), time_limit(1000, lambda: time.monotonic() > began + 0.2):
+        areas.with_itself(tangle())
+
+
+def test_it_ends_in_another_thread_too() -> None:
+    """The language server checks in one."""
+    raised: list[Exception] = []
+
+    def work() -> None:
+        try:
+            with time_limit(0.2):
+                areas.with_itself(tangle())
+        except TooHardError as error:
+            raised.append(error)
+
+    thread = threading.Thread(target=work)
+    thread.start()
+    thread.join(120)
+    assert [str(error)[:30] for error in raised] == ["the check of this file takes l"]
+
+
+def test_the_steps_after_it_are_left_alone() -> None:
+    squares = shapely.box(np.arange(50), 0, np.arange(50) + 2, 2)
+    for _ in range(3):
+        with pytest.raises(TooHardError), time_limit(0.1):
+            areas.with_itself(tangle())
+        with time_limit(100):
+            for _ in range(50):
+                assert areas.union_all(squares).area == 102
+
+
+def test_a_request_that_comes_too_late_is_taken_back() -> None:
+    with time_limit(0.01):
+        with interruptible():
+            time.sleep(0.3)  # the time is over, and GEOS is asked to stop
+        assert shapely.union_all(shapely.box(np.arange(50), 0, np.arange(50) + 2, 2)).area == 102
+
+
+def test_what_has_no_answer_is_not_called_late() -> None:
+    """A polygon that crosses itself has no union with others."""
+    broken = shapely.Polygon([(0, 0), (2, 2), (2, 0), (0, 2)])
+    with time_limit(100), pytest.raises(NoAnswerError, match="cannot be computed"):
+        areas.difference(broken, shapely.box(0.5, 0.2, 1.5, 1.7))
+
+
+def test_nothing_is_left_behind() -> None:
+    before, wakeup = threading.active_count(), signal.set_wakeup_fd(-1)
+    for _ in range(3):
+        with time_limit(100), interruptible():
+            assert threading.active_count() == before + 1
+    assert threading.active_count() == before
+    assert signal.set_wakeup_fd(wakeup) == -1
+
+
+def test_without_a_step_no_thread_is_started() -> None:
+    before = threading.active_count()
+    with time_limit(100):
+        assert threading.active_count() == before
+    with interruptible():
+        assert threading.active_count() == before
+
+
+@not_on_windows
+@pytest.mark.parametrize(("number", "word"), [(signal.SIGINT, "interrupt"), (signal.SIGTERM, "terminated")])
+def test_a_signal_ends_a_step(number: signal.Signals, word: str) -> None:
+    """The process would go on for many minutes; the limit here only tells an end from a hang."""
+    script = (
+        "import signal\nfrom polarcheck.commands import signals\nsignals.listen()\n"
+        f"signal.signal(signal.SIGINT, signal.default_int_handler)\n{TANGLE}"
+        "print('begins', flush=True)\ntry:\n    with time_limit(10000):\n        areas.with_itself(tangle)\n"
+        "except signals.Terminated:\n    print('terminated')\nexcept KeyboardInterrupt:\n    print('interrupt')\n"
+    )
+    environment = {**os.environ, "PYTHONPATH": IMPORTED_FROM}
+    with subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, text=True, env=environment) as run:
+        assert run.stdout is not None
+        assert run.stdout.readline() == "begins\n"
+        time.sleep(0.5)
+        run.send_signal(number)
+        said, _ = run.communicate(timeout=60)
+    assert said == f"{word}\n"
