@@ -71,9 +71,12 @@ def time_limit(seconds: float, is_stopped: Callable[[], bool] | None = None) -> 
     """
     Limit the time of the code inside [s]; without it, as in most tests, there is no limit.
 
-    is_stopped: also ends the work, by a StoppedError, once it returns True.
+    is_stopped: also ends the work, by a StoppedError, once it returns True. A limit around this one stays in force.
     """
     limit = Limit(seconds, is_stopped)
+    around = _LIMIT.get()
+    if around is not None:
+        limit.end = min(limit.end, around.end)
     token = _LIMIT.set(limit)
     try:
         yield

@@ -17,7 +17,7 @@ from polarcheck.geometry import areas, bounds, noding, segments
 from polarcheck.geometry.segments import Curves
 from polarcheck.machines.modal import Motion
 from polarcheck.table import fitting
-from polarcheck.time_limit import time_limit
+from polarcheck.time_limit import keep_time, time_limit
 
 sys.path.insert(0, str(ROOT / "benchmarks"))
 
@@ -369,3 +369,14 @@ def test_a_check_that_nobody_waits_for_ends_at_its_next_turn(program: str, turns
     with pytest.raises(StoppedError), time_limit(60, is_stopped):
         checked(program)
     assert len(asked) == turns + 1
+
+
+def test_all_that_is_done_for_a_file_has_one_clock() -> None:
+    """Neither the execution, once for each state of block skip, nor a limit inside another has time of its own."""
+    loop = "O1\n/#1=1\n#2=0\nWHILE[#2LT900000]DO1\n#2=#2+1\nEND1\nM30\n"
+    run = {"max_seconds": 1e9, "max_statements": 10**9, "max_blocks": 10**9}
+    with time_limit(1e-6):
+        report = report_of(loop, "fanuc", job={"run": run})
+    assert "seconds" in str(report.findings) or "longer" in str(report.findings)
+    with time_limit(1e-6), time_limit(1e9), pytest.raises(TooHardError, match="longer"):
+        keep_time()

@@ -22,7 +22,7 @@ from polarcheck.table.trace import Trace
 from polarcheck.time_limit import time_limit
 
 #: A program that takes longer tells nothing [s].
-_SECONDS = 10.0
+_SECONDS = 5.0
 #: With more programs than this no other machines would be found.
 _TRIED = 12
 _NUMBERED = re.compile(r"([GM])(\d+)(?:\.(\d))?")

@@ -16,12 +16,10 @@ from polarcheck.checking.settings import Settings
 from polarcheck.errors import SourceError, TooHardError
 from polarcheck.fixes.comparison import State, objection, state_of
 from polarcheck.fixes.edits import applied, origins, overlap, spans
-from polarcheck.time_limit import seconds_for
+from polarcheck.time_limit import seconds_for, time_limit
 
 #: The checks of one program for its fixes; what is left then is left for the next time.
 MOST_CHECKS = 200
-#: So many times as long as the check of the program may take, its fixes may.
-_TURNS = 5
 #: Where so many fixes of a rule are refused, no more of that rule are tried in the program.
 MOST_REFUSED = 20
 
@@ -83,8 +81,16 @@ def with_fixes(
 
     answered: takes the findings out of a report that somebody has answered for: they are not fixed. A fix that would
     bring another finding, or another way of the tool than it says, is not made. Those that touch each other come one
-    round after the other. Raises what state_of raises for the program as it is.
+    round after the other. All of it may take as long as a check; what is left then is left for the next time. Raises
+    what state_of raises for the program as it is.
     """
+    with time_limit(seconds_for(len(data), settings.job.run.max_seconds)):
+        return _fixed(data, settings, path, encoding, unsafe, answered)
+
+
+def _fixed(
+    data: bytes, settings: Settings, path: str, encoding: str | None, unsafe: bool, answered: Answered
+) -> Outcome:
     state = state_of(data, settings, path, encoding)
     work = _Work(settings, path, encoding, unsafe, answered, len(state.source.line_starts), len(data))
     while not work.is_over:
@@ -120,7 +126,7 @@ class _Work:
         self.refused: dict[_Key, Refused] = {}
         self.last: State | None = None
         self.checks = 0
-        self.end = time.monotonic() + _TURNS * seconds_for(size, settings.job.run.max_seconds)
+        self.end = time.monotonic() + seconds_for(size, settings.job.run.max_seconds)
         self.origin: Rows = np.arange(1, lines + 1)
 
     @property
