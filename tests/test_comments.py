@@ -29,11 +29,57 @@ from polarcheck.table.radius_comments import radius_in
         ("OP10 REV 3", False, None),
         ("1/0 DIA", False, None),
         ("D9999.", False, None),
+        ("DIA16", False, 8.0),
+        ("DIAM.12,5", False, 6.0),
+        ("RADIUS12", False, 12.0),
+        ("T1 DIA12.5MM", True, 6.25),
+        ("NO.3 10 - END  MILL", False, 5.0),
+        ("1.2.3 DIA", False, 1.15),
     ],
 )
 def test_radius_of_a_comment(comment: str, inch: bool, radius: float | None) -> None:
     found = radius_in(comment, inch)
     assert found == (None if radius is None else pytest.approx(radius))
+
+
+@pytest.mark.parametrize("tool", ["1", "01", "T1", "0" * 5000 + "1", "9" * 5000, "1" * 8, "1" * 9])
+def test_a_list_of_tools_takes_numbers_of_any_length(tool: str) -> None:
+    program = f"O1\n(T{tool} D=20.)\nG21 G98 G18\nT0101\n{FLAT_MM.format(80, 80)}{END}"
+    report = report_of(program, "fanuc", job=ASKED)
+    taken = [found for found in report.findings if found.rule == "radius-from-comment"]
+    assert bool(taken) == (tool.lstrip("0") == "1")
+
+
+HOSTILE = (
+    "1",
+    "1 ",
+    "1/",
+    ".",
+    "1-",
+    "D",
+    "D ",
+    "DIA",
+    "R = ",
+    "T0",
+    "IO",
+    "A-B, ",
+    "POLARCHECK ",
+    "<A",
+    "::",
+    "\\",
+    '"',
+    "\x1b",
+)
+
+
+@pytest.mark.parametrize("machine", ["fanuc", "okuma-osp", "siemens-transmit"])
+@pytest.mark.parametrize("repeated", HOSTILE)
+def test_hostile_comments_of_any_kind_are_checked_by_their_length(repeated: str, machine: str) -> None:
+    """A check whose work grew with the square of these would not end while anybody waits."""
+    comment = f"1{repeated * (100_000 // len(repeated))} X"
+    form = f"; {comment}" if machine == "siemens-transmit" else f"({comment})"
+    program = f"{form}\nG21 G98 G18\nT0101 {form}\n{FLAT_MM.format(80, 80)}{END}"
+    assert report_of(program, machine, job=ASKED).verdict in ("pass", "unverified", "fail")
 
 
 # ---- a comment that tells the cutter of a path of its center ----

@@ -7,7 +7,7 @@ import re
 import msgspec
 
 #: An option of a heading: commas stand in the braces of a table alone.
-_OPTION = r", (machine|tool|set) ([^\n,:=]+(?:[:=](?:[^\n,{]|\{[^}\n]*\})*)?)"
+_OPTION = r", (machine|tool|set) ([^\n,:=]+(?:[:=](?:[^\n,{]|\{[^{}\n]*+\})*)?)"
 _HEADING = re.compile(rf"^(Bad|Good)((?:{_OPTION})*):$", re.MULTILINE)
 _EXPECT = re.compile(r"\(expect: ([a-z0-9, -]+)\)")
 
@@ -50,7 +50,7 @@ def examples(page: str) -> list[Example]:
             for name in match_[1].split(",")
         ]
         options = options_of(match[2])
-        program = re.sub(r"[ \t]*\(expect: [^)\n]*\)[ \t]*$", "", text, flags=re.MULTILINE)
+        program = re.sub(r"(?<![ \t])[ \t]*+\(expect: [^()\n]*+\)[ \t]*+$", "", text, flags=re.MULTILINE)
         found.append(
             Example(
                 match[1] == "Good",

@@ -17,7 +17,7 @@ DEBUG = "polarcheck.debug"
 
 
 #: 512MB, 2G, 1.5 GiB, 100k, 4096: k is 1000 bytes, Ki 1024.
-_SIZE = re.compile(r"\s*(\d{1,15}|\d{0,15}\.\d{1,15})\s*(?:([KMGT])(I?))?B?\s*", re.IGNORECASE | re.ASCII)
+_SIZE = re.compile(r"\s*+(\d{1,15}|\d{0,15}\.\d{1,15})\s*+(?:([KMGT])(I?))?B?\s*+", re.IGNORECASE | re.ASCII)
 _PREFIXES = " KMGT"
 
 

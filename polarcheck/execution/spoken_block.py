@@ -166,7 +166,13 @@ class SpokenBlock(Infix):
 
 @functools.cache
 def _patterns(listed: tuple[tuple[str, str], ...]) -> tuple[tuple[re.Pattern[str], str], ...]:
-    return tuple((re.compile(re.escape(name).replace(r"\*", ".*")), effect) for name, effect in listed if "*" in name)
+    return tuple((_pattern(name), effect) for name, effect in listed if "*" in name)
+
+
+def _pattern(listed: str) -> re.Pattern[str]:
+    """What stands between two stars is taken at its first place, so that many stars cost no more than one."""
+    first, *between, last = map(re.escape, listed.split("*"))
+    return re.compile(first + "".join(f"(?>.*?{part})" for part in between) + f".*{last}")
 
 
 def _by_pattern(patterns: tuple[tuple[re.Pattern[str], str], ...], name: str) -> str | None:

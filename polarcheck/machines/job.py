@@ -246,7 +246,7 @@ def _expected_number(option: str) -> str:
 
 
 _QUOTED = re.compile(r'"([^"]+)"(/[0-9]+)?')
-_LIKE_NUMBER = re.compile(r"[-+.]+[0-9.]*|[0-9.]+")
+_LIKE_NUMBER = re.compile(r"[-+.]++[0-9.]*+|[0-9.]++")
 
 
 def _plain_number(written: str, option: str) -> str | None:

@@ -20,7 +20,7 @@ _TOO_LONG = f"a whole number has at most {_DIGITS} digits"
 _SHOWN = 40
 
 _STRING_OR_COMMENT = re.compile(
-    r'"""(?:[^\\]|\\.)*?(?:"""|\Z)' + r"|'''.*?(?:'''|\Z)" + r'|"(?:[^"\\\n]|\\.)*+"?' + r"|'[^'\n]*+'?|#[^\n]*+",
+    r'"""(?:[^\\]|\\.)*?(?:"""|\\?\Z)' + r"|'''.*?(?:'''|\Z)" + r'|"(?:[^"\\\n]|\\.)*+"?' + r"|'[^'\n]*+'?|#[^\n]*+",
     re.DOTALL,
 )
 # tomllib takes time and memory by the square of the parts. Nothing here goes back, which would cost the same.

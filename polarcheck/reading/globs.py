@@ -11,10 +11,11 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 _WILD = re.compile(r"[*?\[]")
-_PIECE = re.compile(r"\*+|\?|\[(!?)(\]?[^\]/]*)\]|.", re.DOTALL)
+#: Of a [ that nothing closes, all up to the end is one piece: else each further [ would be searched to the end, too.
+_PIECE = re.compile(r"\*+|\?|\[(!?)(\]?[^\]/]*+)\]|(\[[^\]/]*+\Z)|.", re.DOTALL)
 _NOTHING: frozenset[int] = frozenset()
 
 
@@ -162,7 +163,7 @@ _FOLDERS = "(?:[^/]*+/)*"
 
 def _of_name(part: str) -> str:
     chunks = [""]
-    for piece in _PIECE.finditer(part):
+    for piece in _pieces(part):
         if piece[0].startswith("*"):
             chunks.append("")
         else:
@@ -172,6 +173,15 @@ def _of_name(part: str) -> str:
         return first
     *between, last = others
     return first + "".join(f"(?>[^/]*?{chunk})" for chunk in between) + f"[^/]*{last}"
+
+
+def _pieces(part: str) -> Iterator[re.Match[str]]:
+    """The stars, lists and other signs of a part; a [ that nothing closes stands for itself."""
+    for piece in _PIECE.finditer(part):
+        if piece[3]:
+            yield from _PIECE.finditer(piece[3].replace("[", "[[]"))
+        else:
+            yield piece
 
 
 def _translated(piece: re.Match[str]) -> str:

@@ -66,9 +66,10 @@ _SIGNS = {
     "user-task": _Signs(b"=[$", False, rb"(?!)", has_names=True),
 }
 _NAME_CHARACTERS = np.isin(np.arange(256), list(b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz_"))
-#: A name has two letters at least; the letters O and I behind an address are digits that somebody mistyped.
-_NAME = rb"(?![A-Z][OI]++(?![A-Z0-9_]))[A-Z_$][A-Z_][A-Z0-9_$]*+"
-_LABEL = rb"[A-Z_][A-Z0-9_]++[ \t]*+:"
+#: A name has two letters at least; the letters O and I behind an address, up to 20, are digits that somebody mistyped.
+_NAME = rb"(?![A-Z][OI]{1,20}+(?![A-Z0-9_]))[A-Z_$][A-Z_][A-Z0-9_$]*+"
+#: Of no control has a label more characters; without a limit each letter of a long run would be searched to its end.
+_LABEL = rb"[A-Z_][A-Z0-9_]{1,60}+[ \t]*+:"
 _BLANK = b" \t\r\0"
 _HEAD_OF_FILE = re.compile(rb"[ \t\r\0]*+\$[^%\n]*+%[ \t\r\0]*+")
 _GOES_ON = re.compile(rb"\n[ \t\r\0]*+\$(?![^%\n]*+%)")
@@ -77,7 +78,7 @@ _PROGRAM = re.compile(rb"[ \t\r\0]*+(O[A-Z][A-Z0-9]{0,15}+)[ \t\r\0]*+")
 _SEQUENCE_NAME = re.compile(rb"(?<![A-Z0-9_$])N(?!OEX(?![A-Z0-9]))[A-Z][A-Z0-9]{0,3}+(?![A-Z0-9_.=\[])")
 _BEFORE_LABEL = re.compile(rb"[ \t\r\0]*+(?:/[ \t]*+\d?+[ \t\r\0]*+)?+")
 #: A parenthesis that belongs to what stands before it: a name, a sign; so much before it is looked at [characters].
-_BEFORE_ARGUMENTS = re.compile(rb"(?:[=+\-*/,<>]|[A-Z_$][A-Z_][A-Z0-9_$]*+)[ \t]*+\(\Z")
+_BEFORE_ARGUMENTS = re.compile(rb"(?:[=+\-*/,<>]|(?<![A-Z0-9_$])(?>[A-Z0-9_$]*?[A-Z_$][A-Z_])[A-Z0-9_$]*+)[ \t]*+\(\Z")
 _NEAR = 64
 _FLAGS = re.IGNORECASE | re.MULTILINE
 #: The line before a program of an archive: %_N_SHAFT_MPF. In front of its name stands _ or %.
@@ -198,7 +199,7 @@ def _parts(line: bytes, pattern: re.Pattern[bytes], signs: _Signs) -> tuple[list
         if remark is not None:
             comments.append(match.span())
         elif opens:
-            if signs.has_arguments and (depth > 0 or _BEFORE_ARGUMENTS.search(line, max(at - _NEAR, 0), at)):
+            if signs.has_arguments and (depth > 0 or _BEFORE_ARGUMENTS.search(line[max(at - _NEAR, 0) : at])):
                 depth += 1
             else:
                 end = line.find(b")", at)

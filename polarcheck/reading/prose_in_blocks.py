@@ -50,7 +50,7 @@ _SWITCHES_ALONE = re.compile(rb"(?:" + _B + rb"[GMN]" + _B + rb"[\d.]++)++" + _B
 _PROGRAM = re.compile(_B + rb"[O:]" + _B + rb"\d", re.IGNORECASE)
 _RUN = re.compile(rb"[A-Z_\xa1-\xfe]{2,}+", re.IGNORECASE)
 #: Between a description that stands first and its block.
-_COLUMN = re.compile(rb"(?:[ ]*\t[ \t]*|[ ]{3,})(?=[GMNSTXZ]" + _B + _NUMBER + rb")")
+_COLUMN = re.compile(rb"(?<![ \t])(?:[ ]*+\t[ \t]*+|[ ]{3,}+)(?=[GMNSTXZ]" + _B + _NUMBER + rb")")
 #: What makes more of a line than the beginning of a description.
 _SWITCH = re.compile(rb"[GMNTS]" + _B + rb"\d", re.IGNORECASE)
 _ASCII = re.compile(rb"[A-Z]{2}", re.IGNORECASE)

@@ -53,7 +53,7 @@ _WAIT = rb"[ \t]*+(?:\d++[ \t]*+(?:L[ \t]*+\d++)?+|L[ \t]*+\d++)"
 
 
 #: Before a % that is no tape mark but says how much, in a text: FEED AT 20%; so much of it is looked at [characters].
-_SHARE = rb"(?i)[A-Z]{2,}[ \t]++\d++\Z"
+_SHARE = rb"(?i)(?<![A-Z])[A-Z]{2,}+[ \t]++\d++\Z"
 _SHARE_LENGTH = 100
 
 

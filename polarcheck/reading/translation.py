@@ -60,9 +60,10 @@ def spans(source: Source, word: str) -> tuple[Positions, Positions]:
 
 
 def _pattern(word: bytes) -> bytes:
+    word = word.strip()
     begins = rb"(?<![A-Z_])" if word[:1].isalpha() else b""
     ends = rb"(?![A-Z0-9_])" if word[-1:].isalnum() else b""
-    return begins + rb"[ \t]*".join(map(re.escape, _BLANKS.split(word))) + ends
+    return begins + rb"[ \t]*+".join(map(re.escape, _BLANKS.split(word))) + ends
 
 
 def _end(word: bytes) -> bytes:

@@ -22,10 +22,13 @@ _KEYWORDS = {
     ON: "from here on",
     OFF: "up to here",
 }
-_KEYWORD = re.compile(rf"[(;]\s*{WORD}\s*:?\s+([A-Z-]*)$", re.IGNORECASE)
+#: Behind a keyword; some write a colon there.
+_BLANKS = r"(?:\s*+:)?+\s++"
+_KEYWORD = re.compile(rf"[(;]\s*+{WORD}{_BLANKS}([A-Z-]*+)$", re.IGNORECASE)
 #: Names follow each other with commas, or those with a hyphen with blanks between; else the reason has begun.
 _NAME = re.compile(
-    rf"[(;]\s*{WORD}\s*:?\s+ALLOW(?:-FILE|-ON|-OFF)?\s*:?\s+(?:[A-Z0-9-]+\s*,\s*|[A-Z0-9]+-[A-Z0-9-]*\s+)*([A-Z0-9-]*)$",
+    rf"[(;]\s*+{WORD}{_BLANKS}ALLOW(?:-FILE|-ON|-OFF)?+{_BLANKS}"
+    r"(?:[A-Z0-9-]++\s*+,\s*+|[A-Z0-9]++-[A-Z0-9-]*+\s++)*+([A-Z0-9-]*+)$",
     re.IGNORECASE,
 )
 

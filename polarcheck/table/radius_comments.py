@@ -12,15 +12,23 @@ from polarcheck.arrays import Mask, Rows
 from polarcheck.machines.modal import MM_PER_INCH
 from polarcheck.reading.words import Text
 
-_NUMBER = r"(\d+\s*/\s*\d+|\d*\.?\d+)"
-_UNIT = r"\s*(\"|''|IN\b\.?|INCH\b|MM\b)?"
+# No text may cost more than its length: a repeat takes all it can and gives nothing back (`++`), and a number is tried
+# at the first of its digits only.
+_NUMBER = r"((?<!\d)\d++\s*+/\s*+\d++|(?<!\d)\d++(?:\.\d++)?+|\.\d++)"
+_UNIT = r"\s*+(\"|''|IN\b\.?+|INCH\b|MM\b)?+"
+_IS = r"\s*+[=:]?+\s*+"
+#: The rest of a word such as DIAMETER; digits behind it are the number, as in DIA16.
+_LETTERS = r"[^\W\d]*+"
+_CUTTER_NAMES = r"FREZA|FR(?:Ä|AE)SER"
+_CUTTER = rf"DIA\w*+|END\s*+MILL|EM\b|CUTTER|MILL\b|{_CUTTER_NAMES}"
 #: Diameters before radii: posts write both, as in `D=12. CR=0.`, where CR is the radius of the corner.
 _PATTERNS = (
-    (2.0, re.compile(rf"(?:\bDIA\w*\.?|\bD|Ø|\bFREZA|\bFR(?:Ä|AE)SER)\s*[=:]?\s*{_NUMBER}{_UNIT}")),
-    (2.0, re.compile(rf"{_NUMBER}{_UNIT}[\s-]*(?:DIA\w*|END\s*MILL|ENDMILL|EM\b|CUTTER|MILL\b|FREZA|FR(?:Ä|AE)SER)")),
-    (1.0, re.compile(rf"(?:(?<![A-Z])R|\bRAD\w*)\s*[=:]?\s*{_NUMBER}{_UNIT}")),
+    (2.0, re.compile(rf"(?:\bDIA{_LETTERS}\.?+|\bD|Ø|\b(?:{_CUTTER_NAMES})){_IS}{_NUMBER}{_UNIT}")),
+    (2.0, re.compile(rf"{_NUMBER}{_UNIT}[\s-]*+(?:{_CUTTER})")),
+    (1.0, re.compile(rf"(?:(?<![A-Z])R|\bRAD{_LETTERS}){_IS}{_NUMBER}{_UNIT}")),
 )
-_OF_TOOL = re.compile(r"^\W*T\s*0*(\d+)\b")
+#: A tool number of up to eight digits behind its zeros, more than any T word has.
+_OF_TOOL = re.compile(r"\W*+T\s*+(?=\d)0*+(\d{0,8}+)\b")
 _LARGEST = 100.0
 
 
@@ -84,7 +92,7 @@ def radii(text: Text, called: Called) -> dict[int, Found]:
         of_block.setdefault(int(block), []).append(comment)
         listed = _OF_TOOL.match(comment.upper())
         if listed:
-            of_tool.setdefault(int(listed[1]), comment)
+            of_tool.setdefault(int(listed[1] or 0), comment)
     beside = np.concatenate((called.block - 1, called.block + 1))
     filled = set(beside[np.isin(beside, text.words.block)].tolist())
     found: dict[int, Found] = {}
