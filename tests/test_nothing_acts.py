@@ -193,3 +193,55 @@ def test_the_messages_hold_what_was_written() -> None:
     assert "\\u202e" in call("machines", "x.toml").stdout
     report = json.loads(call("check", *PATHS, *OF_MACHINE, "--format", "json").stdout)
     assert report["files"][-1]["path"] == PATHS[-1]
+
+
+# ---- the log of a CI job ----
+
+#: The runner of GitHub reads a command from a line that begins with ::, behind blanks as well, else from ##[ in it.
+OF_RUNNER = re.compile(r"^\s*::(?!(?:error|warning|notice) title=|group::|endgroup::$)", re.MULTILINE)
+OLD_OF_RUNNER = re.compile(r"^(?!::).*##\[", re.MULTILINE)
+#: Formats that hold names and texts as they are: a reader of data takes them, and they are written into files.
+OF_DATA = {"json", "jsonl", "sarif", "gitlab", "junit", "checkstyle"}
+COMMANDS = (
+    *("::stop-commands::x.nc", "  ::add-mask::x.nc", "\t::add-mask::x.nc", "a\n::error::x.nc", "a\r::error::x.nc"),
+    *("##[add-path]x.nc", "a ##[group]x.nc", f"{'a' * 90} ::error::x.nc", "::", ":::x.nc"),
+)
+OF_FILES = (
+    *(("check", "--format", form, "--show-following") for form in OF_MANY),
+    *(("part",), ("check", "--show", "path"), ("check", "--format", "short", "--color", "never")),
+)
+without_such_names = pytest.mark.skipif(sys.platform == "win32", reason="no file of Windows has : in its name")
+
+
+@without_such_names
+@pytest.mark.parametrize("arguments", OF_FILES, ids=" ".join)
+def test_no_line_of_a_report_is_a_command_of_a_ci_log(arguments: tuple[str, ...]) -> None:
+    for name in COMMANDS:
+        Path(name).write_bytes(f"{PROGRAM}(::error::x)\n::error::x\n(##[error]x)\nG12.1 ##[error]x\n".encode())
+    result = call(*arguments, "--", *COMMANDS)
+    assert result.exit_code in (0, 1)
+    assert "x.nc" in result.stdout
+    assert not OF_RUNNER.search(result.stdout)
+    assert OF_DATA & {*arguments} or not OLD_OF_RUNNER.search(result.stdout)
+    assert not OF_RUNNER.search(result.stderr)
+    assert not OLD_OF_RUNNER.search(result.stderr)
+
+
+@without_such_names
+@pytest.mark.parametrize("name", COMMANDS)
+def test_no_line_on_one_file_is_a_command_of_a_ci_log(name: str) -> None:
+    for arguments in (("check", name), ("check", f"{name}.gone"), ("feeds", name), ("trace", name), ("init", name)):
+        Path(name).write_bytes(PROGRAM.encode())
+        result = call(arguments[0], "--", *arguments[1:])
+        assert not OF_RUNNER.search(result.stdout)
+        assert not OF_RUNNER.search(result.stderr)
+
+
+@without_such_names
+@pytest.mark.parametrize("form", ["concise", "short"])
+def test_a_path_that_would_be_a_command_still_leads_to_its_file(form: str) -> None:
+    Path("::x.nc").write_bytes(PROGRAM.encode())
+    first = call("check", "--format", form, "::x.nc").stdout.splitlines()[0]
+    path = re.split(r":\d+:\d+: ", first)[0]
+    assert path == "./::x.nc"
+    assert Path(path).is_file()

@@ -91,11 +91,11 @@ def say_lines(lines: Iterable[str]) -> None:
 
 
 def _tell(line: str) -> None:
-    """Write a line in which nothing acts on a terminal."""
+    """Write a line in which nothing acts on a terminal, or in the log of a CI job."""
     # Its tables of characters are a library that most runs do not need.
-    from polarcheck.reading.excerpt import visible
+    from polarcheck.reading.excerpt import visible, without_commands
 
-    shown = visible(line)
+    shown = without_commands(visible(line))
     if len(shown) > _LONGEST:
         shown = f"{shown[:_HEAD]} ... {shown[-_TAIL:]}"
     # Where nobody can be told, the exit code is left.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import unicodedata
 from typing import NamedTuple
 
@@ -9,6 +10,8 @@ from polarcheck.reading.names import code, with_characters
 
 _TAB = 4
 _CUT = "..."
+#: What the log of a CI job takes for a command: `::` at the head of a line, behind blanks as well, and `##[` anywhere.
+_COMMAND = re.compile(r"^([^\S\n]*+):(?=:)|##\[", re.MULTILINE)
 #: Before the fault this many characters are kept of a line that is too long.
 _BEFORE = 24
 
@@ -24,6 +27,11 @@ class Excerpt(NamedTuple):
 def visible(text: str) -> str:
     """The text with every control, invisible or direction-changing character spelled out, as in `\\x1b`."""
     return text if text.isprintable() else "".join(map(_shown, with_characters(text)))
+
+
+def without_commands(text: str) -> str:
+    """Visible lines, in which the log of a CI job finds no command: `::` at a head is `\\x3a:`, `##[` is `##\\x5b`."""
+    return _COMMAND.sub(_spelled_command, text) if "::" in text or "##[" in text else text
 
 
 def shortened(text: str, length: int) -> str:
@@ -71,6 +79,10 @@ def _expanded(character: str, width: int) -> str:
     if character == "\t":
         return " " * (_TAB - width % _TAB)
     return "" if character == "\r" else _shown(character)
+
+
+def _spelled_command(match: re.Match[str]) -> str:
+    return "##\\x5b" if match[1] is None else f"{match[1]}\\x3a"
 
 
 def _shown(character: str) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from polarcheck.reading.excerpt import visible
+from polarcheck.reading.excerpt import visible, without_commands
 from polarcheck.reports import Background, Parts, of_each, painted
 
 if TYPE_CHECKING:
@@ -40,7 +40,7 @@ def lines(file: FileReport, silenced: bool, color: bool = False) -> Iterator[str
 
 def silenced_line(file: FileReport, found: Silenced) -> str:
     """The line of a finding that is silenced; no pattern of an editor takes it for one that is told."""
-    return f"{visible(f'{file.path}:{found.line}:{found.column}')}: silenced: {why_silenced(found)}"
+    return without_commands(f"{_place(file.path, found)}: silenced: {why_silenced(found)}")
 
 
 def why_silenced(found: Silenced) -> str:
@@ -53,6 +53,11 @@ def line(file: FileReport, found: Finding, color: bool = False) -> str:
     """The line of a finding, with its severity in color where that is asked for."""
     severity = visible(found.severity)
     severity = painted(found.severity, severity) if color else severity
-    place = visible(f"{file.path}:{found.line}:{found.column}")
     message = visible(f"{found.told} [{found.rule}]")
-    return f"{place}: {severity}: {message}"
+    return without_commands(f"{_place(file.path, found)}: {severity}: {message}")
+
+
+def _place(path: str, found: Finding | Silenced) -> str:
+    """Where a finding stands; a path that would begin a command of a CI log is written from its folder on."""
+    own = f"./{path}" if path.lstrip().startswith("::") else path
+    return visible(f"{own}:{found.line}:{found.column}")

@@ -8,7 +8,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
-from polarcheck.reading.excerpt import excerpt, visible
+from polarcheck.reading.excerpt import excerpt, visible, without_commands
 from polarcheck.reports import SEVERITIES, Background, Parts, counted, of_each, painted
 from polarcheck.reports.pages.resting import resting
 
@@ -88,7 +88,7 @@ def _parts(background: Background, are_listed: bool) -> Parts:
         if background.silenced:
             shown += _silenced(file, page)
         shown += _views(file, page, background.dots)
-        return "".join(line + "\n" for line in shown)
+        return without_commands("".join(line + "\n" for line in shown))
 
     def end(report: Report) -> str:
         shown = list[str]()
@@ -97,7 +97,7 @@ def _parts(background: Background, are_listed: bool) -> Parts:
             shown += [*_verdicts(report, page), "", summary(report, background.fixed)]
             known = next((rule for rule in explained if rule in background.rules), None)
             shown += [page.paint("aside", f"More about a rule: polarcheck explain {known}")] if known else []
-        return "".join(line + "\n" for line in shown)
+        return without_commands("".join(line + "\n" for line in shown))
 
     return Parts(of_file, end)
 

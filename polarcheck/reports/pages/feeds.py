@@ -10,7 +10,7 @@ from polarcheck.checking.feed_table import FeedReport, FeedRow, FeedTable, FeedT
 from polarcheck.checking.quantity import rounded
 from polarcheck.checking.tables import Tables
 from polarcheck.machines.modal import MM_PER_INCH
-from polarcheck.reading.excerpt import shortened, visible
+from polarcheck.reading.excerpt import shortened, visible, without_commands
 from polarcheck.table import dynamics as reasons
 from polarcheck.table.dynamics import Dynamics
 from polarcheck.table.feed_curve import FeedCurve, feed_curve
@@ -34,7 +34,7 @@ def text(report: FeedReport) -> str:
     for table in report.tables:
         name = f"{visible(report.path)}{f' {table.channel}' if table.channel else ''}"
         parts.append("\n".join([f"{name} on {report.machine}: {_limits(table)}", *_table(table), *_totals(table)]))
-    return "\n\n".join(parts) + "\n"
+    return without_commands("\n\n".join(parts) + "\n")
 
 
 def _limits(table: FeedTable) -> str:

@@ -9,7 +9,7 @@ from typing import Any
 import msgspec
 
 from polarcheck.checking.finding import FileReport
-from polarcheck.reading.excerpt import visible
+from polarcheck.reading.excerpt import visible, without_commands
 from polarcheck.reports.json import encoded
 
 #: The rule that compares a part with its drawing.
@@ -55,7 +55,7 @@ def text(files: Sequence[FileReport], columns: int) -> str:
             shown.append(f"{label:>{_GUTTER}}   {first}")
             shown += [" " * (_GUTTER + 3) + line for line in more]
         shown.append("")
-    return "".join(line + "\n" for line in shown)
+    return without_commands("".join(line + "\n" for line in shown))
 
 
 def json(files: Sequence[FileReport]) -> str:
