@@ -68,7 +68,7 @@ _SIGNS = {
 _NAME_CHARACTERS = np.isin(np.arange(256), list(b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz_"))
 #: A name has two letters at least; the letters O and I behind an address, up to 20, are digits that somebody mistyped.
 _NAME = rb"(?![A-Z][OI]{1,20}+(?![A-Z0-9_]))[A-Z_$][A-Z_][A-Z0-9_$]*+"
-#: Of no control has a label more characters; without a limit each letter of a long run would be searched to its end.
+#: No control has longer labels. Without a limit the rest of a long run would be read again from each of its letters.
 _LABEL = rb"[A-Z_][A-Z0-9_]{1,60}+[ \t]*+:"
 _BLANK = b" \t\r\0"
 _HEAD_OF_FILE = re.compile(rb"[ \t\r\0]*+\$[^%\n]*+%[ \t\r\0]*+")
