@@ -6,6 +6,7 @@ import json
 import os
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
@@ -14,6 +15,7 @@ from test_cli import call, make
 
 from polarcheck.commands.diff_base import narrowed
 from polarcheck.execution.dependence import calls_one_of
+from polarcheck.reading import git as git_of_polarcheck
 from polarcheck.reading import source
 
 GOOD = "O0001\nG98 G0 X60. C0\nG12.1\nG1 X40. F200\nC5.\nG13.1\nM30\n"
@@ -346,14 +348,266 @@ def test_without_a_common_commit_all_differences_count() -> None:
     assert checked(ref="main") == ["b.nc"]
 
 
-def test_no_program_is_run_that_a_repository_names() -> None:
-    """What a stranger's .git/config names is no command of ours."""
-    Path("evil.sh").write_text("#!/bin/sh\ntouch ran\nprintf '\\0'\n")
-    Path("evil.sh").chmod(0o755)
-    evil = str(Path("evil.sh").absolute())
-    for key in ("core.fsmonitor", "diff.external", "core.pager", "diff.nc.textconv", "diff.nc.command"):
-        git("config", key, evil)
-    Path(".gitattributes").write_text("*.nc diff=nc\n")
+# ---- repositories of strangers ----
+
+
+@pytest.fixture
+def plant() -> str:
+    """The path of a program that leaves the file `ran` in the top folder when anything runs it."""
+    planted = Path(".git", "planted")
+    planted.write_text(f"#!/bin/sh\ntouch '{Path.cwd()}/ran'\nexit 1\n")
+    planted.chmod(0o755)
+    return str(planted.absolute())
+
+
+def has_run() -> bool:
+    """Whether the planted program has run since the last call."""
+    ran = Path("ran").exists()
+    Path("ran").unlink(missing_ok=True)
+    return ran
+
+
+def try_git(*words: str) -> None:
+    """A plain git, which may fail: shows that a plant works."""
+    subprocess.run(["git", *words], stdin=subprocess.DEVNULL, capture_output=True, check=False, timeout=60)
+
+
+def touch(*paths: str, seconds: int) -> None:
+    """Give files another time and the same content, so that git has to compare the content."""
+    for path in paths:
+        os.utime(path, (seconds, seconds))
+
+
+@posix
+@pytest.mark.parametrize("driver", ["nc", "NC.2", "f\u00fcr-nc", "'$x'"])
+@pytest.mark.parametrize("kind", ["clean", "process"])
+@pytest.mark.parametrize("required", ["true", "false"])
+def test_no_filter_is_run(plant: str, driver: str, kind: str, required: str) -> None:
+    git("config", f"filter.{driver}.{kind}", plant)
+    git("config", f"filter.{driver}.required", required)
+    Path(".git", "info", "attributes").write_text(f"*.nc filter={driver}\n", "utf-8")
+    touch("a.nc", seconds=1)
+    Path("b.nc").write_text(GOOD.replace("C5.", "C6."))  # of the same size
+    try_git("diff", "HEAD")
+    assert has_run()
+    touch("a.nc", seconds=2)
+    assert checked() == ["b.nc"]
+    assert not has_run()
+
+
+@posix
+@pytest.mark.parametrize("key", ["core.fsmonitor", "diff.external", "diff.nc.textconv", "diff.nc.command"])
+def test_no_monitor_and_no_diff_program_is_run(plant: str, key: str) -> None:
+    git("config", key, plant)
+    Path(".git", "info", "attributes").write_text("*.nc diff=nc\n")
+    make(a__nc=GOOD + "(X)\n")
+    try_git("diff", "HEAD")
+    assert has_run()
+    assert checked() == ["a.nc"]
+    assert not has_run()
+
+
+@posix
+def test_no_pager_editor_prompt_or_verifier_is_run(plant: str) -> None:
+    for key in (
+        "core.pager",
+        "core.editor",
+        "core.askPass",
+        "gpg.program",
+        "core.alternateRefsCommand",
+        "pager.status",
+    ):
+        git("config", key, plant)
     make(a__nc=GOOD + "(X)\n")
     assert checked() == ["a.nc"]
-    assert not Path("ran").exists()
+    assert refused(ref="mian").startswith("mian: git knows no such commit")
+    assert not has_run()
+
+
+@posix
+def test_no_program_of_an_included_configuration_or_of_the_user_is_run(
+    plant: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    Path(".git", "more").write_text(f'[filter "more"]\n\tclean = {plant}\n')
+    Path(".git", "of_user").write_text(f'[filter "lfs"]\n\tprocess = {plant}\n\trequired\n')
+    Path(".git", "info", "attributes").write_text("a.nc filter=more\nb.nc filter=lfs\n")
+    git("config", f"includeIf.gitdir:{Path.cwd()}/.path", str(Path(".git", "more").absolute()))
+    monkeypatch.setenv("GIT_CONFIG_GLOBAL", str(Path(".git", "of_user").absolute()))
+    monkeypatch.setenv("GIT_EXTERNAL_DIFF", plant)
+    for path in ("a.nc", "b.nc"):
+        touch(path, seconds=1)
+        try_git("status")
+        assert has_run()
+    touch("a.nc", "b.nc", seconds=2)
+    assert checked() == []
+    make(b__nc=GOOD + "(X)\n")
+    assert checked() == ["b.nc"]
+    assert not has_run()
+
+
+def test_a_file_whose_content_a_filter_has_changed_counts_as_changed() -> None:
+    """What git-lfs keeps is a pointer: without the filter a file that is compared anew differs from it."""
+    git("config", "filter.short.clean", "sed 1q")
+    Path(".gitattributes").write_text("a.nc filter=short\n")
+    touch("a.nc", seconds=1)
+    commit()
+    assert checked() == []
+    touch("a.nc", seconds=2)
+    assert checked() == ["a.nc"]
+
+
+def test_a_filter_that_cannot_be_emptied_is_refused() -> None:
+    git("config", "filter.a=b.clean", "cat")
+    said = f"HEAD: {Path.cwd().as_posix()}: rename filter.a=b in the configuration of git: = in a name"
+    assert refused(ref="HEAD") == said
+
+
+@posix
+def test_nothing_is_written_and_no_hook_is_run(plant: str) -> None:
+    Path(".git", "hooks").mkdir(exist_ok=True)
+    for name in ("post-index-change", "reference-transaction", "post-checkout", "pre-auto-gc"):
+        Path(".git", "hooks", name).symlink_to(plant)
+    touch("a.nc", seconds=1)
+    try_git("diff")
+    assert has_run()
+    touch("a.nc", seconds=2)
+    before = Path(".git", "index").read_bytes()
+    assert checked() == []
+    assert Path(".git", "index").read_bytes() == before
+    assert not has_run()
+
+
+@posix
+def test_no_filter_of_a_submodule_is_run(plant: str) -> None:
+    Path("sub").mkdir()
+    git("init", "-q", "-b", "main", folder="sub")
+    Path("sub", "d.nc").write_text(GOOD)
+    git("add", "-A", folder="sub")
+    git("commit", "-q", "-m", "x", folder="sub")
+    commit()
+    git("config", "filter.of_sub.clean", plant, folder="sub")
+    Path("sub", ".git", "info", "attributes").write_text("*.nc filter=of_sub\n")
+    touch("sub/d.nc", seconds=1)
+    try_git("status")
+    assert has_run()
+    touch("sub/d.nc", seconds=2)
+    assert checked(paths=("a.nc", "b.nc")) == []
+    assert checked() == []
+    assert not has_run()
+
+
+def lose(name: str) -> None:
+    """Take an object away from the repository, which says that a remote named origin promises it."""
+    key = git("rev-parse", name).strip()
+    path = Path(".git", "objects", key[:2], key[2:])
+    path.chmod(0o666)
+    path.unlink()
+    git("config", "core.repositoryFormatVersion", "1")
+    git("config", "extensions.partialClone", "origin")
+    git("config", "remote.origin.promisor", "true")
+
+
+#: How git comes to run a program when it fetches; {plant} is its path.
+TRANSPORTS = {
+    "ext": {"remote.origin.url": "ext::{plant}", "protocol.ext.allow": "always"},
+    "rewritten": {"remote.origin.url": "x:y", "url.ext::{plant} .insteadOf": "x:", "protocol.allow": "always"},
+    "ssh": {"remote.origin.url": "ssh://localhost/x", "core.sshCommand": "{plant}"},
+    "proxy": {"remote.origin.url": "git://localhost/x", "core.gitProxy": "{plant}"},
+    "a folder": {"remote.origin.url": ".", "remote.origin.uploadpack": "{plant}"},
+}
+
+
+@posix
+@pytest.mark.parametrize("transport", TRANSPORTS)
+@pytest.mark.parametrize("lost", ["HEAD~1", "HEAD~1^{tree}", "HEAD~1:sub", "HEAD~1:sub/d.nc"])
+def test_a_missing_object_is_never_fetched(plant: str, transport: str, lost: str) -> None:
+    Path("sub").mkdir()
+    Path("sub", "d.nc").write_text(GOOD)
+    commit()
+    Path("sub", "d.nc").write_text(GOOD + "(X)\n")
+    commit()
+    lose(lost)
+    for key, value in TRANSPORTS[transport].items():
+        git("config", key.replace("{plant}", plant), value.replace("{plant}", plant))
+    try_git("diff", "HEAD~1")
+    assert has_run()
+    if lost == "HEAD~1:sub/d.nc":  # the content of a file is not needed to tell that it differs
+        assert checked(ref="HEAD~1") == ["sub/d.nc"]
+    else:
+        lacks = "the clone is partial and lacks objects, which are not fetched here"
+        assert refused(ref="HEAD~1").endswith(f": {lacks}: if you trust it, run git diff HEAD~1 first")
+    assert not has_run()
+
+
+def test_a_repository_without_an_object_that_nobody_promises_is_one_line() -> None:
+    lose("HEAD^{tree}")
+    for key in ("extensions.partialClone", "remote.origin.promisor"):
+        git("config", "--unset", key)
+    assert refused(ref="HEAD").startswith("HEAD: git diff-index: ")
+
+
+def test_a_folder_of_git_that_is_none_does_not_hide_what_has_changed() -> None:
+    """Git would take the repository above it, and its names would mean other files."""
+    Path("sub", ".git").mkdir(parents=True)
+    Path("sub", "d.nc").write_text(GOOD)
+    here = Path.cwd().as_posix()
+    said = f"HEAD: {here}/sub: its .git belongs to the work tree {here}"
+    assert refused("sub", ref="HEAD") == said
+
+
+def test_a_work_tree_elsewhere_does_not_hide_what_has_changed() -> None:
+    Path("elsewhere").mkdir()
+    git("config", "core.worktree", str(Path("elsewhere").absolute()))
+    make(a__nc=GOOD + "(X)\n")
+    assert refused(ref="HEAD").startswith("HEAD: ")
+
+
+def test_files_in_which_git_looks_for_no_changes_may_have_changed() -> None:
+    git("update-index", "--assume-unchanged", "a.nc")
+    git("update-index", "--skip-worktree", "b.nc", "c.nc")
+    make(a__nc=GOOD + "(X)\n", b__nc=GOOD + "(Y)\n")
+    Path("c.nc").unlink()
+    assert checked() == ["a.nc", "b.nc"]
+
+
+def test_a_repository_of_somebody_else_is_refused_as_git_refuses_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("GIT_TEST_ASSUME_DIFFERENT_OWNER", "1")
+    monkeypatch.setenv("GIT_CONFIG_GLOBAL", os.devnull)
+    assert "dubious ownership" in refused(ref="HEAD")
+    Path(".git", "of_user").write_text(f"[safe]\n\tdirectory = {Path.cwd().as_posix()}\n")
+    monkeypatch.setenv("GIT_CONFIG_GLOBAL", str(Path(".git", "of_user").absolute()))
+    assert checked() == []
+
+
+@posix
+def test_a_git_that_hangs_is_ended_with_what_it_has_started(monkeypatch: pytest.MonkeyPatch) -> None:
+    Path("bin").mkdir()
+    Path("bin", "git").write_text("#!/bin/sh\nsleep 600 &\necho $! $$ > pids\nwait\n")
+    Path("bin", "git").chmod(0o755)
+    monkeypatch.setenv("PATH", f"{Path('bin').absolute()}{os.pathsep}{os.environ['PATH']}")
+    monkeypatch.setattr(git_of_polarcheck, "TIME_LIMIT", 0.5)
+    assert refused() == "main: git rev-parse: no answer within 0.5 s"
+    for number in Path("pids").read_text().split():
+        assert is_gone(int(number))
+
+
+@posix
+def test_a_configuration_that_never_ends_is_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
+    os.mkfifo(".git/endless")
+    git("config", "include.path", "endless")
+    monkeypatch.setattr(git_of_polarcheck, "TIME_LIMIT", 0.5)
+    assert refused() == "main: git rev-parse: no answer within 0.5 s"
+
+
+def is_gone(number: int) -> bool:
+    """Whether a process ends within seconds; what is left of it until somebody asks for its exit code is no process."""
+    for _ in range(100):
+        try:
+            status = Path(f"/proc/{number}/stat").read_text() if sys.platform == "linux" else ""
+            os.kill(number, 0)
+        except OSError:
+            return True
+        if status.rpartition(")")[2].split()[:1] == ["Z"]:
+            return True
+        time.sleep(0.05)
+    return False

@@ -2,19 +2,62 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
+import signal
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING
 
 from polarcheck.errors import UsageError, suggestion
 from polarcheck.reading.files import RealPaths, shown
 
+if TYPE_CHECKING:
+    import subprocess
+
 _MARK = ".git"
-#: No monitor of the repository is run for the answer.
-_CAREFULLY = ("-c", "core.fsmonitor=false", "-c", "core.untrackedCache=false")
-#: A hook is told in which repository it runs; the programs may lie in another.
-_OF_A_HOOK = ("GIT_DIR", "GIT_WORK_TREE", "GIT_INDEX_FILE", "GIT_PREFIX")
+#: Options of every call: no hook and no monitor that the repository names is run.
+_SAFE = (
+    "--no-pager",
+    "-c",
+    "core.hooksPath=/dev/null",
+    "-c",
+    "core.fsmonitor=false",
+    "-c",
+    "core.untrackedCache=false",
+)
+#: Git sets these for its hooks (git rev-parse --local-env-vars); the programs may lie in another repository.
+_OF_A_HOOK = frozenset(
+    {
+        "GIT_ALTERNATE_OBJECT_DIRECTORIES",
+        "GIT_COMMON_DIR",
+        "GIT_DIR",
+        "GIT_GRAFT_FILE",
+        "GIT_IMPLICIT_WORK_TREE",
+        "GIT_INDEX_FILE",
+        "GIT_NAMESPACE",
+        "GIT_OBJECT_DIRECTORY",
+        "GIT_PREFIX",
+        "GIT_REPLACE_REF_BASE",
+        "GIT_SHALLOW_FILE",
+        "GIT_WORK_TREE",
+    }
+)
+#: GIT_NO_LAZY_FETCH came with git 2.45; before that a fetch is started, and no protocol is allowed to it.
+_ENVIRONMENT = {
+    "GIT_ALLOW_PROTOCOL": "",
+    "GIT_NO_LAZY_FETCH": "1",
+    "GIT_OPTIONAL_LOCKS": "0",
+    "GIT_TERMINAL_PROMPT": "0",
+    "LC_ALL": "C",
+}
+#: A call of git that takes longer is ended [s].
+TIME_LIMIT = 60.0
+#: How long the pipes of a killed git are read for what it still wrote [s].
+_AFTER_KILL = 1.0
 _LONGEST = 300
+#: How git 2.39 and git 2.45 say that an object is missing and was not fetched.
+_NOT_FETCHED = ("promisor remote", "lazy fetching disabled")
 
 
 class Repositories:
@@ -48,67 +91,163 @@ class Repositories:
 
 def changed(root: str, ref: str) -> set[str]:
     """
-    The files of a repository that differ from where its branch has left a commit, by absolute path: committed since,
-    staged or not, renamed (both names), deleted, and all that git does not keep, of which it cannot tell.
+    The files of a repository that differ from the point where its branch left a commit, by absolute path: committed
+    since, staged or not, renamed (both names), deleted, and all whose changes git does not follow.
 
-    Raises UsageError, with the name of the option, where git is missing or has no such commit.
+    Runs no program that the repository names, opens no connection, and writes nothing. Raises UsageError, which names
+    the option, where git is missing, cannot answer, or has no such commit.
     """
+    _require_top_level(root, ref)
     base = _base(root, ref)
-    compared = ("--name-only", "--no-renames", "--no-ext-diff", "--no-textconv", "--no-color", "-z")
-    differing = _asked(root, ref, "diff", *compared, base, "--")
-    unknown = _asked(root, ref, "ls-files", "--others", "-z")
-    names = [os.fsdecode(name) for name in (differing + unknown).split(b"\0") if name]
+    filters = _without_filters(root, ref)
+    # The index against the commit, then the files against the index. `git diff` would do both at once, but writes the
+    # index where only the time of a file differs, with GIT_OPTIONAL_LOCKS=0 too.
+    compared = ("-z", "--no-renames", "--ignore-submodules=all")
+    staged = _output(root, ref, "diff-index", "--cached", "--name-only", *compared, base, "--")
+    unstaged = _output(root, ref, "status", "--porcelain=v1", "--untracked-files=no", *compared, options=filters)
+    listed = _output(root, ref, "ls-files", "-z", "-v", "--cached", "--others")
+    names = _parts(staged) + [entry[3:] for entry in _parts(unstaged)] + _unfollowed(root, _parts(listed))
     return {os.path.normcase(os.path.join(root, *name.split("/"))) for name in names}  # noqa: PTH118
 
 
+def _parts(output: bytes) -> list[str]:
+    return [os.fsdecode(part) for part in output.split(b"\0") if part]
+
+
+def _unfollowed(root: str, entries: Iterable[str]) -> list[str]:
+    """
+    The files in whose content git does not look for changes: untracked, assumed unchanged, or skipped but present.
+
+    entries: a tag and a name each, as `git ls-files -v` lists them.
+    """
+    names = []
+    for entry in entries:
+        tag, name = entry[0], entry[2:]
+        if tag == "?" or tag.islower() or (tag == "S" and os.path.lexists(os.path.join(root, name))):  # noqa: PTH118
+            names.append(name)
+    return names
+
+
+def _require_top_level(root: str, ref: str) -> None:
+    """Raise UsageError where git takes another folder for the top of the work tree: names would mean other files."""
+    top = os.fsdecode(_output(root, ref, "rev-parse", "--show-toplevel")).rstrip("\r\n")
+    try:
+        is_same = os.path.samefile(top, root)  # noqa: PTH121
+    except OSError:
+        is_same = False
+    if not is_same:
+        raise UsageError(f"--diff-base {ref}: {shown(root)}: its .git belongs to the work tree {shown(top)}")
+
+
+def _without_filters(root: str, ref: str) -> list[str]:
+    """
+    Options that empty every filter of the configuration, since `git status` runs the clean filter of a changed file.
+
+    A file that has to be compared again then counts as changed: too many files are harmless, too few are not.
+    """
+    status, output, said = _git(root, ref, "config", "--null", "--name-only", "--get-regexp", r"^filter\.")
+    if status > 1:  # 1: no filter
+        raise _refusal(ref, "config", said)
+    options: list[str] = []
+    for name in dict.fromkeys(key.rpartition(".")[0] for key in _parts(output)):
+        if "=" in name:  # git -c would take what stands before it for the key
+            raise UsageError(
+                f"--diff-base {ref}: {shown(root)}: rename {name} in the configuration of git: = in a name"
+            )
+        for setting in ("clean=", "smudge=", "process=", "required=false"):
+            options += ("-c", f"{name}.{setting}")
+    return options
+
+
 def _base(root: str, ref: str) -> str:
-    """Where the branch has left the commit, so that what others have changed there since is none of its changes."""
+    """The commit where the branch left REF, so that what others have changed there since does not count."""
     if not ref.strip() or ref.startswith("-"):
         raise UsageError(f"--diff-base {ref!r}: expected a commit, a branch or a tag, such as main")
-    status, found, _ = _git(root, ref, "rev-parse", "--verify", "--quiet", f"{ref}^{{commit}}")
+    status, output, said = _git(root, ref, "rev-parse", "--verify", "--quiet", f"{ref}^{{commit}}")
     if status:
+        if _is_not_fetched(said):
+            raise _refusal(ref, "rev-parse", said)
         raise UsageError(f"--diff-base {ref}: {_missing(root, ref)}")
-    commit = found.decode("ascii").strip()
-    status, found, _ = _git(root, ref, "merge-base", commit, "HEAD")
+    commit = output.decode("ascii").strip()
+    status, output, said = _git(root, ref, "merge-base", commit, "HEAD")
     # Without a common one, as in a shallow clone, all differences to the commit itself count: more, and none too few.
-    return commit if status else found.decode("ascii").strip()
+    return commit if status else output.decode("ascii").strip()
 
 
 def _missing(root: str, ref: str) -> str:
-    if _asked(root, ref, "rev-parse", "--is-shallow-repository").strip() == b"true":
+    if _output(root, ref, "rev-parse", "--is-shallow-repository").strip() == b"true":
         return "the clone is shallow and has no such commit: fetch it (git fetch --unshallow; CI: depth 0)"
-    names = _asked(root, ref, "for-each-ref", "--format=%(refname:short)").decode("utf-8", "replace").split("\n")
+    names = _output(root, ref, "for-each-ref", "--format=%(refname:short)").decode("utf-8", "replace").split("\n")
     return f"git knows no such commit in {shown(root)}{suggestion(ref, filter(None, names))}"
 
 
-def _asked(root: str, ref: str, *words: str) -> bytes:
-    status, found, said = _git(root, ref, *words)
+def _output(root: str, ref: str, *words: str, options: Sequence[str] = ()) -> bytes:
+    """What a command of git prints. Raises UsageError with its first message where it fails."""
+    status, output, said = _git(root, ref, *words, options=options)
     if status:
-        lines = said.decode("utf-8", "replace").strip().split("\n")
-        raise UsageError(f"--diff-base {ref}: git {words[0]}: {lines[0].removeprefix('fatal: ')[:_LONGEST]}")
-    return found
+        raise _refusal(ref, words[0], said)
+    return output
 
 
-def _git(root: str, ref: str, *words: str) -> tuple[int, bytes, bytes]:
+def _refusal(ref: str, command: str, said: bytes) -> UsageError:
+    if _is_not_fetched(said):
+        lacks = "the clone is partial and lacks objects, which are not fetched here"
+        return UsageError(f"--diff-base {ref}: git {command}: {lacks}: if you trust it, run git diff {ref} first")
+    lines = said.decode("utf-8", "replace").strip().split("\n")
+    return UsageError(f"--diff-base {ref}: git {command}: {lines[0].removeprefix('fatal: ')[:_LONGEST]}")
+
+
+def _is_not_fetched(said: bytes) -> bool:
+    return any(words in said.decode("utf-8", "replace") for words in _NOT_FETCHED)
+
+
+def _git(root: str, ref: str, *words: str, options: Sequence[str] = ()) -> tuple[int, bytes, bytes]:
     """Status, output and messages of a command of git."""
     import subprocess
 
     program = _program(os.get_exec_path())
     if program is None:
         raise UsageError(f"--diff-base {ref}: git is not installed, or not on the PATH")
-    environment = {key: value for key, value in os.environ.items() if key not in _OF_A_HOOK}
-    environment |= {"GIT_OPTIONAL_LOCKS": "0", "GIT_TERMINAL_PROMPT": "0", "LC_ALL": "C"}
+    environment = {key: value for key, value in os.environ.items() if key not in _OF_A_HOOK} | _ENVIRONMENT
     try:
-        done = subprocess.run(  # noqa: S603  a list of words, none of which git can take for an option
-            [program, "-C", root, *_CAREFULLY, *words],
+        process = subprocess.Popen(  # noqa: S603  a list of words, none of which git can take for an option
+            [program, "-C", root, *_SAFE, *options, *words],
             stdin=subprocess.DEVNULL,
-            capture_output=True,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
             env=environment,
-            check=False,
+            start_new_session=True,  # a group of its own, which is killed as a whole
         )
     except OSError as error:
         raise UsageError(f"--diff-base {ref}: git: {error.strerror or error}") from None
-    return done.returncode, done.stdout, done.stderr
+    with process:
+        try:
+            output, said = process.communicate(timeout=TIME_LIMIT)
+        except subprocess.TimeoutExpired:
+            _kill(process)
+            raise UsageError(f"--diff-base {ref}: git {words[0]}: no answer within {TIME_LIMIT:g} s") from None
+        except BaseException:
+            _kill(process)
+            raise
+    return process.returncode, output, said
+
+
+def _kill(process: subprocess.Popen[bytes]) -> None:
+    """End git with the processes that it has started."""
+    import subprocess
+
+    if sys.platform == "win32":
+        # git.exe of the PATH is often a wrapper of the real one.
+        command = os.path.join(os.environ.get("SYSTEMROOT", r"C:\Windows"), "System32", "taskkill.exe")  # noqa: PTH118
+        with contextlib.suppress(OSError):
+            subprocess.run([command, "/F", "/T", "/PID", str(process.pid)], capture_output=True, check=False)  # noqa: S603
+        process.kill()
+    else:
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(process.pid, signal.SIGKILL)
+    # A process that left the group may hold the pipes open without end.
+    with contextlib.suppress(subprocess.TimeoutExpired):
+        process.communicate(timeout=_AFTER_KILL)
 
 
 def _program(folders: Iterable[str]) -> str | None:
