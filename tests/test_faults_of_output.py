@@ -171,6 +171,77 @@ def test_a_pipe_that_is_read_gets_the_report() -> None:
     assert json.loads(reader.communicate(timeout=30)[0])["summary"]["files"] == 1
 
 
+def own_descriptors(number: int) -> list[str]:
+    """Paths by which a process may name a file that it has open."""
+    Path("link").unlink(missing_ok=True)
+    Path("link").symlink_to(f"/dev/fd/{number}")
+    by_process = [f"/proc/self/fd/{number}"] if sys.platform == "linux" else []
+    return [f"/dev/fd/{number}", "link", *by_process]
+
+
+@posix
+def test_a_pipe_that_the_shell_has_opened_gets_the_report() -> None:
+    """`-o json:>(cat)` is /dev/fd/63, which leads to a pipe without a name."""
+    reading, writing = os.pipe()
+    outputs = own_descriptors(writing)
+    for output in outputs:
+        status, shown, told = run("check", "b.nc", *ONLY, "-o", f"json:{output}", pass_fds=(writing,))
+        assert (status, told, "pass" in shown) == (0, "", True), output
+    os.close(writing)
+    with open(reading) as pipe:  # noqa: PTH123
+        text = pipe.read()
+    assert text.count('"schema": 1,') == len(outputs)
+    assert Path("link").is_symlink()
+
+
+@posix
+@pytest.mark.parametrize("by_pipe", [True, False])
+@pytest.mark.parametrize(("output", "number"), [("/dev/stdout", 1), ("/dev/stderr", 2)])
+def test_a_report_goes_behind_what_a_standard_stream_holds(output: str, number: int, by_pipe: bool) -> None:
+    """A file into which the shell leads the stream is not replaced: it would lose what is there, and what follows."""
+    if by_pipe:
+        _, *streams = run("check", "a.nc", *ONLY, "-o", f"json:{output}")
+        text = streams[number - 1]
+    else:
+        with open("r.txt", "w+") as file:  # noqa: PTH123
+            file.write("first\n")
+            file.flush()
+            run("check", "a.nc", *ONLY, "-o", f"json:{output}", **{("stdout", "stderr")[number - 1]: file})
+            file.seek(0)
+            text = file.read()
+        assert text.startswith("first\n")
+    assert text.count('"schema": 1,') == 1
+    assert ("error: G0 cannot be used" in text) == (number == 1)
+
+
+@posix
+def test_a_descriptor_that_cannot_be_written_is_one_line() -> None:
+    for output, said in (
+        ("/dev/fd/0", "Bad file descriptor"),
+        ("/dev/fd/99", "Bad file descriptor"),
+        ("/dev/fd/9999999999999999999999", ""),
+    ):
+        with open(os.devnull) as unwritable:  # noqa: PTH123
+            status, shown, told = run("check", "b.nc", *ONLY, "-o", f"json:{output}", stdin=unwritable)
+        assert (status, told.count("\n"), "pass" in shown) == (2, 1, True), told
+        assert told.startswith(f"polarcheck: {output}: {said}")
+
+
+@posix
+def test_a_reader_of_a_report_who_goes_away_changes_no_exit_code() -> None:
+    reading, writing = os.pipe()
+    os.close(reading)
+    assert run("check", "b.nc", *ONLY, "-o", f"json:/dev/fd/{writing}", pass_fds=(writing,))[::2] == (0, "")
+    os.close(writing)
+
+
+@posix
+def test_two_reports_to_one_stream_are_refused() -> None:
+    status, shown, told = run("check", "b.nc", "-o", "json:/dev/stdout", "-o", "sarif:/dev/fd/1")
+    assert (status, shown) == (2, "")
+    assert told == "polarcheck: -o /dev/fd/1: two reports would be written to this file\n"
+
+
 _WRITES = """
 import sys
 from pathlib import Path

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import re
 import shutil
@@ -9,8 +10,9 @@ import signal
 import stat
 import subprocess
 import sys
+import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import partial
 from pathlib import Path
 
@@ -520,6 +522,69 @@ def test_the_mode_of_a_file_stays() -> None:
     Path("a.nc").chmod(0o640)
     check("a.nc", "--fix", "--backup")
     assert {stat.S_IMODE(Path(name).stat().st_mode) for name in ("a.nc", "a.nc.orig")} == {0o640}
+
+
+of_root = pytest.mark.skipif(sys.platform == "win32" or os.geteuid() != 0, reason="only root acts as others")
+
+
+@of_root
+def test_a_program_of_somebody_else_stays_theirs() -> None:
+    make(a__nc=DASH)
+    Path("a.nc").chmod(0o664)
+    os.chown("a.nc", 1234, 1235)
+    assert check("a.nc", "--fix", "--backup").exit_code == 0
+    assert text_of("a.nc") == MINUS
+    for name in ("a.nc", "a.nc.orig"):
+        status = Path(name).stat()
+        assert (status.st_uid, status.st_gid, stat.S_IMODE(status.st_mode)) == (1234, 1235, 0o664)
+
+
+@of_root
+@pytest.mark.parametrize("keep", [True, False])
+@pytest.mark.parametrize(
+    ("owner", "group", "groups", "is_fixed"),
+    [(1234, 1235, [1235], False), (1234, 2000, [], False), (2000, 1235, [], False), (2000, 1235, [1235], True)],
+)
+def test_a_program_that_would_change_its_owner_is_not_written(
+    owner: int, group: int, groups: list[int], is_fixed: bool, keep: bool
+) -> None:
+    """User 2000, of group 2000 and of more groups, may write to the file and its folder."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder, "a.nc")
+        path.write_bytes(DASH.encode())
+        path.chmod(0o666)
+        os.chown(path, owner, group)
+        Path(folder).chmod(0o777)
+        with as_user(2000, groups):
+            if is_fixed:
+                rewriting.rewrite(str(path), DASH.encode(), MINUS.encode(), keep=keep)
+            else:
+                said = (
+                    f"a.nc: not fixed: it belongs to user {owner}, group {group}, to whom you cannot give the new file"
+                )
+                with pytest.raises(OutputError, match=said):
+                    rewriting.rewrite(str(path), DASH.encode(), MINUS.encode(), keep=keep)
+        assert path.read_bytes() == (MINUS if is_fixed else DASH).encode()
+        kept = ["a.nc.orig"] if is_fixed and keep else []
+        assert sorted(entry.name for entry in Path(folder).iterdir()) == ["a.nc", *kept]
+        for name in ("a.nc", *kept):
+            status = Path(folder, name).stat()
+            assert (status.st_uid, status.st_gid, stat.S_IMODE(status.st_mode)) == (owner, group, 0o666)
+
+
+@contextlib.contextmanager
+def as_user(number: int, groups: list[int]) -> Iterator[None]:
+    """The rights of another user and of the group with the same number, until the end of the block."""
+    before = os.getgroups()
+    os.setgroups(groups)
+    os.setegid(number)
+    os.seteuid(number)
+    try:
+        yield
+    finally:
+        os.seteuid(0)
+        os.setegid(0)
+        os.setgroups(before)
 
 
 @of_posix

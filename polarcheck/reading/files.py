@@ -21,6 +21,8 @@ _STANDARD_INPUTS = (STANDARD_INPUT, "/dev/stdin", "/dev/fd/0", "/proc/self/fd/0"
 #: A program of more bytes is not read unless that is asked for.
 LARGEST = 512_000_000
 _NO_NAMES = ("", os.curdir, os.pardir)
+#: Linux follows as many links one behind the other.
+_MOST_LINKS = 40
 EXTENSIONS = (
     *(".nc", ".ncc", ".cnc", ".tap", ".eia", ".min", ".mpf", ".spf", ".ngc", ".prg"),
     *(".ptp", ".dnc", ".fnc", ".iso", ".din", ".pim", ".gcode", ".gco", ".g"),
@@ -240,20 +242,29 @@ def state(path: str | Path, of_folder: Callable[[str, int], State] | None = None
     return found.st_mtime_ns, found.st_size, found.st_ino
 
 
-def write(path: Path, text: str | bytes | Iterable[str], last: Callable[[], None] | None = None) -> None:
+def write(path: Path, text: str | bytes | Iterable[str], last: Callable[[Path], None] | None = None) -> None:
     """
     Write a file whole or not at all, whoever reads it at that moment; a text in UTF-8, which may come in pieces.
 
-    last: is called right before the new file takes the place of the old one, and may raise. Raises OutputError where
-    it cannot be written.
+    A device, a pipe, and what the shell has opened (`>(...)`, /dev/stdout) are written to as they are.
+
+    last: is called with the new file right before it takes the place of the old one, and may raise. Raises OutputError
+    where it cannot be written.
     """
     data = [text] if isinstance(text, bytes) else _encoded([text] if isinstance(text, str) else text)
     try:
-        target = Path(os.path.realpath(path))
-        if target.exists() and not target.is_file():
-            _send(target, data)
+        descriptor = _descriptor(path)
+        if descriptor is not None:
+            for stream in (sys.stdout, sys.stderr):  # what was printed before may go to the same place
+                with contextlib.suppress(OSError, ValueError, AttributeError):
+                    stream.flush()
+            _send(os.dup(descriptor), data)
+        # Not the real path: that of a pipe without a name is no path, `/proc/7/fd/pipe:[1234]`.
+        elif path.exists() and not path.is_file():
+            # Without waiting: a pipe that nobody reads would be waited for without end.
+            _send(os.open(path, os.O_WRONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)), data)
         else:
-            _replace(target, data, last)
+            _replace(Path(os.path.realpath(path)), data, last)
     except (OSError, ValueError) as error:
         said = getattr(error, "strerror", None) or error
         raise OutputError(f"{shown(str(path))}: {said}") from None
@@ -267,16 +278,35 @@ def _encoded(pieces: Iterable[str]) -> Iterator[bytes]:
         raise RuntimeError("a report cannot be made") from error
 
 
-def _send(target: Path, data: Iterable[bytes]) -> None:
-    """To a device, or to a pipe that somebody reads: one that nobody reads would be waited for without end."""
-    handle = os.open(target, os.O_WRONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
+def _descriptor(path: Path) -> int | None:
+    """
+    The number of the open file of this process that a path means: /dev/stdout, /dev/fd/63, or a link to one of them.
+
+    Opened by its path, it would be written from its beginning, over what others have written.
+    """
+    if sys.platform == "win32":
+        return None
+    folders = {os.path.realpath(folder) for folder in ("/dev/fd", "/proc/self/fd")}
+    place = os.fspath(path)
+    for _ in range(_MOST_LINKS):
+        folder, name = os.path.split(place)
+        if re.fullmatch("[0-9]{1,9}", name) and os.path.realpath(folder) in folders:
+            return int(name)
+        if not os.path.islink(place):  # noqa: PTH114
+            return None
+        place = os.path.join(folder, os.readlink(place))  # noqa: PTH115, PTH118
+    return None
+
+
+def _send(handle: int, data: Iterable[bytes]) -> None:
     if hasattr(os, "set_blocking"):
         os.set_blocking(handle, True)
-    with os.fdopen(handle, "wb") as file:
+    # Whoever stops reading has read enough, as behind standard output.
+    with contextlib.suppress(BrokenPipeError), os.fdopen(handle, "wb") as file:
         file.writelines(data)
 
 
-def _replace(target: Path, data: Iterable[bytes], last: Callable[[], None] | None) -> None:
+def _replace(target: Path, data: Iterable[bytes], last: Callable[[Path], None] | None) -> None:
     import tempfile
 
     handle, name = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.", suffix=".new")
@@ -289,7 +319,7 @@ def _replace(target: Path, data: Iterable[bytes], last: Callable[[], None] | Non
             os.fsync(file.fileno())
         beside.chmod(_mode(target))
         if last is not None:
-            last()
+            last(beside)
         beside.replace(target)
     except BaseException:
         with contextlib.suppress(OSError):
