@@ -2,7 +2,7 @@
 
 import multiprocessing
 
-from polarcheck.commands import run
+from polarcheck.__main__ import run
 
 if __name__ == "__main__":
     # A worker of the process pool is this program once more; on Windows and macOS it would else check everything anew.

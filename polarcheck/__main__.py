@@ -1,5 +1,30 @@
-"""`python -m polarcheck`."""
+"""`python -m polarcheck`, and the console script: handles signals and want of memory before the large imports."""
 
-from polarcheck.commands import run
+from __future__ import annotations
 
-run()
+import os
+
+try:
+    from polarcheck import ending
+except KeyboardInterrupt:
+    os.write(2, b"polarcheck: interrupted\n")
+    os._exit(130)
+
+
+def run() -> None:
+    """Run the command line; never returns."""
+    ending.end_on_signals()
+    try:
+        from polarcheck import commands
+
+        commands.run()
+    except KeyboardInterrupt as stop:  # between two blocks that handle it, or a second one
+        ending.end_by(stop)
+    except Exception as error:
+        if not ending.is_of_memory(error):
+            raise
+        ending.end(2, "there is not enough memory")
+
+
+if __name__ == "__main__":
+    run()

@@ -28,7 +28,7 @@ ORDER = (
     ("geometry",),
     ("machines",),
     ("time_limit",),
-    ("arrays", "bounded", "errors"),
+    ("arrays", "bounded", "ending", "errors"),
 )
 FLOOR = {name: number for number, names in enumerate(reversed(ORDER)) for name in names}
 LINE_LIMIT = 420

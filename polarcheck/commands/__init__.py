@@ -16,10 +16,19 @@ from typing import Any
 
 import click
 
-from polarcheck import __version__
+from polarcheck import __version__, ending
 from polarcheck.commands import options, signals
 from polarcheck.commands.exit_codes import BUG, CLEAN, COULD_NOT_RUN
-from polarcheck.commands.output import COLUMNS, ON_WINDOWS, abandon_output, said_of_bug, say, say_lines
+from polarcheck.commands.memory import keep_room_for_numpy
+from polarcheck.commands.output import (
+    COLUMNS,
+    ON_WINDOWS,
+    abandon_output,
+    is_of_echo,
+    said_of_bug,
+    say,
+    say_lines,
+)
 from polarcheck.errors import PolarcheckError, RuleError
 
 NAMES = (
@@ -72,7 +81,8 @@ class Commands(click.Group):
     ) -> int:
         """Run a command; its exit code is returned, or ends the process in standalone mode."""
         status = COULD_NOT_RUN
-        if "_POLARCHECK_COMPLETE" in os.environ:
+        is_completion = "_POLARCHECK_COMPLETE" in os.environ
+        if is_completion:
             from polarcheck.commands import completing
 
             completing.register()
@@ -91,10 +101,11 @@ class Commands(click.Group):
         except (click.Abort, KeyboardInterrupt) as stop:
             status, how = signals.told(stop)
             say(how)
-        except SystemExit as end:
-            if not isinstance(end.__context__, BrokenPipeError):
+        except SystemExit:
+            # Outside of standalone mode click exits for completion, and where nobody has read the help to its end.
+            if is_completion:
                 raise
-            status = CLEAN  # nobody read the help to its end
+            status = CLEAN
         except OSError as error:  # of help and version, which click writes
             abandon_output()
             say(f"standard output: {error.strerror or error}")
@@ -117,18 +128,23 @@ class Commands(click.Group):
             return super().invoke(ctx)
         except (click.ClickException, click.Abort, click.exceptions.Exit):
             raise
-        except MemoryError:
-            say("there is not enough memory")
-            ctx.exit(COULD_NOT_RUN)
         except Exception as error:
             if isinstance(error, PolarcheckError) and not isinstance(error, RuleError):
                 raise
+            stop = signals.interrupt_behind(error)
+            if stop is not None:
+                raise stop from None
+            if isinstance(error, OSError) and is_of_echo(error):  # of help, which click writes
+                raise
+            if ending.is_of_memory(error):
+                say("there is not enough memory")
+                ctx.exit(COULD_NOT_RUN)
             say_lines(said_of_bug(error, options.DEBUG in ctx.meta))
             ctx.exit(BUG)
 
 
 def run() -> None:
-    """The console script: never returns."""
+    """Run the command line, and end the process with its exit code."""
     # Imports make thousands of objects that stay; looking among them for circles costs a tenth of a small check.
     # Between files it is asked for (batch.forget).
     gc.disable()
@@ -137,10 +153,12 @@ def run() -> None:
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="backslashreplace")
-    signals.listen()
+    keep_room_for_numpy()
     try:
+        signals.listen()
         main(prog_name="polarcheck")
     finally:
+        ending.end_on_signals()
         # The process gives everything back; to look for circles in it first is a tenth of a small check.
         gc.freeze()
 

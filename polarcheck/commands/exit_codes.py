@@ -1,4 +1,4 @@
-"""The exit codes; where several apply, the highest counts."""
+"""The exit codes; where several apply, the highest counts. Those of signals stand in `ending`."""
 
 CLEAN = 0
 #: Findings at or above --fail-on.
@@ -7,5 +7,3 @@ FINDINGS = 1
 COULD_NOT_RUN = 2
 #: Of polarcheck itself.
 BUG = 3
-#: By Ctrl-C, and by the signal with which a system ends a process.
-INTERRUPTED, TERMINATED = 130, 143

@@ -55,6 +55,14 @@ def nobody_reads(error: OSError) -> bool:
     return isinstance(error, BrokenPipeError) or (ON_WINDOWS and error.errno == errno.EINVAL)
 
 
+def is_of_echo(error: BaseException) -> bool:
+    """Tells whether an error came while click was writing, so that standard output is at fault."""
+    entry = error.__traceback__
+    while entry is not None and entry.tb_frame.f_code is not click.echo.__code__:
+        entry = entry.tb_next
+    return entry is not None
+
+
 def abandon_output() -> None:
     """What is still to be written to standard output goes nowhere: at its end Python would try once more, and fail."""
     with contextlib.suppress(OSError, ValueError, AttributeError):

@@ -3,25 +3,54 @@
 from __future__ import annotations
 
 import signal
+import sys
+import threading
 from typing import Any
 
-from polarcheck.commands.exit_codes import INTERRUPTED, TERMINATED
+from polarcheck.ending import INTERRUPTED, TERMINATED, Terminated
 
-
-class Terminated(KeyboardInterrupt):
-    """SIGTERM, as an exception that goes the way of Ctrl-C."""
+#: By then the destructor or callback has come to its end [s].
+_UNTIL_AGAIN = 0.01
 
 
 def listen() -> None:
-    """Make SIGTERM an exception, unless whoever started the process has it ignored; on Windows Ctrl-Break, too."""
-    for name in ("SIGTERM", "SIGBREAK"):
+    """Make Ctrl-C, SIGTERM and Ctrl-Break of Windows exceptions, unless whoever started the process ignores them."""
+    for name, handler in (
+        ("SIGINT", signal.default_int_handler),
+        ("SIGTERM", _terminated),
+        ("SIGBREAK", _terminated),
+    ):
         number = getattr(signal, name, None)
-        if number is not None and signal.getsignal(number) is signal.SIG_DFL:
-            signal.signal(number, _terminated)
+        if number is not None and signal.getsignal(number) not in (signal.SIG_IGN, None):
+            signal.signal(number, handler)
+    sys.unraisablehook = _deliver_again
 
 
 def _terminated(number: int, frame: Any) -> None:
     raise Terminated
+
+
+def _deliver_again(unraisable: Any) -> None:
+    """
+    Send the signal once more where Python has dropped its exception.
+
+    It does so where the exception was raised in a destructor or in a callback, such as those of the import system.
+    """
+    if not isinstance(unraisable.exc_value, KeyboardInterrupt):
+        sys.__unraisablehook__(unraisable)
+        return
+    number = signal.SIGTERM if isinstance(unraisable.exc_value, Terminated) else signal.SIGINT
+    again = threading.Timer(_UNTIL_AGAIN, signal.raise_signal, (number,))
+    again.daemon = True
+    again.start()
+
+
+def interrupt_behind(error: BaseException) -> KeyboardInterrupt | None:
+    """The interrupt that caused another exception: Python 3.11 raises RuntimeError for one in `__set_name__`."""
+    cause = error.__cause__
+    while cause is not None and not isinstance(cause, KeyboardInterrupt):
+        cause = cause.__cause__
+    return cause
 
 
 def told(stop: BaseException) -> tuple[int, str]:

@@ -16,9 +16,10 @@ from typing import TYPE_CHECKING
 
 import click
 
-from polarcheck.commands.exit_codes import CLEAN, COULD_NOT_RUN, INTERRUPTED
+from polarcheck.commands.exit_codes import CLEAN, COULD_NOT_RUN
 from polarcheck.commands.options import option
 from polarcheck.commands.output import is_terminal, say
+from polarcheck.ending import INTERRUPTED
 from polarcheck.errors import PolarcheckError, UsageError
 from polarcheck.reading.files import State, state
 
