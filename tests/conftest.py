@@ -1,4 +1,8 @@
-"""`pytest --accept` takes the present reports and paths as the golden ones; names of tests say what they are given."""
+"""
+`pytest --accept` takes the present reports and paths as the golden ones; names of tests say what they are given.
+
+Property tests take the same examples in each run, unless new ones are asked for with `--hypothesis-profile random`.
+"""
 
 from __future__ import annotations
 
@@ -14,6 +18,18 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from hypothesis import HealthCheck, settings
+
+# Hypothesis' own profile for CI draws the same examples in every run: whether the tests pass does not depend on luck.
+# `pytest --hypothesis-profile random` draws new examples, and keeps those that fail in .hypothesis/ for the next run.
+settings.load_profile("ci")
+settings.register_profile(
+    "random",
+    settings.get_profile("default"),
+    deadline=None,
+    print_blob=True,
+    suppress_health_check=[HealthCheck.too_slow],
+)
 
 #: Characters of one value in the name of a test.
 LONGEST = 50
