@@ -47,3 +47,10 @@ def test_findings_are_the_same_with_settled_columns(monkeypatch: pytest.MonkeyPa
     assert plain.findings
     monkeypatch.setattr(engine, "_LARGE", 0)
     assert check_file(PROGRAM, machine, Job(), rules) == plain
+
+
+def test_columns_of_texts_stay_as_they_are() -> None:
+    """The names of rules in allow comments, where all of many comments name the same."""
+    data = b"O1\nG0 X60.\n" + b"X50. (POLARCHECK ALLOW RAPID-IN-POLAR: KNOWN)\nX60.\n" * 6000 + b"M30\n"
+    report = check_file(data, profiles.load(profiles.DEFAULT).machine, Job(), list(load_all().values()))
+    assert {found.rule for found in report.findings} == {"allow-without-effect"}

@@ -101,6 +101,7 @@ def marks(generator: np.random.Generator, count: int) -> Marks:
         cuts=cuts,
         moves=cuts | some(0.2),
         returns=some(0.03),
+        broken_off=np.zeros(count, bool),
     )
 
 

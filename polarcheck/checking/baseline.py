@@ -19,7 +19,8 @@ import msgspec
 from polarcheck.checking.baseline_file import Entry, Key
 from polarcheck.checking.check import verdict
 from polarcheck.checking.engine import in_order
-from polarcheck.checking.finding import BASELINE, SEVERITIES, FileReport, Finding, Silenced
+from polarcheck.checking.finding import BASELINE, SEVERITIES, FileReport, Finding, NotEvaluated, Silenced
+from polarcheck.checking.not_evaluated import bound_silenced
 from polarcheck.checking.silence import silenced
 from polarcheck.reading.excerpt import shortened
 from polarcheck.reading.files import STANDARD_INPUT, shown
@@ -151,6 +152,7 @@ class Baseline:
         left = _counted(known.values())
         told: list[Finding] = []
         silent: list[Silenced] = []
+        bounds: list[NotEvaluated | None] = []
         for finding in report.findings:
             key = _key(finding)
             if not left[key]:
@@ -162,17 +164,20 @@ class Baseline:
                 told.append(finding)
             else:
                 silent.append(silenced(finding, BASELINE, entry.reason))
+                bounds.append(bound_silenced(finding))
         path = os.path.normcase(self.path_of[report.path])
         matched = _counted(known.values()) - left
         self._matched[path] = matched | self._matched.get(path, Counter())
         self._asked[path] = asked
         if not silent:
             return report
+        not_evaluated = [*report.not_evaluated, *filter(None, bounds)]
         return msgspec.structs.replace(
             report,
             findings=told,
+            not_evaluated=not_evaluated,
             silenced=in_order([*report.silenced, *silent]),
-            verdict=verdict(told, report.not_evaluated, fail_on),
+            verdict=verdict(told, not_evaluated, fail_on),
         )
 
     def updated(self, found: Iterable[tuple[FileReport, Collection[str]]], reason: str) -> Updated:

@@ -16,7 +16,7 @@ from polarcheck.checking.causes import READ_OTHERWISE
 from polarcheck.checking.channels import united
 from polarcheck.checking.engine import Engine, in_order, with_following
 from polarcheck.checking.finding import ERROR, SEVERITIES, FileReport, Finding, NotEvaluated, PolarSection, Undecided
-from polarcheck.checking.not_evaluated import all_unevaluated
+from polarcheck.checking.not_evaluated import all_unevaluated, bounds_not_reported
 from polarcheck.checking.other_machine import OtherMachine
 from polarcheck.checking.polar_sections import polar_sections
 from polarcheck.checking.rule import Hits, Rule, load_all
@@ -116,7 +116,7 @@ def _could_silence(engine: Engine, report: FileReport) -> set[str]:
     )
     if {found.rule for found in report.findings} & {*READ_OTHERWISE}:
         return set()
-    if "all" in missing or (returns and not len(tables["sections"])):
+    if "all" in missing or engine.trace.run.broken_off is not None or (returns and not len(tables["sections"])):
         return set()
     off = {rule.name for rule in load_all().values() if rule.level(machine.severities) == "off"}
     return {*engine.rules, *off} - missing
@@ -180,7 +180,8 @@ def report_of(engine: Engine) -> FileReport:
     """All that is found in one run, and what of it could not be evaluated."""
     tables, trace = engine.tables, engine.trace
     findings, silenced = divided(in_order(in_the_file(engine.findings(), trace, engine.answered)))
-    not_evaluated = list(dict.fromkeys((*all_unevaluated(tables, engine.rules.values()), *engine.unlisted)))
+    unevaluated = (*bounds_not_reported(tables, _all(findings)), *all_unevaluated(tables, engine.rules.values()))
+    not_evaluated = list(dict.fromkeys((*unevaluated, *engine.unlisted)))
     text = trace.text
     own = [name for block, name in engine.heads if not text.source.part_of(int(text.blocks.line[block]))]
     return FileReport(
@@ -307,11 +308,15 @@ def _all(findings: Sequence[Finding]) -> Iterator[Finding]:
 
 
 def verdict(findings: Sequence[Finding], not_evaluated: Sequence[NotEvaluated], fail_on: str = "warning") -> str:
-    """pass, fail, or unverified where something that matters was not evaluated, or nobody can say what it is."""
-    told = [found for found in findings if is_told(found, fail_on)]
-    if not all(isinstance(found, Undecided) for found in told):
+    """
+    pass, fail, or unverified where something that matters was not evaluated, or nobody can say what it is.
+
+    fail_on has no say in the latter: a program that was not executed to its end is not verified, whoever asks.
+    """
+    if any(is_told(found, fail_on) and not isinstance(found, Undecided) for found in findings):
         return "fail"
-    return "unverified" if told or any(missing.matters for missing in not_evaluated) else "pass"
+    is_open = any(isinstance(found, Undecided) for found in findings) or any(one.matters for one in not_evaluated)
+    return "unverified" if is_open else "pass"
 
 
 def is_told(finding: Finding, fail_on: str) -> bool:

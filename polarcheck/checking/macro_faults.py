@@ -75,7 +75,8 @@ RULES: Final[Mapping[FaultKind, str]] = {
     "never-run": "unreachable-block",
 }
 
-_ENDLESS = "endless-loop"
+#: The rule that reports a program that never ends, and one that was broken off at a bound.
+ENDLESS_LOOP = "endless-loop"
 _BOUNDS = ("too-many-blocks", "too-many-statements", "runs-too-long", "too-many-repeats")
 #: Of a name in a reason [characters].
 _LONGEST = 40
@@ -168,7 +169,7 @@ class Faults:
         rules = []
         for fault in self.run.faults:
             rule = RULES[fault.kind]
-            if rule == _ENDLESS and self._program(fault.block) in self._undecided:
+            if rule == ENDLESS_LOOP and self._program(fault.block) in self._undecided:
                 rules.append("")  # what is not known may end it: that is told as not evaluated
                 continue
             key = rule, fault.values.get("program", fault.start)

@@ -10,8 +10,8 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Rows
-from polarcheck.checking.finding import NotEvaluated
-from polarcheck.checking.macro_faults import reason_of
+from polarcheck.checking.finding import Finding, NotEvaluated, Undecided
+from polarcheck.checking.macro_faults import ENDLESS_LOOP, Faults, reason_of
 from polarcheck.checking.not_known import OF_MOVES, OF_VARIABLES, cause_of, why
 from polarcheck.checking.phrases.common import block_and_line
 from polarcheck.checking.phrases.drawing import compared_with
@@ -70,6 +70,24 @@ def all_unevaluated(tables: Tables, rules: Iterable[Rule]) -> Iterator[NotEvalua
     yield from unexecuted(tables)
     for rule in rules:
         yield from told(unevaluated(tables, rule), tables["machine"])
+
+
+def bounds_not_reported(tables: Tables, findings: Iterable[Finding]) -> Iterator[NotEvaluated]:
+    """The bounds at which programs were broken off, where no finding says so: the rule was not asked, or silenced."""
+    faults: Faults = tables["faults"]
+    if not faults.is_bound.any() or any(found.rule == ENDLESS_LOOP for found in findings):
+        return
+    trace: Trace = tables["trace"]
+    for index in np.flatnonzero(faults.is_bound).tolist():
+        line = int(trace.text.blocks.line[trace.run.faults[index].block])
+        yield NotEvaluated(rule="all", reason=f"the block of line {line} {faults.reason(index)}", blocks=1)
+
+
+def bound_silenced(finding: Finding) -> NotEvaluated | None:
+    """What stays not evaluated where a baseline holds the finding that says so."""
+    if finding.rule != ENDLESS_LOOP or not isinstance(finding, Undecided):
+        return None
+    return NotEvaluated(rule="all", reason=f"line {finding.line}: {finding.message}", blocks=1)
 
 
 def told(missing: Iterable[Missing], machine: Machine) -> Iterator[NotEvaluated]:

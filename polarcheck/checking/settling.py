@@ -29,7 +29,9 @@ class Settling:
                 columns[column] = self._in_little(columns[column])
 
     def _in_little(self, column: Any) -> Any:
-        if not isinstance(column, np.ndarray) or column.ndim != 1 or not column.size or not is_one(column):
+        if not isinstance(column, np.ndarray) or column.ndim != 1 or not column.size or column.dtype.hasobject:
+            return column
+        if not is_one(column):
             return column
         if column.dtype == np.bool_:
             return self._masks.setdefault((len(column), bool(column[0])), column)

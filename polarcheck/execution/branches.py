@@ -123,7 +123,6 @@ class Branches(Calls):
                 times = max(round(value or 0), 0)
         if times > self.asked.max_blocks:
             self.fault("too-many-repeats", block, statement, repeats=times, limit=self.asked.max_blocks)
-            times = 1
         part = Program(program.number, program.name, begin, end, program.has_head, program.file)
         levels = len(self.stack)
         goes_on = self.call(part, block + 1, times, None, statement, block)

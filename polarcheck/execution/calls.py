@@ -27,6 +27,7 @@ class Level:
 
     passed: the variables that the call has set, which have no value behind the return.
     is_macro: it has local variables of its own. is_part: it is a part of the program that its caller runs.
+    changes: of variables until it began, where it runs once in place of more repeats than a check executes.
     """
 
     program: Program
@@ -35,6 +36,7 @@ class Level:
     is_macro: bool = False
     passed: tuple[int, ...] = ()
     is_part: bool = False
+    changes: int | None = None
 
 
 @dataclass(slots=True)
@@ -117,7 +119,6 @@ class Calls:
         repeats = 1 if called.repeats is None else called.repeats
         if repeats > self.asked.max_blocks:
             self.fault("too-many-repeats", block, statement, repeats=repeats, limit=self.asked.max_blocks)
-            repeats = 1
         if code in modal_calls:
             self.modal = ModalCall(program, arguments or {}, repeats)
             return block + 1
@@ -194,10 +195,13 @@ class Calls:
         if repeats <= 0:
             return back
         passed = statement.passed if statement is not None else ()
-        self.stack.append(Level(program, back, repeats, arguments is not None, passed))
+        level = Level(program, back, repeats, arguments is not None, passed)
+        self.stack.append(level)
         if arguments is not None:
             self.variables.enter(arguments)
             self.changes += 1
+        if repeats > self.asked.max_blocks:
+            level.repeats, level.changes = 1, self.changes
         return program.first
 
     def leave(self, statement: Statement | None, block: int = -1) -> int:
@@ -213,6 +217,10 @@ class Calls:
             self.variables.leave()
         for number in level.passed:
             self.variables.write(number, None)
+        if level.changes is not None:
+            self.rows.add_unknown(level.back - 1, max(len(self.stack) - 1, 0))
+            if level.changes != self.changes:
+                self.variables.forget()
         if not self.stack:
             if target is not None:
                 self.remark("return-jumps", block, code=statement.call if statement else "")

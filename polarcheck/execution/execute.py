@@ -167,18 +167,18 @@ class Execution(Branches):
         self._count += 1
         asked, listing = self.asked, self.listing
         if len(self.rows) > asked.max_blocks + len(listing.text.blocks):
-            self.endless("too-many-blocks", block, limit=asked.max_blocks)
+            self.break_off("too-many-blocks", block, limit=asked.max_blocks)
         elif self._count > self._allowed + self._own:
-            self.endless("too-many-statements", block, limit=self._allowed)
+            self.break_off("too-many-statements", block, limit=self._allowed)
         elif self._count % 256 == 0:
             keep_going()
             if time.monotonic() > self._end:
-                self.endless("runs-too-long", block, limit=self._seconds)
+                self.break_off("runs-too-long", block, limit=self._seconds)
 
-    def endless(self, kind: FaultKind, block: int, **values: str | int | float) -> None:
-        """Say that the run does not end by itself, and end it."""
-        self.fault(kind, block, self.listing.statement(block), **values)
-        self.rows.shorten()
+    def break_off(self, kind: FaultKind, block: int, limit: float) -> None:
+        """End a program at a bound; it may go on, so that nothing is known of what comes after."""
+        self.fault(kind, block, self.listing.statement(block), limit=limit)
+        self.rows.break_off(block, len(self.stack) - 1)
         self.stopped = True
         raise Stop
 
@@ -311,7 +311,10 @@ class Execution(Branches):
         """Back again without any variable changed since the last time here: it will never end."""
         key = (block, len(self.stack))
         if self._last_change.get(key) == self.changes:
-            self.endless("nothing-changes", block)
+            self.fault("nothing-changes", block, self.listing.statement(block))
+            self.rows.shorten()
+            self.stopped = True
+            raise Stop
         self._last_change[key] = self.changes
 
     def loop(self, statement: Statement, block: int) -> int:

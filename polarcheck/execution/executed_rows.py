@@ -16,7 +16,7 @@ from polarcheck.machines.axes import AXIS_LETTERS
 from polarcheck.machines.machine import Machine
 from polarcheck.reading.words import Blocks, Text, Words
 
-#: What is kept of a run that would never end: enough to judge what it does.
+#: Rows kept of a program that was broken off, beside as many as the file has blocks: enough turns to judge its loop.
 _KEPT_ROWS = 10_000
 
 
@@ -33,7 +33,8 @@ class ExecutedRows:
     What has been executed so far.
 
     skip: block skip is on, so that what follows a / is not read. inch: whether
-    lengths are in inch at present; inch_at_first where a program has not said.
+    lengths are in inch at present; inch_at_first where a program has not said. broken_off: the last row of each program
+    that a bound has ended.
     """
 
     def __init__(self, text: Text, machine: Machine, *, skip: bool, inch_at_first: bool) -> None:
@@ -54,6 +55,7 @@ class ExecutedRows:
         self.depth: list[tuple[int, int]] = []
         self.starts: list[int] = []
         self.unknown: list[int] = []
+        self.broken_off: list[int] = []
         self.computed: list[tuple[int, Word, float]] = []
         self.assigned: dict[int, Assigned] = {}
         self.count = 0
@@ -65,6 +67,11 @@ class ExecutedRows:
         """The next row begins a program."""
         self.starts.append(self.count)
         self.inch = self._inch_at_first
+
+    def add_unknown(self, block: int, depth: int) -> None:
+        """A row without words that stands for what a block runs and a check does not."""
+        self.add_computed(block, (), depth)
+        self.mark_unknown()
 
     def mark_unknown(self) -> None:
         """The effect of the last row is not known."""
@@ -145,9 +152,16 @@ class ExecutedRows:
         self._add(index, np.zeros(len(index), np.int64), np.array([block], np.int64), depth)
         self._set_units(index)
 
+    def break_off(self, block: int, depth: int) -> None:
+        """End a program at a bound: a row without words, of unknown effect, stands for all that is not executed."""
+        self.shorten()
+        self.add_unknown(block, depth)
+        self.broken_off.append(self.count - 1)
+
     def shorten(self) -> None:
-        """Keep the beginning of a run that would never end."""
-        while len(self.block) > 1 and self.count - len(self.block[-1]) > _KEPT_ROWS:
+        """Drop the later turns of a loop that was broken off; the programs before it keep all their rows."""
+        most = self.starts[-1] + len(self.text.blocks) + _KEPT_ROWS
+        while len(self.block) > 1 and self.count - len(self.block[-1]) > most:
             self.count -= len(self.block[-1])
             for pieces in (self.words, self.row, self.block, self.depth):
                 pieces.pop()
@@ -159,9 +173,7 @@ class ExecutedRows:
         none = np.zeros(0, np.int64)
         index = np.concatenate((none, *self.words))
         table = _joined(self.text.words, self.text.blocks, self.computed, self.machine)
-        starts, unknown = np.zeros(self.count, bool), np.zeros(self.count, bool)
-        starts[[at for at in self.starts if at < self.count]] = True
-        unknown[[at for at in self.unknown if at < self.count]] = True
+        starts, unknown, broken_off = (self._mask_of(rows) for rows in (self.starts, self.unknown, self.broken_off))
         return Run(
             self.text,
             Words(*(getattr(table, name)[index] for name in Words.__struct_fields__)),
@@ -175,7 +187,13 @@ class ExecutedRows:
             {row: assigned for row, assigned in self.assigned.items() if row < self.count},
             self._distance(index),
             names or {},
+            broken_off if self.broken_off else None,
         )
+
+    def _mask_of(self, rows: Sequence[int]) -> Mask:
+        mask = np.zeros(self.count, bool)
+        mask[[row for row in rows if row < self.count]] = True
+        return mask
 
     def _distance(self, index: Rows) -> NDArray[np.int16] | None:
         """Per executed word what it says of itself; index: among the words of the text and the computed ones."""

@@ -80,6 +80,7 @@ class Run(msgspec.Struct, frozen=True):
     depth: of calls. faults: what macro and flow found. remarks: what was not evaluated. assigned: row -> the variable
     of an offset that it assigns, with its value. distance: per word what it says of itself (modal.Distance), 0 where it
     says nothing; None where no word does. names: of tools that T calls by name, by the number that stands for them.
+    broken_off: rows at which a bound of the check has ended a program; None where it has ended none.
     """
 
     text: Text
@@ -94,6 +95,7 @@ class Run(msgspec.Struct, frozen=True):
     assigned: Mapping[int, Assigned] = {}
     distance: NDArray[np.int16] | None = None
     names: Mapping[int, str] = {}
+    broken_off: Mask | None = None
 
     def __len__(self) -> int:
         return len(self.block)

@@ -107,6 +107,8 @@ class Columns(RowWords):
         whole = has_head[np.maximum(np.searchsorted(first, start, side="right") - 1, 0)]
         whole |= len(self.text.tape_marks) > 0
         whole[self.program[self.codes(*self.machine.macro.program_returns) & (self.run.depth == 0)]] = False
+        if self.run.broken_off is not None:
+            whole[self.program[self.run.broken_off]] = False  # an M99 may come behind the bound
         return whole[self.program]
 
     def anywhere_in_program(self, mask: Mask) -> Mask:

@@ -25,7 +25,8 @@ from polarcheck.table.tool_center import ToolCenter
 from polarcheck.table.trace import Trace
 
 #: Why the time of a row is not known, in the order in which it is said: the first that holds.
-PER_REVOLUTION, NO_FEED, RAPIDS, RADIUS, DWELL, CYCLE, POSITION = (
+NOT_EXECUTED, PER_REVOLUTION, NO_FEED, RAPIDS, RADIUS, DWELL, CYCLE, POSITION = (
+    "not executed",
     "feed per revolution",
     "no F",
     "rapid traverse",
@@ -163,6 +164,7 @@ class Dynamics:
         rapids = rest[trace.motion[rest] == Motion.RAPID]
         time[rapids] = self._time_of_rapids(rapids)
         time[rest] = np.where(self.dwells[rest], self._time_of_dwell[rest], time[rest])
+        time[trace.run.unknown] = np.nan
         return time
 
     def _time_of_way(self, rows: Rows) -> Floats:
@@ -232,6 +234,7 @@ class Dynamics:
         no_radius &= np.isnan(trace.radius_of_move)
         found = []
         for reason, mask in (
+            (NOT_EXECUTED, trace.run.unknown),
             (DWELL, self.dwells),
             (CYCLE, trace.in_cycle),
             (RAPIDS, rapid | self._returns),

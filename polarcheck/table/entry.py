@@ -108,11 +108,12 @@ class Entry:
     def plane_is_right(self) -> Mask:
         """
         Per G12.1: a plane that the profile wants is in force, or is selected in the section before it moves or with its
-        first move; also where the program has selected none, and the profile wants none.
+        first move; also where the program has selected none, and the profile wants none. A row of unknown effect before
+        the first move may select it.
         """
         trace, wanted = self.trace, self.trace.machine.polar.plane_before
         right = (trace.state("plane") == 0) | trace.has_state("plane", wanted) | (not wanted)
-        selects = trace.first_in_section(trace.codes(*wanted) & trace.in_polar)
+        selects = trace.first_in_section((trace.codes(*wanted) | trace.run.unknown) & trace.in_polar)
         if selects.any():
             first = np.full(len(trace.sections), len(trace))
             moves = trace.first_in_section(trace.moves & trace.in_polar)

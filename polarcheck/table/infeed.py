@@ -121,16 +121,17 @@ class Infeed:
     def gap(self) -> Floats:
         """
         From the end of the contour behind each G12.1 with an E to its beginning [mm]; 0 where it is closed, NaN where
-        there is no contour or a point of it is not known.
+        there is no contour, a point of it is not known, or a row of unknown effect in its section may close it.
         """
         if not self._contours:
             return repeated(np.float64(np.nan), len(self.trace))
         gap = np.full(len(self.trace), np.nan)
+        unknown = self.trace.anywhere_in_section(self.trace.run.unknown)
         for row, (contour, closed) in self._contours.items():
             way = self.trace.end[contour] - self.trace.end[contour[:1]]
             if closed:
                 gap[row] = 0.0
-            elif len(way) and not np.isnan(way).any():
+            elif len(way) and not np.isnan(way).any() and not unknown[row]:
                 gap[row] = np.abs(way[-1])
         return gap
 

@@ -75,6 +75,7 @@ class Positions(VirtualAxis):
             cuts=cutting & self.programs_virtual_axis,
             moves=cutting & self.moves_plane,
             returns=self.codes(*self.machine.macro.program_returns) & (self.run.depth == 0),
+            broken_off=np.zeros(len(self), bool) if self.run.broken_off is None else self.run.broken_off,
         )
         return find_sections(marks)
 
@@ -93,6 +94,10 @@ class Positions(VirtualAxis):
         hit = np.zeros(len(self.sections) + 1, bool)
         hit[self.section[mask & (self.section >= 0)]] = True
         return hit[self.section]
+
+    def nowhere_in_section(self, mask: Mask) -> Mask:
+        """Rows of sections in which no row is in the mask, and none of unknown effect, which might be."""
+        return ~self.anywhere_in_section(mask | self.run.unknown)
 
     def count_in_section(self, mask: Mask) -> Rows:
         """Per section how many of its rows are in the mask."""

@@ -81,11 +81,12 @@ class Ramps:
         )
 
     def _without_move(self, rows: Mask, ends: Mask, ramp: Mask) -> Mask:
-        """Of these rows those after which one of `ends` comes before a move of the ramp."""
+        """Of these rows those after which one of `ends` comes before a move of the ramp, or a row of unknown effect."""
         if not rows.any():
             return rows
         trace = self.trace
-        events = np.flatnonzero(trace.travels | ends)
+        ramp = ramp | trace.run.unknown
+        events = np.flatnonzero(trace.travels | ends | ramp)
         at = np.flatnonzero(rows)
         found = np.append(events, len(trace))[np.searchsorted(events, at, side="right")]
         alone = np.zeros(len(trace), bool)

@@ -15,7 +15,7 @@ class Marks(msgspec.Struct, frozen=True):
     on, off: the switching codes. starts: a program begins. outside: codes that can only stand outside (reference
     return). tool_ends: tool change, program end. stops: M1, between two tools or in the work of one. rapid: G0 is
     written. cuts: a cutting move with a word of the virtual axis. moves: any cutting move in the plane.
-    returns: M99 of a program that nothing here calls.
+    returns: M99 of a program that nothing here calls. broken_off: the last row of a program that a bound has ended.
     """
 
     on: Mask
@@ -28,6 +28,7 @@ class Marks(msgspec.Struct, frozen=True):
     cuts: Mask
     moves: Mask
     returns: Mask
+    broken_off: Mask
 
 
 class Sections(msgspec.Struct, frozen=True):
@@ -35,7 +36,8 @@ class Sections(msgspec.Struct, frozen=True):
     The polar sections in order, one element each.
 
     enter: the row of the G12.1. leave: the row of the G13.1 or, where that is missing, the first row that was meant to
-    stand after it. left: whether the G13.1 is there. returned: left open by M99, for the caller to leave.
+    stand after it. left: whether the G13.1 is there. returned: left open by M99, for the caller to leave, or by a bound
+    of the check, behind which its G13.1 may stand.
     again: rows with a G12.1 inside a section.
     """
 
@@ -74,13 +76,15 @@ def find_sections(marks: Marks) -> Sections:
     # A program that begins with a switch, as in `O2 G12.1`, begins first of all.
     closed_by = np.append(np.select([marks.starts, marks.off], [3, 1], 2), 3)[end]
     by_off, by_on, by_end = closed_by == 1, closed_by == 2, closed_by == 3
+    by_bound = by_end & marks.broken_off[end - 1]
+    by_end &= ~by_bound
 
     last_cut = np.maximum(enter, _last_before(np.flatnonzero(marks.cuts), end))
     tool_end = _first_after(np.flatnonzero(marks.tool_ends), last_cut, count)
     outside = _first_after(np.flatnonzero(marks.tool_ends | marks.outside), last_cut, count)
     rapid = _first_after(np.flatnonzero(marks.tool_ends | marks.outside | marks.rapid), last_cut, count)
     stop = _first_after(np.flatnonzero(marks.stops), outside, count)
-    forgotten = (by_off & (np.minimum(tool_end, stop) < end)) | (by_on & (rapid < end)) | by_end
+    forgotten = ((by_off | by_bound) & (np.minimum(tool_end, stop) < end)) | (by_on & (rapid < end)) | by_end
     limit = np.minimum(np.where(by_on, rapid, outside), end)
     last_move = np.maximum(enter, _last_before(np.flatnonzero(marks.moves), limit))
     repeated = np.zeros(len(enter), bool)
@@ -90,7 +94,7 @@ def find_sections(marks: Marks) -> Sections:
     rapid_after = _first_after(np.flatnonzero(marks.tool_ends | marks.outside | marks.rapid), last_move, count)
     meant = np.minimum(np.where(is_empty, outside, rapid_after), limit)
     last_return = _last_before(np.flatnonzero(marks.returns), end)
-    returned = (by_end & (last_return >= last_cut) & (meant > last_return))[final]
+    returned = ((by_end & (last_return >= last_cut) & (meant > last_return)) | (by_bound & ~forgotten))[final]
     return Sections(
         enter[~repeated],
         np.where(forgotten, meant, end)[final],

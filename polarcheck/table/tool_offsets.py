@@ -71,12 +71,13 @@ class ToolOffsets(RotaryAxis):
         """
         Between the call of the offset in force and the next, the program sets R of its offset before the mode needs it.
 
-        What a comment tells of R is not taken there.
+        A row of unknown effect may set it. What a comment tells of R is not taken there.
         """
         call = np.cumsum(self.calls_offset | self.starts)
+        sets_radius = (self.radius_set_in == np.arange(len(self))) | self.run.unknown
         sets, needs = (
             np.bincount(call[rows], minlength=int(call[-1]) + 1 if len(call) else 1) > 0
-            for rows in (self.radius_set_in == np.arange(len(self)), self.in_polar & self.radius_is_from_comment)
+            for rows in (sets_radius, self.in_polar & self.radius_is_from_comment)
         )
         return np.asarray((sets & ~needs)[call])
 

@@ -41,5 +41,5 @@ def no_compensation_in_polar(trace: Trace, sections: Sections) -> Mask:
         G40 X2.4
         G13.1
     """
-    without = trace.anywhere_in_section(trace.cuts) & ~trace.anywhere_in_section(trace.compensates)
+    without = trace.anywhere_in_section(trace.cuts) & trace.nowhere_in_section(trace.compensates)
     return without[sections.enter]

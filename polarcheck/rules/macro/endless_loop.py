@@ -8,10 +8,13 @@ def endless_loop(faults: Faults) -> Hits:
     """
     Program that never ends.
 
-    A jump or loop that comes back again and again with nothing changed never ends; the machine repeats it until it is
-    reset. A warning where a program is still running after the blocks or statements that a check may take beyond those
-    of the file itself, or after its seconds (--max-blocks, --max-statements, --max-seconds): it may end later, but what
-    comes after that is not checked, and the file is unverified.
+    A jump or loop that comes back with nothing changed is an error: the machine repeats it until it is reset. A program
+    that the check itself has stopped executing is a warning: it may be sound, and end later.
+
+    The check stops after so many blocks or statements beyond those of the file itself, and after so many seconds
+    (--max-blocks, --max-statements, --max-seconds). What comes behind that is not checked, and the file is unverified.
+    Of a program that is called more often than --max-blocks, one run is checked; positions and variables after it are
+    not known.
 
     Source: FANUC B-62754EN/01, chapter 16.
 

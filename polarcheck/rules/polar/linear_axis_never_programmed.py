@@ -41,4 +41,4 @@ def linear_axis_never_programmed(trace: Trace, sections: Sections) -> Mask:
     """
     beside = trace.has("X", "U") & trace.uses_axes & trace.in_polar & (trace.linear_axis != ord("X"))
     is_meant = trace.anywhere_in_section(beside) & trace.anywhere_in_section(trace.programs_virtual_axis)
-    return (is_meant & ~trace.anywhere_in_section(trace.programs_linear_axis))[sections.enter]
+    return (is_meant & trace.nowhere_in_section(trace.programs_linear_axis))[sections.enter]

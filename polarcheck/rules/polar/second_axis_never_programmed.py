@@ -42,7 +42,7 @@ def second_axis_never_programmed(trace: Trace, sections: Sections, arcs: Arcs, c
         G1 X50.
         G13.1
     """
-    without = ~trace.anywhere_in_section(trace.programs_virtual_axis)[sections.enter]
+    without = trace.nowhere_in_section(trace.programs_virtual_axis)[sections.enter]
     no_circle = trace.count_in_section(arcs.is_no_circle) >= _SEVERAL
     across = trace.count_in_section(trace.cuts & center.meets_center) >= _SEVERAL
     return without & (no_circle | across)

@@ -56,4 +56,4 @@ def no_tool_offset_at_entry(trace: Trace, entry: Entry) -> Mask:
     # Where compensation begins without one in the section, offset-number-missing says it better.
     compensated = trace.in_polar & (trace.side != Side.OFF) & (trace.offset_number == 0)
     missing = trace.enters & (trace.tool_offset_number == 0) & entry.expects_offset
-    return missing & ~trace.anywhere_in_section(compensated)
+    return missing & trace.nowhere_in_section(compensated)
