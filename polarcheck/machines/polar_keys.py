@@ -108,6 +108,11 @@ class Polar(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
         missing = [axis for axis in INCREMENTS if axis not in self.center_words]
         if missing:
             raise ValueError(f"center_words has no words for the linear axis {missing[0]}")
+        # Pairs: an axis may lack incremental words, as haas-lathe's A does, but no absolute ones.
+        if "" in self.virtual_axis_of_other_controls[::2]:
+            raise ValueError(
+                "virtual_axis_of_other_controls: an address is empty; expected pairs as Y, V; V may be empty"
+            )
 
     @property
     def virtual_axes(self) -> list[str]:
