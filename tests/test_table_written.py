@@ -199,7 +199,7 @@ def test_separators_outside_a_program_are_no_text() -> None:
 
 
 BLOCKS = st.lists(
-    st.tuples(st.sampled_from("GXZFMNKJTSx/$"), st.sampled_from(["0", "1", "2", "40", "41", "3.", "", "505", "99"])),
+    st.tuples(st.sampled_from("GXZFMNKJTSx/?"), st.sampled_from(["0", "1", "2", "40", "41", "3.", "", "505", "99"])),
     max_size=8,
 )
 
@@ -212,11 +212,28 @@ def test_repeated_words_are_those_that_a_count_finds(blocks: list[list[tuple[str
     for line, block in enumerate(blocks, 1):
         # A stray character stands between a letter and what is then no number of its own.
         words = [(letter, number) for letter, number in block]
-        unreadable = any(letter == "$" or (not number and letter != "/") for letter, number in words)
-        counts = Counter(letter.upper() for letter, _ in words if letter not in "GMN/$")
+        unreadable = any(letter == "?" or (not number and letter != "/") for letter, number in words)
+        counts = Counter(letter.upper() for letter, _ in words if letter not in "GMN/?")
         if not unreadable and any(count > 1 for count in counts.values()):
             expected.append(line)
     assert [line for line, _ in places(program, "word-repeated")] == expected
+
+
+@pytest.mark.parametrize(
+    ("block", "is_mark"),
+    [
+        ("$1X0X0", True),
+        ("$2 X0X0", True),
+        ("$0X0X0", False),
+        ("$99X0X0", False),
+        ("G0$1X0X0", False),
+        ("/$1X0X0", False),
+    ],
+)
+def test_a_block_behind_the_mark_of_a_channel_is_read_and_one_with_a_stray_character_is_not(
+    block: str, is_mark: bool
+) -> None:
+    assert bool(places(f"O1\n{block}\nM30\n", "word-repeated")) == is_mark
 
 
 PARTS = [
