@@ -5,8 +5,10 @@ from __future__ import annotations
 import contextlib
 import os
 import signal
+import socket
 import subprocess
 import sys
+import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
@@ -214,8 +216,6 @@ def test_another_version_is_told() -> None:
 
 
 def test_without_the_extra_it_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    import socket
-
     monkeypatch.setitem(sys.modules, "distributed", None)
     make(1)
     with socket.create_server(("127.0.0.1", 0)) as server:
@@ -245,6 +245,102 @@ def test_an_address_where_nobody_is_takes_seconds_at_most(address: str, line: st
     assert told.startswith(f"polarcheck: --cluster {address}: ")
     assert line in told
     assert told.count("\n") == 1
+
+
+IMPATIENT = """
+from polarcheck.checking import remote
+from polarcheck.commands import cluster, run
+
+cluster._LONGEST, remote._QUIET = {seconds}, 0.5
+run()
+"""
+
+
+def start_impatient(seconds: int, *arguments: str) -> subprocess.Popen[str]:
+    """polarcheck that waits no longer than this for the answers of a scheduler."""
+    words = [sys.executable, "-c", IMPATIENT.format(seconds=seconds), *arguments]
+    environment = {**os.environ, "PYTHONPATH": os.fspath(Path(polarcheck.__file__).parent.parent)}
+    pipes = {"stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
+    return subprocess.Popen(words, env=environment, text=True, encoding="utf-8", **pipes)  # type: ignore[call-overload]
+
+
+#: What a port that is no scheduler says to whoever connects, and whether it closes then.
+NO_SCHEDULER = {
+    "nothing": (b"", False),
+    "nothing, and closes": (b"", True),
+    "a page": (b"HTTP/1.1 400 Bad Request\r\n\r\n" * 50, False),
+    "a page, and closes": (b"HTTP/1.1 400 Bad Request\r\n\r\n" * 50, True),
+    "zeros": (bytes(4096), False),
+    "the greatest length": (b"\xff" * 64, False),
+    "one byte to come": (b"\1" + bytes(7), False),
+}
+
+
+@contextlib.contextmanager
+def port_that_says(said: bytes, closes: bool) -> Iterator[str]:
+    connections: list[socket.socket] = []
+
+    def serve() -> None:
+        with contextlib.suppress(OSError):
+            while True:
+                connection, _ = server.accept()
+                connections.append(connection)
+                with contextlib.suppress(OSError):
+                    connection.sendall(said)
+                if closes:
+                    connection.close()
+
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        threading.Thread(target=serve, daemon=True).start()
+        try:
+            yield f"tcp://127.0.0.1:{server.getsockname()[1]}"
+        finally:
+            for connection in connections:
+                connection.close()
+
+
+@pytest.mark.parametrize("kind", NO_SCHEDULER)
+def test_a_port_that_is_no_scheduler_is_one_line(kind: str) -> None:
+    make(1)
+    with port_that_says(*NO_SCHEDULER[kind]) as address:
+        running = start_impatient(1, "check", "f", "--cluster", address)
+        shown, told = running.communicate(timeout=60)
+    assert (running.returncode, shown) == (2, "")
+    assert told.startswith(f"polarcheck: --cluster {address}: ")
+    assert "did not answer as a scheduler within 1 s" in told or "what answers there is no scheduler" in told
+    assert told.count("\n") == 1
+
+
+def test_an_executor_that_answers_no_more_leaves_what_is_finished(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Nor is it asked to take its work back, for which it would have to answer."""
+    monkeypatch.setattr(remote, "_QUIET", 0.01)
+    make(40)
+    tasks = planned("f")
+    silent = threading.Event()
+
+    def acts(number: int, sent: Batch) -> None:
+        if number > 4:
+            silent.wait(60)
+
+    def ask() -> None:
+        raise TimeoutError
+
+    told: list[str] = []
+    with Executor(acts) as executor:
+        crew = OnExecutor(tasks, executor, 2, batch.files.LARGEST, "the cluster", ask)
+        checked = batch.gather(crews.outcomes(tasks, crew), told.append, lambda bug: pytest.fail(str(bug)))
+        silent.set()
+    assert told == [f"the cluster does not answer any more; {len(checked.files)} of 40 files were checked"]
+
+
+def test_a_call_is_given_up_after_its_time_and_else_gives_or_raises_what_it_does() -> None:
+    never = threading.Event()
+    with pytest.raises(TimeoutError):
+        remote.in_time(lambda: never.wait(60), 0.01)
+    never.set()
+    assert remote.in_time(lambda: 3, 60) == 3
+    with pytest.raises(ZeroDivisionError):
+        remote.in_time(lambda: 1 / 0, 60)
 
 
 # ---- a real one ----
@@ -299,3 +395,47 @@ def test_a_cluster_reads_no_file_of_ours(cluster: tuple[str, list[int]]) -> None
     found = run(*words, "--cluster", cluster[0], input=RAPID)
     assert found == run(*words, "--jobs", "1", input=RAPID)
     assert "-:4:1: error" in found[1]
+
+
+@pytest.fixture
+def scheduler(tmp_path: Path) -> Iterator[tuple[str, int, subprocess.Popen[str]]]:
+    """The address of a scheduler, the process of its one worker, and its own process, for a test that stops it."""
+    script = tmp_path / "cluster.py"
+    script.write_text(CLUSTER.replace("n_workers=2", "n_workers=1"))
+    environment = {
+        **os.environ,
+        "PYTHONPATH": os.fspath(Path(polarcheck.__file__).parent.parent),
+        "DASK_TEMPORARY_DIRECTORY": os.fspath(tmp_path),
+    }
+    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "stderr": subprocess.DEVNULL}
+    with subprocess.Popen([sys.executable, str(script)], env=environment, text=True, cwd=tmp_path, **pipes) as running:  # type: ignore[call-overload]
+        address, worker = running.stdout.readline().split()
+        try:
+            yield address, int(worker), running
+        finally:
+            running.send_signal(signal.SIGCONT)
+            running.stdin.close()
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                running.wait(60)
+            running.kill()
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="stops a process and looks into /proc")
+def test_a_scheduler_that_is_stopped_is_one_line(scheduler: tuple[str, int, subprocess.Popen[str]]) -> None:
+    """In the middle of a run, and before the next one."""
+    address, worker, process = scheduler
+    make(2)
+    for path in Path("f").glob("*.nc"):
+        path.write_text(ENDLESS)
+    running = start_impatient(5, "check", "f", *ONLY, *FOREVER, "--cluster", address)
+    while not _is_busy(worker):
+        assert running.poll() is None
+    process.send_signal(signal.SIGSTOP)
+    shown, told = running.communicate(timeout=120)
+    assert (running.returncode, shown) == (2, "")
+    assert told == f"polarcheck: the cluster at {address} does not answer any more; 0 of 2 files were checked\n"
+
+    running = start_impatient(1, "check", "f", "--cluster", address)
+    shown, told = running.communicate(timeout=60)
+    assert (running.returncode, shown) == (2, "")
+    assert told.endswith("who accepts there did not answer as a scheduler within 1 s\n")

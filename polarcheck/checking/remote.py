@@ -7,16 +7,19 @@ for each of those who check, the programs that may be called.
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import hashlib
 import pickle
 import shutil
 import tempfile
+import threading
 import zlib
 from collections import OrderedDict, deque
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import CancelledError, Executor, Future, wait
 from pathlib import Path
+from typing import TypeVar
 
 import msgspec
 
@@ -35,6 +38,11 @@ _MOST, _MOST_BYTES = 100, 5_000_000
 _REMEMBERED = 64
 #: Programs that may be called, of one job [bytes].
 _MOST_CALLED = 200_000_000
+#: After this time without a result the executor is asked whether it is still there [s].
+_QUIET = 5.0
+#: How long it may take to take its work back [s].
+_TO_CANCEL = 5.0
+Value = TypeVar("Value")
 
 
 class Batch(msgspec.Struct, frozen=True):
@@ -59,15 +67,24 @@ class Answer(msgspec.Struct, frozen=True):
 
 class OnExecutor:
     """
-    A crew behind an executor, with room for so many files at once. whose: how messages name it.
+    A crew behind an executor, with room for so many files at once. whose: how messages name it. ask: raises OSError
+    where nobody answers there any more.
 
     Raises CrewError where programs that may be called are too many to be sent.
     """
 
     most, most_bytes, is_here = _MOST, _MOST_BYTES, False
 
-    def __init__(self, tasks: Sequence[Task], executor: Executor, jobs: int, most: int, whose: str) -> None:
-        self.jobs = jobs
+    def __init__(
+        self,
+        tasks: Sequence[Task],
+        executor: Executor,
+        jobs: int,
+        most: int,
+        whose: str,
+        ask: Callable[[], None] = lambda: None,
+    ) -> None:
+        self.jobs, self._ask = jobs, ask
         self._tasks, self._executor, self._most, self._whose = tasks, executor, most, whose
         self._given: dict[Future[Answer], list[tuple[int, str, str, bytes]]] = {}
         self._unread: deque[Result] = deque()
@@ -115,7 +132,12 @@ class OnExecutor:
     def results(self) -> Iterable[Result]:
         """What has come back; what went wrong on the way is given back to be sent again."""
         if not self._unread and self._given:
-            wait(self._given, return_when="FIRST_COMPLETED")
+            while not wait(self._given, _QUIET, "FIRST_COMPLETED").done:
+                try:
+                    self._ask()
+                except OSError:
+                    self._given.clear()  # to cancel them it would be asked again
+                    raise CrewError(f"{self._whose} does not answer any more") from None
         yield from self.finished()
 
     def finished(self) -> Iterable[Result]:
@@ -144,9 +166,29 @@ class OnExecutor:
 
     def close(self) -> None:
         """Nothing more is wanted."""
-        for future in self._given:
-            future.cancel()
+        given = list(self._given)
         self._given.clear()
+        if given:
+            with contextlib.suppress(TimeoutError):  # the client of a cluster waits for the answer
+                in_time(lambda: [future.cancel() for future in given], _TO_CANCEL)
+
+
+def in_time(function: Callable[[], Value], seconds: float) -> Value:
+    """
+    What a function gives or raises within this time; else TimeoutError, and its thread is left behind.
+
+    For calls of a library that have no limit of their own.
+    """
+    future: Future[Value] = Future()
+
+    def run() -> None:
+        try:
+            future.set_result(function())
+        except BaseException as error:
+            future.set_exception(error)
+
+    threading.Thread(target=run, daemon=True).start()
+    return future.result(seconds)
 
 
 def pack(settings: Settings) -> bytes:
