@@ -1,8 +1,8 @@
 """
 Writes .ci/lock.txt: the version and the hash of each package that polarcheck needs at run time, its extras included.
 
-For those who audit an installation. The hashes are those of the files for Linux on x86-64 and Python 3.11, where the job
-`audit` reads them; run it there: `python3.11 .ci/lock.py`. Nothing is installed.
+For those who audit an installation. The hashes are those of the files for Linux on x86-64 and Python 3.11, where the
+job `audit` reads them; run it there: `python3.11 .ci/lock.py`. Nothing is installed.
 """
 
 from __future__ import annotations

@@ -12,6 +12,7 @@ import pytest
 import shapely  # type: ignore[import-untyped]
 
 from polarcheck.geometry import areas
+from polarcheck.geometry.cleared import cleared
 from polarcheck.geometry.segments import Curves, segments
 from polarcheck.geometry.widened import widened
 from polarcheck.machines.modal import Motion
@@ -108,13 +109,15 @@ def points_joined(monkeypatch: pytest.MonkeyPatch, path: Curves, radius: float) 
         return union_all(parts, grid_size)
 
     monkeypatch.setattr(areas, "union_all", counted)
-    area_of(path, radius)
+    cleared(path, radius)
     return points
 
 
 def test_what_is_run_again_costs_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     once, again = (points_joined(monkeypatch, path_of(*[arc(0j, 5, 0, 0)] * count), 5.0) for count in (1, 100))
     assert again == once
+    backward = arc(0j, 5, 0, 0, Motion.CW)
+    assert points_joined(monkeypatch, path_of(backward, arc(0j, 5, 0, 0)), 5.0) == once
     quarters = [arc(0j, 5, k * math.pi / 2, (k + 1) * math.pi / 2) for k in range(4)]
     once, again = (points_joined(monkeypatch, path_of(*quarters * count), 5.0) for count in (1, 25))
     assert again == once

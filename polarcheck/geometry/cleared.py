@@ -15,16 +15,19 @@ import numpy as np
 import shapely  # type: ignore[import-untyped]
 
 from polarcheck.arrays import Floats, Mask, Points, Rows
+from polarcheck.errors import TooHardError
 from polarcheck.geometry.faces import coordinates, edges_of, lines_of
 from polarcheck.geometry.outline import Outline, outline_of
 from polarcheck.geometry.plane import arc_sweep
-from polarcheck.geometry.segments import Curves, Segments, segments
+from polarcheck.geometry.segments import Curves, Segments, first_of_its_kind, segments
 from polarcheck.geometry.widened import widened
 from polarcheck.machines.modal import Motion
 from polarcheck.time_limit import keep_time
 
 #: Arcs of the path have chords with a quarter of this as sagitta at most, and round corners too [mm].
 _TOLERANCE = 0.004
+#: Chords of a path at one Z, and points whose nearest chord is looked for at a time.
+_MOST_CHORDS, _POINTS = 1_000_000, 1000
 #: What is narrower than this is no part but rounding, where passes lie side by side [mm].
 _SLIT = 0.008
 #: Places of one chord beside which material is looked for, at most; R apart.
@@ -52,9 +55,24 @@ def cleared(path: Curves, radius: float) -> Cleared:
 
     Raises TooHardError for too many chords, and where the time is over.
     """
+    path = path[_distinct(path)]
     chords = segments(path, _TOLERANCE)
+    if len(chords) > _MOST_CHORDS:
+        raise TooHardError(
+            f"a path of {len(chords)} chords at one Z is too long to look at: check its passes separately"
+        )
     polygon = _without_slits(widened(path, chords, radius, _TOLERANCE))
     return Cleared(polygon, _outline(polygon, path, chords, radius), _across(polygon, chords, radius))
+
+
+def _distinct(path: Curves) -> Mask:
+    """The moves without those that run again, either way, where another one has run."""
+    x, c = path.start - path.end, path.center
+    is_line = np.isnan(c)
+    backward = (path.kind == Motion.CW) | (is_line & ((x.real > 0) | ((x.real == 0) & (x.imag > 0))))
+    start, end = np.where(backward, path.end, path.start), np.where(backward, path.start, path.end)
+    kind = np.where(is_line, path.kind, np.int16(Motion.CCW))
+    return first_of_its_kind(msgspec.structs.replace(path, start=start, end=end, kind=kind))
 
 
 def _without_slits(area: Any) -> Any:
@@ -89,12 +107,8 @@ def _outline(polygon: Any, path: Curves, chords: Segments, radius: float) -> Out
     start, end = edges_of(_part_on_left(polygon))
     has_length = start != end
     start, end = start[has_length], end[has_length]
-    keep_time()
     middle = (start + end) / 2
-    tree = shapely.STRtree(lines_of(chords.start, chords.end))
-    edge, chord = tree.query_nearest(shapely.points(coordinates(middle)), all_matches=False)
-    near = np.empty(len(middle), np.int64)
-    near[edge] = chord
+    near = _nearest(chords, middle)
     move, corner, at_corner = _sources(middle, near, path, chords)
     source = np.where(at_corner, len(path) + corner, move)
     curves = _curves(path, radius)
@@ -102,6 +116,18 @@ def _outline(polygon: Any, path: Curves, chords: Segments, radius: float) -> Out
     of = found.row
     exact = _exact_ends(found, _beside(found, of, path, curves, radius))
     return msgspec.structs.replace(exact, row=np.append(path.row, np.repeat(path.row, 2))[exact.row])
+
+
+def _nearest(chords: Segments, points: Points) -> Rows:
+    """The chord that is nearest to each point."""
+    tree = shapely.STRtree(lines_of(chords.start, chords.end))
+    places = shapely.points(coordinates(points))
+    near = np.empty(len(points), np.int64)
+    for first in range(0, len(points), _POINTS):
+        keep_time()
+        point, chord = tree.query_nearest(places[first : first + _POINTS], all_matches=False)
+        near[first + point] = chord
+    return near
 
 
 def _part_on_left(area: Any) -> Any:

@@ -19,7 +19,7 @@ from polarcheck.arrays import Mask, Points, Rows
 from polarcheck.errors import NoAnswerError
 from polarcheck.geometry import areas
 from polarcheck.geometry.faces import GRID, Geometries, coordinates, lines_of
-from polarcheck.geometry.segments import Curves, Segments, first_of_its_kind
+from polarcheck.geometry.segments import Curves, Segments
 from polarcheck.geometry.tolerances import TOUCH
 
 #: Areas that are joined at a time: the time for one union grows faster than its areas.
@@ -34,10 +34,9 @@ def widened(path: Curves, chords: Segments, radius: float, tolerance: float) -> 
     The area within R [mm] of the chords of a path, a shapely geometry. Its round edges have chords with a quarter of
     the tolerance [mm] as sagitta at most.
 
-    Repeated parts of the path count once. Raises TooHardError for too many points, and where the time is over.
+    Chords of lines that are repeated count once. Raises TooHardError for too many points, and where the time is over.
     """
     steps = int(np.ceil(np.pi / 4 / np.arccos(1 - np.clip(tolerance / 4 / radius, 1e-9, 0.25))))
-    chords = chords[first_of_its_kind(path)[chords.move]]
     part = _halves_of_arcs(path, chords)
     is_ring, is_pie = _shapes(path, chords, part, radius, tolerance)
     is_round = is_ring | is_pie
