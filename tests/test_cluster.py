@@ -346,12 +346,11 @@ def test_a_call_is_given_up_after_its_time_and_else_gives_or_raises_what_it_does
 # ---- a real one ----
 
 
-@pytest.fixture(scope="module")
-def cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[str, list[int]]]:
-    """The address of the scheduler, and two workers in processes of their own."""
-    folder = tmp_path_factory.mktemp("cluster")
+@contextlib.contextmanager
+def running_cluster(folder: Path, workers: int) -> Iterator[tuple[str, list[int], subprocess.Popen[str]]]:
+    """The address of a scheduler, the processes of its workers, and its own process."""
     script = folder / "cluster.py"
-    script.write_text(CLUSTER)
+    script.write_text(CLUSTER.replace("n_workers=2", f"n_workers={workers}"))
     environment = {
         **os.environ,
         "PYTHONPATH": os.fspath(Path(polarcheck.__file__).parent.parent),
@@ -359,14 +358,21 @@ def cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[str, lis
     }
     pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "stderr": subprocess.DEVNULL}
     with subprocess.Popen([sys.executable, str(script)], env=environment, text=True, cwd=folder, **pipes) as running:  # type: ignore[call-overload]
-        address, *workers = running.stdout.readline().split()
+        address, *processes = running.stdout.readline().split()
         try:
-            yield address, list(map(int, workers))
+            yield address, list(map(int, processes)), running
         finally:
             running.stdin.close()
             with contextlib.suppress(subprocess.TimeoutExpired):
                 running.wait(60)
             running.kill()
+
+
+@pytest.fixture(scope="module")
+def cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[str, list[int]]]:
+    """The address of the scheduler, and two workers in processes of their own."""
+    with running_cluster(tmp_path_factory.mktemp("cluster"), 2) as (address, workers, _):
+        yield address, workers
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="looks into /proc")
@@ -399,25 +405,12 @@ def test_a_cluster_reads_no_file_of_ours(cluster: tuple[str, list[int]]) -> None
 
 @pytest.fixture
 def scheduler(tmp_path: Path) -> Iterator[tuple[str, int, subprocess.Popen[str]]]:
-    """The address of a scheduler, the process of its one worker, and its own process, for a test that stops it."""
-    script = tmp_path / "cluster.py"
-    script.write_text(CLUSTER.replace("n_workers=2", "n_workers=1"))
-    environment = {
-        **os.environ,
-        "PYTHONPATH": os.fspath(Path(polarcheck.__file__).parent.parent),
-        "DASK_TEMPORARY_DIRECTORY": os.fspath(tmp_path),
-    }
-    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "stderr": subprocess.DEVNULL}
-    with subprocess.Popen([sys.executable, str(script)], env=environment, text=True, cwd=tmp_path, **pipes) as running:  # type: ignore[call-overload]
-        address, worker = running.stdout.readline().split()
+    """The address of a scheduler, its one worker and its own process, for a test that stops it."""
+    with running_cluster(tmp_path, 1) as (address, (worker,), running):
         try:
-            yield address, int(worker), running
+            yield address, worker, running
         finally:
             running.send_signal(signal.SIGCONT)
-            running.stdin.close()
-            with contextlib.suppress(subprocess.TimeoutExpired):
-                running.wait(60)
-            running.kill()
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="stops a process and looks into /proc")

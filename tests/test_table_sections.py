@@ -101,7 +101,7 @@ def marks(generator: np.random.Generator, count: int) -> Marks:
         cuts=cuts,
         moves=cuts | some(0.2),
         returns=some(0.03),
-        broken_off=np.zeros(count, bool),
+        broken_off=np.append(starts[1:], True) & some(0.5),
     )
 
 

@@ -313,9 +313,9 @@ def verdict(findings: Sequence[Finding], not_evaluated: Sequence[NotEvaluated], 
 
     fail_on has no say in the latter: a program that was not executed to its end is not verified, whoever asks.
     """
-    if any(is_told(found, fail_on) and not isinstance(found, Undecided) for found in findings):
+    if any(is_told(finding, fail_on) and not isinstance(finding, Undecided) for finding in findings):
         return "fail"
-    is_open = any(isinstance(found, Undecided) for found in findings) or any(one.matters for one in not_evaluated)
+    is_open = any(isinstance(finding, Undecided) for finding in findings) or any(one.matters for one in not_evaluated)
     return "unverified" if is_open else "pass"
 
 

@@ -75,7 +75,7 @@ def all_unevaluated(tables: Tables, rules: Iterable[Rule]) -> Iterator[NotEvalua
 def bounds_not_reported(tables: Tables, findings: Iterable[Finding]) -> Iterator[NotEvaluated]:
     """The bounds at which programs were broken off, where no finding says so: the rule was not asked, or silenced."""
     faults: Faults = tables["faults"]
-    if not faults.is_bound.any() or any(found.rule == ENDLESS_LOOP for found in findings):
+    if not faults.is_bound.any() or any(_is_of_bound(finding) for finding in findings):
         return
     trace: Trace = tables["trace"]
     for index in np.flatnonzero(faults.is_bound).tolist():
@@ -87,9 +87,13 @@ def bounds_not_reported(tables: Tables, findings: Iterable[Finding]) -> Iterator
 
 def bound_silenced(finding: Finding) -> NotEvaluated | None:
     """What stays not evaluated where a baseline holds the finding that says so."""
-    if finding.rule != ENDLESS_LOOP or not isinstance(finding, Undecided):
+    if not _is_of_bound(finding):
         return None
     return NotEvaluated(rule="all", reason=f"line {finding.line}: {finding.message}", blocks=1)
+
+
+def _is_of_bound(finding: Finding) -> bool:
+    return finding.rule == ENDLESS_LOOP and isinstance(finding, Undecided)
 
 
 def told(missing: Iterable[Missing], machine: Machine) -> Iterator[NotEvaluated]:

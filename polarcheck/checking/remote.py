@@ -67,8 +67,8 @@ class Answer(msgspec.Struct, frozen=True):
 
 class OnExecutor:
     """
-    A crew behind an executor, with room for so many files at once. whose: how messages name it. ask: raises OSError
-    where nobody answers there any more.
+    A crew behind an executor, with room for so many files at once. whose: how messages name it. ask: raises OSError,
+    RuntimeError or CancelledError where nobody answers there any more.
 
     Raises CrewError where programs that may be called are too many to be sent.
     """
@@ -135,7 +135,7 @@ class OnExecutor:
             while not wait(self._given, _QUIET, "FIRST_COMPLETED").done:
                 try:
                     self._ask()
-                except OSError:
+                except (OSError, RuntimeError, CancelledError):
                     self._given.clear()  # to cancel them it would be asked again
                     raise CrewError(f"{self._whose} does not answer any more") from None
         yield from self.finished()
@@ -184,8 +184,10 @@ def in_time(function: Callable[[], Value], seconds: float) -> Value:
     def run() -> None:
         try:
             future.set_result(function())
-        except BaseException as error:
+        except Exception as error:
             future.set_exception(error)
+        except BaseException:  # that of asyncio where a loop ends, which would pass all handlers of the caller
+            future.set_exception(CancelledError())
 
     threading.Thread(target=run, daemon=True).start()
     return future.result(seconds)

@@ -10,6 +10,7 @@ import re
 import socket
 import warnings
 from collections.abc import Iterator, Sequence
+from concurrent.futures import CancelledError
 from typing import Any
 
 from polarcheck.checking.batch import Task
@@ -20,6 +21,8 @@ from polarcheck.errors import CrewError
 _PATIENCE = 5
 #: How long it may take to shake hands and to answer a question; the client itself waits for some answers for ever [s].
 _LONGEST = 10
+#: What the client raises where nobody answers any more; TimeoutError is an OSError.
+_NO_ANSWER = (OSError, RuntimeError, CancelledError)
 _ADDRESS = re.compile(r"(?:tcp|tls)://(?:\[([0-9A-Fa-f:]+)\]|([^/:\s]+)):([0-9]{1,5})/?", re.ASCII)
 
 
@@ -34,12 +37,12 @@ def crew(address: str, tasks: Sequence[Task], most: int) -> Iterator[OnExecutor]
         ask = functools.partial(_question, client)
         try:
             ask()
-        except OSError:  # TimeoutError is one
+        except _NO_ANSWER:
             raise CrewError(f"--cluster {address}: the scheduler answered at first, and does not any more") from None
         try:
             in_time(lambda: client.wait_for_workers(1, timeout=_PATIENCE), _LONGEST)
             jobs = sum(in_time(client.nthreads, _LONGEST).values())
-        except OSError:
+        except _NO_ANSWER:
             raise CrewError(
                 f"--cluster {address}: the scheduler has no workers; `dask worker {address} --nthreads 1` starts one"
             ) from None
@@ -49,7 +52,7 @@ def crew(address: str, tasks: Sequence[Task], most: int) -> Iterator[OnExecutor]
 
 
 def _question(client: Any) -> None:
-    """Raises OSError where the scheduler does not answer in time."""
+    """Raises one of _NO_ANSWER where the scheduler does not answer in time."""
     in_time(lambda: client.sync(client.scheduler.identity), _LONGEST)
 
 
@@ -77,7 +80,7 @@ def _client(address: str) -> Iterator[Any]:
         try:
             yield client
         finally:
-            with contextlib.suppress(OSError, RuntimeError):
+            with contextlib.suppress(*_NO_ANSWER):
                 in_time(lambda: client.close(timeout=_PATIENCE), _LONGEST)
 
 
