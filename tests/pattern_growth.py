@@ -96,7 +96,8 @@ def _evaluated(site: Site, module: ModuleType) -> AnyPattern:
 
 def _methods(module: ModuleType, pattern: AnyPattern) -> set[str]:
     """The methods called on a constant of a module; all of them where it is used in another way."""
-    names = {name for name, value in vars(module).items() if value is pattern}
+    # Not by identity: `re` forgets patterns that it has compiled, and makes equal ones again.
+    names = {name for name, value in vars(module).items() if isinstance(value, re.Pattern) and value == pattern}
     tree = ast.parse(Path(module.__file__ or "").read_text("utf-8"))
     loads = [node for node in ast.walk(tree) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load)]
     of_name = [node for node in loads if node.id in names]

@@ -10,10 +10,13 @@ import pytest
 import shapely  # type: ignore[import-untyped]
 from programs import tables_of
 
+from polarcheck.arrays import Points, Rows
 from polarcheck.checking.part import made_by
+from polarcheck.errors import TooHardError
+from polarcheck.geometry import cleared as geometry_of_paths
 from polarcheck.geometry.cleared import cleared
 from polarcheck.geometry.plane import arc_sweep
-from polarcheck.geometry.segments import Curves
+from polarcheck.geometry.segments import Curves, Segments
 from polarcheck.machines.modal import Motion
 
 HEAD = "G21 G98 G40 T0808\nG0 X120. Z2. C0\nG12.1\n"
@@ -146,3 +149,33 @@ def sampled(start: complex, end: complex, center: complex, kind: int, count: int
         return start + share * (end - start)
     one = np.array([start]), np.array([end]), np.array([center]), np.array([kind])
     return center + (start - center) * np.exp(1j * float(arc_sweep(*one)[0]) * share)
+
+
+def circles(count: int, growth: float = 0.0) -> Curves:
+    """Half circles about the center, each round larger than the one before by so much [mm]."""
+    radius = np.repeat(20 + growth * np.arange(count), 2)
+    start = radius * np.tile([1 + 0j, -1 + 0j], count)
+    kind = np.full(2 * count, Motion.CCW, np.int16)
+    return Curves(start, -start, np.zeros(2 * count, complex), kind, np.zeros(2 * count, int), np.arange(2 * count))
+
+
+def test_a_pass_that_is_run_again_is_looked_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The look-up of the nearest chord took 33 s where a circle was run 6,000 times."""
+    searched: list[int] = []
+    nearest = geometry_of_paths._nearest
+
+    def counted(chords: Segments, points: Points) -> Rows:
+        searched.append(len(chords) * len(points))
+        return nearest(chords, points)
+
+    monkeypatch.setattr(geometry_of_paths, "_nearest", counted)
+    for count in (1, 200):
+        cleared(circles(count), 4.0)
+    assert searched[0] == searched[1]
+
+
+def test_a_path_of_too_many_chords_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(geometry_of_paths, "_MOST_CHORDS", 1000)
+    assert not cleared(circles(1), 4.0).polygon.is_empty
+    with pytest.raises(TooHardError, match=r"a path of \d+ chords at one Z is too long"):
+        cleared(circles(10, 0.5), 4.0)

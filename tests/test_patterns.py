@@ -91,6 +91,12 @@ def test_every_pattern_of_the_package_is_tried() -> None:
     }
 
 
+def test_the_methods_of_a_pattern_are_known_after_many_others_were_compiled() -> None:
+    before, _ = constant_patterns()
+    re.purge()
+    assert [used.methods for used in constant_patterns()[0]] == [used.methods for used in before]
+
+
 @pytest.mark.parametrize("part", range(8))
 def test_no_pattern_costs_more_than_the_length_of_its_text(part: int) -> None:
     """Slow, since it tries each part of each pattern: 90,000 texts of nine sizes. A new pattern is tried by itself."""
