@@ -429,3 +429,9 @@ def test_columns_have_one_length_and_are_json() -> None:
         data = json.loads(msgspec.json.encode(section))
         assert "NaN" not in json.dumps(data)
         assert msgspec.convert(data, SectionPicture) == section
+
+
+@pytest.mark.parametrize("program", ["G12.1\n", "O1\nG12.1\nG13.1\nM30\n", "T0101\nG0 X50. C0\nG12.1\nG13.1\nG12.1\n"])
+def test_a_section_without_moves_has_an_empty_picture(program: str) -> None:
+    sections = drawn_of(program, "1:radius=5").sections
+    assert [section.move_count for section in sections] == [0] * program.count("G12.1")

@@ -147,8 +147,9 @@ def _listed(kept: Mask, shown: Sequence[Rows], most: int) -> Rows:
 
 
 def _highest(values: Floats) -> Rows:
-    """The place of the highest value."""
-    return np.atleast_1d(np.argmax(np.where(np.isnan(values), -np.inf, values)))
+    """The place of the highest value; none of no values."""
+    highest = np.where(np.isnan(values), -np.inf, values)
+    return np.flatnonzero(highest == highest.max(initial=-np.inf))[:1]
 
 
 def _place(listed: Rows, move: Rows) -> Rows:
