@@ -61,6 +61,14 @@ def test_a_position_without_measure_is_not_told_as_a_number(word: str) -> None:
     assert any("position" in missing.reason for missing in report.not_evaluated)
 
 
+@pytest.mark.parametrize("word", ["F#1", "F"])
+def test_a_feed_per_revolution_without_measure_is_not_told_as_a_number(word: str) -> None:
+    program = f"O1\n#1=POW[10,308]\nG20 G99 G0 X6. C0\nG1 Z-5. F.1\nZ-6. {word}\nG12.1\nG98 X4.\nC1.\nG13.1\nM30\n"
+    report = report_of(program, "fanuc-30i")
+    assert not any("nan" in finding.message.split() for finding in every(report))
+    assert any("feed is not known" in missing.reason for missing in report.not_evaluated)
+
+
 def test_a_feed_without_measure_is_not_told_as_a_number() -> None:
     program = f"{HEAD}#1=POW[10,308]\nG12.1\nG1 X2. C1. F#1\nC-1.\nF{'9' * 200}\nC1.\nG13.1\nM30\n"
     report = report_of(program, "fanuc-30i", "1:radius=0", changes={"limits": {"c_feed": 3600}})

@@ -76,11 +76,12 @@ class Feeds:
 
     @cached_property
     def is_left_per_revolution(self) -> Mask:
-        """F in force was written for feed per revolution, could be nothing else, and is read per minute now."""
+        """F in force is known, was written for feed per revolution, could be nothing else, and is per minute now."""
         trace = self.trace
         written = trace.has("F") | trace.starts
         per_revolution = fill_down(trace.feed_mode == FeedMode.PER_REVOLUTION, written, False)
-        return np.asarray(per_revolution & trace.per_minute & ~self.is_too_high_per_revolution)
+        known = ~np.isnan(trace.feed)
+        return np.asarray(per_revolution & trace.per_minute & known & ~self.is_too_high_per_revolution)
 
     @cached_property
     def looks_per_revolution(self) -> Mask:
@@ -98,7 +99,7 @@ class Feeds:
         says = trace.in_polar & (trace.modal_feed_mode == FeedMode.PER_REVOLUTION)
         is_small = ~self._is_at_least(_NOT_PER_MINUTE) & (~np.isnan(number) | says)
         is_small |= same & ~self.is_too_high_per_revolution
-        return np.asarray(is_small & trace.per_minute & ~self.is_left_per_revolution)
+        return np.asarray(is_small & trace.per_minute & ~np.isnan(trace.feed) & ~self.is_left_per_revolution)
 
     @cached_property
     def begins(self) -> Mask:
