@@ -2,11 +2,14 @@
 Programs that could take hours: does their check end in time and memory, and does it say what it has given up?
 
     python benchmarks/hard_programs.py [--only NAME] [--size 1000] [--seconds 60] [--megabytes 1500] [--json]
+    python benchmarks/hard_programs.py --command plot --without-compensation --kilobytes 200 --seconds 20
 
 Each family is written in each of the sizes (its moves, about) and checked by a process of its own, under a limit of
 address space and a time-out. A line for each: moves, seconds, peak of memory, how many times the seconds of the size
 before, the verdict, findings, and what was not evaluated. Ends with 1 where one crosses a bound, ends by anything but
-a report, or passes although something that matters was given up. `--write FOLDER` leaves the programs there instead.
+a report, or passes although something that matters was given up. `--command` runs another command, of which only the
+exit code is judged; `--without-compensation` leaves out G40, G41 and G42; `--kilobytes` writes each program once, as
+large as that. `--write FOLDER` leaves the programs there instead.
 """
 
 from __future__ import annotations
@@ -17,6 +20,7 @@ import json
 import math
 import os
 import random
+import re
 import subprocess
 import sys
 import tempfile
@@ -448,17 +452,37 @@ class Outcome:
     fault: str
 
 
+#: The arguments of a command before the file and behind it; {page} is a file that may be written.
+COMMANDS: dict[str, tuple[list[str], list[str]]] = {
+    "check": (["check"], ["--format", "json"]),
+    "check-part": (["check", "--part"], ["--format", "html"]),
+    "part": (["part"], []),
+    "plot": (["plot"], ["-o", "{page}"]),
+    "feeds": (["feeds"], []),
+    "trace": (["trace", "--path", "tool"], []),
+    "fix": (["check", "--diff", "--unsafe-fixes"], []),
+}
+
+
 def run(
-    path: Path, seconds: float, megabytes: int, offsets: int = 1, options: Iterable[str] = (), tree: Path = ROOT
+    path: Path,
+    seconds: float,
+    megabytes: int,
+    offsets: int = 1,
+    options: Iterable[str] = (),
+    tree: Path = ROOT,
+    name: str = "check",
 ) -> Outcome:
-    """Check one file; `tree` is the checkout whose polarcheck does."""
+    """Run the command of this name on one file; `tree` is the checkout whose polarcheck does."""
     import resource  # late: the programs are written on Windows, too
 
     def limit_memory() -> None:
         resource.setrlimit(resource.RLIMIT_AS, (megabytes * 1_000_000,) * 2)
 
     given = (part for number in range(1, offsets + 1) for part in ("--tool", f"{number}:radius=4"))
-    command = [sys.executable, "-c", CHILD, "check", str(path), "--machine", "fanuc-30i", *given, "--format", "json"]
+    before, behind = COMMANDS[name]
+    behind = [word.format(page=path.with_suffix(".html")) for word in behind]
+    command = [sys.executable, "-c", CHILD, *before, str(path), "--machine", "fanuc-30i", *given, *behind]
     try:
         done = subprocess.run(
             [*command, *options],
@@ -475,6 +499,8 @@ def run(
     taken, used = (int(number) / 1000 for number in told.split()) if told else (math.nan, math.nan)
     if done.returncode not in (0, 1):
         return Outcome(taken, used, "", 0, (), f"exit {done.returncode}: {said.strip()[-200:]}")
+    if name != "check":
+        return Outcome(taken, used, f"exit {done.returncode}", 0, (), "")
     (report,) = json.loads(done.stdout)["files"]
     missing = tuple(f"{one['rule']}: {one['reason']}" for one in report["not_evaluated"] if one["matters"])
     verdict = report["verdict"]
@@ -492,6 +518,9 @@ def main() -> int:
     parser.add_argument("--seconds", type=float, default=60, help="time-out of each check")
     parser.add_argument("--megabytes", type=int, default=2500, help="address space of each check")
     parser.add_argument("--tree", type=Path, default=ROOT, help="another checkout, to compare with")
+    parser.add_argument("--command", choices=COMMANDS, default="check")
+    parser.add_argument("--without-compensation", action="store_true")
+    parser.add_argument("--kilobytes", type=int, help="the size of each program, instead of those of the family")
     parser.add_argument("--json", action="store_true", help="a JSON object a line")
     parser.add_argument("--write", type=Path, metavar="FOLDER")
     asked = parser.parse_args()
@@ -499,17 +528,35 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as temporary:
         for name in asked.only or FAMILIES:
             before = math.nan
-            for size in asked.size or SIZES:
+            make = FAMILIES[name].make
+            for size in [moves_in(make, asked.kilobytes)] if asked.kilobytes else asked.size or SIZES:
                 path = (asked.write or Path(temporary)) / f"{name}-{size}.nc"
-                path.write_text(FAMILIES[name].make(size), encoding="ascii")
+                text = make(size)
+                path.write_text(
+                    re.sub(r"G4[012] ?", "", text) if asked.without_compensation else text, encoding="ascii"
+                )
                 if asked.write:
                     continue
-                found = run(path, asked.seconds, asked.megabytes, FAMILIES[name].offsets, tree=asked.tree)
+                offsets = FAMILIES[name].offsets
+                found = run(path, asked.seconds, asked.megabytes, offsets, tree=asked.tree, name=asked.command)
                 path.unlink()
                 bad += bool(found.fault)
                 print(line_of(name, size, found, before, asked.json), flush=True)
                 before = found.seconds
     return int(bad > 0)
+
+
+def moves_in(make: Callable[[int], str], kilobytes: int) -> int:
+    """With how many moves a program of a family has about this size, and not more."""
+    size = 1000
+    for _ in range(20):
+        length = len(make(size))
+        if 0.9 * kilobytes * 1000 <= length <= kilobytes * 1000:
+            break
+        size = min(max(int(size * 0.95 * kilobytes * 1000 / length), 1), 20_000)
+    while len(make(size)) > kilobytes * 1000 and size > 1:
+        size = size * 9 // 10
+    return size
 
 
 def line_of(name: str, size: int, found: Outcome, before: float, as_json: bool) -> str:

@@ -9,9 +9,12 @@ from typing import Any
 import numpy as np
 import pytest
 import shapely  # type: ignore[import-untyped]
+from click.testing import CliRunner
 from programs import ROOT, report_of, said, tables_of
 
+from polarcheck import time_limit as limits
 from polarcheck.checking.finding import FileReport
+from polarcheck.commands import main
 from polarcheck.errors import StoppedError, TooHardError
 from polarcheck.geometry import areas, bounds, noding, segments
 from polarcheck.geometry.segments import Curves
@@ -380,3 +383,47 @@ def test_all_that_is_done_for_a_file_has_one_clock() -> None:
     assert "seconds" in str(report.findings) or "longer" in str(report.findings)
     with time_limit(1e-6), time_limit(1e9), pytest.raises(TooHardError, match="longer"):
         keep_time()
+
+
+# ---- the time runs out at any look at the clock ----
+
+
+class Clock:
+    """A clock that stands still, and jumps to the end of all limits at a certain look at it."""
+
+    def __init__(self, last: float) -> None:
+        self.looks = 0
+        self.last = last
+
+    def monotonic(self) -> float:
+        self.looks += 1
+        return 0.0 if self.looks <= self.last else 1e9
+
+
+@pytest.mark.parametrize("side", ["", "G42 "])
+@pytest.mark.parametrize(
+    "words",
+    [["check", "--part"], ["check", "--format", "html"], ["part"], ["plot", "-o", "a.html"], ["feeds"], ["trace"]],
+    ids=" ".join,
+)
+def test_every_command_ends_in_a_report_when_the_time_runs_out(
+    words: list[str], side: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Wherever that is: in a table, in the part, in the page."""
+    text = FAMILIES["overcut-loops"].make(60).replace("G42 ", side)
+    monkeypatch.chdir(tmp_path)
+
+    def looks_of(last: float) -> int:
+        clock = Clock(last)
+        with monkeypatch.context() as patched:
+            patched.setattr(limits, "time", clock)
+            result = CliRunner().invoke(main, [*words, "-", "--no-config", *TOOLS], input=text)
+        assert result.exit_code in (0, 1), (last, result.stderr)
+        return clock.looks
+
+    every = looks_of(float("inf"))
+    for last in sorted({1, 2, every - 1, every - 2, *range(3, every, max(every // 12, 1))}):
+        looks_of(last)
+
+
+TOOLS = ["--machine", "fanuc-30i", "--tool", "1:radius=4"]

@@ -50,14 +50,18 @@ def made_by(tables: Tables) -> list[MadeShape]:
     trace: Trace = tables["trace"]
     if not len(trace.sections):
         return []
-    from polarcheck.checking.tool_paths import depths_of_paths
-
-    found: list[_Depth] = []
     try:
-        found = [*_of_contours(tables), *(_Depth(*one) for one in depths_of_paths(tables))]
-        standing = _ribs_and_strips(tables)
+        return _by_section(trace, tables)
     except TooHardError as error:
         return [_nothing(trace, section, str(error)) for section in range(len(trace.sections))]
+
+
+def _by_section(trace: Trace, tables: Tables) -> list[MadeShape]:
+    """The same; raises TooHardError where it takes too long."""
+    from polarcheck.checking.tool_paths import depths_of_paths
+
+    found = [*_of_contours(tables), *(_Depth(*one) for one in depths_of_paths(tables))]
+    standing = _ribs_and_strips(tables)
     made = []
     for section in range(len(trace.sections)):
         own = [depth for depth in found if depth.section == section]
