@@ -115,7 +115,7 @@ PLACES = {
 @pytest.mark.parametrize("place", PLACES)
 @pytest.mark.parametrize(("number", "status", "how"), SIGNALS)
 def test_a_signal_is_not_lost_where_python_drops_its_exception(place: str, number: int, status: int, how: str) -> None:
-    happens = f"{PLACES[place].format(number=int(number))}; import time; time.sleep(60)"
+    happens = f"{PLACES[place].format(number=int(number))}; import time; time.sleep(600)"
     code = AT_IMPORT.format(module="numpy", happens=happens)
     assert check(code, preexec_fn=heeding) == (status, "", f"polarcheck: {how}\n")
 

@@ -40,9 +40,18 @@ def _deliver_again(unraisable: Any) -> None:
         sys.__unraisablehook__(unraisable)
         return
     number = signal.SIGTERM if isinstance(unraisable.exc_value, Terminated) else signal.SIGINT
-    again = threading.Timer(_UNTIL_AGAIN, signal.raise_signal, (number,))
+    again = threading.Timer(_UNTIL_AGAIN, _send, (number,))
     again.daemon = True
     again.start()
+
+
+def _send(number: int) -> None:
+    """Send a signal to the main thread: one sent to another thread would not end a sleep or a wait of the main one."""
+    main = threading.main_thread().ident
+    if main is not None and hasattr(signal, "pthread_kill"):
+        signal.pthread_kill(main, number)
+    else:
+        signal.raise_signal(number)
 
 
 def interrupt_behind(error: BaseException) -> KeyboardInterrupt | None:
