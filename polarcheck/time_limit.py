@@ -51,8 +51,8 @@ class Limit:
         """No more work should be done."""
         return time.monotonic() > self.end or self.is_stopped()
 
-    def kept(self, make: Callable[[Limit], Helper]) -> Helper:
-        """The helper of this kind, made at the first call; it is closed when the limit ends."""
+    def helper(self, make: Callable[[Limit], Helper]) -> Helper:
+        """Return the helper of this kind, made at the first call; it is closed when the limit ends."""
         if make not in self._helpers:
             self._helpers[make] = make(self)
         return self._helpers[make]  # type: ignore[return-value]  # made by the line above
@@ -85,7 +85,7 @@ def time_limit(seconds: float, is_stopped: Callable[[], bool] | None = None) -> 
         limit.close()
 
 
-def present() -> Limit | None:
+def current_limit() -> Limit | None:
     """The limit that is in force."""
     return _LIMIT.get()
 

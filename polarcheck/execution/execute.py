@@ -25,7 +25,7 @@ from polarcheck.execution.statement import Kind, Statement, Word
 from polarcheck.machines.codes import code_numbers, code_set
 from polarcheck.machines.job import Running
 from polarcheck.machines.macro_keys import Macro
-from polarcheck.time_limit import keep_going, present, seconds_for
+from polarcheck.time_limit import current_limit, keep_going, seconds_for
 
 #: So many endless programs of a file get all the statements that are asked for, those behind them so many each.
 _ENDLESS = 4
@@ -66,7 +66,7 @@ class Execution(Branches):
         self._allowed, self._own = asked.max_statements, _OF_CALL * len(listing.stops)
         self._last_change: dict[tuple[int, int], int] = {}
         self._seconds = seconds_for(len(listing.text.source.code), asked.max_seconds)
-        limit = present()
+        limit = current_limit()
         self._end = time.monotonic() + self._seconds if limit is None else limit.end
 
     # ---- the programs of the file ----

@@ -35,11 +35,11 @@ def interruptible() -> Iterator[None]:
 
     Without a time limit nothing is watched.
     """
-    limit = time_limit.present()
+    limit = time_limit.current_limit()
     if limit is None:
         yield
         return
-    watch = limit.kept(_Watch)
+    watch = limit.helper(_Watch)
     watch.begin()
     try:
         yield
@@ -54,6 +54,7 @@ class _Watch:
         self._limit = limit
         self._lock = threading.Lock()
         self._under_way = False
+        self._was_requested = False
         self._closed = threading.Event()
         self._signals = _Signals()
         self._thread = threading.Thread(target=self._run, name="interruption", daemon=True)
@@ -71,8 +72,6 @@ class _Watch:
             if self._was_requested:
                 self._was_requested = False
                 _geos().GEOS_interruptCancel()
-
-    _was_requested = False
 
     def close(self) -> None:
         """The time limit has ended."""
