@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Sequence
 
 import msgspec
@@ -16,7 +15,7 @@ from polarcheck.checking.settings import Settings
 from polarcheck.errors import SourceError, TooHardError
 from polarcheck.fixes.comparison import State, objection, state_of
 from polarcheck.fixes.edits import applied, origins, overlap, spans
-from polarcheck.time_limit import seconds_for, time_limit
+from polarcheck.time_limit import current_limit, seconds_for, time_limit
 
 #: The checks of one program for its fixes; what is left then is left for the next time.
 MOST_CHECKS = 200
@@ -92,7 +91,7 @@ def _fixed(
     data: bytes, settings: Settings, path: str, encoding: str | None, unsafe: bool, answered: Answered
 ) -> Outcome:
     state = state_of(data, settings, path, encoding)
-    work = _Work(settings, path, encoding, unsafe, answered, len(state.source.line_starts), len(data))
+    work = _Work(settings, path, encoding, unsafe, answered, len(state.source.line_starts))
     while not work.is_over:
         candidates = work.candidates(state)
         if not candidates:
@@ -118,7 +117,6 @@ class _Work:
         unsafe: bool,
         answered: Answered,
         lines: int,
-        size: int,
     ) -> None:
         self.settings, self.path, self.encoding = settings, path, encoding
         self.unsafe, self.answered = unsafe, answered
@@ -126,13 +124,13 @@ class _Work:
         self.refused: dict[_Key, Refused] = {}
         self.last: State | None = None
         self.checks = 0
-        self.end = time.monotonic() + seconds_for(size, settings.job.run.max_seconds)
         self.origin: Rows = np.arange(1, lines + 1)
 
     @property
     def is_over(self) -> bool:
         """What is left is left for the next time."""
-        return self.checks >= MOST_CHECKS or time.monotonic() > self.end
+        limit = current_limit()
+        return self.checks >= MOST_CHECKS or (limit is not None and limit.is_over())
 
     def candidates(self, state: State) -> list[_Candidate]:
         """The fixes to try next, in the order of the lines: of which none touches another."""

@@ -34,7 +34,7 @@ def _asked(function: Callable[..., Any], points: int, *arguments: Any, **how: An
         with interruptible():
             return function(*arguments, **how)
     except GEOSException as error:
-        keep_time()  # it was interrupted
+        keep_time()  # raises where the time is over: then the step was interrupted
         raise NoAnswerError("the areas of its contours cannot be computed: points of them all but meet") from error
 
 

@@ -66,10 +66,9 @@ def cleared(path: Curves, radius: float) -> Cleared:
 
 
 def _distinct(path: Curves) -> Mask:
-    """The moves without those that run again, either way, where another one has run."""
-    x, c = path.start - path.end, path.center
-    is_line = np.isnan(c)
-    backward = (path.kind == Motion.CW) | (is_line & ((x.real > 0) | ((x.real == 0) & (x.imag > 0))))
+    """The first of the moves that run along the same line or arc, whichever way; a boolean per move."""
+    back, is_line = path.start - path.end, np.isnan(path.center)
+    backward = (path.kind == Motion.CW) | (is_line & ((back.real > 0) | ((back.real == 0) & (back.imag > 0))))
     start, end = np.where(backward, path.end, path.start), np.where(backward, path.start, path.end)
     kind = np.where(is_line, path.kind, np.int16(Motion.CCW))
     return first_of_its_kind(msgspec.structs.replace(path, start=start, end=end, kind=kind))
