@@ -15,8 +15,8 @@ from contour_families import Program, Twin, program_of
 from part_reference import Verdict, judge
 
 from polarcheck.checking import check
-from polarcheck.checking.finding import Finding
 from polarcheck.checking.rule import load_all
+from polarcheck.finding import Finding
 from polarcheck.machines import profiles
 from polarcheck.machines.job import Job, Stock, Tool
 

@@ -31,7 +31,6 @@ from programs import CORPUS, ROOT, job_of, machine_of
 from polarcheck import reports
 from polarcheck.checking import batch, check
 from polarcheck.checking.examples import examples
-from polarcheck.checking.finding import Finding, Report
 from polarcheck.checking.rule import load_all
 from polarcheck.commands import main
 from polarcheck.errors import PolarcheckError
@@ -40,6 +39,7 @@ from polarcheck.execution.custom_macro import read_statement
 from polarcheck.execution.expression import evaluate
 from polarcheck.execution.macro import Variables, assign
 from polarcheck.execution.programs import read_text
+from polarcheck.finding import Finding, Report
 from polarcheck.machines import offset_table, profiles
 from polarcheck.machines.job import Job, check_work_offsets, from_table
 from polarcheck.reading import source

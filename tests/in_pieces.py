@@ -10,9 +10,9 @@ from programs import job_of, machine_of
 
 from polarcheck.checking import pieces, piecewise
 from polarcheck.checking.examples import examples
-from polarcheck.checking.finding import FileReport
 from polarcheck.checking.rule import Rule, load_all
 from polarcheck.errors import IsOneError
+from polarcheck.finding import FileReport
 from polarcheck.machines.job import Job
 from polarcheck.machines.machine import Machine
 from polarcheck.reading import source

@@ -19,9 +19,9 @@ from typing import Any
 
 from polarcheck.checking import check
 from polarcheck.checking.examples import Example
-from polarcheck.checking.finding import FileReport
 from polarcheck.checking.rule import Rule, find, load_all
 from polarcheck.checking.tables import Tables
+from polarcheck.finding import FileReport
 from polarcheck.machines import profiles
 from polarcheck.machines.job import Job, from_table, with_tool
 from polarcheck.machines.machine import Machine

@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 from programs import job_of, machine_of, report_of, said
 
 from polarcheck.checking import check
-from polarcheck.checking.allow_words import grouped, read_allow
-from polarcheck.checking.finding import FileReport
 from polarcheck.checking.rule import load_all
+from polarcheck.finding import FileReport
+from polarcheck.silence.allow_syntax import grouped, read_allow
 
 RULES = load_all()
 NAMES = grouped({rule.name: rule.group for rule in RULES.values()})

@@ -15,7 +15,7 @@ from click.testing import CliRunner, Result
 from programs import ROOT, report_of
 
 import polarcheck
-from polarcheck.checking.baseline_file import Entry, read, text_of
+from polarcheck.batch.baseline_file import Entry, read, text_of
 from polarcheck.checking.fingerprints import normal
 from polarcheck.commands import baseline as baseline_command
 from polarcheck.commands import main

@@ -13,8 +13,8 @@ from click.testing import CliRunner
 from programs import job_of, machine_of, moves_of, report_of, said
 
 from polarcheck.checking import check
-from polarcheck.checking.finding import FileReport, Finding
 from polarcheck.commands import main
+from polarcheck.finding import FileReport, Finding
 from polarcheck.machines import profiles
 from polarcheck.reading.channels import channels
 from polarcheck.reading.source import read

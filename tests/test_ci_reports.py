@@ -21,8 +21,8 @@ from hypothesis import strategies as st
 from test_cli import COMPENSATED, GOOD, RAPID, RAPID_ONLY, call, check, make
 from test_reports import file, finding, missing, report
 
-from polarcheck.checking.finding import Edit, FileReport, Fix, Silenced, Undecided
 from polarcheck.checking.rule import load_all
+from polarcheck.finding import Edit, FileReport, Fix, Silenced, Undecided
 from polarcheck.reading import files
 from polarcheck.reading.excerpt import visible, without_commands
 from polarcheck.reading.names import spelled, unspelled

@@ -7,7 +7,7 @@ import math
 import pytest
 from programs import report_of, said, trace_of
 
-from polarcheck.checking.finding import FileReport
+from polarcheck.finding import FileReport
 from polarcheck.table.radius_comments import radius_in
 
 

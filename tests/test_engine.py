@@ -16,13 +16,13 @@ import pytest
 from programs import machine_of, report_of, said, tables_of
 
 from polarcheck.checking import message, tables
-from polarcheck.checking.allows import Allows
 from polarcheck.checking.engine import LISTED, Engine
-from polarcheck.checking.finding import ERROR, NOTE, WARNING, Finding
 from polarcheck.checking.other_machine import OtherMachine
 from polarcheck.checking.rule import FOLDER, Hits, Rule, graded, load_all, rule
 from polarcheck.checking.tables import MAKERS, OF_CAUSE, OF_TEXT, PARTS, SPANS, Tables
 from polarcheck.errors import RuleError, TooHardError
+from polarcheck.finding import ERROR, NOTE, WARNING, Finding
+from polarcheck.silence.allow_comments import Allows
 from polarcheck.time_limit import keep_time, time_limit
 
 RULES = load_all()

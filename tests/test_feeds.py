@@ -16,8 +16,8 @@ from programs import report_of, tables_of
 from test_cli import call, make
 from test_dynamics import contours, inside
 
-from polarcheck.checking.feed_edits import feed_below
-from polarcheck.checking.feed_table import FeedRow, FeedTable, feed_number, feed_table, highest
+from polarcheck.feed_table.edits import feed_below
+from polarcheck.feed_table.table import FeedRow, FeedTable, feed_number, feed_table, highest
 from polarcheck.fixes.feeds import WithFeeds, with_feeds
 from polarcheck.reports.pages import schema
 

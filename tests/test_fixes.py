@@ -28,12 +28,12 @@ from test_samples import settings as settings_of_sample
 import polarcheck
 from polarcheck.checking import repair
 from polarcheck.checking.editing import Replace
-from polarcheck.checking.finding import FileReport
 from polarcheck.checking.repair import Mended, Repair
 from polarcheck.checking.rule import load_all
 from polarcheck.checking.settings import Settings
 from polarcheck.commands import main
 from polarcheck.errors import OutputError
+from polarcheck.finding import FileReport
 from polarcheck.fixes import edits, fixing
 from polarcheck.fixes.comparison import _VERDICTS
 from polarcheck.reading import rewriting, source

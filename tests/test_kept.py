@@ -9,9 +9,9 @@ from programs import ROOT, report_of
 
 from polarcheck import reports
 from polarcheck.checking import batch
-from polarcheck.checking.finding import FileReport
 from polarcheck.checking.kept import Kept
 from polarcheck.checking.rule import load_all
+from polarcheck.finding import FileReport
 from polarcheck.reading import files
 
 SAMPLES = ["rapid_in_polar.nc", "hexagon.nc", "degrees.nc", "narrow_groove.nc", "macro_polygon.nc"]

@@ -13,7 +13,7 @@ import msgspec
 import pytest
 from programs import report_of, tables_of
 
-from polarcheck.checking.feed_table import feed_table
+from polarcheck.feed_table.table import feed_table
 from polarcheck.machines.machine import Machine
 from polarcheck.reports.pages import executed
 

@@ -12,10 +12,10 @@ import pytest
 from click.testing import CliRunner, Result
 from programs import report_of
 
-from polarcheck.checking.finding import ERROR
 from polarcheck.checking.rule import load_all
 from polarcheck.commands import main
 from polarcheck.errors import MachineError
+from polarcheck.finding import ERROR
 from polarcheck.machines import codes, modal, profiles
 from polarcheck.machines.machine import Machine, OwnMachine, meanings
 from polarcheck.machines.parameters import Origin

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 from programs import moves_of, report_of, said
 
-from polarcheck.checking.finding import FileReport
+from polarcheck.finding import FileReport
 
 ENTRY = "O1 T0808\nG98 G0 X60. C0\nG12.1\n"
 

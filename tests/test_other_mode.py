@@ -9,7 +9,7 @@ from collections.abc import Iterator
 import pytest
 from programs import ROOT, machine_of, report_of, said, tables_of
 
-from polarcheck.checking.finding import FileReport, Finding
+from polarcheck.finding import FileReport, Finding
 from polarcheck.machines import profiles
 from polarcheck.table import other_mode
 

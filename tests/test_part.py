@@ -12,11 +12,11 @@ from programs import tables_of
 from test_cli import call
 
 from polarcheck.checking.examples import examples
-from polarcheck.checking.finding import MadeShape
-from polarcheck.checking.part import made_by
 from polarcheck.checking.phrases.part import Sizes
 from polarcheck.checking.rule import load_all
 from polarcheck.commands import main
+from polarcheck.finding import MadeShape
+from polarcheck.parts.part_report import made_by
 
 pytestmark = pytest.mark.usefixtures("own_folder")
 

@@ -7,7 +7,7 @@ import re
 import pytest
 from programs import SHARED, report_of, said, trace_of
 
-from polarcheck.checking.finding import FileReport
+from polarcheck.finding import FileReport
 from polarcheck.machines import profiles
 from polarcheck.reading.joining import joined
 from polarcheck.reading.source import read

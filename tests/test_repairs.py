@@ -11,9 +11,9 @@ import pytest
 from programs import report_of, report_of_example, said
 
 from polarcheck.checking.examples import Example, examples
-from polarcheck.checking.finding import Edit, FileReport, Finding, Fix
 from polarcheck.checking.repair import CHANGES, repair_of, repairs
 from polarcheck.checking.rule import load_all
+from polarcheck.finding import Edit, FileReport, Finding, Fix
 
 PAGES = {name: found.page for name in repairs() for found in [repair_of(name)] if found is not None}
 

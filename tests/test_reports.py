@@ -15,8 +15,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from polarcheck.checking import batch
-from polarcheck.checking.finding import Edit, FileReport, Finding, Fix, NotEvaluated, Report
 from polarcheck.checking.rule import load_all
+from polarcheck.finding import Edit, FileReport, Finding, Fix, NotEvaluated, Report
 from polarcheck.reading.excerpt import cells, excerpt, visible
 from polarcheck.reports import Background, formats, render
 from polarcheck.reports.pages import schema

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from programs import ROOT, machine_of, report_of, said, tables_of, trace_of
 
-from polarcheck.checking.finding import FileReport
 from polarcheck.errors import MachineError
+from polarcheck.finding import FileReport
 from polarcheck.machines import profiles
 
 SAMPLES = ROOT / "sample_programs"

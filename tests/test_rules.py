@@ -15,8 +15,8 @@ from programs import machine_of, report_of_example, said
 from syrupy.assertion import SnapshotAssertion
 
 from polarcheck.checking.examples import Example, examples
-from polarcheck.checking.finding import SEVERITIES
 from polarcheck.checking.rule import OVER, Hits, Rule, load_all
+from polarcheck.finding import SEVERITIES
 from polarcheck.machines import profiles
 
 RULES = load_all()

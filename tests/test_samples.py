@@ -11,8 +11,8 @@ import pytest
 from programs import ROOT, expected, report_of, said, tables_of, without_expectations
 from syrupy.assertion import SnapshotAssertion
 
-from polarcheck.checking.finding import FileReport
 from polarcheck.commands import job_files
+from polarcheck.finding import FileReport
 from polarcheck.machines import profiles
 from polarcheck.reports.pages import executed
 

@@ -11,7 +11,7 @@ import pytest
 from click.testing import CliRunner
 from programs import ROOT, report_of
 
-from polarcheck.checking.baseline_file import Entry, read
+from polarcheck.batch.baseline_file import Entry, read
 from polarcheck.commands import main
 
 PAGE = (ROOT / "docs" / "silence.md").read_text("utf-8")

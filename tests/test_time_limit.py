@@ -13,9 +13,9 @@ from click.testing import CliRunner
 from programs import ROOT, report_of, said, tables_of
 
 from polarcheck import time_limit as limits
-from polarcheck.checking.finding import FileReport
 from polarcheck.commands import main
 from polarcheck.errors import StoppedError, TooHardError
+from polarcheck.finding import FileReport
 from polarcheck.geometry import areas, bounds, noding, segments
 from polarcheck.geometry.segments import Curves
 from polarcheck.machines.modal import Motion

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from programs import moves_of, report_of, said, tables_of, trace_of
 
-from polarcheck.checking.finding import FileReport
 from polarcheck.execution.programs import Program, find_programs
+from polarcheck.finding import FileReport
 from polarcheck.table.trace import Trace
 
 LATHE = "okuma-osp"

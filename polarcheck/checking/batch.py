@@ -12,11 +12,11 @@ import msgspec
 
 from polarcheck import __version__
 from polarcheck.checking import check
-from polarcheck.checking.finding import FileReport, Producer, Report, Summary
 from polarcheck.checking.kept import Kept
 from polarcheck.checking.settings import Settings
 from polarcheck.checking.tables import Tables
 from polarcheck.errors import CrewError, IsOneError, SourceError, TooHardError
+from polarcheck.finding import FileReport, Producer, Report, Summary
 from polarcheck.reading import files
 from polarcheck.reading.source import Source
 from polarcheck.reading.words import Text

@@ -9,7 +9,7 @@ from collections.abc import Callable, Sequence
 
 import msgspec
 
-from polarcheck.checking.finding import Finding, Silenced
+from polarcheck.finding import Finding, Silenced
 from polarcheck.table.trace import Trace
 
 #: What a finding is at the block of the file that calls: that may allow it.

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 from msgspec.structs import replace
 
-from polarcheck.checking.finding import FileReport, Finding, NotEvaluated, PolarSection
+from polarcheck.finding import FileReport, Finding, NotEvaluated, PolarSection
 from polarcheck.reading.channels import stands_in
 from polarcheck.reading.source import Source
 

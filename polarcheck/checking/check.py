@@ -15,19 +15,19 @@ from polarcheck.checking.called_files import in_the_file
 from polarcheck.checking.causes import READ_OTHERWISE
 from polarcheck.checking.channels import united
 from polarcheck.checking.engine import Engine, in_order, with_following
-from polarcheck.checking.finding import ERROR, SEVERITIES, FileReport, Finding, NotEvaluated, PolarSection, Undecided
 from polarcheck.checking.not_evaluated import all_unevaluated, bounds_not_reported
 from polarcheck.checking.other_machine import OtherMachine
 from polarcheck.checking.polar_sections import polar_sections
 from polarcheck.checking.rule import Hits, Rule, load_all
-from polarcheck.checking.silence import UNUSED, Used, divided, mentions_allow
 from polarcheck.checking.tables import Tables
 from polarcheck.execution.run import is_code
 from polarcheck.execution.runs import runs
+from polarcheck.finding import ERROR, SEVERITIES, FileReport, Finding, NotEvaluated, PolarSection, Undecided
 from polarcheck.machines.job import Job
 from polarcheck.machines.machine import Machine
 from polarcheck.reading import source
 from polarcheck.reading.words import Text
+from polarcheck.silence.suppression import UNUSED, Used, divided, mentions_allow
 
 _SKIP = re.compile(r"\s*(?:N\s*\d+\s*)?/", re.IGNORECASE)
 #: At what is looked in any program.
@@ -168,7 +168,7 @@ def engine_of(
         # Where that is told, nothing that the words of another language seem to say is worth telling.
         asked = of_dialect
     if inline and mentions_allow(tables["text"].source):
-        from polarcheck.checking.allows import Allows  # most files have none
+        from polarcheck.silence.allow_comments import Allows  # most files have none
 
         allows = Allows(tables["text"], {rule.name: rule.group for rule in load_all().values()})
         tables.give("allows", allows)

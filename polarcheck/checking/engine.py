@@ -13,22 +13,22 @@ import numpy as np
 
 from polarcheck.arrays import Mask, Rows
 from polarcheck.checking import places
-from polarcheck.checking.finding import NOTE, SEVERITIES, Finding, NotEvaluated, Severity, Silenced, Undecided
 from polarcheck.checking.places import PLACES, Place
 from polarcheck.checking.rule import Hits, Rule
 from polarcheck.checking.settling import Settling
-from polarcheck.checking.silence import Used, allowed
 from polarcheck.checking.tables import OF_CAUSE, Tables
 from polarcheck.errors import TooHardError
 from polarcheck.execution.programs import name_at_head
 from polarcheck.execution.run import begins_program
+from polarcheck.finding import NOTE, SEVERITIES, Finding, NotEvaluated, Severity, Silenced, Undecided
 from polarcheck.machines.codes import code_numbers, code_set
 from polarcheck.reading.excerpt import shortened
+from polarcheck.silence.suppression import Used, allowed
 from polarcheck.table.trace import Trace
 from polarcheck.time_limit import keep_going
 
 if TYPE_CHECKING:
-    from polarcheck.checking.allows import Allows
+    from polarcheck.silence.allow_comments import Allows
 
 #: More findings of one rule in one file are counted, not listed: nobody reads them, and hostile files stay bounded.
 LISTED = 1000

@@ -7,7 +7,7 @@ import weakref
 from collections.abc import Iterator, Mapping, Sequence
 from typing import IO, overload
 
-from polarcheck.checking.finding import FileReport
+from polarcheck.finding import FileReport
 
 #: So many reports stay as they are: they take less than the libraries do.
 _IN_MEMORY = 500

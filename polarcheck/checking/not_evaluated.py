@@ -10,7 +10,6 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Rows
-from polarcheck.checking.finding import Finding, NotEvaluated, Undecided
 from polarcheck.checking.macro_faults import ENDLESS_LOOP, Faults, reason_of
 from polarcheck.checking.not_known import OF_MOVES, OF_VARIABLES, cause_of, why
 from polarcheck.checking.phrases.common import block_and_line
@@ -31,6 +30,7 @@ from polarcheck.checking.remedies import option_or_place, place, unlisted_codes
 from polarcheck.checking.rule import Rule
 from polarcheck.checking.tables import Tables
 from polarcheck.errors import TooHardError
+from polarcheck.finding import Finding, NotEvaluated, Undecided
 from polarcheck.geometry.tolerances import CHORDS, CROSSINGS, FARTHEST
 from polarcheck.machines.machine import Machine, OwnMachine
 from polarcheck.table.filling import before

@@ -14,7 +14,6 @@ from typing import NamedTuple
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Rows, is_among
-from polarcheck.checking.silence import mentions_allow
 from polarcheck.checking.tables import Tables
 from polarcheck.errors import IsOneError
 from polarcheck.execution.programs import needs_flow, read_text
@@ -25,6 +24,7 @@ from polarcheck.machines.machine import Machine
 from polarcheck.reading.source import Bytes, Source
 from polarcheck.reading.stretches import between, can_be_parted, joined, only, read_stretch
 from polarcheck.reading.words import Text
+from polarcheck.silence.suppression import mentions_allow
 from polarcheck.table.filling import happened
 from polarcheck.table.trace import Trace
 

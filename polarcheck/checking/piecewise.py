@@ -12,12 +12,12 @@ import numpy as np
 from polarcheck.arrays import Rows
 from polarcheck.checking.check import engine_of, looked_at, verdict
 from polarcheck.checking.engine import LISTED, Engine, in_order
-from polarcheck.checking.finding import FileReport
 from polarcheck.checking.not_evaluated import NAMED, SAID, Missing, told, unevaluated, unexecuted
 from polarcheck.checking.pieces import Piece, in_pieces
 from polarcheck.checking.polar_sections import polar_sections
 from polarcheck.checking.rule import Rule
 from polarcheck.errors import IsOneError
+from polarcheck.finding import FileReport
 from polarcheck.machines.job import Job
 from polarcheck.machines.machine import Machine
 from polarcheck.reading.source import Source

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Rows
-from polarcheck.checking.finding import PolarSection
 from polarcheck.checking.phrases.offsets import key_of
 from polarcheck.checking.quantity import rounded
 from polarcheck.checking.tables import Tables
 from polarcheck.errors import TooHardError
+from polarcheck.finding import PolarSection
 from polarcheck.machines.modal import Units
 from polarcheck.table.center import Center
 from polarcheck.table.dynamics import Dynamics

@@ -1,7 +1,7 @@
 """
 The fix of a finding: what to write instead, as edits of the text.
 
-Nothing is registered: a file under repairs/ with the name of a rule mends what that rule finds.
+Nothing is registered: rules/<group>/<rule>_repair.py repairs what the rule beside it reports.
 """
 
 from __future__ import annotations
@@ -9,7 +9,6 @@ from __future__ import annotations
 import functools
 import importlib
 from collections.abc import Callable, Iterator
-from pathlib import Path
 
 import msgspec
 import numpy as np
@@ -17,15 +16,14 @@ import numpy as np
 from polarcheck.checking import places
 from polarcheck.checking.documented import Documented
 from polarcheck.checking.editing import Replace
-from polarcheck.checking.finding import Edit, Fix
 from polarcheck.checking.message import called
 from polarcheck.checking.places import PLACES, Place
-from polarcheck.checking.rule import Hits, Rule
+from polarcheck.checking.rule import FOLDER, REPAIR, Hits, Rule
 from polarcheck.checking.tables import Tables
+from polarcheck.finding import Edit, Fix
 from polarcheck.reading.source import Source
 from polarcheck.table.trace import Trace
 
-_FOLDER = Path(__file__).parent / "repairs"
 #: A block that runs more often is not looked at each time, and has no fix.
 _MOST_RUNS = 1000
 #: What of the path of the tool center a fix may change in the lines that it edits; the way also of the move before.
@@ -65,7 +63,11 @@ def repair(*changes: str) -> Callable[[Callable[..., Mended | None]], Repair]:
 @functools.cache
 def repairs() -> dict[str, str]:
     """The modules of the repairs by the names of their rules, in order; none is loaded."""
-    return {path.stem.replace("_", "-"): path.stem for path in sorted(_FOLDER.glob("[!_]*.py"))}
+    modules = {path.stem.removesuffix(REPAIR): path for path in FOLDER.glob(f"*/*{REPAIR}.py")}
+    return {
+        rule.replace("_", "-"): f"polarcheck.rules.{path.parent.name}.{path.stem}"
+        for rule, path in sorted(modules.items())
+    }
 
 
 def repair_of(name: str) -> Repair | None:
@@ -73,8 +75,8 @@ def repair_of(name: str) -> Repair | None:
     module = repairs().get(name)
     if module is None:
         return None
-    found: Repair = getattr(importlib.import_module(f"polarcheck.checking.repairs.{module}"), module)
-    return found
+    repair_of_rule: Repair = getattr(importlib.import_module(module), name.replace("-", "_"))
+    return repair_of_rule
 
 
 def fix_of(rule: Rule, hits: Hits, tables: Tables, place: Place, count: int) -> Fix | None:

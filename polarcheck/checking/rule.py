@@ -15,26 +15,26 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from polarcheck.checking.documented import Documented
-from polarcheck.checking.finding import ERROR as ERROR
-from polarcheck.checking.finding import NOTE as NOTE
-from polarcheck.checking.finding import WARNING as WARNING
-from polarcheck.checking.finding import Severity as Severity
 from polarcheck.checking.tables import OF_TEXT, SPANS
 from polarcheck.checking.tables import parameters as parameters_of
 from polarcheck.errors import RuleError, UsageError, suggestion
+from polarcheck.finding import ERROR as ERROR
+from polarcheck.finding import NOTE as NOTE
+from polarcheck.finding import WARNING as WARNING
+from polarcheck.finding import Severity as Severity
 
 if TYPE_CHECKING:
     from polarcheck.arrays import Floats as Floats
     from polarcheck.arrays import Mask as Mask
     from polarcheck.arrays import States
-    from polarcheck.checking.allows import Allows as Allows
-    from polarcheck.checking.allows import UnusedAllows as UnusedAllows
     from polarcheck.checking.macro_faults import Faults as Faults
     from polarcheck.checking.other_machine import OtherMachine as OtherMachine
     from polarcheck.machines.job import Job as Job
     from polarcheck.machines.machine import Machine as Machine
     from polarcheck.reading.words import Text as Text
     from polarcheck.reading.words import Words as Words
+    from polarcheck.silence.allow_comments import Allows as Allows
+    from polarcheck.silence.allow_comments import UnusedAllows as UnusedAllows
     from polarcheck.table.angles import Angles as Angles
     from polarcheck.table.arcs import Arcs as Arcs
     from polarcheck.table.center import Center as Center
@@ -72,6 +72,8 @@ else:
 
 
 FOLDER = Path(__file__).parent.parent / "rules"
+#: A module of this ending repairs what the rule of the same name reports.
+REPAIR = "_repair"
 
 #: What the elements of a mask can stand for (places.PLACES finds where each stands).
 OVER = (
@@ -226,6 +228,11 @@ def rule(
     return make
 
 
+def is_rule_module(stem: str) -> bool:
+    """A module in a folder of rules holds a rule, unless it is the package itself or the repair of a rule."""
+    return stem != "__init__" and not stem.endswith(REPAIR)
+
+
 @functools.cache
 def load_all() -> dict[str, Rule]:
     """
@@ -236,7 +243,7 @@ def load_all() -> dict[str, Rule]:
     rules = {}
     for path in sorted(map(str, FOLDER.glob("*/*.py"))):  # as texts, since 135 paths take 3 ms to be compared
         group, stem = path.removesuffix(".py").split(os.sep)[-2:]  # noqa: PTH206
-        if stem == "__init__":
+        if not is_rule_module(stem):
             continue
         found = getattr(_module(f"polarcheck.rules.{group}.{stem}", path), stem, None)
         if not isinstance(found, Rule):

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import msgspec
 
-from polarcheck.checking.finding import FileReport
 from polarcheck.checking.rule import Rule
 from polarcheck.checking.tables import Tables
+from polarcheck.finding import FileReport
 from polarcheck.machines.job import Job
 from polarcheck.machines.machine import Machine
 

@@ -14,8 +14,8 @@ from polarcheck.commands.exit_codes import COULD_NOT_RUN
 from polarcheck.commands.output import say, show
 
 if TYPE_CHECKING:
-    from polarcheck.checking.baseline import Baseline
-    from polarcheck.checking.baseline_file import Entry
+    from polarcheck.batch.baseline import Baseline
+    from polarcheck.batch.baseline_file import Entry
     from polarcheck.checking.batch import Checked, Task
 
 #: What of `check` decides what is found: its argument and options by name.
@@ -117,7 +117,7 @@ def prune(ctx: click.Context, /, paths: tuple[str, ...], output: Path, **asked: 
 
 
 def _known(path: Path) -> list[Entry]:
-    from polarcheck.checking import baseline_file
+    from polarcheck.batch import baseline_file
     from polarcheck.errors import BaselineError
     from polarcheck.reading import files
 
@@ -141,8 +141,8 @@ def _run(
     reason: str = "",
     **asked: Any,
 ) -> int:
-    from polarcheck.checking import baseline_file
-    from polarcheck.checking.baseline import Baseline
+    from polarcheck.batch import baseline_file
+    from polarcheck.batch.baseline import Baseline
     from polarcheck.commands import overwriting, running, settings, signals
     from polarcheck.commands.memory import keep_within_memory
     from polarcheck.commands.progress import Bar

@@ -184,8 +184,8 @@ def _check(asked: _Asked, seen: watching.Seen | None) -> int:
     extras = reporting.extras(asked.shown_too, asked.form, asked.outputs)
     extras += picturing.extras() if wants_pictures else ()
     if asked.part:
-        from polarcheck.checking.compared import compared_in
-        from polarcheck.checking.part import part_of
+        from polarcheck.parts.comparison import compared_in
+        from polarcheck.parts.part_report import part_of
 
         extras = (*extras, part_of, compared_in)
     applies = settings.Options(use_config=not asked.no_config, extras=extras, **asked.more)

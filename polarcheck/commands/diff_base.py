@@ -21,7 +21,7 @@ def narrowed(tasks: list[Task], ref: str | None, most: int, is_told: bool) -> li
     """The tasks that are left, and on standard error how many of how many those are."""
     if ref is None:
         return tasks
-    from polarcheck.checking import changes
+    from polarcheck.batch import changes
 
     found = changes.since(ref, tasks, most)
     if is_told:

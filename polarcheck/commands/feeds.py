@@ -69,7 +69,7 @@ def feeds(path: str, form: str, diff: bool, no_config: bool, max_size: int, **as
 def _show_table(title: str, runs: list[Tables], form: str) -> None:
     import msgspec
 
-    from polarcheck.checking.feed_table import FeedReport, feed_table
+    from polarcheck.feed_table.table import FeedReport, feed_table
     from polarcheck.reports.pages import feeds as pages
 
     if form == "csv":

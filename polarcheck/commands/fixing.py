@@ -19,7 +19,7 @@ from polarcheck.errors import OutputError, PolarcheckError, SourceError, TooHard
 
 if TYPE_CHECKING:
     from polarcheck.checking.batch import Task
-    from polarcheck.checking.finding import FileReport
+    from polarcheck.finding import FileReport
     from polarcheck.fixes.fixing import Outcome
 
 #: Of the fixes of a file so many are told one by one.

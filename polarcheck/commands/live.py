@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from polarcheck import reports
-from polarcheck.checking.finding import FileReport, Report
 from polarcheck.commands.output import show
 from polarcheck.errors import OutputError
+from polarcheck.finding import FileReport, Report
 from polarcheck.reports import Background
 
 #: Of more files than this it is written file by file; of fewer, text tells more of each (reports.text).

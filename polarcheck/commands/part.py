@@ -50,11 +50,11 @@ def _part(
     **asked: Any,
 ) -> int:
     from polarcheck.checking.causes import READ_OTHERWISE
-    from polarcheck.checking.compared import compared_in
-    from polarcheck.checking.part import part_of
     from polarcheck.commands import progress, running, settings, signals
     from polarcheck.commands.memory import keep_within_memory
     from polarcheck.commands.output import columns, say, show
+    from polarcheck.parts.comparison import compared_in
+    from polarcheck.parts.part_report import part_of
     from polarcheck.reports.pages import made
 
     keep_within_memory()

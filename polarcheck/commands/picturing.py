@@ -51,7 +51,7 @@ class Apart:
 
     def taken(self, outcomes: Iterable[Outcome]) -> Iterator[Outcome]:
         """The outcomes as they are told."""
-        from polarcheck.checking.finding import FileReport
+        from polarcheck.finding import FileReport
 
         for outcome in outcomes:
             if outcome.report is None or type(outcome.report) is FileReport:

@@ -16,8 +16,8 @@ from polarcheck.errors import OutputError, UsageError
 
 if TYPE_CHECKING:
     from polarcheck.checking.batch import Task
-    from polarcheck.checking.finding import Report
     from polarcheck.checking.settings import Extra
+    from polarcheck.finding import Report
     from polarcheck.reports import Background
 
 #: Where GitHub Actions takes the summary of a step from, and the report that is for GitHub Actions.

@@ -12,10 +12,10 @@ from polarcheck.commands.output import said_of_bug, say, say_lines, warn
 
 if TYPE_CHECKING:
     from polarcheck.checking.batch import Checked, Outcome, Task
-    from polarcheck.checking.finding import FileReport
     from polarcheck.commands.progress import Bar
     from polarcheck.commands.settings import OfPrograms
     from polarcheck.commands.watching import Seen
+    from polarcheck.finding import FileReport
 
 
 class Faults:

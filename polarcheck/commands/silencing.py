@@ -14,10 +14,10 @@ from polarcheck.commands.options import option
 from polarcheck.commands.output import warn
 
 if TYPE_CHECKING:
-    from polarcheck.checking.baseline import Baseline, Leftover
+    from polarcheck.batch.baseline import Baseline, Leftover
     from polarcheck.checking.batch import Outcome, Task
-    from polarcheck.checking.finding import FileReport
     from polarcheck.checking.settings import Settings
+    from polarcheck.finding import FileReport
 
 #: Of what no longer occurs, or was moved, so much is named in one line.
 _NAMED = 5
@@ -26,7 +26,7 @@ _NAMED = 5
 def _readable(ctx: click.Context, parameter: click.Parameter, value: Path | None) -> Path | None:
     """Read it before anything is checked: an archive takes minutes."""
     if value is not None:
-        from polarcheck.checking import baseline_file
+        from polarcheck.batch import baseline_file
 
         baseline_file.read(value)
     return value
@@ -82,8 +82,8 @@ def _answering(known: Baseline, settings: Mapping[str, Settings]) -> Callable[[F
 
 
 def _baseline(tasks: Iterable[Task], known: Known) -> Baseline:
-    from polarcheck.checking import baseline_file
-    from polarcheck.checking.baseline import Baseline
+    from polarcheck.batch import baseline_file
+    from polarcheck.batch.baseline import Baseline
 
     entries = baseline_file.read(known.path)
     return Baseline(entries, known.path.parent, (task.place for task in tasks), known.walked)

@@ -11,11 +11,11 @@ import numpy as np
 from polarcheck.arrays import Floats, Mask
 from polarcheck.checking.check import check_runs, read
 from polarcheck.checking.engine import LISTED
-from polarcheck.checking.finding import SEVERITIES, FileReport, Finding
 from polarcheck.checking.repair import FEED, WAY, Z
 from polarcheck.checking.rule import load_all
 from polarcheck.checking.settings import Settings
 from polarcheck.checking.tables import Tables
+from polarcheck.finding import SEVERITIES, FileReport, Finding
 from polarcheck.reading import source
 from polarcheck.reading.source import Source
 from polarcheck.table.moves import Moves, z_along

@@ -9,7 +9,7 @@ import numpy as np
 
 from polarcheck.arrays import Rows
 from polarcheck.checking.editing import Replace
-from polarcheck.checking.finding import Edit, Fix
+from polarcheck.finding import Edit, Fix
 from polarcheck.reading.source import Source
 
 

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 import msgspec
 
-from polarcheck.checking.feed_words import feed_words
 from polarcheck.checking.tables import Tables
+from polarcheck.feed_table.rewriting import feed_words
 from polarcheck.fixes.difference import difference
 from polarcheck.fixes.edits import applied, origins
 from polarcheck.reading import source

@@ -9,10 +9,10 @@ import numpy as np
 
 from polarcheck.arrays import Rows
 from polarcheck.checking.editing import Replace
-from polarcheck.checking.finding import FileReport, Finding, Fix
 from polarcheck.checking.repair import WAY, repair_of
 from polarcheck.checking.settings import Settings
 from polarcheck.errors import SourceError, TooHardError
+from polarcheck.finding import FileReport, Finding, Fix
 from polarcheck.fixes.comparison import State, objection, state_of
 from polarcheck.fixes.edits import applied, origins, overlap, spans
 from polarcheck.time_limit import current_limit, seconds_for, time_limit

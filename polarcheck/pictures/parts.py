@@ -12,11 +12,11 @@ from typing import Any
 import numpy as np
 import shapely  # type: ignore[import-untyped]
 
-from polarcheck.checking.part import level_in_words
 from polarcheck.checking.quantity import in_row
 from polarcheck.geometry import areas
 from polarcheck.geometry.faces import GRID
 from polarcheck.geometry.segments import segments
+from polarcheck.parts.part_report import level_in_words
 from polarcheck.pictures.moves import LENGTH
 from polarcheck.pictures.picture import PartPicture
 from polarcheck.table.finished import Level

@@ -9,10 +9,10 @@ import numpy as np
 
 from polarcheck.arrays import Floats, Points, Rows
 from polarcheck.checking.channels import first_runs
-from polarcheck.checking.finding import FileReport
 from polarcheck.checking.polar_sections import polar_sections
 from polarcheck.checking.tables import Tables
 from polarcheck.errors import TooHardError
+from polarcheck.finding import FileReport
 from polarcheck.geometry.plane import arc_sweep, quiet
 from polarcheck.machines.modal import Motion
 from polarcheck.table.moves import Moves, programmed_moves

@@ -13,8 +13,8 @@ import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Rows, States
 from polarcheck.arrays import Points as PlanePoints
-from polarcheck.checking.finding import PolarSection
 from polarcheck.checking.quantity import rounded
+from polarcheck.finding import PolarSection
 from polarcheck.machines.modal import MM_PER_INCH
 from polarcheck.pictures import paths, rates
 from polarcheck.pictures.moves import LENGTH, POSITIONING, RATE, TIME, SectionMoves, numbers_of

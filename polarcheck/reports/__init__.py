@@ -9,9 +9,9 @@ from types import MappingProxyType, ModuleType
 from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
-    from polarcheck.checking.finding import FileReport, Report
     from polarcheck.checking.rule import Rule
     from polarcheck.checking.settings import Settings
+    from polarcheck.finding import FileReport, Report
     from polarcheck.pictures.picture import Drawn
 
 SEVERITIES = ("error", "warning", "note")

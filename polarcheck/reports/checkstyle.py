@@ -9,7 +9,7 @@ from polarcheck.reports.ci import xml
 from polarcheck.reports.ci.paths import from_root
 
 if TYPE_CHECKING:
-    from polarcheck.checking.finding import FileReport, Report
+    from polarcheck.finding import FileReport, Report
     from polarcheck.reports import Background
 
 _SEVERITIES = {"error": "error", "warning": "warning", "note": "info"}

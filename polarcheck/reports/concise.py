@@ -10,7 +10,7 @@ from polarcheck.reports import Background, Parts, of_each, painted
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from polarcheck.checking.finding import FileReport, Finding, Report, Silenced
+    from polarcheck.finding import FileReport, Finding, Report, Silenced
 
 
 def concise(report: Report, background: Background | None = None) -> str:

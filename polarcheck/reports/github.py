@@ -14,7 +14,7 @@ from polarcheck.reports.concise import line
 from polarcheck.reports.text import summary, verdict
 
 if TYPE_CHECKING:
-    from polarcheck.checking.finding import FileReport, Finding, Report
+    from polarcheck.finding import FileReport, Finding, Report
     from polarcheck.reports import Background
 
 _LEVELS = {"error": "error", "warning": "warning", "note": "notice"}

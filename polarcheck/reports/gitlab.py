@@ -12,7 +12,7 @@ from polarcheck.reports.ci.paths import from_root
 from polarcheck.reports.json import encoded
 
 if TYPE_CHECKING:
-    from polarcheck.checking.finding import Report
+    from polarcheck.finding import Report
     from polarcheck.reports import Background
 
 _SEVERITIES = {"error": "major", "warning": "minor", "note": "info"}

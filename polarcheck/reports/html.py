@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from polarcheck.checking.finding import Report
+    from polarcheck.finding import Report
     from polarcheck.reports import Background
 
 

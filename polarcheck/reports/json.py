@@ -11,7 +11,7 @@ from polarcheck.reading.names import with_characters
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from polarcheck.checking.finding import Report
+    from polarcheck.finding import Report
     from polarcheck.reports import Background
 
 #: What would act on a terminal or an editor, or not be seen there, and JSON allows to stand as it is: escape sequences,

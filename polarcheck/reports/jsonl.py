@@ -11,7 +11,7 @@ from polarcheck.reports import Background, Parts, of_each
 from polarcheck.reports.json import encoded
 
 if TYPE_CHECKING:
-    from polarcheck.checking.finding import FileReport, Report
+    from polarcheck.finding import FileReport, Report
 
 _LISTED = ("findings", "silenced")
 

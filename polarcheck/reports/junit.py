@@ -7,14 +7,14 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 from polarcheck.checking.check import is_told
-from polarcheck.checking.finding import Undecided
+from polarcheck.finding import Undecided
 from polarcheck.reports.ci import xml
 from polarcheck.reports.ci.paths import from_root
 from polarcheck.reports.concise import line
 from polarcheck.reports.pages.resting import resting
 
 if TYPE_CHECKING:
-    from polarcheck.checking.finding import FileReport, Finding, NotEvaluated, Report
+    from polarcheck.finding import FileReport, Finding, NotEvaluated, Report
     from polarcheck.reports import Background
 
 #: The test of a file in which there was nothing to judge.

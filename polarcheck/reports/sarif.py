@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from polarcheck.checking.finding import ALLOW, BASELINE, Silenced
+from polarcheck.finding import ALLOW, BASELINE, Silenced
 from polarcheck.reading.excerpt import visible
 from polarcheck.reports.ci import rule_help
 from polarcheck.reports.ci.paths import uri
 from polarcheck.reports.json import encoded
 
 if TYPE_CHECKING:
-    from polarcheck.checking.finding import FileReport, Finding, Fix, Report
     from polarcheck.checking.rule import Rule
+    from polarcheck.finding import FileReport, Finding, Fix, Report
     from polarcheck.reports import Background
 
 _SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"

@@ -13,7 +13,7 @@ from polarcheck.reports.concise import lines
 from polarcheck.reports.text import summary
 
 if TYPE_CHECKING:
-    from polarcheck.checking.finding import FileReport, Report
+    from polarcheck.finding import FileReport, Report
 
 _FULL = {"fail": "What is wrong with one of them, in full", "unverified": "Why one of them is unverified"}
 

@@ -13,8 +13,8 @@ from polarcheck.reports import SEVERITIES, Background, Parts, counted, of_each, 
 from polarcheck.reports.pages.resting import resting
 
 if TYPE_CHECKING:
-    from polarcheck.checking.finding import FileReport, Finding, Fix, NotEvaluated, Report
     from polarcheck.checking.rule import Rule
+    from polarcheck.finding import FileReport, Finding, Fix, NotEvaluated, Report
 
 #: Line numbers and labels end at this column; the text beside them begins three further.
 _GUTTER = 6

@@ -6,8 +6,8 @@ from collections.abc import Iterable, Iterator
 
 from lsprotocol import types
 
-from polarcheck.checking.finding import Edit, Finding
 from polarcheck.checking.rule import load_all
+from polarcheck.finding import Edit, Finding
 from polarcheck.reading.excerpt import visible
 from polarcheck.server.allowing import allow
 from polarcheck.server.diagnostics import diagnostic

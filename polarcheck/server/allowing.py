@@ -6,14 +6,14 @@ import re
 
 from lsprotocol import types
 
-from polarcheck.checking import silence
-from polarcheck.checking.allow_words import ALLOW, FILE, OFF, ON
-from polarcheck.checking.finding import Edit, Finding
 from polarcheck.checking.rule import Rule, load_all
+from polarcheck.finding import Edit, Finding
 from polarcheck.machines.machine import Machine
 from polarcheck.server.judged import Judged
 from polarcheck.server.markdown import page
 from polarcheck.server.open_text import OpenText
+from polarcheck.silence import suppression as silence
+from polarcheck.silence.allow_syntax import ALLOW, FILE, OFF, ON
 
 WORD = silence.WORD.decode("ascii")
 _KEYWORDS = {

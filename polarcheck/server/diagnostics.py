@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from lsprotocol import types
 
-from polarcheck.checking.finding import FileReport, Finding
+from polarcheck.finding import FileReport, Finding
 from polarcheck.reading.excerpt import visible
 from polarcheck.server.judged import Judged
 

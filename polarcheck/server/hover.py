@@ -8,7 +8,6 @@ from collections.abc import Iterator
 import numpy as np
 from lsprotocol import types
 
-from polarcheck.checking.finding import Finding
 from polarcheck.checking.phrases import common
 from polarcheck.checking.phrases.offsets import key_of
 from polarcheck.checking.polar_sections import radius_source
@@ -16,6 +15,7 @@ from polarcheck.checking.quantity import Quantity, in_row
 from polarcheck.checking.rule import load_all
 from polarcheck.checking.tables import Tables
 from polarcheck.errors import TooHardError
+from polarcheck.finding import Finding
 from polarcheck.machines.modal import FeedMode, Motion, Side
 from polarcheck.reports.pages import manual
 from polarcheck.server.judged import Judged

@@ -10,10 +10,10 @@ import numpy as np
 
 from polarcheck import bounded
 from polarcheck.checking import check
-from polarcheck.checking.finding import FileReport
 from polarcheck.checking.settings import Settings
 from polarcheck.checking.tables import Tables
 from polarcheck.errors import PolarcheckError, StoppedError
+from polarcheck.finding import FileReport
 from polarcheck.reading import files
 from polarcheck.reading.words import Text
 from polarcheck.server.open_text import OpenText

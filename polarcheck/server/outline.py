@@ -7,8 +7,8 @@ from collections.abc import Iterable
 
 from lsprotocol import types
 
-from polarcheck.checking.finding import PolarSection
 from polarcheck.execution.programs import Program, find_programs
+from polarcheck.finding import PolarSection
 from polarcheck.machines.modal import MM_PER_INCH
 from polarcheck.reading.excerpt import visible
 from polarcheck.reading.words import Text

@@ -12,7 +12,7 @@ from polarcheck.reports.pages.statistics import counts
 from polarcheck.reports.text import summary
 
 if TYPE_CHECKING:
-    from polarcheck.checking.finding import Report
+    from polarcheck.finding import Report
     from polarcheck.reports import Background
 
 #: Bytes of the pages of all steps before it and of this one that GitHub takes.

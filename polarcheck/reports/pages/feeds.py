@@ -6,9 +6,9 @@ import csv
 import io
 from collections.abc import Iterator
 
-from polarcheck.checking.feed_table import FeedReport, FeedRow, FeedTable, FeedTotal, highest
 from polarcheck.checking.quantity import rounded
 from polarcheck.checking.tables import Tables
+from polarcheck.feed_table.table import FeedReport, FeedRow, FeedTable, FeedTotal, highest
 from polarcheck.machines.modal import MM_PER_INCH
 from polarcheck.reading.excerpt import shortened, visible, without_commands
 from polarcheck.table import dynamics as reasons

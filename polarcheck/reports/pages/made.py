@@ -8,7 +8,7 @@ from typing import Any
 
 import msgspec
 
-from polarcheck.checking.finding import FileReport
+from polarcheck.finding import FileReport
 from polarcheck.reading.excerpt import visible, without_commands
 from polarcheck.reports.json import encoded
 

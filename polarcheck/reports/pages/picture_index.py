@@ -13,7 +13,7 @@ from polarcheck.reports import SEVERITIES, counted
 from polarcheck.reports.text import verdict
 
 if TYPE_CHECKING:
-    from polarcheck.checking.finding import FileReport
+    from polarcheck.finding import FileReport
 
 #: The page itself.
 INDEX = "index.html"

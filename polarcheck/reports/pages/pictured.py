@@ -12,7 +12,7 @@ from polarcheck.reports.pages.resting import resting
 from polarcheck.reports.text import first_sentence, verdict
 
 if TYPE_CHECKING:
-    from polarcheck.checking.finding import FileReport, Finding
+    from polarcheck.finding import FileReport, Finding
     from polarcheck.reports import Background
 
 _NOTHING = Drawn(sections=[], skip="", remarks=[])
@@ -89,7 +89,7 @@ class _Place:
 
 
 def _finding(found: Finding, places: Sequence[_Place], background: Background) -> FindingPicture:
-    from polarcheck.checking.finding import Silenced
+    from polarcheck.finding import Silenced
 
     rule = background.rules.get(found.rule)
     of = [number for number, place in enumerate(places) if place.is_of(found)]

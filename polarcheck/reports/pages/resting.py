@@ -9,7 +9,7 @@ from polarcheck.checking.quantity import Quantity
 from polarcheck.reports import counted
 
 if TYPE_CHECKING:
-    from polarcheck.checking.finding import FileReport, PolarSection
+    from polarcheck.finding import FileReport, PolarSection
 
 #: More sections than this are counted; the JSON report has them all.
 _LISTED = 5

@@ -10,8 +10,8 @@ from typing import Any
 
 from polarcheck.checking import check
 from polarcheck.checking.examples import Example, examples, options_of
-from polarcheck.checking.finding import Finding
 from polarcheck.checking.rule import Rule, load_all
+from polarcheck.finding import Finding
 from polarcheck.machines import profiles, toml_text
 from polarcheck.machines.job import from_table, with_tool
 from polarcheck.machines.machine import Machine

@@ -7,7 +7,7 @@ from typing import Any
 
 import msgspec
 
-from polarcheck.checking.finding import SILENCED_BY, Report, Severity
+from polarcheck.finding import SILENCED_BY, Report, Severity
 from polarcheck.machines.job import Job
 from polarcheck.machines.machine import Machine, meanings
 
@@ -40,7 +40,7 @@ def _report() -> Schema:
 
 
 def _feeds() -> Schema:
-    from polarcheck.checking.feed_table import LIMITED_BY, FeedReport  # with NumPy, which the others do without
+    from polarcheck.feed_table.table import LIMITED_BY, FeedReport  # with NumPy, which the others do without
 
     made: Schema = msgspec.json.schema(FeedReport)
     made["$defs"]["FeedReport"]["properties"]["schema"] = {"const": 1}

@@ -12,7 +12,7 @@ from polarcheck.reports.json import encoded
 from polarcheck.reports.text import summary
 
 if TYPE_CHECKING:
-    from polarcheck.checking.finding import Report
+    from polarcheck.finding import Report
     from polarcheck.reports import Background
 
 _HEADS = ("findings", "files", "fixable", "silenced", "severity", "rule")

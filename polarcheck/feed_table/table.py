@@ -11,9 +11,9 @@ import msgspec
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Rows
-from polarcheck.checking.feed_edits import LEAST_WHOLE, writes_points
 from polarcheck.checking.quantity import rounded
 from polarcheck.checking.tables import Tables
+from polarcheck.feed_table.edits import LEAST_WHOLE, writes_points
 from polarcheck.machines.modal import Units
 from polarcheck.table.dynamics import Dynamics, Times
 from polarcheck.table.highest_feeds import LIMITS, HighestFeeds

@@ -11,8 +11,8 @@ from pathlib import Path
 import msgspec
 
 from polarcheck import bounded
-from polarcheck.checking.finding import SEVERITIES
 from polarcheck.errors import BaselineError, suggestion
+from polarcheck.finding import SEVERITIES
 from polarcheck.reading.files import shown
 
 SCHEMA = 1

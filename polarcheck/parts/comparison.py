@@ -9,11 +9,11 @@ from collections.abc import Sequence
 import msgspec
 
 from polarcheck.checking.channels import first_runs
-from polarcheck.checking.finding import FileReport, PartComparison
 from polarcheck.checking.phrases.drawing import told
 from polarcheck.checking.quantity import rounded
 from polarcheck.checking.tables import Tables
 from polarcheck.errors import TooHardError
+from polarcheck.finding import FileReport, PartComparison
 from polarcheck.table.deviations import Deviations
 from polarcheck.table.trace import Trace
 

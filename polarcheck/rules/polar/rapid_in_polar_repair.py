@@ -5,8 +5,8 @@ import re
 import numpy as np
 
 from polarcheck.checking.editing import in_place_of, is_head, is_plain, separator, with_word, words_of, written_word
-from polarcheck.checking.feed_edits import feed_below, feed_text, restored
 from polarcheck.checking.repair import FEED, Mended, repair
+from polarcheck.feed_table.edits import feed_below, feed_text, restored
 from polarcheck.table.tool_center import ToolCenter
 from polarcheck.table.trace import Trace
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 import msgspec
 
-from polarcheck.checking.finding import ALLOW, Finding, Silenced
+from polarcheck.finding import ALLOW, Finding, Silenced
 from polarcheck.reading.source import Source
 
 #: With what an allow comment begins.

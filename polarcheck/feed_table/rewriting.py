@@ -10,10 +10,10 @@ import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Rows
 from polarcheck.checking.editing import Replace, in_place_of, is_plain, with_word, words_of, written_word
-from polarcheck.checking.feed_edits import takes_feed, writes_points
-from polarcheck.checking.feed_table import feed_number, highest
 from polarcheck.checking.tables import Tables
 from polarcheck.errors import TooHardError
+from polarcheck.feed_table.edits import takes_feed, writes_points
+from polarcheck.feed_table.table import feed_number, highest
 from polarcheck.table.highest_feeds import HighestFeeds
 from polarcheck.table.trace import Trace
 

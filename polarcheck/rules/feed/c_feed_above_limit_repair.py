@@ -6,8 +6,8 @@ import numpy as np
 
 from polarcheck.arrays import Mask
 from polarcheck.checking.editing import Replace, in_place_of, is_plain, with_word, written_word
-from polarcheck.checking.feed_edits import feed_below, feed_in_force, takes_feed
 from polarcheck.checking.repair import FEED, Mended, repair
+from polarcheck.feed_table.edits import feed_below, feed_in_force, takes_feed
 from polarcheck.table.tool_center import ToolCenter
 from polarcheck.table.trace import Trace
 

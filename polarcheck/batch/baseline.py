@@ -16,14 +16,14 @@ from typing import NamedTuple
 
 import msgspec
 
-from polarcheck.checking.baseline_file import Entry, Key
+from polarcheck.batch.baseline_file import Entry, Key
 from polarcheck.checking.check import verdict
 from polarcheck.checking.engine import in_order
-from polarcheck.checking.finding import BASELINE, SEVERITIES, FileReport, Finding, NotEvaluated, Silenced
 from polarcheck.checking.not_evaluated import bound_silenced
-from polarcheck.checking.silence import silenced
+from polarcheck.finding import BASELINE, SEVERITIES, FileReport, Finding, NotEvaluated, Silenced
 from polarcheck.reading.excerpt import shortened
 from polarcheck.reading.files import STANDARD_INPUT, shown
+from polarcheck.silence.suppression import silenced
 
 #: Of the block that is shown for whoever reads the file [characters].
 _BLOCK = 80

@@ -18,11 +18,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from polarcheck.arrays import Mask, Rows
-from polarcheck.checking.allow_words import FILE, OFF, ON, Allow, grouped, read_allow
-from polarcheck.checking.silence import WORD, Used
 from polarcheck.execution.run import begins_program
 from polarcheck.reading.source import LF
 from polarcheck.reading.words import Text
+from polarcheck.silence.allow_syntax import FILE, OFF, ON, Allow, grouped, read_allow
+from polarcheck.silence.suppression import WORD, Used
 from polarcheck.time_limit import keep_time
 
 #: Of a comment that is read [characters]; a longer one is prose.

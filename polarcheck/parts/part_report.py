@@ -9,12 +9,12 @@ import msgspec
 import numpy as np
 
 from polarcheck.checking.channels import first_runs
-from polarcheck.checking.finding import FileReport, LeftStanding, MadeShape, OddSide
 from polarcheck.checking.phrases.offsets import called_tool, to_give
 from polarcheck.checking.phrases.part import Sizes, shape_in_words
 from polarcheck.checking.quantity import rounded
 from polarcheck.checking.tables import Tables
 from polarcheck.errors import TooHardError
+from polarcheck.finding import FileReport, LeftStanding, MadeShape, OddSide
 from polarcheck.geometry.shapes.shape import SAME, Shape
 from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.machines.modal import Units
@@ -58,7 +58,7 @@ def made_by(tables: Tables) -> list[MadeShape]:
 
 def _by_section(trace: Trace, tables: Tables) -> list[MadeShape]:
     """The same; raises TooHardError where it takes too long."""
-    from polarcheck.checking.tool_paths import depths_of_paths
+    from polarcheck.parts.tool_paths import depths_of_paths
 
     found = [*_of_contours(tables), *(_Depth(*one) for one in depths_of_paths(tables))]
     standing = _ribs_and_strips(tables)
@@ -239,7 +239,7 @@ def _nothing(trace: Trace, section: int, needs: str) -> MadeShape:
 
 def _why_nothing(tables: Tables, section: int) -> str:
     trace: Trace = tables["trace"]
-    from polarcheck.checking.tool_paths import above_the_face
+    from polarcheck.parts.tool_paths import above_the_face
 
     own = trace.section == section
     if not (own & trace.cuts & trace.on_plane & ~above_the_face(trace)).any():

@@ -1,0 +1,1 @@
+"""Many files: baselines, and which of them a change in git concerns."""
