@@ -11,6 +11,8 @@ from pathlib import Path
 
 import pytest
 
+from polarcheck.checking.rule import rule_files
+
 PACKAGE = Path(__file__).parent.parent / "polarcheck"
 #: From the top down; each may import those below it, and those that stand beside it in one tuple not.
 ORDER = (
@@ -200,10 +202,7 @@ def test_modules_can_be_read_in_one_sitting(path: Path) -> None:
     assert len(path.read_text("utf-8").splitlines()) <= LINE_LIMIT
 
 
-RULES = sorted(path for path in (PACKAGE / "rules").glob("*/*.py") if not path.stem.endswith("_repair"))
-
-
-@pytest.mark.parametrize("path", RULES, ids=name_of)
+@pytest.mark.parametrize("path", [*map(Path, rule_files())], ids=name_of)
 def test_rules_neither_loop_nor_load_numpy(path: Path) -> None:
     tree = tree_of(path.read_text("utf-8"))
     allowed = {"checking.rule", "checking.causes", "machines.modal", "geometry.tolerances"}

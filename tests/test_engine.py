@@ -18,7 +18,7 @@ from programs import machine_of, report_of, said, tables_of
 from polarcheck.checking import message, tables
 from polarcheck.checking.engine import LISTED, Engine
 from polarcheck.checking.other_machine import OtherMachine
-from polarcheck.checking.rule import FOLDER, Hits, Rule, graded, load_all, rule
+from polarcheck.checking.rule import Hits, Rule, graded, load_all, rule, rule_files
 from polarcheck.checking.tables import MAKERS, OF_CAUSE, OF_TEXT, PARTS, SPANS, Tables
 from polarcheck.errors import RuleError, TooHardError
 from polarcheck.finding import ERROR, NOTE, WARNING, Finding
@@ -138,7 +138,7 @@ def compares(function: ast.FunctionDef) -> bool:
     )
 
 
-@pytest.mark.parametrize("path", sorted(FOLDER.glob("*/[!_]*.py")), ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", [*map(Path, rule_files())], ids=lambda path: path.stem)
 def test_each_rule_compares_or_says_why_not(path: Path) -> None:
     text = path.read_text("utf-8")
     (function,) = (node for node in ast.parse(text).body if isinstance(node, ast.FunctionDef))

@@ -228,9 +228,10 @@ def rule(
     return make
 
 
-def is_rule_module(stem: str) -> bool:
-    """A module in a folder of rules holds a rule, unless it is the package itself or the repair of a rule."""
-    return stem != "__init__" and not stem.endswith(REPAIR)
+def rule_files() -> list[str]:
+    """The files that hold a rule, sorted; as texts, because sorting 135 Path objects takes 3 ms."""
+    others = "__init__.py", f"{REPAIR}.py"
+    return sorted(path for path in map(str, FOLDER.glob("*/*.py")) if not path.endswith(others))
 
 
 @functools.cache
@@ -241,10 +242,8 @@ def load_all() -> dict[str, Rule]:
     Raises RuleError for a file under rules/ that holds no rule of its own name.
     """
     rules = {}
-    for path in sorted(map(str, FOLDER.glob("*/*.py"))):  # as texts, since 135 paths take 3 ms to be compared
+    for path in rule_files():
         group, stem = path.removesuffix(".py").split(os.sep)[-2:]  # noqa: PTH206
-        if not is_rule_module(stem):
-            continue
         found = getattr(_module(f"polarcheck.rules.{group}.{stem}", path), stem, None)
         if not isinstance(found, Rule):
             raise RuleError(f"rules/{group}/{stem}.py: no rule named {stem}")

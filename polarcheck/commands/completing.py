@@ -93,16 +93,14 @@ def _names_of_rules() -> Iterator[tuple[str, str]]:
     """
     Groups and rules with their titles, from the files: to load them all takes longer than a user waits for a word.
     """
-    from polarcheck import rules
-    from polarcheck.checking.rule import is_rule_module
+    from polarcheck.checking.rule import rule_files
 
-    folder = Path(rules.__file__).parent
-    for group in sorted(path.parent.name for path in folder.glob("*/__init__.py")):
+    paths = list(map(Path, rule_files()))
+    for group in sorted({path.parent.name for path in paths}):
         yield group, "all rules of this group"
-    for path in sorted(folder.glob("*/*.py")):
-        if is_rule_module(path.stem):
-            text = path.read_text("utf-8").partition('"""')[2]
-            yield path.stem.replace("_", "-"), text.strip().partition("\n")[0].rstrip(".")
+    for path in paths:
+        text = path.read_text("utf-8").partition('"""')[2]
+        yield path.stem.replace("_", "-"), text.strip().partition("\n")[0].rstrip(".")
 
 
 def _levels(begun: str) -> Iterator[Item]:

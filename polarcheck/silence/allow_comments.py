@@ -1,5 +1,5 @@
 """
-The allow comments of a file: which rules each of them names, in which blocks it silences them, what is wrong with it.
+The allow comments of a file: the rules that each one names, the blocks in which it suppresses them, its fault if any.
 
     (POLARCHECK ALLOW RAPID-IN-POLAR REASON)       in a block, or alone before it
     (POLARCHECK ALLOW-FILE HIGH-FEED REASON)       at the head of the file
@@ -25,22 +25,28 @@ from polarcheck.silence.allow_syntax import FILE, OFF, ON, Allow, grouped, read_
 from polarcheck.silence.suppression import WORD, Used
 from polarcheck.time_limit import keep_time
 
-#: Of a comment that is read [characters]; a longer one is prose.
+#: Characters of a comment that are parsed; a longer comment is prose.
 _LONGEST = 1000
-#: Comments of a file whose misspelled names are compared with all others.
+#: Comments of a file whose misspelled names are compared with the known names.
 _GUESSES = 500
-#: Between the begin of a comment and its first word stand signs and blanks, not many.
+#: Most signs and blanks between the start of a comment and its first word.
 _SIGNS = 20
-#: Words beside which a block does nothing: its number, its program number.
+#: Addresses that make a block do nothing: sequence number and program number.
 _NUMBERS = tuple(b"NO")
 
 
-#: A text per comment, empty where there is nothing to say.
+#: str[comments], empty where there is no message.
 Texts = NDArray[np.object_]
 
 
 class Place(msgspec.Struct, frozen=True):
-    """Where an allow comment stands: its characters, its block; is_loose: in no comment, as on the line of a %."""
+    """
+    The place of an allow comment.
+
+    start, end: its first character and the one behind its last, in the file.
+    block: number of its block.
+    is_loose: it stands in no comment, as on the line of a %.
+    """
 
     start: int
     end: int
@@ -49,7 +55,13 @@ class Place(msgspec.Struct, frozen=True):
 
 
 class Grant(msgspec.Struct, frozen=True):
-    """One name of an allow comment: its rules are silent in the blocks from first to last (exclusive)."""
+    """
+    One name of an allow comment, and where it suppresses its rules.
+
+    allow: number of the comment.
+    name: of a rule or a group.
+    first, last: blocks, the last one exclusive.
+    """
 
     allow: int
     name: str
@@ -59,20 +71,23 @@ class Grant(msgspec.Struct, frozen=True):
 
 class Region(msgspec.Struct, frozen=True):
     """
-    The blocks of the file itself, or of a called one behind it, from first to last (exclusive).
+    The blocks of the checked file, or of a called file that is appended to it.
 
-    body: the first block that does something. heads: the blocks with the number of a program.
+    first, last: blocks, the last one exclusive.
+    body: the first block that does something.
+    heads: the blocks with a program number.
+    is_main: the blocks are those of the checked file.
     """
 
     first: int
     last: int
     body: int
     heads: list[int]
-    is_own: bool
+    is_main: bool
 
 
 class _Ranges:
-    """The ranges that are open, by name, as indices of the grants that have begun them."""
+    """The open ALLOW-ON ranges by name, as indices of the grants that began them."""
 
     def __init__(self, grants: list[Grant], known: Mapping[str, Collection[str]]) -> None:
         self._grants = grants
@@ -80,49 +95,52 @@ class _Ranges:
         self._open: dict[str, list[int]] = {}
 
     def open(self, begin: int) -> None:
-        """The grants from there on begin ranges."""
+        """Open a range for each grant from index `begin` on."""
         for number in range(begin, len(self._grants)):
             self._open.setdefault(self._grants[number].name, []).append(number)
 
     def close(self, names: Sequence[str], last: int) -> str:
         """
-        End the ranges of names at a block (exclusive), all where none is named; what is to be said of the others.
+        Close the ranges of some names at a block (exclusive), all ranges if no name is given.
 
-        A name ends the range of its group, too: what is not allowed any more must not stay silent under another name.
+        Returns the message about names without an open range, else an empty text. A rule also closes the range of its
+        group, and a group those of its rules: what is no longer allowed must not stay suppressed under another name.
         """
         closed = set()
         for name in list(self._open):
-            if not names or any(self._is_same(name, one) for one in names):
+            if not names or any(self._overlap(name, other) for other in names):
                 closed.add(name)
                 for number in self._open.pop(name):
                     self._grants[number] = msgspec.structs.replace(self._grants[number], last=last)
         if not names:
             return "" if closed else "no range is open here that it could close"
-        idle = [one for one in names if not any(self._is_same(name, one) for name in closed)]
+        idle = [name for name in names if not any(self._overlap(name, other) for other in closed)]
         return f"no range of {', '.join(idle).upper()} is open here that it could close" if idle else ""
 
-    def _is_same(self, one: str, other: str) -> bool:
-        """Whether two names are the same, or a group and a rule of it."""
-        return one == other or one in self._known[other] or other in self._known[one]
+    def _overlap(self, name: str, other: str) -> bool:
+        """True for equal names, and for a group and one of its rules."""
+        return name == other or name in self._known[other] or other in self._known[name]
 
-    def left(self) -> dict[int, str]:
-        """Per comment the names of the ranges that are still open, which are so no longer."""
+    def close_all(self) -> dict[int, str]:
+        """Close all ranges; returns their names by the number of the comment that began them."""
         names: dict[int, dict[str, None]] = {}
         for number in sorted(number for numbers in self._open.values() for number in numbers):
             names.setdefault(self._grants[number].allow, {})[self._grants[number].name.upper()] = None
         self._open.clear()
-        return {allow: ", ".join(own) for allow, own in names.items()}
+        return {allow: ", ".join(of_comment) for allow, of_comment in names.items()}
 
 
 class Allows:
     """
-    The allow comments of a file and of the called ones behind it, in order.
+    The allow comments of a file and of the called files appended to it, in order.
 
-    groups: the group of each rule, by name.
+    groups: the group of each rule, by name of the rule.
 
-    start, end, block: per comment. faults: per comment what is wrong with it, empty where nothing is. grants: what each
-    name silences. is_own: per comment whether it stands in the file itself. unpaired: per comment the names of ranges
-    that are never closed, or of those that it closes and nothing has begun.
+    start, end: int[comments], positions in the file [characters].
+    block: int[comments].
+    faults: str[comments], what is wrong with a comment.
+    unpaired: str[comments], the message about ranges that are never closed, or closed and never opened.
+    grants: one for each name of a comment, with the blocks in which it holds.
     """
 
     def __init__(self, text: Text, groups: Mapping[str, str]) -> None:
@@ -134,111 +152,111 @@ class Allows:
         self.faults = _texts(len(places))
         self.unpaired = _texts(len(places))
         self.known = grouped(groups)
-        self.read: list[Allow] = []
-        found: list[Grant] = []
-        ranges = _Ranges(found, self.known)
+        self.parsed: list[Allow] = []
+        grants: list[Grant] = []
+        ranges = _Ranges(grants, self.known)
         region = None
         for number, place in enumerate(places):
             keep_time()
             comment = text.source.excerpt(place.start, min(place.end, place.start + _LONGEST))
             allow = read_allow(comment, self.known, number < _GUESSES)
-            self.read.append(allow)
+            self.parsed.append(allow)
             self.faults[number] = allow.fault
-            here = self._region(place.block)
-            if region is not None and here is not region:
-                self._left_open(ranges, region)
-            region = here
+            previous, region = region, self._region(place.block)
+            if previous is not None and previous is not region:
+                self._close_open_ranges(ranges, previous)
             if allow.kind == OFF:
                 is_clear = allow.names or not allow.fault
                 self.unpaired[number] = ranges.close(allow.names, place.block + 1) if is_clear else ""
                 continue
             first, last = self._reach(number, place, allow, region)
-            begun = len(found)
-            found += [Grant(number, name, first, last) for name in allow.names]
+            begin = len(grants)
+            grants += [Grant(number, name, first, last) for name in allow.names]
             if allow.kind == ON and first < last:
-                ranges.open(begun)
+                ranges.open(begin)
         if region is not None:
-            self._left_open(ranges, region)
-        self.grants = [grant for grant in found if grant.first < grant.last]
+            self._close_open_ranges(ranges, region)
+        self.grants = [grant for grant in grants if grant.first < grant.last]
 
     def __len__(self) -> int:
         return len(self.start)
 
     @cached_property
-    def is_own(self) -> Mask:
-        """Per comment whether it stands in the file itself, and not in a called one."""
-        return np.array([self._region(int(block)).is_own for block in self.block], bool)
+    def is_in_main_file(self) -> Mask:
+        """bool[comments]: it stands in the checked file, not in a called one."""
+        return np.array([self._region(int(block)).is_main for block in self.block], bool)
 
     @cached_property
     def silences(self) -> Mask:
-        """Per comment whether it names what is silent from now on."""
-        return np.array([bool(one.names) and one.kind != OFF for one in self.read], bool)
+        """bool[comments]: it names rules to suppress."""
+        return np.array([bool(allow.names) and allow.kind != OFF for allow in self.parsed], bool)
 
     @cached_property
     def has_reason(self) -> Mask:
-        """Per comment whether it says why."""
-        return np.array([bool(one.reason) for one in self.read], bool)
+        """bool[comments]: it gives a reason."""
+        return np.array([bool(allow.reason) for allow in self.parsed], bool)
 
-    # ---- what is silent ----
+    # ---- what is suppressed ----
 
     @cached_property
-    def _of_rules(self) -> dict[str, list[Grant]]:
+    def _grants_of_rule(self) -> dict[str, list[Grant]]:
         return {}
 
-    def _of_rule(self, rule: str) -> list[Grant]:
-        """The grants for a rule, under its own name and that of its group, by where they begin."""
-        if rule not in self._of_rules:
-            own = [grant for grant in self.grants if rule in self.known[grant.name]]
-            self._of_rules[rule] = sorted(own, key=lambda grant: grant.first)
-        return self._of_rules[rule]
+    def _grants_for(self, rule: str) -> list[Grant]:
+        """The grants for a rule by its name or its group, in order of their first block."""
+        if rule not in self._grants_of_rule:
+            grants = [grant for grant in self.grants if rule in self.known[grant.name]]
+            self._grants_of_rule[rule] = sorted(grants, key=lambda grant: grant.first)
+        return self._grants_of_rule[rule]
 
     def names(self, rule: str) -> bool:
-        """Whether any comment allows a rule anywhere."""
-        return bool(self._of_rule(rule))
+        """True if any comment allows the rule anywhere."""
+        return bool(self._grants_for(rule))
 
     def silenced(self, rule: str, blocks: Rows) -> Mask:
-        """Which of these blocks a rule is silent in."""
+        """bool[len(blocks)]: the rule is suppressed in the block."""
         steps = np.zeros(len(self.text.blocks) + 1, np.int64)
-        for grant in self._of_rule(rule):
+        for grant in self._grants_for(rule):
             steps[grant.first] += 1
             steps[grant.last] -= 1
         return np.asarray(np.cumsum(steps)[blocks] > 0)
 
     def used(self, rule: str, blocks: Rows) -> set[Used]:
-        """The names that silence a rule in any of these blocks: each with the position of its comment."""
+        """The names that suppress a rule in any of these blocks, each with the position of its comment."""
         at = np.unique(blocks)
         return {
             (int(self.start[grant.allow]), grant.name)
-            for grant in self._of_rule(rule)
+            for grant in self._grants_for(rule)
             if np.searchsorted(at, grant.first) < np.searchsorted(at, grant.last)
         }
 
     def reason(self, rule: str, block: int) -> str:
-        """Why a rule is silent in a block: the words of the comment that is nearest before it."""
-        grants = self._of_rule(rule)
+        """The reason for which a rule is suppressed in a block: that of the nearest comment before the block."""
+        grants = self._grants_for(rule)
         at = bisect.bisect_right(grants, block, key=lambda grant: grant.first)
-        found = next((grant for grant in reversed(grants[:at]) if block < grant.last), None)
-        return self.read[found.allow].reason if found else ""
+        grant = next((grant for grant in reversed(grants[:at]) if block < grant.last), None)
+        return self.parsed[grant.allow].reason if grant else ""
 
     def unused(self, used: Collection[Used], could: Collection[str]) -> UnusedAllows:
         """
-        What has silenced nothing, of comments of the file itself that nothing else is wrong with.
+        The names that have suppressed nothing, of comments in the checked file without a fault.
 
-        could: the rules of which something would have been found; only a name all of whose rules are among them counts.
+        used: the names that have suppressed a finding.
+        could: the rules that were evaluated; a name counts only if all of its rules were.
         """
         names = _texts(len(self))
-        for number, allow in enumerate(self.read):
-            if self.is_own[number] and allow.kind != OFF and not self.faults[number]:
-                own = [name for name in allow.names if (int(self.start[number]), name) not in used]
+        for number, allow in enumerate(self.parsed):
+            if self.is_in_main_file[number] and allow.kind != OFF and not self.faults[number]:
+                idle = [name for name in allow.names if (int(self.start[number]), name) not in used]
                 names[number] = ", ".join(
-                    name.upper() for name in own if all(map(could.__contains__, self.known[name]))
+                    name.upper() for name in idle if all(map(could.__contains__, self.known[name]))
                 )
         return UnusedAllows(names)
 
-    # ---- where an allow reaches ----
+    # ---- the blocks that an allow comment is for ----
 
     def _reach(self, number: int, place: Place, allow: Allow, region: Region) -> tuple[int, int]:
-        """The blocks that an allow comment is for, none where it cannot be for any; then its fault says why."""
+        """The blocks that an allow comment is for (last exclusive); without any, its fault says why."""
         none = region.first, region.first
         if allow.kind == FILE:
             if place.block < region.body:
@@ -261,7 +279,7 @@ class Allows:
         return target, target + 1
 
     def _target(self, block: int, region: Region) -> int | None:
-        """The block of a comment, or the one behind its end on the same line; else the next that has words."""
+        """The block of a comment, or another one on the same line; else the next block with words."""
         if self.has_words[block]:
             return block
         line, at = self.text.blocks.line, int(np.searchsorted(self._with_text, block))
@@ -276,16 +294,16 @@ class Allows:
     def _faulty(self, number: int, fault: str) -> None:
         self.faults[number] = self.faults[number] or fault
 
-    def _left_open(self, ranges: _Ranges, region: Region) -> None:
-        for number, names in ranges.left().items():
-            if region.is_own:
+    def _close_open_ranges(self, ranges: _Ranges, region: Region) -> None:
+        for number, names in ranges.close_all().items():
+            if region.is_main:
                 self.unpaired[number] = f"no ALLOW-OFF {names} closes this range: it reaches to the end of the file"
 
     # ---- the file ----
 
     @cached_property
     def has_words(self) -> Mask:
-        """Per block whether anything but its number and comments stands in it."""
+        """bool[blocks]: the block holds more than its sequence number and comments."""
         return self._with_words(_NUMBERS[:1])
 
     @cached_property
@@ -294,18 +312,18 @@ class Allows:
 
     @cached_property
     def does_something(self) -> Mask:
-        """The same without the numbers and names of programs."""
-        found = self._with_words(_NUMBERS)
-        found[self.text.names.block] = False
-        return found
+        """bool[blocks]: the same, program numbers and names not counted."""
+        mask = self._with_words(_NUMBERS)
+        mask[self.text.names.block] = False
+        return mask
 
     def _with_words(self, besides: tuple[int, ...]) -> Mask:
         text = self.text
-        found = text.blocks.is_macro.copy()
-        found[text.words.block[~np.isin(text.words.address, besides)]] = True
+        mask = text.blocks.is_macro.copy()
+        mask[text.words.block[~np.isin(text.words.address, besides)]] = True
         for spans in (text.names, text.strays, text.prose):
-            found[spans.block] = True
-        return found
+            mask[spans.block] = True
+        return mask
 
     @cached_property
     def _regions(self) -> list[Region]:
@@ -313,13 +331,13 @@ class Allows:
         starts = [int(np.searchsorted(text.blocks.line, part.first_line)) for part in text.source.parts]
         edges = [0, *starts, len(text.blocks)]
         heads = np.unique(text.words.block[begins_program(text.words)])
-        found = []
+        regions = []
         for number, first in enumerate(edges[:-1]):
             last = edges[number + 1]
             body = first + int(np.argmax(np.append(self.does_something[first:last], True)))
-            own = heads[(heads >= first) & (heads < last)].tolist()
-            found.append(Region(first, last, body, own, number == 0))
-        return found
+            inside = heads[(heads >= first) & (heads < last)].tolist()
+            regions.append(Region(first, last, body, inside, number == 0))
+        return regions
 
     def _region(self, block: int) -> Region:
         at = bisect.bisect_right(self._regions, block, key=lambda region: region.first)
@@ -328,19 +346,21 @@ class Allows:
 
 class UnusedAllows(msgspec.Struct, frozen=True):
     """
-    names: per allow comment those that have silenced nothing, in upper case with commas between.
+    Names of allow comments that have suppressed nothing.
+
+    names: str[comments], in upper case, separated by commas.
     """
 
     names: Texts
 
 
 def _texts(length: int) -> Texts:
-    found: Texts = np.full(length, "", np.object_)
-    return found
+    texts: Texts = np.full(length, "", np.object_)
+    return texts
 
 
 def _places(text: Text) -> Iterator[Place]:
-    """Where comments begin with the word; and lines with it that the control does not store, before the program."""
+    """Comments that begin with the word, and lines with it before the program, which the control does not store."""
     code = text.source.code.tobytes()
     code = code if b"\n" in code else code.replace(b"\r", b"\n")
     ends = np.append(np.flatnonzero(np.frombuffer(code, np.uint8) == LF), len(code))

@@ -1,4 +1,4 @@
-"""Findings that somebody has answered for: out of the findings, and none of them is lost."""
+"""Suppressed findings: an allow comment or a baseline moves them to a list of their own."""
 
 from __future__ import annotations
 
@@ -9,39 +9,41 @@ import msgspec
 from polarcheck.finding import ALLOW, Finding, Silenced
 from polarcheck.reading.source import Source
 
-#: With what an allow comment begins.
+#: The first word of an allow comment.
 WORD = b"POLARCHECK"
-#: The table that a rule names which is asked once it is known what all others have found.
+#: The table of a rule that runs after all others, because it needs their findings.
 UNUSED = "unused_allows"
-#: A name of an allow comment, with the position of that.
+#: An allow comment by its position in the file [characters], and a name in it.
 Used = tuple[int, str]
 
 
 def mentions_allow(source: Source) -> bool:
-    """Whether there can be any allow comments: most files have none, and need nothing of what reads them."""
+    """True if the file can hold allow comments. For most files it is False, and this package is not loaded."""
     return WORD in source.code.tobytes().upper()
 
 
 def silenced(finding: Finding, by: str, reason: str) -> Silenced:
-    """A finding as one that is silenced."""
+    """The finding, suppressed by `by` (ALLOW or BASELINE)."""
     values = {name: getattr(finding, name) for name in Finding.__struct_fields__}
     return Silenced(**values, by=by, reason=reason)
 
 
 def allowed(finding: Finding, reason: str) -> Silenced:
-    """A finding that a comment of the program allows."""
+    """The finding, suppressed by a comment of the program."""
     return silenced(finding, ALLOW, reason)
 
 
 def divided(findings: Iterable[Finding]) -> tuple[list[Finding], list[Silenced]]:
-    """The findings that are told, and those that are silenced; of what follows from one of them, too."""
-    told: list[Finding] = []
-    silent: list[Silenced] = []
+    """Separate reported from suppressed findings, also among those that follow from a reported one."""
+    reported: list[Finding] = []
+    suppressed: list[Silenced] = []
     for finding in findings:
         if isinstance(finding, Silenced):
-            silent.append(finding)
+            suppressed.append(finding)
             continue
-        own = [one for one in finding.follows if not isinstance(one, Silenced)]
-        silent += [one for one in finding.follows if isinstance(one, Silenced)]
-        told.append(finding if len(own) == len(finding.follows) else msgspec.structs.replace(finding, follows=own))
-    return told, silent
+        followers = [follower for follower in finding.follows if not isinstance(follower, Silenced)]
+        suppressed += [follower for follower in finding.follows if isinstance(follower, Silenced)]
+        if len(followers) < len(finding.follows):
+            finding = msgspec.structs.replace(finding, follows=followers)
+        reported.append(finding)
+    return reported, suppressed

@@ -35,4 +35,4 @@ def allow_not_understood(allows: Allows) -> Hits:
         G1 C-5.
         G13.1
     """
-    return Hits(allows.is_own & (allows.faults != ""), values={"fault": allows.faults})
+    return Hits(allows.is_in_main_file & (allows.faults != ""), values={"fault": allows.faults})

@@ -35,4 +35,4 @@ def allow_range_unpaired(allows: Allows) -> Hits:
         G1 C-5.
         G13.1
     """
-    return Hits(allows.is_own & (allows.unpaired != ""), values={"unpaired": allows.unpaired})
+    return Hits(allows.is_in_main_file & (allows.unpaired != ""), values={"unpaired": allows.unpaired})

@@ -31,4 +31,4 @@ def allow_without_reason(allows: Allows) -> Mask:
         G1 C-5.
         G13.1
     """
-    return allows.is_own & allows.silences & ~allows.has_reason
+    return allows.is_in_main_file & allows.silences & ~allows.has_reason
