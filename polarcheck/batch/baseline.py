@@ -1,8 +1,8 @@
 """
-A baseline: findings that are known, so that only new ones are told.
+A baseline: known findings, so that only new ones are reported.
 
-A finding is known by its rule and its fingerprint, which are counted in each file. A file that has been moved is known
-by what is found in it, once its old path is gone.
+A finding is matched by file, rule and fingerprint; equal ones are counted. A moved file is recognised by its findings,
+once its old path no longer exists.
 """
 
 from __future__ import annotations
@@ -25,12 +25,17 @@ from polarcheck.reading.excerpt import shortened
 from polarcheck.reading.files import STANDARD_INPUT, shown
 from polarcheck.silence.suppression import silenced
 
-#: Of the block that is shown for whoever reads the file [characters].
+#: Characters of the block that an entry shows to its reader.
 _BLOCK = 80
 
 
 class Leftover(NamedTuple):
-    """An entry, and how many of its findings are missing; is_gone: the whole file is not there."""
+    """
+    An entry whose findings no longer occur.
+
+    missing: how many of its findings.
+    is_gone: the whole file no longer exists.
+    """
 
     entry: Entry
     missing: int
@@ -38,7 +43,12 @@ class Leftover(NamedTuple):
 
 
 class Updated(NamedTuple):
-    """The entries of what is found now, and how many of the findings are new."""
+    """
+    The baseline after an update.
+
+    entries: of all findings that are known now.
+    new: how many of the findings are new.
+    """
 
     entries: list[Entry]
     new: int
@@ -46,10 +56,17 @@ class Updated(NamedTuple):
 
 class Baseline:
     """
-    What is known of the files of a run.
+    The known findings of the files of a run.
 
-    walked: files and folders that the run was asked for, None for all: of what is gone from elsewhere it says nothing.
-    moved: by the paths of files, from the folder of the baseline, the gone ones whose entries count for them.
+    entries: of the baseline file.
+    folder: that of the baseline file; paths in entries are relative to it.
+    paths: the files of the run.
+    walked: files and folders that the run was started with, None for all; entries of files that are missing elsewhere
+    stay as they are.
+
+    of_file: the entries by file.
+    path_of: the path of a file as entries have it, by its path as reports have it.
+    moved: the former path of each file that was moved, empty for one that was not.
     """
 
     def __init__(
@@ -62,20 +79,20 @@ class Baseline:
         self.path_of = {shown(path): self._relative(path) for path in paths}
         self.moved: dict[str, str] = {}
         self._matched: dict[str, Counter[Key]] = {}
-        self._asked: dict[str, Collection[str]] = {}
-        self._gone = self._not_there()
+        self._evaluated: dict[str, Collection[str]] = {}
+        self._gone = self._missing_files()
         self._walked = None if walked is None else [os.path.normcase(os.path.realpath(path)) for path in walked]
-        self._taken: set[str] = set()
+        self._origins: set[str] = set()
         self._counts = {file: _counted(self.of_file[file]) for file in self._gone}
-        self._gone_with: dict[Key, list[str]] = {}
+        self._gone_files_with: dict[Key, list[str]] = {}
         for file, counts in self._counts.items():
             for key in counts:
-                self._gone_with.setdefault(key, []).append(file)
-        # Each gone file whose name a new one has is kept for that, whichever of them is checked first.
-        self._new_names = {_name(path) for path in self._new()}
+                self._gone_files_with.setdefault(key, []).append(file)
+        # A missing file with the name of a new one is reserved for that, whichever new file is checked first.
+        self._new_names = {_name(path) for path in self._new_files()}
 
     def _relative(self, path: str) -> str:
-        """The path of a program from the folder of the baseline, with slashes; of another drive all of it."""
+        """The path of a program relative to the folder of the baseline, with slashes; absolute on another drive."""
         if path == STANDARD_INPUT:
             return path
         folder, name = os.path.split(path)
@@ -85,8 +102,8 @@ class Baseline:
         except ValueError:
             return shown(whole)
 
-    def _not_there(self) -> list[str]:
-        """The files of entries that are no longer there."""
+    def _missing_files(self) -> list[str]:
+        """The files of entries that no longer exist."""
         checked = {os.path.normcase(path) for path in self.path_of.values()}
         return [
             file
@@ -94,46 +111,48 @@ class Baseline:
             if file not in checked and file != STANDARD_INPUT and not os.path.lexists(os.path.join(self.folder, file))  # noqa: PTH118
         ]
 
-    def _dropped(self) -> Iterator[str]:
-        """The files that are gone from where the run was, and were not moved to where it was."""
+    def _deleted_files(self) -> Iterator[str]:
+        """The missing files that the run would have checked, and that were not moved to another of its files."""
         for file in self._gone:
             whole = os.path.normcase(os.path.normpath(os.path.join(self.folder, file)))  # noqa: PTH118
             was_in_run = self._walked is None or any(
                 whole == path or whole.startswith(os.path.join(path, ""))  # noqa: PTH118
                 for path in self._walked
             )
-            if was_in_run and file not in self._taken:
+            if was_in_run and file not in self._origins:
                 yield file
 
-    def _new(self) -> Iterator[str]:
-        """The files of this run that no entry is for."""
+    def _new_files(self) -> Iterator[str]:
+        """The files of this run that have no entry."""
         return (path for path in self.path_of.values() if os.path.normcase(path) not in self.of_file)
 
-    def known(self, report: FileReport) -> list[Entry]:
-        """The entries that count for a file."""
+    def entries_for(self, report: FileReport) -> list[Entry]:
+        """The entries of a file, or of the file that it was before it was moved."""
         path = os.path.normcase(self.path_of[report.path])
         if path in self.of_file:
             return self.of_file[path]
         if path not in self.moved:
             self.moved[path] = self._origin(path, Counter(map(_key, report.findings)))
-            self._taken.add(self.moved[path])
+            self._origins.add(self.moved[path])
         return self.of_file.get(self.moved[path], [])
 
-    def _origin(self, path: str, found: Counter[Key]) -> str:
+    def _origin(self, path: str, present: Counter[Key]) -> str:
         """
-        The gone file that this one was, empty for none.
+        The former path of a moved file, empty if it was not moved.
 
-        It has the same name and a finding in common, or at least half of all that was known of it is found here, so
-        that one common block does not make a new program an old one.
+        present: the findings of the file, counted.
+
+        The former file has the same name and a finding in common, or at least half of its known findings are present:
+        one common block does not make a new program a moved one.
         """
         common: Counter[str] = Counter()
-        for key, count in found.items():
-            for file in self._gone_with.get(key, ()):
+        for key, count in present.items():
+            for file in self._gone_files_with.get(key, ()):
                 common[file] += min(count, self._counts[file][key])
         likely = [
             file
             for file in common
-            if file not in self._taken
+            if file not in self._origins
             and (
                 _name(file) == _name(path)
                 or (_name(file) not in self._new_names and 2 * common[file] >= self._counts[file].total())
@@ -141,98 +160,108 @@ class Baseline:
         ]
         return min(likely, key=lambda file: (_name(file) != _name(path), -common[file], file), default="")
 
-    def answered(self, report: FileReport, asked: Collection[str], fail_on: str = "warning") -> FileReport:
+    def without_known(self, report: FileReport, evaluated: Collection[str], fail_on: str = "warning") -> FileReport:
         """
-        The report with the known findings silenced, and the verdict of the rest; what follows from one goes with it.
+        The report with the known findings suppressed, and the verdict of the others.
 
-        One that is more severe than it was, or from which something else follows, is told: it is not what was known.
-        asked: the rules that were asked and could be evaluated.
+        The findings that follow from a known one go with it. A finding that is more severe than it was, or from which
+        another rule follows, is not the known one and is reported.
+
+        evaluated: the rules that were selected and could be evaluated.
         """
-        known = {entry.key: entry for entry in _added_up(self.known(report))}
-        left = _counted(known.values())
-        told: list[Finding] = []
-        silent: list[Silenced] = []
+        known = {entry.key: entry for entry in _added_up(self.entries_for(report))}
+        unmatched = _counted(known.values())
+        reported: list[Finding] = []
+        suppressed: list[Silenced] = []
         bounds: list[NotEvaluated | None] = []
         for finding in report.findings:
             key = _key(finding)
-            if not left[key]:
-                told.append(finding)
+            if not unmatched[key]:
+                reported.append(finding)
                 continue
-            left[key] -= 1
+            unmatched[key] -= 1
             entry = known[key]
             if SEVERITIES[finding.severity] > SEVERITIES[entry.severity] or not _rules(finding) <= {*entry.follows}:
-                told.append(finding)
+                reported.append(finding)
             else:
-                silent.append(silenced(finding, BASELINE, entry.reason))
+                suppressed.append(silenced(finding, BASELINE, entry.reason))
                 bounds.append(bound_silenced(finding))
         path = os.path.normcase(self.path_of[report.path])
-        matched = _counted(known.values()) - left
+        matched = _counted(known.values()) - unmatched
         self._matched[path] = matched | self._matched.get(path, Counter())
-        self._asked[path] = asked
-        if not silent:
+        self._evaluated[path] = evaluated
+        if not suppressed:
             return report
         not_evaluated = [*report.not_evaluated, *filter(None, bounds)]
         return msgspec.structs.replace(
             report,
-            findings=told,
+            findings=reported,
             not_evaluated=not_evaluated,
-            silenced=in_order([*report.silenced, *silent]),
-            verdict=verdict(told, not_evaluated, fail_on),
+            silenced=in_order([*report.silenced, *suppressed]),
+            verdict=verdict(reported, not_evaluated, fail_on),
         )
 
-    def updated(self, found: Iterable[tuple[FileReport, Collection[str]]], reason: str) -> Updated:
+    def updated(self, reports: Iterable[tuple[FileReport, Collection[str]]], reason: str) -> Updated:
         """
-        The entries for what is found now. What could not be evaluated stays, and what is known of files of other runs.
+        The entries for the present findings.
 
-        found: the reports, each with the rules that were asked and could be evaluated. reason: of what is new.
+        Entries of rules that could not be evaluated stay, and so do those of files outside of this run.
+
+        reports: each with the rules that were selected and could be evaluated.
+        reason: that of new entries.
         """
         entries: list[Entry] = []
-        done: set[str] = set()
+        updated: set[str] = set()
         new = 0
-        for report, asked in found:
+        for report, evaluated in reports:
             file = self.path_of[report.path]
-            known = {entry.key: entry for entry in _added_up(self.known(report))}
+            known = {entry.key: entry for entry in _added_up(self.entries_for(report))}
             reasons = {key: entry.reason for key, entry in known.items()}
             now = _entries_of(report.findings, file, reasons, reason)
             new += (_counted(now) - _counted(known.values())).total()
             counts = _counted(now)
-            stays = [entry for key, entry in known.items() if not counts[key] and entry.rule not in asked]
-            entries += [*now, *(msgspec.structs.replace(entry, file=file) for entry in stays)]
-            done.add(os.path.normcase(file))
-        done |= {*self._dropped()} | self._taken
-        entries += [entry for file, own in self.of_file.items() if file not in done for entry in own]
+            unevaluated = [entry for key, entry in known.items() if not counts[key] and entry.rule not in evaluated]
+            entries += [*now, *(msgspec.structs.replace(entry, file=file) for entry in unevaluated)]
+            updated.add(os.path.normcase(file))
+        updated |= {*self._deleted_files()} | self._origins
+        entries += [entry for file, of_file in self.of_file.items() if file not in updated for entry in of_file]
         return Updated(_added_up(entries), new)
 
     def pruned(self) -> list[Entry]:
-        """The entries without what no longer occurs."""
-        left = {(one.entry.file, one.entry.key): one.missing for one in self.leftovers()}
-        kept = []
-        for entry in _added_up(entry for own in self.of_file.values() for entry in own):
-            count = entry.count - left.get((entry.file, entry.key), 0)
+        """The entries without the findings that no longer occur."""
+        missing = {(leftover.entry.file, leftover.entry.key): leftover.missing for leftover in self.leftovers()}
+        remaining = []
+        for entry in _added_up(entry for of_file in self.of_file.values() for entry in of_file):
+            count = entry.count - missing.get((entry.file, entry.key), 0)
             if count:
-                kept.append(msgspec.structs.replace(entry, count=count))
-        return kept
+                remaining.append(msgspec.structs.replace(entry, count=count))
+        return remaining
 
     @staticmethod
     def total(entries: Iterable[Entry]) -> int:
-        """How many findings the entries stand for."""
+        """The number of findings in the entries."""
         return sum(entry.count for entry in entries)
 
     def leftovers(self) -> Iterator[Leftover]:
-        """What no longer occurs, of the files that were checked and of those that are gone and were not moved."""
+        """The entries whose findings no longer occur, in checked files and in files that were deleted."""
         for path, matched in self._matched.items():
             file = path if path in self.of_file else self.moved.get(path, "")
             for entry in _added_up(self.of_file.get(file, ())):
                 missing = entry.count - matched[entry.key]
-                if missing > 0 and entry.rule in self._asked[path]:
+                if missing > 0 and entry.rule in self._evaluated[path]:
                     yield Leftover(entry, missing, is_gone=False)
-        for file in self._dropped():
+        for file in self._deleted_files():
             yield from (Leftover(entry, entry.count, is_gone=True) for entry in _added_up(self.of_file[file]))
 
 
 def _entries_of(findings: Iterable[Finding], file: str, reasons: Mapping[Key, str], reason: str) -> list[Entry]:
-    """The entries for the findings of a file. reasons: by key, of those that are known. reason: of the others."""
-    found = [
+    """
+    The entries for the findings of a file.
+
+    reasons: those of known findings, by key.
+    reason: that of all others.
+    """
+    entries = [
         Entry(
             file=file,
             rule=finding.rule,
@@ -244,16 +273,16 @@ def _entries_of(findings: Iterable[Finding], file: str, reasons: Mapping[Key, st
         )
         for finding in findings
     ]
-    return _added_up(found)
+    return _added_up(entries)
 
 
 def _added_up(entries: Iterable[Entry]) -> list[Entry]:
-    """One entry for each file, rule and fingerprint: the sum, the worst severity, all that follows."""
-    found: dict[tuple[str, Key], Entry] = {}
+    """Merge entries of the same file, rule and fingerprint: counts added, worst severity, all rules that follow."""
+    merged: dict[tuple[str, Key], Entry] = {}
     for entry in entries:
         key = entry.file, entry.key
-        first = found.get(key)
-        found[key] = (
+        first = merged.get(key)
+        merged[key] = (
             entry
             if first is None
             else msgspec.structs.replace(
@@ -264,18 +293,18 @@ def _added_up(entries: Iterable[Entry]) -> list[Entry]:
                 reason=first.reason or entry.reason,
             )
         )
-    return list(found.values())
+    return list(merged.values())
 
 
 def _counted(entries: Iterable[Entry]) -> Counter[Key]:
-    found: Counter[Key] = Counter()
+    counts: Counter[Key] = Counter()
     for entry in entries:
-        found[entry.key] += entry.count
-    return found
+        counts[entry.key] += entry.count
+    return counts
 
 
 def _shown_block(block: str) -> str:
-    """As it is written, without its number, which may change."""
+    """The block as written, without its sequence number, which may change."""
     return re.sub(r"^(/?)N\d+\s*", r"\1", " ".join(block.upper().split()))
 
 
@@ -284,8 +313,8 @@ def _key(finding: Finding) -> Key:
 
 
 def _rules(finding: Finding) -> set[str]:
-    """The rules of what follows from a finding."""
-    return {one.rule for one in finding.follows}
+    """The rules of the findings that follow from this one."""
+    return {follower.rule for follower in finding.follows}
 
 
 def _name(path: str) -> str:

@@ -1,5 +1,5 @@
 """
-A baseline as a file: findings that are known, one on each line, for whoever reads it and for tools that compare lines.
+The file of a baseline: one known finding on each line, for its readers and for tools that compare lines.
 """
 
 from __future__ import annotations
@@ -16,20 +16,25 @@ from polarcheck.finding import SEVERITIES
 from polarcheck.reading.files import shown
 
 SCHEMA = 1
-#: Of a baseline; 100,000 findings have 20 MB [bytes].
+#: Largest baseline file [bytes]; 100,000 findings take 20 MB.
 _LARGEST = 200_000_000
 
 _UNKNOWN = re.compile("unknown field `([^`]*)`")
 
-#: What a finding is known by: rule and fingerprint.
+#: Rule and fingerprint, by which findings are matched.
 Key = tuple[str, str]
 
 
 class Entry(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, omit_defaults=True):
     """
-    Findings of a file that are known. file: from the folder of the baseline, with slashes. severity: the worst of them.
-    count: how many. block: of the first, for whoever reads this. follows: the rules of what follows from them. reason:
-    why they may stay.
+    Known findings of a file with the same rule and fingerprint.
+
+    file: relative to the folder of the baseline, with slashes.
+    severity: the worst of them.
+    count: how many there are.
+    block: that of the first one, for the reader.
+    follows: the rules of the findings that follow from them.
+    reason: why they are accepted.
     """
 
     file: str
@@ -43,7 +48,7 @@ class Entry(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
 
     @property
     def key(self) -> Key:
-        """What it is known by."""
+        """Rule and fingerprint."""
         return self.rule, self.fingerprint
 
 
@@ -54,9 +59,9 @@ class _Head(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 def read(path: Path) -> list[Entry]:
     """
-    The entries of a baseline.
+    Read the entries of a baseline.
 
-    Raises BaselineError, which names the file, the line and the key, and says what was expected.
+    Raises BaselineError, which names the file, the line, the key and what was expected.
     """
     try:
         data = bounded.read(path, _LARGEST, "no baseline is", pipes=True)
@@ -69,7 +74,7 @@ def read(path: Path) -> list[Entry]:
 
 
 def _as_utf8(data: bytes) -> bytes:
-    """Editors and shells of Windows write UTF-16, or a byte order mark."""
+    """Decode what editors and shells of Windows write: UTF-16, or UTF-8 with a byte order mark."""
     wide = data.startswith((b"\xff\xfe", b"\xfe\xff"))
     return data.decode("utf-16" if wide else "utf-8-sig").encode("utf-8")
 
@@ -83,16 +88,16 @@ def _entries(data: bytes) -> list[Entry]:
         raise ValueError(f"is no JSON: {error}{_line_in(str(error), data)}") from None
     if head.schema != SCHEMA:
         raise ValueError(f"schema: expected {SCHEMA}, found {head.schema}: it is of another version of polarcheck")
-    found, at = [], 0
+    entries, at = [], 0
     for number, raw in enumerate(head.findings, 1):
         text = bytes(raw)
         at = data.index(text, at)
         try:
-            found.append(_entry(text))
+            entries.append(_entry(text))
         except ValueError as error:
             raise ValueError(f"line {data.count(10, 0, at) + 1}, finding {number}: {error}") from None
         at += len(text)
-    return found
+    return entries
 
 
 def _entry(text: bytes) -> Entry:
@@ -116,7 +121,7 @@ def _line_in(message: str, data: bytes) -> str:
 
 
 def text_of(entries: Iterable[Entry]) -> str:
-    """The file: an entry on each line, in the order of files, rules and blocks, the same whatever wrote it."""
+    """The text of the file: an entry on each line, sorted by file, rule, block and fingerprint."""
     ordered = sorted(entries, key=lambda entry: (entry.file, entry.rule, entry.block, entry.fingerprint))
     lines = ",\n".join(f"    {msgspec.json.format(msgspec.json.encode(entry), indent=0).decode()}" for entry in ordered)
     findings = f"[\n{lines}\n  ]" if lines else "[]"

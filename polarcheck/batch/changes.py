@@ -1,4 +1,4 @@
-"""Of the programs of a run those whose report may have changed since a commit."""
+"""The programs of a run whose report may have changed since a commit (--diff-base)."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from polarcheck.time_limit import seconds_for, time_limit
 
 class Changes:
     """
-    What has changed in the repositories of some programs since a commit.
+    The paths that have changed since a commit, in the repositories of some programs.
 
-    Raises UsageError for a program that lies in none, and where git cannot tell.
+    Raises UsageError for a program outside of any repository, and if git fails.
     """
 
     def __init__(self, tasks: Iterable[Task], ref: str) -> None:
@@ -37,7 +37,7 @@ class Changes:
         for path in self._paths:
             folder, name = os.path.split(path)
             self._names.setdefault(folder, set()).add(name)
-        #: Folders out of which a job file has gone: what lies below them is judged by another one now.
+        #: Folders whose job file was deleted: another one applies to the programs below them now.
         self._without_job = [
             os.path.join(folder, "")  # noqa: PTH118
             for folder, names in self._names.items()
@@ -48,10 +48,11 @@ class Changes:
 
     def concern(self, task: Task, most: int = files.LARGEST) -> bool:
         """
-        Whether a program has changed, or its job file, machine file or offset table, or a program that it calls; most:
-        bytes of a program that is read.
+        True if a program has changed, or its job file, machine file, offset table, or a program that it calls.
 
-        Standard input always has. What cannot be read counts as changed: its check says why.
+        most: largest program that is read [bytes].
+
+        Standard input counts as changed. So does a file that cannot be read: its check says why.
         """
         if task.path == files.STANDARD_INPUT or self._has(task.path) or self._concern_settings(task.settings):
             return True
@@ -59,7 +60,7 @@ class Changes:
         return any(real.startswith(folder) for folder in self._without_job) or self._concern_called(task, most)
 
     def _has(self, path: str) -> bool:
-        """A link has changed where it has, or what it leads to."""
+        """True for a changed path; a link has changed if it or its target has."""
         folder, name = os.path.split(path)
         beside = os.path.join(self._real.folder(folder or os.curdir), name)  # noqa: PTH118
         return self._real.of(path) in self._paths or os.path.normcase(beside) in self._paths
@@ -84,24 +85,24 @@ class Changes:
             return True
 
     def _in_folder(self, folder: str) -> set[str]:
-        """The names in a folder of subprograms that have changed or lead to what has."""
+        """The names of changed files in a folder of subprograms, and of links to changed files."""
         real = os.path.normcase(os.path.realpath(folder))
         if real not in self._of_folders:
-            found = set(self._names.get(real, ()))
+            names = set(self._names.get(real, ()))
             try:
                 links = [entry for entry in os.scandir(real) if entry.is_symlink()]
             except OSError:
                 links = []
-            found.update(entry.name for entry in links if self._real.of(entry.path) in self._paths)
-            self._of_folders[real] = found
+            names.update(entry.name for entry in links if self._real.of(entry.path) in self._paths)
+            self._of_folders[real] = names
         return self._of_folders[real]
 
 
 def since(ref: str, tasks: Sequence[Task], most: int = files.LARGEST) -> list[Task]:
     """
-    Those of the tasks that the changes since a commit concern, in their order.
+    The tasks whose report may have changed since a commit, in their order.
 
-    Raises UsageError where git cannot tell what has changed.
+    Raises UsageError if git fails.
     """
     changes = Changes(tasks, ref)
     return [task for task in tasks if changes.concern(task, most)]

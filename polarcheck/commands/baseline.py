@@ -184,7 +184,7 @@ def _pruned(known: Baseline, entries: list[Entry], checked: Checked, tasks: list
 
     settings = settings_of(tasks)
     for report in checked.files:
-        known.answered(report, evaluated(report, settings[report.path]))
+        known.without_known(report, evaluated(report, settings[report.path]))
     left = known.pruned()
     now = known.total(left)
     files = len({entry.file for entry in left})

@@ -76,7 +76,7 @@ def answers(tasks: Sequence[Task], baseline: Known | None) -> Callable[[FileRepo
 def _answering(known: Baseline, settings: Mapping[str, Settings]) -> Callable[[FileReport], FileReport]:
     def answer(report: FileReport) -> FileReport:
         own = settings[report.path]
-        return known.answered(report, evaluated(report, own), own.fail_on)
+        return known.without_known(report, evaluated(report, own), own.fail_on)
 
     return answer
 
