@@ -1,4 +1,4 @@
-"""What a check gives: findings, what was not evaluated, and the report (the JSON contract)."""
+"""The report of a check: findings, what was not evaluated, verdicts. This is the JSON contract."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from msgspec import UNSET, UnsetType
 
 
 class Severity(enum.IntEnum):
-    """How bad a finding is; a rule may give one per row, 0 where there is nothing to say."""
+    """The severity of a finding. A rule may return one per row; 0 is no finding."""
 
     NOTE = 1
     WARNING = 2
@@ -20,12 +20,12 @@ class Severity(enum.IntEnum):
 
 NOTE, WARNING, ERROR = Severity.NOTE, Severity.WARNING, Severity.ERROR
 
-#: By the names that findings and configuration have for them.
+#: Severities by their names in reports and configuration.
 SEVERITIES = {severity.name.lower(): severity for severity in Severity}
 
 
 class Edit(msgspec.Struct, frozen=True, kw_only=True):
-    """Replace the characters from start to end (lines and columns from 1, end exclusive) by text."""
+    """Replace the characters from start to end by text. Lines and columns count from 1; the end is exclusive."""
 
     line: int
     column: int
@@ -35,7 +35,13 @@ class Edit(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Fix(msgspec.Struct, frozen=True, kw_only=True):
-    """What to write instead; safe: nothing moves otherwise than meant."""
+    """
+    What to write instead.
+
+    title: the fix in a few words.
+    safe: the machine moves as the programmer meant.
+    edits: replacements in the text.
+    """
 
     title: str
     safe: bool
@@ -44,10 +50,21 @@ class Fix(msgspec.Struct, frozen=True, kw_only=True):
 
 class Finding(msgspec.Struct, frozen=True, kw_only=True):
     """
-    One reported fault. Lines and columns count from 1, columns in characters; end_column is behind the last one.
+    One reported fault.
 
-    follows: the findings that would not be there without this one; they count nowhere. channel: as `$2`, where the file
-    has several, and this is of one of them.
+    rule, severity, message: the rule that reports it, error, warning or note, and the text for the user.
+    line, column, end_line, end_column: the words at fault; from 1, columns in characters, the end exclusive.
+    block: the text of the block.
+    program: number or name of its program, as O0001.
+    section_line: line of the G12.1 that begins its polar section.
+    alarm: the alarm that this control shows; null if none is known.
+    values: the numbers of the message by fixed names, in fixed units.
+    count: how many executed blocks or words it stands for.
+    source: page of the manual.
+    fingerprint: recognises the finding after other blocks have changed.
+    fix: what to write instead; null if unknown.
+    follows: findings that this one causes; they are not counted.
+    channel: of a file with several channels, as `$2`.
     """
 
     rule: str
@@ -71,24 +88,24 @@ class Finding(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def told(self) -> str:
-        """The message; before it the channel, in a file with several."""
+        """The message, behind the channel in a file with several."""
         return f"{self.channel}: {self.message}" if self.channel else self.message
 
 
 class Undecided(Finding, frozen=True, kw_only=True):
-    """A finding of which nobody can say that something is wrong: it fails no file, and leaves it unverified."""
+    """A finding that may be intended: it makes the file unverified, not failed."""
 
 
-#: What can silence a finding.
+#: What can suppress a finding.
 SILENCED_BY = ALLOW, BASELINE = "allow", "baseline"
 
 
 class Silenced(Finding, frozen=True, kw_only=True):
     """
-    A finding that somebody has answered for: it counts nowhere but as silenced.
+    A suppressed finding, counted as such only.
 
-    by: allow, a comment of the program, or baseline, a file of findings that are known. reason: the words of whoever
-    silenced it, empty where none were given.
+    by: allow (a comment of the program) or baseline (a file of known findings).
+    reason: why it was suppressed; empty if no reason was given.
     """
 
     by: str
@@ -97,9 +114,13 @@ class Silenced(Finding, frozen=True, kw_only=True):
 
 class NotEvaluated(msgspec.Struct, frozen=True, kw_only=True):
     """
-    What was not looked at, why, in how many blocks.
+    A rule that could not be evaluated.
 
-    matters: something could be wrong there that would be found otherwise, so that the file is unverified.
+    rule: its name.
+    reason: why, and what to give.
+    blocks: in how many blocks.
+    matters: a fault could be missed, so the file is unverified.
+    channel: of a file with several channels, as `$2`.
     """
 
     rule: str
@@ -111,14 +132,18 @@ class NotEvaluated(msgspec.Struct, frozen=True, kw_only=True):
 
 class PolarSection(msgspec.Struct, frozen=True, kw_only=True):
     """
-    What the verdict rests on in one polar section.
+    What the verdict rests on in one polar section; null is unknown or absent.
 
-    Lines: of its G12.1 and of its end. units: of the program there. offset: the number whose radius counts, or tool
-    and edge (MILL_8/1); null for none. radius [mm] and where it comes from: command line, job, offset table,
-    program, comment, none. nearest: the smallest distance of the tool center to the center of C in a cutting move
-    [mm]. c_feed: highest rate of C [deg/min], its line and the limit of the machine. ramp_used: how much of a
-    start-up or offset cancel its radius needs, the highest; 1 at the limit. time: of its moves at the F that
-    runs, Z alone and dwells included [s]. null is not known, or not there.
+    line, end_line: of its G12.1 and of its end.
+    units: inch or mm, as the program has them there.
+    offset: the tool offset in force, a number or tool and edge (MILL_8/1).
+    radius: of the cutter [mm].
+    radius_source: command line, job, offset table, program, comment or none.
+    nearest: smallest distance of the tool center to the center of C in a cutting move [mm].
+    c_feed, c_feed_line, c_feed_limit: highest C rate, its line, the limit of the machine [deg/min].
+    ramp_used: share of a start-up or offset cancel that its radius needs, the largest of the section; 1 at the limit.
+    time: of its moves at the F in force, Z moves and dwells included [s].
+    channel: of a file with several channels, as `$2`.
     """
 
     line: int
@@ -137,7 +162,7 @@ class PolarSection(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class OddSide(msgspec.Struct, frozen=True, kw_only=True):
-    """A side of a part that differs from the others: the line of its block and its size [mm]."""
+    """A side of a part that differs from the others: line of its block, size [mm]."""
 
     line: int
     size: float
@@ -145,9 +170,14 @@ class OddSide(msgspec.Struct, frozen=True, kw_only=True):
 
 class LeftStanding(msgspec.Struct, frozen=True, kw_only=True):
     """
-    What the tool leaves beside the finished part. kind: corner, rib or strip. text: the same in words. line: of the
-    block with which the tool leaves it, null for corners. size: R of corners, else how high or thick it is [mm].
-    count: of corners. place: [x, c], null for corners.
+    Material that the tool leaves beside the finished part.
+
+    kind: corner, rib or strip.
+    text: the same in words.
+    line: of the block that leaves it; null for corners.
+    size: R of corners, else height or thickness [mm].
+    count: of corners.
+    place: [x, c] [mm, radius]; null for corners.
     """
 
     kind: str
@@ -160,12 +190,20 @@ class LeftStanding(msgspec.Struct, frozen=True, kw_only=True):
 
 class MadeShape(msgspec.Struct, frozen=True, kw_only=True):
     """
-    What a polar section makes at one or more depths.
+    A shape that a polar section makes, at one or more depths.
 
-    Lines: of its G12.1 and of its end. depths: Z of each pass [mm], in the order of the program; z: the deepest, null
-    where it is not known. shape: hexagon, circle, flats, slot, contour, ...; inside: a pocket. values: its sizes [mm,
-    mm2, deg], see docs/part.md. odd: sides that differ from the others. text: all of it in words. left_standing: what
-    the tool does not take off. needs: why nothing, or not all, is known, and what to give; null where all is.
+    line, end_line: of the G12.1 of the section and of its end.
+    z: of the deepest pass [mm]; null if unknown.
+    depths: Z of each pass [mm], in the order of the program.
+    shape: hexagon, circle, flats, slot, contour, ...; null if unknown.
+    inside: it is a pocket.
+    is_regular: all its sides are equal.
+    values: its sizes [mm, mm2, deg], see docs/part.md.
+    odd: sides that differ from the others.
+    text: the shape in words.
+    left_standing: material that the tool leaves.
+    needs: what is unknown, and what to give; null if nothing is.
+    channel: of a file with several channels, as `$2`.
     """
 
     line: int
@@ -185,11 +223,19 @@ class MadeShape(msgspec.Struct, frozen=True, kw_only=True):
 
 class PartComparison(msgspec.Struct, frozen=True, kw_only=True):
     """
-    One contour beside a drawing or a shape; lengths in mm, points [x, c] with x as a radius.
+    A contour compared with a drawing or a shape; lengths in mm.
 
-    title: the name of the drawing, or the shape. section_line: of the code that begins the section. z: of the contour,
-    None if unknown. line: of the block where it differs most, at: where. too_much, cut_away: by how much, at most.
-    turned: the angle of a shape that may be turned in any way [deg]. text: all of it in words, in the program's units.
+    title: name of the drawing, or the shape.
+    section_line: of the code that begins the section.
+    z: of the contour; null if unknown.
+    agrees: no difference is larger than the tolerance.
+    largest: largest difference.
+    tolerance: of the comparison.
+    too_much, cut_away: most material that is left on the part, and that is missing.
+    at: [x, c] of the largest difference, x as a radius.
+    line: of the block there.
+    turned: angle of a shape that may be turned in any way [deg].
+    text: the comparison in words, in the units of the program.
     """
 
     title: str
@@ -208,9 +254,19 @@ class PartComparison(msgspec.Struct, frozen=True, kw_only=True):
 
 class FileReport(msgspec.Struct, frozen=True, kw_only=True):
     """
-    All about one file. machine: its name, as it was asked for. Verdict: pass, fail or unverified. polar_sections: what
-    it rests on. looked_at: at what of the file was looked; outside polar sections text, flow and position only. part:
-    what the program makes, where that was asked for; compared: its contours beside what they should be, likewise.
+    The report of one file.
+
+    machine: its name, as given by the user.
+    programs: numbers or names of its programs.
+    blocks, sections: executed blocks and polar sections.
+    verdict: pass, fail or unverified.
+    polar_sections: what the verdict rests on.
+    findings: the reported faults, sorted by line.
+    not_evaluated: rules without a result.
+    looked_at: aspects that were checked; outside polar sections these are text, flow and position.
+    silenced: suppressed findings.
+    part: what the program makes, if requested.
+    compared: its contours compared with those asked for, if requested.
     """
 
     path: str
@@ -229,7 +285,7 @@ class FileReport(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Producer(msgspec.Struct, frozen=True):
-    """Who wrote the report."""
+    """Name and version of this program."""
 
     name: str
     version: str
@@ -249,7 +305,13 @@ class Summary(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Report(msgspec.Struct, frozen=True, kw_only=True):
-    """The whole report; the JSON contract, whose number is `schema`. machine: of all files; null where they differ."""
+    """
+    The report over all files.
+
+    schema: number of the JSON contract.
+    tool: what wrote the report.
+    machine: of all files; null if they differ.
+    """
 
     schema: int
     tool: Producer

@@ -1,4 +1,4 @@
-"""What the check of a file needs to know besides the file."""
+"""The settings with which a file is checked."""
 
 from __future__ import annotations
 
@@ -13,19 +13,24 @@ from polarcheck.finding import FileReport
 from polarcheck.machines.job import Job
 from polarcheck.machines.machine import Machine
 
-#: What adds to the report of a file something that is asked for, from the tables of its runs (check.read).
+#: A function that adds a requested section to the report of a file, from the tables of its runs (check.read).
 Extra = Callable[[FileReport, Sequence[tuple[str, Tables]]], FileReport]
 
 
 class Settings(msgspec.Struct, frozen=True):
     """
-    What applies to a program.
+    The settings that apply to a program.
 
-    name: of the machine, as it was asked for. rules: those to run. severities: error, warning, note or off by rule,
-    where they differ from the machine's. read: the files that all this was read from. fail_on: the least severity that
-    fails, or never. strict: whether a file that is unverified fails, too. encoding: of the program; None where it is
-    found out. inline: whether comments of the program that allow something are heeded. extras: functions of modules,
-    so that other processes know them, in the order in which they are called.
+    name: of the machine, as given by the user.
+    machine, job: the merged profile and the job.
+    rules: the selected rules.
+    severities: error, warning, note or off by rule, where they differ from the machine's.
+    read: the files from which the settings were read.
+    fail_on: the lowest severity that fails a file, or never.
+    strict: an unverified file fails, too.
+    encoding: of the program; None to detect it.
+    inline: allow comments of the program are respected.
+    extras: module-level functions, since other processes import them by name; called in this order.
     """
 
     name: str
