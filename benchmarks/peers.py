@@ -28,7 +28,7 @@ from xy_twin import tool_table, twin
 
 CHECK = (sys.executable, "-m", "polarcheck", "check", "--no-config", "--fail-on", "never", "--jobs", "1", "-q")
 CUTTERS = range(4, 13)
-SIZES = (1_000, 10_000, 50_000, 200_000, 1_000_000, 5_000_000)
+SIZES = (1_000, 10_000, 50_000, 200_000, 1_000_000, 2_000_000)
 #: Sizes from here on take seconds, which do not need so many rounds.
 LARGE = 1_000_000
 

@@ -71,10 +71,6 @@ class NoAnswerError(TooHardError):
     """Areas for which the geometry library finds no answer, since points of them all but meet."""
 
 
-class IsOneError(PolarcheckError):
-    """A large program that cannot be checked in pieces: all of it has to be known at once."""
-
-
 class RuleError(PolarcheckError):
     """A rule file that is not a rule; found when the rules are loaded."""
 

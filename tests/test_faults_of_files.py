@@ -78,7 +78,7 @@ def test_a_larger_file_is_named_and_the_others_are_checked() -> None:
     make("a.nc", "c.nc")
     make("b.nc", text=RAPID + "M30\n")
     size = str(len(RAPID))
-    told = f"polarcheck: b.nc: larger than {size} bytes; --max-size takes larger ones"
+    told = f"polarcheck: b.nc: larger than {size} bytes; --max-size SIZE raises the limit"
     assert check("a.nc", "b.nc", "c.nc", "--max-size", size) == (2, ["a.nc", "c.nc"], [told])
     assert check(".", POLARCHECK_MAX_SIZE=size) == (2, ["a.nc", "c.nc"], [told])
 
@@ -95,7 +95,7 @@ def test_a_trace_is_bounded_likewise() -> None:
 @pytest.mark.parametrize(
     ("asked", "named"),
     [
-        ((), "512 MB"),
+        ((), "64 MB"),
         (("--max-size", "2G"), "2 GB"),
         (("--max-size", "512MB"), "512 MB"),
         (("--max-size", "100k"), "100 kB"),
@@ -107,7 +107,7 @@ def test_a_trace_is_bounded_likewise() -> None:
 def test_sizes_are_written_as_one_writes_them(asked: tuple[str, ...], named: str) -> None:
     Path("a.nc").touch()
     os.truncate("a.nc", 3_000_000_000)
-    assert check("a.nc", *asked)[2] == [f"polarcheck: a.nc: larger than {named}; --max-size takes larger ones"]
+    assert check("a.nc", *asked)[2] == [f"polarcheck: a.nc: larger than {named}; --max-size SIZE raises the limit"]
 
 
 @pytest.mark.parametrize("size", ["0", "", "-1", "x", "5X", "1e3", "0.1", "nan", "1,5M", "9" * 5000])
@@ -132,7 +132,7 @@ def test_what_never_ends_is_read_up_to_the_limit(redirected: str, names: list[st
     pipes = "mkfifo p q; cat /dev/zero > p & cat /dev/zero > q & " * (len(names) > 1)
     ended = in_shell(pipes + redirected.format(check=f"{CHECK} --max-size 20MB"))
     assert (ended.returncode, checked(ended.stdout)) == (2, ["a.nc"])
-    told = [f"polarcheck: {name}: larger than 20 MB; --max-size takes larger ones" for name in names]
+    told = [f"polarcheck: {name}: larger than 20 MB; --max-size SIZE raises the limit" for name in names]
     assert ended.stderr.decode().splitlines() == told
 
 

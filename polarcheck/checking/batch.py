@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import gc
 import os
 from collections import Counter
@@ -15,16 +14,14 @@ from polarcheck.checking import check
 from polarcheck.checking.kept import Kept
 from polarcheck.checking.settings import Settings
 from polarcheck.checking.tables import Tables
-from polarcheck.errors import CrewError, IsOneError, SourceError, TooHardError
 from polarcheck.finding import FileReport, Producer, Report, Summary
+from polarcheck.errors import CrewError, SourceError, TooHardError
 from polarcheck.reading import files
 from polarcheck.reading.source import Source
 from polarcheck.reading.words import Text
 from polarcheck.time_limit import seconds_for, time_limit
 
 SCHEMA = 1
-#: A larger file [bytes] is checked in pieces, so that memory does not grow with it.
-LARGE = 1 << 20
 
 Tell = Callable[[str], None]
 
@@ -218,26 +215,12 @@ def _check(task: Task, data: bytes) -> tuple[FileReport, Source, set[str]]:
     """The report, the text, and the keys of the offsets that are called, where the job has any."""
     settings = task.settings
     with time_limit(seconds_for(len(data), settings.job.run.max_seconds)):
-        if len(data) > LARGE and not settings.extras:
-            with contextlib.suppress(IsOneError):
-                return _in_pieces(task, data)
         found = check.read(data, settings.machine, settings.job, task.title, settings.encoding)
         text: Text = found[0][1]["text"]
         report = check.check_runs(found, settings.rules, settings.severities, settings.inline)
         for extra in settings.extras:
             report = extra(report, found)
         return report, text.source, _offsets(found) if settings.job.tools else set()
-
-
-def _in_pieces(task: Task, data: bytes) -> tuple[FileReport, Source, set[str]]:
-    """The same of a large program; raises IsOneError where it cannot be checked in pieces."""
-    from polarcheck.checking.piecewise import check_in_pieces  # most programs are small
-    from polarcheck.reading import source
-
-    settings = task.settings
-    text = source.read(data, task.title, settings.encoding)
-    report, called = check_in_pieces(text, settings.machine, settings.job, settings.rules, settings.severities)
-    return report, text, called if settings.job.tools else set()
 
 
 def _offsets(found: Sequence[tuple[str, Tables]]) -> set[str]:

@@ -151,13 +151,12 @@ def engine_of(
     severities: Mapping[str, str] | None = None,
     known: Mapping[str, Hits] | None = None,
     inline: bool = True,
-    own: range | None = None,
 ) -> Engine:
     """
     The rules that are not off, over the tables of one run.
 
     known: what is known already of some of them. inline: whether allow comments are heeded; without any there is
-    nothing to ask the rules about them. own: the blocks that are judged.
+    nothing to ask the rules about them.
     """
     machine: Machine = tables["machine"]
     levels = {**machine.severities, **(severities or {})}
@@ -173,7 +172,7 @@ def engine_of(
         allows = Allows(tables["text"], {rule.name: rule.group for rule in load_all().values()})
         tables.give("allows", allows)
         return Engine(tables, levels, asked, known, allows)
-    return Engine(tables, levels, [rule for rule in asked if "allows" not in rule.parameters], known, own=own)
+    return Engine(tables, levels, [rule for rule in asked if "allows" not in rule.parameters], known)
 
 
 def report_of(engine: Engine) -> FileReport:

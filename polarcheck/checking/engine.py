@@ -6,16 +6,16 @@ import bisect
 import contextlib
 from collections.abc import Iterable, Mapping
 from functools import cached_property
-from typing import TYPE_CHECKING, TypeVar
+from itertools import islice
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import msgspec
 import numpy as np
 
-from polarcheck.arrays import Mask, Rows
+from polarcheck.arrays import Mask, Rows, is_one, repeated
 from polarcheck.checking import places
 from polarcheck.checking.places import PLACES, Place
 from polarcheck.checking.rule import Hits, Rule
-from polarcheck.checking.settling import Settling
 from polarcheck.checking.tables import OF_CAUSE, Tables
 from polarcheck.errors import TooHardError
 from polarcheck.execution.programs import name_at_head
@@ -34,8 +34,8 @@ if TYPE_CHECKING:
 LISTED = 1000
 #: Of the name of a program [characters].
 _NAME_LENGTH = 40
-#: From so many rows on the memory of the columns counts.
-_LARGE = 10_000
+#: Programs with more rows share constant columns; below, that saves less memory than it takes time.
+_MANY_ROWS = 10_000
 Found = TypeVar("Found", bound=Finding)
 
 
@@ -58,11 +58,8 @@ class Engine:
     The hits of one run, each rule run once.
 
     severities: by rule, where it is not the rule's own. rules: those that are asked; none that is off. known: the hits
-    of some of them. allows: the allow comments that are heeded. own: the blocks that are judged, of a piece of a large
-    program (pieces); those around them only tell what is in force there. used: the names of allow comments that have
+    of some of them. allows: the allow comments that are heeded. used: the names of allow comments that have
     silenced something, each with the position of its comment. heads: the block and the name of each program.
-    continued: the rules that have found something in what began before their own blocks. shown: by rule the lines of
-    the blocks outside of polar sections that it has hit, those around them, too.
     """
 
     def __init__(
@@ -72,7 +69,6 @@ class Engine:
         rules: Iterable[Rule],
         known: Mapping[str, Hits] | None = None,
         allows: Allows | None = None,
-        own: range | None = None,
     ) -> None:
         self.tables = tables
         self.trace: Trace = tables["trace"]
@@ -80,13 +76,11 @@ class Engine:
         self.rules = {rule.name: rule for rule in rules}
         self.unlisted: list[NotEvaluated] = []
         self.allows = allows
-        self.own = own
-        self.continued: set[str] = set()
-        self.shown: dict[str, Rows] = {}
         self.used: set[Used] = set()
         self._hits: dict[str, Hits] = dict(known or {})
         self._nothing: dict[int, Hits] = {}
-        self._settling = Settling(tables)
+        self._columns_seen: dict[str, int] = {}
+        self._constant_masks: dict[tuple[int, bool], Mask] = {}
         self._found: dict[str, _Listed | None] = {}
         self._asking: set[str] = set()
         self.heads = program_heads(self.trace)
@@ -97,8 +91,8 @@ class Engine:
             keep_going()
             try:
                 self._hits[rule.name] = self._kept(rule.hits(self.tables))
-                if len(self.trace) > _LARGE:
-                    self._settling.settle()
+                if len(self.trace) > _MANY_ROWS:
+                    self._share_constant_columns()
             except TooHardError as error:
                 self._give_up(rule, error)
         return self._hits[rule.name]
@@ -111,6 +105,29 @@ class Engine:
         if count not in self._nothing:
             self._nothing[count] = Hits(np.zeros(count, np.bool_))
         return self._nothing[count]
+
+    def _share_constant_columns(self) -> None:
+        """
+        Free the columns computed since the last call that hold a single value: a fifth of the memory of a large check.
+
+        Most masks of a program are all False or all True; those of one length and value become one array.
+        """
+        for name, table in self.tables.computed():
+            columns: dict[str, Any] = getattr(table, "__dict__", {})
+            first = self._columns_seen.get(name, 0)
+            self._columns_seen[name] = len(columns)
+            for key in list(islice(columns, first, None)):
+                columns[key] = self._shared(columns[key])
+
+    def _shared(self, column: Any) -> Any:
+        """A column without memory of its own if it holds a single value, else the column itself."""
+        if not isinstance(column, np.ndarray) or column.ndim != 1 or not column.size or column.dtype.hasobject:
+            return column
+        if not is_one(column):
+            return column
+        if column.dtype == np.bool_:
+            return self._constant_masks.setdefault((len(column), bool(column[0])), column)
+        return repeated(column[0], len(column))
 
     def _give_up(self, rule: Rule, error: TooHardError) -> None:
         self._hits[rule.name] = Hits(np.zeros(0, np.bool_))
@@ -167,7 +184,7 @@ class Engine:
         hits = self.hits(rule)
         if hits is self._nothing.get(len(hits.mask)):
             return None
-        index = self._own(rule, np.flatnonzero(hits.mask))
+        index = np.flatnonzero(hits.mask)
         if not len(index):
             return None
         self._asking.add(rule.name)
@@ -200,34 +217,6 @@ class Engine:
                 if len(own) > LISTED:
                     self.unlisted.append(_unlisted(rule, len(own)))
         return _Listed(index, finding, silent, findings, causes)
-
-    def _own(self, rule: Rule, index: Rows) -> Rows:
-        """Those of the elements of a rule that are judged here."""
-        if self.own is None or not len(index):
-            return index
-        blocks = places.blocks(rule.over, self.tables)[index]
-        is_own = (blocks >= self.own.start) & (blocks < self.own.stop)
-        self.shown[rule.name] = np.unique(self.trace.text.blocks.line[blocks[self._is_outside[blocks]]])
-        if rule.over not in ("rows", "sections"):
-            if np.any(blocks < self.own.start):
-                self.continued.add(rule.name)  # the first of them stands for all
-        elif rule.once and is_own.any() and self.own.start:
-            span = places.span_of(rule.once, rule.over, self.tables)[index[is_own]]
-            in_force = places.span_of(rule.once, "rows", self.tables)[self._own_row - 1]
-            if np.any((span == in_force) & (span >= 0)):
-                self.continued.add(rule.name)
-        return index[is_own]
-
-    @cached_property
-    def _is_outside(self) -> Mask:
-        """Per block: it is no part of a polar section, of which all is found where it stands."""
-        outside = np.ones(len(self.trace.text.blocks), bool)
-        outside[self.trace.run.block[(self.trace.whole_section >= 0) | self.trace.enters]] = False
-        return outside
-
-    @cached_property
-    def _own_row(self) -> int:
-        return int(np.searchsorted(self.trace.run.block, 0 if self.own is None else self.own.start))
 
     def _silenced(self, rule: Rule, index: Rows) -> Mask:
         """Which of these elements an allow comment silences, where they stand."""
@@ -269,7 +258,7 @@ class Engine:
                 if name not in self.rules:
                     continue
                 other = self.rules[name]
-                hit = self._told(other, self._own(other, np.flatnonzero(self.hits(other).mask)))
+                hit = self._told(other, np.flatnonzero(self.hits(other).mask))
                 if not len(hit):
                     continue
                 try:

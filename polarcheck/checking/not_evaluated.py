@@ -36,8 +36,8 @@ from polarcheck.machines.machine import Machine, OwnMachine
 from polarcheck.table.filling import before
 from polarcheck.table.trace import Trace
 
-#: What else is said of a rule: of the rows that are asked about.
-_Said: TypeAlias = Callable[[Tables, Rule, "range | None"], Iterator["Missing"]]
+#: Extra reasons that a rule could not be evaluated.
+_Said: TypeAlias = Callable[[Tables, Rule], Iterator["Missing"]]
 #: Behind the columns that a rule needs.
 SAID = 1000
 
@@ -171,13 +171,13 @@ def offsets_not_known(trace: Trace) -> tuple[str, int]:
     return f"{what}, those in force are taken as given: {OF_VARIABLES}", len(rows)
 
 
-def unevaluated(tables: Tables, rule: Rule, own: range | None = None) -> Iterator[Missing]:
-    """The rows where a rule would have looked but could not; own: those that are asked about, where not all are."""
+def unevaluated(tables: Tables, rule: Rule) -> Iterator[Missing]:
+    """The rows where a rule would have looked but could not."""
     try:
-        yield from _not_known(tables, rule, own)
+        yield from _not_known(tables, rule)
         said = _SAID_OF.get(rule.name)
         if said is not None:
-            yield from said(tables, rule, own)
+            yield from said(tables, rule)
     except TooHardError as error:
         # What takes long is the geometry of the polar sections.
         trace: Trace = tables["trace"]
@@ -185,7 +185,7 @@ def unevaluated(tables: Tables, rule: Rule, own: range | None = None) -> Iterato
         yield Missing(rule.name, SAID, str(error), str(error), blocks)
 
 
-def _not_known(tables: Tables, rule: Rule, own: range | None) -> Iterator[Missing]:
+def _not_known(tables: Tables, rule: Rule) -> Iterator[Missing]:
     """The rows in which a column is not known that the rule needs."""
     trace: Trace = tables["trace"]
     for kind, name in enumerate(rule.needs):
@@ -193,19 +193,13 @@ def _not_known(tables: Tables, rule: Rule, own: range | None) -> Iterator[Missin
         if not where.any():
             continue
         # Of sections that are not followed one entry speaks for all.
-        rows = _within(np.isnan(tables.column(name)) & where & trace.is_followed & ~trace.sides_are_open, own)
+        rows = np.flatnonzero(np.isnan(tables.column(name)) & where & trace.is_followed & ~trace.sides_are_open)
         if name in OF_MOVES:
             rows = rows[~(tables["feeds"].missing | tables["feeds"].lost)[rows]]  # a finding says so
         cause = cause_of(trace, name, rows)
         first, counts = _groups(cause)
         for row, of, count in sorted(zip(rows[first].tolist(), cause[first].tolist(), counts.tolist(), strict=True)):
             yield Missing(rule.name, kind, of, why(name, tables, row), count, matters=name not in _WITHOUT_WEIGHT)
-
-
-def _within(mask: Mask, own: range | None) -> Rows:
-    """The rows of a mask that are asked about."""
-    rows = np.flatnonzero(mask)
-    return rows if own is None else rows[(rows >= own.start) & (rows < own.stop)]
 
 
 def _groups(values: Rows) -> tuple[Rows, Rows]:
@@ -215,14 +209,14 @@ def _groups(values: Rows) -> tuple[Rows, Rows]:
     return order[begins], np.diff(np.append(begins, len(order)))
 
 
-def _c_axis_without_limit(tables: Tables, rule: Rule, own: range | None) -> Iterator[Missing]:
+def _c_axis_without_limit(tables: Tables, rule: Rule) -> Iterator[Missing]:
     """
     The highest rate of C, for the setter to compare, where the profile has nothing to compare it with; not where every
     C axis manages it, nor where none does, which is a finding.
     """
     trace: Trace = tables["trace"]
     c_feed: Floats = tables["tool_center"].c_feed
-    rows = _within(tables["center"].cuts_off_center & np.isfinite(c_feed), own)
+    rows = np.flatnonzero(tables["center"].cuts_off_center & np.isfinite(c_feed))
     if not np.isnan(trace.machine.limits.c_feed) or not len(rows):
         return
     at = int(rows[np.argmax(c_feed[rows])])
@@ -240,11 +234,11 @@ def _codes_not_named(key: str, what: str) -> _Said:
     to add it. Of our own machines nobody expects to know the codes of each builder.
     """
 
-    def found(tables: Tables, rule: Rule, own: range | None) -> Iterator[Missing]:
+    def found(tables: Tables, rule: Rule) -> Iterator[Missing]:
         trace: Trace = tables["trace"]
         if not isinstance(trace.machine, OwnMachine) or getattr(trace.machine.m_codes, key):
             return
-        rows = _within(trace.enters, own)
+        rows = np.flatnonzero(trace.enters)
         codes = [unlisted_codes(trace, tables["spindles"], int(row)) for row in rows]
         if any(codes):
             file, first = trace.machine.file, next(filter(None, codes))
@@ -256,10 +250,10 @@ def _codes_not_named(key: str, what: str) -> _Said:
     return found
 
 
-def _ramps_of_center(tables: Tables, rule: Rule, own: range | None) -> Iterator[Missing]:
+def _ramps_of_center(tables: Tables, rule: Rule) -> Iterator[Missing]:
     """The ramps of sections that are taken for paths of the tool center since they are all too short for a comment."""
     trace: Trace = tables["trace"]
-    ramps = _within((trace.starts_up | trace.cancels) & trace.is_path_of_center, own)
+    ramps = np.flatnonzero((trace.starts_up | trace.cancels) & trace.is_path_of_center)
     first, counts = _groups(trace.offset_number[ramps])
     for row, count in sorted(zip(ramps[first].tolist(), counts.tolist(), strict=True)):
         reason = (
@@ -269,7 +263,7 @@ def _ramps_of_center(tables: Tables, rule: Rule, own: range | None) -> Iterator[
         yield Missing(rule.name, SAID, int(trace.offset_number[row]), reason, count)
 
 
-def _contours_given_up(tables: Tables, rule: Rule, own: range | None) -> Iterator[Missing]:
+def _contours_given_up(tables: Tables, rule: Rule) -> Iterator[Missing]:
     """Loops of which nobody can say, or not in bounded time, what they leave standing."""
     overcuts = tables["overcuts"]
     crosses = f"crosses itself more than {CROSSINGS} times a block: no part can be told from it"
@@ -278,25 +272,22 @@ def _contours_given_up(tables: Tables, rule: Rule, own: range | None) -> Iterato
     yield from _loops_given_up(
         tables,
         rule,
-        own,
         overcuts.tangled,
         f"{crosses}; program each contour by itself, between its own G41 or G42 and G40",
     )
+    yield from _loops_given_up(tables, rule, overcuts.too_far, f"{far}: no part can be told from it; mend its words")
     yield from _loops_given_up(
-        tables, rule, own, overcuts.too_far, f"{far}: no part can be told from it; mend its words"
-    )
-    yield from _loops_given_up(
-        tables, rule, own, overcuts.too_long, f"{long}: they are too many to look at; are their R, I and J meant?"
+        tables, rule, overcuts.too_long, f"{long}: they are too many to look at; are their R, I and J meant?"
     )
 
 
-def _parts_not_compared(tables: Tables, rule: Rule, own: range | None) -> Iterator[Missing]:
+def _parts_not_compared(tables: Tables, rule: Rule) -> Iterator[Missing]:
     """What the job asks for and no contour was compared with; contours of which no part can be told."""
     deviations = tables["deviations"]
     if not deviations.parts:
         return
     crosses = f"crosses itself or others more than {CROSSINGS} times a block: no part can be told from it"
-    yield from _loops_given_up(tables, rule, own, deviations.asked & tables["overcuts"].tangled, crosses)
+    yield from _loops_given_up(tables, rule, deviations.asked & tables["overcuts"].tangled, crosses)
     for one in deviations.comparisons:
         if one.is_partial and one.agrees:
             of_block = f"the contour of line {int(tables['trace'].line[one.row])} does not come back to where it begins"
@@ -309,28 +300,26 @@ def _parts_not_compared(tables: Tables, rule: Rule, own: range | None) -> Iterat
         yield Missing(rule.name, SAID, reason, reason, int(np.count_nonzero(rows)))
 
 
-def _contours_beside(tables: Tables, rule: Rule, own: range | None) -> Iterator[Missing]:
+def _contours_beside(tables: Tables, rule: Rule) -> Iterator[Missing]:
     """The same for loops that only together are too hard."""
     asked = _TOGETHER[rule.name](tables)
     reason = f"crosses itself or others beside it more than {CROSSINGS} times a block: no part can be told from them"
     yield from _loops_given_up(
-        tables, rule, own, asked & ~tables["overcuts"].tangled, f"{reason}; program fewer contours in a section"
+        tables, rule, asked & ~tables["overcuts"].tangled, f"{reason}; program fewer contours in a section"
     )
 
 
-def _strips_beside(tables: Tables, rule: Rule, own: range | None) -> Iterator[Missing]:
+def _strips_beside(tables: Tables, rule: Rule) -> Iterator[Missing]:
     """Loops beside paths that are too long to look for what stays there, which is hardly ever amiss."""
-    yield from _contours_beside(tables, rule, own)
+    yield from _contours_beside(tables, rule)
     reason = "lies beside so many others, or such long paths, that nobody has looked for what stays between them"
-    yield from _loops_given_up(tables, rule, own, tables["coverage"].too_long, reason, matters=False)
+    yield from _loops_given_up(tables, rule, tables["coverage"].too_long, reason, matters=False)
 
 
-def _loops_given_up(
-    tables: Tables, rule: Rule, own: range | None, rows: Mask, reason: str, matters: bool = True
-) -> Iterator[Missing]:
+def _loops_given_up(tables: Tables, rule: Rule, rows: Mask, reason: str, matters: bool = True) -> Iterator[Missing]:
     """One for each loop of these rows, one for all of them from some number on."""
     trace: Trace = tables["trace"]
-    at = _within(rows & tables["ramps"].compensated, own)
+    at = np.flatnonzero(rows & tables["ramps"].compensated)
     if not len(at):
         return
     first, counts = _groups(tables["ramps"].loop[at])

@@ -118,13 +118,9 @@ class Tables(Mapping[str, Any]):
         """Add a table that was made elsewhere."""
         self._made[name] = table
 
-    def made(self) -> Iterator[tuple[str, Any]]:
-        """The tables that have been asked for so far."""
+    def computed(self) -> Iterator[tuple[str, Any]]:
+        """The tables computed so far, by name."""
         return iter(self._made.items())
-
-    def forget(self) -> None:
-        """Let go of all tables: some of them know these, so that nothing else would free their columns at once."""
-        self._made.clear()
 
     def _make(self, name: str) -> Any:
         if name not in MAKERS:

@@ -76,8 +76,8 @@ def _in_bytes(ctx: click.Context, parameter: click.Parameter, value: str) -> int
 
 
 max_size = option(
-    "--max-size", callback=_in_bytes, default="512MB", show_default=True, metavar="SIZE",
-    help="Of a program: a larger one is not read.",
+    "--max-size", callback=_in_bytes, default="64MB", show_default=True, metavar="SIZE",
+    help="Of a program: a larger one is not read; it would take some 40 bytes of memory for each byte.",
 )  # fmt: skip
 
 

@@ -19,7 +19,7 @@ STANDARD_INPUT = "-"
 #: Opened anew, a pipe or terminal there would be judged as one that lies in a folder.
 _STANDARD_INPUTS = (STANDARD_INPUT, "/dev/stdin", "/dev/fd/0", "/proc/self/fd/0")
 #: A program of more bytes is not read unless that is asked for.
-LARGEST = 512_000_000
+LARGEST = 64_000_000
 _NO_NAMES = ("", os.curdir, os.pardir)
 #: Linux follows as many links one behind the other.
 _MOST_LINKS = 40
@@ -156,7 +156,7 @@ def read(path: str, most: int = LARGEST) -> bytes:
     A file that is replaced meanwhile is the old one or the new one, never some of both. Raises SourceError where it
     cannot be read, is larger, or is a device or a folder.
     """
-    remark = "--max-size takes larger ones"
+    remark = "--max-size SIZE raises the limit"
     try:
         if path not in _STANDARD_INPUTS:
             return bounded.read(path, most, remark, pipes=True)
