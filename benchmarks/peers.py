@@ -24,6 +24,7 @@ from typing import NamedTuple
 
 from measuring import ROOT, SLOW, SLOW_ROUNDS, Taken, apart, exponent, measured, output, run, table
 from one_fault import FAULTS, GOOD, TOOL
+from stages import stages
 from xy_twin import tool_table, twin
 
 CHECK = (sys.executable, "-m", "polarcheck", "check", "--no-config", "--fail-on", "never", "--jobs", "1", "-q")
@@ -218,16 +219,11 @@ def _messages(said: str, path: Path) -> set[str]:
     return {line for line in lines if line and line not in blocks and not re.match(r"N\.\.|errors?, |error: \d", line)}
 
 
-def stages(asked: argparse.Namespace, folder: Path) -> str:
+def both_stages(asked: argparse.Namespace, folder: Path) -> str:
     """Where the time goes, without and with a cutter."""
-    path = str(generated(folder, asked.blocks))
-    check = [word for word in CHECK if word not in ("--jobs", "1")]
-    tables = []
-    for what, tools in (("without a cutter", []), ("with one", cutters(2))):
-        _, said = output([*check, "--timings", *tools, path])
-        lines = [line for line in said.splitlines() if not line.startswith("polarcheck: ")]
-        tables.append(f"{what}:\n\n" + "".join(f"    {line}\n" for line in lines))
-    return "\n".join(tables)
+    path = generated(folder, asked.blocks)
+    kinds = {"without a cutter": [], "with one": cutters(2)}
+    return "\n".join(f"{what}:\n\n{stages(path, *CHECK[4:], *tools)}" for what, tools in kinds.items())
 
 
 def page(asked: argparse.Namespace, parts: dict[str, str]) -> str:
@@ -248,7 +244,9 @@ Of one that needs less memory than what starts it, the peak is that of what star
 {len(FAULTS)} programs with one fault each (`benchmarks/one_fault.py`), and the sound one. A reader names a fault where
 what it says, and does not say of the sound program, holds the words that belong to the fault: a generous measure, and
 the faults were chosen here. Readers of mill programs get the twin: a fault of the mode itself cannot stand in it.""",
-        "Where the time goes": "`polarcheck check --timings`, which tells the same of any file (reports.md):",
+        "Where the time goes": """\
+By cProfile, which adds time to each call (`benchmarks/stages.py FILE` does so for any file). A function counts for the
+stage of its module, one of a library or of polarcheck/geometry for the stages that call it.""",
     }
     text = "\n".join(f"## {title}\n\n{about[title]}\n\n{part}" for title, part in parts.items())
     return f"""\
@@ -282,7 +280,7 @@ def main() -> None:
             "Small files": small(asked, folder),
             "Growth": growth(asked, folder),
             "What is found": findings(asked, folder),
-            "Where the time goes": stages(asked, folder),
+            "Where the time goes": both_stages(asked, folder),
         }
     asked.output.write_text(page(asked, parts), "utf-8")
 

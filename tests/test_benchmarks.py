@@ -15,6 +15,7 @@ sys.path.insert(0, str(ROOT / "benchmarks"))
 import generate
 import measuring
 import peers
+import stages
 from measuring import exponent, measured, table
 from one_fault import FAULTS, GOOD, TOOL
 from xy_twin import tool_table, twin
@@ -108,4 +109,41 @@ def test_the_page_is_written_without_any_peer(tmp_path: Path, monkeypatch: pytes
     text = page.read_text()
     assert "Not installed there, and left out: LinuxCNC rs274, nc-gcode-interpreter, pygcode, nctab, ncplot7py." in text
     assert re.search(r"^\| polarcheck \| 0 \| 1 \| 1 \|$", text, re.MULTILINE)
-    assert text.count("1 file, 1,000 blocks, in one process") == 2
+    assert len(re.findall(r"^\| total \|", text, re.MULTILINE)) == 2
+
+
+def test_time_of_libraries_counts_for_the_stages_that_call_them() -> None:
+    """Through several functions of libraries, one that calls itself among them, in proportion to the calls."""
+    package = ROOT / "polarcheck"
+    trace, overcuts = ((str(package / "table" / f"{name}.py"), 1, "column") for name in ("trace", "overcuts"))
+    contour, numpy, loaded = (
+        (str(package / "geometry" / "contour.py"), 1, "cuts"),
+        ("numpy.py", 1, "sort"),
+        "<module>",
+    )
+    module = str(package / "rules" / "rule.py"), 1, loaded
+    stats = {
+        trace: (1, 1, 1.0, 3.0, {}),
+        overcuts: (1, 1, 2.0, 10.0, {}),
+        contour: (1, 1, 4.0, 8.0, {overcuts: (1, 1, 4.0, 8.0)}),
+        numpy: (2, 3, 8.0, 8.0, {trace: (1, 1, 2.0, 2.0), contour: (1, 1, 6.0, 6.0), numpy: (1, 1, 1.0, 1.0)}),
+        module: (1, 1, 16.0, 16.0, {}),
+    }
+    spent = {stage: time for stage, time in stages.seconds_by_stage(stats).items() if time}
+    assert spent == {"columns": 3.0, "faces": 12.0, "start": 16.0}
+
+
+def test_each_package_and_table_has_a_stage() -> None:
+    package = ROOT / "polarcheck"
+    for name in stages.OF_TABLE:
+        assert (package / "table" / f"{name}.py").exists(), name
+    for name in stages.OF_PACKAGE:
+        assert (package / name).exists() or (package / f"{name}.py").exists(), name
+    assert {*stages.OF_PACKAGE.values(), *stages.OF_TABLE.values()} <= {*stages.STAGES}
+
+
+def test_a_check_is_profiled(tmp_path: Path) -> None:
+    path = tmp_path / "sound.nc"
+    path.write_text(GOOD)
+    lines = stages.stages(path, "--no-config", "--fail-on", "never").splitlines()
+    assert [line.split(" | ")[0].strip("| ") for line in lines[2:]] == [*stages.STAGES, "total"]

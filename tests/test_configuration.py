@@ -508,7 +508,7 @@ def test_what_comes_from_files_acts_on_no_terminal() -> None:
 
 
 OF_OUTPUT = {
-    *("form", "outputs", "color", "quiet", "following", "which", "debug", "statistics", "show_silenced", "timings"),
+    *("form", "outputs", "color", "quiet", "following", "which", "debug", "statistics", "show_silenced"),
 }
 
 

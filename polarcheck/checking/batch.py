@@ -14,8 +14,8 @@ from polarcheck.checking import check
 from polarcheck.checking.kept import Kept
 from polarcheck.checking.settings import Settings
 from polarcheck.checking.tables import Tables
-from polarcheck.finding import FileReport, Producer, Report, Summary
 from polarcheck.errors import CrewError, SourceError, TooHardError
+from polarcheck.finding import FileReport, Producer, Report, Summary
 from polarcheck.reading import files
 from polarcheck.reading.source import Source
 from polarcheck.reading.words import Text

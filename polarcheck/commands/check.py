@@ -30,7 +30,7 @@ _LONG = 3
 #: Options that change how a report looks or where it goes, who makes it or which files it is of, but not what it says.
 _OF_OUTPUT = (
     *("stdin_filename", "form", "outputs", "color", "quiet", "following", "silenced", "statistics", "shown_too"),
-    *("diff_base", "workers", "cluster", "watch", "timings", *fixing.NAMES),
+    *("diff_base", "workers", "cluster", "watch", *fixing.NAMES),
 )
 _FORMATS = formats()
 
@@ -83,12 +83,11 @@ def _outputs(ctx: click.Context, parameter: click.Parameter, values: tuple[str, 
 @silencing.show_silenced
 @option("--part", "part", is_flag=True, help="In text, JSON and pages, what the program makes, too.")
 @reporting.paths
-@reporting.timings
 @option("-q", "--quiet", is_flag=True, help="Findings only.")
 @fixing.wanted
 @options.debug
 @click.pass_context
-def check(ctx: click.Context, /, paths: tuple[str, ...], watch: bool, timings: bool, **asked: Any) -> None:
+def check(ctx: click.Context, /, paths: tuple[str, ...], watch: bool, **asked: Any) -> None:
     """
     Check NC programs: files, folders, or - for standard input.
 
@@ -109,11 +108,6 @@ def check(ctx: click.Context, /, paths: tuple[str, ...], watch: bool, timings: b
     run = partial(_check, known)
     if watch:
         watching.refuse(paths, {"--fix": known.fixes.fix, "--diff": known.fixes.diff, "--diff-base": known.diff_base})
-    if timings:
-        from polarcheck.commands import timing
-
-        timing.refuse(known.workers, known.cluster, watch)
-        ctx.exit(timing.told(partial(_check, known._replace(workers=1), None)))
     ctx.exit(watching.repeatedly(run, paths, known.outputs) if watch else run(None))
 
 

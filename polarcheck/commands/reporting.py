@@ -38,8 +38,6 @@ def refuse(form: str | None, wants_statistics: bool) -> None:
 _WITH_PATHS = "text"
 paths = option("--show", "shown_too", type=click.Choice(["path"]), help="In text, the paths of each section, too.")
 
-timings = option("--timings", is_flag=True, help="Where the time goes, by stage, on stderr; of one process.")
-
 
 def extras(shown_too: str | None, form: str | None, outputs: Iterable[tuple[str, Path]]) -> tuple[Extra, ...]:
     """What adds the paths to reports. Raises UsageError where they are asked for in a format that cannot show them."""
