@@ -9,7 +9,7 @@ What can go wrong on our side. What is wrong in a program is a finding, never an
     |-- JobError          polarcheck.toml, pyproject.toml, an offset table
     |-- StoppedError      nobody waits for the outcome any more
     |-- BaselineError     a file of known findings
-    |-- CrewError         those who should check many files cannot go on
+    |-- ClusterError      a cluster that cannot check
     |-- TooHardError      a table that would take more than its bound of time or size
     |   `-- NoAnswerError     areas for which the geometry library finds no answer
     `-- RuleError         a rule without severity, message, docstring: a bug in a rule file
@@ -55,8 +55,8 @@ class BaselineError(PolarcheckError):
     """A file of known findings that cannot be used, or must not be written."""
 
 
-class CrewError(PolarcheckError):
-    """Those who should check many files cannot: none can be started, or the cluster is gone."""
+class ClusterError(PolarcheckError):
+    """A cluster that cannot be reached, has no workers, or does not answer any more."""
 
 
 class TooHardError(PolarcheckError):

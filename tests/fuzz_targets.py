@@ -29,7 +29,8 @@ from click.testing import CliRunner
 from programs import CORPUS, ROOT, job_of, machine_of
 
 from polarcheck import reports
-from polarcheck.checking import batch, check
+from polarcheck.batch import tasks as batch
+from polarcheck.checking import check
 from polarcheck.checking.examples import examples
 from polarcheck.checking.rule import load_all
 from polarcheck.commands import main

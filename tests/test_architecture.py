@@ -33,7 +33,7 @@ ORDER = (
     ("geometry",),
     ("machines",),
     ("time_limit",),
-    ("arrays", "bounded", "ending", "errors", "finding"),
+    ("arrays", "bounded", "ending", "errors", "finding", "memory"),
 )
 FLOOR = {name: number for number, names in enumerate(reversed(ORDER)) for name in names}
 
@@ -223,7 +223,7 @@ LATE = (
     *("shapely", "numpy.ma", "rich", "plotly", "ezdxf", "multiprocessing"),
     *("polarcheck.geometry.faces", "polarcheck.geometry.contour", "polarcheck.geometry.finished_part"),
     *("polarcheck.checking.message", "polarcheck.checking.repair", "polarcheck.silence.allow_comments"),
-    *("polarcheck.batch.baseline", "polarcheck.parts.part_report", "polarcheck.checking.pool"),
+    *("polarcheck.batch.baseline", "polarcheck.parts.part_report", "polarcheck.batch.executors"),
     *("polarcheck.execution.macro", "polarcheck.pictures", "polarcheck.fixes", "polarcheck.server"),
 )
 #: Modules of the package beside those of rules, of which each takes a third of a millisecond: 170 are what the path of

@@ -21,7 +21,7 @@ from click.testing import CliRunner, Result
 from programs import ROOT
 
 import polarcheck
-from polarcheck.checking import batch
+from polarcheck.batch import tasks as batch
 from polarcheck.checking.rule import load_all
 from polarcheck.commands import main
 from polarcheck.machines import profiles

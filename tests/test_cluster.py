@@ -19,10 +19,11 @@ from click.testing import CliRunner
 from test_jobs import ENDLESS, FOREVER, GOOD, ONLY, RAPID, _is_busy, make, planned, run, start
 
 import polarcheck
-from polarcheck.checking import batch, crews, remote
-from polarcheck.checking.remote import Answer, Batch, OnExecutor, check_batch
+from polarcheck.batch import cluster, executors
+from polarcheck.batch import tasks as batch
+from polarcheck.batch.cluster import Answer, Batch, Cluster, check_batch
 from polarcheck.commands import main
-from polarcheck.errors import CrewError
+from polarcheck.errors import ClusterError
 
 pytestmark = pytest.mark.usefixtures("own_folder")
 
@@ -58,12 +59,12 @@ class Executor(ThreadPoolExecutor):
 
 @pytest.fixture(autouse=True)
 def nothing_remembered(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(remote, "_REMEMBER", remote._Remembered())
+    monkeypatch.setattr(cluster, "_REMEMBER", cluster._Remembered())
 
 
 def through(executor: Executor, tasks: list[batch.Task], jobs: int = 2) -> list[batch.Outcome]:
     with executor:
-        return list(crews.outcomes(tasks, OnExecutor(tasks, executor, jobs, batch.files.LARGEST, "the cluster")))
+        return list(executors.outcomes(tasks, Cluster(tasks, executor, jobs, batch.files.LARGEST, "the cluster")))
 
 
 def test_any_executor_gives_what_one_process_gives() -> None:
@@ -88,7 +89,7 @@ def test_settings_are_sent_to_each_once() -> None:
 
 def test_who_does_not_know_the_settings_gets_them() -> None:
     make(60)
-    executor = Executor(lambda number, sent: remote._REMEMBER._known.clear() if number == 5 else None)
+    executor = Executor(lambda number, sent: cluster._REMEMBER._known.clear() if number == 5 else None)
     tasks = planned("f")
     assert through(executor, tasks, 1) == list(batch.one_by_one(tasks))
     # How many batches are on their way when they are forgotten is a matter of luck.
@@ -96,18 +97,18 @@ def test_who_does_not_know_the_settings_gets_them() -> None:
 
 
 def test_settings_and_their_folders_are_forgotten_in_their_turn(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(remote, "_REMEMBERED", 1)
+    monkeypatch.setattr(cluster, "_REMEMBERED", 1)
     Path("subs").mkdir()
     Path("subs/O0100.nc").write_text("O0100\nM99\n")
     make(1)
     Path("f/polarcheck.toml").write_text('[run]\nsubprograms = ["../subs"]\n')
-    packed = remote.pack(planned("f")[0].settings)
-    first = remote._REMEMBER("first", packed)
+    packed = cluster.pack(planned("f")[0].settings)
+    first = cluster._REMEMBER("first", packed)
     assert first is not None
     (folder,) = map(Path, first.job.run.subprograms)
     assert [path.name for path in folder.iterdir()] == ["O0100.nc"]
-    assert remote._REMEMBER("second", packed) is not None
-    assert remote._REMEMBER("first") is None
+    assert cluster._REMEMBER("second", packed) is not None
+    assert cluster._REMEMBER("first") is None
     assert not folder.exists()
 
 
@@ -130,18 +131,18 @@ def test_called_programs_are_sent() -> None:
             Path("subs").rename("gone")
 
     assert through(Executor(acts), tasks, 1) == expected
-    sent = remote.pack(tasks[0].settings)
-    assert sorted(remote.library.contents("gone")) == ["O0100.nc", "O0200"]
+    sent = cluster.pack(tasks[0].settings)
+    assert sorted(cluster.library.contents("gone")) == ["O0100.nc", "O0200"]
     assert len(sent) < 100_000
 
 
 def test_too_many_called_programs_are_not_sent(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(remote, "_MOST_CALLED", 1_000_000)
+    monkeypatch.setattr(cluster, "_MOST_CALLED", 1_000_000)
     Path("subs").mkdir()
     Path("subs/O0100.nc").write_text("O0100\n" + "\n" * 2_000_000)
     make(3)
     Path("f/polarcheck.toml").write_text('[run]\nsubprograms = ["../subs"]\n')
-    with pytest.raises(CrewError, match=r"subs: 2 MB of subprograms are too much to be sent.*; 0 of 3 files"):
+    with pytest.raises(ClusterError, match=r"subs: 2 MB of subprograms are too much to be sent.*; 0 of 3 files"):
         through(Executor(), planned("f"))
 
 
@@ -166,7 +167,7 @@ def test_what_was_lost_is_sent_again() -> None:
 def test_a_file_that_ends_who_checks_it_is_told() -> None:
     make(40)
     tasks = planned("f")
-    executor = failing(OSError("gone"), lambda number, sent: any(path == "f/003.nc" for _, path, _, _ in sent.items))
+    executor = failing(OSError("gone"), lambda number, sent: any(path == "f/003.nc" for path, _, _ in sent.items))
     found = through(executor, tasks)
     assert [one.failure for one in found if one.failure] == ["f/003.nc: could not be checked: its process ended"]
     assert len(found) == 40
@@ -175,11 +176,11 @@ def test_a_file_that_ends_who_checks_it_is_told() -> None:
 def test_a_cluster_that_is_gone_leaves_what_is_finished() -> None:
     make(40)
     tasks = planned("f")
-    executor = failing(remote.CancelledError(), lambda number, sent: number > 4)
+    executor = failing(cluster.CancelledError(), lambda number, sent: number > 4)
     told: list[str] = []
     with executor:
-        crew = OnExecutor(tasks, executor, 2, batch.files.LARGEST, "the cluster")
-        checked = batch.gather(crews.outcomes(tasks, crew), told.append, lambda bug: pytest.fail(str(bug)))
+        workers = Cluster(tasks, executor, 2, batch.files.LARGEST, "the cluster")
+        checked = batch.gather(executors.outcomes(tasks, workers), told.append, lambda bug: pytest.fail(str(bug)))
     (line,) = told
     assert line == f"the cluster is gone; {len(checked.files)} of 40 files were checked"
     assert 0 < len(checked.files) < 40
@@ -190,12 +191,12 @@ def test_a_cluster_that_is_gone_leaves_what_is_finished() -> None:
     ("error", "line"),
     [
         (ModuleNotFoundError("No module named 'polarcheck'"), "is wanted on all workers: No module named 'polarcheck'"),
-        (remote.CancelledError(), "the cluster is gone; 0 of 3 files were checked"),
+        (cluster.CancelledError(), "the cluster is gone; 0 of 3 files were checked"),
     ],
 )
 def test_what_no_worker_can_do_is_told_in_a_line(error: BaseException, line: str) -> None:
     make(3)
-    with pytest.raises(CrewError) as told:
+    with pytest.raises(ClusterError) as told:
         through(failing(error, lambda number, sent: True), planned("f"))
     assert line in str(told.value)
 
@@ -204,13 +205,13 @@ def test_an_executor_that_takes_no_more_is_told() -> None:
     make(3)
     executor = Executor()
     executor.shutdown()
-    with pytest.raises(CrewError, match="the cluster takes no more files: cannot schedule new futures"):
+    with pytest.raises(ClusterError, match="the cluster takes no more files: cannot schedule new futures"):
         through(executor, planned("f"))
 
 
 def test_another_version_is_told() -> None:
     make(3)
-    with pytest.raises(CrewError, match=rf"a worker has polarcheck 9.9, this is {polarcheck.__version__}"):
+    with pytest.raises(ClusterError, match=rf"a worker has polarcheck 9.9, this is {polarcheck.__version__}"):
         through(Executor(lambda number, sent: Answer("9.9")), planned("f"))
     assert check_batch(Batch("9.9", [], {})) == Answer(polarcheck.__version__)
 
@@ -248,10 +249,10 @@ def test_an_address_where_nobody_is_takes_seconds_at_most(address: str, line: st
 
 
 IMPATIENT = """
-from polarcheck.checking import remote
-from polarcheck.commands import cluster, run
+from polarcheck.batch import cluster
+from polarcheck.commands import run
 
-cluster._LONGEST, remote._QUIET = {seconds}, 0.5
+cluster._LONGEST, cluster._QUIET = {seconds}, 0.5
 run()
 """
 
@@ -313,7 +314,7 @@ def test_a_port_that_is_no_scheduler_is_one_line(kind: str) -> None:
 
 def test_an_executor_that_answers_no_more_leaves_what_is_finished(monkeypatch: pytest.MonkeyPatch) -> None:
     """Nor is it asked to take its work back, for which it would have to answer."""
-    monkeypatch.setattr(remote, "_QUIET", 0.01)
+    monkeypatch.setattr(cluster, "_QUIET", 0.01)
     make(40)
     tasks = planned("f")
     silent = threading.Event()
@@ -327,8 +328,8 @@ def test_an_executor_that_answers_no_more_leaves_what_is_finished(monkeypatch: p
 
     told: list[str] = []
     with Executor(acts) as executor:
-        crew = OnExecutor(tasks, executor, 2, batch.files.LARGEST, "the cluster", ask)
-        checked = batch.gather(crews.outcomes(tasks, crew), told.append, lambda bug: pytest.fail(str(bug)))
+        workers = Cluster(tasks, executor, 2, batch.files.LARGEST, "the cluster", ask)
+        checked = batch.gather(executors.outcomes(tasks, workers), told.append, lambda bug: pytest.fail(str(bug)))
         silent.set()
     assert told == [f"the cluster does not answer any more; {len(checked.files)} of 40 files were checked"]
 
@@ -336,11 +337,11 @@ def test_an_executor_that_answers_no_more_leaves_what_is_finished(monkeypatch: p
 def test_a_call_is_given_up_after_its_time_and_else_gives_or_raises_what_it_does() -> None:
     never = threading.Event()
     with pytest.raises(TimeoutError):
-        remote.in_time(lambda: never.wait(60), 0.01)
+        cluster.in_time(lambda: never.wait(60), 0.01)
     never.set()
-    assert remote.in_time(lambda: 3, 60) == 3
+    assert cluster.in_time(lambda: 3, 60) == 3
     with pytest.raises(ZeroDivisionError):
-        remote.in_time(lambda: 1 / 0, 60)
+        cluster.in_time(lambda: 1 / 0, 60)
 
 
 # ---- a real one ----
@@ -369,15 +370,15 @@ def running_cluster(folder: Path, workers: int) -> Iterator[tuple[str, list[int]
 
 
 @pytest.fixture(scope="module")
-def cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[str, list[int]]]:
+def real_cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[str, list[int]]]:
     """The address of the scheduler, and two workers in processes of their own."""
     with running_cluster(tmp_path_factory.mktemp("cluster"), 2) as (address, workers, _):
         yield address, workers
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="looks into /proc")
-def test_a_worker_that_is_killed_loses_nothing(cluster: tuple[str, list[int]]) -> None:
-    address, workers = cluster
+def test_a_worker_that_is_killed_loses_nothing(real_cluster: tuple[str, list[int]]) -> None:
+    address, workers = real_cluster
     make(24)
     for number in (3, 9, 17):
         Path(f"f/{number:03}.nc").write_text(ENDLESS)
@@ -391,14 +392,14 @@ def test_a_worker_that_is_killed_loses_nothing(cluster: tuple[str, list[int]]) -
     assert (running.returncode, shown, told) == run(*words, "--jobs", "1")
 
 
-def test_a_cluster_reads_no_file_of_ours(cluster: tuple[str, list[int]]) -> None:
+def test_a_cluster_reads_no_file_of_ours(real_cluster: tuple[str, list[int]]) -> None:
     """Its workers stand in another folder: what is read there would be another file, or none."""
     make(4)
     Path("g").mkdir()
     Path("g/bad.nc").write_text(GOOD)
     Path("g/bad.nc").chmod(0)
     words = ("check", "f", "g", "-", "--max-size", "10k", *ONLY)
-    found = run(*words, "--cluster", cluster[0], input=RAPID)
+    found = run(*words, "--cluster", real_cluster[0], input=RAPID)
     assert found == run(*words, "--jobs", "1", input=RAPID)
     assert "-:4:1: error" in found[1]
 

@@ -179,7 +179,7 @@ def test_a_pattern_that_matches_nothing_in_a_folder_that_was_walked_is_a_warning
 
 
 def test_what_applies_to_thousands_is_made_once_for_each_set_of_entries() -> None:
-    from polarcheck.checking import batch
+    from polarcheck.batch import tasks as batch
     from polarcheck.commands import settings
 
     make(*(f"O{number:04d}.nc" for number in range(60)), text="O1\nM30\n")

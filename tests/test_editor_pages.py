@@ -14,7 +14,7 @@ import pytest
 from programs import ROOT, report_of
 from test_cli import RAPID, call
 
-from polarcheck.checking import batch
+from polarcheck.batch import tasks as batch
 from polarcheck.commands import main
 from polarcheck.reports import Background, render
 

@@ -77,9 +77,9 @@ heeding = partial(heed, signal.SIG_DFL, signal.SIG_DFL)
     [
         "click",
         "polarcheck.errors",
-        "polarcheck.commands.memory",
+        "polarcheck.memory",
         "polarcheck.commands.check",
-        "polarcheck.checking.batch",
+        "polarcheck.batch",
         "numpy",
     ],
 )

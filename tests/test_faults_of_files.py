@@ -19,7 +19,7 @@ from click.testing import CliRunner, Result
 
 import polarcheck
 from polarcheck import bounded
-from polarcheck.checking import batch
+from polarcheck.batch import tasks as batch
 from polarcheck.commands import job_files, main, settings
 from polarcheck.errors import SourceError
 from polarcheck.reading import files

@@ -18,7 +18,7 @@ import msgspec
 import pytest
 
 import polarcheck
-from polarcheck.checking import batch
+from polarcheck.batch import tasks as batch
 from polarcheck.checking.rule import load_all
 from polarcheck.commands import settings
 from polarcheck.table.trace import Trace

@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 import contextlib
+import gc
+import multiprocessing
+import multiprocessing.queues
 import os
 import signal
+import struct
 import subprocess
 import sys
 import time
@@ -19,10 +23,11 @@ from programs import ROOT
 
 import polarcheck
 from polarcheck import reports
-from polarcheck.checking import batch, crews, pool
+from polarcheck.batch import executors
+from polarcheck.batch import tasks as batch
 from polarcheck.checking.rule import load_all
-from polarcheck.commands import jobs, progress, settings
-from polarcheck.errors import CrewError
+from polarcheck.commands import progress, running, settings
+from polarcheck.errors import ClusterError
 from polarcheck.table.trace import Trace
 
 RAPID = "G98 G0 X60. C0\nG12.1\nG1 X40. F200\nG0 C5.\nG1 C-5.\nG13.1\n"
@@ -65,13 +70,8 @@ def planned(*paths: str) -> list[batch.Task]:
     return batch.plan(paths, settings.OfPrograms(chosen), (), pytest.fail, pytest.fail)
 
 
-def prepared(is_alone: bool) -> None:
-    """Nothing to prepare."""
-
-
-def by_pool(tasks: list[batch.Task], workers: int = 2, method: str = "fork", prepare: pool.Prepare = prepared) -> Any:
-    crew = pool.Pool(tasks, workers, batch.files.LARGEST, prepare, method)
-    return list(crews.outcomes(tasks, crew))
+def by_processes(tasks: list[batch.Task], workers: int = 2, method: str = "fork") -> list[batch.Outcome]:
+    return list(executors.outcomes(tasks, executors.Processes(tasks, workers, method=method)))
 
 
 def paths_of(found: list[batch.Outcome]) -> list[str]:
@@ -132,7 +132,7 @@ def test_processes_that_are_spawned_get_all_they_need() -> None:
     make(5)
     Path("f/polarcheck.toml").write_text('machine = "haas-lathe"\n[tools.8]\nradius = 4.0\n')
     tasks = planned("f")
-    assert by_pool(tasks, 2, "spawn") == list(batch.one_by_one(tasks))
+    assert by_processes(tasks, 2, "spawn") == list(batch.one_by_one(tasks))
 
 
 @linux
@@ -170,7 +170,7 @@ def test_a_file_that_ends_its_process_is_told_and_the_others_are_whole(monkeypat
             os.kill(os.getpid(), signal.SIGKILL)
 
     with rule_that(acts, monkeypatch):
-        found = by_pool(planned("f"))
+        found = by_processes(planned("f"))
     assert len(found) == 30
     assert [outcome.failure for outcome in found if outcome.failure] == [
         "f/004.nc: could not be checked: its process ended"
@@ -187,7 +187,7 @@ def test_all_files_that_end_their_process_are_told(monkeypatch: pytest.MonkeyPat
             os._exit(3)
 
     with rule_that(acts, monkeypatch):
-        found = by_pool(planned("f"), 3)
+        found = by_processes(planned("f"), 3)
     assert [bool(outcome.failure) for outcome in found] == [True] * 6 + [False] * 6
 
 
@@ -203,7 +203,7 @@ def test_a_process_that_ends_once_costs_nothing(monkeypatch: pytest.MonkeyPatch)
 
     with rule_that(acts, monkeypatch):
         tasks = planned("f")
-        found = by_pool(tasks, 3)
+        found = by_processes(tasks, 3)
     assert not [outcome.failure for outcome in found if outcome.failure]
     assert paths_of(found) == [task.path for task in tasks]
 
@@ -211,24 +211,22 @@ def test_a_process_that_ends_once_costs_nothing(monkeypatch: pytest.MonkeyPatch)
 @linux
 def test_a_file_that_has_too_little_memory_with_others_gets_all_of_it(monkeypatch: pytest.MonkeyPatch) -> None:
     make(10)
-    is_alone = []
+    sharing = []
 
     def acts(path: str) -> None:
-        if (path == "f/003.nc" and not is_alone) or path == "f/007.nc":
+        if (path == "f/003.nc" and sharing != [1]) or path == "f/007.nc":
             raise MemoryError
 
-    def prepare(alone: bool) -> None:
-        is_alone.extend([True] * alone)
-
+    monkeypatch.setattr(executors, "keep_within_memory", sharing.append)
     with rule_that(acts, monkeypatch):
-        found = by_pool(planned("f"), prepare=prepare)
+        found = by_processes(planned("f"))
     assert [outcome.failure for outcome in found if outcome.failure] == [
         "f/007.nc: there is not enough memory to check it"
     ]
 
 
 @linux
-@pytest.mark.parametrize("bug", [ZeroDivisionError("by zero"), CrewError("none of ours")], ids=["plain", "own"])
+@pytest.mark.parametrize("bug", [ZeroDivisionError("by zero"), ClusterError("none of ours")], ids=["plain", "own"])
 def test_a_bug_keeps_its_traceback(bug: Exception, monkeypatch: pytest.MonkeyPatch) -> None:
     make(3)
 
@@ -237,7 +235,7 @@ def test_a_bug_keeps_its_traceback(bug: Exception, monkeypatch: pytest.MonkeyPat
             raise bug
 
     with rule_that(acts, monkeypatch):
-        found = by_pool(planned("f"))
+        found = by_processes(planned("f"))
     told = found[1].bug
     assert (type(told), str(told)) == (type(bug), str(bug))
     assert told is not None
@@ -253,7 +251,7 @@ def test_a_bug_that_cannot_be_sent_is_told_all_the_same() -> None:
 
     bug = OddError(1, 2)
     bug.add_note("while checking a.nc")
-    told = crews.sent(batch.Outcome(bug=bug)).unpacked().bug
+    told = executors.packed(batch.Outcome(bug=bug)).unpacked().bug
     assert told is not None
     assert (type(told), str(told), told.__notes__) == (RuntimeError, "OddError: 1 and 2", ["while checking a.nc"])
 
@@ -268,14 +266,38 @@ def test_without_processes_this_one_checks(fails: str, monkeypatch: pytest.Monke
 
     if fails == "to start":
         monkeypatch.setattr("multiprocessing.process.BaseProcess.start", refused)
+    monkeypatch.setattr(executors, "keep_within_memory", lambda sharing: os._exit(1))
     tasks = planned("f")
-    found = by_pool(tasks, prepare=lambda alone: os._exit(1))
-    assert found == list(batch.one_by_one(tasks))
+    assert by_processes(tasks, 4) == list(batch.one_by_one(tasks))
 
 
 @linux
-def test_what_has_ended_a_process_is_not_checked_by_this_one(monkeypatch: pytest.MonkeyPatch) -> None:
-    make(5)
+def test_fewer_processes_check_where_the_system_gives_no_more(monkeypatch: pytest.MonkeyPatch) -> None:
+    make(9)
+    own, started = os.getpid(), []
+    start_process = multiprocessing.process.BaseProcess.start
+
+    def limited(process: Any) -> None:
+        if len(multiprocessing.active_children()) >= 2:
+            raise OSError("no more processes")
+        start_process(process)
+        started.append(process)
+
+    def acts(path: str) -> None:
+        assert os.getpid() != own
+
+    monkeypatch.setattr("multiprocessing.process.BaseProcess.start", limited)
+    with rule_that(acts, monkeypatch):
+        tasks = planned("f")
+        found = by_processes(tasks, 5)
+    assert paths_of(found) == [task.path for task in tasks]
+    assert len(started) == 2 + 2
+    assert not multiprocessing.active_children()
+
+
+@linux
+def test_what_may_have_ended_a_process_is_not_checked_by_this_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    make(15)
     own = os.getpid()
 
     def acts(path: str) -> None:
@@ -283,12 +305,63 @@ def test_what_has_ended_a_process_is_not_checked_by_this_one(monkeypatch: pytest
             assert os.getpid() != own
             os.kill(os.getpid(), signal.SIGKILL)
 
+    begin = executors._begin
+    begun = Path("begun")
+
+    def begins_once(*given: Any) -> None:
+        if begun.exists():
+            os._exit(1)
+        begun.touch()
+        begin(*given)
+
+    monkeypatch.setattr(executors, "_begin", begins_once)
     with rule_that(acts, monkeypatch):
-        found = by_pool(planned("f"), 1, prepare=lambda alone: os._exit(1) if alone else None)
-    assert [outcome.failure for outcome in found if outcome.failure] == [
-        "f/002.nc: could not be checked: its process ended"
-    ]
-    assert len(found) == 5
+        tasks = planned("f")
+        found = by_processes(tasks, 1)
+    lost = [outcome.failure for outcome in found if outcome.failure]
+    # The files that were submitted with it may have done it as well.
+    assert lost == [f"f/{number:03}.nc: could not be checked: its process ended" for number in range(2, 2 + len(lost))]
+    assert 1 <= len(lost) <= executors._AHEAD
+    assert len(paths_of(found)) == 15 - len(lost)
+
+
+@linux
+def test_a_process_that_dies_within_an_answer_stops_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The thread of the executor waits for the rest of the answer then, and sees nothing else."""
+    make(8)
+    check = executors.outcome
+
+    def breaks_off(task: batch.Task, most: int) -> batch.Outcome:
+        if task.path == "f/003.nc" and not Path("once").exists():
+            Path("once").touch()
+            (queue,) = (one for one in gc.get_objects() if type(one) is multiprocessing.queues.SimpleQueue)
+            os.write(queue._writer.fileno(), struct.pack("!i", 1000) + bytes(10))
+            os.kill(os.getpid(), signal.SIGKILL)
+        return check(task, most)
+
+    monkeypatch.setattr(executors, "outcome", breaks_off)
+    tasks = planned("f")
+    assert by_processes(tasks) == list(batch.one_by_one(tasks))
+    assert Path("once").exists()
+
+
+@linux
+def test_large_files_are_checked_one_at_a_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    make(12)
+    for number in (0, 1, 4, 5, 6):
+        Path(f"f/{number:03}.nc").write_text(GOOD + "\n" * 2000)
+    monkeypatch.setattr(executors.Processes, "large", 1000)
+
+    def acts(path: str) -> None:
+        if Path(path).stat().st_size > 1000:
+            Path("large").touch(exist_ok=False)  # raises where another one is being checked
+            time.sleep(0.05)
+            Path("large").unlink()
+
+    with rule_that(acts, monkeypatch):
+        tasks = planned("f")
+        found = by_processes(tasks, 3)
+    assert paths_of(found) == [task.path for task in tasks]
 
 
 # ---- interrupts ----
@@ -354,16 +427,11 @@ def test_an_interrupt_keeps_what_is_finished(number: int, status: int, how: str,
 @linux
 def test_nobody_is_left_behind_where_the_first_process_is_killed() -> None:
     running, workers, _ = begun()
-    # Not so the one that is in the endless loop: it notices when it has something to tell.
-    idle = [one for one in workers if not _is_busy(one)]
     running.kill()
     _, told = running.communicate(timeout=30)
     assert told == ""
-    assert idle
-    assert are_gone(idle)
-    for one in set(workers) - set(idle):
-        with contextlib.suppress(ProcessLookupError):
-            os.kill(one, signal.SIGKILL)
+    assert len(workers) == 2
+    assert are_gone(workers)
 
 
 def _is_busy(process: int) -> bool:
@@ -402,15 +470,15 @@ def forms_of(tasks: list[batch.Task], seconds: float, monkeypatch: pytest.Monkey
         here.append(task)
         return batch.Outcome()
 
-    def given(tasks: list[batch.Task], most: int, workers: int) -> Iterator[batch.Outcome]:
+    def by_others(tasks: list[batch.Task], most: int, workers: int) -> Iterator[batch.Outcome]:
         elsewhere.extend(tasks)
         yield from (batch.Outcome() for _ in tasks)
 
-    monkeypatch.setattr(jobs.time, "monotonic", lambda: clock[0])
-    monkeypatch.setattr(jobs, "cores", lambda: 2)
+    monkeypatch.setattr(running.time, "monotonic", lambda: clock[0])
+    monkeypatch.setattr(running, "cores", lambda: 2)
     monkeypatch.setattr(batch, "outcome", checked)
-    monkeypatch.setattr(jobs, "_by_pool", given)
-    with jobs.outcomes(tasks, 1000, 0) as found:
+    monkeypatch.setattr(running, "_by_processes", by_others)
+    with running.Runner(1000, 0, None)._outcomes(tasks) as found:
         assert len(list(found)) == len(tasks)
     return len(here), len(elsewhere)
 

@@ -14,7 +14,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from polarcheck.checking import batch
+from polarcheck.batch import tasks as batch
 from polarcheck.checking.rule import load_all
 from polarcheck.finding import Edit, FileReport, Finding, Fix, NotEvaluated, Report
 from polarcheck.reading.excerpt import cells, excerpt, visible

@@ -16,7 +16,7 @@ from typing import Any
 import pytest
 from test_jobs import ENDLESS, FOREVER, GOOD, ONLY, RAPID, planned, run, start
 
-from polarcheck.checking import batch
+from polarcheck.batch import tasks as batch
 from polarcheck.commands import watching
 
 pytestmark = [

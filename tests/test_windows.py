@@ -15,8 +15,8 @@ from typing import Any
 import pytest
 from test_cli import IMPORTED_FROM, RAPID, call, check, make
 
-from polarcheck import bounded
-from polarcheck.commands import main, memory, output, overwriting, signals, wildcards
+from polarcheck import bounded, memory
+from polarcheck.commands import main, output, overwriting, signals, wildcards
 from polarcheck.errors import OutputError
 from polarcheck.reading import files
 

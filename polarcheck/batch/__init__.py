@@ -1,1 +1,1 @@
-"""Many files: baselines, and which of them a change in git concerns."""
+"""Many files: which, checked by this process or several workers, baselines, what a change in git concerns."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Sequence
 
-from polarcheck.checking.batch import Task
+from polarcheck.batch.tasks import Task
 from polarcheck.checking.settings import Settings
 from polarcheck.errors import SourceError, TooHardError, UsageError
 from polarcheck.execution.dependence import calls_one_of

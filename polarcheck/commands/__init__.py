@@ -19,7 +19,6 @@ import click
 from polarcheck import __version__, ending
 from polarcheck.commands import options, signals
 from polarcheck.commands.exit_codes import BUG, CLEAN, COULD_NOT_RUN
-from polarcheck.commands.memory import keep_room_for_numpy
 from polarcheck.commands.output import (
     COLUMNS,
     ON_WINDOWS,
@@ -30,6 +29,7 @@ from polarcheck.commands.output import (
     say_lines,
 )
 from polarcheck.errors import PolarcheckError, RuleError
+from polarcheck.memory import keep_room_for_numpy
 
 NAMES = (
     "baseline",

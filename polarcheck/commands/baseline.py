@@ -16,7 +16,7 @@ from polarcheck.commands.output import say, show
 if TYPE_CHECKING:
     from polarcheck.batch.baseline import Baseline
     from polarcheck.batch.baseline_file import Entry
-    from polarcheck.checking.batch import Checked, Task
+    from polarcheck.batch.tasks import Checked, Task
 
 #: What of `check` decides what is found: its argument and options by name.
 DECIDING = (
@@ -144,8 +144,8 @@ def _run(
     from polarcheck.batch import baseline_file
     from polarcheck.batch.baseline import Baseline
     from polarcheck.commands import overwriting, running, settings, signals
-    from polarcheck.commands.memory import keep_within_memory
     from polarcheck.commands.progress import Bar
+    from polarcheck.memory import keep_within_memory
     from polarcheck.reading import files
 
     keep_within_memory()
@@ -153,7 +153,7 @@ def _run(
     applies = settings.Options(use_config=not no_config, **asked)
     tasks = running.planned(paths, settings.OfPrograms(applies), extensions, faults)
     overwriting.refuse([output], tasks)
-    checked = running.Crew(max_size, workers, cluster).check(tasks, Bar(len(tasks), True), faults)
+    checked = running.Runner(max_size, workers, cluster).check(tasks, Bar(len(tasks), True), faults)
     could = faults.told()
     if checked.stopped is not None:
         status, how = signals.told(checked.stopped)

@@ -10,7 +10,6 @@ import click
 
 from polarcheck.commands import (
     fixing,
-    jobs,
     options,
     picturing,
     reporting,
@@ -75,8 +74,8 @@ def _outputs(ctx: click.Context, parameter: click.Parameter, values: tuple[str, 
 @options.extensions
 @options.max_size
 @standard_input.filename
-@jobs.jobs
-@jobs.cluster
+@options.jobs
+@options.cluster
 @watching.watch
 @option("--color", type=click.Choice(["auto", "always", "never"]), default="auto", show_default=True)
 @option("--show-following", "following", is_flag=True, help="In text, what follows from a finding, too.")
@@ -167,10 +166,11 @@ def _quoted(value: object) -> str:
 
 def _check(asked: _Asked, seen: watching.Seen | None) -> int:
     from polarcheck import reports
-    from polarcheck.checking import batch, rule
+    from polarcheck.batch import tasks as batch
+    from polarcheck.checking import rule
     from polarcheck.commands import live, overwriting, progress, settings, signals
-    from polarcheck.commands.memory import keep_within_memory
     from polarcheck.machines import profiles
+    from polarcheck.memory import keep_within_memory
 
     keep_within_memory()
     reporting.refuse(asked.form, asked.statistics)
@@ -224,9 +224,9 @@ def _check(asked: _Asked, seen: watching.Seen | None) -> int:
     shower = live.Live(
         form, shown, len(tasks), bar.hide, in_place_of_findings=asked.statistics, to_error=made.has_output
     )
-    crew = running.Crew(asked.max_size, asked.workers, asked.cluster, seen)
+    runner = running.Runner(asked.max_size, asked.workers, asked.cluster, seen)
     pictures.begin(plain)
-    checked = crew.check(tasks, bar, faults, known, shower.file, pictures.taken)
+    checked = runner.check(tasks, bar, faults, known, shower.file, pictures.taken)
     pictures.end()
     report = batch.report(checked.files, applies.machine or (tasks[0].settings.name if tasks else profiles.DEFAULT))
     status = max(int(checked.failed), made.status, faults.told())

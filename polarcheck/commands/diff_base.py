@@ -9,7 +9,7 @@ from polarcheck.commands.options import option
 from polarcheck.commands.output import say
 
 if TYPE_CHECKING:
-    from polarcheck.checking.batch import Task
+    from polarcheck.batch.tasks import Task
 
 diff_base = option(
     "--diff-base", metavar="REF",

@@ -40,7 +40,7 @@ def feeds(path: str, form: str, diff: bool, no_config: bool, max_size: int, **as
     from polarcheck.checking.causes import READ_OTHERWISE
     from polarcheck.checking.rule import load_all
     from polarcheck.commands import settings
-    from polarcheck.commands.memory import keep_within_memory
+    from polarcheck.memory import keep_within_memory
     from polarcheck.reading import files
     from polarcheck.reports.pages import executed
     from polarcheck.time_limit import seconds_for, time_limit

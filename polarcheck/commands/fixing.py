@@ -18,7 +18,7 @@ from polarcheck.commands.output import said_of_bug, say, say_lines, show, warn
 from polarcheck.errors import OutputError, PolarcheckError, SourceError, TooHardError, UsageError
 
 if TYPE_CHECKING:
-    from polarcheck.checking.batch import Task
+    from polarcheck.batch.tasks import Task
     from polarcheck.finding import FileReport
     from polarcheck.fixes.fixing import Outcome
 

@@ -75,6 +75,24 @@ def _in_bytes(ctx: click.Context, parameter: click.Parameter, value: str) -> int
     return size
 
 
+#: More processes than this are a typing error.
+_MOST_PROCESSES = 1024
+
+
+def _number_of_processes(ctx: click.Context, parameter: click.Parameter, value: str) -> int:
+    text = value.strip().lower()
+    if text == "auto":
+        return 0
+    if text.isascii() and text.isdecimal() and int(text) <= _MOST_PROCESSES:
+        return int(text)
+    raise click.BadParameter(f"{value!r}: expected a number of processes up to {_MOST_PROCESSES}, or auto")
+
+
+jobs = option(
+    "-j", "--jobs", "workers", callback=_number_of_processes, default="auto", show_default="all cores where it pays",
+    metavar="N", help="Processes that check; 1 for this one alone.",
+)  # fmt: skip
+cluster = option("--cluster", metavar="tcp://HOST:PORT", help="Let a cluster of dask.distributed check.")
 max_size = option(
     "--max-size", callback=_in_bytes, default="64MB", show_default=True, metavar="SIZE",
     help="Of a program: a larger one is not read; it would take some 40 bytes of memory for each byte.",

@@ -7,7 +7,7 @@ import stat
 from collections.abc import Sequence
 from pathlib import Path
 
-from polarcheck.checking.batch import Task
+from polarcheck.batch.tasks import Task
 from polarcheck.errors import OutputError
 from polarcheck.reading import files
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import click
 
-from polarcheck.commands import jobs, options
+from polarcheck.commands import options
 from polarcheck.commands.options import narrower
 
 #: The rule that compares a part with its drawing; beside it those are asked that leave nothing of it to believe.
@@ -20,7 +20,7 @@ _RULE = "part-differs-from-drawing"
 @narrower("--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True)
 @options.extensions
 @options.max_size
-@jobs.jobs
+@options.jobs
 @options.debug
 @click.pass_context
 def part(ctx: click.Context, /, paths: tuple[str, ...], **asked: Any) -> None:
@@ -51,8 +51,8 @@ def _part(
 ) -> int:
     from polarcheck.checking.causes import READ_OTHERWISE
     from polarcheck.commands import progress, running, settings, signals
-    from polarcheck.commands.memory import keep_within_memory
     from polarcheck.commands.output import columns, say, show
+    from polarcheck.memory import keep_within_memory
     from polarcheck.parts.comparison import compared_in
     from polarcheck.parts.part_report import part_of
     from polarcheck.reports.pages import made
@@ -63,7 +63,7 @@ def _part(
     )
     faults = running.Faults(debug)
     tasks = running.planned(paths, settings.OfPrograms(applies), extensions, faults)
-    checked = running.Crew(max_size, workers, None).check(tasks, progress.Bar(len(tasks), True), faults)
+    checked = running.Runner(max_size, workers, None).check(tasks, progress.Bar(len(tasks), True), faults)
     status = max(int(checked.failed), faults.told())
     if checked.stopped is not None:
         status, how = signals.told(checked.stopped)

@@ -12,7 +12,7 @@ from polarcheck.errors import OutputError, UsageError
 from polarcheck.reading.files import shown, write
 
 if TYPE_CHECKING:
-    from polarcheck.checking.batch import Outcome, Task
+    from polarcheck.batch.tasks import Outcome, Task
     from polarcheck.checking.settings import Extra
     from polarcheck.pictures.picture import Drawn
     from polarcheck.reports import Background

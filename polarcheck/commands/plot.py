@@ -7,7 +7,7 @@ from typing import Any
 
 import click
 
-from polarcheck.commands import jobs, options, picturing
+from polarcheck.commands import options, picturing
 from polarcheck.commands.options import option
 
 
@@ -22,7 +22,7 @@ from polarcheck.commands.options import option
 )
 @options.extensions
 @options.max_size
-@jobs.jobs
+@options.jobs
 @options.debug
 @click.pass_context
 def plot(
@@ -48,11 +48,12 @@ def plot(
     bug.
     """
     from polarcheck import reports
-    from polarcheck.checking import batch, rule
+    from polarcheck.batch import tasks as batch
+    from polarcheck.checking import rule
     from polarcheck.commands import overwriting, progress, reporting, running, settings, signals
-    from polarcheck.commands.memory import keep_within_memory
     from polarcheck.commands.output import say, show
     from polarcheck.machines import profiles
+    from polarcheck.memory import keep_within_memory
     from polarcheck.reading import files
 
     keep_within_memory()
@@ -66,7 +67,7 @@ def plot(
     background = reporting.background(plain, tasks, [])
     pictures.begin(background)
     bar = progress.Bar(len(tasks), True)
-    checked = running.Crew(max_size, workers, None).check(tasks, bar, faults, taken=pictures.taken)
+    checked = running.Runner(max_size, workers, None).check(tasks, bar, faults, taken=pictures.taken)
     status = faults.told()
     if checked.stopped is not None:
         status, how = signals.told(checked.stopped)

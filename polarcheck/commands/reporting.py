@@ -15,7 +15,7 @@ from polarcheck.commands.options import option
 from polarcheck.errors import OutputError, UsageError
 
 if TYPE_CHECKING:
-    from polarcheck.checking.batch import Task
+    from polarcheck.batch.tasks import Task
     from polarcheck.checking.settings import Extra
     from polarcheck.finding import Report
     from polarcheck.reports import Background

@@ -45,7 +45,7 @@ def _serve(no_config: bool, trust: tuple[Path, ...], asked: dict[str, Any]) -> i
         raise UsageError("the server needs pygls, of the extra [server]: pip install pygls")
     import gc
 
-    from polarcheck.commands.memory import keep_within_memory
+    from polarcheck.memory import keep_within_memory
     from polarcheck.server import process
 
     try:

@@ -15,7 +15,7 @@ from polarcheck.commands.output import warn
 
 if TYPE_CHECKING:
     from polarcheck.batch.baseline import Baseline, Leftover
-    from polarcheck.checking.batch import Outcome, Task
+    from polarcheck.batch.tasks import Outcome, Task
     from polarcheck.checking.settings import Settings
     from polarcheck.finding import FileReport
 
@@ -55,7 +55,7 @@ def answered(outcomes: Iterable[Outcome], tasks: Sequence[Task], baseline: Known
         return
     import msgspec
 
-    from polarcheck.checking.batch import fails
+    from polarcheck.batch.tasks import fails
 
     known, settings = _baseline(tasks, baseline), settings_of(tasks)
     answer = _answering(known, settings)

@@ -29,7 +29,7 @@ filename = option(
 
 def judged_as(paths: Sequence[str], filename: str | None) -> dict[str, Any]:
     """
-    What batch.plan is told of standard input.
+    What tasks.plan is told of standard input.
 
     Raises UsageError where a name is given, and nothing is read from there.
     """

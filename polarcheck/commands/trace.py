@@ -57,7 +57,7 @@ def trace(
     """
     from polarcheck.checking import check
     from polarcheck.commands import settings
-    from polarcheck.commands.memory import keep_within_memory
+    from polarcheck.memory import keep_within_memory
     from polarcheck.reading import files
     from polarcheck.reports.pages import executed
     from polarcheck.time_limit import seconds_for, time_limit

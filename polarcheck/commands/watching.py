@@ -24,7 +24,7 @@ from polarcheck.errors import PolarcheckError, UsageError
 from polarcheck.reading.files import State, state
 
 if TYPE_CHECKING:
-    from polarcheck.checking.batch import Outcome, Task
+    from polarcheck.batch.tasks import Outcome, Task
 
 watch = option("--watch", is_flag=True, help="Check again whenever a file changes, until Ctrl-C.")
 

@@ -10,11 +10,11 @@ from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
 import msgspec
 
 from polarcheck import __version__
+from polarcheck.batch.spool import Spool
 from polarcheck.checking import check
-from polarcheck.checking.kept import Kept
 from polarcheck.checking.settings import Settings
 from polarcheck.checking.tables import Tables
-from polarcheck.errors import CrewError, SourceError, TooHardError
+from polarcheck.errors import ClusterError, SourceError, TooHardError
 from polarcheck.finding import FileReport, Producer, Report, Summary
 from polarcheck.reading import files
 from polarcheck.reading.source import Source
@@ -167,7 +167,7 @@ def gather(
     tell is told of failures in one line, bug of what polarcheck itself did wrong. show gets each report, with the lines
     of its findings, as soon as it is its turn.
     """
-    kept, called, failed, stopped = Kept(), set[str](), False, None
+    spool, called, failed, stopped = Spool(), set[str](), False, None
     try:
         for found in outcomes:
             if found.failure:
@@ -175,16 +175,16 @@ def gather(
             if found.bug is not None:
                 bug(found.bug)
             if found.report is not None:
-                kept.add(found.report, found.lines)
+                spool.add(found.report, found.lines)
                 called |= found.called
                 failed = failed or found.failed
                 if show is not None:
                     show(found.report, found.lines)
     except KeyboardInterrupt as stop:
         stopped = stop
-    except CrewError as error:
+    except ClusterError as error:
         tell(str(error))
-    return Checked(kept.files, kept.lines, called, stopped, failed)
+    return Checked(spool.files, spool.lines, called, stopped, failed)
 
 
 def outcome(task: Task, most: int = files.LARGEST, data: bytes | None = None) -> Outcome:

@@ -8,8 +8,8 @@ import pytest
 from programs import ROOT, report_of
 
 from polarcheck import reports
-from polarcheck.checking import batch
-from polarcheck.checking.kept import Kept
+from polarcheck.batch import tasks as batch
+from polarcheck.batch.spool import Spool
 from polarcheck.checking.rule import load_all
 from polarcheck.finding import FileReport
 from polarcheck.reading import files
@@ -29,8 +29,8 @@ def found() -> list[tuple[FileReport, dict[int, str]]]:
     return made
 
 
-def kept(found: list[tuple[FileReport, dict[int, str]]], in_memory: int) -> Kept:
-    reports_of = Kept(in_memory)
+def spooled(found: list[tuple[FileReport, dict[int, str]]], in_memory: int) -> Spool:
+    reports_of = Spool(in_memory)
     for report, lines in found:
         reports_of.add(report, lines)
     return reports_of
@@ -40,7 +40,7 @@ def kept(found: list[tuple[FileReport, dict[int, str]]], in_memory: int) -> Kept
 def test_what_is_kept_comes_back_as_often_as_one_likes(
     found: list[tuple[FileReport, dict[int, str]]], in_memory: int
 ) -> None:
-    stored = kept(found, in_memory)
+    stored = spooled(found, in_memory)
     expected = [report for report, _ in found]
     assert len(stored.files) == len(expected)
     assert [repr(report) for report in stored.files] == [repr(report) for report in expected]
@@ -60,7 +60,7 @@ def test_every_format_takes_reports_that_are_not_in_memory(
     """Whoever adds a format: report.files is a Sequence, no list, once there are many files."""
     shown = []
     for in_memory in (100, 2):
-        stored = kept(found, in_memory)
+        stored = spooled(found, in_memory)
         report = batch.report(stored.files, "fanuc")
         background = reports.Background(stored.lines, load_all(), color=color)
         shown += [reports.render(form, report, background), "".join(reports.pieces(form, report, background))]

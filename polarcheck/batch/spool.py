@@ -1,4 +1,4 @@
-"""The reports of many files: some stay in memory, the others in a file that has no name and ends with the process."""
+"""Reports of many files: the first ones in memory, the others in a temporary file without a name."""
 
 from __future__ import annotations
 
@@ -9,20 +9,20 @@ from typing import IO, overload
 
 from polarcheck.finding import FileReport
 
-#: So many reports stay as they are: they take less than the libraries do.
+#: Reports that stay in memory: they take less than the libraries do.
 _IN_MEMORY = 500
-#: Of the others so much stays in memory [bytes].
+#: Size up to which the others stay in memory, too [bytes].
 _SPOOLED = 8_000_000
 
 Lines = Mapping[int, str]
 
 
-class Kept:
+class Spool:
     """
-    Reports in the order in which they are added, and the lines that their findings stand in.
+    Reports in the order in which they are added, with the source lines of their findings.
 
-    They can be gone through as often as one likes: whoever holds on to none of them takes no more memory for 10,000
-    than for a few.
+    They can be read any number of times. A reader that keeps none of them needs no more memory for 10,000 than for a
+    few.
     """
 
     def __init__(self, in_memory: int = _IN_MEMORY) -> None:
@@ -34,7 +34,7 @@ class Kept:
         self._with_lines: dict[str, int] = {}
 
     def add(self, report: FileReport, lines: Lines) -> None:
-        """Keep a report behind those that are kept already."""
+        """Append a report."""
         if lines:
             self._with_lines[report.path] = len(self)
         if len(self) < self._in_memory:
@@ -44,7 +44,7 @@ class Kept:
         if self._file is None:
             import tempfile
 
-            self._file = tempfile.SpooledTemporaryFile(_SPOOLED)  # noqa: SIM115  lives as long as the reports do
+            self._file = tempfile.SpooledTemporaryFile(_SPOOLED)  # noqa: SIM115  open as long as the spool
             weakref.finalize(self, self._file.close)
         self._places.append(self._file.seek(0, 2))
         pickle.dump((report, lines), self._file, pickle.HIGHEST_PROTOCOL)
@@ -53,14 +53,14 @@ class Kept:
         return len(self._reports) + len(self._places)
 
     def at(self, number: int) -> tuple[FileReport, Lines]:
-        """The report of this number, from 0, and the lines of its findings."""
+        """The report of this number, from 0, and the source lines of its findings."""
         if number < len(self._reports):
             return self._reports[number], self._lines[number]
         assert self._file is not None
         self._file.seek(self._places[number - len(self._reports)])
         # The process itself has written it, where nobody else can.
-        found: tuple[FileReport, Lines] = pickle.load(self._file)  # noqa: S301
-        return found
+        entry: tuple[FileReport, Lines] = pickle.load(self._file)  # noqa: S301
+        return entry
 
     @property
     def files(self) -> Sequence[FileReport]:
@@ -69,18 +69,18 @@ class Kept:
 
     @property
     def lines(self) -> Mapping[str, Lines]:
-        """By path and number, the lines that findings stand in."""
+        """Source lines of the findings, by path and number."""
         if self._places:
             return _LinesByPath(self, self._with_lines)
         return {path: self._lines[number] for path, number in self._with_lines.items()}
 
 
 class _Files(Sequence[FileReport]):
-    def __init__(self, kept: Kept) -> None:
-        self._kept = kept
+    def __init__(self, spool: Spool) -> None:
+        self._spool = spool
 
     def __len__(self) -> int:
-        return len(self._kept)
+        return len(self._spool)
 
     @overload
     def __getitem__(self, number: int) -> FileReport: ...
@@ -88,12 +88,12 @@ class _Files(Sequence[FileReport]):
     def __getitem__(self, number: slice) -> list[FileReport]: ...
     def __getitem__(self, number: int | slice) -> FileReport | list[FileReport]:
         at = range(len(self))[number]
-        return self._kept.at(at)[0] if isinstance(at, int) else [self._kept.at(one)[0] for one in at]
+        return self._spool.at(at)[0] if isinstance(at, int) else [self._spool.at(one)[0] for one in at]
 
 
 class _LinesByPath(Mapping[str, Lines]):
-    def __init__(self, kept: Kept, numbers: Mapping[str, int]) -> None:
-        self._kept, self._numbers = kept, numbers
+    def __init__(self, spool: Spool, numbers: Mapping[str, int]) -> None:
+        self._spool, self._numbers = spool, numbers
 
     def __len__(self) -> int:
         return len(self._numbers)
@@ -102,4 +102,4 @@ class _LinesByPath(Mapping[str, Lines]):
         return iter(self._numbers)
 
     def __getitem__(self, path: str) -> Lines:
-        return self._kept.at(self._numbers[path])[1]
+        return self._spool.at(self._numbers[path])[1]
