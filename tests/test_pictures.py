@@ -19,7 +19,7 @@ from polarcheck.errors import TooHardError
 from polarcheck.geometry.segments import Curves
 from polarcheck.machines.modal import Motion
 from polarcheck.pictures import paths
-from polarcheck.pictures.drawing import apart, drawn
+from polarcheck.pictures.drawing import drawn, split
 from polarcheck.pictures.picture import Drawn, SectionPicture
 
 HEAD = "G21 G98 G40 T0808\nG0 X80. C0 Z2.\nG12.1\n"
@@ -40,7 +40,7 @@ def drawn_of(program: str | bytes, *tools: str, machine: str = "fanuc", **more: 
     data = program if isinstance(program, bytes) else program.encode()
     job = job_of(*tools, job=more.pop("job", None))
     runs = check.read(data, machine_of(machine, more.pop("changes", None)), job, "x.nc")
-    report, found = apart(drawn(check.check_runs(runs, list(load_all().values())), runs))
+    report, found = split(drawn(check.check_runs(runs, list(load_all().values())), runs))
     assert found is not None
     assert type(report).__name__ == "FileReport"
     return found

@@ -59,9 +59,9 @@ class Apart:
                 continue
             import msgspec
 
-            from polarcheck.pictures.drawing import apart  # a check without pictures does without
+            from polarcheck.pictures.drawing import split  # a check without pictures does without
 
-            report, drawn = apart(outcome.report)
+            report, drawn = split(outcome.report)
             told = msgspec.structs.replace(outcome, report=report)
             if drawn is not None:
                 self.keep(told, drawn)

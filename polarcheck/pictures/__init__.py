@@ -1,1 +1,1 @@
-"""Pictures of what a program does: data for a page, and small views for a terminal. Nothing is printed here."""
+"""Pictures of the paths of a program: data for a page, and small views for a terminal. Nothing here prints."""

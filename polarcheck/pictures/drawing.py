@@ -1,4 +1,4 @@
-"""From the runs of a file to what is drawn of it, in the process that checks the file."""
+"""Draws the runs of a file, in the process that checks the file."""
 
 from __future__ import annotations
 
@@ -17,58 +17,67 @@ from polarcheck.parts.part_report import made_by
 from polarcheck.pictures.picture import Drawn, Mark, SectionPicture
 from polarcheck.table.trace import Trace
 
-#: Sections of a file that are drawn.
+#: The most sections of a file that are drawn.
 _MOST = 200
 
-Made = TypeVar("Made")
+Element = TypeVar("Element")
 
 
 class DrawnReport(FileReport, frozen=True, kw_only=True):
-    """A report with what is drawn of its program; `apart` takes it off before the report is told."""
+    """
+    A report with the drawing of its program; `split` takes the drawing off before the report is written.
+
+    drawn: the drawing.
+    """
 
     drawn: Drawn
 
 
 def drawn(report: FileReport, runs: Sequence[tuple[str, Tables]]) -> FileReport:
-    """The report with the pictures of the program; of the two runs with block skip those of the first."""
+    """Return the report with the pictures of the program; of two runs with block skip the first is drawn."""
     channels = first_runs(runs)
     remarks: list[str] = []
-    lines = np.array(sorted({found.line for found in _all([*report.findings, *report.silenced])}), np.int64)
-    found: list[SectionPicture] = []
+    lines = np.array(sorted({finding.line for finding in _all([*report.findings, *report.silenced])}), np.int64)
+    sections: list[SectionPicture] = []
     for _, tables in channels:
         try:
-            found += _sections(tables, lines, remarks)
+            sections += _sections(tables, lines, remarks)
         except TooHardError as error:
             remarks.append(f"not drawn: {error}")
-    found.sort(key=lambda section: section.line)
-    if len(found) > _MOST:
-        remarks.append(f"only the first {_MOST} of {len(found)} polar sections are drawn")
+    sections.sort(key=lambda section: section.line)
+    if len(sections) > _MOST:
+        remarks.append(f"only the first {_MOST} of {len(sections)} polar sections are drawn")
     states = dict.fromkeys(state for state, _ in channels if state)
-    shown = Drawn(sections=found[:_MOST], skip=next(iter(states), ""), remarks=list(dict.fromkeys(remarks)))
+    shown = Drawn(sections=sections[:_MOST], skip=next(iter(states), ""), remarks=list(dict.fromkeys(remarks)))
     fields = {name: getattr(report, name) for name in FileReport.__struct_fields__}
     return DrawnReport(**fields, drawn=shown)
 
 
-def apart(report: FileReport) -> tuple[FileReport, Drawn | None]:
-    """The report as it is told, and what is drawn of its program, where that was asked for."""
+def split(report: FileReport) -> tuple[FileReport, Drawn | None]:
+    """Return the report to write, and the drawing of its program, if one was requested."""
     if not isinstance(report, DrawnReport):
         return report, None
     return FileReport(**{name: getattr(report, name) for name in FileReport.__struct_fields__}), report.drawn
 
 
 def _all(findings: Sequence[Finding]) -> list[Finding]:
-    return [*findings, *chain.from_iterable(found.follows for found in findings)]
+    return [*findings, *chain.from_iterable(finding.follows for finding in findings)]
 
 
 def _sections(tables: Tables, lines: Any, remarks: list[str]) -> list[SectionPicture]:
-    """The pictures of one run. lines: those of findings. remarks: are given what is not drawn."""
+    """
+    Return the pictures of one run.
+
+    lines: the lines with findings.
+    remarks: takes a line for each thing that is not drawn.
+    """
     trace: Trace = tables["trace"]
-    told = polar_sections(tables)
-    if not told:
+    sections = polar_sections(tables)
+    if not sections:
         return []
     from polarcheck.pictures.marks import left_marks, overcut_marks
     from polarcheck.pictures.moves import SectionMoves
-    from polarcheck.pictures.sections import Beside, section_picture
+    from polarcheck.pictures.sections import Extras, section_picture
     from polarcheck.table.moves import programmed_moves
 
     moves = SectionMoves(trace, tables["dynamics"])
@@ -89,26 +98,26 @@ def _sections(tables: Tables, lines: Any, remarks: list[str]) -> list[SectionPic
             trace,
             moves,
             programmed,
-            one,
+            section,
             number,
             lines,
-            Beside(
+            Extras(
                 [level for level in (*levels, *meant) if level.section == number],
-                [mark for section, mark in marks if section == number],
-                list(dict.fromkeys(_in_words(made) for made in makes if made.line == one.line)),
+                [mark for of_section, mark in marks if of_section == number],
+                list(dict.fromkeys(_in_words(shape) for shape in makes if shape.line == section.line)),
             ),
         )
-        for number, one in enumerate(told[:_MOST])
+        for number, section in enumerate(sections[:_MOST])
     ]
 
 
-def _in_words(made: MadeShape) -> str:
-    left = "".join(f"; left standing: {one.text}" for one in made.left_standing)
-    needs = f"; {made.needs}" if made.needs and made.shape is not None else ""
-    return f"{made.text}{left}{needs}"
+def _in_words(shape: MadeShape) -> str:
+    left = "".join(f"; left standing: {rest.text}" for rest in shape.left_standing)
+    needs = f"; {shape.needs}" if shape.needs and shape.shape is not None else ""
+    return f"{shape.text}{left}{needs}"
 
 
-def _unless_too_hard(make: Callable[[], list[Made]], what: str, remarks: list[str]) -> list[Made]:
+def _unless_too_hard(make: Callable[[], list[Element]], what: str, remarks: list[str]) -> list[Element]:
     try:
         return make()
     except TooHardError as error:

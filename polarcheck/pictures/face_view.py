@@ -1,4 +1,4 @@
-"""A polar section seen from in front of the spindle, in the characters of a terminal: X to the right, C upwards."""
+"""Draws a polar section in the characters of a terminal, seen from in front of the spindle: X to the right, C up."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from polarcheck.arrays import Mask, Points
 from polarcheck.pictures.painting import Paint, painted, plain
 
-#: Beside the row of the center, on the side of C0.
+#: The label right of the row of the center, where C is 0.
 _C0 = " C0"
 _CENTER, _MARK, _TOOL, _PROGRAMMED = "+", "x", "o", "."
 #: The bit of each dot in a Braille pattern, by row and column (Unicode 15.0, chapter 21.1).
@@ -22,11 +22,13 @@ def face_view(
     programmed: Points, tool: Points, marks: Points, columns: int, rows: int, *, dots: bool, paint: Paint = plain
 ) -> list[str]:
     """
-    The lines of a picture in equal scales, a cell being twice as high as it is wide.
+    Return the lines of a picture with equal scales; a cell is twice as high as it is wide.
 
-    programmed, tool, marks: points [mm]; NaN is not shown. columns, rows: how many at most, two or more. dots: Braille
-    patterns, eight dots in a cell; else ASCII. The path of the tool lies over the programmed one, which is shown alone
-    where there is no other.
+    programmed, tool, marks: points [mm]; NaN is not shown.
+    columns, rows: the largest size, two or more.
+    dots: draw with Braille patterns, eight dots per cell; else ASCII.
+
+    The tool path is drawn over the programmed one. Without a tool path the programmed one is drawn alone.
     """
     first, second = (points[np.isfinite(points)] for points in (tool, programmed))
     if not len(first):
@@ -48,10 +50,14 @@ def face_view(
 
 
 class _Grid:
-    """The dots of a picture that holds some points, row 0 at the top."""
+    """
+    The grid of dots of a picture that contains the given points; row 0 is at the top.
+
+    shape: rows and columns of cells.
+    """
 
     def __init__(self, points: Points, columns: int, rows: int, dots: bool) -> None:
-        #: Dots in a cell, and the height of a dot in its widths.
+        # Dots per cell, and the ratio of height to width of a dot.
         self._across, self._down, high = (2, 4, 1) if dots else (1, 1, 2)
         wide, tall = max(columns * self._across - 1, 1), max(rows * self._down - 1, 1)
         self._left, self._top = float(points.real.min()), float(points.imag.max())
@@ -62,24 +68,24 @@ class _Grid:
         self.shape = bottom // self._down + 1, right // self._across + 1
 
     def _dots(self, points: Points) -> Mask:
-        """The dots that points lie on, bool[rows, dots down, columns, dots across]."""
+        """Return the dots that points lie on, bool[rows, dots down, columns, dots across]."""
         rows, columns = self.shape
-        found = np.zeros((rows * self._down, columns * self._across), bool)
+        dots = np.zeros((rows * self._down, columns * self._across), bool)
         down = np.round((self._top - points.imag) / self._high).astype(np.int64)
         across = np.round((points.real - self._left) / self._dot).astype(np.int64)
-        found[down, across] = True
-        return found.reshape(rows, self._down, columns, self._across)
+        dots[down, across] = True
+        return dots.reshape(rows, self._down, columns, self._across)
 
     def touched(self, points: Points) -> Mask:
-        """The cells that points lie in, bool[rows, columns]."""
+        """Return the cells that points lie in, bool[rows, columns]."""
         return np.asarray(self._dots(points).any(axis=(1, 3)))
 
     def patterns(self, points: Points) -> NDArray[np.str_]:
-        """The Braille pattern of each cell."""
+        """Return the Braille pattern of each cell."""
         bits = (self._dots(points) * _BITS[None, :, None, :]).sum(axis=(1, 3))
         return np.asarray((_BRAILLE + bits).astype("<u4").view("<U1"))
 
 
 def _painted(line: str, paint: Paint) -> str:
-    styles = ["" if one == " " else _STYLES.get(one, _OF_PATH) for one in line]
+    styles = ["" if cell == " " else _STYLES.get(cell, _OF_PATH) for cell in line]
     return painted(line, styles, paint)

@@ -1,4 +1,4 @@
-"""The one file of plotly that a page needs: its JavaScript."""
+"""The JavaScript of plotly, the only part of it that a page needs."""
 
 from __future__ import annotations
 
@@ -6,18 +6,18 @@ import importlib.util
 
 from polarcheck.errors import UsageError
 
-#: Under this name it lies beside many pages.
+#: The name of the file beside the pages of many programs.
 FILE_NAME = "plotly.min.js"
 
 
 def require() -> None:
-    """Raises UsageError where plotly is not installed."""
+    """Raise UsageError if plotly is not installed."""
     if importlib.util.find_spec("plotly") is None:
         raise UsageError("pictures need plotly, of the extra [plot]: pip install plotly")
 
 
 def library() -> str:
-    """The JavaScript. Raises UsageError where plotly is not installed."""
+    """Return the JavaScript. Raises UsageError if plotly is not installed."""
     require()
     from plotly.offline import get_plotlyjs  # type: ignore[import-untyped]
 

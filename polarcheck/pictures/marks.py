@@ -1,7 +1,7 @@
 """
-What is cut too much and what is left standing, as areas with the lines of both blocks.
+Areas that are overcut or left standing, with the lines of their blocks.
 
-Import late: shapely takes its time.
+Import late: shapely is slow to import.
 """
 
 from __future__ import annotations
@@ -27,18 +27,18 @@ from polarcheck.table.overcuts import Cuts, Overcuts, curves_of
 from polarcheck.table.trace import Trace
 from polarcheck.time_limit import keep_time
 
-#: Marks of one kind in a section; beyond them the deepest ones are told.
+#: The most marks of a kind in a section; the deepest are chosen.
 MOST = 300
-#: Corners of the cutter in a quarter.
+#: Corners per quarter circle of the cutter.
 _CORNERS = 32
-#: So many times as far as a rib is high or wide, and a strip is thick, it is shown about its place.
+#: How far around its place a rib or strip is shown, in multiples of its height, width or thickness.
 _AROUND_RIB, _AROUND_STRIP = 1.5, 10.0
 
 
 def overcut_marks(
     trace: Trace, moves: Moves, overcuts: Overcuts, levels: Sequence[Level]
 ) -> Iterator[tuple[int, Mark]]:
-    """The cuts into each contour, ramps included: the section, and what a block takes off another's wall."""
+    """Yield the section and the mark of each cut into a contour, ramps included."""
     for cuts, depth, verb in (
         (overcuts.cuts, overcuts.depth, "cuts"),
         (overcuts.sweeps, overcuts.sweep_depth, "sweeps"),
@@ -48,13 +48,13 @@ def overcut_marks(
             chosen.row.tolist(), chosen.into.tolist(), chosen.depth.tolist(), chosen.place.tolist(), strict=True
         ):
             keep_time()
-            lines = [int(trace.line_in_file[one]) for one in (row, into)]
-            told = f"line {lines[0]} {verb} {in_row(deep, trace, row):length} deep into the contour of line {lines[1]}"
+            lines = [int(trace.line_in_file[each]) for each in (row, into)]
+            text = f"line {lines[0]} {verb} {in_row(deep, trace, row):length} deep into the contour of line {lines[1]}"
             yield (
                 int(trace.section[row]),
                 Mark(
                     kind="overcut",
-                    text=told,
+                    text=text,
                     lines=lines,
                     place=_pair(place),
                     depth=round(deep, LENGTH),
@@ -64,7 +64,7 @@ def overcut_marks(
 
 
 def left_marks(trace: Trace, coverage: Coverage, levels: Sequence[Level]) -> Iterator[tuple[int, Mark]]:
-    """The ribs and strips that no tool takes off, each behind the block that leaves it."""
+    """Yield the section and the mark of each rib and strip that no tool removes, at the block that leaves it."""
     ribs, strips = (coverage.ribs, "a rib", "high", _AROUND_RIB), (coverage.strips, "a strip", "thick", _AROUND_STRIP)
     for left, noun, measure, around in (ribs, strips):
         for row in _largest(trace, left).tolist():
@@ -86,27 +86,27 @@ def left_marks(trace: Trace, coverage: Coverage, levels: Sequence[Level]) -> Ite
 
 
 def _deepest(trace: Trace, cuts: Cuts) -> Cuts:
-    """Of the cuts of one line into another the deepest, of each section those that are told."""
+    """Return the deepest cut of each line into each other line, at most MOST per section."""
     order = np.lexsort((-cuts.depth, trace.line_in_file[cuts.into], trace.line_in_file[cuts.row]))
     order = order[
         _first_of_each(trace.section[cuts.row], trace.line_in_file[cuts.row], trace.line_in_file[cuts.into], order)
     ]
     order = order[np.lexsort((-cuts.depth[order], trace.section[cuts.row[order]]))]
     section = trace.section[cuts.row[order]]
-    told = np.zeros(len(cuts.row), bool)
-    told[order[np.arange(len(order)) - np.searchsorted(section, section) < MOST]] = True
-    return cuts.some(told)
+    is_chosen = np.zeros(len(cuts.row), bool)
+    is_chosen[order[np.arange(len(order)) - np.searchsorted(section, section) < MOST]] = True
+    return cuts.some(is_chosen)
 
 
-def _first_of_each(section: Rows, one: Rows, other: Rows, order: Rows) -> Rows:
-    """Which of the ordered pairs are the first of theirs."""
-    keys = np.stack([section[order], one[order], other[order]], axis=1)
+def _first_of_each(section: Rows, line: Rows, other: Rows, order: Rows) -> Rows:
+    """Return the positions in `order` of the first of each section and pair of lines."""
+    keys = np.stack([section[order], line[order], other[order]], axis=1)
     _, first = np.unique(keys, axis=0, return_index=True)
     return np.sort(first)
 
 
 def _largest(trace: Trace, left: Left) -> Rows:
-    """The rows behind which something is left, of each section the largest ones."""
+    """Return the rows that leave something standing, the largest of each section."""
     rows = np.flatnonzero(left.height > 0)
     rows = rows[np.lexsort((-left.height[rows], trace.section[rows]))]
     section = trace.section[rows]
@@ -114,22 +114,22 @@ def _largest(trace: Trace, left: Left) -> Rows:
 
 
 def _taken(trace: Trace, moves: Moves, row: int, into: int, levels: Sequence[Level], place: complex) -> list[Ring]:
-    """What the cutter takes off the part in the moves of a row, about this place."""
+    """Return the area that the cutter takes off the part in the moves of a row, around this place."""
     part = _level_of(trace, into, levels)
     radius = abs(float(trace.radius_of_move[row]))
     if part is None or np.isnan(radius):
         return []
-    own = moves.row == row
+    of_row = moves.row == row
     tolerance = trace.machine.compensation.overcut_tolerance
-    pieces = segments(curves_of(moves, np.zeros(len(moves), np.int64), own), tolerance)
+    pieces = segments(curves_of(moves, np.zeros(len(moves), np.int64), of_row), tolerance)
     if not len(pieces):
         return []
     ends = np.stack([pieces.start, pieces.end], axis=1)
     lines = shapely.multilinestrings(shapely.linestrings(np.stack([ends.real, ends.imag], axis=2)))
     swept = areas.buffer(lines, radius, quad_segs=_CORNERS)
     taken = areas.intersection(part.polygon, swept, grid_size=GRID)
-    # Beside the cut the cutter touches the walls that it is meant to touch: slivers of chords.
-    cut = [one for one in polygons_of(shapely.buffer(taken, -tolerance / 2)) if not one.is_empty]
+    # The cutter also touches the walls that it should touch, which gives slivers between chords.
+    cut = [polygon for polygon in polygons_of(shapely.buffer(taken, -tolerance / 2)) if not polygon.is_empty]
     point = shapely.Point(place.real, place.imag)
     near = min(cut, key=point.distance, default=None)
     return [] if near is None else rings(shapely.simplify(shapely.buffer(near, tolerance / 2), tolerance / 2))
@@ -138,7 +138,7 @@ def _taken(trace: Trace, moves: Moves, row: int, into: int, levels: Sequence[Lev
 def _untouched(
     trace: Trace, coverage: Coverage, row: int, levels: Sequence[Level], place: complex, reach: float
 ) -> list[Ring]:
-    """What neither belongs to the part nor is taken off by any tool, so far about a place [mm]."""
+    """Return the area that is neither part nor removed by any tool, within `reach` [mm] around a place."""
     part = _level_of(trace, row, levels)
     if part is None:
         return []
@@ -156,14 +156,14 @@ def _untouched(
 
 
 def _distance(point: complex, start: Points, end: Points) -> Floats:
-    """From a point to each of some straight ways [mm]."""
+    """Return the distance from a point to each straight line [mm]."""
     way = end - start
     share = ((point - start) * way.conj()).real / np.maximum(np.abs(way) ** 2, ROUNDING**2)
     return np.asarray(np.abs(point - start - np.clip(share, 0, 1) * way))
 
 
 def _level_of(trace: Trace, row: int, levels: Sequence[Level]) -> Level | None:
-    """The finished part that a wall is of."""
+    """Return the finished part that the wall of a row belongs to."""
     z = float(trace.z[row])
     for level in levels:
         is_same = abs(level.z - z) <= ROUNDING or (np.isnan(z) and np.isnan(level.z))

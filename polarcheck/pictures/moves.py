@@ -1,4 +1,4 @@
-"""The moves of the tool center as a picture tells them, those of Z alone among them: what each is, when it runs."""
+"""The moves of the tool center for a picture, including those of Z alone: their roles and times."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ from polarcheck.table.trace import Trace
 
 ROLES = get_args(Role)
 POSITIONING, CUT, START_UP, CANCEL, CORNER, UNKNOWN = map(np.int16, range(len(ROLES)))
-#: Characters of a block.
+#: The longest text of a block [characters].
 _BLOCK = 120
-#: Digits behind the point: of lengths [mm], of rates and shares, and of times [s].
+#: Decimals of lengths [mm], of rates and shares, and of times [s].
 LENGTH, RATE, TIME = 4, 3, 4
 
 
 class SectionMoves:
     """
-    Columns over the moves of a trace, those of Z alone included, section after section.
+    Columns over the moves of a trace, section after section, including those of Z alone and dwells.
 
-    On those of Z alone, and in dwells, x and c stand still. of_path: the move of the tool center path that each is, -1
-    where it stands still.
+    moves: the moves; x and c stand still in moves of Z alone and in dwells.
+    of_path: the number of each move in the tool center path, -1 where x and c stand still.
     """
 
     def __init__(self, trace: Trace, dynamics: Dynamics) -> None:
@@ -41,13 +41,13 @@ class SectionMoves:
         return len(self.moves)
 
     def _from_path(self, column: Floats, standing: Floats | float) -> Floats:
-        """A column over the moves of the path, with values for those that stand still."""
-        found = np.append(column, np.nan)[self.of_path]
-        return np.where(self.of_path >= 0, found, standing)
+        """Extend a column over the moves of the path by values for the moves that stand still."""
+        values = np.append(column, np.nan)[self.of_path]
+        return np.where(self.of_path >= 0, values, standing)
 
     @cached_property
     def true_feed(self) -> Floats:
-        """F that runs, the lowest on the way [mm/min]."""
+        """Actual feed, the lowest in each move [mm/min]."""
         return self._from_path(self.dynamics.true_feed, self.trace.feed[self.moves.row])
 
     @cached_property
@@ -61,17 +61,17 @@ class SectionMoves:
         return self._from_path(self.dynamics.x_feed, 0.0)
 
     def of_section(self, section: int) -> Rows:
-        """The moves of a section, in order."""
+        """Return the moves of a section, in order."""
         return np.flatnonzero(self.moves.section == section)
 
     @cached_property
     def is_known(self) -> Mask:
-        """The tool center runs there, between points that are known."""
+        """True where the move is one of the tool center, between known points."""
         return np.asarray(self.moves.is_of_tool & ~np.isnan(self.moves.start + self.moves.end))
 
     @cached_property
     def role(self) -> States:
-        """What each is drawn as, an index of ROLES."""
+        """How each move is drawn, an index of ROLES."""
         moves, trace = self.moves, self.trace
         compensated = trace.anywhere_in_section(trace.compensates)[moves.row]
         rapid = trace.motion[moves.row] == Motion.RAPID
@@ -89,14 +89,14 @@ class SectionMoves:
 
     @cached_property
     def z(self) -> tuple[Floats, Floats]:
-        """Before and after each [mm]."""
+        """Z before and after each move [mm]."""
         return z_along(self.trace, self.moves)
 
     @cached_property
     def time(self) -> Floats:
-        """How long each takes [s]; NaN where that is not known, or has no end."""
+        """Time of each move [s]; NaN if unknown or infinite."""
         of_row = self.dynamics.time[self.moves.row]
-        # The time of a rapid is that of its row, where this is one move.
+        # The time of a rapid is that of its row, if the row has a single move.
         alone = np.bincount(self.moves.row, minlength=len(self.trace))[self.moves.row] == 1
         moving = np.append(self.dynamics.at_feed, False)[self.of_path]
         time = np.where(moving, self._from_path(self.dynamics.move_time, np.nan), np.where(alone, of_row, np.nan))
@@ -104,25 +104,25 @@ class SectionMoves:
 
     @cached_property
     def begin(self) -> Floats:
-        """When each begins in its section [s]; a move whose time is not known takes none."""
+        """Start of each move within its section [s]; unknown times count as 0."""
         time, section = np.nan_to_num(self.time), self.moves.section
         done = np.cumsum(time) - time
         first = np.searchsorted(section, section)
         return np.asarray(done - done[first])
 
     def table(self, chosen: Rows) -> MoveTable:
-        """Some of the moves as columns of a page."""
+        """Return the chosen moves as columns for a page."""
         moves, trace = self.moves, self.trace
         row, limit = moves.row[chosen], trace.machine.limits.c_feed
         numbers = _sequence_numbers(trace)
-        written = {one: block_in_line(trace, one, _BLOCK) for one in np.unique(row).tolist()}
-        number = {one: numbers.get(one, "") for one in written}
+        written = {each: block_in_line(trace, each, _BLOCK) for each in np.unique(row).tolist()}
+        number = {each: numbers.get(each, "") for each in written}
         roles = cast("tuple[Role, ...]", ROLES)
         return MoveTable(
             line=trace.line_in_file[row].tolist(),
-            number=[number[one] for one in row.tolist()],
-            block=[written[one] for one in row.tolist()],
-            role=[roles[one] for one in self.role[chosen].tolist()],
+            number=[number[each] for each in row.tolist()],
+            block=[written[each] for each in row.tolist()],
+            role=[roles[role] for role in self.role[chosen].tolist()],
             start=pairs(moves.start[chosen]),
             end=pairs(moves.end[chosen]),
             z=pairs(self.z[0][chosen] + 1j * self.z[1][chosen]),
@@ -139,19 +139,20 @@ class SectionMoves:
 
 def _with_standing(trace: Trace, dynamics: Dynamics) -> tuple[Moves, Rows]:
     """
-    The moves of the plane and, where they stand among them, those of Z alone and dwells, from a point to the same one;
-    and which move of the plane each is, -1 for the others.
+    Return the moves of the plane with moves of Z alone and dwells inserted, and for each its number in the former.
+
+    An inserted move ends at the point where it starts; its number is -1.
     """
     moves = dynamics.moves
     standing = trace.in_polar & ((trace.moves_z & ~trace.travels) | dynamics.dwells)
     row = np.setdiff1d(np.flatnonzero(standing), moves.row)
     if not len(row):
         return moves, np.arange(len(moves))
-    # A pass of an infeed cycle runs over rows that the one before it has run over.
+    # Each pass of an infeed cycle runs over the same rows again.
     at = np.searchsorted(np.maximum.accumulate(moves.row), row)
     last = np.append(moves.end, complex(np.nan, np.nan))[at - 1]
     follows = np.append(moves.section, -1)[at - 1] == trace.section[row]
-    here = np.where(follows, last, trace.end[row])
+    place = np.where(follows, last, trace.end[row])
     nowhere = np.full(len(row), complex(np.nan, np.nan))
     off = np.where(trace.compensates[row], Phase.OFFSET, Phase.CANCELLED)
     known = np.append(moves.known, True)[at - 1]
@@ -159,11 +160,11 @@ def _with_standing(trace: Trace, dynamics: Dynamics) -> tuple[Moves, Rows]:
         "row": row,
         "section": trace.section[row],
         "kind": np.int16(Motion.LINE),
-        "start": here,
-        "end": here,
+        "start": place,
+        "end": place,
         "center": nowhere,
         "feed": trace.feed[row],
-        "known": np.where(follows, known, True) & ~np.isnan(here),
+        "known": np.where(follows, known, True) & ~np.isnan(place),
         "phase": off,
         "corner": False,
         "allowance": 0.0,
@@ -173,7 +174,7 @@ def _with_standing(trace: Trace, dynamics: Dynamics) -> tuple[Moves, Rows]:
 
 
 def _sequence_numbers(trace: Trace) -> dict[int, str]:
-    """The N words as they are written, by row."""
+    """Return the N words as written, by row."""
     words = trace.run.words
     return {
         int(trace.run.row[index]): trace.text.source.excerpt(int(words.start[index]), int(words.end[index]))
@@ -182,14 +183,14 @@ def _sequence_numbers(trace: Trace) -> dict[int, str]:
 
 
 def numbers_of(column: Floats, digits: int) -> list[float | None]:
-    """A column as JSON can hold it: None is unknown, or has no bound."""
-    found = np.where(np.isfinite(column), np.round(column, digits) + 0.0, np.nan)
-    result: list[float | None] = found.astype(object).tolist()
-    for index in np.flatnonzero(np.isnan(found)).tolist():
+    """Return a column as a list for JSON; None is unknown or infinite."""
+    rounded = np.where(np.isfinite(column), np.round(column, digits) + 0.0, np.nan)
+    result: list[float | None] = rounded.astype(object).tolist()
+    for index in np.flatnonzero(np.isnan(rounded)).tolist():
         result[index] = None
     return result
 
 
 def pairs(points: Points) -> list[tuple[float | None, float | None]]:
-    """Points, or from and to, as pairs [mm]."""
+    """Return complex numbers as pairs [mm]: points as (x, c), or (from, to)."""
     return list(zip(numbers_of(points.real, LENGTH), numbers_of(points.imag, LENGTH), strict=True))

@@ -1,8 +1,8 @@
 """
-The page of pictures: HTML that says all in words and tables, and draws where a browser runs its scripts.
+The page of pictures: HTML with all findings in words and tables, and with pictures if the browser runs scripts.
 
-Nothing in it asks for anything from the network. What stands in a program is text there, never markup: what Python
-writes is escaped, what the scripts write is the text of an element.
+It loads nothing from the network. Text from a program is never markup: Python escapes what it writes, and scripts write
+it as the text of an element.
 """
 
 from __future__ import annotations
@@ -20,30 +20,30 @@ import msgspec
 from polarcheck.pictures.picture import FindingPicture, Mark, Picture, SectionPicture
 from polarcheck.reading.excerpt import visible
 
-#: The scripts in the order in which each builds upon those before.
+#: The scripts; each may use those before it.
 _SCRIPTS = ("words", "colors", "face", "rates", "moves", "section", "choosing", "printing", "start")
-#: Scripts run if they are those of this page, and nothing is loaded but a library beside it. plotly sets styles.
+#: Only the scripts of this page run, and only a library beside it is loaded. plotly sets styles.
 _POLICY = (
     "default-src 'none'; script-src {}; style-src 'unsafe-inline'; img-src data: blob:; base-uri 'none'; "
     "form-action 'none'"
 )
-#: What would end a script in HTML, or is no character of one.
+#: Characters that could end a script in HTML, or that a script must not contain.
 _IN_SCRIPT = str.maketrans({mark: f"\\u{ord(mark):04x}" for mark in "<>&\u2028\u2029"})
 _NO_SCRIPTS = "The pictures need a browser that runs scripts; all findings are in the table."
 
 
 def page(pictures: Sequence[Picture], library: str = "", beside: str = "") -> str:
     """
-    The page of one program, or of several one below the other.
+    Return the page of one program, or of several one below the other.
 
-    library: plotly's JavaScript, which then stands in the page. beside: otherwise the name of the file that holds it,
-    in the folder of the page.
+    library: plotly's JavaScript, to be included in the page.
+    beside: without `library`, the name of the file with it in the folder of the page.
     """
     scripts = "\n".join(_part(f"{name}.js") for name in _SCRIPTS)
     script = f'\n(() => {{\n"use strict";\n{scripts}}})();\n'
-    own = library.replace("</script", "<\\/script")
-    allowed = [_hash(script), _hash(own) if own else "'self' file:"]
-    loaded = f"<script>{own}</script>" if own else f'<script src="{_text(beside)}"></script>'
+    included = library.replace("</script", "<\\/script")
+    allowed = [_hash(script), _hash(included) if included else "'self' file:"]
+    loaded = f"<script>{included}</script>" if included else f'<script src="{_text(beside)}"></script>'
     return Template(_part("page.html")).substitute(
         policy=_POLICY.format(" ".join(allowed)),
         title=_text(", ".join(picture.path for picture in pictures)),
@@ -60,7 +60,7 @@ def _part(name: str) -> str:
 
 
 def _hash(script: str) -> str:
-    """The name by which a page allows one script and no other."""
+    """Return the hash by which the policy of a page allows one script."""
     return f"'sha256-{base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()}'"
 
 
@@ -68,13 +68,13 @@ def _hash(script: str) -> str:
 
 
 def _data(pictures: Sequence[Picture]) -> str:
-    """What is drawn, as JSON that may stand in HTML; what stands in words already is left out."""
+    """Return the data of the pictures as JSON that is safe in HTML, without what the page says in words already."""
     drawn = [{"findings": _shown(picture.findings), "sections": _shown(picture.sections)} for picture in pictures]
     return msgspec.json.encode(drawn).decode().translate(_IN_SCRIPT)
 
 
 def _shown(value: Any) -> Any:
-    """The value with each text in it as it can be shown; columns of numbers stay as they are."""
+    """Make all texts in a value printable; columns of numbers stay as they are."""
     if isinstance(value, str):
         return visible(value)
     if isinstance(value, msgspec.Struct):
@@ -84,11 +84,11 @@ def _shown(value: Any) -> Any:
     return value
 
 
-# ---- what is read without scripts ----
+# ---- the page without scripts ----
 
 
 def _text(text: str) -> str:
-    """Text from anywhere as text in HTML."""
+    """Escape text from any source for HTML."""
     return escape(visible(text.replace("\t", " ")))
 
 
@@ -108,7 +108,7 @@ def _program(number: int, picture: Picture) -> str:
 
 
 def _pairs(pairs: Iterable[tuple[str, str]]) -> str:
-    return "".join(f"<dt>{_text(label)}</dt><dd>{_text(told)}</dd>" for label, told in pairs)
+    return "".join(f"<dt>{_text(label)}</dt><dd>{_text(text)}</dd>" for label, text in pairs)
 
 
 def _findings(number: int, findings: Sequence[FindingPicture]) -> str:
@@ -125,13 +125,13 @@ def _findings(number: int, findings: Sequence[FindingPicture]) -> str:
 def _finding(number: int, place: int, finding: FindingPicture) -> str:
     severity = f"{finding.severity}, silenced ({finding.silenced})" if finding.silenced else finding.severity
     more = [("Why", finding.why), ("Fix", finding.fix)]
-    told = "".join(f'<p class="more"><span>{label}</span> {_text(text)}</p>' for label, text in more if text)
+    notes = "".join(f'<p class="more"><span>{label}</span> {_text(text)}</p>' for label, text in more if text)
     alarm = f'<p class="more">alarm {_text(finding.alarm)}</p>' if finding.alarm else ""
     state = " silenced" if finding.silenced else ""
     return (
         f'<tr class="{_text(finding.severity)}{state}" data-picture="{number}" data-finding="{place}">'
         f'<td class="line">{finding.line}</td><td class="severity">{_text(severity)}</td>'
-        f"<td><p>{_text(finding.message)}</p><code>{_text(finding.block)}</code>{told}</td>"
+        f"<td><p>{_text(finding.message)}</p><code>{_text(finding.block)}</code>{notes}</td>"
         f"<td>{_text(finding.rule)}{alarm}</td></tr>"
     )
 
@@ -142,12 +142,12 @@ def _section(number: int, place: int, section: SectionPicture) -> str:
         section=place,
         title=_text(section.title),
         facts=_pairs(_facts(section)),
-        told=_told(number, section),
+        notes=_notes(number, section),
     )
 
 
 def _facts(section: SectionPicture) -> Iterator[tuple[str, str]]:
-    """What the pictures of a section are drawn from."""
+    """Yield label and text of each value that the pictures of a section depend on."""
     if section.channel:
         yield "channel", section.channel
     yield "units", f"{section.units}, X as a {'diameter' if section.diameter else 'radius'}"
@@ -174,22 +174,22 @@ def _facts(section: SectionPicture) -> Iterator[tuple[str, str]]:
 
 
 def _length(value: float, section: SectionPicture) -> str:
-    """A length [mm] in the units of the program."""
+    """Return a length [mm] in the units of the program."""
     return f"{value / section.scale:.{4 if section.units == 'inch' else 3}f} {section.units}"
 
 
-def _told(number: int, section: SectionPicture) -> str:
-    """Why there is no tool path, what the section makes, and what it cuts too much or leaves."""
-    told = f'<p class="missing">{_text(section.needs_radius)}</p>\n' if section.needs_radius else ""
-    made = section.makes or [part.text for part in section.parts]
-    if made:
-        told += f'<ul class="parts">{"".join(f"<li>{_text(text)}</li>" for text in made)}</ul>\n'
-    told += "".join(f'<p class="remark">{_text(remark)}</p>\n' for remark in section.remarks)
+def _notes(number: int, section: SectionPicture) -> str:
+    """Return HTML: why there is no tool path, what the section makes, and what it overcuts or leaves standing."""
+    notes = f'<p class="missing">{_text(section.needs_radius)}</p>\n' if section.needs_radius else ""
+    shapes = section.makes or [part.text for part in section.parts]
+    if shapes:
+        notes += f'<ul class="parts">{"".join(f"<li>{_text(text)}</li>" for text in shapes)}</ul>\n'
+    notes += "".join(f'<p class="remark">{_text(remark)}</p>\n' for remark in section.remarks)
     if section.marks:
         rows = "".join(_mark(number, place, mark, section) for place, mark in enumerate(section.marks))
         heads = "".join(f'<th scope="col">{head}</th>' for head in ("", "Lines", "Where", "By how much"))
-        told += f'<div class="marks"><table><thead><tr>{heads}</tr></thead><tbody>{rows}</tbody></table></div>\n'
-    return told
+        notes += f'<div class="marks"><table><thead><tr>{heads}</tr></thead><tbody>{rows}</tbody></table></div>\n'
+    return notes
 
 
 def _mark(number: int, place: int, mark: Mark, section: SectionPicture) -> str:

@@ -1,7 +1,7 @@
 """
-The finished part of each depth as rings of points.
+The finished part at each depth as rings of points.
 
-Import late: shapely takes its time.
+Import late: shapely is slow to import.
 """
 
 from __future__ import annotations
@@ -22,14 +22,14 @@ from polarcheck.pictures.picture import PartPicture
 from polarcheck.table.finished import Level
 from polarcheck.table.trace import Trace
 
-#: How far beyond its walls a part is shown whose outside is not known, as a share of their extent.
+#: How far a part of unknown outline is shown beyond its walls, as a share of their extent.
 _AROUND = 0.1
 
 Ring = list[tuple[float, float]]
 
 
 def parts(trace: Trace, levels: Sequence[Level], tolerance: float) -> Iterator[PartPicture]:
-    """What stands at each of some depths, its outline thinned by the tolerance [mm] at most."""
+    """Yield the part at each depth, its outline simplified within the tolerance [mm]."""
     for level in levels:
         bar = trace.stock_diameter[level.walls.row[0]]
         shown, is_known = within_window(level, bar, trace.machine.compensation.overcut_tolerance)
@@ -45,8 +45,9 @@ def parts(trace: Trace, levels: Sequence[Level], tolerance: float) -> Iterator[P
 
 def within_window(level: Level, bar: float, tolerance: float) -> tuple[Any, bool]:
     """
-    What stands, cut off a little beyond its walls where it goes on from there without an end that is known, and
-    whether it does not. bar: diameter of the stock, which is such an end [mm]; NaN unknown.
+    Return the part, and whether its outside is known; otherwise it is cut off a little beyond its walls.
+
+    bar: the diameter of the stock, which is such an outside [mm]; NaN if unknown.
     """
     walls = segments(level.walls, tolerance)
     point = np.concatenate([walls.start, walls.end])
@@ -61,13 +62,13 @@ def within_window(level: Level, bar: float, tolerance: float) -> tuple[Any, bool
 
 
 def polygons_of(area: Any) -> list[Any]:
-    """The polygons of an area, those with some extent, the largest first."""
-    found = [one for one in shapely.get_parts(area) if isinstance(one, shapely.Polygon) and not one.is_empty]
-    return sorted(found, key=lambda one: (-one.area, one.bounds))
+    """Return the polygons of an area that are not empty, the largest first."""
+    polygons = [part for part in shapely.get_parts(area) if isinstance(part, shapely.Polygon) and not part.is_empty]
+    return sorted(polygons, key=lambda polygon: (-polygon.area, polygon.bounds))
 
 
 def rings(polygon: Any) -> list[Ring]:
-    """The rings of a polygon, its outside first."""
+    """Return the rings of a polygon, its outside first."""
     return [_points(ring) for ring in (polygon.exterior, *polygon.interiors)]
 
 

@@ -1,13 +1,12 @@
 """
-Paths as points for a picture: arcs become chords, and points that nobody would see are left out.
+Paths as points for a picture: arcs become chords, and points that make no visible difference are left out.
 
-Import late: shapely takes its time.
+Import late: shapely is slow to import.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+import msgspec
 import numpy as np
 import shapely  # type: ignore[import-untyped]
 
@@ -15,21 +14,23 @@ from polarcheck.arrays import Mask, Points, Rows, States
 from polarcheck.geometry.segments import Curves, chord_counts, segments
 from polarcheck.geometry.tolerances import ROUNDING
 
-#: What a picture of this part of its size shows alike [share].
+#: The largest deviation that is invisible, as a share of the size of the picture.
 _UNSEEN = 1 / 8000
-#: How far chords of arcs may lie off them is this part of what is handed to `segments`.
+#: The tolerance for `segments` is this many times the allowed distance of a chord from its arc.
 _SAGITTA = 4
-#: Points that are thinned at a time: the time of it grows with their square where a path runs to and fro.
+#: Points thinned at a time: the time grows with their square where a path runs to and fro.
 _AT_A_TIME = 1000
 #: How often the tolerance is doubled until the points are few enough.
 _DOUBLINGS = 16
 
 
-@dataclass(frozen=True, slots=True)
-class Chords:
+class Chords(msgspec.Struct, frozen=True):
     """
-    The points of a path, n of them: point [mm]; move: whose way leads up to it; begins: bool, nothing leads up to it,
-    since the path begins there.
+    The n points of a path.
+
+    point: complex[n] [mm].
+    move: int64[n], the move that leads to the point.
+    begins: bool[n], the path begins at the point.
     """
 
     point: Points
@@ -39,13 +40,13 @@ class Chords:
     def __len__(self) -> int:
         return len(self.move)
 
-    def some(self, chosen: Mask) -> Chords:
-        """Some of the points."""
+    def chosen(self, chosen: Mask) -> Chords:
+        """Return the chosen points."""
         return Chords(self.point[chosen], self.move[chosen], self.begins[chosen])
 
 
 def unseen(point: Points) -> float:
-    """How far a path may be off in a picture of these points before anybody sees it [mm]."""
+    """Return the largest invisible deviation of a path in a picture of these points [mm]."""
     known = point[~np.isnan(point)]
     if not len(known):
         return _UNSEEN
@@ -55,9 +56,9 @@ def unseen(point: Points) -> float:
 
 def chords(curves: Curves, tolerance: float, most: int) -> tuple[Chords, float]:
     """
-    Curves as chords, those that are not known left out, and how far these lie off the curves at most [mm].
+    Return curves as chords, without unknown curves, and the largest distance of a chord from its curve [mm].
 
-    The tolerance [mm] grows where there would be more than `most` chords of arcs.
+    The tolerance [mm] is doubled until there are at most `most` chords of arcs.
     """
     for _ in range(_DOUBLINGS):
         if chord_counts(curves, _SAGITTA * tolerance).sum() <= most:
@@ -75,20 +76,22 @@ def chords(curves: Curves, tolerance: float, most: int) -> tuple[Chords, float]:
     return Chords(point, move, is_first), tolerance
 
 
-def thinned(path: Chords, kept: Mask, look: States, tolerance: float, most: int) -> tuple[Chords, float]:
+def thinned(path: Chords, keep: Mask, look: States, tolerance: float, most: int) -> tuple[Chords, float]:
     """
-    The path with at most so many points besides those that stay, and how far it lies off the one given [mm].
+    Return the path with at most `most` points besides those that must stay, and its deviation [mm].
 
-    kept: bool[moves], of these all points stay. look: int16[moves], how each is drawn: where that changes a point
-    stays. The tolerance [mm] is doubled until the points are few enough; if they are anyway, none is left out.
+    keep: bool[moves], moves whose points all stay.
+    look: int16[moves], how each move is drawn; a point where this changes stays.
+
+    The tolerance [mm] is doubled until the points are few enough. A path with few points stays as it is.
 
     Source: D. H. Douglas, T. K. Peucker, Algorithms for the reduction of the number of points required to represent a
     digitized line, Cartographica 10 (1973) p. 112.
     """
     if len(path) <= most:
         return path, 0.0
-    stays = kept[path.move]
-    # The last point of a stretch, and the one before another move of note begins.
+    stays = keep[path.move]
+    # The last point of a connected piece, and each point where the look changes.
     ends = np.append(path.begins[1:], True)
     differs = np.append((np.diff(look[path.move]) != 0) | (np.diff(stays) != 0), False)
     turns = path.begins | ends | differs
@@ -100,7 +103,7 @@ def thinned(path: Chords, kept: Mask, look: States, tolerance: float, most: int)
     of = np.repeat(np.arange(len(count)), count)
     at = np.arange(len(of)) - np.repeat(np.cumsum(count) - count, count) + np.repeat(low, count)
     point = path.point[at]
-    # The third coordinate tells which points are left.
+    # The third coordinate holds the number of the point, to see which ones remain.
     lines = shapely.linestrings(np.stack([point.real, point.imag, at], axis=1), indices=of)
     for _ in range(_DOUBLINGS):
         simple = shapely.simplify(lines, tolerance, preserve_topology=False)
@@ -109,4 +112,4 @@ def thinned(path: Chords, kept: Mask, look: States, tolerance: float, most: int)
         if np.count_nonzero(chosen) <= enough:
             break
         tolerance *= 2
-    return path.some(chosen), tolerance
+    return path.chosen(chosen), tolerance

@@ -1,8 +1,8 @@
 """
-What a page draws of one program: data only, as it stands in the page, in a script that is no program.
+The data that a page draws of one program, embedded in the page as JSON.
 
-Lengths in mm on the polar plane, x as a radius; angles deg, rates per min, times s; null is unknown. Columns of one
-table have the same length.
+Lengths are in mm on the polar plane, x as a radius; angles in deg, rates per min, times in s; null is unknown. The
+columns of a table have the same length.
 """
 
 from __future__ import annotations
@@ -11,17 +11,18 @@ from typing import Literal
 
 import msgspec
 
-#: What a move is drawn as. corner: a line that the control adds at an outside corner. unknown: run in offset mode
-#: while R or the position is not known; nobody knows the way of the tool, and the programmed one stands here.
+#: How a move is drawn. corner: a line that the control adds at an outside corner. unknown: the move runs in offset mode
+#: and R or the position is unknown, so that the programmed path is drawn.
 Role = Literal["positioning", "cut", "start up", "cancel", "corner", "unknown"]
 
 
 class Points(msgspec.Struct, frozen=True, kw_only=True):
     """
-    A path as points, arcs thinned to chords; where a move begins elsewhere than the last one ended there is a null.
+    A path as points; arcs are chords, and a gap in the path is a null.
 
-    x, c: [mm]. move: the move of each point in the table of moves; of the programmed path its block's first move. What
-    leads up to a point is of the point's move, so that the first point of a stretch has the move that begins there.
+    x, c: [mm].
+    move: the move that leads to each point, in the table of moves; on the programmed path the first move of its block.
+        The first point after a gap has the move that begins there.
     """
 
     x: list[float | None]
@@ -31,12 +32,21 @@ class Points(msgspec.Struct, frozen=True, kw_only=True):
 
 class MoveTable(msgspec.Struct, frozen=True, kw_only=True):
     """
-    The moves of the tool center in a section, in order, those of Z alone included, on which x and c stand still.
+    The moves of the tool center in a section, in order; in moves of Z alone x and c stand still.
 
-    line: in the file. number: the N word as written, empty without. block: text of the block, cut at 120 characters.
-    role, z, feed [mm/min]: programmed F as a rate along the path. true_feed: what override and clamp leave of it.
-    nearest [mm], c_feed [deg/min], x_feed [mm/min]: the highest at the true feed. share: of the limit of C, null
-    without one. begin, time: when it begins in the section, as in Rates, and how long it takes [s].
+    line: the line in the file.
+    number: the N word as written, empty if there is none.
+    block: the text of the block, at most 120 characters.
+    role: how it is drawn.
+    start, end: [x, c] [mm].
+    z: before and after [mm].
+    feed: programmed F as a rate along the path [mm/min].
+    true_feed: the feed that override and clamp leave, the lowest in the move [mm/min].
+    nearest: the smallest distance to the center [mm].
+    c_feed, x_feed: the highest rates at the true feed [deg/min], [mm/min].
+    share: c_feed as a share of the limit of C, null without a limit.
+    begin: the start in the section, as in Rates [s].
+    time: the duration [s].
     """
 
     line: list[int]
@@ -58,9 +68,12 @@ class MoveTable(msgspec.Struct, frozen=True, kw_only=True):
 
 class Rates(msgspec.Struct, frozen=True, kw_only=True):
     """
-    Curves over the time of a section: t [s], c_feed [deg/min] with its sign, x_feed, feed [mm/min], the move.
+    Curves over the time of a section. A move of unknown time has no points.
 
-    A move whose time is not known takes none, and has no point here.
+    t: [s].
+    c_feed: the rate of C, with its sign [deg/min].
+    x_feed, feed: [mm/min].
+    move: the move in the table of moves.
     """
 
     t: list[float | None]
@@ -72,8 +85,12 @@ class Rates(msgspec.Struct, frozen=True, kw_only=True):
 
 class PartPicture(msgspec.Struct, frozen=True, kw_only=True):
     """
-    The finished part at one Z: rings as lists of [x, c], the first of each polygon its outside. text: what it is, as in
-    `polarcheck part`; known_outside: False where the polygon ends somewhere in the stock, and its edge is no wall.
+    The finished part at one Z.
+
+    z: the depth [mm].
+    polygons: rings of [x, c] [mm]; the first ring of each polygon is its outside.
+    text: the shape in words, as in `polarcheck part`.
+    known_outside: False if the polygon is cut off within the stock, so that its edge is no wall.
     """
 
     z: float | None
@@ -84,8 +101,14 @@ class PartPicture(msgspec.Struct, frozen=True, kw_only=True):
 
 class Mark(msgspec.Struct, frozen=True, kw_only=True):
     """
-    An area that is cut too much or left standing. lines: of the block that does it and, where one is known, of the one
-    that it does it to. place: [x, c]. depth [mm]: how deep or high. rings: of the area, [x, c]; may be empty.
+    An area that is overcut or left standing.
+
+    kind: overcut or left.
+    text: one line on it.
+    lines: the line of the block that causes it and, if known, of the block whose wall it affects.
+    place: [x, c] [mm].
+    depth: its depth or height [mm].
+    rings: the rings of the area, [x, c] [mm]; may be empty.
     """
 
     kind: Literal["overcut", "left"]
@@ -98,8 +121,11 @@ class Mark(msgspec.Struct, frozen=True, kw_only=True):
 
 class FindingPicture(msgspec.Struct, frozen=True, kw_only=True):
     """
-    A finding as it is told. section: its number among the pictures of sections, null outside; move: the first move of
-    its block there, null without one. silenced: by whom, empty for none.
+    A finding, as it is shown.
+
+    section: its number among the pictures of sections, null outside sections.
+    move: the first move of its block in the section, null without one.
+    silenced: what silences it, empty if nothing does.
     """
 
     rule: str
@@ -117,12 +143,30 @@ class FindingPicture(msgspec.Struct, frozen=True, kw_only=True):
 
 class SectionPicture(msgspec.Struct, frozen=True, kw_only=True):
     """
-    One polar section. title: its lines and tool. units: of the program there, mm or inch, in which labels are; scale:
-    mm in one of them. radius of the cutter, stock (diameter), keep_out [mm]; c_limit [deg/min], x_limit [mm/min],
-    feed_limit [mm/min]: those that the machine has. diameter: whether X is written as a diameter there. needs_radius:
-    why no tool path is drawn, empty where it is. thinned: how far thinned paths lie off the true ones at most [mm].
-    move_count: of the section; in the table stand fewer where there are very many. makes: what it makes, all depths
-    together, as in `polarcheck part`, with what is left standing. remarks: what is not drawn, and why.
+    One polar section.
+
+    title: its lines and tool.
+    line, end_line: its first and last line.
+    channel: its channel, empty if there is only one.
+    units: the units of the program there and of the labels, mm or inch.
+    scale: one unit in mm.
+    diameter: X is written as a diameter.
+    radius: the radius of the cutter [mm].
+    radius_source: where the radius comes from.
+    stock: the diameter of the stock [mm].
+    keep_out: the radius of the keep-out zone around the center [mm].
+    c_limit, x_limit, feed_limit: the limits of the machine [deg/min], [mm/min], [mm/min].
+    needs_radius: why no tool path is drawn, empty if one is.
+    thinned: the largest deviation of the drawn paths [mm].
+    time: [s].
+    programmed, tool: the paths.
+    moves: the moves of the tool center; some are left out if there are very many.
+    rates: the rates over time.
+    parts: the finished part at each depth.
+    marks: areas that are overcut or left standing.
+    move_count: the number of all moves.
+    makes: the shapes that it makes, all depths together, as in `polarcheck part`, with what is left standing.
+    remarks: what is not drawn, and why.
     """
 
     title: str
@@ -155,8 +199,15 @@ class SectionPicture(msgspec.Struct, frozen=True, kw_only=True):
 
 class Picture(msgspec.Struct, frozen=True, kw_only=True):
     """
-    One program. head: label and text of each line above the pictures: machine, units, what the verdict rests on, what
-    was assumed. not_evaluated: as the text report tells it.
+    One program.
+
+    path: the path of the file.
+    verdict: the verdict in words.
+    summary: the numbers of findings, sections and blocks.
+    head: label and text of each line above the pictures: machine, units, what the verdict rests on, assumptions.
+    not_evaluated: a line for each reason.
+    findings: the findings, silenced ones included.
+    sections: the pictures of the sections.
     """
 
     path: str
@@ -170,8 +221,11 @@ class Picture(msgspec.Struct, frozen=True, kw_only=True):
 
 class Drawn(msgspec.Struct, frozen=True, kw_only=True):
     """
-    What is drawn of a program, besides what its report says. skip: with which state of block skip it was run, empty
-    where that makes no difference. remarks: what is not drawn of the whole program, and why.
+    The drawing of a program.
+
+    sections: the pictures of the sections.
+    skip: the state of block skip that is drawn, empty if it makes no difference.
+    remarks: what is not drawn of the whole program, and why.
     """
 
     sections: list[SectionPicture]

@@ -1,10 +1,10 @@
-"""The rates of C and X over time: points of a curve for each move, closer together where it bends."""
+"""The rates of C and X over time, as points of curves, closer together where a curve bends."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
+import msgspec
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Points, Rows, States
@@ -12,17 +12,21 @@ from polarcheck.geometry.plane import arc_sweep, cross, dot, quiet
 from polarcheck.machines.modal import Motion
 from polarcheck.pictures.moves import SectionMoves
 
-#: Points for each turn of C by so much, and of an arc about its own center [rad].
+#: The turn of C, or of an arc about its own center, between two points [rad].
 _STEP = np.radians(4.0)
-#: Points of one move.
+#: The most points of one move.
 _MOST_OF_MOVE = 120
 
 
-@dataclass(frozen=True, slots=True)
-class Samples:
+class Samples(msgspec.Struct, frozen=True):
     """
-    Points of curves, n of them: of which move, t: after the begin of the first one [s], c_feed [deg/min], above 0 where
-    C rises, x_feed [mm/min], above 0 outward, feed along the path [mm/min].
+    The n points of the curves.
+
+    move: int64[n], the move of each point.
+    t: float[n], the time since the begin of the first move [s].
+    c_feed: float[n], positive where C rises [deg/min].
+    x_feed: float[n], positive outward [mm/min].
+    feed: float[n], along the path [mm/min].
     """
 
     move: Rows
@@ -31,16 +35,21 @@ class Samples:
     x_feed: Floats
     feed: Floats
 
-    def some(self, chosen: Rows) -> Samples:
-        """Some of the points."""
-        return Samples(*(getattr(self, name)[chosen] for name in Samples.__slots__))
+    def chosen(self, chosen: Rows) -> Samples:
+        """Return the chosen points."""
+        return Samples(*(getattr(self, name)[chosen] for name in Samples.__struct_fields__))
 
 
-@dataclass(frozen=True, slots=True)
-class Ways:
+class Segments(msgspec.Struct, frozen=True):
     """
-    Ways of one kind, k of them, each of a move or of a part of one: start, end, center [mm], kind as in polar.
-    feed [mm/min]. begin, time [s]. held: C turns at a rate that is held, and the feed goes with it. move: of each.
+    The k segments of a path, each a move or a part of one.
+
+    start, end, center: complex[k] [mm].
+    kind: int16[k], a Motion.
+    feed: float[k] [mm/min].
+    begin, time: float[k] [s].
+    held: bool[k], C turns at a constant rate, and the feed follows.
+    move: int64[k], the move of each segment.
     """
 
     start: Points
@@ -54,32 +63,32 @@ class Ways:
     move: Rows
 
 
-def ways(found: SectionMoves, chosen: Rows) -> Ways:
-    """Of some moves, those left out whose time is not known; the parts of one on which automatic override acts."""
-    pieces = found.dynamics.pieces
-    moves, time, begin = found.moves, found.time, found.begin
-    of_path = found.of_path[chosen]
-    slowed = (of_path >= 0) & np.append(found.dynamics.is_slowed, False)[of_path]
+def path_segments(table: SectionMoves, chosen: Rows) -> Segments:
+    """Return the chosen moves of known time; a move with automatic override is divided into its parts."""
+    pieces = table.dynamics.pieces
+    moves, time, begin = table.moves, table.time, table.begin
+    of_path = table.of_path[chosen]
+    slowed = (of_path >= 0) & np.append(table.dynamics.is_slowed, False)[of_path]
     plain = chosen[~slowed & ~np.isnan(time[chosen])]
-    # Where in the order of the chosen moves the one of each piece stands.
-    number = np.full(len(found.dynamics.moves) + 1, -1)
+    # The number of the chosen move of each piece, -1 for other moves.
+    number = np.full(len(table.dynamics.moves) + 1, -1)
     number[of_path] = chosen
     number[-1] = -1
     move = number[pieces.move]
     part = np.flatnonzero(move >= 0)
     part = part[~np.isnan(time[move[part]])]
-    own, part_time = move[part], pieces.time()[part]
+    of_part, part_time = move[part], pieces.time()[part]
     done = np.cumsum(part_time) - part_time
-    first = np.searchsorted(own, own)
-    rows = np.concatenate([plain, own])
+    first = np.searchsorted(of_part, of_part)
+    rows = np.concatenate([plain, of_part])
     order = np.argsort(rows, kind="stable")
-    return Ways(
+    return Segments(
         start=np.concatenate([moves.start[plain], pieces.start[part]])[order],
         end=np.concatenate([moves.end[plain], pieces.end[part]])[order],
         center=np.concatenate([moves.center[plain], pieces.center[part]])[order],
         kind=np.concatenate([moves.kind[plain], pieces.kind[part]])[order],
-        feed=np.concatenate([found.true_feed[plain], pieces.feed[part]])[order],
-        begin=np.concatenate([begin[plain], begin[own] + done - done[first]])[order],
+        feed=np.concatenate([table.true_feed[plain], pieces.feed[part]])[order],
+        begin=np.concatenate([begin[plain], begin[of_part] + done - done[first]])[order],
         time=np.concatenate([time[plain], part_time])[order],
         held=np.concatenate([np.zeros(len(plain), bool), pieces.held[part]])[order],
         move=rows[order],
@@ -87,15 +96,17 @@ def ways(found: SectionMoves, chosen: Rows) -> Ways:
 
 
 @quiet
-def samples(path: Ways, held_at: float) -> Samples:
+def samples(path: Segments, held_at: float) -> Samples:
     """
-    The curves of some ways. held_at: the rate at which C is held [deg/min].
+    Return points of the curves along segments. held_at: the rate at which C is held [deg/min].
 
-    Half of the points of a way divide it evenly, the other half the turn of C, lest a narrow peak where the tool passes
-    the center fall between them: on a line that is seen under the angle w from the foot of the perpendicular d, at the
-    way d tan(w) from it; on an arc, with v from the point nearest to the center of C about its own, at tan(v / 2) =
-    |R - e| / (R + e) tan(w / 2), by which r^2 dw is proportional to dv. Rates as in geometry/polar. Time goes with the
-    way or, where C is held, with its turn.
+    Half of the points of a segment divide its length evenly. The other half divide the turn w of C evenly, so that a
+    narrow peak near the center does not fall between two points. On a line with its foot of the perpendicular at the
+    distance d from the center, the point at the turn w from the foot is d tan(w) away from the foot. On an arc with
+    radius R and its center at the distance e, the point has the angle v about the arc's center, from the point nearest
+    to the center of C: tan(v / 2) = |R - e| / (R + e) tan(w / 2), since r^2 dw is proportional to dv.
+
+    Rates as in geometry/polar. Time is proportional to the length or, where C is held, to its turn.
     """
     start, end, center, kind = path.start, path.end, path.center, path.kind
     is_arc = kind != Motion.LINE
@@ -103,14 +114,14 @@ def samples(path: Ways, held_at: float) -> Samples:
     long = np.where(is_arc, 1.0, np.abs(end - start))
     u = np.where(long > 0, (end - start) / long, 0)
     offset, foot = np.abs(cross(start, u)), dot(start, u)
-    # Of arcs: the angle from the nearest point to the start, in the direction of travel, and how the turn of C grows.
+    # On arcs: the angle from the nearest point to the start, in the direction of travel, and the factor of the turn.
     radius, away = np.abs(start - center), np.abs(center)
     to_near = np.where(away > 0, -center, 1.0)
     first = np.copysign(1.0, sweep) * np.angle((start - center) / to_near)
     narrow = np.abs(radius - away) / (radius + away)
 
     def seen_at(share: Floats, of: Rows) -> Floats:
-        """The angle from the nearest point under which a point of the way is seen from the center of C [rad]."""
+        """Return the turn of C from the nearest point to the point at this share of the segment [rad]."""
         of_arc = _turned(first[of] + share * np.abs(sweep[of]), 1 / narrow[of])
         return np.where(is_arc[of], of_arc, np.arctan2(foot[of] + share * long[of], offset[of]))
 
@@ -124,7 +135,8 @@ def samples(path: Ways, held_at: float) -> Samples:
     ahead = np.where(is_arc, np.where(first <= 0, -first, 2 * np.pi - first) / np.abs(sweep), -foot / long)
     passes = (ahead > 0) & (ahead < 1)
 
-    # Each way has its two ends, count - 1 points that divide it, as many that divide the turn of C, and the nearest.
+    # Each segment has its two ends, count - 1 points that divide its length, as many that divide the turn of C, and the
+    # nearest point.
     each = 2 * count + passes
     of = np.repeat(np.arange(len(start)), each)
     place = np.arange(len(of)) - np.repeat(np.cumsum(each) - each, each)
@@ -157,17 +169,17 @@ def samples(path: Ways, held_at: float) -> Samples:
 
 
 def _turned(angle: Floats, factor: Floats) -> Floats:
-    """2 arctan(factor tan(angle / 2)), whole turns kept [rad]."""
+    """Return 2 arctan(factor tan(angle / 2)), with whole turns added back [rad]."""
     whole = 2 * np.pi * np.round(angle / (2 * np.pi))
     half = (angle - whole) / 2
     return np.asarray(whole + 2 * np.arctan2(factor * np.sin(half), np.cos(half)))
 
 
-def fewer(curves: Samples, kept: Mask, most: int) -> Samples:
+def thinned(curves: Samples, keep: Mask, most: int) -> Samples:
     """
-    At most about so many points: of each short time the first, and the highest and lowest of each curve.
+    Return about `most` points at most: of each short interval the first, and the highest and lowest of each curve.
 
-    kept: bool[moves], no point of these is left out.
+    keep: bool[moves], moves whose points all stay.
     """
     count = len(curves.move)
     if count <= most:
@@ -175,10 +187,10 @@ def fewer(curves: Samples, kept: Mask, most: int) -> Samples:
     columns: Sequence[Floats] = (curves.c_feed, curves.x_feed, curves.feed)
     bins = max(most // (2 * len(columns) + 1), 1)
     whole = float(curves.t[-1] - curves.t[0])
-    # Where nothing takes time the points are divided by their number.
+    # Without any time the points are divided by their number.
     part = (curves.t - curves.t[0]) / whole if whole > 0 else np.arange(count) / count
     number = np.minimum((part * bins).astype(np.int64), bins - 1)
-    chosen = kept[curves.move]
+    chosen = keep[curves.move]
     begins = np.append(True, np.diff(number) != 0)
     chosen[begins] = True
     ends = np.append(begins[1:], True)
@@ -187,4 +199,4 @@ def fewer(curves: Samples, kept: Mask, most: int) -> Samples:
         chosen[order[begins]] = True
         chosen[order[ends]] = True
     chosen[-1] = True
-    return curves.some(np.flatnonzero(chosen))
+    return curves.chosen(np.flatnonzero(chosen))

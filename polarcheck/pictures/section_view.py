@@ -1,4 +1,4 @@
-"""What a terminal shows of a polar section: the points that its paths run through, and the rate of C over time."""
+"""The data of a polar section for a terminal: points of its paths, and the rate of C over time."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ from polarcheck.table.moves import Moves, programmed_moves
 from polarcheck.table.tool_center import ToolCenter
 from polarcheck.table.trace import Trace
 
-#: Points lie no further apart than this share of the picture, which has fewer dots.
+#: The size of the picture in distances between points; a terminal has fewer dots.
 _DOTS = 400
-#: So many points are looked at for a path, besides two for each move.
+#: The most points computed for a path, besides two for each move.
 _MOST = 400_000
-#: Sections of a run that are shown.
+#: The most sections of a run that are shown.
 _SECTIONS = 12
-#: Instants of the curve; a terminal has fewer columns.
+#: The points in time of the curve; a terminal has fewer columns.
 _INSTANTS = 400
 
 
@@ -33,10 +33,14 @@ class SectionView(msgspec.Struct, frozen=True, kw_only=True):
     """
     One polar section.
 
-    title: its lines and tool. programmed, tool: points of the paths [mm], in no order; tool is empty where the path is
-    not known. marks: where blocks with findings end. time [s], rate [deg/min]: the curve of C, rising in time; inf
-    through the center, NaN not known. limit [deg/min], NaN without one. highest_line: of the block with the highest
-    rate, 0 where C does not turn. remarks: what is not shown, and why.
+    title: its lines and tool.
+    programmed, tool: points of the paths, in no order; `tool` is empty if the path is unknown [mm].
+    marks: the end points of blocks with findings [mm].
+    time: the points in time of the curve, rising [s].
+    rate: the rate of C at these times; inf through the center, NaN if unknown [deg/min].
+    limit: the limit of C; NaN without one [deg/min].
+    highest_line: the line of the block with the highest rate, 0 if C does not turn.
+    remarks: what is not shown, and why.
     """
 
     title: str
@@ -51,14 +55,18 @@ class SectionView(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class ViewedReport(FileReport, frozen=True, kw_only=True):
-    """A report with what a terminal shows of its sections."""
+    """
+    A report with views of its sections for a terminal.
+
+    views: the first sections, in the order of channels.
+    """
 
     views: list[SectionView]
 
 
 def with_views(report: FileReport, runs: Sequence[tuple[str, Tables]]) -> FileReport:
-    """The report with the views of its sections; of two runs with block skip those of the first."""
-    lines = {found.line for found in report.findings}
+    """Return the report with the views of its sections; of two runs with block skip the first is shown."""
+    lines = {finding.line for finding in report.findings}
     channels = sorted((tables for _, tables in first_runs(runs)), key=_channel)
     views = [view for tables in channels for view in views_of(tables, lines)]
     fields = {name: getattr(report, name) for name in FileReport.__struct_fields__}
@@ -70,10 +78,10 @@ def _channel(tables: Tables) -> str:
 
 
 def views_of(tables: Tables, lines: Collection[int] = ()) -> Iterator[SectionView]:
-    """The first sections of a run. lines: those that are marked, of the file."""
+    """Yield the first sections of a run. lines: the lines of the file to mark."""
     trace: Trace = tables["trace"]
-    told = polar_sections(tables)
-    if not told:
+    sections = polar_sections(tables)
+    if not sections:
         return
     tool_center: ToolCenter = tables["tool_center"]
     try:
@@ -82,24 +90,24 @@ def views_of(tables: Tables, lines: Collection[int] = ()) -> Iterator[SectionVie
         return
     programmed = programmed_moves(trace)
     is_marked = np.isin(trace.line_in_file, np.array(sorted(lines), np.int64))
-    for number, section in enumerate(told[:_SECTIONS]):
+    for number, section in enumerate(sections[:_SECTIONS]):
         offset = "" if section.offset is None else f", offset {section.offset}"
         channel = f"{trace.text.source.channel}: " if trace.text.source.channel else ""
-        own = moves.chosen(moves.section == number)
-        remarks = [_NO_RADIUS] if not own.is_of_tool.all() else []
-        if number + 1 == _SECTIONS < len(told):
-            remarks.append(f"{len(told) - _SECTIONS} more sections are not shown")
-        time, rate = _curve(own)
+        in_section = moves.chosen(moves.section == number)
+        remarks = [_NO_RADIUS] if not in_section.is_of_tool.all() else []
+        if number + 1 == _SECTIONS < len(sections):
+            remarks.append(f"{len(sections) - _SECTIONS} more sections are not shown")
+        time, rate = _curve(in_section)
         marks = trace.end[is_marked & (trace.section == number)]
         yield SectionView(
             title=f"{channel}section of lines {section.line} to {section.end_line}{offset}",
             programmed=points_of(programmed.chosen(programmed.section == number)),
-            tool=points_of(own.chosen(own.is_of_tool)),
+            tool=points_of(in_section.chosen(in_section.is_of_tool)),
             marks=marks[np.isfinite(marks)],
             time=time,
             rate=rate,
             limit=float(trace.machine.limits.c_feed),
-            highest_line=_highest_line(trace, own),
+            highest_line=_highest_line(trace, in_section),
             remarks=remarks,
         )
 
@@ -116,7 +124,7 @@ def _highest_line(trace: Trace, moves: Moves) -> int:
 
 @quiet
 def points_of(moves: Moves) -> Points:
-    """Points along some moves, of those at one place in the picture one [mm]."""
+    """Return points along moves, at most one for each place in the picture [mm]."""
     ends = np.concatenate((moves.start, moves.end, np.zeros(1, complex)))
     ends = ends[np.isfinite(ends)]
     size = max(np.ptp(ends.real), np.ptp(ends.imag), float(np.nanmax(moves.farthest, initial=0.0)))
@@ -125,20 +133,20 @@ def points_of(moves: Moves) -> Points:
     step = max(size / _DOTS, float(length.sum()) / _MOST, np.finfo(float).tiny)
     count = np.where(known, np.ceil(length / step).astype(np.int64) + 1, 0)
     move, share = _shares(count)
-    found = _along(moves, move, share)
-    place = np.round(found.real / step) + 1j * np.round(found.imag / step)
-    return np.asarray(found[np.unique(place, return_index=True)[1]])
+    point = _along(moves, move, share)
+    place = np.round(point.real / step) + 1j * np.round(point.imag / step)
+    return np.asarray(point[np.unique(place, return_index=True)[1]])
 
 
 def _shares(count: Rows) -> tuple[Rows, Floats]:
-    """So many places on each move: the move, and the share of its way, from 0 to 1."""
+    """Return `count` places on each move: the move, and the share of its length, from 0 to 1."""
     move = np.repeat(np.arange(len(count)), count)
     place = np.arange(len(move)) - np.repeat(np.cumsum(count) - count, count)
     return move, place / np.maximum(count - 1, 1)[move]
 
 
 def _along(moves: Moves, move: Rows, share: Floats) -> Points:
-    """The points at these shares of the way of moves [mm]."""
+    """Return the points at these shares of the length of moves [mm]."""
     start, end, center, kind = moves.start[move], moves.end[move], moves.center[move], moves.kind[move]
     is_arc = np.isin(kind, (Motion.CW, Motion.CCW)) & ~np.isnan(center)
     point = start + share * (end - start)
@@ -150,9 +158,9 @@ def _along(moves: Moves, move: Rows, share: Floats) -> Points:
 @quiet
 def _curve(moves: Moves) -> tuple[Floats, Floats]:
     """
-    Time [s] and |C rate| [deg/min] at places along the moves, of the highest in each short time one.
+    Return times [s] and the absolute rate of C [deg/min], with the highest rate of each short interval.
 
-    The rate is that of C between two places of a move; where it is highest stands the highest of the move.
+    The rate is the average between two places of a move; the highest of them is replaced by the highest of the move.
     """
     time = moves.time
     if not len(time) or not np.isfinite(time).all():

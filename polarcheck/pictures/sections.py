@@ -1,18 +1,19 @@
 """
 A polar section as a picture.
 
-Import late: shapely takes its time.
+Import late: shapely is slow to import.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
+import msgspec
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Rows, States
 from polarcheck.arrays import Points as PlanePoints
+from polarcheck.checking.phrases.offsets import called_tool, to_give
 from polarcheck.checking.quantity import rounded
 from polarcheck.finding import PolarSection
 from polarcheck.machines.modal import MM_PER_INCH
@@ -21,77 +22,95 @@ from polarcheck.pictures.moves import LENGTH, POSITIONING, RATE, TIME, SectionMo
 from polarcheck.pictures.parts import parts
 from polarcheck.pictures.paths import Chords
 from polarcheck.pictures.picture import Mark, Points, Rates, SectionPicture
-from polarcheck.pictures.unknown_radius import why_unknown
 from polarcheck.table.finished import Level
 from polarcheck.table.moves import Moves
 from polarcheck.table.overcuts import curves_of
 from polarcheck.table.trace import Trace
 
-#: Of one section at most: points of each path and of each curve, and moves in the table. Those of findings come on top.
+#: The most points of each path and curve of a section, and moves in its table, not counting those with findings.
 POINTS, MOVES = 20_000, 20_000
-#: The same for all sections of a program together; but each has some.
+#: The same for all sections of a program together; each section has at least _LEAST.
 _OF_PROGRAM, _LEAST = 60_000, 200
-#: Of so many chords for each point that is left.
+#: Chords computed for each point that may remain.
 _CHORDS = 20
-#: With this share of what nobody sees the thinning begins.
+#: The first tolerance of thinning, as a share of the largest invisible deviation.
 _FINEST = 1 / 16
 
 
-class Beside:
-    """What stands beside the moves of a section in its picture."""
+class Extras(msgspec.Struct, frozen=True):
+    """
+    The content of a section's picture besides its moves.
 
-    def __init__(self, levels: Sequence[Level], marks: Sequence[Mark], makes: Sequence[str]) -> None:
-        self.levels = levels
-        self.marks = marks
-        self.makes = makes
+    levels: the finished part at each depth.
+    marks: areas that are overcut or left standing.
+    makes: the shapes that the section makes, in words.
+    """
+
+    levels: Sequence[Level]
+    marks: Sequence[Mark]
+    makes: Sequence[str]
 
 
 def section_picture(
-    trace: Trace, found: SectionMoves, programmed: Moves, told: PolarSection, section: int, lines: Rows, beside: Beside
+    trace: Trace,
+    table: SectionMoves,
+    programmed: Moves,
+    summary: PolarSection,
+    section: int,
+    lines: Rows,
+    extras: Extras,
 ) -> SectionPicture:
     """
-    The picture of one section. told: what its verdict rests on. programmed: the programmed path of the program.
-    lines: those of findings, whose moves are kept as they are.
+    Return the picture of one section.
+
+    table: the moves of the program.
+    programmed: the programmed path of the program.
+    summary: the section in the report.
+    section: its number.
+    lines: the lines with findings, whose moves all stay.
+    extras: its other content.
     """
-    chosen = found.of_section(section)
-    moves = found.moves.chosen(_mask(chosen, len(found)))
+    chosen = table.of_section(section)
+    moves = table.moves.chosen(_mask(chosen, len(table)))
     most = max(min(POINTS, _OF_PROGRAM // len(trace.sections)), _LEAST)
-    role, known = found.role[chosen], found.is_known[chosen]
-    kept = np.isin(trace.line_in_file[moves.row], lines)
-    own = programmed.chosen(programmed.section == section)
+    role, known = table.role[chosen], table.is_known[chosen]
+    keep = np.isin(trace.line_in_file[moves.row], lines)
+    path_moves = programmed.chosen(programmed.section == section)
     unseen = paths.unseen(_shown(moves, role))
-    tool, off = _path(moves, known, kept, role, unseen, most)
-    contour, off_contour = _path(own, own.known, np.isin(own.row, moves.row[kept]), own.phase, unseen, most)
-    path = rates.ways(found, chosen)
-    curves = rates.samples(replace(path, move=np.searchsorted(chosen, path.move)), found.dynamics.c_limit)
-    curves = rates.fewer(curves, kept, most)
-    # Of the moves of each block the first.
-    first = _first_of(moves.row, own.row[contour.move])
-    extremes = (found.c_feed[chosen], found.x_feed[chosen], -moves.nearest)
-    listed = _listed(kept, [tool.move, first, curves.move, *map(_highest, extremes)], most)
+    tool, off = _path(moves, known, keep, role, unseen, most)
+    contour, off_contour = _path(
+        path_moves, path_moves.known, np.isin(path_moves.row, moves.row[keep]), path_moves.phase, unseen, most
+    )
+    path = rates.path_segments(table, chosen)
+    path = msgspec.structs.replace(path, move=np.searchsorted(chosen, path.move))
+    curves = rates.thinned(rates.samples(path, table.dynamics.c_limit), keep, most)
+    # The first of the moves of each block.
+    first = _first_of(moves.row, path_moves.row[contour.move])
+    extremes = (table.c_feed[chosen], table.x_feed[chosen], -moves.nearest)
+    listed = _listed(keep, [tool.move, first, curves.move, *map(_highest, extremes)], most)
     enter = int(trace.sections.enter[section])
     limits = trace.machine.limits
     return SectionPicture(
-        title=_title(told),
-        line=told.line,
-        end_line=told.end_line,
+        title=_title(summary),
+        line=summary.line,
+        end_line=summary.end_line,
         channel=trace.text.source.channel or "",
-        units=told.units,
-        scale=MM_PER_INCH if told.units == "inch" else 1.0,
+        units=summary.units,
+        scale=MM_PER_INCH if summary.units == "inch" else 1.0,
         diameter=bool(trace.x_factor[enter] < 1),
-        radius=told.radius,
-        radius_source=told.radius_source,
+        radius=summary.radius,
+        radius_source=summary.radius_source,
         stock=rounded(trace.stock_diameter[enter]),
         keep_out=rounded(limits.keep_out),
         c_limit=rounded(limits.c_feed),
         x_limit=rounded(limits.x_feed),
         feed_limit=rounded(limits.polar_feed),
-        needs_radius=why_unknown(trace, found.moves, chosen),
+        needs_radius=_why_unknown(trace, table.moves, chosen),
         thinned=round(max(off, off_contour), LENGTH),
-        time=told.time,
+        time=summary.time,
         programmed=_points(contour, _place(listed, first)),
         tool=_points(tool, _place(listed, tool.move)),
-        moves=found.table(chosen[listed]),
+        moves=table.table(chosen[listed]),
         move_count=len(chosen),
         rates=Rates(
             t=numbers_of(curves.t, TIME),
@@ -100,9 +119,9 @@ def section_picture(
             feed=numbers_of(curves.feed, RATE),
             move=_place(listed, curves.move).tolist(),
         ),
-        parts=list(parts(trace, beside.levels, unseen)),
-        marks=list(beside.marks),
-        makes=list(beside.makes),
+        parts=list(parts(trace, extras.levels, unseen)),
+        marks=list(extras.marks),
+        makes=list(extras.makes),
         remarks=_remarks(len(chosen), len(listed)),
     )
 
@@ -114,51 +133,51 @@ def _mask(chosen: Rows, count: int) -> Mask:
 
 
 def _shown(moves: Moves, role: States) -> PlanePoints:
-    """The points by which the size of the picture goes: those of cuts, if there are any, and the center of C."""
+    """Return the points that decide the size of the picture: those of cuts, if there are any, and the center of C."""
     is_cut = role != POSITIONING
     chosen = is_cut if is_cut.any() else np.ones(len(moves), bool)
     return np.concatenate([moves.start[chosen], moves.end[chosen], np.zeros(1, complex)])
 
 
-def _path(moves: Moves, known: Mask, kept: Mask, look: States, unseen: float, most: int) -> tuple[Chords, float]:
-    """A path with the moves that are known, and how far it lies off them at most [mm]."""
+def _path(moves: Moves, known: Mask, keep: Mask, look: States, unseen: float, most: int) -> tuple[Chords, float]:
+    """Return the path of the known moves, and its largest deviation [mm]."""
     curves = curves_of(moves, np.zeros(len(moves), np.int64), known)
     path, off = paths.chords(curves, unseen / 2, _CHORDS * most)
     path = Chords(path.point, np.flatnonzero(known)[path.move], path.begins)
-    path, more = paths.thinned(path, kept, look, _FINEST * unseen, most)
+    path, more = paths.thinned(path, keep, look, _FINEST * unseen, most)
     return path, off + more
 
 
 def _first_of(row: Rows, wanted: Rows) -> Rows:
-    """The first of the moves of each wanted row; the moves of a row need not be neighbours."""
+    """Return the first move of each wanted row; the moves of a row need not be adjacent."""
     rows, first = np.unique(row, return_index=True)
     return np.asarray(first[np.minimum(np.searchsorted(rows, wanted), len(rows) - 1)]) if len(rows) else wanted[:0]
 
 
-def _listed(kept: Mask, shown: Sequence[Rows], most: int) -> Rows:
-    """The moves that the table lists: all of them or, of very many, those that are drawn, or stand at an extreme."""
-    if len(kept) <= most:
-        return np.arange(len(kept))
-    is_listed = kept.copy()
+def _listed(keep: Mask, shown: Sequence[Rows], most: int) -> Rows:
+    """Return the moves in the table: all moves or, if there are too many, those that are drawn or have an extreme."""
+    if len(keep) <= most:
+        return np.arange(len(keep))
+    is_listed = keep.copy()
     is_listed[[0, -1]] = True
-    for one in shown:
-        is_listed[one] = True
+    for moves in shown:
+        is_listed[moves] = True
     return np.flatnonzero(is_listed)
 
 
 def _highest(values: Floats) -> Rows:
-    """The place of the highest value; none of no values."""
+    """Return the index of the highest value as an array; empty if there are no values."""
     highest = np.where(np.isnan(values), -np.inf, values)
     return np.flatnonzero(highest == highest.max(initial=-np.inf))[:1]
 
 
 def _place(listed: Rows, move: Rows) -> Rows:
-    """Where moves stand in the table."""
+    """Return the row of moves in the table."""
     return np.asarray(np.searchsorted(listed, move))
 
 
 def _points(path: Chords, move: Rows) -> Points:
-    """The columns of a path, with a gap before each stretch but the first."""
+    """Return the columns of a path, with a gap before each connected piece but the first."""
     gap = np.flatnonzero(path.begins)[1:]
     point = np.insert(path.point, gap, complex(np.nan, np.nan))
     moves = np.insert(move.astype(float), gap, np.nan)
@@ -174,7 +193,23 @@ def _remarks(count: int, listed: int) -> list[str]:
     return [f"the table lists {listed} of {count} moves: those that are drawn"] if listed < count else []
 
 
-def _title(told: PolarSection) -> str:
+def _title(summary: PolarSection) -> str:
     """`lines 4 to 30, offset 8`."""
-    lines = f"lines {told.line} to {told.end_line}"
-    return lines if told.offset is None else f"{lines}, offset {told.offset}"
+    lines = f"lines {summary.line} to {summary.end_line}"
+    return lines if summary.offset is None else f"{lines}, offset {summary.offset}"
+
+
+def _why_unknown(trace: Trace, moves: Moves, chosen: Rows) -> str:
+    """Return why the tool path of chosen moves is unknown, and what to give; empty if it is known."""
+    unknown = moves.row[chosen[~moves.is_of_tool[chosen]]]
+    if not len(unknown):
+        return ""
+    lacking = unknown[np.isnan(trace.radius_of_move[unknown])]
+    _, first = np.unique(trace.offset_number[lacking], return_index=True)
+    rows = lacking[np.sort(first)].tolist()
+    if not rows:
+        line = int(trace.line_in_file[unknown[0]])
+        return f"the path of the tool is not known from line {line} on: a position there is not known"
+    missing = ", ".join(f"R of {called_tool(trace, row)}" for row in rows if trace.offset_number[row])
+    remedies = "; ".join(to_give(trace, row, "radius") for row in rows)
+    return f"what is run with G41 or G42 is drawn as programmed: {missing or 'R'} is not known; {remedies}"

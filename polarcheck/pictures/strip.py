@@ -1,4 +1,4 @@
-"""A curve over time as a strip of characters, with a limit and its highest value."""
+"""Draws a curve over time as a strip of characters, with a limit."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ import numpy as np
 from polarcheck.arrays import Floats
 from polarcheck.pictures.painting import Paint, painted, plain
 
-#: A cell filled by eighths, from the bottom.
+#: Cells filled from the bottom by 0 to 8 eighths.
 _BLOCKS = " \u2581\u2582\u2583\u2584\u2585\u2586\u2587\u2588"
 _FILLED, _LOW, _LIMIT = "#", "_", "-"
-#: A limit further above the highest value than this is told, not drawn: the curve would be flat.
+#: A limit above the highest value by more than this factor is not drawn: the curve would be flat.
 _FAR = 2.0
 
 
@@ -18,10 +18,15 @@ def strip(
     time: Floats, values: Floats, limit: float, columns: int, rows: int, *, dots: bool, paint: Paint = plain
 ) -> list[str]:
     """
-    Bars over time, the highest value in each column, on as many rows; a line of dashes at the limit.
+    Return bars over time, the highest value of each column, with a line of dashes at the limit.
 
-    time: rising. values: of the same length and not below 0; inf stands above all others, NaN is left empty. limit: NaN
-    without one. dots: blocks of eighths of a cell; else ASCII. Empty where nothing is known, or all is 0.
+    time: rising [s].
+    values: one per time, not below 0; inf is drawn at the top, NaN is left empty.
+    limit: NaN without one.
+    columns, rows: the size.
+    dots: draw with blocks of eighths of a cell; else ASCII.
+
+    Empty if nothing is known, or all values are 0.
     """
     known = ~np.isnan(values)
     time, values = time[known], values[known]
@@ -46,16 +51,16 @@ def strip(
 
 
 def _of_columns(time: Floats, values: Floats, columns: int) -> Floats:
-    """The highest value in each column; between two instants that lie further apart it goes straight."""
+    """Return the highest value in each column; a column without a value is interpolated."""
     whole = float(time[-1] - time[0]) or 1.0
     middle = time[0] + (np.arange(columns) + 0.5) / columns * whole
-    found = np.interp(middle, time, values)
-    np.maximum.at(found, np.minimum((time - time[0]) / whole * columns, columns - 1).astype(np.int64), values)
-    return np.asarray(found)
+    highest = np.interp(middle, time, values)
+    np.maximum.at(highest, np.minimum((time - time[0]) / whole * columns, columns - 1).astype(np.int64), values)
+    return np.asarray(highest)
 
 
 def _painted(line: str, is_above: list[bool], paint: Paint) -> str:
-    """What lies above the limit as an error, the limit itself as an aside."""
+    """Paint cells above the limit as an error, and the limit as an aside."""
     styles = [
         "" if cell == " " else "aside" if cell == _LIMIT else "error" if above else "note"
         for cell, above in zip(line, is_above, strict=False)
