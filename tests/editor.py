@@ -58,7 +58,7 @@ class Editor:
 
     def __enter__(self) -> Editor:
         with pytest.MonkeyPatch.context() as patched:
-            patched.setattr(process, "own_streams", lambda: self._streams)
+            patched.setattr(process, "take_streams", lambda: self._streams)
             self._server = threading.Thread(target=self._serve, daemon=True)
             self._server.start()
             threading.Thread(target=self._listen, daemon=True).start()

@@ -482,8 +482,8 @@ def test_settings_lead_nowhere_outside(tmp_path: Path, monkeypatch: pytest.Monke
     monkeypatch.chdir(tmp_path / "w")
     Path("polarcheck.toml").write_text(job + "\n", "utf-8")
     judged = judged_of(GOOD)
-    assert told in judged.told
-    assert "lies outside the folders that are open" in judged.told
+    assert told in judged.error
+    assert "lies outside the folders that are open" in judged.error
     assert judged_of(GOOD, [Path(os.path.realpath(tmp_path))]).report is not None
 
 
@@ -493,8 +493,8 @@ def test_job_files_above_the_folder_that_is_open_are_passed_over(
     (tmp_path / "polarcheck.toml").write_text("machin = 1\n", "utf-8")
     (tmp_path / "w").mkdir()
     monkeypatch.chdir(tmp_path / "w")
-    assert judged_of(GOOD).told == ""
-    assert "machin" in judged_of(GOOD, [Path(os.path.realpath(tmp_path))]).told
+    assert judged_of(GOOD).error == ""
+    assert "machin" in judged_of(GOOD, [Path(os.path.realpath(tmp_path))]).error
 
 
 def test_called_programs_come_from_the_folders_that_are_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -506,4 +506,4 @@ def test_called_programs_come_from_the_folders_that_are_named(tmp_path: Path, mo
     Path("polarcheck.toml").write_text('[run]\nsubprograms = ["../sub"]\n', "utf-8")
     judged = judged_of(RAPID.replace("G0 C5.", "M98 P77"), select=["rapid-in-polar"])
     assert [found.line for found in report_of(judged).findings] == [4]
-    assert Path("../sub/O77.NC").resolve() in [path.resolve() for path in judged.read]
+    assert Path("../sub/O77.NC").resolve() in [path.resolve() for path in judged.files_read]

@@ -285,7 +285,7 @@ def test_what_somebody_has_answered_for_is_not_fixed() -> None:
     def answered(report: FileReport) -> FileReport:
         return msgspec.structs.replace(report, findings=[])
 
-    found = fixing.with_fixes(DASH.encode(), settings_for(), "-", answered=answered)
+    found = fixing.with_fixes(DASH.encode(), settings_for(), "-", suppress=answered)
     assert (found.data, found.fixed, found.refused) == (DASH.encode(), [], [])
 
 

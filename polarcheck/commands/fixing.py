@@ -86,7 +86,7 @@ def make(
     tasks: Sequence[Task],
     most: int,
     shown: Shown,
-    answered: Callable[[FileReport], FileReport] | None = None,
+    suppress: Callable[[FileReport], FileReport] | None = None,
 ) -> Made:
     """
     Show or write the fixes of the programs, where that is asked for.
@@ -104,7 +104,7 @@ def make(
         return Made()
     from polarcheck.commands.progress import Bar
 
-    work = _Work(wanted, most, shown, answered)
+    work = _Work(wanted, most, shown, suppress)
     with contextlib.closing(Bar(len(tasks), not shown.quiet).watched(tasks)) as awaited:
         for task in awaited:
             work.do(task)
@@ -127,10 +127,10 @@ class _Work:
         wanted: Wanted,
         most: int,
         shown: Shown,
-        answered: Callable[[FileReport], FileReport] | None,
+        suppress: Callable[[FileReport], FileReport] | None,
     ) -> None:
         self.wanted, self.most = wanted, most
-        self.shown, self.answered = shown, answered
+        self.shown, self.suppress = shown, suppress
         self.status = CLEAN
         self.count = self.files = self.left = 0
         self.has_output = False
@@ -171,7 +171,7 @@ class _Work:
                 path,
                 task.settings.encoding,
                 self.wanted.unsafe_fixes,
-                self.answered or (lambda report: report),
+                self.suppress or (lambda report: report),
             )
         except (SourceError, TooHardError) as error:
             self._fail(error)

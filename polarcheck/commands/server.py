@@ -49,7 +49,7 @@ def _serve(no_config: bool, trust: tuple[Path, ...], asked: dict[str, Any]) -> i
     from polarcheck.server import process
 
     try:
-        streams = process.own_streams()
+        streams = process.take_streams()
     except OSError as error:
         raise UsageError(f"standard input or output: {error.strerror}: an editor starts the server") from None
     if os.isatty(streams.source):

@@ -1,1 +1,1 @@
-"""Fixes of findings, applied to the text without touching anything else, and checked before anything is written."""
+"""Fixes of findings: edits that change nothing else, checked before anything is written."""

@@ -1,4 +1,4 @@
-"""What fixes change in a program, as a unified diff for people."""
+"""The unified diff of a program before and after fixes, for people."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ from polarcheck.reading.excerpt import visible
 _CONTEXT = 3
 _SAME, _OLD, _NEW = " -+"
 
-#: A sign and a line.
+#: A sign (space, - or +) and a line.
 _Marked = tuple[str, str]
 
 
 def difference(path: str, old: bytes, new: bytes, origin: Sequence[int], encoding: str | None) -> list[str]:
     """
-    The lines of a unified diff, without line ends; empty where nothing differs.
+    Return the lines of a unified diff, without line ends; empty if nothing differs.
 
-    origin: for each line of the new text that of the old one (from 1) that it comes from, ascending. What would act on
-    a terminal is spelled out, and line ends are left away: it is there to be read.
+    origin: for each line of the new text its line in the old text (from 1), ascending. The diff is for people, not for
+    `patch`: control characters are spelled out, and line ends are left out.
     """
     if old == new:
         return []
@@ -28,7 +28,7 @@ def difference(path: str, old: bytes, new: bytes, origin: Sequence[int], encodin
     marked = list(_marked(was, now, origin))
     changed = [number for number, (sign, _) in enumerate(marked) if sign != _SAME]
     name = visible(path)
-    found = [f"--- {name}", f"+++ {name}"]
+    lines = [f"--- {name}", f"+++ {name}"]
     before = {_OLD: 0, _NEW: 0}
     done = 0
     for first, end in _hunks(changed, len(marked)):
@@ -36,14 +36,14 @@ def difference(path: str, old: bytes, new: bytes, origin: Sequence[int], encodin
             before[sign] += sum(mark != others for mark, _ in marked[done:first])
         hunk = marked[first:end]
         counts = {sign: sum(mark in (sign, _SAME) for mark, _ in hunk) for sign in (_OLD, _NEW)}
-        found.append("@@ -{} +{} @@".format(*(_span(before[sign], counts[sign]) for sign in (_OLD, _NEW))))
-        found += [visible(sign + line) for sign, line in _in_order(hunk)]
+        lines.append("@@ -{} +{} @@".format(*(_span(before[sign], counts[sign]) for sign in (_OLD, _NEW))))
+        lines += [visible(sign + line) for sign, line in _in_order(hunk)]
         done = first
-    return found
+    return lines
 
 
 def _marked(old: list[str], new: list[str], origin: Sequence[int]) -> Iterator[_Marked]:
-    """The lines of both, each with its sign."""
+    """Yield the lines of both texts, each with its sign."""
     from_line = defaultdict[int, list[str]](list)
     for line, of_old in zip(new, origin, strict=True):
         from_line[int(of_old)].append(line)
@@ -51,16 +51,16 @@ def _marked(old: list[str], new: list[str], origin: Sequence[int]) -> Iterator[_
         now = from_line[number]
         if line in now:
             at = now.index(line)
-            yield from ((_NEW, one) for one in now[:at])
+            yield from ((_NEW, added) for added in now[:at])
             yield _SAME, line
-            yield from ((_NEW, one) for one in now[at + 1 :])
+            yield from ((_NEW, added) for added in now[at + 1 :])
         else:
             yield _OLD, line
-            yield from ((_NEW, one) for one in now)
+            yield from ((_NEW, added) for added in now)
 
 
 def _hunks(changed: list[int], count: int) -> Iterator[tuple[int, int]]:
-    """From where to where lines are shown: those that differ and some around them."""
+    """Yield (first, end) of each hunk: lines that differ, and the context around them."""
     first = changed[0]
     for number, following in zip(changed, [*changed[1:], None], strict=True):
         if following is None or following - number > 2 * _CONTEXT + 1:
@@ -69,21 +69,21 @@ def _hunks(changed: list[int], count: int) -> Iterator[tuple[int, int]]:
 
 
 def _in_order(hunk: list[_Marked]) -> Iterator[_Marked]:
-    """Of neighbours that differ the old ones first."""
+    """Yield the lines of a hunk; in each group of adjacent changes the old lines come first."""
     new: list[_Marked] = []
-    for one in hunk:
-        if one[0] == _NEW:
-            new.append(one)
+    for marked in hunk:
+        if marked[0] == _NEW:
+            new.append(marked)
             continue
-        if one[0] == _SAME:
+        if marked[0] == _SAME:
             yield from new
             new = []
-        yield one
+        yield marked
     yield from new
 
 
 def _span(before: int, count: int) -> str:
-    """As in a unified diff: the first line and how many; none stand behind a line."""
+    """Return a span as in a unified diff: the first line and the count; an empty span names the line before it."""
     return f"{before + 1}" if count == 1 else f"{before + 1 if count else before},{count}"
 
 

@@ -1,4 +1,4 @@
-"""A program with the F of its feed table: an unsafe fix, since another feed cuts otherwise."""
+"""Writes the F of the feed table into a program: an unsafe fix, since another feed changes the cut."""
 
 from __future__ import annotations
 
@@ -14,7 +14,14 @@ from polarcheck.reading import source
 
 
 class WithFeeds(msgspec.Struct, frozen=True):
-    """The bytes with the feeds and their unified diff; lines with the lowest F of several, and those left alone."""
+    """
+    A program with the feeds of its feed table.
+
+    data: the bytes.
+    difference: the lines of a unified diff.
+    lowest: lines whose runs need different F; they have the lowest.
+    left: lines that are unchanged, since their F cannot be edited.
+    """
 
     data: bytes
     difference: list[str]
@@ -24,18 +31,18 @@ class WithFeeds(msgspec.Struct, frozen=True):
 
 def with_feeds(title: str, data: bytes, runs: Sequence[Tables], encoding: str | None) -> WithFeeds | None:
     """
-    A program with the F of the feed tables of its runs, one for each channel.
+    Return a program with the F of the feed tables of its runs, one for each channel.
 
-    None where its encoding does not give the bytes back. Raises SourceError for bytes that are not of the encoding,
+    None if its encoding does not reproduce the bytes. Raises SourceError for bytes that are not of the encoding,
     TooHardError.
     """
     text = source.read(data, title, encoding)
     words = [feed_words(tables) for tables in runs]
-    # A program that several channels call has the edits of the first that need some.
-    edits = {edit[:2]: edit for one in reversed(words) for edit in one.edits}
+    # A program that several channels call has the edits of the first channel that needs any.
+    edits = {edit[:2]: edit for table in reversed(words) for edit in table.edits}
     new = applied(text, edits.values())
     if new is None:
         return None
     origin = origins(text, source.read(new, title, encoding), edits.values()).tolist()
-    lowest, left = (sorted({line for one in words for line in getattr(one, name)}) for name in ("lowest", "left"))
+    lowest, left = (sorted({line for table in words for line in getattr(table, name)}) for name in ("lowest", "left"))
     return WithFeeds(new, difference(title, data, new, origin, encoding), lowest, left)

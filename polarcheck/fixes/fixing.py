@@ -1,4 +1,4 @@
-"""The fixes of a program: round after round, until none is left that makes it better."""
+"""Applies the fixes of a program in rounds, until no fix is left that improves it."""
 
 from __future__ import annotations
 
@@ -17,16 +17,23 @@ from polarcheck.fixes.comparison import State, objection, state_of
 from polarcheck.fixes.edits import applied, origins, overlap, spans
 from polarcheck.time_limit import current_limit, seconds_for, time_limit
 
-#: The checks of one program for its fixes; what is left then is left for the next time.
+#: The most checks of one program for its fixes; further fixes wait for the next run.
 MOST_CHECKS = 200
-#: Where so many fixes of a rule are refused, no more of that rule are tried in the program.
+#: After this many refused fixes of a rule, no more fixes of that rule are tried in the program.
 MOST_REFUSED = 20
 
-Answered = Callable[[FileReport], FileReport]
+#: Removes findings from a report that must not be fixed, since a baseline suppresses them.
+Suppress = Callable[[FileReport], FileReport]
 
 
 class Fixed(msgspec.Struct, frozen=True):
-    """A fix that was made: the rule whose finding it mends, its line in the file as it was (from 1), its title."""
+    """
+    A fix that was applied.
+
+    rule: the rule whose finding it fixes.
+    line: the line in the original file (from 1).
+    title: the title of the fix.
+    """
 
     rule: str
     line: int
@@ -34,17 +41,20 @@ class Fixed(msgspec.Struct, frozen=True):
 
 
 class Refused(Fixed, frozen=True):
-    """A fix that was not made, and why."""
+    """A fix that was not applied, and the reason."""
 
     reason: str
 
 
 class Outcome(msgspec.Struct, frozen=True):
     """
-    The bytes with the fixes; what was made, and what not.
+    A program with its fixes.
 
-    left: how many are only made where unsafe ones are. is_whole: there was time for all of them. origin: for each line
-    of the result that of the file (from 1).
+    data: the bytes.
+    fixed, refused: the fixes that were applied, and those that were not.
+    left: the number of unsafe fixes that were not requested.
+    origin: for each line of the result its line in the original file (from 1).
+    is_whole: there was time for all fixes.
     """
 
     data: bytes
@@ -56,14 +66,20 @@ class Outcome(msgspec.Struct, frozen=True):
 
 
 class _Candidate(msgspec.Struct, frozen=True):
-    """A fix that may be made. spans: its edits by position."""
+    """
+    A fix to try.
 
-    found: Finding
+    finding: the finding that it fixes.
+    fix: the fix.
+    spans: its edits by character position.
+    """
+
+    finding: Finding
     fix: Fix
     spans: list[Replace]
 
 
-#: Of a fix of a program as it is.
+#: Identifies a fix in a version of a program: rule, line, title.
 _Key = tuple[str, int, str]
 
 
@@ -73,31 +89,35 @@ def with_fixes(
     path: str,
     encoding: str | None = None,
     unsafe: bool = False,
-    answered: Answered = lambda report: report,
+    suppress: Suppress = lambda report: report,
 ) -> Outcome:
     """
-    A program with the fixes of its findings: the safe ones, or the unsafe ones, too.
+    Return a program with the fixes of its findings.
 
-    answered: takes the findings out of a report that somebody has answered for: they are not fixed. A fix that would
-    bring another finding, or another way of the tool than it says, is not made. Those that touch each other come one
-    round after the other. All of it may take as long as a check; what is left then is left for the next time. Raises
-    what state_of raises for the program as it is.
+    unsafe: apply unsafe fixes, too.
+    suppress: removes findings that must not be fixed from a report.
+
+    A fix that would cause another finding, or another tool path than it declares, is refused. Fixes that overlap are
+    applied in successive rounds. All of it has the time limit of one check; further fixes wait for the next run. Raises
+    what state_of raises for the original program.
     """
     with time_limit(seconds_for(len(data), settings.job.run.max_seconds)):
-        return _fixed(data, settings, path, encoding, unsafe, answered)
+        return _fixed(data, settings, path, encoding, unsafe, suppress)
 
 
 def _fixed(
-    data: bytes, settings: Settings, path: str, encoding: str | None, unsafe: bool, answered: Answered
+    data: bytes, settings: Settings, path: str, encoding: str | None, unsafe: bool, suppress: Suppress
 ) -> Outcome:
     state = state_of(data, settings, path, encoding)
-    work = _Work(settings, path, encoding, unsafe, answered, len(state.source.line_starts))
+    work = _Work(settings, path, encoding, unsafe, suppress, len(state.source.line_starts))
     while not work.is_over:
         candidates = work.candidates(state)
         if not candidates:
             break
         state = work.best(state, candidates) or state
-    left = sum(one.fix is not None and not one.fix.safe and not unsafe for one in answered(state.asked).findings)
+    left = sum(
+        finding.fix is not None and not finding.fix.safe and not unsafe for finding in suppress(state.selected).findings
+    )
     return Outcome(
         state.source.data, work.fixed, list(work.refused.values()), left, work.origin.tolist(), not work.is_over
     )
@@ -105,8 +125,13 @@ def _fixed(
 
 class _Work:
     """
-    What was made so far, and refused since then. origin: for each line of the program as it is now that of the file
-    (from 1).
+    The state of the rounds.
+
+    fixed: the fixes applied so far.
+    refused: the fixes refused since the last one that was applied.
+    last: the program with the fixes accepted in this round.
+    checks: the number of checks so far.
+    origin: for each line of the present program its line in the original file (from 1).
     """
 
     def __init__(
@@ -115,11 +140,11 @@ class _Work:
         path: str,
         encoding: str | None,
         unsafe: bool,
-        answered: Answered,
+        suppress: Suppress,
         lines: int,
     ) -> None:
         self.settings, self.path, self.encoding = settings, path, encoding
-        self.unsafe, self.answered = unsafe, answered
+        self.unsafe, self.suppress = unsafe, suppress
         self.fixed: list[Fixed] = []
         self.refused: dict[_Key, Refused] = {}
         self.last: State | None = None
@@ -128,94 +153,96 @@ class _Work:
 
     @property
     def is_over(self) -> bool:
-        """What is left is left for the next time."""
+        """Return True once the time or the number of checks is used up."""
         limit = current_limit()
         return self.checks >= MOST_CHECKS or (limit is not None and limit.is_over())
 
     def candidates(self, state: State) -> list[_Candidate]:
-        """The fixes to try next, in the order of the lines: of which none touches another."""
+        """Return the fixes to try next, in the order of the lines; none of them overlap."""
         chosen: list[_Candidate] = []
         taken: list[Replace] = []
-        for found in self.answered(state.asked).findings:
-            fix = found.fix
-            if fix is None or not (fix.safe or self.unsafe) or _key(found, fix) in self.refused:
+        for finding in self.suppress(state.selected).findings:
+            fix = finding.fix
+            if fix is None or not (fix.safe or self.unsafe) or _key(finding, fix) in self.refused:
                 continue
-            if self._is_given_up(found.rule):
+            if self._is_exhausted(finding.rule):
                 continue
-            own = spans(state.source, fix)
-            if not overlap(own, taken):
-                chosen.append(_Candidate(found, fix, own))
-                taken += own
-        # What may change the way of the tool is looked at by itself.
-        plain = [one for one in chosen if WAY not in _changes(one)[0]]
+            edits = spans(state.source, fix)
+            if not overlap(edits, taken):
+                chosen.append(_Candidate(finding, fix, edits))
+                taken += edits
+        # A fix that may change the tool path is tried alone.
+        plain = [each for each in chosen if WAY not in _changes(each)[0]]
         return plain or chosen[:1]
 
     def best(self, state: State, candidates: Sequence[_Candidate]) -> State | None:
-        """The program with as many of these fixes as it takes; None where it takes none of them."""
+        """Return the program with as many of these fixes as possible; None if all are refused."""
         self.last = None
-        made = self._accepted(state, [], candidates)
+        accepted = self._accepted(state, [], candidates)
         if self.last is None:
             return None
-        # What was refused is tried again: these may have made room for it, and the next time would find it.
+        # Refused fixes are tried again, since the accepted ones may have removed the reason.
         self.refused = {}
-        self.fixed += [Fixed(one.found.rule, self._line(one), one.fix.title) for one in made]
-        spans_made = [span for one in made for span in one.spans]
-        self.origin = self.origin[origins(state.source, self.last.source, spans_made) - 1]
+        self.fixed += [Fixed(each.finding.rule, self._line(each), each.fix.title) for each in accepted]
+        edits = [span for each in accepted for span in each.spans]
+        self.origin = self.origin[origins(state.source, self.last.source, edits) - 1]
         return self.last
 
-    def _accepted(self, state: State, made: list[_Candidate], candidates: Sequence[_Candidate]) -> list[_Candidate]:
-        """Those that were made, with as many of the candidates as the program takes beside them."""
-        candidates = [one for one in candidates if not self._is_given_up(one.found.rule)]
+    def _accepted(self, state: State, accepted: list[_Candidate], candidates: Sequence[_Candidate]) -> list[_Candidate]:
+        """Return the accepted fixes, and as many of the candidates as are accepted beside them."""
+        candidates = [each for each in candidates if not self._is_exhausted(each.finding.rule)]
         if not candidates or self.is_over:
-            return made
-        after, reason = self._tried(state, [*made, *candidates])
+            return accepted
+        after, reason = self._try(state, [*accepted, *candidates])
         if after is not None:
             self.last = after
-            return [*made, *candidates]
+            return [*accepted, *candidates]
         if len(candidates) == 1:
-            (one,) = candidates
-            self.refused[_key(one.found, one.fix)] = Refused(one.found.rule, self._line(one), one.fix.title, reason)
-            return made
+            (refused,) = candidates
+            finding, fix = refused.finding, refused.fix
+            self.refused[_key(finding, fix)] = Refused(finding.rule, self._line(refused), fix.title, reason)
+            return accepted
         for part in _parts(candidates):
-            made = self._accepted(state, made, part)
-        return made
+            accepted = self._accepted(state, accepted, part)
+        return accepted
 
-    def _is_given_up(self, rule: str) -> bool:
-        """So many fixes of the rule were refused that no more are tried."""
+    def _is_exhausted(self, rule: str) -> bool:
+        """Return True once too many fixes of the rule were refused."""
         return sum(refused.rule == rule for refused in self.refused.values()) >= MOST_REFUSED
 
-    def _line(self, one: _Candidate) -> int:
-        return int(self.origin[one.found.line - 1])
+    def _line(self, candidate: _Candidate) -> int:
+        return int(self.origin[candidate.finding.line - 1])
 
-    def _tried(self, state: State, candidates: Sequence[_Candidate]) -> tuple[State | None, str]:
-        data = applied(state.source, [span for one in candidates for span in one.spans])
+    def _try(self, state: State, candidates: Sequence[_Candidate]) -> tuple[State | None, str]:
+        """Apply fixes and check the result; returns it, or None and the reason why it is refused."""
+        data = applied(state.source, [span for each in candidates for span in each.spans])
         if data is None:
             return None, f"its encoding, {state.source.encoding}, does not give all characters back as they are"
         self.checks += 1
         try:
             after = state_of(data, self.settings, self.path, self.encoding)
-            rules = {one.found.rule for one in candidates}
-            reason = objection(state, after, rules, [_changes(one) for one in candidates])
+            rules = {each.finding.rule for each in candidates}
+            reason = objection(state, after, rules, [_changes(each) for each in candidates])
         except (SourceError, TooHardError) as error:
             return None, f"the result could not be judged: {error}"
         return (None, reason) if reason else (after, "")
 
 
 def _parts(candidates: Sequence[_Candidate]) -> list[list[_Candidate]]:
-    """Those of each rule, or the halves of those of a single one: what is refused often is so of one rule."""
-    rules = dict.fromkeys(one.found.rule for one in candidates)
+    """Split candidates by rule, those of a single rule into halves: refused fixes are often of one rule."""
+    rules = dict.fromkeys(each.finding.rule for each in candidates)
     if len(rules) > 1:
-        return [[one for one in candidates if one.found.rule == rule] for rule in rules]
+        return [[each for each in candidates if each.finding.rule == rule] for rule in rules]
     half = len(candidates) // 2
     return [list(candidates[:half]), list(candidates[half:])]
 
 
-def _key(found: Finding, fix: Fix) -> _Key:
-    return found.rule, found.line, fix.title
+def _key(finding: Finding, fix: Fix) -> _Key:
+    return finding.rule, finding.line, fix.title
 
 
-def _changes(one: _Candidate) -> tuple[Sequence[str], range]:
-    """What of the path a fix says it changes, and in which lines."""
-    way = repair_of(one.found.rule)
-    lines = [line for edit in one.fix.edits for line in (edit.line, edit.end_line)]
-    return way.changes if way is not None else (), range(min(lines), max(lines) + 1)
+def _changes(candidate: _Candidate) -> tuple[Sequence[str], range]:
+    """Return what a fix declares to change in the tool path, and in which lines."""
+    repair = repair_of(candidate.finding.rule)
+    lines = [line for edit in candidate.fix.edits for line in (edit.line, edit.end_line)]
+    return repair.changes if repair is not None else (), range(min(lines), max(lines) + 1)

@@ -1,1 +1,1 @@
-"""The language server: what a check finds and knows, shown by an editor while a program is written."""
+"""The language server: shows findings and other results of a check in an editor while a program is written."""

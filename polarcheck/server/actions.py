@@ -1,4 +1,4 @@
-"""What an editor offers at a finding: its fix, and a comment that allows it."""
+"""The code actions of a finding: its fix, and a comment that allows it."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from polarcheck.server.allowing import allow
 from polarcheck.server.diagnostics import diagnostic
 from polarcheck.server.judged import Judged
 
-#: Findings of a selection that actions are offered for.
+#: The most findings of a selection for which actions are offered.
 _MOST = 50
 
 
@@ -21,20 +21,21 @@ def actions(
     judged: Judged, uri: str, version: int | None, selected: types.Range, with_versions: bool
 ) -> list[types.CodeAction]:
     """
-    The actions for the findings in a selection, those of one finding one after the other.
+    Return the actions for the findings in a selection, grouped by finding.
 
-    version: of the document, which an edit is for. with_versions: whether the editor knows what that is.
+    version: the version of the document that the edits apply to.
+    with_versions: the editor supports versions of documents.
     """
     return [
         types.CodeAction(
             title=visible(title),
             kind=types.CodeActionKind.QuickFix,
-            diagnostics=[diagnostic(found, judged, uri)],
+            diagnostics=[diagnostic(finding, judged, uri)],
             is_preferred=is_preferred or None,
             edit=_edit(edits, judged, uri, version, with_versions),
         )
-        for found in _in(judged, selected)[:_MOST]
-        for title, is_preferred, edits in _offered(found, judged)
+        for finding in _in(judged, selected)[:_MOST]
+        for title, is_preferred, edits in _offered(finding, judged)
     ]
 
 
@@ -44,29 +45,29 @@ def _in(judged: Judged, selected: types.Range) -> list[Finding]:
     text = judged.text
     first, last = text.offset(selected.start), text.offset(selected.end)
     return [
-        found
-        for found in judged.report.findings
-        if text.offset_of(found.line, found.column) <= last
-        and text.offset_of(found.end_line, found.end_column) >= first
+        finding
+        for finding in judged.report.findings
+        if text.offset_of(finding.line, finding.column) <= last
+        and text.offset_of(finding.end_line, finding.end_column) >= first
     ]
 
 
-def _offered(found: Finding, judged: Judged) -> Iterator[tuple[str, bool, list[Edit]]]:
-    if found.fix is not None:
-        # An editor may take what is preferred without showing it: nothing that moves an axis.
-        note = "" if found.fix.safe else " (moves an axis: look at it)"
-        yield f"{found.fix.title}{note}", found.fix.safe, found.fix.edits
-    rule = load_all().get(found.rule)
+def _offered(finding: Finding, judged: Judged) -> Iterator[tuple[str, bool, list[Edit]]]:
+    if finding.fix is not None:
+        # An editor may apply a preferred action unseen, so a fix that moves an axis is not preferred.
+        note = "" if finding.fix.safe else " (moves an axis: look at it)"
+        yield f"{finding.fix.title}{note}", finding.fix.safe, finding.fix.edits
+    rule = load_all().get(finding.rule)
     if judged.settings is not None and judged.settings.inline and (rule is None or rule.group != "silence"):
-        yield f"Allow {found.rule} here", False, [allow(found, judged)]
+        yield f"Allow {finding.rule} here", False, [allow(finding, judged)]
 
 
 def _edit(
     edits: Iterable[Edit], judged: Judged, uri: str, version: int | None, with_versions: bool
 ) -> types.WorkspaceEdit:
     changes = [
-        types.TextEdit(judged.text.range_of(one.line, one.column, one.end_line, one.end_column), one.text)
-        for one in edits
+        types.TextEdit(judged.text.range_of(edit.line, edit.column, edit.end_line, edit.end_column), edit.text)
+        for edit in edits
     ]
     if with_versions:
         document = types.OptionalVersionedTextDocumentIdentifier(uri, version)

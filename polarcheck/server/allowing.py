@@ -1,4 +1,4 @@
-"""The comment that allows what a rule finds: written where it belongs, and completed while it is typed."""
+"""Allow comments: writes one for a finding, and completes one while it is typed."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ _KEYWORDS = {
     ON: "from here on",
     OFF: "up to here",
 }
-#: Behind a keyword; some write a colon there.
+#: Blanks after a keyword, with an optional colon.
 _BLANKS = r"(?:\s*+:)?+\s++"
 _KEYWORD = re.compile(rf"[(;]\s*+{WORD}{_BLANKS}([A-Z-]*+)$", re.IGNORECASE)
-#: Names follow each other with commas, or those with a hyphen with blanks between; else the reason has begun.
+#: Names are separated by commas; after a name with a hyphen a blank will do. Other words begin the reason.
 _NAME = re.compile(
     rf"[(;]\s*+{WORD}{_BLANKS}ALLOW(?:-FILE|-ON|-OFF)?+{_BLANKS}"
     r"(?:[A-Z0-9-]++\s*+,\s*+|[A-Z0-9]++-[A-Z0-9-]*+\s++)*+([A-Z0-9-]*+)$",
@@ -34,30 +34,30 @@ _NAME = re.compile(
 
 
 def comment(rule: str, machine: Machine) -> str:
-    """The comment as this control writes one, in characters that it keeps."""
+    """Return the comment in the syntax of this control, in characters that it keeps."""
     if machine.control.line_comments:
         return f"{machine.control.line_comments[0]} {WORD} {ALLOW} {rule.upper()} "
     return f"({WORD} {ALLOW} {rule.upper()} )"
 
 
-def allow(found: Finding, judged: Judged) -> Edit:
+def allow(finding: Finding, judged: Judged) -> Edit:
     """
-    The edit that allows a finding: a comment at the end of its block, or on a line of its own before that.
+    Return the edit that allows a finding: a comment at the end of its block, or on a line before the block.
 
-    The latter where the block ends in a comment that would take up what is written behind it.
+    The latter if the block ends in a comment that would swallow the new one.
     """
     assert judged.settings is not None
-    machine, line = judged.settings.machine, judged.text.line_text(found.line)
-    written = comment(found.rule, machine)
-    if _is_open(line, machine) or found.end_line != found.line:
+    machine, line = judged.settings.machine, judged.text.line_text(finding.line)
+    written = comment(finding.rule, machine)
+    if _is_open(line, machine) or finding.end_line != finding.line:
         ends = _line_end(judged.text)
-        return Edit(line=found.line, column=1, end_line=found.line, end_column=1, text=f"{written}{ends}")
+        return Edit(line=finding.line, column=1, end_line=finding.line, end_column=1, text=f"{written}{ends}")
     column = len(line.rstrip()) + 1
-    return Edit(line=found.line, column=column, end_line=found.line, end_column=column, text=f" {written}")
+    return Edit(line=finding.line, column=column, end_line=finding.line, end_column=column, text=f" {written}")
 
 
 def _is_open(line: str, machine: Machine) -> bool:
-    """Whether a comment goes on at the end of a line."""
+    """Return True if a comment is still open at the end of a line."""
     if line.rfind("(") > line.rfind(")"):
         return True
     marks = machine.control.line_comments
@@ -69,7 +69,7 @@ def _line_end(text: OpenText) -> str:
 
 
 def completions(text: OpenText, position: types.Position, judged: Judged | None) -> list[types.CompletionItem]:
-    """What can follow in such a comment: the words of polarcheck, then the names of rules and groups."""
+    """Return the completions in an allow comment: the keywords, then the names of rules and groups."""
     offset = text.offset(position)
     line = text.line_of(position)
     before = text.text[text.offset_of(line) : offset]
@@ -80,11 +80,11 @@ def completions(text: OpenText, position: types.Position, judged: Judged | None)
             types.CompletionItem(
                 label=name,
                 kind=types.CompletionItemKind.Keyword,
-                detail=said,
+                detail=detail,
                 sort_text=f"{number}",
                 text_edit=types.TextEdit(place, f"{name} "),
             )
-            for number, (name, said) in enumerate(_KEYWORDS.items())
+            for number, (name, detail) in enumerate(_KEYWORDS.items())
         ]
     name = _NAME.search(before)
     if not name:
@@ -106,10 +106,10 @@ def completions(text: OpenText, position: types.Position, judged: Judged | None)
 
 
 def _near(judged: Judged | None, line: int) -> set[str]:
-    """The rules with a finding in a line or the next one."""
+    """Return the rules with a finding in a line or the next one."""
     if judged is None or judged.report is None:
         return set()
-    return {found.rule for found in judged.report.findings if line <= found.line <= line + 1}
+    return {finding.rule for finding in judged.report.findings if line <= finding.line <= line + 1}
 
 
 def _of_rule(rule: Rule, place: types.Range, is_near: bool) -> types.CompletionItem:
@@ -126,7 +126,7 @@ def _of_rule(rule: Rule, place: types.Range, is_near: bool) -> types.CompletionI
 
 
 def with_page(item: types.CompletionItem, with_markdown: bool) -> types.CompletionItem:
-    """The item of a rule with its manual page, which would be too much for the whole list."""
+    """Return the item of a rule with its manual page, which the list of all items leaves out."""
     rule = load_all().get(str(item.data))
     if rule is not None:
         text = rule.page.strip()

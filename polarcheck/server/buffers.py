@@ -1,4 +1,4 @@
-"""The documents that are open in the editor: each is checked when it has changed and nobody has typed for a moment."""
+"""The open documents of the editor; each is checked after a change, once nobody has typed for a moment."""
 
 from __future__ import annotations
 
@@ -20,17 +20,23 @@ from polarcheck.server.worker import Worker
 if TYPE_CHECKING:
     from polarcheck.server.judged import Judged, SettingsOf
 
-#: How long nobody must have typed before a check begins, at least and at most [s]; in between as long as the last took.
-_CALM, _LONGEST_CALM = 0.25, 2.0
+#: The least and the most pause after the last key before a check begins; in between, the time of the last check [s].
+_PAUSE, _LONGEST_PAUSE = 0.25, 2.0
 
 Signature = tuple[State, ...]
 
 
 class Buffer:
     """
-    A document that is open.
+    An open document.
 
-    judged: what was found in the last of its states that a check has come to the end of.
+    judged: the result of its last check; None while its text is newer.
+    pause: how long to wait after a change [s].
+    is_open: the editor has not closed it.
+    stopped: set to cancel the present check.
+    hurry: set to check at once.
+    task: the present check.
+    seen: the state of the files that the last result depends on.
     """
 
     def __init__(self, uri: str, path: Path, text: OpenText, version: int | None) -> None:
@@ -39,7 +45,7 @@ class Buffer:
         self.text = text
         self.version = version
         self.judged: Judged | None = None
-        self.calm = _CALM
+        self.pause = _PAUSE
         self.is_open = True
         self.stopped = threading.Event()
         self.hurry = asyncio.Event()
@@ -47,7 +53,7 @@ class Buffer:
         self.seen: Signature = ()
 
     def stop(self) -> None:
-        """End the check that runs, or is to run: nobody waits for it any more."""
+        """Cancel the running or pending check."""
         self.stopped.set()
         if self.task is not None:
             self.task.cancel()
@@ -55,10 +61,13 @@ class Buffer:
 
 class Buffers:
     """
-    All of them, by their names in the protocol.
+    All open documents.
 
-    folders_of: the folders from which files may be opened for a program. publish: is handed what was found. bug: is
-    told of what polarcheck itself does wrong; the check of that state then has no outcome.
+    open: the documents by URI.
+    settings_of: returns the settings of a program.
+    folders_of: returns the folders from which files may be opened for a program.
+    publish: takes the result of each check.
+    bug: takes each internal error, with the path of the program.
     """
 
     def __init__(
@@ -74,13 +83,13 @@ class Buffers:
         self._publish, self._bug = publish, bug
 
     def put(self, buffer: Buffer) -> None:
-        """A document has been opened."""
+        """Add a document that has been opened."""
         self.drop(buffer.uri)
         self.open[buffer.uri] = buffer
         self.touch(buffer, 0.0)
 
     def drop(self, uri: str) -> Buffer | None:
-        """A document has been closed."""
+        """Remove a document that has been closed."""
         buffer = self.open.pop(uri, None)
         if buffer is not None:
             buffer.is_open = False
@@ -88,12 +97,12 @@ class Buffers:
         return buffer
 
     def change(self, buffer: Buffer, text: OpenText, version: int | None) -> None:
-        """A document has another text."""
+        """Replace the text of a document."""
         buffer.text, buffer.version = text, version
-        self.touch(buffer, buffer.calm)
+        self.touch(buffer, buffer.pause)
 
     def touch(self, buffer: Buffer, delay: float) -> None:
-        """Check a document when nothing has happened to it for so long [s]; what ran for it before is stale."""
+        """Cancel the check of a document, and check it again after a delay [s] without a change."""
         buffer.stop()
         buffer.stopped, buffer.hurry, buffer.judged = threading.Event(), asyncio.Event(), None
         buffer.task = asyncio.create_task(self._check(buffer, delay))
@@ -106,7 +115,7 @@ class Buffers:
         judged = await self.worker.do(self._judge, text, buffer.path, buffer.stopped.is_set)
         if judged is None:
             return
-        buffer.calm = min(max(_CALM, time.monotonic() - begun), _LONGEST_CALM)
+        buffer.pause = min(max(_PAUSE, time.monotonic() - begun), _LONGEST_PAUSE)
         buffer.judged = judged
         try:
             buffer.seen = await self.worker.do(signature, self._watched(judged))
@@ -115,7 +124,7 @@ class Buffers:
             self._bug(error, str(buffer.path))
 
     def _judge(self, text: OpenText, path: Path, is_stopped: Callable[[], bool]) -> Judged | None:
-        """In the thread: what a check finds, None where nobody waits for it."""
+        """Check a text, in the worker thread; None if the check is cancelled."""
         from polarcheck.server.judged import Judged, judge
 
         try:
@@ -128,32 +137,32 @@ class Buffers:
 
     async def judged(self, uri: str, *, soon: bool = False) -> Judged | None:
         """
-        What is found in the present text of a document, once its check has ended; None for one that is not open.
+        Return the result of the check of a document's present text, once it is there; None if it is not open.
 
-        soon: somebody waits for it: whether they still type does not count.
+        soon: check at once, without the pause for typing.
         """
         buffer = self.open.get(uri)
         while buffer is not None and buffer.is_open and buffer.judged is None and buffer.task is not None:
             if soon:
                 buffer.hurry.set()
-            # Waiting for a task ends when it is cancelled for a newer one, and does not end it.
+            # asyncio.wait returns when the task is cancelled for a newer one, and does not cancel it itself.
             await asyncio.wait([buffer.task])
             if buffer.task.done() and not buffer.task.cancelled() and buffer.judged is None:
                 return None
         return buffer.judged if buffer is not None and buffer.is_open else None
 
     def _watched(self, judged: Judged) -> list[Path]:
-        """The files on which an outcome hangs: those read, and the job files that could be there."""
-        found = [*judged.read]
+        """Return the files that a result depends on: those read, and the job files that could be created."""
+        paths = judged.files_read
         roots = self._folders_of(judged.path)
         for folder in Path(os.path.realpath(judged.path)).parents:
             if not any(folder.is_relative_to(root) for root in roots):
                 break
-            found += [folder / FILE_NAME, folder / PROJECT]
-        return found
+            paths += [folder / FILE_NAME, folder / PROJECT]
+        return paths
 
-    async def look_around(self) -> None:
-        """Check each document anew on whose settings or called programs something has changed."""
+    async def check_stale(self) -> None:
+        """Check each document again whose settings or called programs have changed."""
         for buffer in list(self.open.values()):
             judged = buffer.judged
             if judged is None:
@@ -164,5 +173,5 @@ class Buffers:
 
 
 def signature(paths: Sequence[Path]) -> Signature:
-    """What tells whether one of some files has changed, come or gone."""
+    """Return a value that differs once one of these files is changed, created or removed."""
     return tuple(map(state, paths))

@@ -1,4 +1,4 @@
-"""Where a word leads: the program that a block calls, and the block of an N number or label."""
+"""Go to definition: the program that a block calls, and the block of an N number or label."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ from polarcheck.reading.words import Text
 from polarcheck.server.judged import Judged
 from polarcheck.server.open_text import OpenText
 
-#: A number of a block as a program names it elsewhere: GOTO 100, M99 P100, G71 P10 Q20.
+#: A reference to the sequence number of a block: GOTO 100, M99 P100, G71 P10 Q20.
 _NUMBER = re.compile(r"(?:\bGOTO[FBC]?\s*|[PQ]\s*)(\d{1,9})", re.IGNORECASE)
 _JUMPS = (Kind.GOTO, Kind.IF_GOTO)
 
 
 def definition(judged: Judged, uri: str, position: types.Position) -> list[types.Location]:
-    """The places that the block at a position names; of several the one under the cursor."""
+    """Return the places that the block at a position refers to; of several numbers the one under the cursor counts."""
     if judged.settings is None:
         return []
     machine = judged.settings.machine
@@ -34,7 +34,7 @@ def definition(judged: Judged, uri: str, position: types.Position) -> list[types
         block = _block_at(text, character)
         if block is None:
             continue
-        # The listing of the document alone: what is called from files is looked for where it lies.
+        # The listing of the document alone: called programs are located in their own files.
         listing = Listing([read_text(text.source, machine)] if text.source.parts else [text], machine)
         if block >= len(listing.text.blocks):
             continue
@@ -48,7 +48,7 @@ def definition(judged: Judged, uri: str, position: types.Position) -> list[types
 
 
 def _block_at(text: Text, character: int) -> int | None:
-    """The block of the document itself at a character."""
+    """Return the block at a character, or None if it is not in the document itself."""
     block = int(np.searchsorted(text.blocks.start, character, side="right")) - 1
     if block < 0 or character > int(text.blocks.end[block]) + 1:
         return None
@@ -57,19 +57,19 @@ def _block_at(text: Text, character: int) -> int | None:
 
 
 def _of_program(called: ProgramName, listing: Listing, judged: Judged, uri: str) -> list[types.Location]:
-    own = [program for program in listing.programs.named(called) if program.file == 0]
-    if own:
-        return [_at_block(judged.text, uri, listing.text, own[0].first)]
+    programs = [program for program in listing.programs.named(called) if program.file == 0]
+    if programs:
+        return [_at_block(judged.text, uri, listing.text, programs[0].first)]
     assert judged.settings is not None
     place = Library(judged.settings.job.run.subprograms, judged.settings.machine).place(called)
     return [_in_file(*place, called, judged.settings.machine, judged.text.units)] if place else []
 
 
 def _in_file(path: Path, data: bytes, called: ProgramName, machine: Machine, units: str) -> types.Location:
-    """The head of a program in a file; the beginning of the file where it has none."""
-    read = source.read(data, path.name)
-    text = OpenText("\ufeff" * bool(read.bom) + read.text, units)
-    programs = find_programs(read_text(read, machine))
+    """Return the place of a program in a file; the first line if the file does not name it."""
+    decoded = source.read(data, path.name)
+    text = OpenText("\ufeff" * bool(decoded.bom) + decoded.text, units)
+    programs = find_programs(read_text(decoded, machine))
     named = programs.named(called)
     uri = path.absolute().as_uri()
     return _at_block(text, uri, programs.text, named[0].first) if named else types.Location(uri, text.line_range(1))
@@ -81,35 +81,35 @@ def _at_block(shown: OpenText, uri: str, text: Text, block: int) -> types.Locati
 
 
 def _targets(listing: Listing, block: int, at: int) -> Iterator[int]:
-    """The blocks with the number or label that a block names, the number under the cursor before others."""
+    """Yield the blocks that a block jumps to by number or label, the number under the cursor first."""
     program = listing.programs.around(block)
     statement = listing.statement(block)
     for jump in _jumps(statement):
         if jump.label:
-            found = listing.programs.labelled(program, jump.label.upper(), block, jump.search)
-            if found is not None:
-                yield found
+            target = listing.programs.labelled(program, jump.label.upper(), block, jump.search)
+            if target is not None:
+                yield target
     written = block_text(listing.text, block)
-    numbers = sorted(_NUMBER.finditer(written), key=lambda found: not found.start() <= at <= found.end())
+    numbers = sorted(_NUMBER.finditer(written), key=lambda match: not match.start() <= at <= match.end())
     if not numbers:
         return
     number = int(numbers[0][1])
     returns = statement.call in listing.macro.program_returns
     for place in [*(_callers(listing, program) if returns else ()), program]:
-        found = listing.programs.jump(place, number, block if place is program else place.first - 1)
-        if found is not None:
-            yield found
+        target = listing.programs.jump(place, number, block if place is program else place.first - 1)
+        if target is not None:
+            yield target
             return
 
 
 def _jumps(statement: Statement) -> Iterator[Statement]:
-    for one in (statement, *([statement.then] if statement.then is not None else ()), *statement.more):
-        if one.kind in _JUMPS or one.label:
-            yield one
+    for part in (statement, *([statement.then] if statement.then is not None else ()), *statement.more):
+        if part.kind in _JUMPS or part.label:
+            yield part
 
 
 def _callers(listing: Listing, program: Program) -> Iterator[Program]:
-    """The programs of the document that call one by its name or number: M99 P goes back to a block of theirs."""
+    """Yield the programs of the document that call a program: M99 P returns to a block of the caller."""
     for caller in listing.programs.programs:
         if caller is not program:
             blocks = (block for block in listing.stops if caller.first <= block < caller.end)

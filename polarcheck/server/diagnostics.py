@@ -1,4 +1,4 @@
-"""Findings as an editor shows them, and what was not evaluated: no mark must mean looked at, and good."""
+"""Findings as diagnostics of an editor, and what was not evaluated, so that a clean text really is clean."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from polarcheck.server.judged import Judged
 
 SOURCE = "polarcheck"
 NOT_EVALUATED, NOT_CHECKED = "not-evaluated", "not-checked"
-#: Places beside a finding that are listed.
+#: The most related places of a finding.
 _MOST_RELATED = 20
 _SEVERITIES = {
     "error": types.DiagnosticSeverity.Error,
@@ -20,7 +20,7 @@ _SEVERITIES = {
 
 
 def diagnostics(judged: Judged, uri: str) -> list[types.Diagnostic]:
-    """All that is to be marked in a document."""
+    """Return all diagnostics of a document."""
     if judged.report is None:
         return [
             types.Diagnostic(
@@ -28,45 +28,45 @@ def diagnostics(judged: Judged, uri: str) -> list[types.Diagnostic]:
                 severity=types.DiagnosticSeverity.Error,
                 code=NOT_CHECKED,
                 source=SOURCE,
-                message=visible(f"This program is not checked. {judged.told}"),
+                message=visible(f"This program is not checked. {judged.error}"),
             )
         ]
-    return [*(diagnostic(found, judged, uri) for found in judged.report.findings), *_not_evaluated(judged)]
+    return [*(diagnostic(finding, judged, uri) for finding in judged.report.findings), *_not_evaluated(judged)]
 
 
-def diagnostic(found: Finding, judged: Judged, uri: str) -> types.Diagnostic:
-    """A finding; beside it the G12.1 that it belongs to, and what follows from it."""
-    alarm = f" (alarm {found.alarm})" if found.alarm else ""
+def diagnostic(finding: Finding, judged: Judged, uri: str) -> types.Diagnostic:
+    """Return a finding as a diagnostic, with its G12.1 and the findings that follow from it."""
+    alarm = f" (alarm {finding.alarm})" if finding.alarm else ""
     return types.Diagnostic(
-        range=judged.text.range_of(found.line, found.column, found.end_line, found.end_column),
-        severity=_SEVERITIES[found.severity],
-        code=found.rule,
+        range=judged.text.range_of(finding.line, finding.column, finding.end_line, finding.end_column),
+        severity=_SEVERITIES[finding.severity],
+        code=finding.rule,
         source=SOURCE,
-        message=visible(f"{found.told}{alarm}"),
-        related_information=_related(found, judged, uri) or None,
+        message=visible(f"{finding.full_message}{alarm}"),
+        related_information=_related(finding, judged, uri) or None,
     )
 
 
-def _related(found: Finding, judged: Judged, uri: str) -> list[types.DiagnosticRelatedInformation]:
+def _related(finding: Finding, judged: Judged, uri: str) -> list[types.DiagnosticRelatedInformation]:
     places = []
-    if found.section_line is not None and found.section_line != found.line:
-        places.append((judged.text.line_range(found.section_line), "the polar section begins here"))
-    for one in found.follows[:_MOST_RELATED]:
-        place = judged.text.range_of(one.line, one.column, one.end_line, one.end_column)
-        places.append((place, f"follows from it: {one.message} [{one.rule}]"))
+    if finding.section_line is not None and finding.section_line != finding.line:
+        places.append((judged.text.line_range(finding.section_line), "the polar section begins here"))
+    for effect in finding.follows[:_MOST_RELATED]:
+        place = judged.text.range_of(effect.line, effect.column, effect.end_line, effect.end_column)
+        places.append((place, f"follows from it: {effect.message} [{effect.rule}]"))
     return [
         types.DiagnosticRelatedInformation(types.Location(uri, place), visible(message)) for place, message in places
     ]
 
 
 def _not_evaluated(judged: Judged) -> list[types.Diagnostic]:
-    """What matters and could not be judged: each reason once, at the first polar section."""
+    """Return a diagnostic per reason for what matters and could not be judged, at the first polar section."""
     report = judged.report
     assert report is not None
     rules: dict[str, list[str]] = {}
-    for missing in report.not_evaluated:
-        if missing.matters:
-            rules.setdefault(missing.reason, []).append(missing.rule)
+    for gap in report.not_evaluated:
+        if gap.matters:
+            rules.setdefault(gap.reason, []).append(gap.rule)
     return [
         types.Diagnostic(
             range=judged.text.line_range(_first_section(report)),

@@ -1,4 +1,4 @@
-"""What is shown of a block: the manual pages of what is wrong with it, else what the control has in force there."""
+"""The hover of a block: the manual pages of its findings, else the state of the control after it."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from polarcheck.table.tool_center import ToolCenter
 from polarcheck.table.trace import Trace
 from polarcheck.time_limit import time_limit
 
-#: Of a hover that has to make tables that no rule has asked for [s].
+#: The time limit of a hover, which may need tables that no rule has used [s].
 _PATIENCE = 5.0
 _UNKNOWN = "not known"
 _SIDES = {Side.LEFT: "G41, to the left", Side.RIGHT: "G42, to the right"}
@@ -39,11 +39,11 @@ _FEED_MODES = {FeedMode.PER_MINUTE: "/min", FeedMode.PER_REVOLUTION: "/rev", Fee
 
 
 def hover(judged: Judged, position: types.Position, with_markdown: bool) -> types.Hover | None:
-    """The pages of the findings at a place, or the state of its block; None where there is nothing to say."""
-    found = at(judged, position)
-    if found:
-        text = _pages(judged, found, with_markdown)
-        first = found[0]
+    """Return the pages of the findings at a position, or the state of its block; None if there is nothing to show."""
+    findings = at(judged, position)
+    if findings:
+        text = _pages(judged, findings, with_markdown)
+        first = findings[0]
         place = judged.text.range_of(first.line, first.column, first.end_line, first.end_column)
     else:
         line = judged.text.line_of(position)
@@ -61,27 +61,29 @@ def hover(judged: Judged, position: types.Position, with_markdown: bool) -> type
 
 
 def at(judged: Judged, position: types.Position) -> list[Finding]:
-    """The findings whose words stand at a place."""
+    """Return the findings whose words are at a position."""
     if judged.report is None:
         return []
     offset, text = judged.text.offset(position), judged.text
     return [
-        found
-        for found in judged.report.findings
-        if text.offset_of(found.line, found.column) <= offset <= text.offset_of(found.end_line, found.end_column)
+        finding
+        for finding in judged.report.findings
+        if text.offset_of(finding.line, finding.column)
+        <= offset
+        <= text.offset_of(finding.end_line, finding.end_column)
     ]
 
 
-def _pages(judged: Judged, found: list[Finding], with_markdown: bool) -> str:
+def _pages(judged: Judged, findings: list[Finding], with_markdown: bool) -> str:
     assert judged.settings is not None
     rules = load_all()
-    names = [name for name in dict.fromkeys(one.rule for one in found) if name in rules]
+    names = [name for name in dict.fromkeys(finding.rule for finding in findings) if name in rules]
     if not with_markdown:
         return manual.pages((rules[name] for name in names), judged.settings.machine)
     shown = []
     for name in names:
         _, _, body = manual.pages([rules[name]], judged.settings.machine).partition("\n\n")
-        alarms = [one.alarm for one in found if one.rule == name and one.alarm]
+        alarms = [finding.alarm for finding in findings if finding.rule == name and finding.alarm]
         alarm = f", alarm {plain(alarms[0])}" if alarms else ""
         shown.append(f"**{name}**{alarm}\n\n{page(body.strip())}")
     return "\n\n---\n\n".join(shown)
@@ -95,14 +97,14 @@ def _listed(title: str, facts: list[tuple[str, str]], with_markdown: bool) -> st
 
 def state(judged: Judged, line: int) -> tuple[str, list[tuple[str, str]]]:
     """
-    What is in force behind a block when it first runs: a title, and facts by name, in the units of the program.
+    Return the state after the first run of a block: a title, and facts by name, in the units of the program.
 
-    Both are empty for a line that does nothing.
+    Both are empty for a line that is not executed.
     """
-    found = judged.row_of(line)
-    if found is None:
+    execution = judged.row_of(line)
+    if execution is None:
         return "", []
-    tables, row, count = found
+    tables, row, count = execution
     trace: Trace = tables["trace"]
     title = _title(trace, row)
     facts = list(_facts(tables, trace, row))
@@ -126,7 +128,7 @@ def _title(trace: Trace, row: int) -> str:
 
 def _facts(tables: Tables, trace: Trace, row: int) -> Iterator[tuple[str, str]]:
     inside = bool(trace.in_polar[row])
-    # In the mode all of it counts; outside, what is not known is of no interest.
+    # Outside the mode unknown values are left out.
     if inside or np.isfinite([trace.x[row], trace.z[row], trace.c_angle[row]]).any():
         yield "position behind it", ", ".join(_position(trace, row))
     yield "tool offset", _offset(trace, row)
@@ -143,7 +145,7 @@ def _facts(tables: Tables, trace: Trace, row: int) -> Iterator[tuple[str, str]]:
 
 
 def _position(trace: Trace, row: int) -> Iterator[str]:
-    """Each axis with what it is, since that is what goes wrong: a diameter, a length, an angle."""
+    """Yield each axis with its kind of value (diameter, length, angle), since these are often confused."""
     inside = bool(trace.in_polar[row])
     is_diameter = bool(trace.x_factor[row] < 1)
     linear = common.linear(trace, row)
@@ -180,7 +182,7 @@ def _feed(trace: Trace, row: int) -> str:
 
 
 def _of_tool_center(tool_center: ToolCenter, trace: Trace, row: int) -> Iterator[tuple[str, str]]:
-    """What the move asks of C, where it comes nearest to its center, and the highest F."""
+    """Yield the rate of C in the move, its smallest distance to the center, and the highest F."""
     c_feed = float(tool_center.c_feed[row])
     limit = trace.machine.limits.c_feed
     of_limit = f" of {limit:.0f}" if math.isfinite(limit) else ""

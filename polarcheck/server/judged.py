@@ -1,4 +1,4 @@
-"""What is known of one state of a buffer: its settings, its tables, and what a check reports of it."""
+"""The result of a check of one state of a buffer: its settings, tables and report."""
 
 from __future__ import annotations
 
@@ -20,49 +20,55 @@ from polarcheck.server.open_text import OpenText
 from polarcheck.table.trace import Trace
 from polarcheck.time_limit import seconds_for, time_limit
 
-#: What applies to a program. Raises a PolarcheckError for settings that cannot be used.
+#: Returns the settings of a program. Raises a PolarcheckError for settings that cannot be used.
 SettingsOf = Callable[[Path], Settings]
 
 
 class Judged(NamedTuple):
     """
-    text: the state of the buffer. path: of its file. told: why it could not be judged, in one line; else empty, and
-    settings, runs (as check.read gives them) and report are there.
+    The result of a check of one state of a buffer.
+
+    text: the text.
+    path: the path of its file.
+    error: why it could not be checked, in one line; if empty, the other fields are set.
+    settings: the settings of the program.
+    runs: each run by its name, with its tables, from check.read.
+    report: the report.
     """
 
     text: OpenText
     path: Path
-    told: str = ""
+    error: str = ""
     settings: Settings | None = None
     runs: Sequence[tuple[str, Tables]] = ()
     report: FileReport | None = None
 
     @property
     def traces(self) -> Iterator[Trace]:
-        """The executed programs: of each channel and state of block skip."""
+        """Yield the trace of each run: one per channel and state of block skip."""
         for _, tables in self.runs:
             yield tables["trace"]
 
     @property
     def texts(self) -> list[Text]:
-        """What was read: of each channel once, the called files behind it."""
-        found = [trace.text for trace in self.traces]
-        return [text for index, text in enumerate(found) if all(text is not one for one in found[:index])]
+        """Return the text of each channel once, with the called files after it."""
+        texts = [trace.text for trace in self.traces]
+        return [text for index, text in enumerate(texts) if all(text is not earlier for earlier in texts[:index])]
 
     def row_of(self, line: int) -> tuple[Tables, int, int] | None:
-        """The run in which a line is executed, the first of its rows, and how many there are; None where none is."""
+        """Return the first run that executes a line, the first of its rows and their number; None if no run does."""
         for _, tables in self.runs:
             trace: Trace = tables["trace"]
             rows = np.flatnonzero(trace.line_in_file == line)
             if len(rows):
-                # Rows of a program that is called there stand behind that of the call.
-                own = rows[trace.run.depth[rows] == trace.run.depth[rows[0]]]
-                return tables, int(rows[0]), len(own)
+                # Rows of a called program have the line of the call, and are deeper.
+                of_line = rows[trace.run.depth[rows] == trace.run.depth[rows[0]]]
+                return tables, int(rows[0]), len(of_line)
         return None
 
     @property
-    def read(self) -> list[Path]:
-        """The files besides its own that it was judged by; in folders of called programs the folder, too."""
+    def files_read(self) -> list[Path]:
+        """Return the other files that the result depends on, and the folders of called programs."""
         if self.settings is None:
             return []
         folders = [Path(folder) for folder in self.settings.job.run.subprograms]
@@ -78,9 +84,9 @@ def judge(
     is_stopped: Callable[[], bool] = lambda: False,
 ) -> Judged:
     """
-    Check a buffer as the file that it will be. Nothing but files in the folders, and those of subprograms, is opened.
+    Check a buffer as if it were saved. Only files in the folders and in those of subprograms are opened.
 
-    is_stopped: whether nobody waits for it any more. Raises StoppedError then; and what a bug raises.
+    is_stopped: returns True once the check is cancelled; then StoppedError is raised. A bug raises its own exception.
     """
     try:
         with bounded.only_below(folders):

@@ -1,4 +1,4 @@
-"""Text as Markdown that shows it: what comes from a program is data, and formats nothing."""
+"""Escapes text for Markdown: text from a program is data, and must not format anything."""
 
 from __future__ import annotations
 
@@ -6,23 +6,23 @@ import re
 
 from polarcheck.reading.excerpt import visible
 
-#: Not _ inside a word, nor * between blanks: some editors show what stands before a sign to make it one.
-_MEANS_SOMETHING = re.compile(
+#: Characters with a meaning. Not _ inside a word, nor * between blanks: some editors would show the backslash.
+_SPECIAL = re.compile(
     r"([\\`\[\]<>~&]|(?<!\w)_|_(?!\w)|(?<!\s)\*|\*(?!\s))|^(\s*)([-+*]|#{1,6})(?=\s)|^(\s*\d+)([.)])(?=\s)"
 )
 
 
 def plain(text: str) -> str:
-    """Words that come from anywhere, in one line."""
-    return _MEANS_SOMETHING.sub(_escaped, visible(text))
+    """Escape a line of text from any source."""
+    return _SPECIAL.sub(_escaped, visible(text))
 
 
-def _escaped(found: re.Match[str]) -> str:
-    """A sign behind a backslash; what stands before it at the head of the line stays."""
-    sign, blanks, mark, number, point = found.groups()
+def _escaped(match: re.Match[str]) -> str:
+    """Put a backslash before a sign; keep blanks or a number before it at the head of the line."""
+    sign, blanks, mark, number, point = match.groups()
     return f"\\{sign}" if sign else f"{blanks or number or ''}\\{mark or point}"
 
 
 def page(text: str) -> str:
-    """A manual page: indented lines stay as they are, which is code in Markdown, too."""
+    """Escape a manual page; indented lines stay, which are code in Markdown, too."""
     return "\n".join(line if line.startswith("    ") else plain(line) for line in text.split("\n"))

@@ -1,4 +1,4 @@
-"""The text of an open buffer, and its places: as the editor counts them, and as reports do."""
+"""The text of an open buffer; converts between positions of the editor and of reports."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from urllib.parse import unquote_to_bytes
 
 from lsprotocol import types
 
-#: Lines end there for every editor; where they end for a control, `reading.source` knows.
+#: The line ends of editors; those of controls are in `reading.source`.
 _LINE_END = re.compile(r"\r\n|\n|\r")
 _HALF_OF_A_PAIR = re.compile("[\ud800-\udfff]")
 _BOM = "\ufeff"
@@ -26,26 +26,28 @@ Change = types.TextDocumentContentChangePartial | types.TextDocumentContentChang
 
 class OpenText:
     """
-    One state of a buffer; a change makes another one.
+    One state of a buffer; a change makes a new one.
 
-    units: in which the editor counts the characters of a line: utf-8, utf-16 or utf-32. Lines and columns count from 1,
-    columns in characters, as in reports; what the editor calls a position counts from 0, in its units. Places that
-    there are not become the nearest one.
+    text: the characters.
+    units: the units in which the editor counts the characters of a line: utf-8, utf-16 or utf-32.
+
+    Lines and columns count from 1, columns in characters, as in reports. A position of the editor counts from 0, in
+    its units. A position beyond the text is moved to the nearest one.
     """
 
     def __init__(self, text: str, units: str = "utf-16") -> None:
-        # Half of a pair is no character that any encoding has. It counts as one unit, as its stand-in does.
+        # No encoding has an unpaired surrogate. It counts as one unit, as its replacement does.
         self.text = text if text.isascii() else _HALF_OF_A_PAIR.sub("\ufffd", text)
         self.units = units
 
     @cached_property
     def data(self) -> bytes:
-        """The bytes that are checked."""
+        """Return the bytes that are checked."""
         return self.text.encode("utf-8")
 
     @property
     def _lead(self) -> int:
-        """Reports do not count a byte order mark."""
+        """Return 1 if there is a byte order mark, which reports do not count."""
         return int(self.text.startswith(_BOM))
 
     @cached_property
@@ -53,17 +55,17 @@ class OpenText:
         text = self.text
         if text.count("\r") == text.count("\r\n"):
             return _starts(text, "\n")
-        return [0, *(found.end() for found in _LINE_END.finditer(text))]
+        return [0, *(match.end() for match in _LINE_END.finditer(text))]
 
     @cached_property
     def _report_starts(self) -> list[int]:
-        """Where the lines of reports begin: behind LF, or behind CR where there is no LF (reading.source)."""
+        """Return the offsets where lines of reports begin: after LF, or after CR if there is no LF (reading.source)."""
         return _starts(self.text, "\n" if "\n" in self.text else "\r")
 
     # ---- as the editor counts ----
 
     def position(self, offset: int) -> types.Position:
-        """The place of a character, the first being 0."""
+        """Return the position of the character at an offset from 0."""
         offset = min(max(offset, 0), len(self.text))
         line = bisect.bisect_right(self._starts, offset) - 1
         before = self.text[self._starts[line] : offset]
@@ -71,7 +73,7 @@ class OpenText:
         return types.Position(line, len(before) if before.isascii() else len(before.encode(name)) // width)
 
     def offset(self, position: types.Position) -> int:
-        """The character at a place."""
+        """Return the offset of the character at a position."""
         if position.line >= len(self._starts):
             return len(self.text)
         start = self._starts[max(position.line, 0)]
@@ -81,71 +83,71 @@ class OpenText:
         if line.isascii():
             return start + min(count, len(line))
         name, width = _WIDTHS[self.units]
-        # A place within a character is before it.
+        # A position within a character means the one before it.
         return start + len(line.encode(name)[: count * width].decode(name, "ignore"))
 
     def range(self, start: int, end: int) -> types.Range:
-        """From a character to another one, exclusive."""
+        """Return the range from an offset up to another one, exclusive."""
         return types.Range(self.position(start), self.position(max(start, end)))
 
     def changed(self, changes: Iterable[Change]) -> OpenText:
-        """The text after some changes, each made to what the one before has left."""
-        found = self
+        """Return the text after changes, each applied to the result of the one before."""
+        text = self
         for change in changes:
             if isinstance(change, types.TextDocumentContentChangePartial):
-                start, end = found.offset(change.range.start), found.offset(change.range.end)
-                found = OpenText(found.text[:start] + change.text + found.text[max(start, end) :], self.units)
+                start, end = text.offset(change.range.start), text.offset(change.range.end)
+                text = OpenText(text.text[:start] + change.text + text.text[max(start, end) :], self.units)
             else:
-                found = OpenText(change.text, self.units)
-        return found
+                text = OpenText(change.text, self.units)
+        return text
 
     # ---- as reports count ----
 
     def offset_of(self, line: int, column: int = 1) -> int:
-        """The character at a line and column of a report."""
+        """Return the offset of a line and column of a report."""
         line = min(max(line, 1), len(self._report_starts))
         start = self._report_starts[line - 1] + (self._lead if line == 1 else 0)
         return min(start + max(column, 1) - 1, self._end_of(line))
 
     def _end_of(self, line: int) -> int:
-        """Behind the last character of a line, its line end excluded."""
+        """Return the offset after the last character of a line, before its line end."""
         starts = self._report_starts
         end = starts[line] if line < len(starts) else len(self.text)
         return starts[line - 1] + len(self.text[starts[line - 1] : end].rstrip("\r\n"))
 
     def range_of(self, line: int, column: int, end_line: int, end_column: int) -> types.Range:
-        """A span of a report."""
+        """Return the range of a span of a report."""
         return self.range(self.offset_of(line, column), self.offset_of(end_line, end_column))
 
     def line_range(self, line: int) -> types.Range:
-        """A line of a report, without its line end."""
+        """Return the range of a line of a report, without its line end."""
         line = min(max(line, 1), len(self._report_starts))
         return self.range(self.offset_of(line), self._end_of(line))
 
     def line_of(self, position: types.Position) -> int:
-        """The line of a report in which a place stands."""
+        """Return the line of a report that contains a position."""
         return bisect.bisect_right(self._report_starts, self.offset(position))
 
     def line_text(self, line: int) -> str:
-        """A line of a report, without its line end."""
+        """Return the text of a line of a report, without its line end."""
         return self.text[self.offset_of(line) : self._end_of(min(max(line, 1), len(self._report_starts)))]
 
     def place_of(self, character: int) -> int:
-        """The offset of a character as tables of a program count them."""
+        """Return the offset of a character of the program's tables, which do not count a byte order mark."""
         return character + self._lead
 
     def character_of(self, position: types.Position) -> int:
-        """The character at a place, as tables of a program count them."""
+        """Return the character at a position, as the program's tables count."""
         return max(self.offset(position) - self._lead, 0)
 
 
 def _starts(text: str, end: str) -> list[int]:
-    """Where lines begin that end in one character: with each key that is pressed it is asked anew."""
+    """Return where lines begin that end in one character; fast, since it runs at each key press."""
     return [0, *accumulate(len(line) + 1 for line in text.split(end)[:-1])]
 
 
 def path_of(uri: str) -> Path | None:
-    """The file of a document; None for one that lies in none, such as `untitled:Untitled-1`."""
+    """Return the file of a document; None if it has none, such as `untitled:Untitled-1`."""
     scheme, colon, rest = uri.partition(":")
     if not colon or scheme.lower() != "file":
         return None

@@ -1,4 +1,4 @@
-"""The programs and polar sections of a document, and above each section what it asks of the lathe."""
+"""The outline of a document: its programs and polar sections; and a line above each section with its time and rates."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from polarcheck.server.judged import Judged
 
 
 def code_lenses(judged: Judged) -> list[types.CodeLens]:
-    """A line above each G12.1: time, highest rate of C and its limit, radius."""
+    """Return a line above each G12.1: time, highest rate of C and its limit, radius."""
     if judged.report is None:
         return []
     return [
@@ -26,19 +26,23 @@ def code_lenses(judged: Judged) -> list[types.CodeLens]:
 
 
 def _by_line(sections: Iterable[PolarSection]) -> dict[int, tuple[PolarSection, int]]:
-    """Of the sections that begin in a line the one that asks most of C, or nobody knows what, and their number."""
-    found: dict[int, list[PolarSection]] = {}
+    """
+    Return for each line where sections begin the one with the highest rate of C, and their number.
+
+    An unknown rate counts as the highest.
+    """
+    by_line: dict[int, list[PolarSection]] = {}
     for section in sections:
-        found.setdefault(section.line, []).append(section)
+        by_line.setdefault(section.line, []).append(section)
 
     def rate(section: PolarSection) -> float:
         return math.inf if section.c_feed is None else section.c_feed
 
-    return {line: (max(own, key=rate), len(own)) for line, own in found.items()}
+    return {line: (max(group, key=rate), len(group)) for line, group in by_line.items()}
 
 
 def summary(section: PolarSection, runs: int = 1) -> str:
-    """What a polar section asks of the lathe, in one line, in the units of the program; runs: how often it is run."""
+    """Return a line on a polar section, in the units of the program; runs: how often it is run."""
     limit = f" of {section.c_feed_limit:.0f}" if section.c_feed_limit is not None else ""
     at = f" in line {section.c_feed_line}" if section.c_feed_line is not None else ""
     rate = "rate of C not known" if section.c_feed is None else f"C {section.c_feed:.0f}{limit} deg/min{at}"
@@ -59,13 +63,13 @@ def _radius(section: PolarSection) -> str:
 
 
 def symbols(judged: Judged) -> list[types.DocumentSymbol]:
-    """The programs of the document, and in each its polar sections."""
-    found = []
+    """Return the programs of the document, each with its polar sections."""
+    programs = []
     for text in judged.texts:
         for program in find_programs(text).programs:
             if program.file == 0 and program.first < program.end:
-                found.append(_of_program(program, text, judged))
-    return found
+                programs.append(_of_program(program, text, judged))
+    return programs
 
 
 def _of_program(program: Program, text: Text, judged: Judged) -> types.DocumentSymbol:
@@ -75,7 +79,11 @@ def _of_program(program: Program, text: Text, judged: Judged) -> types.DocumentS
     channel = f"{text.source.channel} " if text.source.channel else ""
     first, last = (int(text.blocks.line[block]) for block in (program.first, program.end - 1))
     sections = judged.report.polar_sections if judged.report is not None else ()
-    own = [one for one in sections if first <= one.line <= last and (one.channel or "") == text.source.channel]
+    inside = [
+        section
+        for section in sections
+        if first <= section.line <= last and (section.channel or "") == text.source.channel
+    ]
     return types.DocumentSymbol(
         name=visible(channel + name),
         kind=types.SymbolKind.Function,
@@ -83,7 +91,7 @@ def _of_program(program: Program, text: Text, judged: Judged) -> types.DocumentS
         selection_range=judged.text.range(
             begins, min(ends, judged.text.offset_of(first + 1) if last > first else ends)
         ),
-        children=list(_of_sections(own, last, judged)),
+        children=list(_of_sections(inside, last, judged)),
     )
 
 

@@ -1,4 +1,4 @@
-"""The server as a process: standard input and output hold the protocol, and nothing else."""
+"""The server as a process: standard input and output carry the protocol, and nothing else."""
 
 from __future__ import annotations
 
@@ -16,22 +16,22 @@ if TYPE_CHECKING:
     from polarcheck.server.session import Server
 
 _CHUNK = 1 << 16
-#: Of a line of a header; what is longer is none [bytes].
+#: The longest line of a header [bytes].
 _LONGEST_HEADER = 1 << 16
 
 
 class Streams(NamedTuple):
-    """Where messages come from, and where they go."""
+    """The file descriptors that messages are read from and written to."""
 
     source: int
     sink: int
 
 
-def own_streams() -> Streams:
+def take_streams() -> Streams:
     """
-    Take standard input and output for the protocol: what anybody prints from here on goes to standard error.
+    Reserve standard input and output for the protocol; anything printed afterwards goes to standard error.
 
-    Raises OSError where one of them is closed.
+    Raises OSError if one of them is closed.
     """
     streams = Streams(os.dup(0), os.dup(1))
     if sys.platform == "win32":
@@ -43,13 +43,13 @@ def own_streams() -> Streams:
     os.dup2(nothing, 0)
     try:
         os.dup2(2, 1)
-    except OSError:  # nobody reads errors either
+    except OSError:  # standard error is closed, too
         os.dup2(nothing, 1)
     return streams
 
 
 class _Sink:
-    """Writes messages; once nobody reads them, the session has ended."""
+    """Writes messages; calls `ended` once they can no longer be written."""
 
     def __init__(self, sink: int, ended: Callable[[], None]) -> None:
         self._sink, self._ended = sink, ended
@@ -69,9 +69,9 @@ class _Sink:
 
 def serve(server: Server, streams: Streams) -> int:
     """
-    Answer the editor until it says that it ends, or is gone; the exit code, 1 where it did not say so before.
+    Serve the editor until it says `exit` or is gone; return the exit code, 1 if it did not say `shutdown` before.
 
-    Raises KeyboardInterrupt where the process is interrupted or terminated.
+    Raises KeyboardInterrupt if the process is interrupted or terminated.
     """
     try:
         asyncio.run(_serve(server, streams))
@@ -86,7 +86,7 @@ async def _serve(server: Server, streams: Streams) -> None:
     server.protocol.set_writer(_Sink(streams.sink, reader.feed_eof))
     threading.Thread(target=_feed, args=(streams.source, loop, reader), name="input", daemon=True).start()
     try:
-        # What breaks off within a message, or begins none, is the end, too.
+        # An incomplete or invalid message ends the session, too.
         with contextlib.suppress(asyncio.IncompleteReadError, ValueError):
             await run_async(threading.Event(), reader, server.protocol, error_handler=server.report_server_error)
     finally:
@@ -94,11 +94,11 @@ async def _serve(server: Server, streams: Streams) -> None:
 
 
 def _feed(source: int, loop: asyncio.AbstractEventLoop, reader: asyncio.StreamReader) -> None:
-    """In a thread: what can be waited for like a socket is a socket alone, on some systems."""
+    """Read standard input in a thread: on some systems asyncio can wait for sockets only."""
 
-    def tell(function: Callable[..., None], *given: bytes) -> bool:
+    def call(function: Callable[..., None], *arguments: bytes) -> bool:
         try:
-            loop.call_soon_threadsafe(function, *given)
+            loop.call_soon_threadsafe(function, *arguments)
         except RuntimeError:  # the session has ended
             return False
         return True
@@ -109,7 +109,7 @@ def _feed(source: int, loop: asyncio.AbstractEventLoop, reader: asyncio.StreamRe
         except OSError:
             data = b""
         if not data:
-            tell(reader.feed_eof)
+            call(reader.feed_eof)
             return
-        if not tell(reader.feed_data, data):
+        if not call(reader.feed_data, data):
             return

@@ -1,4 +1,4 @@
-"""The features of the server, each handed to the module that knows the answer."""
+"""The session with an editor: registers the features of the server, and hands each to its module."""
 
 from __future__ import annotations
 
@@ -21,34 +21,34 @@ from polarcheck.server.open_text import OpenText, path_of
 if TYPE_CHECKING:
     from polarcheck.server.judged import Judged, SettingsOf
 
-#: How often it is looked whether settings or called programs have changed: network drives tell nobody [s].
-_LOOK_EVERY = 2.0
-#: Of what an exception says [characters].
-_MOST_SAID = 200
-#: A document of these is none of a control.
+#: How often settings and called programs are checked for changes: network drives send no events [s].
+_POLL_EVERY = 2.0
+#: The longest text of an exception that is shown [characters].
+_LONGEST_ERROR = 200
+#: Extensions of documents that are no NC programs.
 _NO_PROGRAMS = (".toml", ".json", ".md", ".py")
 
-Found = TypeVar("Found")
+Result = TypeVar("Result")
 
 
 class Protocol(LanguageServerProtocol):
-    """The protocol with documents of our own: those of pygls end lines where no editor does, as at U+0085."""
+    """The protocol with our own documents: those of pygls end lines where editors do not, as at U+0085."""
 
     _server: Server
 
     @lsp_method(types.TEXT_DOCUMENT_DID_OPEN)
     def lsp_text_document__did_open(self, params: types.DidOpenTextDocumentParams) -> None:
-        """A document is opened."""
+        """Handle an opened document."""
         self._server.opened(params.text_document)
 
     @lsp_method(types.TEXT_DOCUMENT_DID_CHANGE)
     def lsp_text_document__did_change(self, params: types.DidChangeTextDocumentParams) -> None:
-        """A document is changed."""
+        """Handle a changed document."""
         self._server.changed(params)
 
     @lsp_method(types.TEXT_DOCUMENT_DID_CLOSE)
     def lsp_text_document__did_close(self, params: types.DidCloseTextDocumentParams) -> None:
-        """A document is closed."""
+        """Handle a closed document."""
         self._server.closed(params.text_document.uri)
 
 
@@ -56,8 +56,9 @@ class Server(LanguageServer):
     """
     A session with one editor.
 
-    settings_of: what applies to a program; raises a PolarcheckError. trusted: folders outside the workspace from which
-    files may be opened, too.
+    settings_of: returns the settings of a program; raises a PolarcheckError.
+    trusted: folders outside the workspace from which files may be opened, too.
+    buffers: the open documents.
     """
 
     def __init__(self, settings_of: SettingsOf, trusted: Sequence[Path] = ()) -> None:
@@ -66,23 +67,23 @@ class Server(LanguageServer):
         self._roots: list[Path] = []
         self._bugs: set[str] = set()
         self._loop: asyncio.AbstractEventLoop | None = None
-        self._looking: asyncio.Task[None] | None = None
-        self.buffers = Buffers(settings_of, self.folders_of, self._publish, self._tell_bug)
+        self._polling: asyncio.Task[None] | None = None
+        self.buffers = Buffers(settings_of, self.folders_of, self._publish, self._report_bug)
         _register(self)
 
     # ---- what may be opened ----
 
     def folders_of(self, path: Path) -> list[Path]:
         """
-        The folders from which files are opened for a program, without links to their names.
+        Return the folders from which files may be opened for a program, with all links resolved.
 
-        Those of the workspace; where the editor has none, the program's own, unless it lies nowhere yet.
+        They are those of the workspace; without a workspace it is the folder of the program, if it has been saved.
         """
-        own = [Path(os.path.realpath(path.parent))] if path.is_absolute() else []
-        return [*(self._roots or own), *self._trusted]
+        folder = [Path(os.path.realpath(path.parent))] if path.is_absolute() else []
+        return [*(self._roots or folder), *self._trusted]
 
     def find_roots(self) -> None:
-        """The folders of the workspace, as the editor tells them."""
+        """Take the folders of the workspace from the editor."""
         uris = [folder.uri for folder in self.workspace.folders.values()] or [self.workspace.root_uri or ""]
         self._roots = [Path(os.path.realpath(path)) for path in map(path_of, uris) if path is not None]
 
@@ -90,12 +91,12 @@ class Server(LanguageServer):
 
     @property
     def units(self) -> str:
-        """In which the editor counts characters."""
+        """Return the units in which the editor counts characters."""
         chosen = self.server_capabilities.position_encoding
         return str(chosen.value if isinstance(chosen, types.PositionEncodingKind) else chosen or "utf-16")
 
     def opened(self, document: types.TextDocumentItem) -> None:
-        """A document is opened: it is checked at once."""
+        """Check an opened document at once."""
         path = path_of(document.uri)
         if path is None:
             path = (self._roots[0] if self._roots else Path()) / "untitled"
@@ -104,23 +105,23 @@ class Server(LanguageServer):
         self.buffers.put(Buffer(document.uri, path, OpenText(document.text, self.units), document.version))
 
     def changed(self, params: types.DidChangeTextDocumentParams) -> None:
-        """A document is changed: what it was is of no interest any more."""
+        """Check a changed document; the check of its former text is cancelled."""
         buffer = self.buffers.open.get(params.text_document.uri)
         if buffer is not None:
             self.buffers.change(buffer, buffer.text.changed(params.content_changes), params.text_document.version)
 
     def closed(self, uri: str) -> None:
-        """A document is closed: its marks go."""
+        """Remove the diagnostics of a closed document."""
         if self.buffers.drop(uri) is not None:
             self.text_document_publish_diagnostics(types.PublishDiagnosticsParams(uri, []))
 
     async def _publish(self, buffer: Buffer, judged: Judged) -> None:
         from polarcheck.server.diagnostics import diagnostics
 
-        found = await self.buffers.worker.do(diagnostics, judged, buffer.uri)
+        marks = await self.buffers.worker.do(diagnostics, judged, buffer.uri)
         if buffer.judged is not judged:
             return
-        self.text_document_publish_diagnostics(types.PublishDiagnosticsParams(buffer.uri, found, buffer.version))
+        self.text_document_publish_diagnostics(types.PublishDiagnosticsParams(buffer.uri, marks, buffer.version))
         if self._refreshes_lenses:
             self.workspace_code_lens_refresh(None)
 
@@ -130,74 +131,74 @@ class Server(LanguageServer):
         lens = of_workspace.code_lens if of_workspace is not None else None
         return bool(lens is not None and lens.refresh_support)
 
-    # ---- what is asked ----
+    # ---- requests ----
 
-    async def ask(self, uri: str, function: Callable[[Judged], Found], none: Found, *, soon: bool = False) -> Found:
-        """What a function finds in the present state of a document; none, where there is no such document."""
+    async def ask(self, uri: str, function: Callable[[Judged], Result], none: Result, *, soon: bool = False) -> Result:
+        """Apply a function to the checked document; return `none` if there is no such document."""
         judged = await self.buffers.judged(uri, soon=soon)
         return none if judged is None else await self.buffers.worker.do(function, judged)
 
     def prefers_markdown(self, formats: Sequence[types.MarkupKind] | None) -> bool:
-        """Whether the editor shows Markdown, of the kinds of text that it names."""
+        """Return True if Markdown is among the formats that the editor shows."""
         return bool(formats) and types.MarkupKind.Markdown in (formats or ())
 
-    # ---- what goes wrong on our side ----
+    # ---- internal errors ----
 
-    def _tell_bug(self, error: Exception, path: str) -> None:
-        """From the thread: one message for each kind of bug, and every one in the log."""
+    def _report_bug(self, error: Exception, path: str) -> None:
+        """Log every bug, and show one message for each kind of bug; called from the worker thread."""
         import traceback
 
         text = "".join(traceback.format_exception(error))
-        said = f"polarcheck: internal error: {type(error).__name__}: {shortened(str(error), _MOST_SAID)}"
+        summary = f"polarcheck: internal error: {type(error).__name__}: {shortened(str(error), _LONGEST_ERROR)}"
         if self._loop is not None and not self._loop.is_closed():
-            self._loop.call_soon_threadsafe(self._show_bug, visible(f"{said} while checking {path}"), text)
+            self._loop.call_soon_threadsafe(self._show_bug, visible(f"{summary} while checking {path}"), text)
 
-    def _show_bug(self, said: str, text: str) -> None:
+    def _show_bug(self, summary: str, text: str) -> None:
         shown = "\n".join(visible(line) for line in text.splitlines())
-        self.window_log_message(types.LogMessageParams(types.MessageType.Error, f"{said}\n{shown}"))
-        kind = said.partition(" while checking ")[0]
+        self.window_log_message(types.LogMessageParams(types.MessageType.Error, f"{summary}\n{shown}"))
+        kind = summary.partition(" while checking ")[0]
         if kind not in self._bugs:
             self._bugs.add(kind)
-            self.window_show_message(types.ShowMessageParams(types.MessageType.Error, said))
+            self.window_show_message(types.ShowMessageParams(types.MessageType.Error, summary))
 
     def report_server_error(self, error: Exception, source: Any) -> None:
-        """What the protocol finds wrong goes to the log: whoever types can do nothing about it."""
+        """Log an error of the protocol; it is not shown, since the user can do nothing about it."""
         message = visible(f"{getattr(source, '__name__', source)}: {error}")
         self.window_log_message(types.LogMessageParams(types.MessageType.Error, message))
 
     # ---- the session ----
 
     async def begin(self) -> None:
-        """The editor is ready: watch the files that settings come from, and load what a check needs."""
+        """Watch the files that settings come from, and load what a check needs; called once the editor is ready."""
         self._loop = asyncio.get_running_loop()
-        self._looking = asyncio.create_task(self._look_around())
+        self._polling = asyncio.create_task(self._poll())
         loaded = asyncio.ensure_future(self.buffers.worker.do(_load))
         of_workspace = self.client_capabilities.workspace
         watching = of_workspace.did_change_watched_files if of_workspace is not None else None
         if watching is not None and watching.dynamic_registration:
             options = types.DidChangeWatchedFilesRegistrationOptions([types.FileSystemWatcher("**/*.toml")])
             watched = types.Registration("settings", types.WORKSPACE_DID_CHANGE_WATCHED_FILES, options)
-            # An editor that does not want to is asked no more: it is looked at the files all the same.
+            # If the editor refuses, polling still sees the changes.
             with contextlib.suppress(Exception):
                 await self.client_register_capability_async(types.RegistrationParams([watched]))
         await loaded
 
-    async def _look_around(self) -> None:
+    async def _poll(self) -> None:
         while True:
-            await asyncio.sleep(_LOOK_EVERY)
-            await self.buffers.look_around()
+            await asyncio.sleep(_POLL_EVERY)
+            await self.buffers.check_stale()
 
     def end(self) -> None:
-        """Nobody waits for anything any more."""
-        if self._looking is not None:
-            self._looking.cancel()
+        """End the session: cancel all checks."""
+        if self._polling is not None:
+            self._polling.cancel()
         for uri in list(self.buffers.open):
             self.buffers.drop(uri)
         self.buffers.worker.end()
 
 
 def _load() -> None:
-    """What takes time at the first check is there before it."""
+    """Import and load in advance what takes time at the first check."""
     from polarcheck.checking.rule import load_all
     from polarcheck.server import judged  # noqa: F401
 
@@ -205,7 +206,7 @@ def _load() -> None:
 
 
 def _register(server: Server) -> None:
-    """The features, as methods of the protocol."""
+    """Register the features as methods of the protocol."""
     feature = server.feature
 
     @feature(types.INITIALIZE)
@@ -224,15 +225,15 @@ def _register(server: Server) -> None:
 
     @feature(types.WORKSPACE_DID_CHANGE_WATCHED_FILES)
     async def files_changed(params: types.DidChangeWatchedFilesParams) -> None:
-        await server.buffers.look_around()
+        await server.buffers.check_stale()
 
     @feature(types.WORKSPACE_DID_CHANGE_CONFIGURATION)
     def configured(params: types.DidChangeConfigurationParams) -> None:
-        """Settings are in polarcheck.toml and on the command line, never in the editor."""
+        """Do nothing: settings are in polarcheck.toml and on the command line, never in the editor."""
 
     @feature(types.TEXT_DOCUMENT_DID_SAVE)
     async def saved(params: types.DidSaveTextDocumentParams) -> None:
-        await server.buffers.look_around()
+        await server.buffers.check_stale()
 
     @feature(types.TEXT_DOCUMENT_HOVER)
     async def hover(params: types.HoverParams) -> types.Hover | None:
@@ -298,7 +299,7 @@ def _register(server: Server) -> None:
     async def completion(params: types.CompletionParams) -> list[types.CompletionItem]:
         from polarcheck.server.allowing import completions
 
-        # While somebody types no check comes to an end: the text is what counts.
+        # Completion uses the text alone, since no check finishes while somebody types.
         buffer = server.buffers.open.get(params.text_document.uri)
         if buffer is None:
             return []

@@ -1,4 +1,4 @@
-"""One thread that does what takes time, so that the editor is answered meanwhile."""
+"""The worker thread, which runs long calls, so that the editor is served meanwhile."""
 
 from __future__ import annotations
 
@@ -9,53 +9,55 @@ import threading
 from collections.abc import Callable
 from typing import Any, ParamSpec, TypeVar
 
-Given = ParamSpec("Given")
-Found = TypeVar("Found")
+Arguments = ParamSpec("Arguments")
+Result = TypeVar("Result")
 
 
 class Worker:
     """
-    Does one thing after the other, in the order in which they were asked for.
+    Runs calls one after the other, in the order of the requests.
 
-    It is one thread alone since the tables of a program make their columns when they are asked for, and two that ask
-    could wait for each other. It ends with the process, whatever it does then.
+    It is a single thread, since the columns of a program's tables are computed on first use, and two threads could wait
+    for each other. It is a daemon: it ends with the process, whatever it is doing.
     """
 
     def __init__(self) -> None:
-        self._wanted: queue.SimpleQueue[Callable[[], None] | None] = queue.SimpleQueue()
+        self._calls: queue.SimpleQueue[Callable[[], None] | None] = queue.SimpleQueue()
         threading.Thread(target=self._work, name="checks", daemon=True).start()
 
     def _work(self) -> None:
-        while (wanted := self._wanted.get()) is not None:
-            wanted()
+        while (call := self._calls.get()) is not None:
+            call()
 
     def end(self) -> None:
-        """What was asked for before is still done, and nothing after it."""
-        self._wanted.put(None)
+        """End the thread after the pending calls."""
+        self._calls.put(None)
 
-    async def do(self, function: Callable[Given, Found], *given: Given.args, **named: Given.kwargs) -> Found:
-        """What the function gives; where nobody waits any more when its turn comes, it is not called."""
+    async def do(
+        self, function: Callable[Arguments, Result], *args: Arguments.args, **kwargs: Arguments.kwargs
+    ) -> Result:
+        """Run a function in the thread and return its result; not called if it is cancelled before its turn."""
         loop = asyncio.get_running_loop()
-        future: asyncio.Future[Found] = loop.create_future()
+        future: asyncio.Future[Result] = loop.create_future()
 
-        def tell(found: Any, error: Exception | None) -> None:
+        def finish(result: Any, error: Exception | None) -> None:
             if future.done():
                 return
             if error is not None:
                 future.set_exception(error)
             else:
-                future.set_result(found)
+                future.set_result(result)
 
         def call() -> None:
             if future.done():
                 return
-            found, wrong = None, None
+            result, failure = None, None
             try:
-                found = function(*given, **named)
+                result = function(*args, **kwargs)
             except Exception as error:
-                wrong = error
+                failure = error
             with contextlib.suppress(RuntimeError):  # the session has ended meanwhile
-                loop.call_soon_threadsafe(tell, found, wrong)
+                loop.call_soon_threadsafe(finish, result, failure)
 
-        self._wanted.put(call)
+        self._calls.put(call)
         return await future
