@@ -1,4 +1,4 @@
-"""`python -m polarcheck`, and the console script: handles signals and want of memory before the large imports."""
+"""`python -m polarcheck` and the console script: handles signals and lack of memory before the large imports."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def run() -> None:
         from polarcheck import commands
 
         commands.run()
-    except KeyboardInterrupt as stop:  # between two blocks that handle it, or a second one
+    except KeyboardInterrupt as stop:  # raised outside the code that handles it, or a second time
         ending.end_by(stop)
     except Exception as error:
         if not ending.is_of_memory(error):

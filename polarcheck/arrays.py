@@ -1,4 +1,4 @@
-"""The array types of the tables, each defined once: what a column, a mask or a list of plane points is; look-ups."""
+"""The array types of the tables, each defined once, and look-ups in arrays."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from numpy.typing import NDArray
 
 _Number = TypeVar("_Number", bound=np.generic)
 
-#: So many values are looked for one after the other, which is the fastest.
+#: Up to this number of wanted values, one comparison per value is fastest.
 _FEW = 4
 
-#: Whether: one bool per row, word, move or section.
+#: A boolean per row, word, move or section.
 Mask: TypeAlias = NDArray[np.bool_]
-#: Values: NaN where one is not known.
+#: Values; NaN where the value is unknown.
 Floats: TypeAlias = NDArray[np.float64]
-#: Plane points, x + 1j*c [mm, X as radius]; NaN where one is not known.
+#: Plane points, x + 1j*c [mm, X as radius]; NaN where the point is unknown.
 Points: TypeAlias = NDArray[np.complex128]
 #: Whole numbers: rows, words, blocks, lines, counts.
 Rows: TypeAlias = NDArray[np.int64]
@@ -27,15 +27,15 @@ States: TypeAlias = NDArray[np.int16]
 
 def repeated(value: _Number, count: int) -> NDArray[_Number]:
     """
-    A column that holds one value throughout, and takes no more memory than that one; it cannot be written to.
+    Return a read-only column that repeats one value and takes the memory of one element (its stride is 0).
 
-    Not for masks: NumPy compares those whose elements stand side by side many at a time.
+    Not for masks: NumPy processes contiguous booleans many at a time.
     """
     return np.ndarray(count, value.dtype, value.tobytes(), 0, (0,))
 
 
-def is_one(values: NDArray[Any]) -> bool:
-    """Whether some values are all the same, or all NaN."""
+def is_uniform(values: NDArray[Any]) -> bool:
+    """Return True if all values are equal, or all are NaN."""
     first, last = values[0], values[-1]
     if first == last:
         return bool((values == first).all())
@@ -43,7 +43,7 @@ def is_one(values: NDArray[Any]) -> bool:
 
 
 def computed(function: Callable[..., NDArray[_Number]], *columns: NDArray[Any]) -> NDArray[_Number]:
-    """What a function makes of columns row by row; once where all of them are `repeated`."""
+    """Apply a function to columns row by row; only once if all of them are `repeated`."""
     if all(column.strides == (0,) for column in columns) and len(columns[0]):
         return repeated(function(*(column[:1] for column in columns))[0], len(columns[0]))
     return function(*columns)
@@ -51,30 +51,30 @@ def computed(function: Callable[..., NDArray[_Number]], *columns: NDArray[Any]) 
 
 def stretch(column: NDArray[np.signedinteger[Any]], first: int, end: int) -> tuple[int, int]:
     """
-    Where the values from first up to end, which is left out, stand in a rising column: from, to.
+    Return the slice (low, high) of a rising column with the values from `first` up to, not including, `end`.
 
-    For one after the other: NumPy would copy the column at each call to compare it with numbers of another type.
+    For repeated scalar look-ups: matching the dtype saves a copy of the column per call.
     """
     low, high = column.searchsorted(np.array((first, end), column.dtype)).tolist()
     return low, high
 
 
-# np.unique and, for some arguments, np.isin load masked arrays to ask for them: a tenth of a small check.
+# np.unique and, for some arguments, np.isin import numpy.ma, 10 % of the time of a small check.
 
 
 def different(values: NDArray[_Number]) -> NDArray[_Number]:
-    """The different ones of these values, rising; none of them is NaN."""
+    """Return the distinct values, rising; none of them may be NaN."""
     rising = np.sort(values, axis=None)
     return rising[np.append(True, rising[1:] != rising[:-1])] if len(rising) else rising
 
 
 def is_among(values: NDArray[Any], wanted: Sequence[float | str]) -> Mask:
-    """Which of these values are one of those wanted."""
+    """Return a mask of the values that are among those wanted."""
     if len(wanted) <= _FEW:
-        found = np.zeros(np.shape(values), bool)
-        for one in wanted:
-            found |= values == one
-        return found
+        matches = np.zeros(np.shape(values), bool)
+        for value in wanted:
+            matches |= values == value
+        return matches
     if values.dtype == np.uint8:
         table = np.zeros(256, bool)
         table[np.array(wanted, np.intp)] = True

@@ -1,4 +1,4 @@
-"""Reading a file whose size and kind nobody vouches for: at most so many bytes, and never from what has no end."""
+"""Reads a file of unknown size and kind: up to a limit of bytes, and never from an endless source."""
 
 from __future__ import annotations
 
@@ -12,21 +12,21 @@ from contextvars import ContextVar
 from pathlib import Path
 from typing import BinaryIO
 
-#: Read at once, where the size is not known [bytes].
+#: Size of one read where the size of the file is unknown [bytes].
 _CHUNK = 1 << 20
 _UNITS = ((10**9, "GB"), (10**6, "MB"), (10**3, "kB"))
-#: How long a pipe may be open with nobody at its other end [ms].
+#: How long a pipe may be open without a writer [ms].
 _PATIENCE = 1000
-# Not blocking: a pipe without a writer would keep open() for ever.
+# Non-blocking: open() of a pipe without a writer would never return.
 _FLAGS = os.O_RDONLY | sum(getattr(os, name, 0) for name in ("O_BINARY", "O_NOCTTY", "O_NONBLOCK"))
 
-#: The folders, without links to their names, that files are read from; None for all, as the command line does.
+#: The folders that files may be read from, with all links resolved; None for no restriction, as on the command line.
 _FOLDERS: ContextVar[Sequence[Path] | None] = ContextVar("folders", default=None)
 
 
 @contextlib.contextmanager
 def only_below(folders: Sequence[Path]) -> Iterator[None]:
-    """What is done inside reads files from these folders, which have no links to their names, and from nowhere else."""
+    """Let the code inside read files from these folders only; their paths have all links resolved."""
     token = _FOLDERS.set(folders)
     try:
         yield
@@ -35,7 +35,7 @@ def only_below(folders: Sequence[Path]) -> Iterator[None]:
 
 
 def may_read(path: str | os.PathLike[str]) -> bool:
-    """Whether a file, or what lies in a folder, may be read here, wherever links lead."""
+    """Return True if a file, or the content of a folder, may be read, after links are followed."""
     return _FOLDERS.get() is None or _folder_around(path) is not None
 
 
@@ -44,23 +44,24 @@ def _folder_around(path: str | os.PathLike[str]) -> Path | None:
     return next((folder for folder in _FOLDERS.get() or () if real.is_relative_to(folder)), None)
 
 
-def read(
+def read_file(
     path: str | os.PathLike[str],
-    most: int,
+    limit: int,
     remark: str,
     *,
     pipes: bool = False,
     below: str | os.PathLike[str] | None = None,
 ) -> bytes:
     """
-    All bytes of a file, which has at most so many.
+    Return all bytes of a file.
 
-    remark: what is said of a larger file behind `larger than 1 MB; `. pipes: whether a pipe is read, too, as a shell
-    hands over `<(...)`; devices and folders never are, nor a pipe that nobody writes to. below: a folder without links
-    to its name, which the path begins in and no link of it leads out of.
+    limit: the largest size [bytes].
+    remark: the end of the message for a larger file, after `larger than 1 MB; `.
+    pipes: read a pipe, too, such as `<(...)` of a shell. Devices, folders and pipes without a writer are never read.
+    below: a folder with all links resolved. The path is relative to it, and no link may lead out of it.
 
-    Raises OSError, whose strerror says in plain words what is wrong: also for a name that no file can have, and for a
-    file that is written to meanwhile. One that is replaced is the old one or the new one.
+    Raises OSError, whose strerror says in plain words what is wrong: also for an invalid file name, and for a file that
+    is written to during the read. A file that is replaced during the read gives the old or the new content.
     """
     try:
         if below is None and _FOLDERS.get() is not None:
@@ -74,10 +75,10 @@ def read(
     try:
         status = os.fstat(descriptor)
         _refuse(status.st_mode, pipes)
-        if status.st_size > most:
-            raise _too_large(most, remark)
+        if status.st_size > limit:
+            raise _too_large(limit, remark)
         head = _head_of_pipe(descriptor) if stat.S_ISFIFO(status.st_mode) else b""
-        data = _whole(lambda count: os.read(descriptor, count), status.st_size + 1, most, remark, head)
+        data = _read_all(lambda count: os.read(descriptor, count), status.st_size + 1, limit, remark, head)
         if stat.S_ISREG(status.st_mode) and _version(os.fstat(descriptor)) != _version(status):
             raise OSError(errno.EAGAIN, "was changed while it was read")
         return data
@@ -85,27 +86,27 @@ def read(
         os.close(descriptor)
 
 
-def read_stream(stream: BinaryIO, most: int, remark: str) -> bytes:
+def read_stream(stream: BinaryIO, limit: int, remark: str) -> bytes:
     """
-    All bytes of what is open already, such as standard input, likewise.
+    Return all bytes of an open stream, such as standard input, up to the same limit.
 
-    Raises OSError as read does.
+    Raises OSError as read_file does.
     """
     import select
 
-    def some(count: int) -> bytes:
-        while (found := stream.read(count)) is None:  # nothing yet: whoever opened it does not want to wait
+    def read_chunk(count: int) -> bytes:
+        while (chunk := stream.read(count)) is None:  # a non-blocking stream without data yet
             select.select([stream], [], [])
-        return found
+        return chunk
 
-    return _whole(some, _CHUNK, most, remark)
+    return _read_all(read_chunk, _CHUNK, limit, remark)
 
 
-def text(data: bytes, otherwise: str = "utf-8") -> str:
+def decoded(data: bytes, otherwise: str = "utf-8") -> str:
     """
-    The text of a file as editors and shells save it: UTF-16 where its mark begins it, UTF-8 with or without a mark.
+    Decode a text as editors and shells save it: UTF-16 with a byte order mark, UTF-8 with or without one.
 
-    otherwise: of a text without a mark. Raises ValueError, which says in one line what it is not.
+    otherwise: the encoding of a text without a mark. Raises ValueError, whose text is one line.
     """
     marks = {codecs.BOM_UTF8: "utf-8", codecs.BOM_UTF16_LE: "utf-16-le", codecs.BOM_UTF16_BE: "utf-16-be"}
     mark = next((mark for mark in marks if data.startswith(mark)), b"")
@@ -119,7 +120,7 @@ def text(data: bytes, otherwise: str = "utf-8") -> str:
 
 
 def megabytes(size: int) -> str:
-    """A limit as messages name it: `16 MB`, `2 GB`, `100 kB`, `64 bytes`."""
+    """Return a size as messages name it: `16 MB`, `2 GB`, `100 kB`, `64 bytes`."""
     unit, name = next(((unit, name) for unit, name in _UNITS if size >= unit), (1, "bytes"))
     return f"{size / unit:.15g} {name}"
 
@@ -131,8 +132,12 @@ def _opened(path: str | os.PathLike[str], pipes: bool, folder: int | None = None
 
 
 def _opened_below(folder: str | os.PathLike[str], parts: tuple[str, ...]) -> int:
-    """Step by step, each part in the folder before it and none through a link, whoever exchanges them meanwhile."""
-    # A drive on Windows would begin a path of its own, whatever stands before it.
+    """
+    Open a file below a folder, one part of its path after the other, and never through a link.
+
+    So nobody can redirect the path by exchanging a part of it meanwhile.
+    """
+    # On Windows a part with a drive would replace all that stands before it.
     if ".." in parts or not parts or parts[0].startswith(("/", "\\")) or Path(*parts).drive:
         raise OSError(errno.EACCES, "lies outside the folder")
     if os.open not in os.supports_dir_fd:
@@ -141,15 +146,15 @@ def _opened_below(folder: str | os.PathLike[str], parts: tuple[str, ...]) -> int
             raise OSError(errno.EACCES, "lies outside the folder")
         return _opened(target, False)
     links = getattr(os, "O_NOFOLLOW", 0)
-    held = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
+    parent = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
     try:
         for part in parts[:-1]:
-            inner = os.open(part, os.O_RDONLY | os.O_DIRECTORY | links, dir_fd=held)
-            os.close(held)
-            held = inner
-        return _opened(parts[-1], False, held, links)
+            inner = os.open(part, os.O_RDONLY | os.O_DIRECTORY | links, dir_fd=parent)
+            os.close(parent)
+            parent = inner
+        return _opened(parts[-1], False, parent, links)
     finally:
-        os.close(held)
+        os.close(parent)
 
 
 def _refuse(mode: int, pipes: bool) -> None:
@@ -166,16 +171,20 @@ def _version(status: os.stat_result) -> tuple[int, int]:
 
 
 def _head_of_pipe(descriptor: int) -> bytes:
-    """What comes out first, where that must be taken to see whether anybody writes; then reading waits for more."""
+    """
+    Check that a pipe has a writer, then let reads wait for data.
+
+    Returns the bytes that had to be read for this check.
+    """
     import select
 
     head = b""
-    if not hasattr(select, "poll"):  # on Windows, where no pipe is opened that nobody holds
+    if not hasattr(select, "poll"):  # on Windows, where a pipe without a writer cannot be opened
         return head
     waiting = select.poll()
     waiting.register(descriptor, select.POLLIN)
     if not waiting.poll(_PATIENCE):
-        with contextlib.suppress(BlockingIOError):  # raised where a writer is there, and slow
+        with contextlib.suppress(BlockingIOError):  # raised where there is a writer, and it is slow
             head = os.read(descriptor, _CHUNK)
             if not head:
                 raise OSError(errno.EPIPE, "is a pipe that nobody writes to")
@@ -183,18 +192,18 @@ def _head_of_pipe(descriptor: int) -> bytes:
     return head
 
 
-def _whole(read_some: Callable[[int], bytes], first: int, most: int, remark: str, head: bytes = b"") -> bytes:
-    """head, and what read_some gives until it gives nothing; first: bytes to ask for first."""
+def _read_all(read_chunk: Callable[[int], bytes], first: int, limit: int, remark: str, head: bytes = b"") -> bytes:
+    """Return head and all chunks up to the first empty one; first: the size of the first read [bytes]."""
     chunks = [head] if head else []
-    left, wanted = most + 1 - len(head), first
-    while left > 0 and (chunk := read_some(min(wanted, left))):
+    left, wanted = limit + 1 - len(head), first
+    while left > 0 and (chunk := read_chunk(min(wanted, left))):
         chunks.append(chunk)
         left -= len(chunk)
         wanted = _CHUNK
     if left <= 0:
-        raise _too_large(most, remark)
+        raise _too_large(limit, remark)
     return b"".join(chunks)
 
 
-def _too_large(most: int, remark: str) -> OSError:
-    return OSError(errno.EFBIG, f"larger than {megabytes(most)}; {remark}")
+def _too_large(limit: int, remark: str) -> OSError:
+    return OSError(errno.EFBIG, f"larger than {megabytes(limit)}; {remark}")

@@ -1,4 +1,4 @@
-"""How the process ends while no command runs: while modules are imported, and after the report is printed."""
+"""Ends the process on a signal while no command runs: during imports, and after the report is printed."""
 
 from __future__ import annotations
 
@@ -8,17 +8,17 @@ import os
 import signal
 from typing import Any, NoReturn
 
-#: As shells count: 128 and the number of the signal.
+#: Exit codes as shells count them: 128 plus the number of the signal.
 INTERRUPTED, TERMINATED = 130, 143
-#: What dynamic linkers say where an extension module finds no memory.
+#: Messages of dynamic linkers for an extension module that finds no memory.
 _OF_LINKER = ("failed to map segment", "annot allocate memory", "cannot map")
 
 
 def end_on_signals() -> None:
     """
-    Have the process end at once, in one line, on Ctrl-C and on the signals with which a system ends it.
+    End the process at once, with one line, on Ctrl-C and on the signals with which a system ends it.
 
-    A signal that whoever started the process has it ignore stays ignored.
+    A signal that the parent process has set to be ignored stays ignored.
     """
     for name in ("SIGINT", "SIGTERM", "SIGBREAK"):
         number = getattr(signal, name, None)
@@ -33,23 +33,23 @@ def _end_on(number: int, frame: Any) -> NoReturn:
 
 
 class Terminated(KeyboardInterrupt):
-    """SIGTERM, as an exception that goes the way of Ctrl-C."""
+    """SIGTERM as an exception, handled like Ctrl-C."""
 
 
 def end_by(stop: KeyboardInterrupt) -> NoReturn:
-    """End with the exit code of an interrupt that nothing has handled."""
+    """End with the exit code of an unhandled interrupt."""
     _end_on(signal.SIGTERM if isinstance(stop, Terminated) else signal.SIGINT, None)
 
 
 def end(status: int, message: str) -> NoReturn:
-    """End without another import or allocation that could fail. Nothing may be left to write: no buffer is flushed."""
+    """End without an import or allocation that could fail. No buffer is flushed: write all output before."""
     with contextlib.suppress(OSError):
         os.write(2, f"polarcheck: {message}\n".encode())
     os._exit(status)
 
 
 def is_of_memory(error: BaseException) -> bool:
-    """Tells whether an exception says that there is not enough memory: extension modules have ways of their own."""
+    """Return True if an exception means lack of memory; extension modules report it in several ways."""
     if isinstance(error, ImportError):
         return any(words in str(error) for words in _OF_LINKER)
     return isinstance(error, MemoryError) or (isinstance(error, OSError) and error.errno == errno.ENOMEM)

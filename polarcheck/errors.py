@@ -7,10 +7,10 @@ What can go wrong on our side. What is wrong in a program is a finding, never an
     |-- OutputError       a report that cannot be written
     |-- MachineError      a machine profile: unknown machine, key, type
     |-- JobError          polarcheck.toml, pyproject.toml, an offset table
-    |-- StoppedError      nobody waits for the outcome any more
+    |-- StoppedError      the check was cancelled
     |-- BaselineError     a file of known findings
     |-- ClusterError      a cluster that cannot check
-    |-- TooHardError      a table that would take more than its bound of time or size
+    |-- TooHardError      a table that would exceed its limit of time or size
     |   `-- NoAnswerError     areas for which the geometry library finds no answer
     `-- RuleError         a rule without severity, message, docstring: a bug in a rule file
 """
@@ -19,16 +19,16 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-#: From a part of a name with fewer letters none is guessed.
+#: The fewest letters of a partial name for which a suggestion is made.
 _LEAST = 3
 
 
 class PolarcheckError(Exception):
-    """Base of all; its text is one line that names the file or option, the key, and what was meant."""
+    """Base of all errors; its text is one line that names the file or option, the key, and what was expected."""
 
 
 class UsageError(PolarcheckError):
-    """An option or argument that means nothing."""
+    """An option or argument without a meaning."""
 
 
 class SourceError(PolarcheckError):
@@ -48,7 +48,7 @@ class JobError(PolarcheckError):
 
 
 class StoppedError(PolarcheckError):
-    """A check of which nobody waits for the outcome any more."""
+    """A check that was cancelled, since nobody waits for its result any more."""
 
 
 class BaselineError(PolarcheckError):
@@ -61,24 +61,26 @@ class ClusterError(PolarcheckError):
 
 class TooHardError(PolarcheckError):
     """
-    A table that would take more than its bound of time or size; its text is a reason for "not evaluated".
+    A table that would exceed its limit of time or size; its text is a reason for "not evaluated".
 
-    The rules that compare it are not evaluated; all others are.
+    The rules that compare this table are not evaluated; all others are.
     """
 
 
 class NoAnswerError(TooHardError):
-    """Areas for which the geometry library finds no answer, since points of them all but meet."""
+    """Areas that the geometry library cannot compute, since some of their points nearly coincide."""
 
 
 class RuleError(PolarcheckError):
-    """A rule file that is not a rule; found when the rules are loaded."""
+    """A rule file that is not a valid rule; raised when the rules are loaded."""
 
 
 def suggestion(wrong: str, known: Iterable[str], most: int = 3) -> str:
     """
-    `; did you mean fanuc-30i?`: the names that begin with what is written, in any case, else the one that is nearest,
-    else those that hold it; empty where there is none.
+    Return a hint such as `; did you mean fanuc-30i?`; empty if no known name is similar.
+
+    In this order: the names that begin with the written one, in any case; else the nearest name; else the names that
+    contain it. most: how many names are listed.
     """
     names = {name.lower(): name for name in known}
     word = wrong.strip().lower()

@@ -1,4 +1,4 @@
-"""How long the check of one file may take. Code that could go on without end calls keep_time, which raises."""
+"""Limits the time that the check of one file may take. Long loops call keep_time, which raises once it is over."""
 
 from __future__ import annotations
 
@@ -10,20 +10,20 @@ from typing import Any, Protocol, TypeVar
 
 from polarcheck.errors import StoppedError, TooHardError
 
-#: A file of this size has the seconds asked for, a larger one as many times that [bytes].
-_BYTES_OF_A_TURN = 1_000_000
+#: Up to this size a file has the configured time; a larger file has proportionally more [bytes].
+_USUAL_SIZE = 1_000_000
 
 
-def seconds_for(size: int, asked: float) -> float:
-    """How long a file of this size [bytes] may take, where one of usual size may take the seconds asked for [s]."""
-    return asked * max(1.0, size / _BYTES_OF_A_TURN)
+def seconds_for(size: int, max_seconds: float) -> float:
+    """Return the time limit [s] for a file of this size [bytes], where max_seconds [s] is that of a usual file."""
+    return max_seconds * max(1.0, size / _USUAL_SIZE)
 
 
 class Closeable(Protocol):
-    """What lasts as long as a time limit."""
+    """A resource that lives as long as a time limit."""
 
     def close(self) -> None:
-        """The time limit has ended."""
+        """Free it: the time limit has ended."""
 
 
 Helper = TypeVar("Helper", bound=Closeable)
@@ -33,8 +33,8 @@ class Limit:
     """
     The time for one file.
 
-    end: when it is over, on the clock of time.monotonic [s].
-    seconds: how long it was at the start [s].
+    end: when the time is over, on the clock of time.monotonic [s].
+    seconds: the length of the limit [s].
     """
 
     def __init__(self, seconds: float, is_stopped: Callable[[], bool] | None) -> None:
@@ -44,11 +44,11 @@ class Limit:
         self._helpers: dict[Any, Closeable] = {}
 
     def is_stopped(self) -> bool:
-        """Nobody waits for the outcome any more."""
+        """Return True once the check is cancelled."""
         return self._is_stopped is not None and self._is_stopped()
 
     def is_over(self) -> bool:
-        """No more work should be done."""
+        """Return True once no more work should be done: the time is over, or the check is cancelled."""
         return time.monotonic() > self.end or self.is_stopped()
 
     def helper(self, make: Callable[[Limit], Helper]) -> Helper:
@@ -71,7 +71,7 @@ def time_limit(seconds: float, is_stopped: Callable[[], bool] | None = None) -> 
     """
     Limit the time of the code inside [s]; without it, as in most tests, there is no limit.
 
-    is_stopped: also ends the work, by a StoppedError, once it returns True. A limit around this one stays in force.
+    is_stopped: cancels the work, by a StoppedError, once it returns True. An outer limit stays in force.
     """
     limit = Limit(seconds, is_stopped)
     around = _LIMIT.get()
@@ -86,7 +86,7 @@ def time_limit(seconds: float, is_stopped: Callable[[], bool] | None = None) -> 
 
 
 def current_limit() -> Limit | None:
-    """The limit that is in force."""
+    """Return the limit in force, or None."""
     return _LIMIT.get()
 
 
@@ -94,7 +94,7 @@ def keep_time() -> None:
     """
     Call in every loop iteration, and before any step that is worse than linear.
 
-    Raises TooHardError once the time is over, StoppedError where nobody waits for the outcome.
+    Raises TooHardError once the time is over, StoppedError once the check is cancelled.
     """
     keep_going()
     limit = _LIMIT.get()
@@ -104,9 +104,9 @@ def keep_time() -> None:
 
 def keep_going() -> None:
     """
-    Only look for cancellation: for loops with a bound of their own.
+    Check for cancellation only: for loops with a limit of their own.
 
-    Raises StoppedError where nobody waits for the outcome any more.
+    Raises StoppedError once the check is cancelled.
     """
     limit = _LIMIT.get()
     if limit is not None and limit.is_stopped():

@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from polarcheck.arrays import computed, different, is_among, is_one, repeated
+from polarcheck.arrays import computed, different, is_among, is_uniform, repeated
 
 NUMBERS = st.lists(st.one_of(st.integers(-5, 5).map(float), st.floats(allow_nan=False)), max_size=9)
 
@@ -51,4 +51,4 @@ def test_what_is_computed_once_is_what_is_computed_row_by_row(values: list[float
 
 @given(st.lists(st.sampled_from((1.0, 2.0, float("nan"))), min_size=1, max_size=5))
 def test_values_are_one_where_all_are_the_same_or_unknown(values: list[float]) -> None:
-    assert is_one(np.array(values)) == (len({str(value) for value in values}) == 1)
+    assert is_uniform(np.array(values)) == (len({str(value) for value in values}) == 1)

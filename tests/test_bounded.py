@@ -21,7 +21,7 @@ LIMIT = 3_000_000
 
 def objection(path: str | os.PathLike[str], most: int = LIMIT, **options: bool) -> str:
     with pytest.raises(OSError, match=r".") as caught:
-        bounded.read(path, most, "no table is", **options)
+        bounded.read_file(path, most, "no table is", **options)
     return str(caught.value.strerror)
 
 
@@ -29,7 +29,7 @@ def objection(path: str | os.PathLike[str], most: int = LIMIT, **options: bool) 
 def test_a_file_up_to_the_limit_is_read_whole(tmp_path: Path, size: int) -> None:
     path = tmp_path / "a.toml"
     path.write_bytes(os.urandom(size))
-    assert bounded.read(path, LIMIT, "") == path.read_bytes()
+    assert bounded.read_file(path, LIMIT, "") == path.read_bytes()
 
 
 def test_a_larger_file_is_refused_with_the_limit(tmp_path: Path) -> None:
@@ -49,7 +49,7 @@ def test_a_huge_file_is_refused_unread(tmp_path: Path) -> None:
 
 @pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="files that do not know their size")
 def test_a_file_that_does_not_know_its_size() -> None:
-    assert bounded.read("/proc/self/status", LIMIT, "").startswith(b"Name:")
+    assert bounded.read_file("/proc/self/status", LIMIT, "").startswith(b"Name:")
     assert objection("/proc/self/status", 20).startswith("larger than")
 
 
@@ -114,7 +114,7 @@ def test_a_pipe_is_read_to_its_end(tmp_path: Path, command: str, text: bytes, mo
     monkeypatch.setattr(bounded, "_PATIENCE", 60_000)  # a busy machine may start processes slowly
     os.mkfifo(tmp_path / "pipe")
     with subprocess.Popen(["sh", "-c", command], cwd=tmp_path):
-        assert bounded.read(tmp_path / "pipe", LIMIT, "", pipes=True) == text
+        assert bounded.read_file(tmp_path / "pipe", LIMIT, "", pipes=True) == text
 
 
 @needs_pipes
@@ -130,7 +130,7 @@ def test_a_pipe_whose_writer_is_slow(tmp_path: Path, monkeypatch: pytest.MonkeyP
 
     thread = threading.Thread(target=write)
     thread.start()
-    assert bounded.read(tmp_path / "pipe", LIMIT, "", pipes=True) == b"G0 X1."
+    assert bounded.read_file(tmp_path / "pipe", LIMIT, "", pipes=True) == b"G0 X1."
     thread.join()
 
 
@@ -166,7 +166,7 @@ def test_nothing_stays_open(tmp_path: Path) -> None:
         if most == 5:
             objection(path, most)
         else:
-            bounded.read(path, most, "")
+            bounded.read_file(path, most, "")
     path.unlink()  # which Windows refuses for a file that is open
     if Path("/proc/self/fd").is_dir():
         assert not [fd for fd in Path("/proc/self/fd").iterdir() if os.path.realpath(fd).startswith(str(path))]
@@ -255,21 +255,21 @@ def workspace(tmp_path: Path) -> Path:
 
 def test_files_are_read_from_some_folders_alone(workspace: Path) -> None:
     with bounded.only_below([workspace]):
-        assert bounded.read(workspace / "inner" / "a.toml", LIMIT, "") == b"a"
-        assert bounded.read(workspace / "inner" / ".." / "inner" / "a.toml", LIMIT, "") == b"a"
+        assert bounded.read_file(workspace / "inner" / "a.toml", LIMIT, "") == b"a"
+        assert bounded.read_file(workspace / "inner" / ".." / "inner" / "a.toml", LIMIT, "") == b"a"
         for outside in ("../secret.toml", "../open-too/b.toml", "inner/../../secret.toml"):
             assert objection(workspace / outside) == "lies outside the folders that are open"
             assert not bounded.may_read(workspace / outside)
     with bounded.only_below([]):
         assert objection(workspace / "inner" / "a.toml") == "lies outside the folders that are open"
-    assert bounded.read(workspace.parent / "secret.toml", LIMIT, "") == b"s"
+    assert bounded.read_file(workspace.parent / "secret.toml", LIMIT, "") == b"s"
     assert bounded.may_read(workspace.parent)
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="links need rights there")
 def test_links_do_not_lead_out_of_them(workspace: Path) -> None:
     with bounded.only_below([workspace]):
-        assert bounded.read(workspace / "own.toml", LIMIT, "") == b"a"
+        assert bounded.read_file(workspace / "own.toml", LIMIT, "") == b"a"
         assert objection(workspace / "link.toml") == "lies outside the folders that are open"
         assert not bounded.may_read(workspace / "link.toml")
 
@@ -278,7 +278,7 @@ def test_a_thread_has_folders_of_its_own(workspace: Path) -> None:
     read: list[bytes] = []
     with bounded.only_below([workspace]):
         other = threading.Thread(
-            target=lambda: read.append(bounded.read(workspace.parent / "secret.toml", LIMIT, "")),
+            target=lambda: read.append(bounded.read_file(workspace.parent / "secret.toml", LIMIT, "")),
         )
         other.start()
         other.join()

@@ -26,7 +26,7 @@ from polarcheck.finding import Edit, FileReport, Fix, Silenced, Undecided
 from polarcheck.reading import files
 from polarcheck.reading.excerpt import visible, without_commands
 from polarcheck.reading.names import spelled, unspelled
-from polarcheck.reports import OF_ONE, Background, formats, pieces, render
+from polarcheck.reports import PER_FILE, Background, formats, pieces, render
 from polarcheck.reports.ci import rule_help
 from polarcheck.reports.ci.paths import from_root, uri
 from polarcheck.reports.ci.step_summary import step_summary
@@ -36,7 +36,7 @@ pytestmark = pytest.mark.usefixtures("own_folder")
 
 SCHEMAS = Path(__file__).parent / "schemas"
 #: Formats that hold many programs.
-OF_MANY = [form for form in formats() if form not in OF_ONE]
+OF_MANY = [form for form in formats() if form not in PER_FILE]
 #: What ends or begins something in one of the formats, what acts on a terminal, and what XML and UTF-8 cannot hold.
 NASTY = (
     "100% a:b,c;d\r\ne <b>&amp;\"'[x](1) ]]> |`*_ \u00e4\u00d6\u00df \u89d2 \x1b[31m \x00\x1a\x12 \ud800 "
@@ -143,7 +143,7 @@ def test_several_reports_are_written_at_once() -> None:
 def test_formats_for_people_stand_first() -> None:
     assert formats()[:3] == ["text", "short", "concise"]
     assert formats()[3:] == sorted(formats()[3:])
-    assert {*CI_FORMATS, "json", *OF_ONE} == {*formats()[3:]}
+    assert {*CI_FORMATS, "json", *PER_FILE} == {*formats()[3:]}
 
 
 # ---- paths ----

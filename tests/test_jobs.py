@@ -33,7 +33,7 @@ from polarcheck.table.trace import Trace
 RAPID = "G98 G0 X60. C0\nG12.1\nG1 X40. F200\nG0 C5.\nG1 C-5.\nG13.1\n"
 GOOD = RAPID.replace("G0 C5.", "C5.")
 #: Formats that hold many programs.
-OF_MANY = [form for form in reports.formats() if form not in reports.OF_ONE]
+OF_MANY = [form for form in reports.formats() if form not in reports.PER_FILE]
 #: Runs until --max-seconds ends it.
 ENDLESS = "#1=0\nWHILE[#1LT1]DO1\n#2=#2+1\nEND1\nM30\n"
 FOREVER = ("--max-seconds", "60", "--max-statements", "1000000000000", "--max-blocks", "1000000000000")

@@ -169,7 +169,7 @@ def test_a_link_put_in_its_place_while_it_is_opened_leads_nowhere(
     (folder / "below" / "own").write_text(SUB, "utf-8")
     (folder / "O1234").symlink_to("below/own")
     (tmp_path / "outside" / "own").write_text(SUB, "utf-8")
-    read = bounded.read
+    read = bounded.read_file
     exchanged = []
 
     def exchanging(*arguments: object, **options: object) -> bytes:
@@ -183,6 +183,6 @@ def test_a_link_put_in_its_place_while_it_is_opened_leads_nowhere(
         exchanged.append(part)
         return read(*arguments, **options)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(library.bounded, "read", exchanging)
+    monkeypatch.setattr(library.bounded, "read_file", exchanging)
     assert of(folder) == MISSING
     assert exchanged

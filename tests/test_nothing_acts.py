@@ -11,10 +11,10 @@ from pathlib import Path
 import pytest
 from test_cli import call, process
 
-from polarcheck.reports import OF_ONE, formats
+from polarcheck.reports import PER_FILE, formats
 
 #: Formats that hold many programs.
-OF_MANY = [form for form in formats() if form not in OF_ONE]
+OF_MANY = [form for form in formats() if form not in PER_FILE]
 #: Color, title and bell of a terminal, line ends, changes of direction, no width, CSI of one byte, delete; markup.
 ACTING = (
     "\x1b[31mE\x1b]0;title\x07\nN\rR\u202eB\u2066\u200b\ufeff\x9b1mC\x7f\t"

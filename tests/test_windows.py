@@ -150,7 +150,7 @@ class OfWindows(type(Path())):  # type: ignore[misc]  # the class of paths here
 def test_a_drive_leads_out_of_a_folder(path: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(bounded, "Path", OfWindows)
     with pytest.raises(OSError, match="lies outside the folder"):
-        bounded.read(path, 100, "", below=Path.cwd())
+        bounded.read_file(path, 100, "", below=Path.cwd())
 
 
 @needs_posix
@@ -163,11 +163,11 @@ def test_without_steps_from_folder_to_folder_no_link_leads_out(tmp_path: Path, m
     (inside / "folder").symlink_to(outside)
     (inside / "own.nc").symlink_to(inside / "O1.nc")
     monkeypatch.setattr(os, "supports_dir_fd", set[Any]())
-    assert bounded.read("O1.nc", 100, "", below=inside) == b"inside"
-    assert bounded.read("own.nc", 100, "", below=inside) == b"inside"
+    assert bounded.read_file("O1.nc", 100, "", below=inside) == b"inside"
+    assert bounded.read_file("own.nc", 100, "", below=inside) == b"inside"
     for name in ("link.nc", "folder/O1.nc"):
         with pytest.raises(OSError, match="lies outside the folder"):
-            bounded.read(name, 100, "", below=inside)
+            bounded.read_file(name, 100, "", below=inside)
 
 
 # ---- drives that number nothing ----
@@ -288,7 +288,7 @@ def test_a_pipe_is_read_without_waiting_for_its_writer_where_nothing_can_wait(
     os.close(theirs)
     monkeypatch.delattr(select, "poll")
     try:
-        assert bounded.read(f"/dev/fd/{ours}", 100, "", pipes=True) == b"M30\n"
+        assert bounded.read_file(f"/dev/fd/{ours}", 100, "", pipes=True) == b"M30\n"
     finally:
         os.close(ours)
 

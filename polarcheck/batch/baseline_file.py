@@ -64,7 +64,7 @@ def read(path: Path) -> list[Entry]:
     Raises BaselineError, which names the file, the line, the key and what was expected.
     """
     try:
-        data = bounded.read(path, _LARGEST, "no baseline is", pipes=True)
+        data = bounded.read_file(path, _LARGEST, "no baseline is", pipes=True)
     except OSError as error:
         raise BaselineError(f"{shown(str(path))}: {error.strerror or error}") from None
     try:

@@ -207,7 +207,7 @@ def outcome(task: Task, most: int = files.LARGEST, data: bytes | None = None) ->
 
 def fails(report: FileReport, settings: Settings) -> bool:
     """Whether a file has a finding at or above the severity that fails, or is unverified where that fails, too."""
-    told = any(check.is_told(found, settings.fail_on) for found in report.findings)
+    told = any(check.reaches(found, settings.fail_on) for found in report.findings)
     return told or (settings.strict and report.verdict == "unverified")
 
 

@@ -312,12 +312,12 @@ def verdict(findings: Sequence[Finding], not_evaluated: Sequence[NotEvaluated], 
 
     fail_on has no say in the latter: a program that was not executed to its end is not verified, whoever asks.
     """
-    if any(is_told(finding, fail_on) and not isinstance(finding, Undecided) for finding in findings):
+    if any(reaches(finding, fail_on) and not isinstance(finding, Undecided) for finding in findings):
         return "fail"
     is_open = any(isinstance(finding, Undecided) for finding in findings) or any(one.matters for one in not_evaluated)
     return "unverified" if is_open else "pass"
 
 
-def is_told(finding: Finding, fail_on: str) -> bool:
-    """Whether a finding is at or above the severity that fails."""
+def reaches(finding: Finding, fail_on: str) -> bool:
+    """Return True if a finding is at or above the severity that fails."""
     return SEVERITIES[finding.severity] >= SEVERITIES.get(fail_on, ERROR + 1)

@@ -54,7 +54,7 @@ def feeds(path: str, form: str, diff: bool, no_config: bool, max_size: int, **as
         read = check.read(data, found.machine, found.job, title, found.encoding)
         rules = [rule for name, rule in load_all().items() if name in READ_OTHERWISE]
         for doubt in check.check_runs(read, rules, found.severities).findings:
-            warn(f"{title}:{doubt.line}: {doubt.told} [{doubt.rule}]")
+            warn(f"{title}:{doubt.line}: {doubt.full_message} [{doubt.rule}]")
         runs = [tables for _, tables in read]
         for tables in runs:
             unknown = executed.without_radius(tables["trace"], tables["tool_center"])

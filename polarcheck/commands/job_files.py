@@ -167,13 +167,13 @@ def _is_job_file(project: Path) -> bool:
     if not project.is_file():
         return False
     try:
-        text = bounded.read(project, toml_text.LARGEST, "no job file is")
+        text = bounded.read_file(project, toml_text.LARGEST, "no job file is")
     except OSError as error:
         raise JobError(f"{_from_here(project)}: {error.strerror}") from None
     if b"polarcheck" not in text.replace(b"\0", b""):  # every other byte of UTF-16
         return False
     try:
-        tools = toml_text.parsed(bounded.text(text).replace("\r\n", "\n")).get("tool")
+        tools = toml_text.parsed(bounded.decoded(text).replace("\r\n", "\n")).get("tool")
     except ValueError:  # somebody else's fault, unless it is meant for us: reading it will say so
         return b"[tool.polarcheck" in text
     return isinstance(tools, dict) and "polarcheck" in tools

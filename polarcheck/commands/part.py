@@ -55,7 +55,7 @@ def _part(
     from polarcheck.memory import keep_within_memory
     from polarcheck.parts.comparison import compared_in
     from polarcheck.parts.part_report import part_of
-    from polarcheck.reports.pages import made
+    from polarcheck.reports.pages import part_lines
 
     keep_within_memory()
     applies = settings.Options(
@@ -70,5 +70,9 @@ def _part(
         say(f"{how} after {len(checked.files)} of {len(tasks)} files; these are reported")
     else:
         running.tell_unused(applies.tools, checked.called)
-    show((made.json(list(checked.files)) if form == "json" else made.text(list(checked.files), columns())).encode())
+    show(
+        (
+            part_lines.json(list(checked.files)) if form == "json" else part_lines.text(list(checked.files), columns())
+        ).encode()
+    )
     return status

@@ -120,7 +120,7 @@ def _read_inside(folder: Path, path: Path) -> bytes | None:
     """The bytes of a program; None for what lies outside the folder, is no file, cannot be read, or is too large."""
     real = Path(os.path.realpath(path))
     try:
-        return bounded.read(real.relative_to(folder), _LARGEST, "", below=folder)
+        return bounded.read_file(real.relative_to(folder), _LARGEST, "", below=folder)
     except (OSError, ValueError):
         return None
 

@@ -60,7 +60,7 @@ def read(path: Path, title: str) -> Drawing:
     title, for a file that cannot be read or shows no curve.
     """
     try:
-        data = bounded.read(path, _LARGEST, "no drawing of a part is")
+        data = bounded.read_file(path, _LARGEST, "no drawing of a part is")
     except OSError as error:
         raise JobError(f"{title}: {error.strerror}") from None
     try:

@@ -47,8 +47,8 @@ def read(path: Path, title: str, *, pipes: bool = False, units: Units | None = N
     names the title, for a file that cannot be read or holds no offset, and the line for what cannot be understood.
     """
     try:
-        data = bounded.read(path, _LARGEST, "no offset table is", pipes=pipes)
-        text = bounded.text(data, "latin-1").replace("\0", "").upper()
+        data = bounded.read_file(path, _LARGEST, "no offset table is", pipes=pipes)
+        text = bounded.decoded(data, "latin-1").replace("\0", "").upper()
     except OSError as error:
         raise JobError(f"{title}: {error.strerror}") from None
     except ValueError as error:

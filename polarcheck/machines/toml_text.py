@@ -48,10 +48,10 @@ def text_of(path: str | PathLike[str], what: str, *, pipes: bool = False) -> str
     The text of a file, in any encoding in which editors save it; lines end with LF. Arguments and errors as of read.
     """
     try:
-        data = bounded.read(path, LARGEST, f"no {what} is", pipes=pipes)
+        data = bounded.read_file(path, LARGEST, f"no {what} is", pipes=pipes)
     except OSError as error:
         raise ValueError(error.strerror or str(error)) from None
-    return bounded.text(data).replace("\r\n", "\n")
+    return bounded.decoded(data).replace("\r\n", "\n")
 
 
 def parsed(text: str) -> dict[str, Any]:

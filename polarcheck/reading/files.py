@@ -159,7 +159,7 @@ def read(path: str, most: int = LARGEST) -> bytes:
     remark = "--max-size SIZE raises the limit"
     try:
         if path not in _STANDARD_INPUTS:
-            return bounded.read(path, most, remark, pipes=True)
+            return bounded.read_file(path, most, remark, pipes=True)
         if sys.stdin is None:
             raise OSError(errno.EBADF, "standard input is closed")
         return bounded.read_stream(sys.stdin.buffer, most, remark)

@@ -1,4 +1,4 @@
-"""Reports: a module for each format with a function of the same name, from findings to str. Nothing is printed here."""
+"""Reports: a module for each format with a function of the same name, from findings to str. Nothing here prints."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ if TYPE_CHECKING:
     from polarcheck.pictures.picture import Drawn
 
 SEVERITIES = ("error", "warning", "note")
-#: Formats that come in the encoding of a terminal, and that one looks for first; all others are UTF-8, for programs.
+#: Formats for people, in the encoding of the terminal, listed first; all others are UTF-8, for programs.
 FOR_PEOPLE = ("text", "short", "concise")
-#: Formats that hold one file; many need a folder.
-OF_ONE = ("html",)
+#: Formats that hold one checked file each; several files need a folder.
+PER_FILE = ("html",)
 _STYLES = {
     "error": "1;31",
     "warning": "1;33",
@@ -37,14 +37,22 @@ class Background(NamedTuple):
     """
     What a report may show beside its findings.
 
-    lines: by path and line number, those that findings stand in. rules: by name. columns: the width of the terminal.
-    quiet: findings only. command: what checks a file behind it as these were checked. following: whether what follows
-    from a finding is shown, too. silenced: whether what is silenced is. dots: whether paths are drawn with characters
-    of dots and blocks, else ASCII. settings: what applied to a file, by its path. failures: a line each on what could
-    not be read, or went wrong. root, folder: of the repository, and the one that paths begin in; absolute, with
-    slashes, empty where they are not known. fixed: how many fixes were written into the files before. has_baseline:
-    whether findings of a baseline are silenced, so that others are new. drawn: by path, what is drawn of a program,
-    where that was asked for.
+    lines: the source lines that have findings, by path and line number.
+    rules: the rules by name.
+    columns: the width of the terminal [characters].
+    color: write in color.
+    quiet: show findings only.
+    command: the command line that checks a file with the same options; the file is appended.
+    following: show the findings that follow from others, too.
+    silenced: show silenced findings, too.
+    dots: draw paths with Braille and block characters, else ASCII.
+    settings: the settings of each file, by path.
+    failures: a line for each file that could not be read, or whose check failed.
+    root: the absolute path of the repository, with slashes; empty if unknown.
+    folder: the absolute path of the folder that paths are relative to, with slashes; empty if unknown.
+    fixed: the number of fixes written into the files before this check.
+    has_baseline: findings of a baseline are silenced, so that all others are new.
+    drawn: the drawings of each program, by path, if they were requested.
     """
 
     lines: Mapping[str, Mapping[int, str]] = MappingProxyType({})
@@ -67,10 +75,10 @@ class Background(NamedTuple):
 
 class Parts(NamedTuple):
     """
-    A report that is written file by file, as they are finished.
+    A report that is written file by file, as the checks finish.
 
-    of_file: what is said of a file, given the lines that its findings stand in; to be called once for each, in their
-    order. end: what is said behind all of them.
+    of_file: returns the text of a file; takes the source lines that have findings. Called once per file, in order.
+    end: returns the text after all files.
     """
 
     of_file: Callable[[FileReport, Mapping[int, str]], str]
@@ -78,31 +86,31 @@ class Parts(NamedTuple):
 
 
 def formats() -> list[str]:
-    """The names of the formats: the modules of this package, those for people first."""
-    found = {path.stem for path in Path(__file__).parent.glob("*.py")} - {"__init__"}
-    return [*FOR_PEOPLE, *sorted(found.difference(FOR_PEOPLE))]
+    """Return the names of the formats: the modules of this package, those for people first."""
+    names = {path.stem for path in Path(__file__).parent.glob("*.py")} - {"__init__"}
+    return [*FOR_PEOPLE, *sorted(names.difference(FOR_PEOPLE))]
 
 
 def render(form: str, report: Report, background: Background) -> str:
-    """The report in one of the formats."""
+    """Return the report in a format."""
     function = getattr(_module(form), form)
     return str(function(report, background))
 
 
 def parts(form: str, background: Background) -> Parts | None:
-    """How a format is written file by file; None where it must know all files first."""
+    """Return how a format is written file by file; None if it needs all files first."""
     make = getattr(_module(form), f"{form}_parts", None)
     return make(background) if make else None
 
 
 def pieces(form: str, report: Report, background: Background) -> Iterator[str]:
-    """The same text as that of render, of many files bit by bit, where the format can do so."""
+    """Yield the text of render piece by piece, if the format can do so."""
     of_format = getattr(_module(form), f"{form}_pieces", None)
     yield from of_format(report, background) if of_format else (render(form, report, background),)
 
 
 def of_each(parts: Parts, report: Report, background: Background) -> Iterator[str]:
-    """A report in parts, of files that are all there."""
+    """Yield the parts of a report whose files are all checked."""
     for file in report.files:
         yield parts.of_file(file, background.lines.get(file.path, {}))
     yield parts.end(report)
@@ -119,5 +127,5 @@ def counted(number: int, noun: str) -> str:
 
 
 def painted(style: str, text: str) -> str:
-    """The text in color for a terminal."""
+    """Return the text in color for a terminal."""
     return f"\x1b[{_STYLES[style]}m{text}\x1b[0m" if text else text

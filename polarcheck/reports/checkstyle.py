@@ -1,4 +1,4 @@
-"""Checkstyle's XML: what Jenkins, SonarQube and reviewdog read of linters they do not know."""
+"""Checkstyle's XML, which Jenkins, SonarQube and reviewdog read from any linter."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ _SEVERITIES = {"error": "error", "warning": "warning", "note": "info"}
 
 
 def checkstyle(report: Report, background: Background) -> str:
-    """An element for each file, those without a finding included."""
+    """Return an element for each file, including files without findings."""
     return "".join(checkstyle_pieces(report, background))
 
 
 def checkstyle_pieces(report: Report, background: Background) -> Iterator[str]:
-    """The same, file by file."""
+    """Yield the same text file by file."""
     yield xml.HEAD
     files = (line for file in report.files for line in _file(file, background))
     yield from xml.element("checkstyle", {"version": "4.3"}, files)
@@ -30,15 +30,15 @@ def checkstyle_pieces(report: Report, background: Background) -> Iterator[str]:
 def _file(file: FileReport, background: Background) -> Iterator[str]:
     errors = (
         line
-        for found in file.findings
+        for finding in file.findings
         for line in xml.element(
             "error",
             {
-                "line": found.line,
-                "column": found.column,
-                "severity": _SEVERITIES.get(found.severity, "info"),
-                "message": found.told,
-                "source": f"polarcheck.{found.rule}",
+                "line": finding.line,
+                "column": finding.column,
+                "severity": _SEVERITIES.get(finding.severity, "info"),
+                "message": finding.full_message,
+                "source": f"polarcheck.{finding.rule}",
             },
             depth=2,
         )

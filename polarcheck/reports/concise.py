@@ -19,7 +19,7 @@ def concise(report: Report, background: Background | None = None) -> str:
 
 
 def concise_pieces(report: Report, background: Background) -> Iterator[str]:
-    """The same, file by file."""
+    """Yield the same text file by file."""
     return of_each(concise_parts(background), report, background)
 
 
@@ -33,31 +33,31 @@ def concise_parts(background: Background) -> Parts:
 
 
 def lines(file: FileReport, silenced: bool, color: bool = False) -> Iterator[str]:
-    """The lines of the findings of a file, and those of what is silenced where that is asked for."""
-    yield from (line(file, found, color) for found in file.findings)
-    yield from (silenced_line(file, found) for found in file.silenced if silenced)
+    """Yield the lines of the findings of a file; silenced: those of silenced findings, too."""
+    yield from (line(file, finding, color) for finding in file.findings)
+    yield from (silenced_line(file, finding) for finding in file.silenced if silenced)
 
 
-def silenced_line(file: FileReport, found: Silenced) -> str:
-    """The line of a finding that is silenced; no pattern of an editor takes it for one that is told."""
-    return without_commands(f"{_place(file.path, found)}: silenced: {why_silenced(found)}")
+def silenced_line(file: FileReport, finding: Silenced) -> str:
+    """Return the line of a silenced finding, in a form that the patterns of editors do not match."""
+    return without_commands(f"{_place(file.path, finding)}: silenced: {why_silenced(finding)}")
 
 
-def why_silenced(found: Silenced) -> str:
-    """What is silenced, by what, and why: in one line."""
-    reason = f": {found.reason}" if found.reason else ", no reason given"
-    return visible(f"{found.severity}: {found.told} [{found.rule}] (by {found.by}{reason})")
+def why_silenced(finding: Silenced) -> str:
+    """Return one line on a silenced finding: its message, what silences it, and why."""
+    reason = f": {finding.reason}" if finding.reason else ", no reason given"
+    return visible(f"{finding.severity}: {finding.full_message} [{finding.rule}] (by {finding.by}{reason})")
 
 
-def line(file: FileReport, found: Finding, color: bool = False) -> str:
-    """The line of a finding, with its severity in color where that is asked for."""
-    severity = visible(found.severity)
-    severity = painted(found.severity, severity) if color else severity
-    message = visible(f"{found.told} [{found.rule}]")
-    return without_commands(f"{_place(file.path, found)}: {severity}: {message}")
+def line(file: FileReport, finding: Finding, color: bool = False) -> str:
+    """Return the line of a finding; color: paint its severity."""
+    severity = visible(finding.severity)
+    severity = painted(finding.severity, severity) if color else severity
+    message = visible(f"{finding.full_message} [{finding.rule}]")
+    return without_commands(f"{_place(file.path, finding)}: {severity}: {message}")
 
 
-def _place(path: str, found: Finding | Silenced) -> str:
-    """Where a finding stands; a path that would begin a command of a CI log is written from its folder on."""
-    own = f"./{path}" if path.lstrip().startswith("::") else path
-    return visible(f"{own}:{found.line}:{found.column}")
+def _place(path: str, finding: Finding | Silenced) -> str:
+    """Return the position of a finding; a path that a CI log would take for a command is prefixed with `./`."""
+    shown = f"./{path}" if path.lstrip().startswith("::") else path
+    return visible(f"{shown}:{finding.line}:{finding.column}")

@@ -1,4 +1,4 @@
-"""What GitHub Actions makes annotations of, at the lines of a pull request; and the same for its log."""
+"""Workflow commands for GitHub Actions: annotations at the lines of a pull request, and findings for the log."""
 
 from __future__ import annotations
 
@@ -18,32 +18,32 @@ if TYPE_CHECKING:
     from polarcheck.reports import Background
 
 _LEVELS = {"error": "error", "warning": "warning", "note": "notice"}
-#: Annotations of one level that GitHub shows of a step.
+#: How many annotations of a level GitHub shows per step.
 MOST = 10
 
 
 def github(report: Report, background: Background) -> str:
     """
-    Annotations, the worst first and no more than are shown; then all findings by file in groups of the log; then a line
-    over all files, and one on what has no annotation.
+    Return annotations, the worst first and no more than GitHub shows; then all findings, grouped by file, for the log;
+    then a summary line, and a line on the findings without an annotation.
     """
     return "".join(text + "\n" for text in _lines(report, background))
 
 
 def _lines(report: Report, background: Background) -> Iterator[str]:
-    all_found = [(file, found) for file in report.files for found in file.findings]
+    findings = [(file, finding) for file in report.files for finding in file.findings]
     ranks = {severity: rank for rank, severity in enumerate(SEVERITIES)}
     shown = Counter[str]()
-    for file, found in sorted(all_found, key=lambda one: ranks.get(one[1].severity, len(ranks))):
-        shown[_level(found)] += 1
-        if shown[_level(found)] <= MOST:
-            yield _annotation(file, found, background)
+    for file, finding in sorted(findings, key=lambda entry: ranks.get(entry[1].severity, len(ranks))):
+        shown[_level(finding)] += 1
+        if shown[_level(finding)] <= MOST:
+            yield _annotation(file, finding, background)
     for file in report.files:
-        told = [line(file, found) for found in file.findings]
-        told += dict.fromkeys(visible(f"not evaluated: {gap.reason}") for gap in file.not_evaluated if gap.matters)
-        if told and not background.quiet:
+        texts = [line(file, finding) for finding in file.findings]
+        texts += dict.fromkeys(visible(f"not evaluated: {gap.reason}") for gap in file.not_evaluated if gap.matters)
+        if texts and not background.quiet:
             yield f"::group::{_data(visible(f'{file.path}: {verdict(file)}'))}"
-            yield from (_plain(f"- {text}") for text in told)
+            yield from (_plain(f"- {text}") for text in texts)
             yield "::endgroup::"
     if report.files and not background.quiet:
         yield _plain(f"polarcheck: {summary(report)}")
@@ -54,29 +54,29 @@ def _lines(report: Report, background: Background) -> Iterator[str]:
         yield f"polarcheck: {kinds} more without an annotation, of which GitHub shows {MOST} of a kind; {where}"
 
 
-def _level(found: Finding) -> str:
-    return _LEVELS.get(found.severity, "notice")
+def _level(finding: Finding) -> str:
+    return _LEVELS.get(finding.severity, "notice")
 
 
-def _annotation(file: FileReport, found: Finding, background: Background) -> str:
-    place: dict[str, str | int] = {"title": f"{found.rule}, alarm {found.alarm}" if found.alarm else found.rule}
+def _annotation(file: FileReport, finding: Finding, background: Background) -> str:
+    place: dict[str, str | int] = {"title": f"{finding.rule}, alarm {finding.alarm}" if finding.alarm else finding.rule}
     if file.path != STANDARD_INPUT:
         place["file"] = from_root(file.path, background)
-    place |= {"line": found.line, "endLine": found.end_line}
-    if found.line == found.end_line:
-        # The last column counts here, not the one behind it.
-        place |= {"col": found.column, "endColumn": max(found.end_column - 1, found.column)}
+    place |= {"line": finding.line, "endLine": finding.end_line}
+    if finding.line == finding.end_line:
+        # GitHub counts the last column in; a finding ends at the column after it.
+        place |= {"col": finding.column, "endColumn": max(finding.end_column - 1, finding.column)}
     written = ",".join(f"{key}={_property(visible(str(value)))}" for key, value in place.items())
-    return f"::{_level(found)} {written}::{_data(visible(found.told))}"
+    return f"::{_level(finding)} {written}::{_data(visible(finding.full_message))}"
 
 
 def _plain(text: str) -> str:
-    """A line that is no command to the runner: those begin a line, which the name of a file could be, or hold ##[."""
+    """Escape a line so that the runner takes it for no command: a file name could hold ##[, which begins one."""
     return text.replace("##[", "##\\x5b")
 
 
 def _data(text: str) -> str:
-    """Text behind a command; % first, since it begins what is spelled out."""
+    """Escape the text after a command; % first, since it begins the escapes."""
     return text.replace("%", "%25").replace("\r", "%0D").replace("\n", "%0A")
 
 

@@ -19,23 +19,23 @@ _SEVERITIES = {"error": "major", "warning": "minor", "note": "info"}
 
 
 def gitlab(report: Report, background: Background) -> str:
-    """An array with an entry for each finding; those that somebody has answered for are no entries."""
+    """Return an array with an entry for each finding that is not silenced."""
     return encoded(list(_entries(report, background)), indent=2) + "\n"
 
 
 def _entries(report: Report, background: Background) -> Iterator[dict[str, Any]]:
-    told = Counter[str]()
+    occurrences = Counter[str]()
     for file in report.files:
         path = from_root(file.path, background)
-        for found in file.findings:
-            # GitLab takes entries of one fingerprint for one, so the same mistake in another place of the file needs
-            # another; the number of the line would make a new finding of it wherever a block is inserted above.
-            mistake = f"{path}\0{visible(found.rule)}\0{visible(found.fingerprint)}"
-            told[mistake] += 1
+        for finding in file.findings:
+            # GitLab merges entries with the same fingerprint, so a second occurrence of a mistake needs another one.
+            # The line number would not do: a block inserted above would make the finding new.
+            mistake = f"{path}\0{visible(finding.rule)}\0{visible(finding.fingerprint)}"
+            occurrences[mistake] += 1
             yield {
-                "description": visible(found.told),
-                "check_name": visible(found.rule),
-                "fingerprint": hashlib.sha256(f"{mistake}\0{told[mistake]}".encode()).hexdigest(),
-                "severity": _SEVERITIES.get(found.severity, "info"),
-                "location": {"path": path, "lines": {"begin": found.line, "end": found.end_line}},
+                "description": visible(finding.full_message),
+                "check_name": visible(finding.rule),
+                "fingerprint": hashlib.sha256(f"{mistake}\0{occurrences[mistake]}".encode()).hexdigest(),
+                "severity": _SEVERITIES.get(finding.severity, "info"),
+                "location": {"path": path, "lines": {"begin": finding.line, "end": finding.end_line}},
             }

@@ -10,10 +10,10 @@ if TYPE_CHECKING:
 
 
 def html(report: Report, background: Background) -> str:
-    """One page of all files; plotly stands in it where anything is drawn."""
+    """Return one page for all files; it contains plotly if anything is drawn."""
     from polarcheck.pictures.library import library
     from polarcheck.pictures.page import page
     from polarcheck.reports.pages.pictured import picture
 
     pictures = [picture(file, background) for file in report.files]
-    return page(pictures, library() if any(one.sections for one in pictures) else "")
+    return page(pictures, library() if any(drawn.sections for drawn in pictures) else "")

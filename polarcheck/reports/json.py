@@ -1,4 +1,4 @@
-"""The report for other programs: a contract, whose schema is `polarcheck schema report`."""
+"""The report for other programs: a contract, with the schema `polarcheck schema report`."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from polarcheck.finding import Report
     from polarcheck.reports import Background
 
-#: What would act on a terminal or an editor, or not be seen there, and JSON allows to stand as it is: escape sequences,
+#: Characters that JSON need not escape, but that control a terminal or an editor, or are invisible: escape sequences,
 #: changes of direction, characters without width.
 _ACTING = (
     *(*range(0x7F, 0xA0), 0xAD, 0x61C, 0x180E, *range(0x200B, 0x2010), *range(0x2028, 0x202F)),
@@ -24,14 +24,14 @@ _ESCAPED = {number: f"\\u{number:04x}" for number in _ACTING}
 
 
 def json(report: Report, background: Background | None = None) -> str:
-    """The report as JSON, in the order of its fields; NaN is null."""
+    """Return the report as JSON, in the order of its fields; NaN is null."""
     if not isinstance(report.files, list):
         return "".join(json_pieces(report, background))
     return encoded(report, indent=2) + "\n"
 
 
 def encoded(value: Any, indent: int = 0) -> str:
-    """Any value as JSON in which nothing acts, in one line if it is not indented; NaN is null."""
+    """Return any value as JSON without control characters, in one line unless it is indented; NaN is null."""
     try:
         text = msgspec.json.encode(value)
     except UnicodeEncodeError:
@@ -40,19 +40,19 @@ def encoded(value: Any, indent: int = 0) -> str:
 
 
 def json_pieces(report: Report, background: Background | None = None) -> Iterator[str]:
-    """The same, file by file."""
+    """Yield the same text file by file."""
     head, no_files, end = json(msgspec.structs.replace(report, files=[])).partition('"files": []')
     before = '"files": [\n'
     yield head if report.files else head + no_files
     for number, file in enumerate(report.files):
         text = json(msgspec.structs.replace(report, files=[file]))
-        # No text in it has a line end of its own, so that these stand at the top level.
+        # JSON escapes line ends in texts, so these two matches are at the top level.
         yield (",\n" if number else before) + text[text.index(before) + len(before) : text.rindex("\n  ]")]
     yield "\n  ]" + end if report.files else end
 
 
 def _encodable(value: Any) -> Any:
-    """Half characters, which some encodings can spell but JSON cannot hold, are spelled out."""
+    """Spell out unpaired surrogates, which some encodings can produce but JSON cannot hold."""
     if isinstance(value, str):
         return with_characters(value).encode("utf-8", "backslashreplace").decode()
     if isinstance(value, list):

@@ -1,4 +1,4 @@
-"""JSON lines: what `json` says, an object per line, for whoever reads as it comes or looks for lines."""
+"""JSON lines: the content of `json`, an object per line, for programs that read a stream or search by line."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _LISTED = ("findings", "silenced")
 
 def jsonl(report: Report, background: Background | None = None) -> str:
     """
-    A line for each finding, then for each one that is silenced, then for the file itself; the last line is the summary.
+    Return for each file a line per finding, a line per silenced finding and a line for the file; last the summary.
 
     `type` says which: finding, silenced, file, summary. All other fields are those of `json`; `path` is in each line
     but the last.
@@ -27,12 +27,12 @@ def jsonl(report: Report, background: Background | None = None) -> str:
 
 
 def jsonl_pieces(report: Report, background: Background) -> Iterator[str]:
-    """The same, file by file."""
+    """Yield the same text file by file."""
     return of_each(jsonl_parts(background), report, background)
 
 
 def jsonl_parts(background: Background) -> Parts:
-    """The same, of files as they are finished."""
+    """Return how the report is written while files are being checked."""
 
     def of_file(file: FileReport, shown: Mapping[int, str]) -> str:
         return "".join(encoded(line) + "\n" for line in lines(file))
@@ -45,10 +45,10 @@ def jsonl_parts(background: Background) -> Parts:
 
 
 def lines(file: FileReport) -> Iterator[dict[str, Any]]:
-    """What is said of one file."""
-    for found in file.findings:
-        yield {"type": "finding", "path": file.path, **msgspec.to_builtins(found)}
-    for found in file.silenced:
-        yield {"type": "silenced", "path": file.path, **msgspec.to_builtins(found)}
+    """Yield the objects of one file."""
+    for finding in file.findings:
+        yield {"type": "finding", "path": file.path, **msgspec.to_builtins(finding)}
+    for finding in file.silenced:
+        yield {"type": "silenced", "path": file.path, **msgspec.to_builtins(finding)}
     fields = msgspec.to_builtins(msgspec.structs.replace(file, findings=[], silenced=[]))
     yield {"type": "file", **{name: value for name, value in fields.items() if name not in _LISTED}}

@@ -1,4 +1,4 @@
-"""JUnit's XML: a test for each file and group of rules, so that what was looked at and is clean shows as passed."""
+"""JUnit's XML: a test for each file and group of rules, so that a group without findings shows as passed."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
-from polarcheck.checking.check import is_told
+from polarcheck.checking.check import reaches
 from polarcheck.finding import Undecided
 from polarcheck.reports.ci import xml
 from polarcheck.reports.ci.paths import from_root
@@ -17,14 +17,20 @@ if TYPE_CHECKING:
     from polarcheck.finding import FileReport, Finding, NotEvaluated, Report
     from polarcheck.reports import Background
 
-#: The test of a file in which there was nothing to judge.
+#: The test of a file without a polar section.
 _NOTHING = "no-polar-section"
 _UNREAD = "files"
 
 
 class _Case(NamedTuple):
     """
-    A test: of which group; findings that fail, those that do not, what could not be judged, and whether that fails.
+    A test.
+
+    group: the group of rules.
+    failing: the findings that fail.
+    others: the findings that do not fail.
+    missing: reasons why something could not be judged.
+    is_strict: `missing` is a failure, too.
     """
 
     group: str
@@ -40,37 +46,39 @@ class _Case(NamedTuple):
         return "skipped" if self.missing else ""
 
 
-class _Ran:
-    """The groups of the rules that ran over a file: of many files few differ."""
+class _Groups:
+    """The groups of the rules that ran over each file, cached by the settings, which many files share."""
 
     def __init__(self, background: Background) -> None:
         self._settings = background.settings
-        self._every = list(dict.fromkeys(rule.group for rule in background.rules.values()))
-        self._known: dict[int, list[str]] = {}
+        self._all = list(dict.fromkeys(rule.group for rule in background.rules.values()))
+        self._cached: dict[int, list[str]] = {}
 
     def over(self, file: FileReport) -> list[str]:
-        """The names of the groups, in the order of the catalogue."""
+        """Return the names of the groups, in the order of the catalogue."""
         settings = self._settings.get(file.path)
         if settings is None:
-            return self._every
-        if id(settings) not in self._known:
+            return self._all
+        if id(settings) not in self._cached:
             levels = {**settings.machine.severities, **settings.severities}
             ran = (rule.group for rule in settings.rules if rule.level(levels) != "off")
-            self._known[id(settings)] = list(dict.fromkeys(ran))
-        return self._known[id(settings)]
+            self._cached[id(settings)] = list(dict.fromkeys(ran))
+        return self._cached[id(settings)]
 
 
 def junit(report: Report, background: Background) -> str:
     """
-    A suite for each file, in which each group of rules that ran is a test: passed, failed by findings of the severity
-    that fails, or skipped where something that matters could not be judged. What could not be read is an error.
+    Return a suite for each file, with a test for each group of rules that ran.
+
+    A test passes, fails by findings of the severity that fails, or is skipped if something that matters could not be
+    judged. A file that could not be read is an error.
     """
     return "".join(junit_pieces(report, background))
 
 
 def junit_pieces(report: Report, background: Background) -> Iterator[str]:
-    """The same, file by file; they are gone through twice, since the counts stand at the head."""
-    ran = _Ran(background)
+    """Yield the same text file by file, in two passes over the files, since the head holds the counts."""
+    ran = _Groups(background)
     outcomes = Counter(case.outcome for file in report.files for case in _cases(file, background, ran))
     counts: dict[str, str | int] = {
         "name": "polarcheck",
@@ -88,7 +96,9 @@ def _all(suites: Iterator[str], background: Background) -> Iterator[str]:
     failures = background.failures
     if failures:
         counts: dict[str, str | int] = {"name": _UNREAD, "tests": len(failures), "failures": 0, "errors": len(failures)}
-        yield from xml.element("testsuite", counts, (part for one in failures for part in _unread(one)), depth=1)
+        yield from xml.element(
+            "testsuite", counts, (part for failure in failures for part in _unread(failure)), depth=1
+        )
 
 
 def _unread(failure: str) -> Iterator[str]:
@@ -96,23 +106,23 @@ def _unread(failure: str) -> Iterator[str]:
     return xml.element("testcase", {"classname": f"polarcheck.{_UNREAD}", "name": failure}, [inside], depth=2)
 
 
-def _cases(file: FileReport, background: Background, ran: _Ran) -> Iterator[_Case]:
+def _cases(file: FileReport, background: Background, ran: _Groups) -> Iterator[_Case]:
     settings = background.settings.get(file.path)
     fail_on, is_strict = (settings.fail_on, settings.strict) if settings else ("warning", False)
-    found: dict[str, list[Finding]] = {}
+    findings: dict[str, list[Finding]] = {}
     missing: dict[str, list[NotEvaluated]] = {}
-    for one in file.findings:
-        found.setdefault(_group(one.rule, background), []).append(one)
+    for finding in file.findings:
+        findings.setdefault(_group(finding.rule, background), []).append(finding)
     for gap in file.not_evaluated:
         if gap.matters:
             missing.setdefault(_group(gap.rule, background), []).append(gap)
     groups = ran.over(file) if file.sections else [_NOTHING]
-    for group in dict.fromkeys((*groups, *sorted({*found, *missing}))):
-        told = [one for one in found.get(group, ()) if is_told(one, fail_on)]
-        failing = [one for one in told if not isinstance(one, Undecided)]
-        reasons = [one.message for one in told if isinstance(one, Undecided)]
+    for group in dict.fromkeys((*groups, *sorted({*findings, *missing}))):
+        reaching = [finding for finding in findings.get(group, ()) if reaches(finding, fail_on)]
+        failing = [finding for finding in reaching if not isinstance(finding, Undecided)]
+        reasons = [finding.message for finding in reaching if isinstance(finding, Undecided)]
         reasons += [gap.reason for gap in missing.get(group, ())]
-        others = [one for one in found.get(group, ()) if one not in failing]
+        others = [finding for finding in findings.get(group, ()) if finding not in failing]
         yield _Case(group, failing, others, list(dict.fromkeys(reasons)), is_strict)
 
 
@@ -120,7 +130,7 @@ def _group(rule: str, background: Background) -> str:
     return background.rules[rule].group if rule in background.rules else rule
 
 
-def _suite(file: FileReport, background: Background, ran: _Ran) -> Iterator[str]:
+def _suite(file: FileReport, background: Background, ran: _Groups) -> Iterator[str]:
     path = from_root(file.path, background)
     cases = list(_cases(file, background, ran))
     outcomes = [case.outcome for case in cases]
@@ -139,14 +149,17 @@ def _suite(file: FileReport, background: Background, ran: _Ran) -> Iterator[str]
 
 
 def _test(case: _Case, path: str, file: FileReport) -> Iterator[str]:
-    """Files are the names of tests and groups their classes: readers split the name of a class at its last point."""
+    """Return a test with the path as its name and the group as its class: readers split class names at the last dot."""
     inside = []
     if case.outcome:
-        messages = [one.told for one in case.failing] or list(case.missing)
+        messages = [finding.full_message for finding in case.failing] or list(case.missing)
         more = f" (and {len(messages) - 1} more)" if len(messages) > 1 else ""
         kind = case.failing[0].severity if case.failing else "unverified"
-        lines = [*(line(file, one) for one in case.failing), *(f"not evaluated: {one}" for one in case.missing)]
+        lines = [
+            *(line(file, finding) for finding in case.failing),
+            *(f"not evaluated: {finding}" for finding in case.missing),
+        ]
         inside.append(xml.of_text(case.outcome, {"type": kind, "message": messages[0] + more}, lines, depth=3))
     if case.others:
-        inside.append(xml.of_text("system-out", {}, (line(file, one) for one in case.others), depth=3))
+        inside.append(xml.of_text("system-out", {}, (line(file, finding) for finding in case.others), depth=3))
     return xml.element("testcase", {"classname": f"polarcheck.{case.group}", "name": path}, inside, depth=2)

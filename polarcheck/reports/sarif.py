@@ -1,4 +1,4 @@
-"""SARIF 2.1.0: what GitHub code scanning, Azure DevOps and editors read of any linter."""
+"""SARIF 2.1.0, which GitHub code scanning, Azure DevOps and editors read from any linter."""
 
 from __future__ import annotations
 
@@ -17,20 +17,20 @@ if TYPE_CHECKING:
     from polarcheck.reports import Background
 
 _SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
-#: To whom all paths are relative, as readers of SARIF name it.
+#: The base of all paths, by the name that readers of SARIF know.
 _ROOT = "%SRCROOT%"
 _LEVELS = {"error": "error", "warning": "warning", "note": "note"}
 _SEVERITIES = {"error": "error", "warning": "warning", "note": "recommendation"}
 _SUPPRESSIONS = {ALLOW: "inSource", BASELINE: "external"}
-#: Characters of a description that GitHub takes.
+#: The longest description that GitHub accepts [characters].
 _MOST = 1024
 
 
 def sarif(report: Report, background: Background) -> str:
-    """One run with a result for each finding, silenced ones included, and a notification for what was not evaluated."""
-    silenced = {one.rule: one for file in report.files for one in file.silenced}
-    found = {one.rule: one for file in report.files for one in file.findings}
-    names = sorted({*silenced, *found})
+    """Return a run with a result per finding, silenced or not, and a notification per reason for "not evaluated"."""
+    silenced = {finding.rule: finding for file in report.files for finding in file.silenced}
+    findings = {finding.rule: finding for file in report.files for finding in file.findings}
+    names = sorted({*silenced, *findings})
     indices = {name: index for index, name in enumerate(names)}
     notifications = [*_failures(background.failures), *_not_evaluated(report, background)]
     run = {
@@ -39,7 +39,7 @@ def sarif(report: Report, background: Background) -> str:
                 "name": report.tool.name,
                 "version": report.tool.version,
                 "semanticVersion": report.tool.version,
-                "rules": [_rule(name, background.rules.get(name), {**silenced, **found}[name]) for name in names],
+                "rules": [_rule(name, background.rules.get(name), {**silenced, **findings}[name]) for name in names],
             }
         },
         "automationDetails": {"id": f"{report.tool.name}/"},
@@ -47,16 +47,18 @@ def sarif(report: Report, background: Background) -> str:
         "originalUriBaseIds": {_ROOT: {"description": {"text": "The root of the repository."}}},
         "invocations": [{"executionSuccessful": not background.failures, "toolExecutionNotifications": notifications}],
         "results": [
-            _result(one, file, indices, background, bool(silenced))
+            _result(finding, file, indices, background, bool(silenced))
             for file in report.files
-            for one in sorted((*file.findings, *file.silenced), key=lambda one: (one.line, one.column, one.rule))
+            for finding in sorted(
+                (*file.findings, *file.silenced), key=lambda finding: (finding.line, finding.column, finding.rule)
+            )
         ],
     }
     return encoded({"$schema": _SCHEMA, "version": "2.1.0", "runs": [run]}, indent=2) + "\n"
 
 
-def _rule(name: str, rule: Rule | None, found: Finding) -> dict[str, Any]:
-    """A rule that has a result; of one that is not known, as of a finding about the check itself, there is no page."""
+def _rule(name: str, rule: Rule | None, finding: Finding) -> dict[str, Any]:
+    """Return the entry of a rule with a result; a finding about the check itself has a rule without a page."""
     name = visible(name)
     if rule is None:
         about = {"text": name}
@@ -73,54 +75,59 @@ def _rule(name: str, rule: Rule | None, found: Finding) -> dict[str, Any]:
 
 
 def _result(
-    found: Finding, file: FileReport, indices: Mapping[str, int], background: Background, has_silenced: bool
+    finding: Finding, file: FileReport, indices: Mapping[str, int], background: Background, has_silenced: bool
 ) -> dict[str, Any]:
     artifact = {"uri": uri(file.path, background), "uriBaseId": _ROOT}
-    section = found.section_line if found.section_line != found.line else None
+    section = finding.section_line if finding.section_line != finding.line else None
     result: dict[str, Any] = {
-        "ruleId": visible(found.rule),
-        "ruleIndex": indices[found.rule],
-        "level": _LEVELS.get(found.severity, "warning"),
-        "message": {"text": _message(found, section)},
+        "ruleId": visible(finding.rule),
+        "ruleIndex": indices[finding.rule],
+        "level": _LEVELS.get(finding.severity, "warning"),
+        "message": {"text": _message(finding, section)},
         "locations": [
             {
-                "physicalLocation": {"artifactLocation": artifact, "region": _region(found)},
-                **({"logicalLocations": [{"name": visible(found.program)}]} if found.program else {}),
+                "physicalLocation": {"artifactLocation": artifact, "region": _region(finding)},
+                **({"logicalLocations": [{"name": visible(finding.program)}]} if finding.program else {}),
             }
         ],
-        "partialFingerprints": {"polarcheck/v1": visible(found.fingerprint)},
-        "properties": {"alarm": found.alarm, "count": found.count, "values": found.values, "source": found.source},
+        "partialFingerprints": {"polarcheck/v1": visible(finding.fingerprint)},
+        "properties": {
+            "alarm": finding.alarm,
+            "count": finding.count,
+            "values": finding.values,
+            "source": finding.source,
+        },
     }
     if section is not None:
         place = {"artifactLocation": artifact, "region": {"startLine": section}}
         about = {"text": "the polar section begins here"}
         result["relatedLocations"] = [{"id": 1, "physicalLocation": place, "message": about}]
-    if found.fix is not None:
-        result["fixes"] = [_fix(found.fix, artifact)]
-    if isinstance(found, Silenced):
-        suppression = {"kind": _SUPPRESSIONS.get(found.by, "external"), "status": "accepted"}
-        result["suppressions"] = [{**suppression, "justification": visible(found.reason)}]
+    if finding.fix is not None:
+        result["fixes"] = [_fix(finding.fix, artifact)]
+    if isinstance(finding, Silenced):
+        suppression = {"kind": _SUPPRESSIONS.get(finding.by, "external"), "status": "accepted"}
+        result["suppressions"] = [{**suppression, "justification": visible(finding.reason)}]
     elif has_silenced:
-        result["suppressions"] = []  # left out would mean that nobody knows
+        result["suppressions"] = []  # without the key the state would be unknown
     if background.has_baseline:
-        result["baselineState"] = "unchanged" if isinstance(found, Silenced) and found.by == BASELINE else "new"
+        result["baselineState"] = "unchanged" if isinstance(finding, Silenced) and finding.by == BASELINE else "new"
     return result
 
 
-def _message(found: Finding, section: int | None) -> str:
-    """The first sentence is what lists show. A text in brackets with a number in parentheses would be a link."""
-    text = visible(found.told).replace("](", "] (")
+def _message(finding: Finding, section: int | None) -> str:
+    """Return the message; lists show its first sentence. `](` is broken up, since `[text](number)` would be a link."""
+    text = visible(finding.full_message).replace("](", "] (")
     text = text.removesuffix(".") + "."
-    text += f" The control shows alarm {visible(found.alarm)}." if found.alarm else ""
+    text += f" The control shows alarm {visible(finding.alarm)}." if finding.alarm else ""
     return text + (f" The polar section begins at [line {section}](1)." if section is not None else "")
 
 
-def _region(found: Finding) -> dict[str, int]:
+def _region(finding: Finding) -> dict[str, int]:
     return {
-        "startLine": found.line,
-        "startColumn": found.column,
-        "endLine": found.end_line,
-        "endColumn": found.end_column,
+        "startLine": finding.line,
+        "startColumn": finding.column,
+        "endLine": finding.end_line,
+        "endColumn": finding.end_column,
     }
 
 
@@ -147,7 +154,7 @@ def _failures(failures: Sequence[str]) -> Iterator[dict[str, Any]]:
 
 
 def _not_evaluated(report: Report, background: Background) -> Iterator[dict[str, Any]]:
-    """One for each reason and file: without them a file without results would look as if all was well."""
+    """Yield one per reason and file: without them a file without results would look clean."""
     for file in report.files:
         rules: dict[str, list[str]] = {}
         for gap in file.not_evaluated:

@@ -1,4 +1,4 @@
-"""Of many files: a line for each finding, one over all files, and what shows one of them in full."""
+"""The report of many files: a line for each finding, a summary, and a command that shows one file in full."""
 
 from __future__ import annotations
 
@@ -19,17 +19,17 @@ _FULL = {"fail": "What is wrong with one of them, in full", "unverified": "Why o
 
 
 def short(report: Report, background: Background) -> str:
-    """The lines of `concise`, then the summary, then a command for a file that fails and for one that is unverified."""
+    """Return the lines of `concise`, the summary, and a command for a failing file and for an unverified one."""
     return "".join(short_pieces(report, background))
 
 
 def short_pieces(report: Report, background: Background) -> Iterator[str]:
-    """The same, file by file."""
+    """Yield the same text file by file."""
     return of_each(short_parts(background), report, background)
 
 
 def short_parts(background: Background) -> Parts:
-    """The same, of files as they are finished."""
+    """Return how the report is written while files are being checked."""
 
     def of_file(file: FileReport, _: Mapping[int, str]) -> str:
         return "".join(text + "\n" for text in lines(file, background.silenced, background.color))
@@ -44,10 +44,10 @@ def _end(report: Report, background: Background) -> Iterator[str]:
     if total.errors or total.warnings or total.notes or (background.silenced and total.silenced):
         yield ""
     yield summary(report, background.fixed)
-    for verdict, told in _FULL.items():
+    for verdict, label in _FULL.items():
         of_verdict = (file.path for file in report.files if file.verdict == verdict and file.path != STANDARD_INPUT)
         path = next(of_verdict, None)
         if path is not None:
             name = f"./{path}" if path.startswith("-") else path
-            full = visible(f"{told}: {background.command} {shlex.quote(name)}")
+            full = visible(f"{label}: {background.command} {shlex.quote(name)}")
             yield painted("aside", full) if background.color else full

@@ -16,20 +16,25 @@ if TYPE_CHECKING:
     from polarcheck.checking.rule import Rule
     from polarcheck.finding import FileReport, Finding, Fix, NotEvaluated, Report
 
-#: Line numbers and labels end at this column; the text beside them begins three further.
+#: Line numbers and labels end at this column; the text beside them begins three columns further.
 _GUTTER = 6
 _NARROWEST = 60
-#: Of more files than this, those that pass are counted, not listed, and what was not evaluated is told for all at once.
+#: With more files than this, passing files are counted, not listed, and "not evaluated" stands once after all files.
 _LISTED = 10
-#: Of more files than this it is not told what their verdicts rest on.
+#: With more files than this, the report leaves out what the verdicts rest on.
 _RESTING = 3
-#: Places that are listed where many files lack the same.
+#: How many places are listed for each reason for "not evaluated".
 _PLACES = 3
 _SENTENCE_END = re.compile(r"(?<!\be\.g\.)(?<!\bi\.e\.)(?<!\bp\.)(?<=[.?!])\s+(?=[A-Z0-9(])")
 
 
 class _Page(NamedTuple):
-    """How to write: the width in columns, and whether in color."""
+    """
+    How to write.
+
+    columns: the width [characters].
+    color: write in color.
+    """
 
     columns: int
     color: bool
@@ -55,36 +60,40 @@ class _Page(NamedTuple):
 
 
 def text(report: Report, background: Background) -> str:
-    """Findings with excerpts, then what was not evaluated, then the verdict of each file and one line over all."""
+    """Return findings with excerpts, then what was not evaluated, then the verdict of each file and a summary line."""
     return "".join(text_pieces(report, background))
 
 
 def text_pieces(report: Report, background: Background) -> Iterator[str]:
-    """The same, file by file."""
+    """Yield the same text file by file."""
     return of_each(_parts(background, len(report.files) <= _LISTED), report, background)
 
 
 def text_parts(background: Background) -> Parts:
-    """The same, of files as they are finished, of which there are many."""
+    """Return how the report is written while many files are being checked."""
     return _parts(background, False)
 
 
 def _parts(background: Background, are_listed: bool) -> Parts:
-    """are_listed: whether of each file it is said with its findings what was not evaluated, not behind all of them."""
+    """
+    Return how the report is written.
+
+    are_listed: "not evaluated" stands after the findings of each file, not once after all files.
+    """
     page = _Page(max(background.columns, _NARROWEST), background.color)
     explained: dict[str, None] = {}
 
     def of_file(file: FileReport, lines: Mapping[int, str]) -> str:
         shown = list[str]()
-        for found in file.findings:
-            rule = background.rules.get(found.rule)
-            shown += _finding(found, file, lines, rule, found.rule not in explained, page)
-            shown += _following(found, background.following, page)
+        for finding in file.findings:
+            rule = background.rules.get(finding.rule)
+            shown += _finding(finding, file, lines, rule, finding.rule not in explained, page)
+            shown += _following(finding, background.following, page)
             shown.append("")
-            explained[found.rule] = None
+            explained[finding.rule] = None
         if are_listed and not background.quiet:
             shown += _not_evaluated([file], page)
-        shown += _made(file, page)
+        shown += _part(file, page)
         if background.silenced:
             shown += _silenced(file, page)
         shown += _views(file, page, background.dots)
@@ -103,7 +112,7 @@ def _parts(background: Background, are_listed: bool) -> Parts:
 
 
 def _views(file: FileReport, page: _Page, dots: bool) -> Iterator[str]:
-    """The paths of each section, where they were asked for."""
+    """Yield the paths of each section, if they were requested."""
     views = getattr(file, "views", ())
     if not views:
         return
@@ -114,75 +123,75 @@ def _views(file: FileReport, page: _Page, dots: bool) -> Iterator[str]:
 
 
 def _silenced(file: FileReport, page: _Page) -> Iterator[str]:
-    """What is silenced in a file, a paragraph for all of it."""
+    """Yield a paragraph on the silenced findings of a file."""
     if not file.silenced:
         return
     from polarcheck.reports.concise import why_silenced
 
     yield from page.heading("silenced", counted(len(file.silenced), "finding"))
-    for found in file.silenced:
-        yield from page.labelled("at", f"{file.path}:{found.line}:{found.column}: {why_silenced(found)}")
+    for finding in file.silenced:
+        yield from page.labelled("at", f"{file.path}:{finding.line}:{finding.column}: {why_silenced(finding)}")
     yield ""
 
 
-def _made(file: FileReport, page: _Page) -> Iterator[str]:
-    """What a file makes, where that was asked for."""
+def _part(file: FileReport, page: _Page) -> Iterator[str]:
+    """Yield a paragraph on the part that a file makes, if it was requested."""
     if not file.part:
         return
-    from polarcheck.reports.pages.made import made
+    from polarcheck.reports.pages.part_lines import part_lines
 
     yield from page.heading("part", file.path)
-    for label, said in made(file):
-        yield from page.labelled(label, said)
+    for label, line in part_lines(file):
+        yield from page.labelled(label, line)
     yield ""
 
 
-def _following(found: Finding, is_shown: bool, page: _Page) -> Iterator[str]:
-    """What follows from a finding, or how much that is."""
-    if not found.follows:
+def _following(finding: Finding, is_shown: bool, page: _Page) -> Iterator[str]:
+    """Yield the findings that follow from a finding, or their number."""
+    if not finding.follows:
         return
     if not is_shown:
-        count = len(found.follows)
+        count = len(finding.follows)
         follow = "follows" if count == 1 else "follow"
         yield from page.labelled("also", f"{counted(count, 'finding')} {follow} from this one (--show-following)")
-    for one in found.follows if is_shown else ():
-        yield from page.labelled("so", f"line {one.line}: {one.severity}: {one.message} [{one.rule}]")
+    for effect in finding.follows if is_shown else ():
+        yield from page.labelled("so", f"line {effect.line}: {effect.severity}: {effect.message} [{effect.rule}]")
 
 
 def _finding(
-    found: Finding, file: FileReport, lines: Mapping[int, str], rule: Rule | None, is_first: bool, page: _Page
+    finding: Finding, file: FileReport, lines: Mapping[int, str], rule: Rule | None, is_first: bool, page: _Page
 ) -> Iterator[str]:
-    yield from page.heading(found.severity, found.message)
-    place = f"{file.path}:{found.line}:{found.column}"
-    if found.channel:
-        place += f", channel {found.channel}"
-    if found.program and len(file.programs) > 1:
-        place += f", program {found.program}"
-    if found.count > 1 and not (rule and rule.once):
-        place += f", in {found.count} runs of the block"
+    yield from page.heading(finding.severity, finding.message)
+    place = f"{file.path}:{finding.line}:{finding.column}"
+    if finding.channel:
+        place += f", channel {finding.channel}"
+    if finding.program and len(file.programs) > 1:
+        place += f", program {finding.program}"
+    if finding.count > 1 and not (rule and rule.once):
+        place += f", in {finding.count} runs of the block"
     yield from page.labelled("at", place)
-    yield from _excerpt(found, lines, page)
-    yield from page.labelled("rule", f"{found.rule}, alarm {found.alarm}" if found.alarm else found.rule)
+    yield from _excerpt(finding, lines, page)
+    yield from page.labelled("rule", f"{finding.rule}, alarm {finding.alarm}" if finding.alarm else finding.rule)
     why = first_sentence(rule.page) if rule and is_first else ""
     if why:
         yield from page.labelled("why", why)
-    if found.fix is not None:
-        yield from page.labelled("fix", _fix(found.fix))
+    if finding.fix is not None:
+        yield from page.labelled("fix", _fix(finding.fix))
 
 
-def _excerpt(found: Finding, lines: Mapping[int, str], page: _Page) -> Iterator[str]:
-    """The G12.1 that the block belongs to, the block, and a mark under the words at fault."""
+def _excerpt(finding: Finding, lines: Mapping[int, str], page: _Page) -> Iterator[str]:
+    """Yield the G12.1 that the block belongs to, the block, and a mark under the words at fault."""
     room = page.columns - _GUTTER - 3
-    related = found.section_line
-    if related is not None and related != found.line and related in lines:
+    related = finding.section_line
+    if related is not None and related != finding.line and related in lines:
         yield _numbered(related, excerpt(lines[related], 0, 0, room).text, page)
-    if found.line not in lines:
+    if finding.line not in lines:
         return
-    line = lines[found.line]
-    end = found.end_column - 1 if found.end_line == found.line else len(line)
-    shown = excerpt(line, found.column - 1, end, room)
-    yield _numbered(found.line, shown.text, page)
-    mark = page.paint(found.severity, "^" * shown.marked)
+    line = lines[finding.line]
+    end = finding.end_column - 1 if finding.end_line == finding.line else len(line)
+    shown = excerpt(line, finding.column - 1, end, room)
+    yield _numbered(finding.line, shown.text, page)
+    mark = page.paint(finding.severity, "^" * shown.marked)
     yield f"{page.paint('aside', ' ' * _GUTTER + ' |')} {' ' * shown.first}{mark}"
 
 
@@ -191,7 +200,7 @@ def _numbered(line: int, text: str, page: _Page) -> str:
 
 
 def first_sentence(page: str) -> str:
-    """The first sentence below the title of a manual page; it says why."""
+    """Return the first sentence below the title of a manual page; it says why."""
     body = page.partition("\n")[2].strip().partition("\n\n")[0]
     return _SENTENCE_END.split(" ".join(body.split()), maxsplit=1)[0]
 
@@ -201,7 +210,13 @@ def _fix(fix: Fix) -> str:
 
 
 class _Reason:
-    """What was not evaluated for one reason: the rules, the first places with their blocks, and how many more."""
+    """
+    What was not evaluated for one reason.
+
+    rules: the names of the rules, in order.
+    places: the number of blocks of each of the first places (path and channel).
+    more: the number of further places.
+    """
 
     def __init__(self) -> None:
         self.rules: dict[str, None] = {}
@@ -209,7 +224,7 @@ class _Reason:
         self.more = 0
 
     def add(self, file: FileReport, group: Sequence[NotEvaluated]) -> None:
-        """What a file has of it; none of that is held on to, however many files there are."""
+        """Add the entries of a file, without a reference to them: there may be very many files."""
         self.rules |= dict.fromkeys(missing.rule for missing in group)
         blocks: dict[str, int] = {}
         for missing in group:
@@ -223,21 +238,21 @@ class _Reason:
 
 
 def _not_evaluated(files: Iterable[FileReport], page: _Page) -> Iterator[str]:
-    """One paragraph for each reason, whatever the number of rules that it silences."""
+    """Yield one paragraph for each reason, with all rules that were not evaluated for it."""
     reasons: dict[str, _Reason] = {}
     for file in files:
         groups: dict[str, list[NotEvaluated]] = {}
-        for missing in (one for one in file.not_evaluated if one.matters):
+        for missing in (entry for entry in file.not_evaluated if entry.matters):
             groups.setdefault(missing.reason, []).append(missing)
         for reason, group in groups.items():
             reasons.setdefault(reason, _Reason()).add(file, group)
-    for reason, found in reasons.items():
+    for reason, gap in reasons.items():
         yield from page.heading("not evaluated", reason)
-        for place, blocks in found.places.items():
+        for place, blocks in gap.places.items():
             yield from page.labelled("at", f"{place}, {counted(blocks, 'block')}")
-        if found.more:
-            yield from page.labelled("", f"and in {counted(found.more, 'more file')}")
-        yield from page.labelled("rule" if len(found.rules) == 1 else "rules", ", ".join(found.rules))
+        if gap.more:
+            yield from page.labelled("", f"and in {counted(gap.more, 'more file')}")
+        yield from page.labelled("rule" if len(gap.rules) == 1 else "rules", ", ".join(gap.rules))
         yield ""
 
 
@@ -246,14 +261,14 @@ def _is_listed(file: FileReport, report: Report) -> bool:
 
 
 def _verdicts(report: Report, page: _Page) -> Iterator[str]:
-    # Of many files no report is held on to.
+    # Iterates over the files twice, so that not all reports are in memory at once.
     widths = [len(verdict(file)) for file in report.files if _is_listed(file, report)]
     width = max(widths, default=0)
     for file in report.files:
         if not _is_listed(file, report):
             continue
         word = verdict(file)
-        facts = [severities(Counter(found.severity for found in file.findings))]
+        facts = [severities(Counter(finding.severity for finding in file.findings))]
         if file.sections or file.verdict != "pass":
             facts.append(counted(file.sections, "polar section") if file.sections else "no polar section")
         facts.append(counted(file.blocks, "block"))
@@ -266,14 +281,14 @@ def _verdicts(report: Report, page: _Page) -> Iterator[str]:
 
 
 def verdict(file: FileReport) -> str:
-    """The verdict in words, with what it does not rest on: nothing to look at, or findings that are silenced."""
+    """Return the verdict in words, with remarks: no polar section, silenced findings."""
     remarks = ["no polar section"] if file.verdict == "pass" and not file.sections else []
     remarks += [f"{len(file.silenced)} silenced"] if file.silenced else []
     return f"{file.verdict} ({', '.join(remarks)})" if remarks else file.verdict
 
 
 def summary(report: Report, fixed: int = 0) -> str:
-    """One line over all files. fixed: how many fixes were written into them before."""
+    """Return one line on all files. fixed: the number of fixes written into them before."""
     total, verdicts = report.summary, ""
     if len(report.files) > 1:
         empty = sum(file.verdict == "pass" and not file.sections for file in report.files)
@@ -288,15 +303,17 @@ def summary(report: Report, fixed: int = 0) -> str:
         verdicts = ": " + ", ".join([text for text, count in counts.items() if count] + [of_pass] * bool(total.passed))
     machines = len({file.machine for file in report.files})
     machine = f"{machines} machines" if report.machine is None else visible(report.machine)
-    found = [severities({"error": total.errors, "warning": total.warnings, "note": total.notes})]
-    found += [f"{total.silenced} silenced"] if total.silenced else []
-    found += [f"{fixed} fixed"] if fixed else []
-    return f"{counted(len(report.files), 'file')} checked for {machine}{verdicts}; {', '.join(found)}"
+    facts = [severities({"error": total.errors, "warning": total.warnings, "note": total.notes})]
+    facts += [f"{total.silenced} silenced"] if total.silenced else []
+    facts += [f"{fixed} fixed"] if fixed else []
+    return f"{counted(len(report.files), 'file')} checked for {machine}{verdicts}; {', '.join(facts)}"
 
 
 def severities(number: Mapping[str, int]) -> str:
     """`2 errors, 1 note`."""
-    return ", ".join(counted(number[one], one) for one in SEVERITIES if number[one]) or "no findings"
+    return (
+        ", ".join(counted(number[severity], severity) for severity in SEVERITIES if number[severity]) or "no findings"
+    )
 
 
 def _wrapped(text: str, columns: int) -> list[str]:

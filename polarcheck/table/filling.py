@@ -7,7 +7,7 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from polarcheck.arrays import Floats, Mask, Rows, is_one, repeated
+from polarcheck.arrays import Floats, Mask, Rows, is_uniform, repeated
 
 Scalar = TypeVar("Scalar", bound=np.generic)
 
@@ -20,7 +20,7 @@ def fill_down(values: NDArray[Scalar], written: Mask, before: object) -> NDArray
     start = np.array([before], values.dtype)
     at = np.flatnonzero(written)
     if len(at) * _SELDOM < len(values):
-        if len(at) and not at[0] and is_one(values[at]) and values.dtype != np.bool_:
+        if len(at) and not at[0] and is_uniform(values[at]) and values.dtype != np.bool_:
             return repeated(values[0], len(values))
         count = np.append(at, len(values))
         count[1:] -= at

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Rows, computed, is_one, repeated
+from polarcheck.arrays import Floats, Mask, Rows, computed, is_uniform, repeated
 from polarcheck.execution.run import NO_VARIABLE
 from polarcheck.machines.offsets import place_in
 from polarcheck.table.offset_settings import NOSE, RADIUS, RADIUS_WEAR, X_WEAR, Settings, Steps, X, in_order, of_list
@@ -123,7 +123,7 @@ class ToolOffsets(RotaryAxis):
         table = np.full(self.offset_count, np.nan)
         for number, value in values.items():
             table[number] = value
-        return repeated(table[0], len(self)) if is_one(table) else table[self.offset_number]
+        return repeated(table[0], len(self)) if is_uniform(table) else table[self.offset_number]
 
     @cached_property
     def _radius_given(self) -> Floats:

@@ -1,4 +1,4 @@
-"""Paths as CI wants them: from the root of the repository, whatever folder the check began in."""
+"""Paths as CI systems need them: from the root of the repository, whatever the working folder."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ _DRIVE = re.compile(r"[A-Za-z]:/")
 
 
 def from_root(path: str, background: Background) -> str:
-    """The path of a file report from the root of the repository, without `./`; absolute where it lies outside."""
+    """Return a path relative to the root of the repository, without `./`; absolute for a file outside it."""
     return path if path == STANDARD_INPUT else visible(spelled(_from_root(path, background)))
 
 
 def uri(path: str, background: Background) -> str:
-    """The same as a URI: relative inside the repository, its bytes percent-encoded."""
+    """Return the same path as a URI: relative inside the repository, its bytes percent-encoded."""
     if path == STANDARD_INPUT:
         return path
     raw = _from_root(path, background)
     try:
         data = raw.encode("utf-8", "surrogateescape")
-    except UnicodeEncodeError:  # half characters, as Windows allows them in names
+    except UnicodeEncodeError:  # unpaired surrogates, which Windows allows in names
         data = raw.encode("utf-8", "surrogatepass")
     if _DRIVE.match(raw):
         return f"file:///{raw[0]}:{quote(data[2:])}"

@@ -1,4 +1,4 @@
-"""The manual page of a rule as code scanning shows it beside a finding: in plain text and in Markdown."""
+"""The manual page of a rule for code scanning, in plain text and in Markdown."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ _INDENT = "    "
 
 
 def why(rule: Rule) -> str:
-    """What happens at the machine and what to do about it: the first paragraph below the title."""
+    """Return the first paragraph below the title: what happens at the machine, and what to do about it."""
     return " ".join(rule.page.partition("\n")[2].strip().partition("\n\n")[0].split())
 
 
 def plain(rule: Rule) -> str:
-    """The page in plain text, without its examples."""
+    """Return the page in plain text, without its examples."""
     return "\n\n".join(" ".join(part.split()) for part in _paragraphs(rule.page) if not _is_of_example(part))
 
 
 def markdown(rule: Rule) -> str:
-    """The page in Markdown, with the first example of each kind."""
+    """Return the page in Markdown, with the first example of each kind."""
     return "\n\n".join(_in_markdown(rule.page))
 
 

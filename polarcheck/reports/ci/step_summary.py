@@ -1,4 +1,4 @@
-"""The page that GitHub Actions shows of a job, in Markdown: counts by rule, and the findings."""
+"""The summary page of a GitHub Actions job, in Markdown: counts by rule, and the findings."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ if TYPE_CHECKING:
     from polarcheck.finding import Report
     from polarcheck.reports import Background
 
-#: Bytes of the pages of all steps before it and of this one that GitHub takes.
+#: The largest page that GitHub accepts, all steps together [bytes].
 LARGEST = 1024 * 1024
-#: Bytes for the line that says how much is left out.
+#: Room for the line that says how much is left out [bytes].
 _FOR_THE_REST = 200
-#: What means something to Markdown inside a line, and what makes a link of an address or of a name.
+#: Characters with a meaning in a line of Markdown, and those that would make a link of an address or a name.
 _MARKS = {ord(mark): f"\\{mark}" for mark in "\\`*_~<>&[]|#$!@:."}
 
 
 def step_summary(report: Report, background: Background, room: int = LARGEST) -> str:
-    """The page, cut between two findings where it would be longer than so many bytes; empty where there is no room."""
+    """Return the page, cut between two findings to fit into `room` [bytes]; empty if there is no room."""
     pieces: list[str] = []
     left = room - _FOR_THE_REST
     lines = list(_lines(report, background))
@@ -40,18 +40,20 @@ def step_summary(report: Report, background: Background, room: int = LARGEST) ->
 
 def _lines(report: Report, background: Background) -> Iterator[str]:
     yield f"### polarcheck\n\n{_cell(summary(report))}\n" if report.files else "### polarcheck\n\nno files checked\n"
-    found = [one for one in counts(report) if one.findings]
-    if found:
+    rows = [entry for entry in counts(report) if entry.findings]
+    if rows:
         yield "\n| findings | files | severity | rule |\n|---:|---:|---|---|\n"
-        yield from (f"| {one.findings} | {one.files} | {_cell(one.severity)} | {_cell(one.rule)} |\n" for one in found)
+        yield from (
+            f"| {entry.findings} | {entry.files} | {_cell(entry.severity)} | {_cell(entry.rule)} |\n" for entry in rows
+        )
     ranks = {severity: rank for rank, severity in enumerate(SEVERITIES)}
-    all_found = [(file, one) for file in report.files for one in file.findings]
-    all_found.sort(key=lambda one: ranks.get(one[1].severity, len(ranks)))
-    if all_found:
+    findings = [(file, entry) for file in report.files for entry in file.findings]
+    findings.sort(key=lambda entry: ranks.get(entry[1].severity, len(ranks)))
+    if findings:
         yield "\n| severity | where | what | rule |\n|---|---|---|---|\n"
-    for file, one in all_found:
-        place = f"{from_root(file.path, background)}:{one.line}"
-        yield f"| {_cell(one.severity)} | {_cell(place)} | {_cell(one.message)} | {_cell(one.rule)} |\n"
+    for file, entry in findings:
+        place = f"{from_root(file.path, background)}:{entry.line}"
+        yield f"| {_cell(entry.severity)} | {_cell(place)} | {_cell(entry.message)} | {_cell(entry.rule)} |\n"
     gaps = list(
         dict.fromkeys(
             (gap.reason, from_root(file.path, background))
@@ -69,5 +71,5 @@ def _lines(report: Report, background: Background) -> Iterator[str]:
 
 
 def _cell(text: str) -> str:
-    """Text in which nothing means anything to Markdown or HTML."""
+    """Return text without a character that has a meaning in Markdown or HTML."""
     return visible(text).translate(_MARKS)

@@ -1,4 +1,4 @@
-"""XML as text. What comes from a program can neither end an element nor hold what XML 1.0 has no place for."""
+"""Writes XML as text. Text from a program is escaped, and stripped of characters that XML 1.0 does not allow."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ _SPECIAL = str.maketrans({"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;"}
 
 
 def element(name: str, attributes: dict[str, str | int], inside: Iterable[str] = (), depth: int = 0) -> Iterator[str]:
-    """The lines of an element, those of what is inside as they are."""
+    """Yield the lines of an element; `inside` is written as it is."""
     written = "".join(f' {key}="{escaped(str(value))}"' for key, value in attributes.items())
     space = "  " * depth
     rest = iter(inside)
@@ -26,11 +26,11 @@ def element(name: str, attributes: dict[str, str | int], inside: Iterable[str] =
 
 
 def of_text(name: str, attributes: dict[str, str | int], lines: Iterable[str], depth: int = 0) -> str:
-    """An element that holds lines of text."""
+    """Return an element that holds lines of text."""
     written = "".join(f' {key}="{escaped(str(value))}"' for key, value in attributes.items())
     return f"{'  ' * depth}<{name}{written}>" + "\n".join(map(escaped, lines)) + f"</{name}>\n"
 
 
 def escaped(text: str) -> str:
-    """Text for between tags and quotes."""
+    """Escape text for use between tags and quotes."""
     return visible(text).translate(_SPECIAL)

@@ -1,1 +1,1 @@
-"""What polarcheck shows beside findings: manual pages, machine profiles, the executed table, schemas."""
+"""Text beside findings: manual pages, machine profiles, the executed table, schemas."""

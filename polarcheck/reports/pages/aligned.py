@@ -1,4 +1,4 @@
-"""Columns as a table that people read at a terminal: aligned, with their units, as many as there is room for."""
+"""Columns as an aligned table for a terminal, with units, as many as fit."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from numpy.typing import NDArray
 from polarcheck.arrays import Floats, Mask
 from polarcheck.reading.excerpt import cells, excerpt
 
-#: Between two columns.
+#: The space between two columns.
 _GAP = "  "
-#: What nobody knows.
+#: An unknown value.
 _UNKNOWN = "?"
-#: Numbers from here on are shown with their power of ten.
+#: Numbers from this size on are shown with a power of ten.
 _LARGE = 1e9
-#: Rows that are written at once: the first ones stand there before the others are made.
+#: How many rows are formatted and written at a time, so that the first ones appear soon.
 _AT_ONCE = 500
-#: The text behind the columns has at least this room, and at most that.
+#: The least and the largest width of the text after the columns [characters].
 _NARROWEST, _WIDEST = 16, 120
 
 
@@ -27,8 +27,13 @@ class Column(NamedTuple):
     """
     A column, one element per row.
 
-    values: numbers, NaN for what is not known; or, with words, the keys of these. is_blank: rows in which there is
-    nothing to say. usual: a column with this value alone says nothing. rank: the lowest go into the narrowest table.
+    name, unit: the head.
+    rank: columns with a low rank are shown first where the table is narrow.
+    values: numbers, NaN if unknown; with `words`, keys of `words`.
+    decimals: the digits after the point.
+    words: the text of each key.
+    is_blank: rows that show nothing.
+    usual: a column that holds this value only is left out.
     """
 
     name: str
@@ -43,27 +48,27 @@ class Column(NamedTuple):
 
 def table(columns: Sequence[Column], text: Callable[[int], str], room: int | None, height: int | None) -> Iterator[str]:
     """
-    The head and the rows of a table, many rows at once.
+    Yield the head and the rows of a table, many rows at a time.
 
-    text: of a row (from 0), behind its columns. room: cells in a line; None shows all columns. height: lines after
-    which the head stands there again; None shows it once.
+    text: returns the text after the columns of a row (from 0).
+    room: the width of a line [characters]; None shows all columns.
+    height: the head is repeated after this number of lines; None shows it once.
     """
     count = len(columns[0].values)
     if not count:
         return
-    told = [_Told(column) for column in columns if _says_something(column)]
-    told = _fitting(told, room)
-    left = _WIDEST if room is None else room - sum(one.width + len(_GAP) for one in told)
+    aligned = _fitting([_Aligned(column) for column in columns if _is_informative(column)], room)
+    left = _WIDEST if room is None else room - sum(column.width + len(_GAP) for column in aligned)
     head = "".join(
-        _GAP.join(getattr(one, part).rjust(one.width) if one.is_number else getattr(one, part).ljust(one.width)
-                  for one in told).rstrip() + "\n"
+        _GAP.join(getattr(each, part).rjust(each.width) if each.is_number else getattr(each, part).ljust(each.width)
+                  for each in aligned).rstrip() + "\n"
         for part in ("name", "unit")
     )  # fmt: skip
     rows = min(max(height - head.count("\n") - 1, 1), _AT_ONCE) if height else count
     step = min(rows, _AT_ONCE)
     for first in range(0, count, step):
         chosen = slice(first, first + step)
-        shown = [one.cells(chosen) for one in told]
+        shown = [column.cells(chosen) for column in aligned]
         lines = [head] if first % rows == 0 else []
         for number, line in enumerate(zip(*shown, strict=True), first):
             behind = excerpt(text(number), 0, 0, min(left, _WIDEST)).text if left >= _NARROWEST else ""
@@ -71,21 +76,21 @@ def table(columns: Sequence[Column], text: Callable[[int], str], room: int | Non
         yield "".join(lines)
 
 
-def _says_something(column: Column) -> bool:
+def _is_informative(column: Column) -> bool:
     values = column.values if column.is_blank is None else column.values[~column.is_blank]
     known = values if column.words is not None else values[~np.isnan(values)]
     return bool(len(known)) and not bool((known == column.usual).all())
 
 
-class _Told:
-    """A column with the width that its longest number or word needs."""
+class _Aligned:
+    """A column with the width of its longest number or word."""
 
     def __init__(self, column: Column) -> None:
         self._column = column
         self.name, self.unit, self.rank, self.is_number = column.name, column.unit, column.rank, column.words is None
         values = column.values if column.is_blank is None else column.values[~column.is_blank]
         if column.words is None:
-            # Of numbers with as many decimals the longest are the largest and the smallest.
+            # All numbers have the same decimals, so the largest or the smallest is the longest.
             finite = values[np.isfinite(values)]
             ends = [*_extremes(finite[np.abs(finite) < _LARGE]), *_extremes(finite[np.abs(finite) >= _LARGE])]
             longest = max([len(_number(end, column.decimals)) for end in ends], default=1)
@@ -95,7 +100,7 @@ class _Told:
         self.width = max(longest, len(self.name), len(self.unit))
 
     def cells(self, rows: slice) -> list[str]:
-        """The column in these rows, aligned."""
+        """Return the aligned cells of these rows."""
         column, width = self._column, self.width
         if column.words is None:
             shown = [_number(value, column.decimals).rjust(width) for value in column.values[rows].tolist()]
@@ -105,7 +110,8 @@ class _Told:
         if column.is_blank is None:
             return shown
         blank = " " * width
-        return [blank if nothing else one for one, nothing in zip(shown, column.is_blank[rows].tolist(), strict=True)]
+        is_blank = column.is_blank[rows].tolist()
+        return [blank if empty else cell for cell, empty in zip(shown, is_blank, strict=True)]
 
 
 def _extremes(values: Floats) -> list[float]:
@@ -117,18 +123,18 @@ def _number(value: float, decimals: int) -> str:
         return _UNKNOWN
     if abs(value) >= _LARGE:
         return f"{value:.{decimals}e}"
-    # What rounding makes 0 has no sign.
+    # Adding 0.0 turns -0.0 into 0.0.
     return f"{round(value, decimals) + 0.0:.{decimals}f}"
 
 
-def _fitting(columns: Sequence[_Told], room: int | None) -> list[_Told]:
-    """Those for which there is room, by their rank, in their order."""
+def _fitting(columns: Sequence[_Aligned], room: int | None) -> list[_Aligned]:
+    """Return the columns that fit, chosen by rank, in their original order."""
     if room is None:
         return [*columns]
-    kept, used = set[int](), 0
+    fitting, used = set[int](), 0
     for number in sorted(range(len(columns)), key=lambda number: columns[number].rank):
         used += columns[number].width + len(_GAP)
         if used > room + len(_GAP):
             break
-        kept.add(number)
-    return [column for number, column in enumerate(columns) if number in kept]
+        fitting.add(number)
+    return [column for number, column in enumerate(columns) if number in fitting]

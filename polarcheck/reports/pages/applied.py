@@ -1,4 +1,4 @@
-"""`polarcheck config show`: what applies to a program, and where each value comes from."""
+"""`polarcheck config show`: the settings of a program, and where each value comes from."""
 
 from __future__ import annotations
 
@@ -10,12 +10,19 @@ import msgspec
 
 from polarcheck.reading.excerpt import visible
 
-#: A value longer than this stands on a line of its own [characters].
+#: A longer line does not widen the column of the values [characters].
 _LONGEST = 48
 
 
 class Row(NamedTuple):
-    """A value, None or NaN where it is not known; what kind of thing says it, and where it does."""
+    """
+    A setting.
+
+    key: its name.
+    value: None or NaN if unknown.
+    kind: what kind of source sets it.
+    origin: the file or option that sets it.
+    """
 
     key: str
     value: Any
@@ -24,7 +31,7 @@ class Row(NamedTuple):
 
 
 def text(path: str, heads: Sequence[str], rows: Iterable[Row]) -> str:
-    """The values in aligned lines, `key = value  # origin`, as TOML writes them."""
+    """Return the values in aligned lines as in TOML: `key = value  # origin`."""
     lines = [(f"{row.key} = {_toml(row.value)}", row.origin) for row in rows]
     width = max((len(line) for line, _ in lines if len(line) <= _LONGEST), default=0)
     shown = [f"{line:<{width}}  # {origin}" for line, origin in lines]
@@ -32,15 +39,15 @@ def text(path: str, heads: Sequence[str], rows: Iterable[Row]) -> str:
 
 
 def as_json(path: str, files: Sequence[str], entries: Sequence[str], excluded: bool, rows: Iterable[Row]) -> str:
-    """The same as JSON: null is not known."""
-    found = {
+    """Return the same as JSON; null is unknown."""
+    document = {
         "path": path,
         "files": list(files),
         "programs": list(entries),
         "excluded": excluded,
         "values": [{**row._asdict(), "value": None if _is_unknown(row.value) else row.value} for row in rows],
     }
-    return msgspec.json.format(msgspec.json.encode(found), indent=2).decode() + "\n"
+    return msgspec.json.format(msgspec.json.encode(document), indent=2).decode() + "\n"
 
 
 def _is_unknown(value: Any) -> bool:

@@ -35,7 +35,7 @@ _SAME_KEYS = ("g_code_system_b", "g_code_system_c")
 
 
 def text() -> str:
-    """The whole page."""
+    """Return the whole page."""
     loaded = [profiles.load(name) for name in profiles.names()]
     lines = [
         "# The controls",
@@ -69,10 +69,10 @@ def _overview(loaded: list[Profile]) -> Iterator[str]:
     yield row("control", *_COLUMNS)
     yield row(*["---"] * (len(_COLUMNS) + 1))
     for profile in loaded:
-        yield row(f"[{profile.name}](#{profile.name})", *(_said(profile, key) for key in _COLUMNS))
+        yield row(f"[{profile.name}](#{profile.name})", *(_value(profile, key) for key in _COLUMNS))
 
 
-def _said(profile: Profile, key: str) -> str:
+def _value(profile: Profile, key: str) -> str:
     group, _, last = key.partition(".")
     origin = profile.origins.get(key)
     mark = " ?" if origin and origin.doubtful else ""
@@ -80,26 +80,26 @@ def _said(profile: Profile, key: str) -> str:
 
 
 def properties(profile: Profile) -> Iterator[str]:
-    """What a profile says of itself: title, notes, and each of its own values with the source."""
+    """Yield the section of a profile: title, notes, and each value that it sets itself, with the source."""
     yield f"{profile.machine.title}. " + (f"Inherits {' < '.join(profile.chain[1:])}." if profile.chain[1:] else "")
     for note in profile.machine.notes:
         yield from ("", f"- {note}")
-    own = {key: origin for key, origin in profile.origins.items() if origin.profile == profile.name and "." in key}
-    if own:
+    origins = {key: origin for key, origin in profile.origins.items() if origin.profile == profile.name and "." in key}
+    if origins:
         yield from ("", row("property", "value", "source"), row("---", "---", "---"))
     table = msgspec.to_builtins(profile.written)
-    for key, origin in own.items():
+    for key, origin in origins.items():
         group, _, last = key.partition(".")
         yield row(f"`{key}`", shown(table[group][last], group), source_of(origin))
 
 
 def source_of(origin: Origin) -> str:
-    """Where a value is from, behind a mark where it is in doubt."""
+    """Return the source of a value, preceded by a mark if the value is in doubt."""
     return f"{'? ' if origin.doubtful else ''}{origin.source}"
 
 
 def shown(value: Any, group: str = "") -> str:
-    """A value in the words of a page."""
+    """Return a value as text for a page."""
     if group == "known_parameters":
         return str(value["title"])
     if isinstance(value, bool):
@@ -116,7 +116,7 @@ def shown(value: Any, group: str = "") -> str:
 
 
 def row(*cells: str) -> str:
-    """A row of a table in Markdown."""
+    """Return a row of a Markdown table."""
     return f"| {' | '.join(cell.replace('|', '&#124;') for cell in cells)} |"
 
 

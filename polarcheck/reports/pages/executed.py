@@ -25,19 +25,27 @@ KINDS = {Motion.CW: "cw", Motion.CCW: "ccw"}
 
 class Move(msgspec.Struct, frozen=True):
     """
-    One move on the polar plane inside a polar section; a contract.
+    A move on the polar plane inside a polar section; a contract. null is unknown.
 
-    line: of its block in the file; in a program called from another file, of the call. start, end, center: plane points
-    [x, c] in mm as radius. z: before and after [mm]; a block that moves Z alone is no move of the plane, and the next
-    one begins where it ends. path: the one that was asked for, "tool" or "programmed"; but a move of the tool's is
-    "programmed" where it is run in offset mode, start-up and offset cancel included, and R (or the position) is not
-    known, so that the programmed one stands in its place. Without G41 and G42 both are one. radius: R of the offset in
-    force [mm], whether it is used or not. x_axis: X of the machine as a radius [mm], never negative. c_axis: C of the
-    machine [deg], continuous along the section. feed: F in force, clamped where the control does so [mm/min]; time [s];
-    of the tool center nearest [mm], c_feed [deg/min], x_feed [mm/min], c_acceleration [deg/s2], x_acceleration [mm/s2]:
-    the highest on the way. Of the tool's path time and these are as automatic override leaves them; null in rapid
-    traverse. null is unknown; a rate is null where it has no bound, too, through the center of C. channel:
-    as `$2`, where the file has several; the sections of each are counted from 0.
+    line: the line of the block; in a program called from another file, that of the call.
+    section: the number of the section, from 0 in each channel.
+    kind: "line", "cw" or "ccw".
+    start, end, center: plane points [x, c], x as a radius [mm].
+    z: Z before and after [mm]. A block that moves Z alone is no move; the next move begins at the Z where it ends.
+    path: the requested path, "tool" or "programmed". A move of the tool path is "programmed" if it runs in offset mode,
+        start-up and offset cancel included, and R or the position is unknown. Without G41 and G42 both paths coincide.
+    radius: R of the offset in force, used or not [mm].
+    feed: F in force, clamped if the control does so [mm/min].
+    x_axis: X of the machine as a radius, from and to, never negative [mm].
+    c_axis: C of the machine, from and to, continuous along the section [deg].
+    nearest: the smallest distance of the tool center to the center of C [mm].
+    c_feed, x_feed: the highest rates of C [deg/min] and X [mm/min] in the move.
+    c_acceleration, x_acceleration: the highest accelerations of C [deg/s2] and X [mm/s2] in the move.
+    time: the time of the move [s].
+    channel: as `$2`, if the file has several.
+
+    On the tool path the rates, the accelerations and the time are those that automatic override leaves. They are null
+    in rapid traverse. A rate is also null where it has no bound, in a move through the center of C.
     """
 
     line: int
@@ -67,9 +75,9 @@ def _point(value: complex) -> list[float | None]:
 
 def running(trace: Trace, tool_center: ToolCenter, path: str) -> tuple[Moves, dict[str, Floats]]:
     """
-    The moves of a path with the highest rates on each, by the names of Move, and its time.
+    Return the moves of a path, and their highest rates and times by the names of Move.
 
-    Of the tool center ("tool") they are those at the F that runs, of the programmed path those at F in force.
+    For the path of the tool center ("tool") they are those at the actual feed, for the programmed path at F in force.
     """
     if path != "tool":
         table = programmed_moves(trace)
@@ -82,7 +90,7 @@ _RATES = ("c_feed", "x_feed", "c_acceleration", "x_acceleration")
 
 
 def moves(trace: Trace, tool_center: ToolCenter, path: str) -> Iterator[Move]:
-    """The moves of the tool center path ("tool") or of the programmed path ("programmed"), in order."""
+    """Yield the moves of the tool center path ("tool") or of the programmed path ("programmed"), in order."""
     table, runs = running(trace, tool_center, path)
     c_from, c_to = table.c_angles
     z_from, z_to = z_along(trace, table)
@@ -112,7 +120,11 @@ def moves(trace: Trace, tool_center: ToolCenter, path: str) -> Iterator[Move]:
 
 
 def without_radius(trace: Trace, tool_center: ToolCenter) -> str:
-    """One line on the moves of the tool center path that are the programmed one for want of R; empty without them."""
+    """
+    Return one line on the moves of the tool center path that are shown as programmed, since R is unknown.
+
+    Empty if there are none.
+    """
     table = tool_center.moves
     unknown = table.row[~table.is_of_tool & np.isnan(trace.radius_of_move[table.row])]
     offsets = trace.offset_number[unknown]
@@ -120,14 +132,14 @@ def without_radius(trace: Trace, tool_center: ToolCenter) -> str:
         {int(number): int(row) for number, row in zip(offsets[::-1], unknown[::-1], strict=True) if number}.values()
     )[::-1]
     causes = [f"no radius for {', '.join(called_tool(trace, row) for row in rows)}"] * bool(rows)
-    given = " ".join(option(trace, row, "radius") for row in rows)
-    remedies = [f"give {given} or --offsets FILE"] * bool(rows)
+    options = " ".join(option(trace, row, "radius") for row in rows)
+    remedies = [f"give {options} or --offsets FILE"] * bool(rows)
     if not offsets.all():
         line = int(trace.line_in_file[unknown[offsets == 0][0]])
         causes.append(f"no tool offset is in force at line {line}")
         remedies.append("call one with T")
-    said = "what is run with G41 or G42 is shown as programmed, not as the tool runs"
-    return f"{', '.join(causes)}: {said}; {', '.join(remedies)}" if causes else ""
+    effect = "what is run with G41 or G42 is shown as programmed, not as the tool runs"
+    return f"{', '.join(causes)}: {effect}; {', '.join(remedies)}" if causes else ""
 
 
 SIDES = {Side.OFF: "G40", Side.LEFT: "G41", Side.RIGHT: "G42"}
@@ -140,10 +152,10 @@ FEED_MODES = {
 
 def rows(trace: Trace, tool_center: ToolCenter) -> Iterator[dict[str, Any]]:
     """
-    The executed table, one row per executed block.
+    Yield the executed table, one row per executed block.
 
     x [mm, radius], z [mm], c [deg, machine], plane_x and plane_c [mm, radius] inside sections, feed [mm/min], f
-    [mm per min or per revolution], nearest [mm], c_feed [deg/min] of the tool center path. channel: as `$2`, where the
+    [mm per min or per revolution], nearest [mm] and c_feed [deg/min] of the tool center path, channel as `$2` if the
     file has several.
     """
     channel = {"channel": trace.text.source.channel} if trace.text.source.channel else {}
@@ -176,14 +188,14 @@ def rows(trace: Trace, tool_center: ToolCenter) -> Iterator[dict[str, Any]]:
 
 
 def as_jsonl(items: Iterator[Any]) -> Iterator[str]:
-    """One JSON object per line."""
+    """Yield one JSON object per line."""
     encoder = msgspec.json.Encoder()
     for item in items:
         yield encoder.encode(item).decode() + "\n"
 
 
 def as_csv(items: Iterator[Any]) -> Iterator[str]:
-    """A header and one line per item; points become two columns."""
+    """Yield a header and one line per item; a point becomes two columns."""
     header: list[str] = []
     for item in items:
         flat = item if isinstance(item, dict) else _flat(item)

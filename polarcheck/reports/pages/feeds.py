@@ -1,4 +1,4 @@
-"""`polarcheck feeds`: the feed table as text, and what it costs; its curve as CSV."""
+"""`polarcheck feeds`: the feed table and its times as text; the feed curve as CSV."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ from polarcheck.table.feed_curve import FeedCurve, feed_curve
 from polarcheck.table.highest_feeds import HighestFeeds
 from polarcheck.table.trace import Trace
 
-#: Characters of a block.
+#: The longest text of a block in the table [characters].
 _BLOCK = 36
 _CURVE = ("time", "section", "line", "feed", "true_feed", "highest", "c_feed", "channel")
-#: What to do about a time that is not known.
+#: What to do about an unknown time.
 _REMEDIES = {
     reasons.RAPIDS: "give limits.x_rapid, limits.z_rapid and limits.c_rapid, and where the tool stands before",
     reasons.RADIUS: "give the radius of the tool",
@@ -29,7 +29,7 @@ _REMEDIES = {
 
 
 def text(report: FeedReport) -> str:
-    """The tables of a file, for people, in the units of the program."""
+    """Return the tables of a file, for people, in the units of the program."""
     parts = []
     for table in report.tables:
         name = f"{visible(report.path)}{f' {table.channel}' if table.channel else ''}"
@@ -39,16 +39,16 @@ def text(report: FeedReport) -> str:
 
 def _limits(table: FeedTable) -> str:
     limits = table.limits
-    told = [f"C {_number(limits.c_feed, 0)} deg/min"]
+    facts = [f"C {_number(limits.c_feed, 0)} deg/min"]
     if not limits.c_feed_given:
-        told = [f"limits.c_feed is not given, {told[0]} is taken, which is more than any C axis cuts with"]
+        facts = [f"limits.c_feed is not given, {facts[0]} is taken, which is more than any C axis cuts with"]
     if limits.c_acceleration is not None:
-        told.append(f"{_number(limits.c_acceleration, 0)} deg/s2")
+        facts.append(f"{_number(limits.c_acceleration, 0)} deg/s2")
     if limits.x_feed is not None:
-        told.append(f"X {_feed(limits.x_feed, table)} {table.units}/min as a radius")
+        facts.append(f"X {_feed(limits.x_feed, table)} {table.units}/min as a radius")
     if limits.polar_feed is not None:
-        told.append(f"F in the mode {_feed(limits.polar_feed, table)} {table.units}/min")
-    return ", ".join(told)
+        facts.append(f"F in the mode {_feed(limits.polar_feed, table)} {table.units}/min")
+    return ", ".join(facts)
 
 
 def _table(table: FeedTable) -> list[str]:
@@ -90,22 +90,22 @@ def _cells(row: FeedRow, table: FeedTable, loads: bool) -> list[str]:
 def _totals(table: FeedTable) -> Iterator[str]:
     if any(row.several for row in table.rows):
         yield "* its runs have different F, or need it; this is the lowest"
-    for one in table.sections:
-        yield f"section of line {one.line}: {_cost(one, table)}"
+    for section in table.sections:
+        yield f"section of line {section.line}: {_cost(section, table)}"
     yield f"program: {_cost(table.program, table)}"
 
 
 def _cost(total: FeedTotal, table: FeedTable) -> str:
-    said = f"{total.time:.1f} s{' and what is not known' if total.unknown else ''}"
-    said += f"; cutting {total.cutting:.1f} s, with this table {total.highest_cutting:.1f} s ({total.lost:+.1f} s)"
+    text = f"{total.time:.1f} s{' and what is not known' if total.unknown else ''}"
+    text += f"; cutting {total.cutting:.1f} s, with this table {total.highest_cutting:.1f} s ({total.lost:+.1f} s)"
     if total.won:
         at = f"F{_feed(total.one_feed, table)}" if total.one_feed is not None else "one F in each section"
-        said += f", with no more than {at} {total.one_feed_cutting:.1f} s ({total.won:.1f} s more than the table)"
-    for one in total.unknown:
-        blocks = f"{one.blocks} block{'s' * (one.blocks > 1)}"
-        remedy = _REMEDIES.get(one.reason)
-        said += f"\n  not known: {one.reason}, {blocks} from line {one.line}{f': {remedy}' if remedy else ''}"
-    return said
+        text += f", with no more than {at} {total.one_feed_cutting:.1f} s ({total.won:.1f} s more than the table)"
+    for gap in total.unknown:
+        blocks = f"{gap.blocks} block{'s' * (gap.blocks > 1)}"
+        remedy = _REMEDIES.get(gap.reason)
+        text += f"\n  not known: {gap.reason}, {blocks} from line {gap.line}{f': {remedy}' if remedy else ''}"
+    return text
 
 
 def _scale(table: FeedTable) -> float:
@@ -113,7 +113,7 @@ def _scale(table: FeedTable) -> float:
 
 
 def _feed(value: float | None, table: FeedTable) -> str:
-    """F in the units of the program, with as many digits as messages have."""
+    """Return F in the units of the program, with the same digits as in messages."""
     return "-" if value is None else _number(value / _scale(table), 4 if table.units == "inch" else 3)
 
 
@@ -125,18 +125,18 @@ def _number(value: float | None, digits: int) -> str:
 
 
 def curve(tables: Tables) -> Iterator[tuple[str | int | float | None, ...]]:
-    """The curve of one run, a row in each moment; [s], [mm/min], [deg/min]."""
+    """Yield the curve of one run, a row for each point in time; [s], [mm/min], [deg/min]."""
     trace: Trace = tables["trace"]
     runs: Dynamics = tables["dynamics"]
     feeds: HighestFeeds = tables["highest_feeds"]
-    lowest, found = highest(trace, feeds), feed_curve(runs)
-    for at, row in enumerate(found.row.tolist()):
-        yield (*_moment(found, at, trace, row), rounded(lowest[row]), rounded(found.c_feed[at]), _channel(trace))
+    lowest, points = highest(trace, feeds), feed_curve(runs)
+    for at, row in enumerate(points.row.tolist()):
+        yield (*_moment(points, at, trace, row), rounded(lowest[row]), rounded(points.c_feed[at]), _channel(trace))
 
 
-def _moment(found: FeedCurve, at: int, trace: Trace, row: int) -> tuple[str | int | float | None, ...]:
+def _moment(points: FeedCurve, at: int, trace: Trace, row: int) -> tuple[str | int | float | None, ...]:
     place = int(trace.section[row]), int(trace.line_in_file[row])
-    return rounded(found.time[at]), *place, rounded(trace.programmed_feed[row]), rounded(found.feed[at])
+    return rounded(points.time[at]), *place, rounded(trace.programmed_feed[row]), rounded(points.feed[at])
 
 
 def _channel(trace: Trace) -> str:
@@ -144,12 +144,12 @@ def _channel(trace: Trace) -> str:
 
 
 def as_csv(tables: list[Tables]) -> Iterator[str]:
-    """The curves of a file, with a head."""
+    """Yield the curves of a file, with a head."""
     buffer = io.StringIO()
     writer = csv.writer(buffer, lineterminator="\n")
     writer.writerow(_CURVE)
-    for one in tables:
-        for row in curve(one):
+    for run in tables:
+        for row in curve(run):
             writer.writerow(["" if value is None else value for value in row])
             yield buffer.getvalue()
             buffer.seek(0)
@@ -158,5 +158,5 @@ def as_csv(tables: list[Tables]) -> Iterator[str]:
 
 
 def is_empty(report: FeedReport) -> bool:
-    """No program of the file has a section."""
+    """Return True if no program of the file has a section."""
     return not any(table.sections for table in report.tables)

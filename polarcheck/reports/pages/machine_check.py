@@ -1,4 +1,4 @@
-"""`polarcheck machines check FILE`: whether a machine file is sound, what has no effect in it, what is still open."""
+"""`polarcheck machines check FILE`: says if a machine file is sound, which values have no effect, and what is open."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from polarcheck.reading.excerpt import visible
 if TYPE_CHECKING:
     from polarcheck.checking.rule import Rule
 
-#: What no manual of a control tells, and much hangs on.
-_ASKED = (
+#: Keys that matter, and that the manual of a control cannot answer.
+_OPEN_KEYS = (
     *("limits.c_feed", "limits.c_acceleration", "limits.polar_feed", "limits.x_minimum", "limits.x_maximum"),
     *("limits.z_minimum", "limits.z_maximum"),
     *("m_codes.c_axis_on", "m_codes.c_axis_off", "m_codes.live_tool_on", "m_codes.live_tool_off"),
     "power_on.feed_mode",
 )
-#: Values beside which others have no effect: those, whether it is so, and the reason.
+#: Keys that have no effect beside another value: the key, the condition, the reason.
 _OVERRULED: tuple[tuple[str, Callable[[Machine], bool], str], ...] = (
     (
         "limits.polar_feed_clamps",
@@ -42,31 +42,31 @@ _OVERRULED: tuple[tuple[str, Callable[[Machine], bool], str], ...] = (
     ),
 )
 _SYSTEMS = ("g_code_system_a", "g_code_system_b", "g_code_system_c")
-#: Lists of M codes that begin something.
+#: Lists of M codes that switch something on.
 _BEGIN = tuple(on for on, _ in SWITCHED)
 
 
 def text(profile: Profile, rules: Mapping[str, Rule]) -> str:
     """
-    One line that the file is sound, which it is if it could be loaded, and what else is to be said of it.
+    Return a line that says that the file is sound, and remarks. A file that could be loaded is sound.
 
-    rules: by name, for what they are listed with.
+    rules: the rules by name, which the keys of [alarms] and [severities] refer to.
     """
     behind = f"inherits {' < '.join(profile.chain[1:])}, " if profile.chain[1:] else ""
-    own = len(list(_own(profile)))
+    count = len(list(_own_values(profile)))
     doubts = [key for key, origin in profile.origins.items() if origin.doubtful]
     in_doubt = f"{len(doubts)}, marked with ? by `polarcheck machines {profile.name}`" if doubts else "none"
-    values = "1 value of its own" if own == 1 else f"{own} values of its own"
+    values = "1 value of its own" if count == 1 else f"{count} values of its own"
     lines = [f"{profile.name}: sound, {behind}{values}; in doubt: {in_doubt}"]
     remarks = _remarks(profile, rules) if profile.chain[0] not in names() else ()
-    for title, found in (("to look at", remarks), ("still to be answered", _open(profile))):
-        told = [f"  {line}" for line in found]
-        lines += [f"{title}:", *told] if told else []
+    for title, entries in (("to look at", remarks), ("still to be answered", _open(profile))):
+        listed = [f"  {line}" for line in entries]
+        lines += [f"{title}:", *listed] if listed else []
     return "\n".join(map(visible, lines)) + "\n"
 
 
-def _own(profile: Profile) -> Iterator[tuple[str, Any]]:
-    """The values that the file itself gives, by key."""
+def _own_values(profile: Profile) -> Iterator[tuple[str, Any]]:
+    """Yield key and value of what the file itself sets."""
     for group, values in profile.told.items():
         if isinstance(values, Mapping):
             for key, value in values.items():
@@ -75,28 +75,28 @@ def _own(profile: Profile) -> Iterator[tuple[str, Any]]:
 
 
 def _remarks(profile: Profile, rules: Mapping[str, Rule]) -> Iterator[str]:
-    own = dict(_own(profile))
-    yield from _shared_codes(profile.machine, own)
+    values = dict(_own_values(profile))
+    yield from _shared_codes(profile.machine, values)
     for on, off in SWITCHED:
-        if f"m_codes.{off}" in own and not getattr(profile.machine.m_codes, on):
+        if f"m_codes.{off}" in values and not getattr(profile.machine.m_codes, on):
             yield f"m_codes.{off}: without m_codes.{on} it has no effect"
-    yield from _not_known(profile.machine, own)
-    for key, value in own.items():
+    yield from _not_known(profile.machine, values)
+    for key, value in values.items():
         if is_list(key):
             group, _, name = key.partition(".")
             for change in without_effect(value, profile.inherited.get(group, {}).get(name)):
                 listed = "is inherited" if change[0] == "+" else "is not inherited"
                 yield f"{key}: {change} has no effect: {change[1:].strip()} {listed}"
-    yield from _overruled(profile, own)
-    yield from _of_rules(profile.machine, own, rules)
+    yield from _overruled(profile, values)
+    yield from _of_rules(profile.machine, values, rules)
 
 
-def _shared_codes(machine: Machine, own: Mapping[str, Any]) -> Iterator[str]:
-    """M codes that begin two things, as far as the file itself says so."""
+def _shared_codes(machine: Machine, values: Mapping[str, Any]) -> Iterator[str]:
+    """Yield M codes that switch on two things, if the file itself lists one of them."""
     for first, second in combinations(_BEGIN, 2):
         keys = f"m_codes.{first}", f"m_codes.{second}"
         listed = getattr(machine.m_codes, first), getattr(machine.m_codes, second)
-        if set(keys) & set(own):
+        if set(keys) & set(values):
             for code in listed[0]:
                 if code in listed[1]:
                     yield f"{keys[0]}: {code} is in {keys[1]}, too{_as_live_tool(first, second, code)}"
@@ -108,33 +108,33 @@ def _as_live_tool(first: str, second: str, code: str) -> str:
     return f'; it is read as the live tool alone: spindle_on = ["-{code}"] says so'
 
 
-def _not_known(machine: Machine, own: Mapping[str, Any]) -> Iterator[str]:
-    """Codes that are allowed in the mode, and that the control does not have."""
-    if "polar.allowed_codes" in own:
+def _not_known(machine: Machine, values: Mapping[str, Any]) -> Iterator[str]:
+    """Yield codes that are allowed in the mode, but unknown to the control."""
+    if "polar.allowed_codes" in values:
         known = set(expanded(filter(is_code, (*machine.control.known_codes, *machine.listed_codes))))
         for code in expanded(machine.polar.allowed_codes):
             if code not in known:
                 yield f"polar.allowed_codes: {code} is no code of this control: it is in no list, nor in known_codes"
 
 
-def _overruled(profile: Profile, own: Mapping[str, Any]) -> Iterator[str]:
+def _overruled(profile: Profile, values: Mapping[str, Any]) -> Iterator[str]:
     machine = profile.machine
     for key, is_so, reason in _OVERRULED:
-        if key in own and is_so(machine):
+        if key in values and is_so(machine):
             yield f"{key}: it has no effect: {reason}"
     for group in _SYSTEMS:
-        if group != machine.system_table and any(key.startswith(f"{group}.") for key in own):
+        if group != machine.system_table and any(key.startswith(f"{group}.") for key in values):
             yield f"[{group}]: it has no effect: control.g_code_system is {machine.control.g_code_system}"
     for name, meaning in machine.known_parameters.items():
-        if f"parameters.{name}" in own:
-            sets = {meaning.key, *(key for values in meaning.values.values() for key in values)} & set(own)
+        if f"parameters.{name}" in values:
+            sets = {meaning.key, *(key for listed in meaning.values.values() for key in listed)} & set(values)
             for key in sorted(sets):
                 yield f"parameters.{name}: it does not set {key}: the file gives that itself"
 
 
-def _of_rules(machine: Machine, own: Mapping[str, Any], rules: Mapping[str, Rule]) -> Iterator[str]:
+def _of_rules(machine: Machine, values: Mapping[str, Any], rules: Mapping[str, Rule]) -> Iterator[str]:
     shown = set(machine.alarms.values())
-    for key in own:
+    for key in values:
         table, _, name = key.partition(".")
         if table == "alarms" and rules[name].level(machine.severities) == "off":
             yield f"{key}: it has no effect: severities.{name} is off"
@@ -143,7 +143,7 @@ def _of_rules(machine: Machine, own: Mapping[str, Any], rules: Mapping[str, Rule
 
 
 def _open(profile: Profile) -> Iterator[str]:
-    for key in _ASKED:
+    for key in _OPEN_KEYS:
         group, _, name = key.partition(".")
         table = getattr(profile.machine, group)
         value = getattr(table, name)

@@ -1,4 +1,4 @@
-"""docs/machines/: a page for each machine, how it is programmed and what is in doubt, and their index."""
+"""docs/machines/: a page for each machine, with how it is programmed and what is in doubt, and their index."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from polarcheck.machines.machine import Machine, meanings
 from polarcheck.machines.parameters import Origin
 from polarcheck.machines.profiles import Profile
 from polarcheck.reports.pages.controls import shown
-from polarcheck.reports.pages.markdown import MADE, prose, row, rule_under
+from polarcheck.reports.pages.markdown import GENERATED, prose, row, rule_under
 
-#: What a programmer asks of a lathe first, by heading.
+#: The keys that a programmer looks up first, by heading.
 _FIRST = {
     "The polar mode": (
         "polar.on",
@@ -55,7 +55,7 @@ _FIRST = {
 
 
 def pages() -> Iterator[tuple[str, str]]:
-    """Path below docs/ and text of each page."""
+    """Yield path below docs/ and text of each page."""
     loaded = [profiles.load(name) for name in profiles.names()]
     yield "machines/index.md", index(loaded)
     for profile in loaded:
@@ -63,8 +63,8 @@ def pages() -> Iterator[tuple[str, str]]:
 
 
 def index(loaded: Sequence[Profile]) -> str:
-    """All machines, with links."""
-    lines = ["# Machines", "", MADE, ""]
+    """Return the page that lists all machines, with links."""
+    lines = ["# Machines", "", GENERATED, ""]
     lines += [
         "`--machine NAME` names one of these, `polarcheck machines NAME` shows it whole. Your own lathe is",
         "a file that inherits from one of them and says its limits:",
@@ -85,10 +85,10 @@ def index(loaded: Sequence[Profile]) -> str:
 
 
 def page(profile: Profile, loaded: Sequence[Profile]) -> str:
-    """The page of one machine."""
-    lines = [f"# {profile.name}", "", MADE, "", f"**{prose(profile.machine.title)}.**"]
+    """Return the page of one machine."""
+    lines = [f"# {profile.name}", "", GENERATED, "", f"**{prose(profile.machine.title)}.**"]
     chain = " < ".join(f"[{name}]({name}.md)" for name in profile.chain[1:])
-    heirs = ", ".join(f"[{one.name}]({one.name}.md)" for one in loaded if profile.name in one.chain[1:2])
+    heirs = ", ".join(f"[{heir.name}]({heir.name}.md)" for heir in loaded if profile.name in heir.chain[1:2])
     lines += [f"It inherits from {chain}: what it does not say itself is theirs."] if chain else []
     lines += [f"From it inherit {heirs}."] if heirs else []
     lines += ["", f"    polarcheck check --machine {profile.name} O1234.NC"]

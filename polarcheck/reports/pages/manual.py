@@ -1,4 +1,4 @@
-"""What polarcheck says about itself: manual pages, the catalogue of rules, machine profiles."""
+"""Manual pages, the catalogue of rules, and machine profiles, as text for a terminal."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ if TYPE_CHECKING:
     from polarcheck.machines.parameters import Origin
 
 _COLUMNS = 100
-#: Where the comments of a profile begin.
+#: The column where the comments of a profile begin.
 _COMMENT = 36
 
 
 def pages(rules: Iterable[Rule], machine: Machine) -> str:
-    """The manual pages of rules, each under a line with its name, group, severity, and alarm on this machine."""
+    """Return the manual pages of rules, each under a line with its name, group, severity, and alarm on this machine."""
     return "\n\n".join(_page(rule, machine) for rule in rules) + "\n"
 
 
@@ -40,7 +40,7 @@ def _page(rule: Rule, machine: Machine) -> str:
 
 
 def _other_words(rule: Rule, machine: Machine) -> Iterator[str]:
-    """What a page that is written in the words of the default machine means on another one."""
+    """Yield a remark for a page that uses the codes of the default machine, if this machine has other codes."""
     usual, polar = profiles.load(profiles.DEFAULT).machine, machine.polar
     if usual.polar.on[0] not in rule.page:
         return
@@ -59,7 +59,7 @@ def _other_words(rule: Rule, machine: Machine) -> Iterator[str]:
 
 
 def catalogue(rules: Mapping[str, Rule]) -> str:
-    """All rules by group: severity, name, title."""
+    """Return all rules by group: severity, name, title."""
     width = max((len(name) for name in rules), default=0)
     lines = []
     group = ""
@@ -73,7 +73,7 @@ def catalogue(rules: Mapping[str, Rule]) -> str:
 
 
 def catalogue_json(rules: Mapping[str, Rule]) -> str:
-    """All rules as a JSON array."""
+    """Return all rules as a JSON array."""
     entries = [
         {
             "name": rule.name,
@@ -91,7 +91,7 @@ def catalogue_json(rules: Mapping[str, Rule]) -> str:
 
 
 def machine_list() -> str:
-    """The built-in machines: name, title, from which profiles each takes what it does not say itself."""
+    """Return the built-in machines: name, title, and the profiles from which each inherits."""
     loaded = [profiles.load(name) for name in profiles.names()]
     rows = []
     for profile in loaded:
@@ -104,7 +104,7 @@ def machine_list() -> str:
 
 
 def profile_text(profile: Profile) -> str:
-    """The merged profile as TOML, each value with the profile that it comes from and its source."""
+    """Return the merged profile as TOML, each value with the profile that sets it and its source."""
     lines = [
         f"# {visible(' < '.join(profile.chain))}",
         "# Each value with the profile that it comes from and its source. ? marks what may be different on",
@@ -133,10 +133,10 @@ def profile_text(profile: Profile) -> str:
 
 
 def _entry(key: str, value: Any, origin: Origin | None) -> Iterator[str]:
-    """`key = value  # profile: source`, on further lines where they are long."""
+    """Yield `key = value  # profile: source`, on several lines if it is long."""
     *first, last = _assignment(key, value)
     yield from map(visible, first)
-    comment = [f"# {visible(line)}" for line in textwrap.wrap(_said(value, origin), _COLUMNS - _COMMENT - 2)]
+    comment = [f"# {visible(line)}" for line in textwrap.wrap(_source(value, origin), _COLUMNS - _COMMENT - 2)]
     if len(last) >= _COMMENT - 1 and (len(comment) > 1 or len(last) + len(comment[0]) > _COLUMNS - 2):
         yield visible(last)
         last = ""
@@ -145,7 +145,7 @@ def _entry(key: str, value: Any, origin: Origin | None) -> Iterator[str]:
         last = ""
 
 
-def _said(value: Any, origin: Origin | None) -> str:
+def _source(value: Any, origin: Origin | None) -> str:
     if origin is None:
         return "not known" if isinstance(value, float) and math.isnan(value) else "where no profile says otherwise"
     text = f"{origin.profile}: {origin.source}" if origin.source else origin.profile
@@ -153,7 +153,7 @@ def _said(value: Any, origin: Origin | None) -> str:
 
 
 def _assignment(key: str, value: Any) -> list[str]:
-    """The lines of `key = value`; a list is broken between its elements."""
+    """Return the lines of `key = value`; a list is broken between its elements."""
     if isinstance(value, dict):
         return [f"{_toml_key(key)} = {{ value = {_toml(value)} }}"]
     if not isinstance(value, list):

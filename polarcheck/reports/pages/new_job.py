@@ -1,4 +1,4 @@
-"""The polarcheck.toml that `polarcheck init` writes: what the programs tell of the job, and a place for the rest."""
+"""The polarcheck.toml that `polarcheck init` writes: what the programs say about the job, and a place for the rest."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from polarcheck.reports import counted
 
 SCHEMA_FILE = "polarcheck.schema.json"
 _COLUMNS = 100
-#: Programs that are named; of more the count is told.
+#: How many programs are named; of the others the number is given.
 _NAMED = 3
-#: Entries for programs whose cutter another program has not.
+#: The most entries for programs whose comments give different radii.
 _ENTRIES = 20
 _LONGEST = 60
 _DECIMALS = 6
@@ -26,10 +26,13 @@ _DECIMALS = 6
 
 def text(survey: Survey, machine: str | None, outer: str | None, schema: bool, extensions: Sequence[str] = ()) -> str:
     """
-    The file, valid as it stands: what nobody knows is left out, and can be filled in.
+    Return the file, valid as it is: unknown values are commented out, to be filled in.
 
-    machine: as it is to be written, where somebody knows it. outer: the job file that has applied so far, from here.
-    schema: whether its schema lies beside it. extensions: of the programs, if not the usual ones.
+    survey: what the programs say.
+    machine: the machine as it is to be written; None if unknown.
+    outer: the path of the job file that has applied so far, if there is one.
+    schema: its schema lies beside it.
+    extensions: those of the programs, if not the usual ones.
     """
     lines = [
         *([f"#:schema ./{SCHEMA_FILE}", ""] if schema else []),
@@ -64,22 +67,22 @@ def text(survey: Survey, machine: str | None, outer: str | None, schema: bool, e
     return "\n".join(map(visible, lines)) + "\n"
 
 
-def _extensions(given: Sequence[str]) -> str:
-    names = ", ".join(_toml(name) for name in given)
-    return f"extensions = [{names}]" if given else '#extensions = ["nc", "tap"]'
+def _extensions(extensions: Sequence[str]) -> str:
+    names = ", ".join(_toml(name) for name in extensions)
+    return f"extensions = [{names}]" if extensions else '#extensions = ["nc", "tap"]'
 
 
 def relative(survey: Survey, names: Mapping[str, str]) -> Survey:
-    """The same with other names of its programs: those that they have from where the file will lie."""
+    """Return the same survey with the paths of its programs as seen from the new file."""
     offsets = {
-        key: [msgspec.structs.replace(one, path=names.get(one.path, one.path)) for one in told]
-        for key, told in survey.offsets.items()
+        key: [msgspec.structs.replace(call, path=names.get(call.path, call.path)) for call in calls]
+        for key, calls in survey.offsets.items()
     }
     return msgspec.structs.replace(survey, offsets=offsets)
 
 
 def summary(survey: Survey) -> str:
-    """`12 of 2000 programs use the polar mode, with offsets 8, 12`."""
+    """Return a line such as `12 of 2000 programs use the polar mode, with offsets 8, 12`."""
     programs = f"{len(survey.polar)} of {counted(survey.programs, 'program')}"
     keys = ", ".join(sorted(survey.offsets, key=_order))
     called = f", with offset{'s' if len(survey.offsets) > 1 else ''} {keys}" if keys else ""
@@ -87,20 +90,22 @@ def summary(survey: Survey) -> str:
 
 
 def left_open(survey: Survey, machine: str | None) -> list[str]:
-    """What is still to be filled in, a line each."""
-    found = []
+    """Return a line for each value that is still to be filled in."""
+    lines = []
     if machine is None and _certain(survey) is None:
-        found.append("machine: which lathe it is; `polarcheck machines` lists those that are known")
+        lines.append("machine: which lathe it is; `polarcheck machines` lists those that are known")
     if survey.offsets:
         keys = ", ".join(sorted(survey.offsets, key=_order))
         plural = "s" if len(survey.offsets) > 1 else ""
-        found.append(f"radius of offset{plural} {keys}: R of the cutter, by [tools.N] or by the offset table (offsets)")
-    found.append("c_feed of the lathe under [limits]: how fast its C axis may turn, in deg/min")
-    return found
+        lines.append(f"radius of offset{plural} {keys}: R of the cutter, by [tools.N] or by the offset table (offsets)")
+    lines.append("c_feed of the lathe under [limits]: how fast its C axis may turn, in deg/min")
+    return lines
 
 
 def _certain(survey: Survey) -> str | None:
-    """The machine that is not in doubt: the only one that reads the programs, or the first where the default fails."""
+    """
+    Return the machine if there is no doubt: the only one that can run the programs, or the best if the default cannot.
+    """
     fits = survey.fitting
     return survey.machine if fits and (len(fits) == 1 or profiles.DEFAULT not in fits) else None
 
@@ -129,7 +134,7 @@ def _machine(survey: Survey, machine: str | None) -> Iterator[str]:
 
 
 def _unit(survey: Survey) -> str:
-    """Of the lengths in this file."""
+    """Return the unit of the lengths in this file."""
     return "inch" if survey.units == ["inch"] else "mm"
 
 
@@ -138,9 +143,9 @@ def _unit_of_lengths(survey: Survey) -> str:
 
 
 def _units(survey: Survey) -> Iterator[str]:
-    said = {1: f"the programs say {_unit(survey)}", 2: "of the programs some say mm, some inch"}
+    reasons = {1: f"the programs say {_unit(survey)}", 2: "of the programs some say mm, some inch"}
     if survey.units:
-        yield f"units = {_toml(_unit(survey))}  # of the lengths in this file; {said[len(survey.units)]}"
+        yield f"units = {_toml(_unit(survey))}  # of the lengths in this file; {reasons[len(survey.units)]}"
     else:
         yield '#units = "mm"  # of the lengths in this file; else they are in those of each program'
         yield '#program_units = "mm"  # of programs with neither G20 nor G21'
@@ -152,16 +157,16 @@ def _tools(survey: Survey) -> Iterator[str]:
         " cutter goes; without it such a program is unverified."
     )
     for key in sorted(survey.offsets, key=_order):
-        told = survey.offsets[key]
-        named = _radii(told)
-        yield from _prose(_paths([one.path for one in told]))
+        calls = survey.offsets[key]
+        by_radius = _radii(calls)
+        yield from _prose(_paths([call.path for call in calls]))
         yield f"[tools.{_key(key)}]"
-        if len(named) > 1:
+        if len(by_radius) > 1:
             yield "# the comments of the programs differ: see [[programs]] below"
-        for radius, of_radius in named.items():
+        for radius, of_radius in by_radius.items():
             path, comment = files.shown(of_radius[0].path), shortened(of_radius[0].comment, _LONGEST)
             yield f"#radius = {_length(radius, survey)}  # {path} says {comment}"
-        if not named:
+        if not by_radius:
             yield f"#radius =  # R on the offset page of the control, in {_unit_of_lengths(survey)}"
         yield ""
 
@@ -186,20 +191,20 @@ def _programs(survey: Survey) -> Iterator[str]:
 
 
 def _differing(survey: Survey) -> Iterator[tuple[list[str], str, float, str]]:
-    """Programs, offset, R and comment, where the comments of other programs say another R."""
+    """Yield programs, offset, R and comment for each offset whose R differs between the comments of programs."""
     for key in sorted(survey.offsets, key=_order):
-        named = _radii(survey.offsets[key])
-        for radius, told in named.items() if len(named) > 1 else ():
-            yield [files.shown(one.path) for one in told], key, radius, told[0].comment
+        by_radius = _radii(survey.offsets[key])
+        for radius, calls in by_radius.items() if len(by_radius) > 1 else ():
+            yield [files.shown(call.path) for call in calls], key, radius, calls[0].comment
 
 
-def _radii(told: Sequence[Told]) -> dict[float, list[Told]]:
-    """What says each R [mm]."""
-    found: dict[float, list[Told]] = {}
-    for one in told:
-        if one.radius is not None:
-            found.setdefault(round(one.radius, _DECIMALS), []).append(one)
-    return found
+def _radii(calls: Sequence[Told]) -> dict[float, list[Told]]:
+    """Return the calls by the R that their comment gives [mm]."""
+    by_radius: dict[float, list[Told]] = {}
+    for call in calls:
+        if call.radius is not None:
+            by_radius.setdefault(round(call.radius, _DECIMALS), []).append(call)
+    return by_radius
 
 
 def _length(millimeters: float, survey: Survey) -> str:
@@ -222,9 +227,9 @@ def _key(key: str) -> str:
 
 
 def _toml(value: object) -> str:
-    # JSON lets stand as it is what TOML does not.
+    # JSON allows unprintable characters that TOML does not.
     text = msgspec.json.encode(value).decode()
-    return "".join(one if one.isprintable() else f"\\U{ord(one):08x}" for one in text)
+    return "".join(character if character.isprintable() else f"\\U{ord(character):08x}" for character in text)
 
 
 def _prose(text: str) -> list[str]:

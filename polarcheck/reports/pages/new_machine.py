@@ -1,4 +1,4 @@
-"""The file for a lathe of the user's own: what to ask its builder, with a place for each answer."""
+"""The machine file for a user's lathe: the questions for its builder, with a place for each answer."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from polarcheck.machines.parameters import Meaning
 from polarcheck.machines.profiles import MERGED, Profile, load
 from polarcheck.reading.excerpt import visible
 
-#: What a shop may have to say of its lathe, by table, each key with an answer as it may look where nothing is known.
-_ASKED: dict[str, dict[str, Any]] = {
+#: The keys that a shop may want to set, by table, each with an example for an unknown value.
+_QUESTIONS: dict[str, dict[str, Any]] = {
     "limits": {
         "c_feed": 3600,
         "c_acceleration": 7200,
@@ -79,9 +79,9 @@ _ASKED: dict[str, dict[str, Any]] = {
     "arcs": dict.fromkeys(("tolerance", "sweep_limit")),
     "compensation": dict.fromkeys(("start_up", "start_up_with_move", "read_ahead", "interference", "leaving_cancels")),
 }
-#: Lists that are written by what differs, whatever is inherited.
+#: Lists that are written as differences from the inherited list.
 _DIFFERING = ("allowed_codes", "known_codes")
-#: What is told before the keys of a table.
+#: The comment before the keys of a table.
 _HEADS = {
     "m_codes": 'Where a word beside it tells one M code apart, write both: live_tool_on = ["M3 P12"]. The keys with'
     " sub_ are those of a sub-spindle with codes of its own.",
@@ -94,13 +94,13 @@ _TOOLS = (
     " they do, macro variables and offsets are shown by `polarcheck machines`, and may be given here, too."
 )
 _COLUMNS = 100
-#: Of a list in one line [characters].
+#: A longer list is broken into several lines [characters].
 _LONGEST = 180
 
 
 def text(name: str, inherits: str) -> str:
     """
-    A TOML file for a lathe of this name that inherits from a machine; every answer is left out, and can be filled in.
+    Return a TOML file for a lathe of this name that inherits from a machine; all answers are commented out.
 
     Raises MachineError for an unknown machine.
     """
@@ -113,38 +113,38 @@ def text(name: str, inherits: str) -> str:
         ),
         f"inherits = {_toml(inherits)}",
         f"title = {_toml(name)}",
-        *_asked(profile),
+        *_questions(profile),
         *_doubtful(profile),
         *_parameters(profile),
         *_of_rules(profile),
         "",
         *_prose(_TOOLS),
     ]
-    # What comes from another file is data here, too: a line end in it would end the comment.
+    # Text from another file is escaped: a line end in it would end the comment.
     return "\n".join(map(visible, lines)) + "\n"
 
 
-def _asked(profile: Profile) -> Iterator[str]:
-    for group, keys in _ASKED.items():
+def _questions(profile: Profile) -> Iterator[str]:
+    for group, keys in _QUESTIONS.items():
         yield from ("", f"[{group}]", *_prose(_HEADS.get(group, "")))
         table = getattr(profile.written, group)
         meaning = meanings(type(table))
-        said = ""
+        doubt = ""
         for key, answer in keys.items():
             if group == "power_on":
                 answer = next(iter(profile.machine.codes(answer)), "")
             value = getattr(table, key)
             is_known = value not in ([], "") and value == value and key not in _DIFFERING
             origin = profile.origins.get(f"{group}.{key}")
-            if origin and origin.doubtful and origin.source != said:
-                said = origin.source
-                yield from _prose(f"in doubt: {said}")
+            if origin and origin.doubtful and origin.source != doubt:
+                doubt = origin.source
+                yield from _prose(f"in doubt: {doubt}")
             yield from _answer(key, value if is_known or answer is None else answer, meaning[key])
         yield from _in_doubt(profile, group, set(keys))
 
 
 def _of_rules(profile: Profile) -> Iterator[str]:
-    """The alarm and the severity of each rule, as they are without this file."""
+    """Yield the alarm and the severity of each rule, as they are without this file."""
     rules, machine = load_all(), profile.machine
     yield from ("", "[alarms]", *_prose("what the control shows, by rule; empty where it shows nothing"))
     for rule in rules.values():
@@ -155,35 +155,35 @@ def _of_rules(profile: Profile) -> Iterator[str]:
 
 
 def _doubtful(profile: Profile) -> Iterator[str]:
-    """What the profile itself is not sure of."""
+    """Yield the doubtful keys of the tables without questions."""
     table = msgspec.to_builtins(profile.written)
     for group, values in table.items():
         of_other_system = group.startswith("g_code_system_") and group != profile.machine.system_table
-        asked_elsewhere = (*_ASKED, "known_parameters", "parameters", "alarms", "severities")
-        if isinstance(values, dict) and group not in asked_elsewhere and not of_other_system:
-            found = list(_in_doubt(profile, group, set()))
-            if found:
-                yield from ("", f"[{group}]", *found)
+        other_tables = (*_QUESTIONS, "known_parameters", "parameters", "alarms", "severities")
+        if isinstance(values, dict) and group not in other_tables and not of_other_system:
+            lines = list(_in_doubt(profile, group, set()))
+            if lines:
+                yield from ("", f"[{group}]", *lines)
 
 
-def _in_doubt(profile: Profile, group: str, told: set[str]) -> Iterator[str]:
-    """The keys of a table that are in doubt and not among those told, each doubt once."""
+def _in_doubt(profile: Profile, group: str, listed: set[str]) -> Iterator[str]:
+    """Yield the doubtful keys of a table that are not among those listed already; each doubt once."""
     table = getattr(profile.written, group)
     meaning = meanings(type(table))
-    said = ""
+    doubt = ""
     for key, value in msgspec.to_builtins(table).items():
         origin = profile.origins.get(f"{group}.{key}")
-        if origin and origin.doubtful and key not in told:
-            if origin.source != said:
+        if origin and origin.doubtful and key not in listed:
+            if origin.source != doubt:
                 yield from _prose(f"in doubt: {origin.source}")
-            said = origin.source
-            # Of a table that adds to what is inherited, a line shows how it is written.
+            doubt = origin.source
+            # A merged table is extended, not replaced: one entry shows how.
             shown = dict(list(value.items())[:1]) if f"{group}.{key}" in MERGED else value
             yield from _answer(key, shown, meaning.get(key, ""))
 
 
 def _answer(key: str, value: Any, meaning: str) -> Iterator[str]:
-    """A key and its value, left out, with what it means behind it or, where that is too long, above it."""
+    """Yield a key and its value, commented out, with its meaning behind it or, if that is too long, above it."""
     first, *others = _lines(f"#{_toml_key(key)} = {_toml(value)}")
     if others:
         yield from (f"# {meaning}", first, *others)
@@ -196,7 +196,7 @@ def _answer(key: str, value: Any, meaning: str) -> Iterator[str]:
 
 
 def _lines(line: str) -> list[str]:
-    """A line, or where it holds a list of texts that is too long for one, several that can be taken in one by one."""
+    """Break a line with a long list of texts into several commented lines."""
     lines = [""]
     for part in re.split(r'(?<=",)(?=")', line):
         if lines[-1] and len(lines[-1]) + len(part) > _LONGEST:
@@ -207,7 +207,7 @@ def _lines(line: str) -> list[str]:
 
 
 def _parameters(profile: Profile) -> Iterator[str]:
-    """The control parameters that can be copied from the screen."""
+    """Yield the control parameters that can be copied from the screen."""
     if not profile.machine.known_parameters:
         return
     yield from ("", "[parameters]", *_prose("as the control shows them; each sets the values that it stands for"))
@@ -218,7 +218,7 @@ def _parameters(profile: Profile) -> Iterator[str]:
 
 
 def _present(profile: Profile, meaning: Meaning) -> str:
-    """What a parameter would be on the machine as its profile is; empty where that is not one number."""
+    """Return the value of a parameter that matches the profile; empty if that is no single number."""
     group, _, key = meaning.key.partition(".")
     value = getattr(getattr(profile.machine, group, None), key, None) if key else None
     if meaning.is_letter:
@@ -240,7 +240,7 @@ def _toml(value: Any) -> str:
     if isinstance(value, dict):
         inside = ", ".join(f"{_toml(key)} = {_toml(element)}" for key, element in value.items())
         return f"{{ {inside} }}" if inside else "{ }"
-    # JSON lets stand as it is what TOML does not, and what acts on a terminal.
+    # JSON allows characters that TOML does not, and some that control a terminal.
     return "".join(
         character if character.isprintable() else f"\\U{ord(character):08x}"
         for character in msgspec.json.encode(value).decode()

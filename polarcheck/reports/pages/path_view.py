@@ -1,4 +1,4 @@
-"""The paths of a polar section and the rate of C in it, as lines for a terminal."""
+"""Draws the paths of a polar section and its rate of C as lines for a terminal."""
 
 from __future__ import annotations
 
@@ -13,27 +13,28 @@ from polarcheck.pictures.section_view import SectionView
 from polarcheck.pictures.strip import strip
 from polarcheck.reading.excerpt import visible
 
-#: The picture has this many columns and rows at most, the strip so many rows.
+#: The largest picture in columns and rows, and the rows of the strip.
 _COLUMNS, _ROWS, _STRIP_ROWS = 64, 24, 5
 _INDENT = "  "
 
 
 def path_view(view: SectionView, columns: int, *, dots: bool, paint: Paint = plain, path: str = "") -> Iterator[str]:
     """
-    The lines of one section: its title, what is seen of it, and the rate of C over time; an empty one behind them.
+    Yield the lines of one section: its title, the picture, the rate of C over time, and an empty line.
 
-    columns: of the terminal. dots: whether it shows Braille patterns and blocks; else ASCII. path: of the
-    program, where there may be several.
+    columns: the width of the terminal.
+    dots: draw with Braille and block characters, else ASCII.
+    path: the path of the program, if there may be several.
     """
     room = columns - len(_INDENT)
     face = face_view(view.programmed, view.tool, view.marks, min(room, _COLUMNS), _ROWS, dots=dots, paint=paint)
     curve = strip(view.time, view.rate, view.limit, min(room, _COLUMNS), _STRIP_ROWS, dots=dots, paint=paint)
     yield paint("message", f"{visible(path)}: {view.title}" if path else view.title)
-    legend, told = (
+    legend, remarks = (
         [line for text in texts for line in textwrap.wrap(text, room)]
         for texts in (_legend(view, dots), (_rate(view), *view.remarks))
     )
-    yield from (_INDENT + line if line else "" for line in (*face, "", *legend, "", *curve, *told))
+    yield from (_INDENT + line if line else "" for line in (*face, "", *legend, "", *curve, *remarks))
     yield ""
 
 
@@ -50,7 +51,7 @@ def _legend(view: SectionView, dots: bool) -> Iterator[str]:
 
 
 def _rate(view: SectionView) -> str:
-    """What the strip shows, in numbers."""
+    """Return the range of the strip in numbers."""
     known = view.rate[~np.isnan(view.rate)]
     if not len(known):
         return "rate of C over time: not known"

@@ -1,4 +1,4 @@
-"""The page that leads to those of many programs: a name for each, and a table of all."""
+"""The index page of the pages of many programs, and the names of those pages."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from polarcheck.reports.text import verdict
 if TYPE_CHECKING:
     from polarcheck.finding import FileReport
 
-#: The page itself.
+#: The name of the index page.
 INDEX = "index.html"
-#: Of the name of a program [characters].
+#: The longest part of a program's name in the name of its page [characters].
 _LENGTH = 100
-#: Names of devices on Windows, whatever their ending.
+#: Names of devices on Windows, with any extension.
 _DEVICE = re.compile(r"(?i)(?:con|prn|aux|nul|com\d|lpt\d)(?:\.|$)")
 _HEADS = ("Program", "Verdict", "Findings", "Polar sections")
 _STYLE = (
@@ -30,7 +30,16 @@ _STYLE = (
 
 
 class Entry(NamedTuple):
-    """A program in the table: its page, its path, the kind of its verdict and the verdict as it is told, and counts."""
+    """
+    A program in the table.
+
+    page: the name of its page.
+    path: the path of the program.
+    kind: the verdict: pass, fail, unverified.
+    verdict: the verdict in words.
+    findings: the numbers of findings, in words.
+    sections: the number of polar sections.
+    """
 
     page: str
     path: str
@@ -41,17 +50,17 @@ class Entry(NamedTuple):
 
 
 def entry(file: FileReport, page: str) -> Entry:
-    """What the table says of a file."""
-    severities = [found.severity for found in file.findings]
-    told = [counted(severities.count(one), one) for one in SEVERITIES if one in severities]
-    return Entry(page, file.path, file.verdict, verdict(file), ", ".join(told) or "none", file.sections)
+    """Return the entry of a file."""
+    severities = [finding.severity for finding in file.findings]
+    facts = [counted(severities.count(severity), severity) for severity in SEVERITIES if severity in severities]
+    return Entry(page, file.path, file.verdict, verdict(file), ", ".join(facts) or "none", file.sections)
 
 
 def page_names(paths: Iterable[str]) -> list[str]:
     """
-    A name for the page of each path: safe on any file system, and no two the same in any case.
+    Return a name for the page of each path: valid on any file system, and unique even where case is ignored.
 
-    The page of a.nc is a.nc.html; of a second program of this name a.nc-2.html.
+    The page of a.nc is a.nc.html, that of a second program of this name a.nc-2.html.
     """
     names: list[str] = []
     taken = {INDEX, FILE_NAME}
@@ -69,7 +78,7 @@ def page_names(paths: Iterable[str]) -> list[str]:
 
 
 def index(entries: Sequence[Entry]) -> str:
-    """The page, in the order of the programs; readable without scripts, which it has none of."""
+    """Return the page, in the order of the programs; it has no scripts."""
     heads = "".join(f'<th scope="col">{head}</th>' for head in _HEADS)
     rows = "\n".join(map(_row, entries))
     return (
@@ -82,8 +91,9 @@ def index(entries: Sequence[Entry]) -> str:
     )
 
 
-def _row(one: Entry) -> str:
+def _row(entry: Entry) -> str:
     return (
-        f'<tr><td><a href="{one.page}">{escape(visible(one.path))}</a></td>'
-        f'<td class="{escape(one.kind)}">{escape(one.verdict)}</td><td>{one.findings}</td><td>{one.sections}</td></tr>'
+        f'<tr><td><a href="{entry.page}">{escape(visible(entry.path))}</a></td>'
+        f'<td class="{escape(entry.kind)}">{escape(entry.verdict)}</td>'
+        f"<td>{entry.findings}</td><td>{entry.sections}</td></tr>"
     )

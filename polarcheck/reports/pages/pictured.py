@@ -1,4 +1,4 @@
-"""A report of one file, with what is drawn of it, as a page shows it."""
+"""Turns the report of a file and its drawings into the data of a page."""
 
 from __future__ import annotations
 
@@ -16,30 +16,32 @@ if TYPE_CHECKING:
     from polarcheck.reports import Background
 
 _NOTHING = Drawn(sections=[], skip="", remarks=[])
-#: How what a verdict rests on begins, and the label of it.
+#: The label of each line on what a verdict rests on, by how the line begins.
 _LABELS = {"rests on ": "judged for", "section of ": "section", "not judged, but without weight: ": "not judged"}
 
 
 def picture(file: FileReport, background: Background) -> Picture:
-    """What a page shows of a file; without pictures where none were asked for."""
+    """Return the data of a file's page; without pictures if none were requested."""
     drawn = background.drawn.get(file.path, _NOTHING)
     places = [_Place(section) for section in drawn.sections]
-    findings = sorted([*file.findings, *file.silenced], key=lambda found: (found.line, found.column))
+    findings = sorted([*file.findings, *file.silenced], key=lambda finding: (finding.line, finding.column))
     return Picture(
         path=file.path,
         verdict=verdict(file),
         summary=_summary(file),
         head=list(_head(file, drawn, background)),
         not_evaluated=list(_not_evaluated(file)),
-        findings=[_finding(found, places, background) for found in findings],
+        findings=[_finding(finding, places, background) for finding in findings],
         sections=drawn.sections,
     )
 
 
 def _summary(file: FileReport) -> str:
-    severities = [found.severity for found in file.findings]
-    told = [counted(severities.count(one), one) for one in SEVERITIES if one in severities] or ["no findings"]
-    return ", ".join([*told, counted(file.sections, "polar section"), counted(file.blocks, "block")])
+    severities = [finding.severity for finding in file.findings]
+    facts = [counted(severities.count(severity), severity) for severity in SEVERITIES if severity in severities] or [
+        "no findings"
+    ]
+    return ", ".join([*facts, counted(file.sections, "polar section"), counted(file.blocks, "block")])
 
 
 def _head(file: FileReport, drawn: Drawn, background: Background) -> Iterator[tuple[str, str]]:
@@ -58,20 +60,25 @@ def _head(file: FileReport, drawn: Drawn, background: Background) -> Iterator[tu
 
 
 def _not_evaluated(file: FileReport) -> Iterator[str]:
-    """One line for each reason, with the rules that it silences."""
+    """Yield one line for each reason, with the rules that were not evaluated for it."""
     reasons: dict[str, list[str]] = {}
     blocks: dict[str, int] = {}
-    for missing in file.not_evaluated:
-        if missing.matters:
-            channel = f"channel {missing.channel}: " if missing.channel else ""
-            reasons.setdefault(channel + missing.reason, []).append(missing.rule)
-            blocks[channel + missing.reason] = max(blocks.get(channel + missing.reason, 0), missing.blocks)
+    for gap in file.not_evaluated:
+        if gap.matters:
+            channel = f"channel {gap.channel}: " if gap.channel else ""
+            reasons.setdefault(channel + gap.reason, []).append(gap.rule)
+            blocks[channel + gap.reason] = max(blocks.get(channel + gap.reason, 0), gap.blocks)
     for reason, rules in reasons.items():
         yield f"{reason} ({counted(blocks[reason], 'block')}; {', '.join(dict.fromkeys(rules))})"
 
 
 class _Place:
-    """Where findings stand in a section: the first move of each line."""
+    """
+    The places of findings in a section.
+
+    section: the section.
+    first: the number of the first move of each line.
+    """
 
     def __init__(self, section: SectionPicture) -> None:
         self.section = section
@@ -79,36 +86,36 @@ class _Place:
         for number, line in enumerate(section.moves.line):
             self.first.setdefault(line, number)
 
-    def is_of(self, found: Finding) -> bool:
-        """Whether a finding belongs to the section."""
-        if (found.channel or "") not in ("", self.section.channel):
+    def is_of(self, finding: Finding) -> bool:
+        """Return True if a finding belongs to the section."""
+        if (finding.channel or "") not in ("", self.section.channel):
             return False
-        if found.section_line is not None:
-            return found.section_line == self.section.line
-        return self.section.line <= found.line <= self.section.end_line
+        if finding.section_line is not None:
+            return finding.section_line == self.section.line
+        return self.section.line <= finding.line <= self.section.end_line
 
 
-def _finding(found: Finding, places: Sequence[_Place], background: Background) -> FindingPicture:
+def _finding(finding: Finding, places: Sequence[_Place], background: Background) -> FindingPicture:
     from polarcheck.finding import Silenced
 
-    rule = background.rules.get(found.rule)
-    of = [number for number, place in enumerate(places) if place.is_of(found)]
-    # A program that is called twice makes a section each time.
-    with_move = [number for number in of if found.line in places[number].first]
-    section = next(chain(with_move, of), None)
+    rule = background.rules.get(finding.rule)
+    sections = [number for number, place in enumerate(places) if place.is_of(finding)]
+    # A program that is called twice has a section for each call.
+    with_move = [number for number in sections if finding.line in places[number].first]
+    section = next(chain(with_move, sections), None)
     by = ""
-    if isinstance(found, Silenced):
-        by = f"{found.by}: {found.reason}" if found.reason else found.by
+    if isinstance(finding, Silenced):
+        by = f"{finding.by}: {finding.reason}" if finding.reason else finding.by
     return FindingPicture(
-        rule=found.rule,
-        severity=found.severity,
-        message=found.told,
-        line=found.line,
-        block=found.block,
+        rule=finding.rule,
+        severity=finding.severity,
+        message=finding.full_message,
+        line=finding.line,
+        block=finding.block,
         why=first_sentence(rule.page) if rule else "",
-        alarm=found.alarm or "",
-        fix=found.fix.title if found.fix is not None else "",
+        alarm=finding.alarm or "",
+        fix=finding.fix.title if finding.fix is not None else "",
         section=section,
-        move=None if section is None else places[section].first.get(found.line),
+        move=None if section is None else places[section].first.get(finding.line),
         silenced=by,
     )

@@ -1,4 +1,4 @@
-"""What the verdict of a file rests on, in a few lines: the lathe, what was looked at, and each polar section."""
+"""The basis of a verdict in a few lines: the lathe, what was looked at, and each polar section."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from polarcheck.reports import counted
 if TYPE_CHECKING:
     from polarcheck.finding import FileReport, PolarSection
 
-#: More sections than this are counted; the JSON report has them all.
+#: At most this many sections are listed; the others are counted. The JSON report has them all.
 _LISTED = 5
 _INSIDE = "polar sections"
 
 
 def resting(file: FileReport) -> Iterator[str]:
-    """Lines of text; the first says for which lathe the file was judged and at what was looked. None for nothing."""
+    """Yield lines; the first names the lathe and what was looked at. Yields nothing if nothing was looked at."""
     if not file.looked_at:
         return
     outside = [part for part in file.looked_at if part != _INSIDE]
@@ -65,5 +65,5 @@ def _rate(section: PolarSection) -> str:
 
 
 def _length(value: float, section: PolarSection) -> str:
-    """A length [mm] in the units of the program."""
+    """Return a length [mm] in the units of the program."""
     return f"{Quantity(value, section.units == 'inch', diameter=False):length}"

@@ -1,4 +1,4 @@
-"""docs/rules/: a page for each rule, of its manual page and what it says of its own examples, and their index."""
+"""docs/rules/: a page for each rule, with its manual page and its findings in its own examples, and their index."""
 
 from __future__ import annotations
 
@@ -16,21 +16,21 @@ from polarcheck.machines import profiles, toml_text
 from polarcheck.machines.job import from_table, with_tool
 from polarcheck.machines.machine import Machine
 from polarcheck.machines.profiles import Profile
-from polarcheck.reports.pages.markdown import MADE, prose, row, rule_under
+from polarcheck.reports.pages.markdown import GENERATED, prose, row, rule_under
 
 _HEADING = re.compile(r"^(Bad|Good)(?:, (.*))?:$")
 
 
 def pages(rules: Mapping[str, Rule]) -> Iterator[tuple[str, str]]:
-    """Path below docs/ and text of each page."""
+    """Yield path below docs/ and text of each page."""
     yield "rules/index.md", index(rules)
     for rule in rules.values():
         yield f"rules/{rule.group}/{rule.name}.md", page(rule)
 
 
 def index(rules: Mapping[str, Rule]) -> str:
-    """All rules by group, with links."""
-    lines = ["# Rules", "", MADE, ""]
+    """Return the page that lists all rules by group, with links."""
+    lines = ["# Rules", "", GENERATED, ""]
     lines += [
         f"{len(rules)} rules. `polarcheck rules` lists them, `polarcheck explain NAME` shows a page at a shell.",
         "Beside a block of an example `(expect: NAME)` says what is found there; it is no part of the program.",
@@ -45,33 +45,33 @@ def index(rules: Mapping[str, Rule]) -> str:
 
 
 def page(rule: Rule) -> str:
-    """The page of one rule."""
-    said = said_of_examples(rule)
-    lines = [f"# {rule.name}", "", MADE, "", f"**{prose(rule.title)}.**", ""]
+    """Return the page of one rule."""
+    findings = findings_in_examples(rule)
+    lines = [f"# {rule.name}", "", GENERATED, "", f"**{prose(rule.title)}.**", ""]
     lines += [f"Group [{rule.group}](../index.md#{rule.group}), severity {_severity(rule)}."]
-    if said:
+    if findings:
         lines += ["", "## What it says", "", "Of its examples:", ""]
-        lines += [f"- {found.severity}: {prose(found.message)}" for found in _by_message(said)]
+        lines += [f"- {finding.severity}: {prose(finding.message)}" for finding in _by_message(findings)]
     lines += ["", "## Why", "", *_body(rule)]
     lines += ["", *_alarms(rule)]
-    lines += ["## The fix", "", *_fixes(said)]
+    lines += ["## The fix", "", *_fixes(findings)]
     lines += ["", "## Where it is meant so", "", *_allowed(rule)]
     return "\n".join(lines) + "\n"
 
 
-def said_of_examples(rule: Rule) -> list[Finding]:
-    """What the rule finds in the Bad examples of its page, in their order."""
+def findings_in_examples(rule: Rule) -> list[Finding]:
+    """Return the findings of the rule in the Bad examples of its page, in their order."""
     bad = [example for example in examples(rule.page) if not example.good]
-    # Some rules speak of what others find, or do not.
-    said = _said(bad, rule, [rule]) or _said(bad, rule, list(load_all().values()))
-    return [found for found in said if found.rule == rule.name]
+    # Some rules depend on the findings of others: they find nothing when they run alone.
+    findings = _findings(bad, rule, [rule]) or _findings(bad, rule, list(load_all().values()))
+    return [finding for finding in findings if finding.rule == rule.name]
 
 
-def _said(bad: Sequence[Example], rule: Rule, rules: Sequence[Rule]) -> list[Finding]:
-    return [found for example in bad for found in _findings(example, rule, rules)]
+def _findings(bad: Sequence[Example], rule: Rule, rules: Sequence[Rule]) -> list[Finding]:
+    return [finding for example in bad for finding in _checked(example, rule, rules)]
 
 
-def _findings(example: Example, rule: Rule, rules: Sequence[Rule]) -> Sequence[Finding]:
+def _checked(example: Example, rule: Rule, rules: Sequence[Rule]) -> Sequence[Finding]:
     changes: dict[str, Any] = {}
     table: dict[str, Any] = {}
     for setting in example.settings:
@@ -86,7 +86,7 @@ def _findings(example: Example, rule: Rule, rules: Sequence[Rule]) -> Sequence[F
     job = from_table(table, rule.name)
     for tool in example.tools:
         job = with_tool(job, tool)
-    return check.check_file(example.program.encode(), machine, job, rules, severities=_as_found(rule)).findings
+    return check.check_file(example.program.encode(), machine, job, rules, severities=_severities(rule)).findings
 
 
 @functools.cache
@@ -94,8 +94,8 @@ def _built_in() -> dict[str, Machine]:
     return {profile.name: profile.machine for profile in profiles.built_in()}
 
 
-def _as_found(rule: Rule) -> dict[str, str]:
-    """Advice is off where nobody asks for it; its page shows it."""
+def _severities(rule: Rule) -> dict[str, str]:
+    """Return the severities for the examples: a rule of advice is off by default, but its page shows its findings."""
     return {rule.name: rule.severity.name.lower()} if rule.is_advice else {}
 
 
@@ -104,20 +104,20 @@ def _severity(rule: Rule) -> str:
     return f"{level}, off where nobody asks for it" if rule.is_advice else level
 
 
-def _by_message(said: Sequence[Finding], most: int = 3) -> list[Finding]:
-    """Of findings that say the same, the first; and a few of them."""
-    return list({found.message: found for found in reversed(said)}.values())[::-1][:most]
+def _by_message(findings: Sequence[Finding], most: int = 3) -> list[Finding]:
+    """Return the first finding of each message, at most a few."""
+    return list({finding.message: finding for finding in reversed(findings)}.values())[::-1][:most]
 
 
 def _body(rule: Rule) -> Iterator[str]:
-    """The manual page below its title: paragraphs, source, examples under headings."""
+    """Yield the manual page below its title: paragraphs, source, examples under headings."""
     in_code, last = False, ""
     for line in rule.page.strip().split("\n")[2:]:
         heading = _HEADING.match(line)
         if heading:
-            kind, given = heading.groups()
+            kind, conditions = heading.groups()
             yield f"## {kind}" if kind != last else "Or:"
-            yield from _judged(given)
+            yield from _judged(conditions)
             last = kind
         elif line.startswith("Source: "):
             yield from ("## Source", "", prose(line.removeprefix("Source: ")))
@@ -126,9 +126,9 @@ def _body(rule: Rule) -> Iterator[str]:
             yield line if in_code or not line else prose(line)
 
 
-def _judged(given: str | None) -> Iterator[str]:
-    """For which machine, and with what, an example is judged."""
-    options = options_of(f", {given}") if given else []
+def _judged(conditions: str | None) -> Iterator[str]:
+    """Yield a line on the machine and the options that an example is judged with."""
+    options = options_of(f", {conditions}") if conditions else []
     lathe = "".join(f" for [{value}](../../machines/{value}.md)" for key, value in options if key == "machine")
     words = [f"`--tool {value}`" for key, value in options if key == "tool"]
     words += [f"`--set {value}`" for key, value in options if key == "set" and not value.startswith("job.")]
@@ -156,14 +156,14 @@ def _machines() -> list[Profile]:
     return sorted(profiles.built_in(), key=lambda profile: profile.name)
 
 
-def _fixes(said: Sequence[Finding]) -> Iterator[str]:
-    fixes = {found.fix.title: found.fix for found in said if found.fix is not None}
+def _fixes(findings: Sequence[Finding]) -> Iterator[str]:
+    fixes = {finding.fix.title: finding.fix for finding in findings if finding.fix is not None}
     if not fixes:
         yield "None is made by itself: what to write instead stands in the message."
         return
     for fix in fixes.values():
-        asked = "`--fix`" if fix.safe else "`--fix --unsafe-fixes`"
-        yield f"- {prose(fix.title)}: written by {asked}, shown by `--diff` ([fixes](../../fixes.md))"
+        option = "`--fix`" if fix.safe else "`--fix --unsafe-fixes`"
+        yield f"- {prose(fix.title)}: written by {option}, shown by `--diff` ([fixes](../../fixes.md))"
 
 
 def _allowed(rule: Rule) -> Iterator[str]:

@@ -18,51 +18,56 @@ Schema = dict[str, Any]
 
 
 def schema(name: str) -> Schema:
-    """The schema of `report`, `job`, `machine` or `feeds`."""
-    made = {"report": _report, "job": _job, "machine": _machine, "feeds": _feeds}[name]()
-    return {"$schema": DIALECT, "$id": f"urn:polarcheck:{name}:1", **made}
+    """Return the schema of `report`, `job`, `machine` or `feeds`."""
+    content = {"report": _report, "job": _job, "machine": _machine, "feeds": _feeds}[name]()
+    return {"$schema": DIALECT, "$id": f"urn:polarcheck:{name}:1", **content}
 
 
 def text(name: str) -> str:
-    """The same as JSON."""
+    """Return the schema as JSON."""
     return msgspec.json.format(msgspec.json.encode(schema(name)), indent=2).decode() + "\n"
 
 
 def _report() -> Schema:
-    made: Schema = _without_nan(msgspec.json.schema(Report))
-    definitions = made["$defs"]
+    content: Schema = _without_nan(msgspec.json.schema(Report))
+    definitions = content["$defs"]
     for kind in ("Finding", "Silenced"):
         definitions[kind]["properties"]["severity"] = {"enum": [level.name.lower() for level in reversed(Severity)]}
     definitions["Silenced"]["properties"]["by"] = {"enum": list(SILENCED_BY)}
     definitions["FileReport"]["properties"]["verdict"] = {"enum": list(VERDICTS)}
     definitions["Report"]["properties"]["schema"] = {"const": 1}
-    return made
+    return content
 
 
 def _feeds() -> Schema:
-    from polarcheck.feed_table.table import LIMITED_BY, FeedReport  # with NumPy, which the others do without
+    # Imports NumPy, which the other schemas do not need.
+    from polarcheck.feed_table.table import LIMITED_BY, FeedReport
 
-    made: Schema = msgspec.json.schema(FeedReport)
-    made["$defs"]["FeedReport"]["properties"]["schema"] = {"const": 1}
-    made["$defs"]["FeedRow"]["properties"]["limited_by"] = {"enum": list(LIMITED_BY)}
-    return made
+    content: Schema = msgspec.json.schema(FeedReport)
+    content["$defs"]["FeedReport"]["properties"]["schema"] = {"const": 1}
+    content["$defs"]["FeedRow"]["properties"]["limited_by"] = {"enum": list(LIMITED_BY)}
+    return content
 
 
 def _job() -> Schema:
-    made: Schema = _without_nan(msgspec.json.schema(Job))
+    content: Schema = _without_nan(msgspec.json.schema(Job))
     for kind in ("Job", "Programs"):
-        made["$defs"][kind]["properties"]["limits"] = {"$ref": "#/$defs/Limits"}
+        content["$defs"][kind]["properties"]["limits"] = {"$ref": "#/$defs/Limits"}
     limits = _without_nan(msgspec.json.schema(Machine))["$defs"]["Limits"]
-    made["$defs"]["Limits"] = {**limits, "required": []}
-    return made
+    content["$defs"]["Limits"] = {**limits, "required": []}
+    return content
 
 
 def _machine() -> Schema:
-    """A profile as a file holds it: a part of the machine, each value bare or with its source, and what it inherits."""
-    made: Schema = _without_nan(msgspec.json.schema(Machine))
-    machine = made["$defs"]["Machine"]["properties"]
+    """
+    Return the schema of a machine file.
+
+    It sets some values of the machine, each bare or with its source, and names the profile that it inherits from.
+    """
+    content: Schema = _without_nan(msgspec.json.schema(Machine))
+    machine = content["$defs"]["Machine"]["properties"]
     for kind in {field.type for field in msgspec.structs.fields(Machine) if "$ref" in machine[field.name]}:
-        table, meaning = made["$defs"][kind.__name__], meanings(kind)
+        table, meaning = content["$defs"][kind.__name__], meanings(kind)
         properties = {
             key: _sourced(value) | ({"description": meaning[key]} if key in meaning else {})
             for key, value in table["properties"].items()
@@ -77,10 +82,10 @@ def _machine() -> Schema:
             machine[key] = _sourced(value)
     for key, description in meanings(Machine).items():
         machine[key]["description"] = description
-    made["$defs"]["Machine"] |= {"required": [], "description": "A lathe, or what makes it differ from another one."}
+    content["$defs"]["Machine"] |= {"required": [], "description": "A lathe, or what makes it differ from another one."}
     for key, (kind, description) in _OF_FILES.items():
         machine[key] = {"description": description, **kind}
-    return made
+    return content
 
 
 #: Keys that stand in a file but not in the merged profile.
@@ -102,7 +107,7 @@ def _sourced(value: Schema) -> Schema:
 
 
 def _without_nan(value: Any) -> Any:
-    """Without the defaults that JSON cannot hold: NaN, which stands for unknown."""
+    """Remove defaults that are NaN (unknown), which JSON cannot hold."""
     if isinstance(value, list):
         return [_without_nan(element) for element in value]
     if not isinstance(value, dict):

@@ -1,8 +1,8 @@
 """
-The pages of docs/ that are made from the rules and the machine files.
+The pages of docs/ that are generated from the rules and the machine files.
 
-`python -m polarcheck.reports.pages.site docs` writes them anew, and takes away those of rules and machines that are
-gone.
+`python -m polarcheck.reports.pages.site docs` writes them, and removes those of rules and machines
+that no longer exist.
 """
 
 from __future__ import annotations
@@ -19,20 +19,20 @@ FOLDERS = ("rules", "machines")
 
 
 def pages() -> dict[str, str]:
-    """The text of every page by its path below docs/."""
+    """Return the text of every page by its path below docs/."""
     return {"controls.md": controls.text(), **dict(rule_pages.pages(load_all())), **dict(machine_pages.pages())}
 
 
 def write(folder: Path) -> None:
     """Write all pages. Raises OutputError where one cannot be written."""
-    made = pages()
-    for name, text in made.items():
+    texts = pages()
+    for name, text in texts.items():
         path = folder / name
         path.parent.mkdir(parents=True, exist_ok=True)
         files.write(path, text)
-    for own in FOLDERS:
-        for path in (folder / own).rglob("*.md"):
-            if path.relative_to(folder).as_posix() not in made:
+    for name in FOLDERS:
+        for path in (folder / name).rglob("*.md"):
+            if path.relative_to(folder).as_posix() not in texts:
                 path.unlink()
 
 

@@ -1,4 +1,4 @@
-"""How often each rule speaks: what to look at first in a folder of many programs."""
+"""Counts of findings by rule: what to look at first in a folder of many programs."""
 
 from __future__ import annotations
 
@@ -16,12 +16,19 @@ if TYPE_CHECKING:
     from polarcheck.reports import Background
 
 _HEADS = ("findings", "files", "fixable", "silenced", "severity", "rule")
-#: Columns of text, which stand to the left.
+#: Columns of text, aligned to the left.
 _OF_TEXT = ("severity", "rule")
 
 
 class Count(msgspec.Struct, frozen=True, kw_only=True):
-    """The findings of a rule and a severity; files: in how many; silenced: how many more somebody has answered for."""
+    """
+    The findings of a rule with a severity.
+
+    findings: their number.
+    files: the number of files with such findings.
+    fixable: the number of those with a fix.
+    silenced: the number of silenced findings, not counted in `findings`.
+    """
 
     rule: str
     severity: str
@@ -32,25 +39,29 @@ class Count(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def counts(report: Report) -> list[Count]:
-    """By rule and severity, the most frequent first; a rule whose findings are all silenced is counted, too."""
-    keys = {(one.rule, one.severity) for file in report.files for one in (*file.findings, *file.silenced)}
-    found = {key: [0, 0, 0, 0] for key in keys}
+    """
+    Return the counts by rule and severity, the most frequent first.
+
+    A rule whose findings are all silenced is counted, too.
+    """
+    keys = {(each.rule, each.severity) for file in report.files for each in (*file.findings, *file.silenced)}
+    numbers = {key: [0, 0, 0, 0] for key in keys}
     for file in report.files:
         seen = set()
-        for one in file.findings:
-            key = one.rule, one.severity
-            number = found[key]
+        for finding in file.findings:
+            key = finding.rule, finding.severity
+            number = numbers[key]
             number[0] += 1
             number[1] += key not in seen
-            number[2] += one.fix is not None
+            number[2] += finding.fix is not None
             seen.add(key)
         for silenced in file.silenced:
-            found[silenced.rule, silenced.severity][3] += 1
-    made = [
+            numbers[silenced.rule, silenced.severity][3] += 1
+    unsorted = [
         Count(rule=rule, severity=severity, findings=n[0], files=n[1], fixable=n[2], silenced=n[3])
-        for (rule, severity), n in found.items()
+        for (rule, severity), n in numbers.items()
     ]
-    return sorted(made, key=lambda one: (-one.findings, _rank(one.severity), one.rule))
+    return sorted(unsorted, key=lambda count: (-count.findings, _rank(count.severity), count.rule))
 
 
 def _rank(severity: str) -> int:
@@ -58,14 +69,16 @@ def _rank(severity: str) -> int:
 
 
 def statistics(report: Report, background: Background, form: str) -> str:
-    """The counts as `json` or `jsonl`, else as a table for people, with the line over all files below it."""
-    found = counts(report)
+    """Return the counts as `json` or `jsonl`, else as a table for people with the summary line below it."""
+    entries = counts(report)
     if form == "json":
-        return encoded(found, indent=2) + "\n"
+        return encoded(entries, indent=2) + "\n"
     if form == "jsonl":
-        return "".join(encoded(one) + "\n" for one in found)
-    table = [[str(getattr(one, head)) for head in _HEADS] for one in found]
-    shown = [column for column, head in enumerate(_HEADS) if head != "silenced" or any(one.silenced for one in found)]
+        return "".join(encoded(entry) + "\n" for entry in entries)
+    table = [[str(getattr(entry, head)) for head in _HEADS] for entry in entries]
+    shown = [
+        column for column, head in enumerate(_HEADS) if head != "silenced" or any(entry.silenced for entry in entries)
+    ]
     widths = [max(len(visible(row[column])) for row in [list(_HEADS), *table]) for column in range(len(_HEADS))]
     lines = []
     for row in [list(_HEADS), *table] if table else []:

@@ -1,4 +1,4 @@
-"""The executed table and the moves of a path as a table for people: which columns there are, and what matters most."""
+"""The columns of the executed table and of the moves of a path, as a table for people, and their ranks."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ from polarcheck.table.tool_center import ToolCenter
 from polarcheck.table.trace import Trace
 
 MM, FEED, DEG, C_FEED = "mm", "mm/min", "deg", "deg/min"
-#: Rates and accelerations of axes need no more digits.
+#: The decimals of rates and accelerations of axes.
 _RATE = 1
 
 
 def rows_table(trace: Trace, tool_center: ToolCenter, room: int | None, height: int | None) -> Iterator[str]:
-    """The executed table, as `executed.rows` has it, with the text of each block; see `aligned.table`."""
+    """Yield the executed table of `executed.rows` with the text of each block; see `aligned.table`."""
     yield from _channel(trace)
     yield from table(_of_rows(trace, tool_center), lambda row: _block(trace, row), room, height)
 
@@ -32,7 +32,7 @@ def rows_table(trace: Trace, tool_center: ToolCenter, room: int | None, height: 
 def moves_table(
     trace: Trace, tool_center: ToolCenter, path: str, room: int | None, height: int | None
 ) -> Iterator[str]:
-    """The moves of the tool center path ("tool") or of the programmed one, as `executed.moves` has them."""
+    """Yield the moves of `executed.moves` on the tool center path ("tool") or the programmed one."""
     moves, runs = running(trace, tool_center, path)
     yield from _channel(trace)
     yield from table(
@@ -53,7 +53,7 @@ def _of_rows(trace: Trace, tool_center: ToolCenter) -> list[Column]:
     moving = trace.in_polar & trace.moves_plane
     mode = trace.feed_mode
     number = np.where(mode == FeedMode.PER_MINUTE, trace.feed, trace.feed_number)
-    own = {tool: str(trace.run.names.get(tool, tool)) for tool in _distinct(trace.tool)}
+    tools = {tool: str(trace.run.names.get(tool, tool)) for tool in _distinct(trace.tool)}
     keys = {offset: str(key_of(trace, offset) or 0) for offset in _distinct(trace.offset_number)}
     return [
         _count("line", 0, trace.line_in_file),
@@ -63,7 +63,7 @@ def _of_rows(trace: Trace, tool_center: ToolCenter) -> list[Column]:
         _words("motion", 1, trace.motion, {kind: Motion(kind).name.lower() for kind in _distinct(trace.motion)},
                is_blank=trace.motion == Motion.NONE),
         _words("side", 2, trace.side, SIDES, usual=Side.OFF),
-        _words("tool", 6, trace.tool, own, usual=0),
+        _words("tool", 6, trace.tool, tools, usual=0),
         _words("offset_number", 7, trace.offset_number, keys, usual=0),
         Column("radius", MM, 5, trace.radius, is_blank=trace.offset_number == 0),
         _words("feed_mode", 8, mode, FEED_MODES, usual=FeedMode.PER_MINUTE),
@@ -84,12 +84,12 @@ def _of_moves(trace: Trace, moves: Moves, runs: Mapping[str, Floats], path: str)
     z_from, z_to = z_along(trace, moves)
     is_arc = ~np.isnan(moves.center)
     first = int(moves.section[0]) if len(moves) else 0
-    own = np.where(moves.is_of_tool, 1, 0) if path == "tool" else np.ones(len(moves), np.int64)
+    path_key = np.where(moves.is_of_tool, 1, 0) if path == "tool" else np.ones(len(moves), np.int64)
     return [
         _count("line", 0, trace.line_in_file[moves.row]),
         _count("section", 5, moves.section, usual=first),
         _words("kind", 1, moves.kind, {kind: KINDS.get(Motion(kind), "line") for kind in _distinct(moves.kind)}),
-        _words("path", 1, own, {0: "programmed", 1: path}, usual=1),
+        _words("path", 1, path_key, {0: "programmed", 1: path}, usual=1),
         *_point("start", 4, moves.start),
         *_point("end", 1, moves.end),
         *_point("center", 6, moves.center, is_blank=~is_arc),
@@ -124,9 +124,9 @@ def _words(
     is_blank: Mask | None = None,
     usual: float | None = None,
 ) -> Column:
-    """A column of words, which may come from the program."""
-    told = {int(key): visible(word) for key, word in words.items()}
-    return Column(name, "", rank, values, words=told, is_blank=is_blank, usual=usual)
+    """Return a column of words, which may come from the program."""
+    shown = {int(key): visible(word) for key, word in words.items()}
+    return Column(name, "", rank, values, words=shown, is_blank=is_blank, usual=usual)
 
 
 def _point(name: str, rank: int, point: NDArray[np.complex128], is_blank: Mask | None = None) -> list[Column]:
@@ -137,5 +137,5 @@ def _point(name: str, rank: int, point: NDArray[np.complex128], is_blank: Mask |
 
 
 def _distinct(values: NDArray[np.integer]) -> list[int]:
-    found: list[int] = np.unique(values).tolist()
-    return found
+    distinct: list[int] = np.unique(values).tolist()
+    return distinct

@@ -1,10 +1,10 @@
-"""The words of a verdict, as `polarcheck explain` tells them to a setter: pass, unverified, fail."""
+"""The pages on the verdicts, which `polarcheck explain` shows: pass, unverified, fail."""
 
 from __future__ import annotations
 
 from types import MappingProxyType
 
-#: By verdict; the first line is the title.
+#: The page of each verdict; the first line is the title.
 PAGES = MappingProxyType(
     {
         "pass": """\
@@ -114,12 +114,12 @@ _ALSO = MappingProxyType({"passed": "pass", "failed": "fail", "not evaluated": "
 
 
 def page(word: str) -> str:
-    """The page of a verdict, of all three for `verdict`; empty for any other word. Case and hyphens are free."""
+    """Return the page of a verdict, all three for `verdict`, empty for any other word. Case and hyphens are ignored."""
     plain = " ".join(word.lower().replace("-", " ").replace("_", " ").split())
     if plain in ("verdict", "verdicts"):
         return "\n\n".join(map(_headed, PAGES.values()))
-    found = PAGES.get(_ALSO.get(plain, plain), "")
-    return _headed(found) if found else ""
+    text = PAGES.get(_ALSO.get(plain, plain), "")
+    return _headed(text) if text else ""
 
 
 def _headed(text: str) -> str:

@@ -1,4 +1,4 @@
-"""What programs make, as text for people and as JSON for other programs."""
+"""The part that a program makes, as text for people and as JSON for other programs."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from polarcheck.reports.json import encoded
 
 #: The rule that compares a part with its drawing.
 _RULE = "part-differs-from-drawing"
-#: Lines of the text begin with the label, right-aligned up to here; what it labels stands three further.
+#: Labels are right-aligned to this column; the text begins three columns further.
 _GUTTER = 10
 
 
-def made(file: FileReport) -> Iterator[tuple[str, str]]:
-    """Label and text of each line on what a file makes: `line 9`, and what is made there."""
+def part_lines(file: FileReport) -> Iterator[tuple[str, str]]:
+    """Yield label and text of each line on the part: `line 9`, and the shape that is made there."""
     if isinstance(file.part, msgspec.UnsetType):
         return
     if not file.part:
@@ -31,24 +31,24 @@ def made(file: FileReport) -> Iterator[tuple[str, str]]:
             yield "left", left.text
         if shape.needs and shape.shape is not None:
             yield "but", shape.needs
-    for one in file.compared or []:
-        if one.agrees:  # else a finding says so
-            yield f"line {one.section_line}", one.text
+    for section in file.compared or []:
+        if section.agrees:  # otherwise there is a finding
+            yield f"line {section.section_line}", section.text
     for missing in file.not_evaluated:
-        # That R is not known, or walls are tangled, is said of the shape.
+        # The lines of the shape already give other reasons, such as an unknown R.
         if file.compared is not msgspec.UNSET and missing.rule == _RULE and "compared with" in missing.reason:
             yield "but", missing.reason
 
 
 def text(files: Sequence[FileReport], columns: int) -> str:
-    """Of each file its path, below it what it makes, where that differs from its drawing, what could not be judged."""
+    """Return for each file its path, the part, where it differs from the drawing, and what could not be judged."""
     shown = []
     for file in files:
         shown.append(visible(file.path))
-        labelled = [*made(file)]
-        labelled += [(found.severity, f"line {found.line}: {found.told}") for found in file.findings]
-        missing = dict.fromkeys(missing.reason for missing in file.not_evaluated if missing.matters)
-        labelled += [("not judged", reason) for reason in missing]
+        labelled = [*part_lines(file)]
+        labelled += [(finding.severity, f"line {finding.line}: {finding.full_message}") for finding in file.findings]
+        reasons = dict.fromkeys(gap.reason for gap in file.not_evaluated if gap.matters)
+        labelled += [("not judged", reason) for reason in reasons]
         for label, said in labelled:
             room = columns - _GUTTER - 3
             first, *more = textwrap.wrap(visible(said), room, break_long_words=False, break_on_hyphens=False) or [""]
@@ -59,8 +59,8 @@ def text(files: Sequence[FileReport], columns: int) -> str:
 
 
 def json(files: Sequence[FileReport]) -> str:
-    """The same as data, in the terms of the JSON report of `check`."""
-    told: list[dict[str, Any]] = [
+    """Return the same as JSON, with the names of the JSON report of `check`."""
+    entries: list[dict[str, Any]] = [
         {
             "path": file.path,
             "machine": file.machine,
@@ -71,7 +71,7 @@ def json(files: Sequence[FileReport]) -> str:
         }
         for file in files
     ]
-    return encoded({"schema": 1, "files": told}, indent=2) + "\n"
+    return encoded({"schema": 1, "files": entries}, indent=2) + "\n"
 
 
 def _list(part: Any) -> list[Any]:
