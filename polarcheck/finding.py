@@ -87,7 +87,7 @@ class Finding(msgspec.Struct, frozen=True, kw_only=True):
     channel: str | UnsetType = UNSET
 
     @property
-    def told(self) -> str:
+    def full_message(self) -> str:
         """The message, behind the channel in a file with several."""
         return f"{self.channel}: {self.message}" if self.channel else self.message
 

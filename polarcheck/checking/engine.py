@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import msgspec
 import numpy as np
 
-from polarcheck.arrays import Mask, Rows, is_one, repeated
+from polarcheck.arrays import Mask, Rows, is_uniform, repeated
 from polarcheck.checking import places
 from polarcheck.checking.places import PLACES, Place
 from polarcheck.checking.rule import Hits, Rule
@@ -123,7 +123,7 @@ class Engine:
         """A column without memory of its own if it holds a single value, else the column itself."""
         if not isinstance(column, np.ndarray) or column.ndim != 1 or not column.size or column.dtype.hasobject:
             return column
-        if not is_one(column):
+        if not is_uniform(column):
             return column
         if column.dtype == np.bool_:
             return self._constant_masks.setdefault((len(column), bool(column[0])), column)
