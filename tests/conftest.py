@@ -6,13 +6,11 @@ Property tests take the same examples in each run, unless new ones are asked for
 
 from __future__ import annotations
 
-import functools
-import itertools
 import math
 import os
 import sys
 from collections import Counter
-from collections.abc import Callable, Generator, Mapping, Set
+from collections.abc import Generator, Mapping, Set
 from enum import Enum
 from pathlib import Path
 from typing import Any
@@ -31,14 +29,11 @@ settings.register_profile(
     suppress_health_check=[HealthCheck.too_slow],
 )
 
+# The commands that tests start write their bytecode: hundreds of processes would each compile the package.
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+
 #: Characters of one value in the name of a test.
 LONGEST = 50
-#: Cases of one test, written and drawn ones, that count for the coverage: more of them add next to nothing, and take
-#: twice the time measured.
-MEASURED, DRAWN = 6, 20
-#: Files whose tests count whole: each case is another statement of a control's own language.
-MEASURED_WHOLE = ("test_high_level", "test_user_tasks", "test_statement", "test_flow")
-IS_MEASURED = pytest.StashKey[bool]()
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -48,38 +43,32 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--installs", action="store_true", help="run the tests that install packages, too")
 
 
+@pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Before pytest deselects by markers: `one_in(5)` makes every case of a test slow, except each fifth."""
+    cases: Counter[str] = Counter()
     for item in items:
         if item.get_closest_marker("installs") and not config.getoption("--installs"):
             item.add_marker(pytest.mark.skip(reason="--installs runs what installs packages"))
-    cases: Counter[str] = Counter()
-    for item in items:
-        test = item.nodeid.partition("[")[0]
-        cases[test] += 1
-        item.stash[IS_MEASURED] = cases[test] <= MEASURED or item.path.stem in MEASURED_WHOLE
-        drawn = getattr(getattr(item, "obj", None), "hypothesis", None)
-        if drawn is not None and cases[test] == 1:
-            drawn.inner_test = measured_at_first(drawn.inner_test)
+        if share := item.get_closest_marker("one_in"):
+            test = item.nodeid.partition("[")[0]
+            if cases[test] % share.args[0]:
+                item.add_marker("slow")
+            cases[test] += 1
 
 
-def measured_at_first(test: Callable[..., None]) -> Callable[..., None]:
-    """The test of one drawn example, of which no more than so many count for the coverage."""
-    examples = itertools.count()
-
-    @functools.wraps(test)
-    def run(*arguments: Any, **named: Any) -> None:
-        if next(examples) >= DRAWN:
-            sys.settrace(None)  # pytest_runtest_call sets it again, behind the last example
-        test(*arguments, **named)
-
-    return run
+@pytest.hookimpl(tryfirst=True)
+def pytest_cmdline_main(config: pytest.Config) -> None:
+    """One process takes the golden outcomes: several would write the same file."""
+    if config.option.update_snapshots:
+        config.option.numprocesses = 0
 
 
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_call(item: pytest.Item) -> Generator[None, Any, Any]:
-    """The mark no_cover of pytest-cov has no effect in the processes of pytest-xdist."""
+    """Cases that `one_in` leaves out do not count for the coverage: measuring doubles the time of a test."""
     tracer = sys.gettrace()
-    if not item.stash[IS_MEASURED]:
+    if item.get_closest_marker("one_in") and item.get_closest_marker("slow"):
         sys.settrace(None)
     try:
         return (yield)

@@ -98,6 +98,7 @@ def test_what_a_reader_repeats_is_no_message(tmp_path: Path) -> None:
     assert peers._messages(said, path) == {"executing", "warning no G13.1 in"}
 
 
+@pytest.mark.slow
 def test_the_page_is_written_without_any_peer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for name in ("RS274", "PEERS_PYTHON", "NCTAB", "NCPLOT7PY"):
         monkeypatch.delenv(name, raising=False)

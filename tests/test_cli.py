@@ -756,6 +756,7 @@ def test_machines_lists_all_of_them() -> None:
 _LEFT_OUT = ("known_parameters", "notes")
 
 
+@pytest.mark.one_in(3)
 @pytest.mark.parametrize("name", names())
 def test_a_profile_is_shown_as_a_profile_that_says_the_same(name: str) -> None:
     shown = call("machines", name).stdout

@@ -25,7 +25,7 @@ from polarcheck.batch.cluster import Answer, Batch, Cluster, check_batch
 from polarcheck.commands import main
 from polarcheck.errors import ClusterError
 
-pytestmark = pytest.mark.usefixtures("own_folder")
+pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("own_folder")]
 
 CLUSTER = """
 import sys

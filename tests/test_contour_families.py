@@ -35,6 +35,7 @@ def disc(radius: float, center: complex = 0j) -> shapely.Polygon:
     return polygon_of([Piece("ccw", center + radius, center + radius, center)])
 
 
+@pytest.mark.one_in(4)
 @pytest.mark.parametrize("family", FAMILIES)
 def test_polarcheck_agrees_with_the_reference(family: str) -> None:
     found = [comparison for seed in range(SHARE) for comparison in compare_seed(seed, family)]
@@ -135,6 +136,7 @@ def test_a_block_through_the_part_and_the_wrong_side_are_told() -> None:
     assert judge(program(blocks.format("G42").replace("X-40./", "X-40./X0./")), 3, SQUARE).through
 
 
+@pytest.mark.one_in(3)
 @pytest.mark.parametrize("seed", range(0, 39, 4))
 def test_samples_along_the_path_say_the_same(seed: int) -> None:
     one = program_of(seed)
@@ -152,6 +154,7 @@ def test_samples_along_the_path_say_the_same(seed: int) -> None:
     assert verdict.depth >= deepest - 1e-9
 
 
+@pytest.mark.one_in(3)
 @pytest.mark.parametrize("seed", range(26))
 def test_every_wall_of_the_part_is_programmed(seed: int) -> None:
     """So that the part by construction is the one of the program; round the bar nothing is milled."""
@@ -170,6 +173,7 @@ def test_every_wall_of_the_part_is_programmed(seed: int) -> None:
 # --- the generator ------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.one_in(4)
 @pytest.mark.parametrize("seed", range(26))
 def test_twins_have_the_same_part_and_the_same_path(seed: int) -> None:
     one = program_of(seed)

@@ -378,6 +378,7 @@ def touch(*paths: str, seconds: int) -> None:
         os.utime(path, (seconds, seconds))
 
 
+@pytest.mark.one_in(5)
 @posix
 @pytest.mark.parametrize("driver", ["nc", "NC.2", "f\u00fcr-nc", "'$x'"])
 @pytest.mark.parametrize("kind", ["clean", "process"])
@@ -517,6 +518,7 @@ TRANSPORTS = {
 }
 
 
+@pytest.mark.one_in(3)
 @posix
 @pytest.mark.parametrize("transport", TRANSPORTS)
 @pytest.mark.parametrize("lost", ["HEAD~1", "HEAD~1^{tree}", "HEAD~1:sub", "HEAD~1:sub/d.nc"])
@@ -579,6 +581,7 @@ def test_a_repository_of_somebody_else_is_refused_as_git_refuses_it(monkeypatch:
     assert checked() == []
 
 
+@pytest.mark.slow
 @posix
 def test_a_git_that_hangs_is_ended_with_what_it_has_started(monkeypatch: pytest.MonkeyPatch) -> None:
     Path("bin").mkdir()
@@ -591,6 +594,7 @@ def test_a_git_that_hangs_is_ended_with_what_it_has_started(monkeypatch: pytest.
         assert is_gone(int(number))
 
 
+@pytest.mark.slow
 @posix
 def test_a_configuration_that_never_ends_is_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
     os.mkfifo(".git/endless")

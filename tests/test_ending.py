@@ -19,6 +19,7 @@ SIGNALS = [(signal.SIGINT, 130, "interrupted"), (signal.SIGTERM, 143, "terminate
 NO_MEMORY = "polarcheck: there is not enough memory\n"
 
 pytestmark = [
+    pytest.mark.slow,
     pytest.mark.skipif(sys.platform == "win32", reason="there are no such signals, limits and devices"),
     pytest.mark.usefixtures("own_folder"),
 ]

@@ -223,6 +223,7 @@ def respelled(program: str, hand: Hand) -> str:
     return "\r\n".join(lines)
 
 
+@pytest.mark.one_in(5)
 @every_machine
 @given(part=parts, radius=st.integers(1, 9))
 @settings(max_examples=EXAMPLES, deadline=None)
@@ -234,6 +235,7 @@ def test_spelling_changes_nothing(name: str, part: Part, radius: int) -> None:
     assert (findings, verdict) == (same, other)
 
 
+@pytest.mark.one_in(5)
 @every_machine
 @given(part=parts, radius=st.integers(1, 9))
 @settings(max_examples=EXAMPLES, deadline=None)
@@ -254,6 +256,7 @@ def test_twins_have_the_same_path(name: str, part: Part, radius: int) -> None:
         assert (findings, verdict) == (same, result), options
 
 
+@pytest.mark.one_in(5)
 @pytest.mark.parametrize("name", sorted(name for name, hand in HANDS.items() if hand.turns))
 @given(part=parts, radius=st.integers(1, 9), angle=st.integers(-179, 180))
 @settings(max_examples=EXAMPLES, deadline=None)
@@ -268,6 +271,7 @@ def test_turning_shifts_only_c(name: str, part: Part, radius: int, angle: int) -
     assert (findings, verdict) == (same, other)
 
 
+@pytest.mark.one_in(5)
 @pytest.mark.parametrize("name", sorted(name for name, hand in HANDS.items() if not hand.turns))
 @given(part=parts, radius=st.integers(1, 9), angle=st.integers(-179, 180))
 @settings(max_examples=EXAMPLES, deadline=None)
@@ -286,6 +290,7 @@ def test_where_the_plane_stays_with_the_part_only_the_way_to_it_changes(
     np.testing.assert_allclose(turns, np.round(turns), atol=1e-9)
 
 
+@pytest.mark.one_in(5)
 @every_machine
 @given(part=parts, radius=st.integers(1, 9))
 @settings(max_examples=EXAMPLES, deadline=None)
@@ -298,6 +303,7 @@ def test_mirroring_swaps_the_sides(name: str, part: Part, radius: int) -> None:
     assert (findings, verdict) == (same, other)
 
 
+@pytest.mark.one_in(5)
 @every_machine
 @given(part=parts)
 @settings(max_examples=EXAMPLES, deadline=None)
@@ -307,6 +313,7 @@ def test_radius_zero_gives_the_programmed_path(name: str, part: Part) -> None:
     np.testing.assert_allclose(tables["moves"].end, programmed.end[programmed.length > 1e-9], atol=1e-9)
 
 
+@pytest.mark.one_in(5)
 @every_machine
 @given(part=parts, radius=st.integers(1, 9), limit=st.floats(100, 5000), more=st.floats(1, 9))
 @example(part=Part(9.0, 300.0), radius=1, limit=100.0, more=6.0)
@@ -320,6 +327,7 @@ def test_raising_a_limit_adds_no_finding(name: str, part: Part, radius: int, lim
     assert high <= low
 
 
+@pytest.mark.one_in(5)
 @every_machine
 @given(part=parts, radius=st.integers(1, 9))
 @settings(max_examples=EXAMPLES, deadline=None)
@@ -332,6 +340,7 @@ def test_splitting_a_move_changes_no_finding(name: str, part: Part, radius: int)
     np.testing.assert_allclose(np.nansum(theirs.time), np.nansum(ours.time), rtol=1e-9)
 
 
+@pytest.mark.one_in(5)
 @every_machine
 @pytest.mark.parametrize("radius", [9.5, 12.0, 20.0])
 def test_a_cutter_too_large_for_a_pocket_is_found(name: str, radius: float) -> None:
@@ -342,6 +351,7 @@ def test_a_cutter_too_large_for_a_pocket_is_found(name: str, radius: float) -> N
     assert {rule for rule, severity in findings if severity == "error"}
 
 
+@pytest.mark.one_in(5)
 @every_machine
 @pytest.mark.parametrize("radius", [30.5, 45.0])
 def test_a_ramp_shorter_than_r_is_found(name: str, radius: float) -> None:

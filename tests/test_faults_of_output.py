@@ -253,6 +253,7 @@ while True:
 """
 
 
+@pytest.mark.slow
 @posix
 def test_a_kill_leaves_the_old_report_or_the_new_one() -> None:
     whole = {"z", "x" * 3_000_000, "y" * 3_000_000}
@@ -268,6 +269,7 @@ def test_a_kill_leaves_the_old_report_or_the_new_one() -> None:
         assert Path("r.json").read_text() in whole
 
 
+@pytest.mark.slow
 def test_two_runs_may_write_one_report() -> None:
     Path("more.nc").write_text(RAPID * 200)
     running = [start("check", name, *ONLY, "-o", "json:r.json") for name in ("a.nc", "b.nc", "more.nc", "a.nc")]
@@ -281,6 +283,7 @@ def test_two_runs_may_write_one_report() -> None:
 # ---- interrupts ----
 
 
+@pytest.mark.slow
 @posix
 @pytest.mark.parametrize(
     ("number", "status", "how"), [(signal.SIGINT, 130, "interrupted"), (signal.SIGTERM, 143, "terminated")]
@@ -336,6 +339,7 @@ def test_too_little_memory_costs_its_file_only(monkeypatch: pytest.MonkeyPatch) 
     assert bugs == []
 
 
+@pytest.mark.slow
 @posix
 def test_a_file_that_needs_more_memory_than_there_is_costs_itself_only() -> None:
     Path("huge.nc").write_text(GOOD + "G0 X1.5 Z2.5\n" * 3_000_000)
@@ -348,6 +352,7 @@ def test_a_file_that_needs_more_memory_than_there_is_costs_itself_only() -> None
     assert [file["path"] for file in json.loads(Path("r.json").read_text())["files"]] == ["a.nc", "b.nc"]
 
 
+@pytest.mark.slow
 def test_no_table_of_a_file_outlives_the_next() -> None:
     told: list[str] = []
     (task,) = batch.plan(["a.nc"], settings.OfPrograms(settings.Options()), (), told.append, told.append)

@@ -368,6 +368,7 @@ def test_what_is_refused_stands_in_the_way_of_nothing() -> None:
     assert len(found.fixed) == len(found.refused) == 1
 
 
+@pytest.mark.slow
 def test_of_many_that_are_refused_only_some_are_tried() -> None:
     found = outcome("".join(f"O{number}\n{REFUSED}" for number in range(1, 24)))
     assert not found.fixed
@@ -657,6 +658,7 @@ def test_a_file_that_is_changed_while_the_new_one_is_written_stays(monkeypatch: 
     assert [path.name for path in Path().iterdir()] == ["a.nc"]
 
 
+@pytest.mark.slow
 @of_posix
 def test_a_kill_leaves_the_old_program_or_the_new_one() -> None:
     """Whenever it comes: SIGKILL at another moment each time, until the new one is there."""
@@ -734,6 +736,7 @@ def never_worse(data: bytes, own: Settings) -> None:
         assert len(after.findings) <= sum(1 + len(one.follows) for one in before.findings)
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not CORPUS.is_dir(), reason="the real programs are not here")
 def test_no_real_program_gets_worse() -> None:
     polar, others = (sorted((CORPUS / name).rglob("*")) for name in ("polar", "general"))

@@ -30,6 +30,7 @@ few = settings(max_examples=25, deadline=None, suppress_health_check=list(Health
 more = settings(max_examples=100, deadline=None, suppress_health_check=list(HealthCheck))
 
 
+@pytest.mark.slow
 @given(strategies.sound_programs(), strategies.setups)
 @few
 def test_programs_that_look_sound(data: bytes, setup: int) -> None:
@@ -44,6 +45,7 @@ def test_wild_programs(data: bytes, setup: int) -> None:
     fuzz_targets.trace(data, setup)
 
 
+@pytest.mark.slow
 @given(strategies.worse_programs(), strategies.setups)
 @few
 def test_mutated_programs(data: bytes, setup: int) -> None:
@@ -68,6 +70,7 @@ def test_the_reader(data: bytes, setup: int) -> None:
     fuzz_targets.reader(data, setup)
 
 
+@pytest.mark.slow
 @given(strategies.statements(), strategies.setups)
 @more
 def test_macro_statements(data: bytes, setup: int) -> None:
@@ -185,6 +188,7 @@ def script(*arguments: str) -> tuple[int, str]:
     return run.returncode, run.stdout + run.stderr
 
 
+@pytest.mark.slow
 @not_on_windows
 def test_the_script_fuzzes_for_as_long_as_it_is_told() -> None:
     status, told = script("--minutes", "0.15", "--jobs", "1", "--target", "reader", "--target", "statement")

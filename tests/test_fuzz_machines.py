@@ -248,6 +248,7 @@ def run_commands(machine: Machine, program: str) -> None:
     assert feeds.text(FeedReport(schema=1, path="-", machine="", tables=[feed_table(one) for one in tables]))
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("own_folder")
 def test_any_value_of_any_key_is_taken_or_refused_in_one_line() -> None:
     drawn = random.Random(1).sample(list(itertools.product(KEYS, VALUES)), SHARE)  # noqa: S311
@@ -310,6 +311,7 @@ def in_toml(value: Any) -> str:
     return json.dumps(value) if isinstance(value, str) else str(value)
 
 
+@pytest.mark.one_in(4)
 @pytest.mark.usefixtures("own_folder")
 @pytest.mark.parametrize("seed", range(4))
 def test_what_is_nearly_a_value_in_use_is_taken_without_harm_or_refused(seed: int) -> None:

@@ -556,6 +556,7 @@ def test_a_diameter_of_coordinates_alone() -> None:
 # ---- hostile ----
 
 
+@pytest.mark.one_in(5)
 @pytest.mark.parametrize(
     "text",
     [

@@ -21,6 +21,7 @@ yaml = pytest.importorskip("yaml")
 pytest.importorskip("pre_commit")
 
 pytestmark = [
+    pytest.mark.slow,
     pytest.mark.usefixtures("own_folder"),
     pytest.mark.skipif(sys.platform == "win32", reason="the steps are for a shell"),
 ]

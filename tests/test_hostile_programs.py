@@ -231,6 +231,7 @@ G1 G40 X129. C0."""
 FANUC = next(n for n, setup in enumerate(SETUPS) if (setup.machine, setup.tools[:1]) == ("fanuc", ("1:radius=5",)))
 
 
+@pytest.mark.one_in(5)
 @pytest.mark.parametrize("seed", [None, 368, *range(10)])
 def test_contours_at_several_depths_end_in_a_report(seed: int | None) -> None:
     data = DEPTHS.encode() if seed is None else deep_contours.program(Random(seed))  # noqa: S311

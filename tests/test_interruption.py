@@ -20,6 +20,8 @@ from polarcheck.geometry import areas
 from polarcheck.geometry.interruption import interruptible
 from polarcheck.time_limit import time_limit
 
+pytestmark = pytest.mark.slow
+
 not_on_windows = pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
 
 #: One step of GEOS that would take many minutes.

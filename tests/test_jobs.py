@@ -41,7 +41,7 @@ ONLY = ("--select", "rapid-in-polar")
 posix = pytest.mark.skipif(sys.platform == "win32", reason="signals and /proc of POSIX")
 linux = pytest.mark.skipif(sys.platform != "linux", reason="forks, and looks into /proc")
 
-pytestmark = pytest.mark.usefixtures("own_folder")
+pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("own_folder")]
 
 
 def start(*arguments: str, **options: Any) -> subprocess.Popen[str]:

@@ -151,6 +151,7 @@ _WITH_NUMBERS = (
 
 
 #: 20 digits, 309 (ten times that is no float), and 400 (which no float holds).
+@pytest.mark.one_in(5)
 @pytest.mark.parametrize("digits", ["1" + "0" * 19, "1" + "0" * 308, "9" * 400])
 @pytest.mark.parametrize("block", _WITH_NUMBERS)
 def test_a_number_of_any_length_is_a_finding_and_no_warning(block: str, digits: str) -> None:

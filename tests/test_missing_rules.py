@@ -324,6 +324,7 @@ SHIFTED = "{}/G0 X50. Z2. C0/G12.1/G1 X40. F200./C10./C-10./X50./G13.1"
 G92 = "O1\nG21 G40 G97 G94 G18\nT0101\n"
 
 
+@pytest.mark.one_in(5)
 @pytest.mark.parametrize(
     ("blocks", "name", "shift"),
     [

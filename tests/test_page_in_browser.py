@@ -27,6 +27,7 @@ ARGUMENTS = [
 ]
 #: One browser is enough for all of them.
 pytestmark = [
+    pytest.mark.slow,
     pytest.mark.skipif(CHROMIUM is None, reason="there is no chromium here"),
     pytest.mark.xdist_group("browser"),
 ]

@@ -28,6 +28,8 @@ from polarcheck.reading import language_blocks, languages, surroundings, transla
 from polarcheck.reading.globs import Globs
 from polarcheck.reading.source import read
 
+pytestmark = pytest.mark.slow
+
 #: What a stranger's job file may hold.
 GLOBS = ["O12*.nc", "*a*a*a*b", "lathe7/**/x?/**/*.nc", "[a-z]*[!0-9]", "**/a*b*/**", "??*??", "[[[*"]
 #: What a stranger's machine file may hold.

@@ -283,6 +283,7 @@ HOSTILE = [
 ]
 
 
+@pytest.mark.one_in(5)
 @pytest.mark.parametrize("program", HOSTILE, ids=[program[:12] for program in HOSTILE])
 def test_no_text_takes_long(program: str) -> None:
     """In time that grows as the text does: where it grew as the square, these would take hours."""

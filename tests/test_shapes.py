@@ -123,6 +123,7 @@ def boundary(program: Program) -> Any:
     return program.part.boundary.intersection(shapely.box(-FAR / 2, -FAR / 2, FAR / 2, FAR / 2))
 
 
+@pytest.mark.one_in(4)
 @pytest.mark.parametrize("family", FAMILIES)
 def test_what_is_drawn_from_a_shape_is_the_part(family: str) -> None:
     told = []

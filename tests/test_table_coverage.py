@@ -71,6 +71,7 @@ def test_the_rib_of_an_overlap_below_two_r() -> None:
     assert "go on 5 mm farther" in finding.message
 
 
+@pytest.mark.one_in(5)
 @pytest.mark.parametrize("overlap", [0, 0.5, 1, 2.5, 4, 5])
 @pytest.mark.parametrize("side", ["G41", "G42"])
 @pytest.mark.parametrize("turn", [0, 0.7, 2, math.pi / 2])

@@ -53,6 +53,7 @@ def serious(found: FileReport) -> list[tuple[int, str]]:
     return sorted((one.line, one.rule) for one in found.findings if one.severity != "note")
 
 
+@pytest.mark.one_in(5)
 @pytest.mark.parametrize("section", [SOUND[name] for name in TOLD], ids=TOLD)
 @pytest.mark.parametrize("units", ["G21", "G20"])
 @pytest.mark.parametrize("machine", ["fanuc", "fanuc-30i"])

@@ -44,6 +44,7 @@ def checked(program: str, *tools: str) -> FileReport:
 # ---- without any time ----
 
 
+@pytest.mark.one_in(5)
 @pytest.mark.parametrize("family", FAMILIES)
 def test_without_any_time_a_check_ends_and_says_so(family: str) -> None:
     """What needs no time is judged as ever; a file is never passed whose contours nobody has looked at."""
@@ -334,6 +335,7 @@ def test_points_are_compared_in_portions(monkeypatch: pytest.MonkeyPatch) -> Non
 # ---- whole processes ----
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="no limit of address space there")
 @pytest.mark.parametrize(
     ("family", "moves", "reason"),
@@ -400,6 +402,7 @@ class Clock:
         return 0.0 if self.looks <= self.last else 1e9
 
 
+@pytest.mark.one_in(5)
 @pytest.mark.parametrize("side", ["", "G42 "])
 @pytest.mark.parametrize(
     "words",

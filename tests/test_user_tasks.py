@@ -282,6 +282,7 @@ def test_the_direction_of_the_new_axis_turns_the_whole_plane() -> None:
 # ---- hostile files ----
 
 
+@pytest.mark.one_in(5)
 @pytest.mark.parametrize(
     "program",
     [

@@ -20,6 +20,7 @@ from polarcheck.batch import tasks as batch
 from polarcheck.commands import watching
 
 pytestmark = [
+    pytest.mark.slow,
     pytest.mark.usefixtures("own_folder"),
     pytest.mark.skipif(sys.platform == "win32", reason="ends the process by a signal of POSIX"),
 ]
