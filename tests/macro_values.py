@@ -9,8 +9,10 @@ from programs import machine_of
 
 from polarcheck.execution import custom_macro, macro
 from polarcheck.execution.arithmetic import Value
-from polarcheck.execution.expression import Characters, Expression, evaluate, read_expression
+from polarcheck.execution.expression import Expression, evaluate
+from polarcheck.execution.expression_reader import read_expression
 from polarcheck.execution.macro import Arguments, ProgramCall
+from polarcheck.execution.macro_tokens import GRAMMAR, Characters, MacroLexer
 from polarcheck.execution.statement import Statement
 
 MACRO = machine_of().macro
@@ -47,11 +49,12 @@ def called_program(statement: Statement, given: Variables, **changes: Any) -> Pr
     return macro.called_program(statement, given, msgspec.structs.replace(MACRO, **changes))
 
 
-def expression(text: str, **bounds: int) -> Expression:
-    reading = read_expression(Characters(text), 0, whole=True, **bounds)
-    assert reading.expression is not None, reading.fault
-    assert reading.at == len(Characters(text).text)
-    return reading.expression
+def expression(text: str, *, levels: int = 5, size: int = 20_000) -> Expression:
+    lexer = MacroLexer(Characters.of_block(text), 0)
+    read, fault = read_expression(lexer, GRAMMAR, levels=levels, size=size)
+    assert read is not None, fault
+    assert lexer.at == len(lexer.text)
+    return read
 
 
 def value(text: str, given: Variables | None = None, **settings: Any) -> float | None:

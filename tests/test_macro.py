@@ -25,40 +25,40 @@ def test_numbers_of_variables() -> None:
 def test_never_assigned() -> None:
     """Local and common variables are vacant at first; what outlives the power-off may hold anything."""
     some = Variables(given={501: 2.5, 5041: 10.0, 150: None})
-    assert [some.read(number) for number in (0, 1, 100, 150, 501, 5041)] == [None, None, None, None, 2.5, 10]
-    assert all(same(some.read(number), UNKNOWN) for number in (500, 1000, 5001))
+    assert [some.value(number) for number in (0, 1, 100, 150, 501, 5041)] == [None, None, None, None, 2.5, 10]
+    assert all(same(some.value(number), UNKNOWN) for number in (500, 1000, 5001))
     assert some.write(500, 4.0) is None
-    assert some.read(500) == 4
+    assert some.value(500) == 4
 
 
 def test_clocks_run_on() -> None:
     some = Variables()
     assert some.write(3001, 0.0) is None
-    assert same(some.read(3001), UNKNOWN)
+    assert same(some.value(3001), UNKNOWN)
     assert some.write(3003, 1.0) is None
-    assert some.read(3003) == 1
+    assert some.value(3003) == 1
 
 
 def test_levels_of_local_variables() -> None:
     some = variables(v1=1.0, v2=2.0, v100=3.0)
     some.enter({1: 10.0})
-    assert (some.depth, some.read(1), some.read(2), some.read(100)) == (1, 10, None, 3)
+    assert (some.depth, some.value(1), some.value(2), some.value(100)) == (1, 10, None, 3)
     some.write(2, 20.0)
     some.write(100, 30.0)
     some.enter({})
-    assert (some.depth, some.read(1), some.read(2)) == (2, None, None)
+    assert (some.depth, some.value(1), some.value(2)) == (2, None, None)
     some.leave()
-    assert (some.read(1), some.read(2)) == (10, 20)
+    assert (some.value(1), some.value(2)) == (10, 20)
     some.leave()
     some.leave()
-    assert (some.depth, some.read(1), some.read(2), some.read(100)) == (0, 1, 2, 30)
+    assert (some.depth, some.value(1), some.value(2), some.value(100)) == (0, 1, 2, 30)
 
 
 def test_vacant_is_copied_by_plain_assignment_only() -> None:
     given = variables(v2=7.0, v3=7.0)
     assert assign(read_statement("#2=#1"), given) is None
     assert assign(read_statement("#3=#1+0"), given) is None
-    assert (given.read(2), given.read(3)) == (None, 0)
+    assert (given.value(2), given.value(3)) == (None, 0)
 
 
 def test_vacant_drops_the_address() -> None:
@@ -84,27 +84,27 @@ def test_brackets_too_deep_can_be_calculated() -> None:
     assert statement.fault == Fault("bracket-levels", 8, 9)
     given = Variables()
     assert assign(statement, given) is None
-    assert given.read(1) == 7
+    assert given.value(1) == 7
 
 
 def test_assigning_a_variable_of_unknown_number() -> None:
     some = variables(v1=1.0, v100=2.0)
     assert assign(read_statement("#[#500]=7"), some) is None
-    assert all(same(some.read(number), UNKNOWN) for number in (1, 2, 100, 101))
+    assert all(same(some.value(number), UNKNOWN) for number in (1, 2, 100, 101))
     assert assign(read_statement("#1=7"), some) is None
-    assert some.read(1) == 7
+    assert some.value(1) == 7
 
 
 def test_assigning_by_name_touches_no_number() -> None:
     some = variables(v1=1.0)
     assert assign(read_statement("[#_PARAM]=7"), some) is None
-    assert some.read(1) == 1
+    assert some.value(1) == 1
 
 
 def test_a_value_that_cannot_be_read_is_unknown() -> None:
     some = variables(v1=1.0)
     assign(read_statement("#1=[2+"), some)
-    assert same(some.read(1), UNKNOWN)
+    assert same(some.value(1), UNKNOWN)
 
 
 FAULTS_OF_ASSIGNING = [
@@ -124,7 +124,7 @@ def test_fault_of_assigning(block: str, kind: str, at_fault: str) -> None:
     fault = assign(statement, given)
     assert fault is not None
     assert (fault.kind, block[fault.start : fault.end]) == (kind, at_fault)
-    assert given.read(2) == 3
+    assert given.value(2) == 3
 
 
 @pytest.mark.parametrize(

@@ -128,7 +128,7 @@ def test_what_is_meant_is_read_in_spite_of_a_fault() -> None:
     without_then = read_statement("IF[#1 EQ 1]#2=8").then
     assert without_then is not None
     assert assign(without_then, given) is None
-    assert given.read(2) == 8
+    assert given.value(2) == 8
 
 
 #: A block, the kind of its fault, and the characters at fault.

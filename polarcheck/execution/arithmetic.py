@@ -11,8 +11,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Final, TypeAlias
+
+import msgspec
 
 from polarcheck.execution.kinds import FaultKind
 
@@ -20,8 +21,7 @@ Value: TypeAlias = float | None
 UNKNOWN: Final = math.nan
 
 
-@dataclass(frozen=True, slots=True)
-class Arithmetic:
+class Arithmetic(msgspec.Struct, frozen=True):
     """
     What differs between controls.
 
@@ -155,6 +155,14 @@ _OPERATIONS: Final[Mapping[str, Callable[..., float | FaultKind]]] = {
     "ADP": lambda a: UNKNOWN,  # it asks whether an argument of the call was written with a point
     "NAMED": lambda a: UNKNOWN,  # a system variable by its name
 }
+
+
+_OF_TWO: Final = (
+    *("EQ", "NE", "GT", "LT", "GE", "LE", "+", "-", "OR", "XOR", "*", "/", "AND", "MOD", "BOTH", "EITHER", "ONE"),
+    *("ATAN2", "POW", "DIV", "LEAST", "GREATEST", "JOIN"),
+)
+#: How many values a step of a calculation takes, by its name; 1 where it is not listed.
+OPERAND_COUNTS: Final[Mapping[str, int]] = {"number": 0, **dict.fromkeys(_OF_TWO, 2)}
 
 
 def calculate(name: str, operands: Sequence[Value], arithmetic: Arithmetic, increment: float) -> float | FaultKind:

@@ -95,7 +95,7 @@ class Branches(Calls):
         number, _ = evaluate(statement.target, self.variables, arithmetic)
         if number is None or not self.variables.exists(number):
             return
-        value = self.variables.read(number) if on else evaluate(statement.value, self.variables, arithmetic)[0]
+        value = self.variables.value(number) if on else evaluate(statement.value, self.variables, arithmetic)[0]
         self.variables.write(number, (value or 0.0) + on)
         self.changes += 1
 

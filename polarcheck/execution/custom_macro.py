@@ -9,14 +9,17 @@ Source: FANUC B-62754EN/01, chapter 16; the short forms and external output from
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Collection
-from dataclasses import replace
 from typing import Final
 
-from polarcheck.execution.expression import NUMBER, Characters, Expression, Fault, Step, read_expression
+from msgspec.structs import replace
+
+from polarcheck.execution.arithmetic import UNKNOWN
+from polarcheck.execution.expression import Expression, Fault, constant
+from polarcheck.execution.expression_reader import read_expression
 from polarcheck.execution.kinds import FaultKind
+from polarcheck.execution.macro_tokens import GRAMMAR, NUMBER, Characters, MacroLexer
 from polarcheck.execution.statement import Kind, Number, Place, Statement, Unread, Word, whole
 from polarcheck.machines.axes import AXIS_LETTERS
 from polarcheck.reading.excerpt import shortened
@@ -95,13 +98,14 @@ class _Reader:
 
     def expression(self, *, whole: bool, condition: bool = False, kind: FaultKind = "format") -> Expression | None:
         """Read what gives a number, or a condition; where that fails, the rest of the block is lost."""
-        reading = read_expression(self.characters, self.at, whole=whole, levels=self.levels, size=self.size)
-        self.blame(reading.fault)
-        self.at = reading.at if reading.expression else len(self.text)
-        if reading.expression and reading.expression.condition != condition:
-            self.blame(Fault(kind, reading.expression.start, reading.expression.end))
+        lexer = MacroLexer(self.characters, self.at)
+        expression, fault = read_expression(lexer, GRAMMAR, whole=whole, levels=self.levels, size=self.size)
+        self.blame(fault)
+        self.at = lexer.at if expression else len(self.text)
+        if expression and expression.condition != condition:
+            self.blame(Fault(kind, expression.start, expression.end))
             return None
-        return reading.expression
+        return expression
 
     def block_statement(self) -> Statement:
         """Block skip, O and N, then the statement."""
@@ -268,7 +272,7 @@ class _Reader:
         if found := _WRITTEN.match(self.text, begin):
             self.at = found.end()
             place = self.characters.span(begin, self.at)
-            value = Expression((Step("number", float(found[0]), *place),), *place)
+            value = constant(float(found[0]), *place)
             return [Word(address.replace(":", "O"), value, found[0], *self.characters.span(start, self.at))]
         if address in "O:" and self.text.startswith("<", begin):
             return []
@@ -312,7 +316,7 @@ class _Reader:
             # A word of another language, as R1=R2*2: it is told by its name, and nothing here is wrong.
             place = self.characters.span(begin, len(self.text))
             self.at = len(self.text)
-            unknown = Expression((Step("number", math.nan, *place),), *place)
+            unknown = constant(UNKNOWN, *place)
             return [Word(name, unknown, None, *self.characters.span(start, self.at))]
         found = _WRITTEN.match(self.text, begin)
         value = self.expression(whole=True)
@@ -346,6 +350,6 @@ def read_statement(
     of DO and END. levels: of brackets, in each expression. size: bound of words, and of the steps of an expression.
     names: of axes that are written with =, beside those of a letter and a number.
     """
-    characters = block if isinstance(block, Characters) else Characters(block)
+    characters = block if isinstance(block, Characters) else Characters.of_block(block)
     written = "" if isinstance(block, Characters) else block
     return _Reader(written, characters, calls, loops, levels, size, names).block_statement()

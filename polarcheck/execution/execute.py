@@ -251,12 +251,12 @@ class Execution(Branches):
         number, step = None, UNKNOWN
         if statement.target is not None:
             number, _ = evaluate(statement.target, self.variables, arithmetic)
-        before = self.variables.read(number) if number is not None and self.variables.exists(number) else None
+        before = self.variables.value(number) if number is not None and self.variables.exists(number) else None
         is_of_offset = number is not None and _is_within(number, self._of_offsets)
         if is_of_offset:
             step = step_of(statement, number or 0.0, self.variables, arithmetic)
         self.found(assign(statement, self.variables, arithmetic), block)
-        after = self.variables.read(number) if number is not None and self.variables.exists(number) else None
+        after = self.variables.value(number) if number is not None and self.variables.exists(number) else None
         self.changes += before != after or number is None or number != number
         if is_of_offset:
             value = step if step == step else UNKNOWN if after is None else after

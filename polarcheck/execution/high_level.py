@@ -5,13 +5,13 @@ from __future__ import annotations
 import re
 from typing import Final
 
-from polarcheck.execution.expression import Expression, Step
+from polarcheck.execution.expression import Expression, constant
+from polarcheck.execution.high_level_tokens import Token
 from polarcheck.execution.keywords import KEYWORDS, call_by_name
 from polarcheck.execution.names import Names
 from polarcheck.execution.rewriting import Read
 from polarcheck.execution.spoken_block import SpokenBlock
 from polarcheck.execution.statement import Number, Statement, Word, whole
-from polarcheck.execution.tokens import Token
 from polarcheck.machines.machine import Machine
 
 #: What only custom macro writes: it may stand beside the statements of this language.
@@ -128,8 +128,7 @@ class _Reader(SpokenBlock):
         if address == "T" and token.kind == "string":
             self.at += 1
             number = float(self.names.tool(token.text))
-            step = Step("number", number, token.start, token.end)
-            value = Expression((step,), token.start, token.end)
+            value = constant(number, token.start, token.end)
             self.words.append(Word("T", value, f"{number:.0f}", first.start, token.end))
         elif (effect := self.effect(f"{address}=")) is not None:
             self.value()

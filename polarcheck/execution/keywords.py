@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 from typing import Final
 
-from polarcheck.execution.expression import Expression, Step
+from msgspec.structs import replace
+
+from polarcheck.execution.arithmetic import UNKNOWN
+from polarcheck.execution.expression import Expression, Step, constant
+from polarcheck.execution.high_level_tokens import Token
 from polarcheck.execution.programs import Search
 from polarcheck.execution.spoken_block import SpokenBlock
 from polarcheck.execution.statement import Kind, Parameter, Statement, Word
-from polarcheck.execution.tokens import Token
 
 _SEARCHES: Final = {
     "GOTO": Search.ROUND,
@@ -19,15 +21,15 @@ _SEARCHES: Final = {
     "GOTOC": Search.IF_THERE,
 }
 _SCOPES: Final = {"NCK", "CHAN", "SYNR", "SYNW", "SYNRW", "VAR"}
-#: Types of variables, by what one holds that is given no value.
-_TYPES: Final[dict[str, float | None]] = {
+#: Types of variables, and the value before the first assignment.
+_TYPES: Final = {
     "REAL": 0.0,
     "INT": 0.0,
     "BOOL": 0.0,
     "CHAR": 0.0,
-    "STRING": None,
-    "AXIS": None,
-    "FRAME": None,
+    "STRING": UNKNOWN,
+    "AXIS": UNKNOWN,
+    "FRAME": UNKNOWN,
 }
 
 
@@ -53,8 +55,7 @@ def _jump(block: SpokenBlock, kind: Kind, first: Token, condition: Expression | 
         block.at += 1
         number = block.token
         block.at += 1
-        step = Step("number", float(number.text), token.start, number.end)
-        block.add(replace(statement, end=number.end, jump=Expression((step,), token.start, number.end)))
+        block.add(replace(statement, end=number.end, jump=constant(float(number.text), token.start, number.end)))
         return
     block.leave_rest(first)
 
@@ -176,17 +177,12 @@ def _define(block: SpokenBlock, first: Token) -> None:
                 block.at = len(block.tokens) - 1
         else:
             block.names.declare(token.text)
-            value = None if block.take_sign("=") else _constant(_TYPES[kind], token)
+            value = None if block.take_sign("=") else constant(_TYPES[kind], token.start, token.end)
             block.assign(block.variable(token), token, value)
         if not block.take_sign(","):
             break
     if not kind or block.token.kind != "end":
         block.leave_rest(first)
-
-
-def _constant(value: float | None, token: Token) -> Expression:
-    number = float("nan") if value is None else value
-    return Expression((Step("number", number, token.start, token.end),), token.start, token.end)
 
 
 def _procedure(block: SpokenBlock, first: Token) -> None:

@@ -9,8 +9,10 @@ from __future__ import annotations
 
 import enum
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Final
+
+from msgspec.structs import replace
 
 from polarcheck.execution.arithmetic import UNKNOWN, Arithmetic, Value, round_to
 from polarcheck.execution.expression import DEFAULT, Fault, evaluate
@@ -75,7 +77,7 @@ class Variables:
         """Whether the control has a variable of this number."""
         return self.kind(number) is not VariableKind.NONE
 
-    def read(self, number: float) -> Value:
+    def value(self, number: float) -> Value:
         """The value of a variable that exists."""
         whole, kind = _whole(number), self.kind(number)
         if kind is VariableKind.LOCAL:
@@ -166,7 +168,7 @@ def step_of(statement: Statement, number: float, variables: Variables, arithmeti
     """
     By how much an ASSIGN changes a variable, be its value known or not: .5 for #5221=#5221+.5; NaN where it is no step.
     """
-    held, steps = variables.read(number), []
+    held, steps = variables.value(number), []
     if statement.value is None:
         return UNKNOWN
     for tried in _TRIED:

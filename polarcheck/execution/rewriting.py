@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TypeAlias
 
-from polarcheck.execution.expression import Characters
+from polarcheck.execution.macro_tokens import Characters
 from polarcheck.execution.statement import Statement
 
 #: Reads what a block is rewritten as, by the bounds of the control.
@@ -27,9 +27,9 @@ class Rewriting:
 
     def before(self, other: Rewriting) -> Characters:
         """What has been put here and, behind it, there."""
-        return Characters.read_as("".join((*self._text, *other._text)), [*self._places, *other._places])
+        return Characters("".join((*self._text, *other._text)), [*self._places, *other._places])
 
     @property
     def characters(self) -> Characters:
         """What has been put, to be read."""
-        return Characters.read_as("".join(self._text), list(self._places))
+        return Characters("".join(self._text), list(self._places))

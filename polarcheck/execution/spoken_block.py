@@ -5,14 +5,14 @@ from __future__ import annotations
 import functools
 import re
 from collections.abc import Mapping
-from dataclasses import replace
 from typing import Final
 
-from polarcheck.execution.expression import Expression, Step
-from polarcheck.execution.infix import Infix
+from msgspec.structs import replace
+
+from polarcheck.execution.expression import Expression, constant
+from polarcheck.execution.high_level_tokens import Token, Tokens
 from polarcheck.execution.names import Names
 from polarcheck.execution.statement import Kind, Number, Statement, Unread, Word
-from polarcheck.execution.tokens import Token, tokens
 from polarcheck.machines.machine import Machine
 from polarcheck.machines.modal import Distance
 from polarcheck.reading.excerpt import shortened
@@ -31,16 +31,15 @@ _DISTANCES: Final = {
 }
 
 
-class SpokenBlock(Infix):
+class SpokenBlock(Tokens):
     """
-    The tokens of one block, and the parts of its statement so far; Infix reads its expressions.
+    The tokens of one block, and the parts of its statement so far.
 
     words: NC words. before, after: what is done before and behind the move of the words. unread: what is not simulated.
     """
 
     def __init__(self, block: str, machine: Machine, names: Names) -> None:
-        found = tokens(block, _SIZE)
-        super().__init__(found, names, _SIZE)
+        super().__init__(block, names, _SIZE)
         self.block, self.machine = block, machine
         self.words: list[Word] = []
         self.before: list[Statement] = []
@@ -49,8 +48,8 @@ class SpokenBlock(Infix):
         self.skips: list[Number] = []
         self.sequence_number: Number | None = None
         self.first = self.token
-        if len(found) > _SIZE:
-            self.wrong("too-long", found[0], found[-1])
+        if len(self.tokens) > _SIZE:
+            self.wrong("too-long", self.tokens[0], self.tokens[-1])
 
     # ---- what is found ----
 
@@ -148,7 +147,7 @@ class SpokenBlock(Infix):
     def add_number(self, address: str, number: str, first: Token, last: Token) -> None:
         """A word with a number that stands in the program, or for which a name stands."""
         value = float(number.replace("EX", "E"))
-        expression = Expression((Step("number", value, first.start, last.end),), first.start, last.end)
+        expression = constant(value, first.start, last.end)
         written = None if "EX" in number else number
         self.words.append(Word(address, expression, written, first.start, last.end))
 
@@ -161,7 +160,7 @@ class SpokenBlock(Infix):
     def variable(self, token: Token) -> Expression:
         """The number of the variable of a name, as the target of an assignment."""
         number = float(self.names.variable(token.text))
-        return Expression((Step("number", number, token.start, token.end),), token.start, token.end)
+        return constant(number, token.start, token.end)
 
 
 @functools.cache

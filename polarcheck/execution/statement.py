@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import enum
-from dataclasses import dataclass
 from typing import NamedTuple, TypeAlias
+
+import msgspec
 
 from polarcheck.execution.expression import Expression, Fault
 from polarcheck.execution.programs import Search
@@ -52,8 +53,7 @@ def whole(digits: str) -> int:
     return int(digits) if len(digits) <= _DIGITS else 10**_DIGITS
 
 
-@dataclass(frozen=True, slots=True)
-class Word:
+class Word(msgspec.Struct, frozen=True):
     """
     An address and its value.
 
@@ -115,8 +115,7 @@ class Unread(NamedTuple):
     matters: bool = True
 
 
-@dataclass(frozen=True, slots=True)
-class Statement:
+class Statement(msgspec.Struct, frozen=True):
     """
     What one block says. All places are indices of characters within the block, end exclusive.
 

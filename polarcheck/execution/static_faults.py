@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from polarcheck.execution.execute import Execution
-from polarcheck.execution.expression import Fault, ambiguous
+from polarcheck.execution.expression import Fault
 from polarcheck.execution.listing import Listing
 from polarcheck.execution.programs import Program, block_text
 from polarcheck.execution.statement import Kind, Statement
@@ -41,7 +41,7 @@ def _mixed_logic(execution: Execution, block: int, statement: Statement) -> None
     expressions = [statement.value, statement.condition, statement.target, statement.jump]
     expressions += [word.value for word in statement.words]
     for expression in expressions:
-        place = ambiguous(expression) if expression is not None else None
+        place = expression.mixed if expression is not None else None
         if expression is not None and place is not None:
             written = " ".join(block_text(execution.listing.text, block)[expression.start : expression.end].split())
             execution.fault("mixed-logic", block, Fault("mixed-logic", *place), expression=written[:_SHOWN])

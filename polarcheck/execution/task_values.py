@@ -11,7 +11,7 @@ import itertools
 import re
 from typing import Final, NamedTuple, TypeAlias
 
-from polarcheck.execution.expression import in_capitals
+from polarcheck.execution.macro_tokens import in_capitals
 from polarcheck.execution.names import Names
 from polarcheck.execution.statement import Unread
 from polarcheck.reading.excerpt import shortened

@@ -10,8 +10,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import Final
+
+from msgspec.structs import replace
 
 from polarcheck.execution.names import Names
 from polarcheck.execution.rewriting import Read, Rewriting
