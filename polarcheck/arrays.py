@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Any, TypeAlias, TypeVar
+from typing import Any, ClassVar, Self, TypeAlias, TypeVar
 
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
@@ -23,6 +24,31 @@ Points: TypeAlias = NDArray[np.complex128]
 Rows: TypeAlias = NDArray[np.int64]
 #: Small whole numbers: a state or a kind per row, such as Motion or Side.
 States: TypeAlias = NDArray[np.int16]
+
+
+class Table(msgspec.Struct, frozen=True):
+    """A table: each field is a column with one element per row, but for those that `_shared` names."""
+
+    #: Fields that all rows share, such as one value per section: a selection of rows keeps them whole.
+    _shared: ClassVar[tuple[str, ...]] = ()
+
+    def __len__(self) -> int:
+        return len(getattr(self, self.__struct_fields__[0]))
+
+    def __getitem__(self, rows: NDArray[np.integer[Any]] | Mask | slice) -> Self:
+        """The table of these rows: their numbers, a boolean per row, or a slice."""
+        columns = {name: getattr(self, name)[rows] for name in self._columns()}
+        return msgspec.structs.replace(self, **columns)
+
+    @classmethod
+    def concatenated(cls, tables: Sequence[Self]) -> Self:
+        """The rows of several tables, one table after the other; what rows share is that of the first table."""
+        columns = {name: np.concatenate([getattr(table, name) for table in tables]) for name in cls._columns()}
+        return msgspec.structs.replace(tables[0], **columns)
+
+    @classmethod
+    def _columns(cls) -> list[str]:
+        return [name for name in cls.__struct_fields__ if name not in cls._shared]
 
 
 def repeated(value: _Number, count: int) -> NDArray[_Number]:

@@ -279,7 +279,7 @@ def together(*loops: Loop) -> tuple[Curves, np.ndarray, Curves, np.ndarray]:
 
     def joined(parts: list[Curves]) -> Curves:
         shifted = [msgspec.structs.replace(part, row=part.row + 100 * k) for k, part in enumerate(parts)]
-        return Curves(*(np.concatenate([getattr(part, name) for part in shifted]) for name in Curves.__struct_fields__))
+        return Curves.concatenated(shifted)
 
     return (
         joined([each.contour for each in loops]),
@@ -361,7 +361,7 @@ def test_a_loop_is_judged_by_its_own_radius() -> None:
 
 def test_without_moves() -> None:
     none = loop(45, *SQUARE, 45)
-    empty = Curves(*(getattr(none.path, name)[:0] for name in Curves.__struct_fields__))
+    empty = none.path[:0]
     nothing = np.zeros(0)
     assert len(along(none.contour, none.left, empty, nothing).row) == 0
     assert len(along(empty, none.left[:0], none.path, np.full(len(none.path.row), 5.0)).row) == 0

@@ -27,7 +27,7 @@ def chain(*points: complex, left: bool = False, group: int = 0) -> Walls:
 
 
 def left_standing(*walls: Walls) -> Standing:
-    joined = Walls(*(np.concatenate([getattr(each, name) for each in walls]) for name in Walls.__struct_fields__))
+    joined = Walls.concatenated(walls)
     return standing(joined, len(walls), 0.005)
 
 
@@ -78,9 +78,7 @@ def test_groups_do_not_see_each_other() -> None:
 
 def test_an_island_stands_in_its_pocket() -> None:
     pocket, island = chain(*SQUARE, left=True), chain(5, 5j, -5, -5j, 5)
-    both = Walls(
-        *(np.concatenate([getattr(pocket, name), getattr(island, name)[:5]]) for name in Walls.__struct_fields__)
-    )
+    both = Walls.concatenated([pocket, island[:5]])
     assert shapely.area(left_standing(both).polygon[0]) == pytest.approx(4 * BOX**2 - 1600 + 50)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+import msgspec
 import numpy as np
 import pytest
 from plane_moves import points_along
@@ -15,7 +16,6 @@ from polarcheck.table.moves import (
     Moves,
     any_in_row,
     compensation_path,
-    joined,
     per_row,
     programmed_moves,
     z_along,
@@ -140,10 +140,8 @@ def test_what_is_not_known_of_a_move() -> None:
 
 
 def test_one_value_per_row_of_moves_in_any_order() -> None:
-    moves = some().chosen(np.array([True] * 6 + [False] * 4))
-    moves = Moves(
-        **{**{name: getattr(moves, name) for name in Moves.__struct_fields__}, "row": np.array([4, 1, 4, 3, 1, 4])}
-    )
+    moves = some()[np.array([True] * 6 + [False] * 4)]
+    moves = msgspec.structs.replace(moves, row=np.array([4, 1, 4, 3, 1, 4]))
     values = np.array([5.0, 2.0, 7.0, np.nan, -1.0, 6.0])
     assert per_row(values, moves, 6, 0.0).tolist()[:3] == [0, 2, 0]
     assert per_row(values, moves, 6, 0.0).tolist()[4:] == [7, 0]
@@ -163,9 +161,9 @@ def test_an_endless_value_of_a_move_is_none_of_a_row_without() -> None:
 def test_chosen_and_joined() -> None:
     moves = some()
     odd = np.arange(len(moves)) % 2 == 1
-    parts = [moves.chosen(odd), moves.chosen(~odd)]
+    parts = [moves[odd], moves[~odd]]
     assert [len(part) for part in parts] == [5, 5]
-    together = joined(parts)
+    together = Moves.concatenated(parts)
     assert together.end.tolist() == [*moves.end[odd], *moves.end[~odd]]
     assert together.row.tolist() == [*moves.row[odd], *moves.row[~odd]]
     assert together.entry.tolist() == moves.entry.tolist()

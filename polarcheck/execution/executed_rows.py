@@ -176,7 +176,7 @@ class ExecutedRows:
         starts, unknown, broken_off = (self._mask_of(rows) for rows in (self.starts, self.unknown, self.broken_off))
         return Run(
             self.text,
-            Words(*(getattr(table, name)[index] for name in Words.__struct_fields__)),
+            table[index],
             np.concatenate((none, *self.row)),
             np.concatenate((none, *self.block)),
             starts,

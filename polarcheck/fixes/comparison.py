@@ -152,8 +152,7 @@ def _fixed_moves(tables: Tables, changes: Sequence[tuple[Collection[str], range]
             rows = np.unique(moves.row)
             at = np.flatnonzero(inside[rows])
             free = np.isin(moves.row, rows[np.union1d(at, np.maximum(at - 1, 0))])
-            columns = {name: getattr(fixed, name)[~free] for name in Moves.__struct_fields__ if name != "entry"}
-            fixed = Moves(**columns, entry=moves.entry)
+            fixed = fixed[~free]
     return fixed
 
 

@@ -9,12 +9,12 @@ from __future__ import annotations
 import msgspec
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Rows
+from polarcheck.arrays import Floats, Mask, Rows, Table
 from polarcheck.geometry.segments import Curves, boxes
 from polarcheck.geometry.tolerances import ROUNDING
 
 
-class Bare(msgspec.Struct, frozen=True):
+class Bare(Table, frozen=True):
     """
     Moves without compensation. curves: with their section as the loop. z: float64[n] [mm], the highest on the way;
     of a move of Z alone where it ends. radius: float64[n] [mm], |R|. plunges: bool[n], Z alone moves.
@@ -24,9 +24,6 @@ class Bare(msgspec.Struct, frozen=True):
     z: Floats
     radius: Floats
     plunges: Mask
-
-    def __getitem__(self, rows: Rows | Mask) -> Bare:
-        return Bare(self.curves[rows], self.z[rows], self.radius[rows], self.plunges[rows])
 
 
 class FlatLoops(msgspec.Struct, frozen=True):
@@ -48,7 +45,7 @@ def flat_loops(curves: Curves, section: Rows, z: Floats) -> FlatLoops:
 
 def may_reach(loops: FlatLoops, bare: Bare) -> Mask:
     """Moves whose box comes within R of that of the contours of their section, not above the highest of these."""
-    result = np.zeros(len(bare.z), bool)
+    result = np.zeros(len(bare), bool)
     if not len(loops.loop):
         return result
     first = np.flatnonzero(np.diff(loops.section, prepend=-1))
@@ -58,7 +55,7 @@ def may_reach(loops: FlatLoops, bare: Bare) -> Mask:
     box = np.concatenate(
         [np.minimum.reduceat(loops.box[:2], first, axis=1), np.maximum.reduceat(loops.box[2:], first, axis=1)]
     )[:, at]
-    own = boxes(bare.curves, np.arange(len(bare.z)))
+    own = boxes(bare.curves, np.arange(len(bare)))
     result = (known[at] == bare.curves.loop) & (bare.z <= top + ROUNDING)
     for side in (0, 1):
         result &= (own[side] <= box[side + 2] + bare.radius) & (own[side + 2] >= box[side] - bare.radius)

@@ -9,7 +9,7 @@ from __future__ import annotations
 import msgspec
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Points, Rows, States
+from polarcheck.arrays import Floats, Mask, Points, Rows, States, Table
 from polarcheck.geometry.segments import Curves, directions, first_of_its_kind, segments
 
 #: Height [mm] from which on a rib is one: below it no hand feels it, and the wear of a cutter leaves as much.
@@ -78,16 +78,13 @@ def distinct(loops: Loops, program: Rows, z: Floats) -> Rows:
     return np.sort(order[np.append(np.diff(shape.ravel()[order]) != 0, True)])
 
 
-class Corners(msgspec.Struct, frozen=True):
+class Corners(Table, frozen=True):
     """Inside corners that keep the tool off what lies beside them: point, how far [mm], its turn [rad], its loop."""
 
     point: Points
     reach: Floats
     turn: Floats
     loop: Rows
-
-    def __getitem__(self, rows: Rows | Mask) -> Corners:
-        return Corners(self.point[rows], self.reach[rows], self.turn[rows], self.loop[rows])
 
 
 def lead_corners(loops: Loops, winds: Mask) -> Corners:

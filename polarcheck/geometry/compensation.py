@@ -15,7 +15,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from polarcheck.arrays import Floats, Mask, Points, Rows, States
+from polarcheck.arrays import Floats, Mask, Points, Rows, States, Table
 from polarcheck.geometry.compensation_input import Method, Path, Programmed, fits, moving_rows
 from polarcheck.geometry.offset_vectors import Vectors, end_vectors
 from polarcheck.geometry.tolerances import ROUNDING, ZERO
@@ -36,7 +36,7 @@ class Phase(enum.IntEnum):
     CANCEL = 3
 
 
-class ToolPath(msgspec.Struct, frozen=True):
+class ToolPath(Table, frozen=True):
     """
     The moves of the tool center in order, and what the control would object to.
 
@@ -72,7 +72,7 @@ _PART = 16_384
 _LEAD, _CORNER, _BLOCK, _TRAIL = range(4)
 
 
-class _Ways(msgspec.Struct, frozen=True):
+class _Ways(Table, frozen=True):
     """Some moves of the tool center, columns as in ToolPath; `order` sorts them among all others."""
 
     order: Rows
@@ -115,11 +115,11 @@ def tool_center_path(path: Path, method: Method | None = None) -> ToolPath:
     method = method or Method()
     parts: list[ToolPath] = []
     for first, end in pairwise(_parts(path.section)):
-        part = _of_sections(Path(*(getattr(path, name)[first:end] for name in Path.__struct_fields__)), method)
+        part = _of_sections(path[first:end], method)
         parts.append(msgspec.structs.replace(part, row=part.row + first))
     if len(parts) == 1:
         return parts[0]
-    return ToolPath(*(np.concatenate([getattr(part, name) for part in parts]) for name in ToolPath.__struct_fields__))
+    return ToolPath.concatenated(parts)
 
 
 def _parts(section: Rows) -> list[int]:
@@ -338,6 +338,5 @@ def _lines(order: Rows, row: Rows, start: Points, end: Points, phase: NDArray[np
 
 def _merged(*parts: _Ways) -> _Ways:
     """All moves in the order in which they are run."""
-    order = np.argsort(np.concatenate([part.order for part in parts]), kind="stable")
-    columns = (np.concatenate([getattr(part, name) for part in parts])[order] for name in _Ways.__struct_fields__)
-    return _Ways(*columns)
+    moves = _Ways.concatenated(parts)
+    return moves[np.argsort(moves.order, kind="stable")]

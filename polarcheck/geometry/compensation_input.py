@@ -8,7 +8,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from polarcheck.arrays import Floats, Mask, Points, Rows, States
+from polarcheck.arrays import Floats, Mask, Points, Rows, States, Table
 from polarcheck.geometry.tolerances import ROUNDING, ZERO
 from polarcheck.machines.modal import Motion, Side
 
@@ -38,7 +38,7 @@ class Method(msgspec.Struct, frozen=True):
         return self.start_up == "C"
 
 
-class Path(msgspec.Struct, frozen=True):
+class Path(Table, frozen=True):
     """
     Rows of the polar sections in order, one per executed block; all arrays of one length n.
 

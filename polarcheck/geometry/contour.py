@@ -16,7 +16,7 @@ import msgspec
 import numpy as np
 import shapely  # type: ignore[import-untyped]
 
-from polarcheck.arrays import Floats, Mask, Points, Rows
+from polarcheck.arrays import Floats, Mask, Points, Rows, Table
 from polarcheck.geometry import areas
 from polarcheck.geometry.faces import Geometries, coordinates, edges_of, ends_of, gathered, lines_of
 from polarcheck.geometry.finished_part import Contours, FinishedParts, finished_parts
@@ -95,9 +95,11 @@ def overcuts(
     in_open = part.open[group] & is_ramp[ways.move]
     ramps = _Ramps.of(contour, air, path, ways[in_open], group[in_open])
     cuts = _worst(
-        _joined(
-            _cuts(part, ways[~in_open], group[~in_open], smallest, tolerance),
-            _cuts_in_the_open(part, ramps, smallest, tolerance),
+        _Cuts.concatenated(
+            [
+                _cuts(part, ways[~in_open], group[~in_open], smallest, tolerance),
+                _cuts_in_the_open(part, ramps, smallest, tolerance),
+            ]
         )
     )
     loop, first = np.unique(contour.loop, return_index=True)
@@ -148,7 +150,7 @@ def _overcut(contour: Curves, tangled: Rows, *found: tuple[FinishedParts, _Cuts]
         return Overcut(_NO_CUTS.move, _NO_CUTS.move, _NO_CUTS.depth, _NO_CUTS.place, tangled)
     row = np.concatenate([contour.row[part.move[_wall(part, cuts)]] for part, cuts in some])
     place = np.concatenate([cuts.place - part.pitch * cuts.group for part, cuts in some])
-    cuts = _joined(*(cuts for _, cuts in some))
+    cuts = _Cuts.concatenated([cuts for _, cuts in some])
     order = np.argsort(cuts.move)
     return Overcut(row[order].astype(np.int64), cuts.move[order], cuts.depth[order], place[order], tangled)
 
@@ -231,7 +233,7 @@ def _polylines(parts: Segments) -> Geometries:
 # ---- cuts ----
 
 
-class _Cuts(msgspec.Struct, frozen=True):
+class _Cuts(Table, frozen=True):
     """
     Pieces of way that cut, on the shifted parts: the move that each is of, its group, the depth, the place on the part
     and the tool center then.
@@ -242,13 +244,6 @@ class _Cuts(msgspec.Struct, frozen=True):
     depth: Floats
     place: Points
     tool: Points
-
-    def __getitem__(self, rows: Rows | Mask) -> _Cuts:
-        return _Cuts(*(getattr(self, name)[rows] for name in _Cuts.__struct_fields__))
-
-
-def _joined(*parts: _Cuts) -> _Cuts:
-    return _Cuts(*(np.concatenate([getattr(part, name) for part in parts]) for name in _Cuts.__struct_fields__))
 
 
 def _worst(cuts: _Cuts) -> _Cuts:
@@ -306,7 +301,7 @@ def _cuts(part: FinishedParts, ways: Segments, group: Rows, radius: Floats, tole
         place, tool = ends_of(shapely.shortest_line(tree.geometries[edge], lines[line]))
         distance[shapely.intersects(outline.whole[group[rows]], lines)] = 0
         found.append(_Cuts(ways.move[rows], group[rows], radius[group[rows]] - distance, place, tool))
-    return _joined(*found)
+    return _Cuts.concatenated(found)
 
 
 _NOWHERE = np.zeros(0, np.complex128)
@@ -370,7 +365,7 @@ def _cuts_in_the_open(part: FinishedParts, ramps: _Ramps, radius: Floats, tolera
         found.append(
             _Cuts(ways.move[cut], group[cut], depth[cut], *ends_of(shapely.shortest_line(walls[cut], path[cut])))
         )
-    return _joined(*found)
+    return _Cuts.concatenated(found)
 
 
 def _within_reach(part: FinishedParts, wall: Rows, ways: Segments, way: Rows, reach: Floats) -> Mask:

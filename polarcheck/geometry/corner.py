@@ -7,17 +7,16 @@ towards the tool, R the tool radius; 1 the move before, 2 the one after.
 
 from __future__ import annotations
 
-import msgspec
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Points, Rows
+from polarcheck.arrays import Floats, Mask, Points, Table
 from polarcheck.geometry.tolerances import ROUNDING
 
 #: A turn below this [rad] is no corner; rounding in the arithmetic only, a program's last digit turns by 1e-4 and more.
 STRAIGHT = 1e-6
 
 
-class Corners(msgspec.Struct, frozen=True):
+class Corners(Table, frozen=True):
     """
     Ends of a move at which another begins, one per row; all arrays of one length.
 
@@ -36,10 +35,6 @@ class Corners(msgspec.Struct, frozen=True):
     fits: Mask
     side: Floats
     radius: Floats
-
-    def __getitem__(self, rows: Rows | Mask) -> Corners:
-        """The corners of these rows."""
-        return Corners(*(getattr(self, name)[rows] for name in self.__struct_fields__))
 
     @property
     def vector_before(self) -> Points:

@@ -9,14 +9,14 @@ that ends in the middle of the part.
 from __future__ import annotations
 
 from itertools import pairwise
-from typing import Any, Self
+from typing import Any
 
 import msgspec
 import numpy as np
 import shapely  # type: ignore[import-untyped]
 from numpy.typing import NDArray
 
-from polarcheck.arrays import Floats, Mask, Points, Rows
+from polarcheck.arrays import Floats, Mask, Points, Rows, Table
 from polarcheck.geometry import areas
 from polarcheck.geometry.noding import Edges, merged, noded
 from polarcheck.time_limit import keep_time
@@ -28,7 +28,7 @@ _FEW, _RINGS = 32, 256
 GRID = 1e-6
 
 
-class Walls(msgspec.Struct, frozen=True):
+class Walls(Table, frozen=True):
     """
     Straight walls, n of them, those of one group together and in the order in which they run.
 
@@ -75,7 +75,7 @@ def standing(walls: Walls, groups: int, thinnest: float) -> Standing:
     face = _faces(lines)
     stands = _stands(lines, face, thinnest)[face]
     bounds = stands[0] != stands[1]
-    lines, inside = lines.some(bounds), stands[:, bounds].T.ravel()
+    lines, inside = lines[bounds], stands[:, bounds].T.ravel()
     ring, line, forward = _rings(lines, inside)
     edge, forward, of = _along(lines, line, forward)
     start = edges.nodes[np.where(forward, edges.start[edge], edges.end[edge])]
@@ -92,7 +92,7 @@ class _Sides(msgspec.Struct, frozen=True):
     joins: Mask
 
 
-class _Lines(msgspec.Struct, frozen=True):
+class _Lines(Table, frozen=True):
     """
     Edges in a row between branchings, from `first` on, `count` of them.
 
@@ -112,13 +112,6 @@ class _Lines(msgspec.Struct, frozen=True):
     right: Mask
     joins: Mask
     group: Rows
-
-    def __len__(self) -> int:
-        return len(self.first)
-
-    def some(self, chosen: Mask) -> Self:
-        """Some of the lines."""
-        return type(self)(*(getattr(self, name)[chosen] for name in self.__struct_fields__))
 
 
 # ---- edges to lines ----

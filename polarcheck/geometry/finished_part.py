@@ -179,10 +179,9 @@ def _lines(start: Points, end: Points, group: Rows, pitch: float, joins: bool) -
 
 def _together(lines: list[Walls]) -> tuple[Walls, Rows]:
     """All these walls, those of one group together; and which each was when counted through."""
-    group = np.concatenate([part.group for part in lines])
-    order = np.argsort(group, kind="stable")
-    columns = (np.concatenate([getattr(part, name) for part in lines])[order] for name in Walls.__struct_fields__)
-    return Walls(*columns), order
+    walls = Walls.concatenated(lines)
+    order = np.argsort(walls.group, kind="stable")
+    return walls[order], order
 
 
 def _joints(curves: Curves, first: Rows, half: float, pitch: float) -> Walls:
@@ -215,7 +214,7 @@ def _standing(plane: _Plane, lines: Walls | None, asked: Mask, thinnest: float) 
         is_curve = np.append(is_curve, np.zeros(len(lines.group), bool))
         walls, origin = _together([walls, lines])
         kept = asked[walls.group]
-        walls, origin = Walls(*(getattr(walls, name)[kept] for name in Walls.__struct_fields__)), origin[kept]
+        walls, origin = walls[kept], origin[kept]
     found = standing(walls, len(asked), thinnest)
     wall = origin[found.wall]
     of_curve = is_curve[wall]

@@ -50,7 +50,7 @@ def cuts_into_others(
     for of_ramps, outline in ((False, part), (True, shortened(part, smallest))):
         some = ways[is_ramp[ways.move] == of_ramps]
         found.append(reached(outline, some, of_move[some.move], smallest, contour.tolerance))
-    cuts = Reached(*(np.concatenate([getattr(one, name) for one in found]) for name in Reached.__struct_fields__))
+    cuts = Reached.concatenated(found)
     return cuts[contour.curves.loop[cuts.wall] != path.loop[cuts.move]].worst(), tangled
 
 

@@ -13,7 +13,7 @@ import msgspec
 import numpy as np
 import shapely  # type: ignore[import-untyped]
 
-from polarcheck.arrays import Floats, Mask, Points, Rows
+from polarcheck.arrays import Floats, Mask, Points, Rows, Table
 from polarcheck.geometry.tolerances import CROSSINGS, FREE_CROSSINGS, TOUCH
 from polarcheck.time_limit import keep_time
 
@@ -52,13 +52,14 @@ def noded(start: Points, end: Points, group: Rows) -> Edges:
     walls = _Walls(nodes, a[long], b[long], group[long])
     tangled = np.zeros(int(group[-1]) + 1 if len(group) else 0, bool)
     left = CROSSINGS * np.bincount(group, minlength=len(tangled)) + FREE_CROSSINGS
-    found = []
+    meetings = [_nothing_in_common()]
     for one, other in _pairs(walls, tangled):
-        found.append(_meetings(walls, one, other))
-        left -= np.bincount(walls.group[found[-1].crossing], minlength=len(tangled))
+        meetings.append(_meetings(walls, one, other))
+        _, crossings, _ = meetings[-1]
+        left -= np.bincount(walls.group[crossings.first], minlength=len(tangled))
         tangled |= left < 0
         keep_time()
-    edges = _cut(walls, _joined(found), tangled)
+    edges = _cut(walls, meetings, tangled)
     return msgspec.structs.replace(edges, wall=long[edges.wall])
 
 
@@ -209,29 +210,51 @@ def _beside(walls: _Walls, i: Rows, j: Rows) -> Mask:
 # ---- where they meet ----
 
 
-class _Meetings(msgspec.Struct, frozen=True):
+class _Touches(Table, frozen=True):
     """
-    What walls have in common.
+    Nodes that lie inside a wall.
 
-    touching, touched: nodes inside walls, int[k] each, and share: float64[k], where on the wall. crossing, crossed:
-    pairs of walls, int[j] each, and the shares of both. same: pairs of nodes that are one, int[2, i].
+    node: int[n], the node.
+    wall: int[n], the wall that it lies in.
+    share: float64[n], how far along the wall it lies, 0 to 1.
     """
 
-    touching: Rows
-    touched: Rows
+    node: Rows
+    wall: Rows
     share: Floats
-    crossing: Rows
-    crossed: Rows
-    shares: Floats
-    same: Rows
 
 
-def _joined(parts: list[_Meetings]) -> _Meetings:
-    none = np.zeros(0, np.int64)
-    parts = [_Meetings(none, none, np.zeros(0), none, none, np.zeros((2, 0)), np.zeros((2, 0), np.int64)), *parts]
-    return _Meetings(
-        *(np.concatenate([getattr(p, name) for p in parts], axis=-1) for name in _Meetings.__struct_fields__)
-    )
+class _Crossings(Table, frozen=True):
+    """
+    Pairs of walls that cross.
+
+    first, second: int[n], the two walls.
+    along_first, along_second: float64[n], how far along each wall the crossing lies, 0 to 1.
+    """
+
+    first: Rows
+    second: Rows
+    along_first: Floats
+    along_second: Floats
+
+
+class _SameNodes(Table, frozen=True):
+    """
+    Pairs of nodes that are nearer to each other than TOUCH.
+
+    node, other: int[n], the two nodes.
+    """
+
+    node: Rows
+    other: Rows
+
+
+_Meetings = tuple[_Touches, _Crossings, _SameNodes]
+
+
+def _nothing_in_common() -> _Meetings:
+    none, nowhere = np.zeros(0, np.int64), np.zeros(0)
+    return _Touches(none, none, nowhere), _Crossings(none, none, nowhere, nowhere), _SameNodes(none, none)
 
 
 def _meetings(walls: _Walls, i: Rows, j: Rows) -> _Meetings:
@@ -239,10 +262,8 @@ def _meetings(walls: _Walls, i: Rows, j: Rows) -> _Meetings:
     nodes, ends = walls.nodes, (walls.a[i], walls.b[i], walls.a[j], walls.b[j])
     a, b, c, d = (nodes[end] for end in ends)
     way, other = b - a, d - c
-    touching: list[Rows] = []
-    touched: list[Rows] = []
-    share: list[Floats] = []
-    same: list[Rows] = []
+    touching: list[_Touches] = []
+    same: list[_SameNodes] = []
     touches = np.zeros(len(i), bool)
     for wall, own, begin, along, of_other in ((i, ends[:2], a, way, ends[2:]), (j, ends[2:], c, other, ends[:2])):
         length = np.abs(along)
@@ -252,58 +273,51 @@ def _meetings(walls: _Walls, i: Rows, j: Rows) -> _Meetings:
             near = np.abs(beside - place) <= TOUCH
             at_start, at_end = place <= TOUCH, place >= length - TOUCH
             inside = np.flatnonzero(near & ~at_start & ~at_end)
-            touching.append(node[inside])
-            touched.append(wall[inside])
-            share.append(place[inside] / length[inside])
+            touching.append(_Touches(node[inside], wall[inside], place[inside] / length[inside]))
             for at, end in ((at_start, own[0]), (at_end, own[1])):
-                one = np.flatnonzero(near & at & (node != end))
-                same.append(np.stack([node[one], end[one]]))
+                pair = np.flatnonzero(near & at & (node != end))
+                same.append(_SameNodes(node[pair], end[pair]))
             touches |= near
     across = (way.conj() * other).imag
     with np.errstate(all="ignore"):  # walls along each other cross nowhere
         t, s = ((c - a).conj() * other).imag / across, ((c - a).conj() * way).imag / across
-    crosses = np.flatnonzero(~touches & (t > 0) & (t < 1) & (s > 0) & (s < 1))
-    return _Meetings(
-        np.concatenate(touching),
-        np.concatenate(touched),
-        np.concatenate(share),
-        i[crosses],
-        j[crosses],
-        np.stack([t[crosses], s[crosses]]),
-        np.concatenate(same, axis=1),
-    )
+    crosses = ~touches & (t > 0) & (t < 1) & (s > 0) & (s < 1)
+    return _Touches.concatenated(touching), _Crossings(i, j, t, s)[crosses], _SameNodes.concatenated(same)
 
 
 # ---- the walls cut there ----
 
 
-def _cut(walls: _Walls, found: _Meetings, tangled: Mask) -> Edges:
+def _cut(walls: _Walls, meetings: list[_Meetings], tangled: Mask) -> Edges:
     """The walls in parts, those of tangled groups left out."""
-    first, second = walls.nodes[walls.a[found.crossing]], walls.nodes[walls.b[found.crossing]]
-    nodes = np.concatenate([walls.nodes, first + (second - first) * found.shares[0]])
+    touches = _Touches.concatenated([part for part, _, _ in meetings])
+    crossings = _Crossings.concatenated([part for _, part, _ in meetings])
+    same = _SameNodes.concatenated([part for _, _, part in meetings])
+    begin, end = walls.nodes[walls.a[crossings.first]], walls.nodes[walls.b[crossings.first]]
+    nodes = np.concatenate([walls.nodes, begin + (end - begin) * crossings.along_first])
     new = np.arange(len(walls.nodes), len(nodes))
-    wall = np.concatenate([found.touched, found.crossing, found.crossed])
-    share = np.concatenate([found.share, *found.shares])
-    node = np.concatenate([found.touching, new, new])
+    wall = np.concatenate([touches.wall, crossings.first, crossings.second])
+    share = np.concatenate([touches.share, crossings.along_first, crossings.along_second])
+    node = np.concatenate([touches.node, new, new])
     order = np.lexsort((share, wall))
     wall, node = wall[order], node[order]
 
     parts = np.bincount(wall, minlength=len(walls.a)) + 1
     of = np.repeat(np.arange(len(walls.a)), parts)
     first_part = np.cumsum(parts) - parts
-    start, end = walls.a[of], walls.b[of]
+    first, last = walls.a[of], walls.b[of]
     inner = np.ones(len(of), bool)
     inner[first_part] = False
-    start[inner] = node
-    end[np.flatnonzero(inner) - 1] = node
+    first[inner] = node
+    last[np.flatnonzero(inner) - 1] = node
     one = np.arange(len(nodes))
-    if len(new) or len(found.same[0]):
+    if len(new) or len(same):
         # Where three walls meet in a point, each pair of them has found it.
         nodes, which = _vertices(nodes)
-        one = merged(len(nodes), *which[found.same])[which]
-    start, end = one[start], one[end]
-    kept = (start != end) & ~tangled[walls.group[of]]
-    return Edges(nodes, start[kept], end[kept], of[kept], tangled)
+        one = merged(len(nodes), which[same.node], which[same.other])[which]
+    first, last = one[first], one[last]
+    kept = (first != last) & ~tangled[walls.group[of]]
+    return Edges(nodes, first[kept], last[kept], of[kept], tangled)
 
 
 def merged(count: int, one: Rows, other: Rows) -> Rows:

@@ -7,10 +7,9 @@ with the center that is programmed, so that a size is as exact as the program.
 
 from __future__ import annotations
 
-import msgspec
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Points, Rows, States
+from polarcheck.arrays import Floats, Mask, Points, Rows, States, Table
 from polarcheck.geometry.segments import Curves
 from polarcheck.geometry.tolerances import TOUCH
 from polarcheck.machines.modal import Motion
@@ -19,7 +18,7 @@ from polarcheck.machines.modal import Motion
 _SAME = 10 * TOUCH
 
 
-class Outline(msgspec.Struct, frozen=True):
+class Outline(Table, frozen=True):
     """
     Lines and arcs with the part on their left, n of them, those of one chain in the order in which they run.
 
@@ -28,6 +27,8 @@ class Outline(msgspec.Struct, frozen=True):
     chain comes back to where it begins; else it ends where nobody knows what the part is like.
     """
 
+    _shared = ("closed",)
+
     start: Points
     end: Points
     center: Points
@@ -35,21 +36,6 @@ class Outline(msgspec.Struct, frozen=True):
     row: Rows
     chain: Rows
     closed: Mask
-
-    def __len__(self) -> int:
-        return len(self.row)
-
-    def __getitem__(self, chosen: Rows | Mask) -> Outline:
-        """Some of the elements; the numbers of their chains stay."""
-        return Outline(
-            self.start[chosen],
-            self.end[chosen],
-            self.center[chosen],
-            self.kind[chosen],
-            self.row[chosen],
-            self.chain[chosen],
-            self.closed,
-        )
 
     @property
     def is_arc(self) -> Mask:

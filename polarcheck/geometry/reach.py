@@ -12,7 +12,7 @@ import msgspec
 import numpy as np
 import shapely  # type: ignore[import-untyped]
 
-from polarcheck.arrays import Floats, Mask, Points, Rows
+from polarcheck.arrays import Floats, Mask, Points, Rows, Table
 from polarcheck.geometry.faces import Geometries, coordinates, edges_of, ends_of, gathered, lines_of
 from polarcheck.geometry.finished_part import FinishedParts
 from polarcheck.geometry.segments import ZERO, Segments
@@ -24,7 +24,7 @@ _BATCH = 4096
 _CORNER = 1e-5
 
 
-class Reached(msgspec.Struct, frozen=True):
+class Reached(Table, frozen=True):
     """
     Pieces of way that cut, once for each wall that is cut at the place: k of them.
 
@@ -40,9 +40,6 @@ class Reached(msgspec.Struct, frozen=True):
     depth: Floats
     aside: Floats
     place: Points
-
-    def __getitem__(self, chosen: Rows | Mask) -> Reached:
-        return Reached(*(getattr(self, name)[chosen] for name in Reached.__struct_fields__))
 
     def worst(self) -> Reached:
         """The deepest cut of each move."""
@@ -77,7 +74,7 @@ def reached(part: FinishedParts, ways: Segments, group: Rows, radius: Floats, to
         depth = radius[group[rows]] - np.where(shapely.intersects(solid[group[rows]], line), 0, aside)
         none = np.full(len(rows), -1)
         found.append(Reached(number[rows], ways.move[rows], group[rows], none, depth, aside, place))
-    cuts = Reached(*(np.concatenate([getattr(one, name) for one in found]) for name in Reached.__struct_fields__))
+    cuts = Reached.concatenated(found)
     return _with_walls(part, cuts)
 
 

@@ -14,7 +14,7 @@ import msgspec
 import numpy as np
 import shapely  # type: ignore[import-untyped]
 
-from polarcheck.arrays import Floats, Mask, Points, Rows
+from polarcheck.arrays import Floats, Mask, Points, Rows, Table
 from polarcheck.geometry import areas
 from polarcheck.geometry.closing import WITNESS, Corners
 from polarcheck.geometry.faces import GRID, Geometries, coordinates, gathered
@@ -40,7 +40,7 @@ _PAIRS_AT_A_TIME, _PAIRS = 500_000, 50_000_000
 _SAMPLES, _POINTS = 8, 33
 
 
-class Swept(msgspec.Struct, frozen=True):
+class Swept(Table, frozen=True):
     """
     Where tools run, as straight pieces: start, end [mm], of which row of the program, and R of the cutter there [mm].
 
@@ -53,12 +53,6 @@ class Swept(msgspec.Struct, frozen=True):
     radius: Floats
     z: Floats
     program: Rows
-
-    def __len__(self) -> int:
-        return len(self.row)
-
-    def __getitem__(self, rows: Rows | Mask) -> Swept:
-        return Swept(*(getattr(self, name)[rows] for name in Swept.__struct_fields__))
 
     def at_depth(self, z: Floats, program: Rows) -> Mask:
         """Whether each runs in that program at that Z or deeper; where one of the two is not known, it does."""
@@ -80,19 +74,13 @@ class Ribs(msgspec.Struct, frozen=True):
     given_up: Rows
 
 
-class _Samples(msgspec.Struct, frozen=True):
+class _Samples(Table, frozen=True):
     """Points of an outline with the direction there, the part on its left; the corner that each is near, its group."""
 
     point: Points
     along: Points
     corner: Rows
     group: Rows
-
-    def __len__(self) -> int:
-        return len(self.corner)
-
-    def __getitem__(self, rows: Rows | Mask | slice) -> _Samples:
-        return _Samples(*(getattr(self, name)[rows] for name in _Samples.__struct_fields__))
 
 
 def ribs(

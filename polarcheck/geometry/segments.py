@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from polarcheck.arrays import Floats, Mask, Points, Rows, States
+from polarcheck.arrays import Floats, Mask, Points, Rows, States, Table
 from polarcheck.errors import TooHardError
 from polarcheck.geometry.plane import arc_sweep
 from polarcheck.geometry.tolerances import CHORDS_OF_FILE, TOUCH
@@ -19,7 +18,7 @@ ZERO = 1e-9
 _STUB = 1e-3
 
 
-class Curves(msgspec.Struct, frozen=True):
+class Curves(Table, frozen=True):
     """
     Curves of a contour or of a tool center path, n of them in the order in which they run.
 
@@ -34,26 +33,14 @@ class Curves(msgspec.Struct, frozen=True):
     loop: Rows
     row: Rows
 
-    def __len__(self) -> int:
-        return len(self.row)
 
-    def __getitem__(self, rows: Rows | Mask) -> Curves:
-        return Curves(*(getattr(self, name)[rows] for name in Curves.__struct_fields__))
-
-
-class Segments(msgspec.Struct, frozen=True):
+class Segments(Table, frozen=True):
     """Straight parts of moves, those of one loop together: start, end [mm], the move they are of, its loop."""
 
     start: Points
     end: Points
     move: Rows
     loop: Rows
-
-    def __len__(self) -> int:
-        return len(self.move)
-
-    def __getitem__(self, rows: Rows | Mask) -> Segments:
-        return Segments(self.start[rows], self.end[rows], self.move[rows], self.loop[rows])
 
     def shifted(self, by: NDArray[np.floating]) -> Segments:
         """The same ones, each moved along X [mm]."""

@@ -15,7 +15,7 @@ from collections.abc import Callable
 import msgspec
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Points, Rows, States
+from polarcheck.arrays import Floats, Mask, Points, Rows, States, Table
 from polarcheck.geometry import polar, rates
 from polarcheck.geometry.plane import arcs_from_center, cross, dot, lines_from_center, quiet, rows_of_arcs
 from polarcheck.machines.modal import Motion
@@ -94,7 +94,7 @@ class Pieces(msgspec.Struct, frozen=True):
         return found
 
 
-class Spokes(msgspec.Struct, frozen=True):
+class Spokes(Table, frozen=True):
     """
     Moves by their way: where they begin, whereto, and how they bend [1/mm], to the left above 0.
 
@@ -164,7 +164,7 @@ def pieces(start: Points, end: Points, center: Points, kind: States, feed: Float
     last = np.append(move[1:] != move[:-1], True)[: len(move)]
     # What is too short to be a piece belongs to the one before it.
     finish = np.where(last, spokes.length[move], np.append(way[move[1:], at[1:]], 0.0))
-    own = Spokes(**{name: getattr(spokes, name)[move] for name in spokes.__struct_fields__})
+    own = spokes[move]
     begin = np.where(np.append(True, move[1:] != move[:-1])[: len(move)], 0.0, way[move, at])
     points = np.where(begin == 0, start[move], own.at(begin)[0])
     ends = np.where(last, end[move], own.at(finish)[0])

@@ -93,7 +93,7 @@ def views_of(tables: Tables, lines: Collection[int] = ()) -> Iterator[SectionVie
     for number, section in enumerate(sections[:_SECTIONS]):
         offset = "" if section.offset is None else f", offset {section.offset}"
         channel = f"{trace.text.source.channel}: " if trace.text.source.channel else ""
-        in_section = moves.chosen(moves.section == number)
+        in_section = moves[moves.section == number]
         remarks = [_NO_RADIUS] if not in_section.is_of_tool.all() else []
         if number + 1 == _SECTIONS < len(sections):
             remarks.append(f"{len(sections) - _SECTIONS} more sections are not shown")
@@ -101,8 +101,8 @@ def views_of(tables: Tables, lines: Collection[int] = ()) -> Iterator[SectionVie
         marks = trace.end[is_marked & (trace.section == number)]
         yield SectionView(
             title=f"{channel}section of lines {section.line} to {section.end_line}{offset}",
-            programmed=points_of(programmed.chosen(programmed.section == number)),
-            tool=points_of(in_section.chosen(in_section.is_of_tool)),
+            programmed=points_of(programmed[programmed.section == number]),
+            tool=points_of(in_section[in_section.is_of_tool]),
             marks=marks[np.isfinite(marks)],
             time=time,
             rate=rate,

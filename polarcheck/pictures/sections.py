@@ -75,7 +75,7 @@ def section_picture(
     most = max(min(POINTS, _OF_PROGRAM // len(trace.sections)), _LEAST)
     role, known = table.role[chosen], table.is_known[chosen]
     keep = np.isin(trace.line_in_file[moves.row], lines)
-    path_moves = programmed.chosen(programmed.section == section)
+    path_moves = programmed[programmed.section == section]
     unseen = paths.unseen(_shown(moves, role))
     tool, off = _path(moves, known, keep, role, unseen, most)
     contour, off_contour = _path(

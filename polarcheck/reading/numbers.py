@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import enum
 
-import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from polarcheck.arrays import Floats, Mask
+from polarcheck.arrays import Floats, Mask, Table
 from polarcheck.reading.source import DASH, Bytes, Positions
 
 Masks = NDArray[np.uint64]
@@ -26,7 +25,7 @@ class NumberFault(enum.IntEnum):
     WRONG_DASH = 6
 
 
-class Numbers(msgspec.Struct, frozen=True):
+class Numbers(Table, frozen=True):
     """
     What the numbers of words say, one element each.
 

@@ -14,7 +14,7 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from polarcheck.arrays import Mask, is_among
+from polarcheck.arrays import Mask, Table, is_among
 from polarcheck.reading.source import CR, LF, Bytes, Positions
 
 BLANKS = bytes(character for character in (*range(33), 0x7F, 0xA0) if character != LF)
@@ -57,18 +57,11 @@ _SHARE = rb"(?i)(?<![A-Z])[A-Z]{2,}+[ \t]++\d++\Z"
 _SHARE_LENGTH = 100
 
 
-class Ranges(msgspec.Struct, frozen=True):
+class Ranges(Table, frozen=True):
     """Places in a text, from start to end (exclusive), in order."""
 
     start: Positions
     end: Positions
-
-    def __len__(self) -> int:
-        return len(self.start)
-
-    def only(self, chosen: Mask | Positions) -> Ranges:
-        """Some of them, by a mask or in another order."""
-        return Ranges(self.start[chosen], self.end[chosen])
 
 
 class Surroundings(msgspec.Struct, frozen=True):
@@ -114,19 +107,19 @@ def read_surroundings(
     names = _names(code)
     remarks += [_semicolon_remarks(code, lines)]
     kept = ~_within(comments, outside)
-    found = [comments.only(kept), *(remark.only(~_within(remark, outside)) for remark in remarks if len(remark))]
-    every = _joined(found)
+    found = [comments[kept], *(remark[~_within(remark, outside)] for remark in remarks if len(remark))]
+    every = Ranges.concatenated(found)
     no = np.zeros(len(every) - len(found[0]), bool)
     order = np.argsort(every.start, kind="stable")
     return Surroundings(
         tape_marks=marks,
         outside=outside,
-        comments=every.only(order),
+        comments=every[order],
         unclosed=np.append(unclosed[kept], no)[order],
         nested=np.append(nested[kept], no)[order],
         names=names,
         strays=strays,
-        tags=tags.only(~_within(tags, outside)),
+        tags=tags[~_within(tags, outside)],
     )
 
 
@@ -170,15 +163,11 @@ def _marks_of_channels(code: Bytes, channel_mark: str, wait_mark: str) -> list[R
     return [found]
 
 
-def _joined(parts: list[Ranges]) -> Ranges:
-    return Ranges(np.concatenate([part.start for part in parts]), np.concatenate([part.end for part in parts]))
-
-
 def united(one: Ranges, other: Ranges) -> Ranges:
     """The ranges of both, each of which has none that overlap, by where they begin; those that touch are one."""
     if not len(other):
         return one
-    both = _joined([one, other])
+    both = Ranges.concatenated([one, other])
     order = np.argsort(both.start, kind="stable")
     start, end = both.start[order], np.maximum.accumulate(both.end[order])
     begins = np.append(True, start[1:] > end[:-1])
@@ -340,11 +329,11 @@ def _semicolon_remarks(code: Bytes, lines: Positions) -> Ranges:
     tails = _first_of_line(np.flatnonzero(code == _SEMICOLON), lines)
     if not len(tails):
         return tails
-    tails = tails.only(_has_text(code, tails.start + 1, tails.end))
+    tails = tails[_has_text(code, tails.start + 1, tails.end)]
     data = code.tobytes()
     places = zip(tails.start.tolist(), tails.end.tolist(), strict=True)
     is_remark = [_READS_AS_BLOCKS.fullmatch(data, start + 1, end) is None for start, end in places]
-    remarks = tails.only(np.array(is_remark, bool))
+    remarks = tails[np.array(is_remark, bool)]
     blank(code, remarks)
     return remarks
 

@@ -10,7 +10,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from polarcheck.arrays import Floats, Mask, is_among
+from polarcheck.arrays import Floats, Mask, Table, is_among
 from polarcheck.reading.characters import KINDS, Character
 from polarcheck.reading.language_blocks import take_out
 from polarcheck.reading.letters import read_as_digits
@@ -33,7 +33,7 @@ _STATEMENTS = {b"GOTO": False, b"GO": True, b"DO": True, b"END": True, b"EN": Tr
 _BEGINS_STATEMENT = np.isin(np.arange(256), [letters[0] for letters in _STATEMENTS])
 
 
-class Words(msgspec.Struct, frozen=True, dict=True):
+class Words(Table, frozen=True, dict=True):
     """
     The words of a file in order, one element each.
 
@@ -52,9 +52,6 @@ class Words(msgspec.Struct, frozen=True, dict=True):
     start: Positions
     end: Positions
 
-    def __len__(self) -> int:
-        return len(self.address)
-
     @cached_property
     def is_unreadable(self) -> Mask:
         """The control cannot read the number; of a run of words without digits, as in prose, only the first."""
@@ -70,7 +67,7 @@ class Words(msgspec.Struct, frozen=True, dict=True):
         return np.asarray(self.fault == NumberFault.WRONG_DASH)
 
 
-class Blocks(msgspec.Struct, frozen=True):
+class Blocks(Table, frozen=True):
     """
     The blocks of a file in order, empty ones included; a block ends at a line end or `;`.
 
@@ -83,19 +80,13 @@ class Blocks(msgspec.Struct, frozen=True):
     line: Positions
     is_macro: Mask
 
-    def __len__(self) -> int:
-        return len(self.start)
 
-
-class Spans(msgspec.Struct, frozen=True):
+class Spans(Table, frozen=True):
     """Places in the text, from start to end (exclusive), each at a block."""
 
     start: Positions
     end: Positions
     block: Positions
-
-    def __len__(self) -> int:
-        return len(self.start)
 
 
 class Text(msgspec.Struct, frozen=True):
@@ -203,7 +194,7 @@ def _before(strays: Positions, prose: Ranges, starts: Positions) -> Positions:
     return strays[~np.isin(_block_of(strays, starts), _block_of(prose.start, starts))]
 
 
-def _is_told(table: _Table, code: Bytes, is_macro: Mask, starts: Positions) -> Mask:
+def _is_told(table: _Piece, code: Bytes, is_macro: Mask, starts: Positions) -> Mask:
     """Those outside macro statements and at the end of any; a * there means times, unless other blocks end with it."""
     in_statement, is_star = is_macro[_block_of(table.strays, starts)], code[table.strays] == _STAR
     return np.asarray(~in_statement | (table.is_last_stray & (~is_star | np.any(is_star & ~in_statement))))
@@ -215,7 +206,7 @@ _PIECE = 1 << 18
 _CUT = re.compile(rb"[\nBD-QS-Zbd-qs-z]")
 
 
-class _Table(msgspec.Struct, frozen=True):
+class _Piece(msgspec.Struct, frozen=True):
     """
     What is read of a text or of a piece of it; breaks: the ends of its blocks; macro: signs of macro statements.
 
@@ -230,35 +221,32 @@ class _Table(msgspec.Struct, frozen=True):
     macro: Positions
 
 
-def _read_pieces(text: bytes) -> _Table:
+def _read_pieces(text: bytes) -> _Piece:
     """The words and blocks of a text without comments; the end of the text is the last break."""
     size = narrow(len(text))
-    tables: list[_Table] = []
+    pieces: list[_Piece] = []
     begin = blocks = 0
     while begin <= len(text):
         end = text.find(b"\n", begin + _PIECE, begin + 2 * _PIECE)
         if end < 0:
             cut = _CUT.search(text, begin + _PIECE)
             end = cut.start() if cut else len(text)
-        table = _read_piece(text[begin:end], size(begin), size(blocks))
+        piece = _read_piece(text[begin:end], size(begin), size(blocks))
         in_line = end < len(text) and text[end] != LF
-        tables.append(msgspec.structs.replace(table, breaks=table.breaks[:-1]) if in_line else table)
-        blocks += len(tables[-1].breaks)
+        pieces.append(msgspec.structs.replace(piece, breaks=piece.breaks[:-1]) if in_line else piece)
+        blocks += len(pieces[-1].breaks)
         begin = end if in_line else end + 1
-    return _Table(*(_joined([getattr(table, name) for table in tables]) for name in _Table.__struct_fields__))
+    return _Piece(
+        Words.concatenated([piece.words for piece in pieces]),
+        np.concatenate([piece.breaks for piece in pieces]),
+        Ranges.concatenated([piece.dots for piece in pieces]),
+        np.concatenate([piece.strays for piece in pieces]),
+        np.concatenate([piece.is_last_stray for piece in pieces]),
+        np.concatenate([piece.macro for piece in pieces]),
+    )
 
 
-def _joined(parts: list[Any]) -> Any:
-    if isinstance(parts[0], np.ndarray):
-        return np.concatenate(parts)
-    return type(parts[0])(*map(np.concatenate, zip(*map(_columns, parts), strict=True)))
-
-
-def _columns(table: Words | Ranges | Numbers) -> tuple[NDArray[Any], ...]:
-    return tuple(getattr(table, name) for name in table.__struct_fields__)
-
-
-def _read_piece(text: bytes, offset: np.signedinteger[Any], blocks: np.signedinteger[Any]) -> _Table:
+def _read_piece(text: bytes, offset: np.signedinteger[Any], blocks: np.signedinteger[Any]) -> _Piece:
     """One piece; blanks mean nothing to a control and are left out first. A break more at its head saves many ifs."""
     text = b"\n" + text + b"\n"
     at = np.flatnonzero(np.frombuffer(text.translate(KINDS), np.uint8) != Character.BLANK).astype(type(offset))
@@ -272,7 +260,7 @@ def _read_piece(text: bytes, offset: np.signedinteger[Any], blocks: np.signedint
     breaks = np.flatnonzero(marks.kind == Character.BREAK)
     words, dots = _words(marks, breaks)
     words.block.__iadd__(blocks)
-    return _Table(words, marks.at[breaks[1:]], dots, strays, is_last_stray, macro)
+    return _Piece(words, marks.at[breaks[1:]], dots, strays, is_last_stray, macro)
 
 
 class _Marks(msgspec.Struct, frozen=True):
@@ -330,7 +318,7 @@ def _words(marks: _Marks, breaks: Positions) -> tuple[Words, Ranges]:
     address[np.searchsorted(letters, marks.corners)] += 32
     counts = np.diff(np.searchsorted(letters, breaks))
     block = np.repeat(np.arange(len(counts), dtype=marks.at.dtype), counts)
-    words = Words(*(address, *_columns(numbers), block, marks.start[letters], marks.at[end - 1] + 1))
+    words = Words(*(address, *msgspec.structs.astuple(numbers), block, marks.start[letters], marks.at[end - 1] + 1))
     if after_letter.all():
         return words, Ranges(edges[:0], edges[:0])
     return _with_loose(words, marks, breaks, begins[~after_letter], ends[~after_letter])
@@ -360,16 +348,16 @@ def _with_loose(
         np.full(count, NumberFault.NO_ADDRESS, np.uint8),
     )
     block = (np.searchsorted(breaks, begins[loose]) - 1).astype(marks.at.dtype)
-    extra = Words(*(np.zeros(count, np.uint8), *_columns(numbers), block, start[loose], end[loose]))
+    extra = Words(*(np.zeros(count, np.uint8), *msgspec.structs.astuple(numbers), block, start[loose], end[loose]))
     at = np.searchsorted(words.start, extra.start)
-    columns = zip(_columns(words), _columns(extra), strict=True)
+    columns = zip(msgspec.structs.astuple(words), msgspec.structs.astuple(extra), strict=True)
     return Words(*(np.insert(column, at, more) for column, more in columns)), dots
 
 
 def _only(words: Words, chosen: Mask) -> Words:
     if chosen.all():
         return words
-    return Words(*(column[chosen] for column in _columns(words)))
+    return words[chosen]
 
 
 def _begins_statement(words: Words) -> Mask:

@@ -82,7 +82,7 @@ class Dynamics:
     @cached_property
     def pieces(self) -> slowed.Pieces:
         """The moves on which it acts, parted where it begins and ends; `move` is of all moves."""
-        chosen = self.moves.chosen(self.is_slowed)
+        chosen = self.moves[self.is_slowed]
         found = slowed.pieces(*chosen.shape, chosen.feed, self.c_limit)
         return msgspec.structs.replace(found, move=np.flatnonzero(self.is_slowed)[found.move])
 

@@ -37,7 +37,7 @@ def feed_curve(dynamics: Dynamics) -> FeedCurve:
 
     Within a move time passes as the sum of way by F over the points says; from move to move, it is exact.
     """
-    moves = dynamics.moves.chosen(dynamics.at_feed & dynamics.moves.is_of_tool)
+    moves = dynamics.moves[dynamics.at_feed & dynamics.moves.is_of_tool]
     whole = dynamics.move_time[dynamics.at_feed & dynamics.moves.is_of_tool]
     spokes = Spokes.of(*moves.shape)
     foot = -lines_from_center(moves.start, moves.end).before

@@ -29,7 +29,7 @@ from polarcheck.arrays import Floats, Mask, Points, Rows, States, repeated
 from polarcheck.geometry import enclosed, polar
 from polarcheck.geometry.compensation import ToolPath
 from polarcheck.machines.modal import Motion, Side
-from polarcheck.table.moves import Moves, compensation_path, joined, of_tool, tool_center_path
+from polarcheck.table.moves import Moves, compensation_path, of_tool, tool_center_path
 from polarcheck.table.trace import Trace
 
 #: Points of one contour nearer than this are one [mm]: the rounding of coordinates to 0.001 mm.
@@ -207,7 +207,7 @@ class Infeed:
             start[at] = cuts.end[-1]
             moves = replace(moves, start=start)
             done = at
-        return joined([*parts, _between(moves, done, len(moves))])
+        return Moves.concatenated([*parts, _between(moves, done, len(moves))])
 
     def _moves(self, cycle: _Cycle, start: complex) -> Moves:
         """The rounds of a cycle one after the other, from a start point; of one that does not fit nobody knows it."""
@@ -215,7 +215,7 @@ class Infeed:
         allowance, known = cycle.offsets[number], tool.known & cycle.known[tool.row]
         rounds = replace(of_tool(self.trace, tool, cycle.rows), known=known, allowance=allowance)
         fits = ~cycle.is_unfit[number]
-        rounds, number = rounds.chosen(fits), number[fits]
+        rounds, number = rounds[fits], number[fits]
         first = np.flatnonzero(np.diff(number, prepend=-1))
         begin = rounds.start.copy()
         begin[first] = np.append(start, rounds.end[first[1:] - 1])[: len(first)]
@@ -323,4 +323,4 @@ class Infeed:
 
 def _between(moves: Moves, first: int, end: int) -> Moves:
     index = np.arange(len(moves))
-    return moves.chosen((index >= first) & (index < end))
+    return moves[(index >= first) & (index < end)]

@@ -2,29 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from functools import cached_property
-from typing import Any
 
-import msgspec
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Points, Rows, States
+from polarcheck.arrays import Floats, Mask, Points, Rows, States, Table
 from polarcheck.geometry import compensation, polar, rates
 from polarcheck.machines.modal import Motion
 from polarcheck.table.filling import before
 from polarcheck.table.trace import Trace
 
 
-class Moves(msgspec.Struct, frozen=True, dict=True):
+class Moves(Table, frozen=True, dict=True):
     """
     One element per move, in order.
 
     row: the row of the trace that it belongs to. section: its polar section. kind: int16, Motion. start, end, center:
     plane points [mm]. feed: along the path [mm/min]. known: False where the radius or a position is unknown. phase:
     compensation.Phase. corner: a line that the control adds. allowance: what a pass of an infeed cycle leaves on the
-    contour [mm], 0 elsewhere. entry: C angle at which each section begins [deg].
+    contour [mm], 0 elsewhere. entry: float64[sections], C angle at which each section begins [deg].
     """
+
+    _shared = ("entry",)
 
     row: Rows
     section: Rows
@@ -38,9 +37,6 @@ class Moves(msgspec.Struct, frozen=True, dict=True):
     corner: Mask
     allowance: Floats
     entry: Floats
-
-    def __len__(self) -> int:
-        return len(self.row)
 
     @property
     def shape(self) -> tuple[Points, Points, Points, States]:
@@ -101,11 +97,6 @@ class Moves(msgspec.Struct, frozen=True, dict=True):
         """Highest F that keeps C at or below the limit [mm/min]."""
         return np.where(self.known, rates.feed_allowed(*self.shape, limit), np.nan)
 
-    def chosen(self, rows: Mask) -> Moves:
-        """Some of the moves."""
-        columns: dict[str, Any] = {name: getattr(self, name) for name in self.__struct_fields__}
-        return Moves(**{name: column if name == "entry" else column[rows] for name, column in columns.items()})
-
 
 def z_along(trace: Trace, moves: Moves) -> tuple[Floats, Floats]:
     """Z before and after each move [mm], NaN unknown; where a block is several moves, it goes as the way does."""
@@ -120,13 +111,6 @@ def z_along(trace: Trace, moves: Moves) -> tuple[Floats, Floats]:
     z_from, z_to = before(trace.z, trace.starts, np.nan)[moves.row], trace.z[moves.row]
     after = np.where(ends, z_to, z_from + share * (z_to - z_from))
     return np.where(begins, z_from, np.append(np.nan, after[:-1])[: len(moves)]), after
-
-
-def joined(parts: Sequence[Moves]) -> Moves:
-    """Moves of the same trace one after another."""
-    names = [name for name in Moves.__struct_fields__ if name != "entry"]
-    columns: dict[str, Any] = {name: np.concatenate([getattr(part, name) for part in parts]) for name in names}
-    return Moves(entry=parts[0].entry, **columns)
 
 
 def per_row(values: Floats, moves: Moves, count: int, none: float, largest: bool = True) -> Floats:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from functools import cached_property
 
+import msgspec
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Points, Rows
@@ -97,12 +98,11 @@ class ToolCenter:
             return self.interferes
         path, kept = self._programmed, self._kept
         rows = np.flatnonzero(kept)
-        columns = {name: getattr(path, name)[rows] for name in path.__struct_fields__}
         first = np.append(0, rows[:-1] + 1)
-        columns["start"] = path.start[first]
         # What rounding still turns the stretches by is a share of what the contour turns them by.
-        columns["radius"] = path.radius[rows] * np.where(rows > first, _SURELY, 1.0)
-        straight = tool_center_path(self.trace, Path(**columns))
+        radius = path.radius[rows] * np.where(rows > first, _SURELY, 1.0)
+        stretches = msgspec.structs.replace(path[rows], start=path.start[first], radius=radius)
+        straight = tool_center_path(self.trace, stretches)
         faulty = straight.interferes | straight.no_intersection | straight.inside_arc_too_small
         found = self._found(self._path.interferes & ~faulty[np.searchsorted(rows, np.arange(len(kept)))])
         # Among many such blocks a few that rounding may well turn round tell nothing, whatever is left of them.

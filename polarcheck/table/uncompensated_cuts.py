@@ -108,7 +108,7 @@ class UncompensatedCuts:
     def _on_plane(self) -> tuple[Rows, Points, Points, Points, Floats, Rows]:
         """Moves on the plane: row, start, end, center, the highest Z, section."""
         moves = self.tool_center.moves
-        moves = moves.chosen((moves.phase == Phase.CANCELLED) & self._has_contour[moves.row])
+        moves = moves[(moves.phase == Phase.CANCELLED) & self._has_contour[moves.row]]
         z = np.maximum(self.trace.z, before(self.trace.z, self.trace.starts, np.nan))[moves.row]
         return moves.row, moves.start, moves.end, moves.center, z, moves.section
 
