@@ -11,8 +11,8 @@ from polarcheck.geometry.ways import Way
 _DIRECTIONS, _POINTS = 3600, 20_000
 #: Turns that are looked at more closely, at how many points, and how often.
 _TURNS, _FEW, _STEPS = 12, 400, 22
-#: Mean distances that differ by less [mm] are the same.
-_SAME = 1e-3
+#: Turns whose mean distances differ by less [mm] fit equally well: distances between points rounded to 0.001 mm.
+_AS_GOOD = 1e-3
 #: What is farther out than this many times the part, such as a line without end, is as good as there.
 _FARTHEST = 1.5
 _GOLDEN = (5**0.5 - 1) / 2
@@ -41,7 +41,7 @@ def best_turn(way: Way, drawn: Way, center: complex) -> float:
     found = [
         _refined(points, drawn, center, at - 2 * step, at + 2 * step) for at in (least, float(angles[means.argmin()]))
     ]
-    return found[0][1] if found[0][0] <= found[1][0] + _SAME else found[1][1]
+    return found[0][1] if found[0][0] <= found[1][0] + _AS_GOOD else found[1][1]
 
 
 def _mean(points: Points, drawn: Way, center: complex, angle: float) -> float:

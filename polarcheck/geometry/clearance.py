@@ -11,8 +11,8 @@ import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Points
 from polarcheck.geometry.plane import cross, dot
-from polarcheck.geometry.segments import ZERO, Curves, segments
-from polarcheck.geometry.tolerances import ROUNDING
+from polarcheck.geometry.segments import Curves, segments
+from polarcheck.geometry.tolerances import ROUNDING, ZERO
 
 #: Pairs of a wall and a way up to which each is looked at; for more, a tree is faster by far.
 _PAIRS = 20_000

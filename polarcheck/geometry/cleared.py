@@ -20,6 +20,7 @@ from polarcheck.geometry.faces import coordinates, edges_of, lines_of
 from polarcheck.geometry.outline import Outline, outline_of
 from polarcheck.geometry.plane import arc_sweep
 from polarcheck.geometry.segments import Curves, Segments, first_of_its_kind, segments
+from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.geometry.widened import widened
 from polarcheck.machines.modal import Motion
 from polarcheck.time_limit import keep_time
@@ -32,8 +33,6 @@ _MOST_CHORDS, _POINTS = 1_000_000, 1000
 _SLIT = 0.008
 #: Places of one chord beside which material is looked for, at most; R apart.
 _SAMPLES = 50
-#: A foot nearer to the end of a move than this is that end [mm].
-_END = 1e-6
 #: How often an end of two curves is put on one and on the other by turns.
 _TURNS = 30
 
@@ -146,12 +145,12 @@ def _sources(middle: Points, near: Rows, path: Curves, chords: Segments) -> tupl
     move = chords.move[near]
     begin, way = chords.start[near], chords.end[near] - chords.start[near]
     along = ((middle - begin) * way.conj()).real / np.abs(way)
-    before, behind = along <= _END, along >= np.abs(way) - _END
+    before, behind = along <= ROUNDING, along >= np.abs(way) - ROUNDING
     # Ends of chords within an arc are no corners: what is round there is the arc.
-    at_start = before & (np.abs(begin - path.start[move]) <= _END)
-    at_end = behind & (np.abs(begin + way - path.end[move]) <= _END)
+    at_start = before & (np.abs(begin - path.start[move]) <= ROUNDING)
+    at_end = behind & (np.abs(begin + way - path.end[move]) <= ROUNDING)
     ends = np.stack([path.start, path.end], axis=-1).ravel()
-    keys = np.round(ends / (10 * _END))
+    keys = np.round(ends / (10 * ROUNDING))
     _, first, number = np.unique(keys, return_index=True, return_inverse=True)
     corner = first[number][2 * move + at_end]
     return move, corner, np.asarray(at_start | at_end)
@@ -191,7 +190,7 @@ class _Beside(NamedTuple):
         """The points of these curves that are nearest to these."""
         foot = self.point[of] + ((at - self.point[of]) * self.along[of].conj()).real * self.along[of]
         spoke = at - self.center[of]
-        far = np.fmax(np.abs(spoke), _END)
+        far = np.fmax(np.abs(spoke), ROUNDING)
         return np.where(np.isnan(self.radius[of]), foot, at + spoke * (self.radius[of] / far - 1))
 
     def touched(self, one: Rows, other: Rows) -> Points:
@@ -199,7 +198,7 @@ class _Beside(NamedTuple):
         corner = self.corner[other]
         at = self.nearest(corner, one)
         at = np.where(self.beyond[one], 2 * self.center[one] - at, at)
-        own = np.minimum(np.abs(self.begin[one] - corner), np.abs(self.end[one] - corner)) <= 10 * _END
+        own = np.minimum(np.abs(self.begin[one] - corner), np.abs(self.end[one] - corner)) <= 10 * ROUNDING
         return np.where(own & np.isnan(self.corner[one]), at, np.nan)
 
 
@@ -210,7 +209,7 @@ def _beside(found: Outline, of: Rows, path: Curves, curves: Curves, radius: floa
     outside, inside = own + radius, np.abs(own - radius)
     circle = np.where(np.abs(about - outside) <= np.abs(about - inside), outside, inside)
     way = curves.end[of] - curves.start[of]
-    along = way / np.maximum(np.abs(way), _END)
+    along = way / np.maximum(np.abs(way), ROUNDING)
     aside = ((found.start + found.end) / 2 - curves.start[of]) * along.conj()
     point = curves.start[of] + 1j * along * np.sign(aside.imag) * radius
     is_move = of < len(path)

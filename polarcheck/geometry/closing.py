@@ -11,6 +11,7 @@ import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Points, Rows, States, Table
 from polarcheck.geometry.segments import Curves, directions, first_of_its_kind, segments
+from polarcheck.geometry.tolerances import TOUCH
 
 #: Height [mm] from which on a rib is one: below it no hand feels it, and the wear of a cutter leaves as much.
 WITNESS = 0.02
@@ -18,14 +19,12 @@ WITNESS = 0.02
 CLOSED = 0.005
 #: How many blocks from either end of a contour may be leads.
 _LEADS = 4
-#: How far a gap may lead off the way of the contour [cosine].
+#: How far a gap may turn off the way of the contour [cosine].
 _AHEAD = 0.87
 #: Arcs from which on it is worth while to look for those that are written once more.
 _MANY = 2000
 #: How much longer than straight across the way over a strip may be.
 _SLANT = 1.6
-#: Points nearer than this [mm] are one.
-_ONE = 1e-5
 #: A corner turns by this much at most [rad]; beyond, the contour runs back over itself.
 _SHARPEST = 2.65
 
@@ -105,7 +104,7 @@ def lead_corners(loops: Loops, winds: Mask) -> Corners:
     of = of[inside][at]
 
     curves, after = loops.curves, curve + 1
-    joined = np.abs(curves.end[curve] - curves.start[after]) < _ONE
+    joined = np.abs(curves.end[curve] - curves.start[after]) < TOUCH
     curve, after, of = curve[joined], after[joined], of[joined]
     _, arriving = directions(*_shape(curves, curve))
     leaving, _ = directions(*_shape(curves, after))
@@ -120,40 +119,58 @@ def _shape(curves: Curves, rows: Rows) -> tuple[Points, Points, Points, States]:
     return curves.start[rows], curves.end[rows], curves.center[rows], curves.kind[rows]
 
 
-def _near_ends(loops: Loops) -> tuple[Rows, Rows, Floats, Floats]:
+class Gaps(msgspec.Struct, frozen=True):
     """
-    Of each loop the pairs of a curve near its first one and one near its last one: from the end of the latter to the
-    start of the former the contour may be open.
+    Where loops may be open: from the end of a curve near the last one to the start of a curve near the first one.
 
-    int[loops, pairs] each; how far that is [mm], inf where there is no such pair; and how far of it straight ahead.
+    before: int[loops, pairs], the curve at whose end the gap begins.
+    after: int[loops, pairs], the curve at whose start it ends.
+    vector: complex128[loops, pairs] [mm], from that end to that start.
+    length: float64[loops, pairs] [mm], inf where the loop has no such pair of curves.
+    ahead: float64[loops, pairs] [mm], how far the gap leads straight on from one of the two curves.
     """
+
+    before: Rows
+    after: Rows
+    vector: Points
+    length: Floats
+    ahead: Floats
+
+    @property
+    def lead_on(self) -> Mask:
+        """The gap lies on the way of the contour: the tool would have to go on straight ahead."""
+        return np.asarray(self.ahead >= _AHEAD * self.length)
+
+
+def gaps_between_ends(curves: Curves, first: Rows, last: Rows) -> Gaps:
+    """All pairs of a curve near the end of a loop and one near its start; first, last: the curves of each loop."""
     i, j = (index.ravel() for index in np.mgrid[:_LEADS, :_LEADS])
-    to, of = loops.first[:, None] + i, loops.last[:, None] - j
-    known = of - to >= 2
-    to, of = np.minimum(to, loops.last[:, None]), np.maximum(of, loops.first[:, None])
-    gap = loops.curves.start[to] - loops.curves.end[of]
-    begins, ends = directions(*_shape(loops.curves, to))[0], directions(*_shape(loops.curves, of))[1]
-    ahead = np.maximum((gap * ends.conj()).real, (gap * begins.conj()).real)
-    return to, of, np.where(known, np.abs(gap), np.inf), ahead
+    after, before = first[:, None] + i, last[:, None] - j
+    is_pair = before - after >= 2
+    after, before = np.minimum(after, last[:, None]), np.maximum(before, first[:, None])
+    vector = curves.start[after] - curves.end[before]
+    begins, ends = directions(*_shape(curves, after))[0], directions(*_shape(curves, before))[1]
+    ahead = np.maximum((vector * ends.conj()).real, (vector * begins.conj()).real)
+    return Gaps(before, after, vector, np.where(is_pair, np.abs(vector), np.inf), ahead)
 
 
 def may_be_open(loops: Loops) -> Mask:
-    """Whether a loop nearly comes back to its start, on its way there, and nowhere fully."""
-    _, _, apart, ahead = _near_ends(loops)
-    leads_on = (ahead >= _AHEAD * apart) & (apart < 2 * loops.radius[:, None])
-    return np.asarray(leads_on.any(axis=1) & (apart > CLOSED).all(axis=1))
+    """Loops that come back to their start but for a gap below 2R that lies ahead, and nowhere without a gap."""
+    gaps = gaps_between_ends(loops.curves, loops.first, loops.last)
+    fits = gaps.lead_on & (gaps.length < 2 * loops.radius[:, None])
+    return np.asarray(fits.any(axis=1) & (gaps.length > CLOSED).all(axis=1))
 
 
 def gaps_of(loops: Loops, length: Floats) -> tuple[Rows, Rows]:
     """
-    The curves of each loop from whose end to whose start a gap of this length is [mm]: the first, the last one.
+    For each loop the curves after and before its gap of this length [mm].
 
     Leads side by side are as far apart as the ends of the contour, but it does not lead from one to the other.
     """
-    to, of, apart, ahead = _near_ends(loops)
-    best = np.argmax(np.where(np.abs(apart - length[:, None]) < _ONE, ahead, -np.inf), axis=1)
+    gaps = gaps_between_ends(loops.curves, loops.first, loops.last)
+    best = np.argmax(np.where(np.abs(gaps.length - length[:, None]) < TOUCH, gaps.ahead, -np.inf), axis=1)
     row = np.arange(len(loops))
-    return to[row, best], of[row, best]
+    return gaps.after[row, best], gaps.before[row, best]
 
 
 # ---- how often a path goes round ----

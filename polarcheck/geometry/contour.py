@@ -20,7 +20,8 @@ from polarcheck.arrays import Floats, Mask, Points, Rows, Table
 from polarcheck.geometry import areas
 from polarcheck.geometry.faces import Geometries, coordinates, edges_of, ends_of, gathered, lines_of
 from polarcheck.geometry.finished_part import Contours, FinishedParts, finished_parts
-from polarcheck.geometry.segments import ZERO, Curves, Segments, first_of_its_kind, members, segments
+from polarcheck.geometry.segments import Curves, Segments, first_of_its_kind, members, segments
+from polarcheck.geometry.tolerances import ZERO
 from polarcheck.time_limit import keep_time
 
 __all__ = ["TOLERANCE", "Curves", "Overcut", "overcuts"]

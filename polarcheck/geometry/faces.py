@@ -19,13 +19,14 @@ from numpy.typing import NDArray
 from polarcheck.arrays import Floats, Mask, Points, Rows, Table
 from polarcheck.geometry import areas
 from polarcheck.geometry.noding import Edges, merged, noded
+from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.time_limit import keep_time
 
 Geometries = NDArray[Any]
 #: Rings of a group up to which they are put on or taken away one by one, and how many are compared at a time.
 _FEW, _RINGS = 32, 256
-#: To what points of areas are rounded where these are cut out of each other [mm]; without, GEOS may find no answer.
-GRID = 1e-6
+#: Points are rounded to this grid [mm] where areas are cut out of each other; without, GEOS may find no answer.
+GRID = ROUNDING
 
 
 class Walls(Table, frozen=True):

@@ -18,14 +18,11 @@ import shapely  # type: ignore[import-untyped]
 
 from polarcheck.arrays import Floats, Mask, Points, Rows
 from polarcheck.geometry import areas
+from polarcheck.geometry.closing import gaps_between_ends
 from polarcheck.geometry.faces import GRID, Geometries, Standing, Walls, standing
 from polarcheck.geometry.segments import Curves, Segments, directions, first_of_its_kind, members, segments
 from polarcheck.geometry.tolerances import TOUCH
 
-#: How many walls from either end of a contour may be leads.
-_LEADS = 4
-#: How far a gap may lead off the way of the contour [cosine].
-_AHEAD = 0.87
 #: Corners of the circle that stands for the bar, in a quarter.
 _BAR_CORNERS = 256
 
@@ -233,30 +230,25 @@ def _bridges(plane: _Plane, contours: Contours) -> tuple[Walls, Floats]:
     leads beside a gap have the tool on their other side, else they are the walls of a slot.
     """
     curves, first, last = plane.chosen, plane.first, plane.last
+    gaps = gaps_between_ends(curves, first, last)
+    fits = (gaps.length < 2 * contours.radius[curves.loop[first]][:, None]) & (gaps.length > TOUCH)
+    fits &= gaps.lead_on | (gaps.length <= contours.tolerance)
     begins, ends = directions(curves.start, curves.end, curves.center, curves.kind)
-    i, j = (index.ravel() for index in np.mgrid[:_LEADS, :_LEADS])
-    to, of = first[:, None] + i, last[:, None] - j
-    known = of - to >= 2
-    to, of = np.minimum(to, last[:, None]), np.maximum(of, first[:, None])
-    gap = curves.start[to] - curves.end[of]
-    length = np.abs(gap)
-    ahead = np.maximum((gap * ends[of].conj()).real, (gap * begins[to].conj()).real)
-    fits = known & (length < 2 * contours.radius[curves.loop[first]][:, None]) & (length > TOUCH)
-    fits &= (ahead >= _AHEAD * length) | (length <= contours.tolerance)
     aside = np.where(plane.left, 1j, -1j)
-    for lead, way, across in ((to - 1, ends, -gap), (of + 1, begins, gap)):
+    for lead, way, across in ((gaps.after - 1, ends, -gaps.vector), (gaps.before + 1, begins, gaps.vector)):
         lead = np.clip(lead, first[:, None], last[:, None])
-        is_lead = (lead != to) & (lead != of)
+        is_lead = (lead != gaps.after) & (lead != gaps.before)
         fits &= ~is_lead | ((across * (aside * way)[lead].conj()).real <= contours.tolerance)
-    length = np.where(fits, length, np.inf)
+    length = np.where(fits, gaps.length, np.inf)
     best = np.argmin(length, axis=1)
     row = np.arange(len(first))
-    found = np.isfinite(length[row, best])
-    to, of, length = to[row, best][found], of[row, best][found], length[row, best][found]
-    group = curves.loop[to]
+    has_gap = np.isfinite(length[row, best])
+    row, best = row[has_gap], best[has_gap]
+    after, before = gaps.after[row, best], gaps.before[row, best]
+    group = curves.loop[after]
     longest = np.zeros(len(contours.radius))
-    np.maximum.at(longest, group, length)
-    return _lines(curves.end[of], curves.start[to], group, plane.pitch, joins=False), longest
+    np.maximum.at(longest, group, length[row, best])
+    return _lines(curves.end[before], curves.start[after], group, plane.pitch, joins=False), longest
 
 
 def _rays(plane: _Plane, contours: Contours) -> tuple[Walls, Floats]:

@@ -11,11 +11,8 @@ import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Points, Rows, States, Table
 from polarcheck.geometry.segments import Curves
-from polarcheck.geometry.tolerances import TOUCH
+from polarcheck.geometry.tolerances import CORNER
 from polarcheck.machines.modal import Motion
-
-#: Ends of chords that are nearer to each other are one point [mm].
-_SAME = 10 * TOUCH
 
 
 class Outline(Table, frozen=True):
@@ -57,9 +54,9 @@ def outline_of(start: Points, end: Points, move: Rows, curves: Curves) -> Outlin
         none = np.zeros(0, np.int64)
         nowhere = np.zeros(0, complex)
         return Outline(nowhere, nowhere, nowhere, none.astype(np.int16), none, none, np.zeros(0, bool))
-    first = np.append(0, np.flatnonzero(np.abs(start[1:] - end[:-1]) > _SAME) + 1)
+    first = np.append(0, np.flatnonzero(np.abs(start[1:] - end[:-1]) > CORNER) + 1)
     count = np.diff(np.append(first, len(move)))
-    closed = np.abs(end[first + count - 1] - start[first]) <= _SAME
+    closed = np.abs(end[first + count - 1] - start[first]) <= CORNER
     chain = np.repeat(np.arange(len(first)), count)
     order = _from_block(move, first, count, closed)
     start, end, move = start[order], end[order], move[order]

@@ -6,10 +6,9 @@ import msgspec
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Points, Rows, States
+from polarcheck.geometry.tolerances import ZERO
 from polarcheck.machines.modal import Motion
 
-#: Points nearer than this to each other or to the center [mm] are one; a millionth of the least increment.
-SAME_POINT = 1e-9
 #: What the arithmetic of one cross product may add, as a share of the coordinates.
 NOISE = 16 * np.finfo(np.float64).eps
 quiet = np.errstate(all="ignore")
@@ -30,7 +29,7 @@ def angle_between(p: Points, q: Points) -> Floats:
 
 def cleared(point: Points) -> Points:
     """The points, those at the center exactly there."""
-    at_center = (np.abs(point.real) <= SAME_POINT) & (np.abs(point.imag) <= SAME_POINT)
+    at_center = (np.abs(point.real) <= ZERO) & (np.abs(point.imag) <= ZERO)
     return np.where(at_center, 0, point) if at_center.any() else point
 
 
@@ -43,7 +42,7 @@ def arc_sweep(start: Points, end: Points, center: Points, kind: States) -> Float
     sign = np.where(kind[rows] == Motion.CCW, 1.0, -1.0)
     turn = sign * angle_between(start - center, end - center)
     turn += 2 * np.pi * (turn < 0)
-    full = (np.abs(end - start) <= SAME_POINT) & ~np.isnan(center)
+    full = (np.abs(end - start) <= ZERO) & ~np.isnan(center)
     sweep[rows] = sign * np.where(full, 2 * np.pi, turn)
     return sweep
 

@@ -23,7 +23,6 @@ from numpy.typing import NDArray
 from polarcheck.arrays import Floats, Points, States
 from polarcheck.geometry.plane import (
     NOISE,
-    SAME_POINT,
     angle_between,
     arc_sweep,
     arcs_from_center,
@@ -32,6 +31,7 @@ from polarcheck.geometry.plane import (
     quiet,
     rows_of_arcs,
 )
+from polarcheck.geometry.tolerances import ZERO
 from polarcheck.machines.modal import Motion
 
 
@@ -62,7 +62,7 @@ def center_from_radius(
     left = (kind == Motion.CCW) == (radius > 0)
     center = start + half + np.where(left, 1j, -1j) * half * (height / reach)
     fits = 2 * (reach - np.abs(radius)) <= np.maximum(tolerance, NOISE * reach)
-    known = fits & (reach > SAME_POINT / 2) & (radius != 0) & ((kind == Motion.CW) | (kind == Motion.CCW))
+    known = fits & (reach > ZERO / 2) & (radius != 0) & ((kind == Motion.CW) | (kind == Motion.CCW))
     return np.where(known, center, complex("nan+nanj"))
 
 

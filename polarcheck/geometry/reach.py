@@ -15,13 +15,12 @@ import shapely  # type: ignore[import-untyped]
 from polarcheck.arrays import Floats, Mask, Points, Rows, Table
 from polarcheck.geometry.faces import Geometries, coordinates, edges_of, ends_of, gathered, lines_of
 from polarcheck.geometry.finished_part import FinishedParts
-from polarcheck.geometry.segments import ZERO, Segments
+from polarcheck.geometry.segments import Segments
+from polarcheck.geometry.tolerances import CORNER, ZERO
 from polarcheck.time_limit import keep_time
 
 #: Ways worked on at a time, for the sake of memory.
 _BATCH = 4096
-#: Walls so near to a place [mm] beside the nearest one meet there.
-_CORNER = 1e-5
 
 
 class Reached(Table, frozen=True):
@@ -149,7 +148,7 @@ def _with_walls(part: FinishedParts, cuts: Reached) -> Reached:
     tree = shapely.STRtree(lines_of(part.start, part.end))
     points = shapely.points(coordinates(cuts.place))
     (which, _), distance = tree.query_nearest(points, all_matches=False, return_distance=True)
-    cut, wall = tree.query(points[which], predicate="dwithin", distance=distance + _CORNER)
+    cut, wall = tree.query(points[which], predicate="dwithin", distance=distance + CORNER)
     kept = part.group[wall] == cuts.group[cut]
     cut, wall = cut[kept], wall[kept]
     place = cuts.place - part.pitch * cuts.group

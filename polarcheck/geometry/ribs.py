@@ -19,13 +19,12 @@ from polarcheck.geometry import areas
 from polarcheck.geometry.closing import WITNESS, Corners
 from polarcheck.geometry.faces import GRID, Geometries, coordinates, gathered
 from polarcheck.geometry.finished_part import FinishedParts
-from polarcheck.geometry.segments import ZERO, Segments
+from polarcheck.geometry.segments import Segments
+from polarcheck.geometry.tolerances import CORNER, ROUNDING, ZERO
 from polarcheck.time_limit import keep_time
 
 #: The tool touches what it comes this near to [mm]; more than arcs in chords and two roundings shift it.
-_TOUCH = 0.003
-#: Points nearer than this [mm] are one.
-_ONE = 2e-5
+_CONTACT = 0.003
 #: Corners of the outline that turn as much as this share of the corner between two blocks are that corner.
 _SAME_TURN = 0.8
 #: Farther than any lathe reaches [mm].
@@ -56,7 +55,7 @@ class Swept(Table, frozen=True):
 
     def at_depth(self, z: Floats, program: Rows) -> Mask:
         """Whether each runs in that program at that Z or deeper; where one of the two is not known, it does."""
-        return np.asarray((self.program == program) & ~(self.z > z + _ONE))
+        return np.asarray((self.program == program) & ~(self.z > z + ROUNDING))
 
 
 class Ribs(msgspec.Struct, frozen=True):
@@ -130,7 +129,7 @@ def _without_fins(part: FinishedParts, radius: Floats) -> FinishedParts:
         pieces = shapely.get_parts(polygon[group])
         main = pieces[np.argmax(shapely.area(pieces))]
         thin = 2 * shapely.length(areas.maximum_inscribed_circle(pieces)) < radius[group]
-        fins = pieces[thin & (shapely.distance(pieces, main) < _ONE) & (pieces != main)]
+        fins = pieces[thin & (shapely.distance(pieces, main) < CORNER) & (pieces != main)]
         polygon[group] = areas.difference(polygon[group], areas.union_all(fins, grid_size=GRID), grid_size=GRID)
     return msgspec.structs.replace(part, polygon=polygon)
 
@@ -168,8 +167,8 @@ def _along_outline(part: FinishedParts, corners: Corners, shift: Floats, radius:
 def _of_part(part: FinishedParts, corners: Corners, points: Points, which: Rows, wall: Rows) -> Mask:
     """The corners at which the outline itself turns as the blocks do."""
     way = part.end[wall] - part.start[wall]
-    arrives = np.abs(part.end[wall] - points[which]) < _ONE
-    leaves = np.abs(part.start[wall] - points[which]) < _ONE
+    arrives = np.abs(part.end[wall] - points[which]) < CORNER
+    leaves = np.abs(part.start[wall] - points[which]) < CORNER
     into, out = np.zeros((2, len(points)), np.complex128)
     into[which[arrives]], out[which[leaves]] = way[arrives], way[leaves]
     return np.asarray(np.angle(into * out.conj()) >= _SAME_TURN * corners.turn)
@@ -180,17 +179,17 @@ def _reachable(part: FinishedParts, samples: _Samples, radius: Floats) -> Mask:
     center = samples.point - 1j * samples.along * radius[samples.group]
     solid = part.polygon.copy()
     shapely.prepare(solid)
-    limit = radius[samples.group] - _TOUCH
+    limit = radius[samples.group] - _CONTACT
     of_sample, point = solid[samples.group], shapely.points(coordinates(samples.point))
     is_clear = ~shapely.dwithin(of_sample, shapely.points(coordinates(center)), limit)
-    return np.asarray(is_clear & shapely.dwithin(of_sample, point, _TOUCH))
+    return np.asarray(is_clear & shapely.dwithin(of_sample, point, _CONTACT))
 
 
 def _touched(path: Segments, samples: _Samples, radius: Floats) -> Mask:
     """Whether the path of its own group touches each sample."""
     lines = gathered(_lines(path.start, path.end), path.loop, len(radius))
     shapely.prepare(lines)
-    limit = radius[samples.group] + _TOUCH
+    limit = radius[samples.group] + _CONTACT
     return np.asarray(shapely.dwithin(lines[samples.group], shapely.points(coordinates(samples.point)), limit))
 
 
@@ -198,7 +197,7 @@ def _touched_by_any(
     swept: Swept, tree: shapely.STRtree, samples: _Samples, z: Floats, program: Rows
 ) -> tuple[Mask, int]:
     """Whether any tool touches each sample, of as many as there was time for; and how many these are."""
-    limit = float(swept.radius.max(initial=0.0)) + _TOUCH
+    limit = float(swept.radius.max(initial=0.0)) + _CONTACT
     result = np.zeros(len(samples), bool)
     begin, step, pairs = 0, 16, 0
     while begin < len(samples) and pairs <= _PAIRS:
@@ -208,7 +207,7 @@ def _touched_by_any(
         group = some.group[which]
         near = swept[piece]
         distance = np.abs(_to_way(near, some.point[which]))
-        touches = near.at_depth(z[group], program[group]) & (distance <= near.radius + _TOUCH)
+        touches = near.at_depth(z[group], program[group]) & (distance <= near.radius + _CONTACT)
         result[begin + which[touches]] = True
         begin, pairs = begin + step, pairs + len(which)
         step = int(np.clip(step * _PAIRS_AT_A_TIME // (len(which) + 1), 16, 2 * step))
@@ -259,12 +258,12 @@ def _foot(pieces: Swept, point: complex, along: complex) -> tuple[complex, int]:
     """Where the tool that comes nearest to the end of a rib touches the outline, and in which row it does."""
     way = _to_way(pieces, np.asarray(point))
     beyond = np.abs(way) - pieces.radius
-    nearest = np.flatnonzero(beyond <= beyond.min() + _TOUCH)
+    nearest = np.flatnonzero(beyond <= beyond.min() + _CONTACT)
     runs = np.abs(((pieces.end - pieces.start)[nearest] * np.conj(along)).real)
     best = nearest[np.argmax(runs / np.maximum(np.abs(pieces.end - pieces.start)[nearest], ZERO))]
     beside = (way[best] * np.conj(along)).real
     # Farther off than a touch is seen, the tool does not stand on this wall but on one round a corner.
-    limit = 2 * np.sqrt(2 * pieces.radius[best] * _TOUCH)
+    limit = 2 * np.sqrt(2 * pieces.radius[best] * _CONTACT)
     return point + np.clip(beside, -limit, limit) * along, int(pieces.row[best])
 
 
@@ -274,7 +273,7 @@ def _heights(pieces: Swept, point: Points, along: Points, radius: float) -> Floa
 
     Where a ray goes through between two tools that touch each other, the slit is rounding.
     """
-    exact, wider = (first_tool(pieces, pieces.radius + more, point, -1j * along) for more in (0, _TOUCH))
+    exact, wider = (first_tool(pieces, pieces.radius + more, point, -1j * along) for more in (0, _CONTACT))
     return np.asarray(np.clip(np.where(exact - wider < _SLIT * radius, exact, wider), 0, 2 * radius))
 
 

@@ -8,12 +8,10 @@ from numpy.typing import NDArray
 from polarcheck.arrays import Floats, Mask, Points, Rows, States, Table
 from polarcheck.errors import TooHardError
 from polarcheck.geometry.plane import arc_sweep
-from polarcheck.geometry.tolerances import CHORDS_OF_FILE, TOUCH
+from polarcheck.geometry.tolerances import CHORDS_OF_FILE, TOUCH, ZERO
 from polarcheck.machines.modal import Motion
 from polarcheck.time_limit import keep_time
 
-#: A length [mm] below this is none.
-ZERO = 1e-9
 #: A chord shorter than this share of the others is left to its neighbour.
 _STUB = 1e-3
 

@@ -18,10 +18,12 @@ import numpy as np
 from polarcheck.arrays import Floats, Mask, Points, Rows, States, Table
 from polarcheck.geometry import polar, rates
 from polarcheck.geometry.plane import arcs_from_center, cross, dot, lines_from_center, quiet, rows_of_arcs
+from polarcheck.geometry.tolerances import ZERO
 from polarcheck.machines.modal import Motion
 
-#: Pieces shorter than this are left out [mm]: an arc of no length would be a full circle.
-_SHORTEST = 1e-7
+#: Pieces shorter than this are left out [mm]: an arc shorter than ZERO would be a full circle, and rounding shifts the
+#: ends of pieces.
+_SHORTEST = 100 * ZERO
 #: In so many points of a piece the axes are looked at, closer to its ends, where most extremes are.
 _POINTS = 257
 #: So many pieces are looked at in one go.

@@ -21,7 +21,8 @@ from polarcheck.geometry import areas
 from polarcheck.geometry.closing import WITNESS
 from polarcheck.geometry.faces import GRID, coordinates
 from polarcheck.geometry.ribs import Swept, first_tool
-from polarcheck.geometry.segments import ZERO, Segments
+from polarcheck.geometry.segments import Segments
+from polarcheck.geometry.tolerances import ZERO
 from polarcheck.time_limit import keep_time
 
 #: How near two outlines are one [mm]; more than arcs in chords.

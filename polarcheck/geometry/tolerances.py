@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-#: What the arithmetic may shift a point by [mm]; a thousandth of the least increment.
+#: The arithmetic shifts a point by no more than this [mm]; a thousandth of the least increment.
 ROUNDING = 1e-6
-#: Values that differ by no more than this share are the same: what the last bits of their formulas make.
+#: Values that differ by no more than this share are the same: the last bits of their formulas differ by that.
 SHARE = 1e-9
 #: R up to this [mm], of either sign, is no cutter: it adjusts the path of one's center (builder's guide to G12.1).
 ADJUSTMENT = 0.254
-#: A length below this [mm] is no movement.
+#: A length below this [mm] is no movement, and an arc whose ends are so near to each other is a full circle.
 ZERO = 1e-9
-#: Points nearer than this [mm] are one.
+#: Points nearer than this [mm] are one point, and lines so near to each other touch: both may be shifted by ROUNDING.
 TOUCH = 2e-6
+#: Ends of walls nearer than this [mm] are one corner. Where walls are cut, a point moves by up to TOUCH to the node
+#: that it becomes part of, and the areas of GEOS move it again.
+CORNER = 10 * TOUCH
 #: Crossings that a contour may have for each of its walls, and beyond that.
 CROSSINGS, FREE_CROSSINGS = 4, 1000
 #: Farther from the center than this [mm] reaches no lathe; what is there would take the digits of all else.

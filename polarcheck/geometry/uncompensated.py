@@ -17,12 +17,12 @@ from polarcheck.geometry.bare import Bare, FlatLoops
 from polarcheck.geometry.faces import coordinates, lines_of
 from polarcheck.geometry.finished_part import Contours, FinishedParts, finished_parts
 from polarcheck.geometry.reach import NOTHING, Reached, endless, reached, shortened
-from polarcheck.geometry.segments import ZERO, Curves, Segments, boxes, members, reach_from_start, segments
-from polarcheck.geometry.tolerances import ROUNDING
+from polarcheck.geometry.segments import Curves, Segments, boxes, members, reach_from_start, segments
+from polarcheck.geometry.tolerances import ROUNDING, ZERO
 from polarcheck.time_limit import keep_time
 
-#: Sums over a loop that agree in these [mm] are the same.
-_SAME = 1e-3
+#: Sums over a loop that differ by less [mm] are the same: their rounding grows with the square of its blocks.
+_SAME_SUM = 1e-3
 #: Pairs of a wall and a way up to which walls are looked through one by one, without a tree.
 _PAIRS = 4_000_000
 #: Ways between two looks at the clock.
@@ -118,7 +118,7 @@ def _fresh(curves: Curves, section: Rows, loop: Rows) -> Mask:
     begin = np.cumsum(count) - count
     place = np.arange(1, len(here) + 1) - np.repeat(begin, count)
     sums = [np.add.reduceat(column, begin) for column in (start, start * place, np.abs(curves.end[here]))]
-    key = [section, count, *(np.rint(part / _SAME) for total in sums for part in (total.real, total.imag))]
+    key = [section, count, *(np.rint(part / _SAME_SUM) for total in sums for part in (total.real, total.imag))]
     _, first = np.unique(np.stack(key, axis=1), axis=0, return_index=True)
     fresh = np.zeros(len(loop), bool)
     fresh[first] = True

@@ -10,8 +10,9 @@ import numpy as np
 from polarcheck.arrays import Floats, Mask, Rows
 from polarcheck.checking.phrases.offsets import called_tool, to_give
 from polarcheck.checking.tables import Tables
-from polarcheck.geometry.segments import ZERO, Curves
+from polarcheck.geometry.segments import Curves
 from polarcheck.geometry.shapes.shape import Shape
+from polarcheck.geometry.tolerances import ZERO
 from polarcheck.table.filling import before
 from polarcheck.time_limit import keep_time
 

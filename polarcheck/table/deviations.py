@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 #: How far a part may differ where nobody says [mm].
 TOLERANCE = 0.02
-#: Depths that are nearer to each other [mm] are one.
+#: Depths that are nearer to each other [mm] are one: the Z of a part in a job is written to the least increment.
 _SAME_Z = 1e-3
 #: A contour that differs by more than this share of its size is another one.
 _OTHER = 0.1

@@ -7,11 +7,10 @@ from functools import cached_property
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Rows, computed, repeated
+from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.table.overcuts import Cuts, Overcuts
 from polarcheck.table.trace import Trace
 
-#: Depths and places that agree in these [mm] are one.
-_SAME = 1e-3
 _NOTHING = Cuts(np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0), np.zeros(0, np.complex128))
 
 
@@ -66,7 +65,7 @@ class Slots:
         first, number = np.flatnonzero(begins), np.cumsum(begins) - 1
         if len(first) < 2:
             return level, several
-        z = np.rint(trace.z[rows] / _SAME)
+        z = np.rint(trace.z[rows] / ROUNDING)
         low, high = np.minimum.reduceat(z, first), np.maximum.reduceat(z, first)
         parted = np.cumsum(trace.moves_z)[rows][first]
         unknown, slopes = np.isnan(low), low != high
@@ -148,7 +147,7 @@ class Slots:
         key = np.full((len(pair), 5), np.inf)
         key[number, 4] = trace.section[cuts.row]
         for side, values in enumerate((ends.real, ends.imag, -ends.real, -ends.imag)):
-            np.minimum.at(key[:, side], number, np.rint(values.min(axis=0) / _SAME))
+            np.minimum.at(key[:, side], number, np.rint(values.min(axis=0) / ROUNDING))
         _, same = np.unique(key, axis=0, return_inverse=True)
         label[cuts.row] = same.ravel()[number]
         return label
