@@ -71,7 +71,7 @@ def section_picture(
     extras: its other content.
     """
     chosen = table.of_section(section)
-    moves = table.moves.chosen(_mask(chosen, len(table)))
+    moves = table.moves[_mask(chosen, len(table))]
     most = max(min(POINTS, _OF_PROGRAM // len(trace.sections)), _LEAST)
     role, known = table.role[chosen], table.is_known[chosen]
     keep = np.isin(trace.line_in_file[moves.row], lines)
