@@ -10,8 +10,7 @@ import numpy as np
 import pytest
 from programs import ROOT, report_of, said, tables_of, trace_of
 
-from polarcheck.execution import library, programs
-from polarcheck.execution.execute import Execution
+from polarcheck.execution import execute, library, programs
 from polarcheck.execution.library import Library
 from polarcheck.execution.programs import ProgramName
 from polarcheck.reading import source
@@ -37,7 +36,7 @@ def counts(monkeypatch: pytest.MonkeyPatch) -> Counter[str]:
 
     counted(programs, "read_words", "texts")
     counted(library, "_with_head", "files")
-    counted(Execution, "run", "executions")
+    counted(execute, "_run_all", "executions")
     return found
 
 

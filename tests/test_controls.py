@@ -202,7 +202,7 @@ def test_infeed_cycle_pass_by_pass() -> None:
     assert len(moves) == 30
     assert moves.start[0] == 174
     for number, offset in enumerate((16, 8, 0)):
-        cut = moves.chosen(np.arange(len(moves)) // 10 == number)
+        cut = moves[np.arange(len(moves)) // 10 == number]
         assert cut.end[0] == pytest.approx(150 + offset)
         assert cut.end[-1] == pytest.approx(cut.end[0]), "the pass closes"
         corners = cut.kind == Motion.CCW

@@ -73,7 +73,7 @@ def test_polygon_runs_as_its_written_out_twin(sides: int) -> None:
     macro, plain = (tables_of(program(sides), "fanuc", CUTTER) for program in (polygon_macro, polygon_plain))
     ours, theirs = macro["moves"], plain["moves"]
     moving = [moves.length > 1e-6 for moves in (ours, theirs)]
-    ours, theirs = ours.chosen(moving[0]), theirs.chosen(moving[1])
+    ours, theirs = ours[moving[0]], theirs[moving[1]]
     assert len(ours) == len(theirs)
     np.testing.assert_array_equal(ours.kind, theirs.kind)
     np.testing.assert_allclose(ours.end, theirs.end, atol=2e-3)

@@ -194,7 +194,7 @@ def radii_by_steps(radius: float, cutter: float, start: float, infeed: float) ->
 def radii_of(program: str, *tools: str, arcs: int = 2, **changes: object) -> list[float]:
     """Those of the arcs of the tool center, one for each pass, which has so many arcs."""
     moves = moves_of(program, "gsk-988", *tools, changes=changes)
-    round_about = moves.chosen(np.isin(moves.kind, (Motion.CW, Motion.CCW)))
+    round_about = moves[np.isin(moves.kind, (Motion.CW, Motion.CCW))]
     radius = np.abs(round_about.start - round_about.center)
     assert np.abs(round_about.center).max() < 1e-3
     assert radius == pytest.approx(np.repeat(radius[::arcs], arcs), abs=1e-3)

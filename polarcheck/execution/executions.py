@@ -1,4 +1,4 @@
-"""The executions of a file, one for each state of block skip, with all that is found in them."""
+"""The executions of a file, one for each state of block skip, as runs."""
 
 from __future__ import annotations
 
@@ -9,10 +9,11 @@ import msgspec
 import numpy as np
 
 from polarcheck.arrays import Rows
-from polarcheck.execution.execute import Execution, execute
+from polarcheck.execution.execute import execute
 from polarcheck.execution.library import Shelf
 from polarcheck.execution.listing import Listing
 from polarcheck.execution.run import Beside, FlowFault, Remark, Run
+from polarcheck.execution.state import State
 from polarcheck.execution.static_faults import add_static_faults
 from polarcheck.machines.job import Job
 from polarcheck.machines.machine import Machine
@@ -29,27 +30,27 @@ def executed(text: Text, machine: Machine, job: Job, states: Sequence[str], besi
     inch = (job.program_units or machine.control.units) == "inch"
     shelf = Shelf(text, machine, job.run.subprograms, beside)
     texts: dict[frozenset[int], Text] = {}
-    found = []
-    for state in states:
-        execution = execute(shelf, job.run, skip=state == "on", inch=inch)
-        add_static_faults(execution)
-        used = frozenset(execution.used)
+    runs = []
+    for skip in states:
+        state = execute(shelf, job.run, skip=skip == "on", inch=inch)
+        add_static_faults(state)
+        used = frozenset(state.used_files)
         if used not in texts:
-            listing = execution.listing
+            listing = state.listing
             is_whole = len(used) == len(listing.files)
             texts[used] = listing.text if is_whole else joined([listing.files[file] for file in sorted(used)])
-        found.append(_with_text(execution, texts[used]))
-    return found
+        runs.append(_with_text(state, texts[used]))
+    return runs
 
 
-def _with_text(execution: Execution, text: Text) -> Run:
-    """The rows of an execution as a run of the text that holds no other files than those it used."""
-    listing = execution.listing
+def _with_text(state: State, text: Text) -> Run:
+    """The rows of an execution as a run of the text that holds only the files it used."""
+    listing = state.listing
     names = {number: name for name, number in listing.names.tools.items()}
-    run = execution.rows.run(execution.faults.all(), execution.remarks, names)
-    if len(execution.used) == len(listing.files):
+    run = state.rows.run(state.faults, state.remarks, names)
+    if len(state.used_files) == len(listing.files):
         return msgspec.structs.replace(run, text=text)
-    blocks, characters = _shifts(listing, execution.used)
+    blocks, characters = _shifts(listing, state.used_files)
     files = np.array(listing.first_blocks[1:])
 
     def file_of(block: Rows) -> Rows:
@@ -82,7 +83,7 @@ def _with_text(execution: Execution, text: Text) -> Run:
 
 
 def _shifts(listing: Listing, used: AbstractSet[int]) -> tuple[Rows, Rows]:
-    """By how many blocks and characters each file moves forward where those that are not used are left out."""
+    """Blocks and characters by which each file moves forward when the unused ones are left out."""
     first = np.array(listing.first_blocks)
     begin = np.append(listing.text.blocks.start[first[:-1]], len(listing.text.source.code))
     left_out = np.array([file not in used for file in range(len(listing.files))])

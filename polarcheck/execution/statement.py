@@ -125,7 +125,7 @@ class Statement(msgspec.Struct, frozen=True):
     is None or not among the words, and with "bracket-levels" nothing is lost. label: the name to go to, where it is no
     number; search: where it is looked for. until: the label up to which REPEAT goes. structure: the keyword of a
     STRUCTURE. parameters: what a call by name hands over, or a program takes; None for other calls. more: what the
-    block says beside it, in order. unread: what is not simulated. passed: the variables that a call sets for its
+    block says beside it, in order. unread: what is not simulated. assigned: the variables that a call sets for its
     program, which have no value behind its return.
     """
 
@@ -150,4 +150,4 @@ class Statement(msgspec.Struct, frozen=True):
     parameters: tuple[Parameter, ...] | None = None
     more: tuple[Statement, ...] = ()
     unread: tuple[Unread, ...] = ()
-    passed: tuple[int, ...] = ()
+    assigned: tuple[int, ...] = ()

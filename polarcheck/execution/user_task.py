@@ -276,9 +276,9 @@ class _Block(Values):
         before = len(self.assignments)
         while self.at < len(self.tokens) and self.is_assignment():
             self.part()
-        passed = [statement.target for statement in self.assignments[before:] if statement.target is not None]
-        numbers = [int(target.steps[0].number) for target in passed if target.steps[0].number > UNKNOWN]
-        self.flow = replace(self.read_as(rewriting), passed=tuple(numbers))
+        targets = [statement.target for statement in self.assignments[before:] if statement.target is not None]
+        numbers = [int(target.steps[0].number) for target in targets if target.steps[0].number > UNKNOWN]
+        self.flow = replace(self.read_as(rewriting), assigned=tuple(numbers))
 
     def is_assignment(self) -> bool:
         token = self.peek()
