@@ -28,6 +28,7 @@ OF_PACKAGE = {
     "machines": "start",
     "reading": "reading",
     "execution": "execution",
+    "columns": "columns",
     "table": "columns",
     "silence": "rules",
     "checking": "rules",
@@ -39,7 +40,7 @@ OF_PACKAGE = {
 }
 #: Modules whose tables are more than columns.
 OF_TABLE = {
-    **dict.fromkeys(("tool_center", "moves", "plane_moves", "ramps", "trial", "travel"), "tool path"),
+    **dict.fromkeys(("tool_center", "moves", "ramps", "trial", "travel"), "tool path"),
     **dict.fromkeys(("dynamics", "feed_curve", "highest_feeds", "feed_ranges"), "tool path"),
     **dict.fromkeys(("overcuts", "slots", "uncompensated_cuts", "fitting", "finished"), "faces"),
     **dict.fromkeys(("deviations", "coverage", "mirrored"), "faces"),

@@ -22,12 +22,13 @@ from generate import program
 
 from polarcheck.checking import check
 from polarcheck.checking.rule import load_all
+from polarcheck.checking.tables import Tables
+from polarcheck.columns.trace import Trace
 from polarcheck.execution.run import straight
 from polarcheck.machines import profiles
 from polarcheck.machines.job import Job, Tool
 from polarcheck.reading import source
 from polarcheck.reading.words import read_words
-from polarcheck.table.trace import Trace
 
 CUTTERS = range(4, 13)
 
@@ -43,8 +44,8 @@ def stages(data: bytes) -> dict[str, Callable[[], Any]]:
         return read_words(source.read(data))
 
     def trace(job: Job) -> Trace:
-        table = Trace(straight(read(), lathe.m_codes.program_end), lathe, job)
-        _ = table.section, table.c_angle, table.center
+        table: Trace = Tables(straight(read(), lathe.m_codes.program_end), lathe, job)["trace"]
+        _ = table.mode.section, table.path.c_angle, table.path.center
         return table
 
     return {

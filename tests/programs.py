@@ -21,12 +21,12 @@ from polarcheck.checking import check
 from polarcheck.checking.examples import Example
 from polarcheck.checking.rule import Rule, find, load_all
 from polarcheck.checking.tables import Tables
+from polarcheck.columns.trace import Trace
 from polarcheck.finding import FileReport
 from polarcheck.machines import profiles
 from polarcheck.machines.job import Job, from_table, with_tool
 from polarcheck.machines.machine import Machine
 from polarcheck.table.moves import Moves
-from polarcheck.table.trace import Trace
 
 ROOT = Path(__file__).parent.parent
 SHARED = ROOT.parent / "shared"

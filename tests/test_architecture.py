@@ -28,6 +28,7 @@ ORDER = (
     ("checking",),
     ("silence",),
     ("table",),
+    ("columns",),
     ("execution",),
     ("reading",),
     ("geometry",),

@@ -116,7 +116,7 @@ def test_the_page_is_written_without_any_peer(tmp_path: Path, monkeypatch: pytes
 def test_time_of_libraries_counts_for_the_stages_that_call_them() -> None:
     """Through several functions of libraries, one that calls itself among them, in proportion to the calls."""
     package = ROOT / "polarcheck"
-    trace, overcuts = ((str(package / "table" / f"{name}.py"), 1, "column") for name in ("trace", "overcuts"))
+    trace, overcuts = ((str(package / f"{name}.py"), 1, "column") for name in ("columns/path", "table/overcuts"))
     contour, numpy, loaded = (
         (str(package / "geometry" / "contour.py"), 1, "cuts"),
         ("numpy.py", 1, "sort"),

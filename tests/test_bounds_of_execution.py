@@ -227,17 +227,17 @@ def test_the_mode_that_a_tool_change_ends_is_reported_before_a_bound_too() -> No
 def test_behind_calls_that_run_once_positions_and_variables_are_not_known(own: str) -> None:
     program = f"O1\n#500=1\nG0 X60. Z5.\nM98 P100 L5000\nX[50.+#500]\nZ3.\nM30\nO100\nU1.\n{own}M99\n"
     trace = tables_of(program, "fanuc", job=BOUNDED)["trace"]
-    behind = trace.line == 5
-    assert trace.line.tolist().count(9) == 1
-    assert (trace.x[behind] != trace.x[behind]).all() == bool(own)
-    assert trace.z[trace.line == 6].tolist() == [3.0]
+    behind = trace.blocks.line == 5
+    assert trace.blocks.line.tolist().count(9) == 1
+    assert (trace.path.x[behind] != trace.path.x[behind]).all() == bool(own)
+    assert trace.path.z[trace.blocks.line == 6].tolist() == [3.0]
 
 
 def test_programs_before_one_that_is_broken_off_keep_all_their_rows() -> None:
     head = "O1\nG0 X60.\n" + "X61.\n" * 40 + "M98 P3 L1500\nM30\n"
     endless = "O2\n#1=0\nWHILE[#1LT90000]DO1\n#1=#1+1\nX1.\nEND1\nM30\nO3\n" + "X7.\n" * 10 + "M99\n"
     trace = tables_of(head + endless, "fanuc")["trace"]
-    lines = trace.line.tolist()
+    lines = trace.blocks.line.tolist()
     assert lines.count(head.count("\n") + 9) == 1500
     assert 10_000 <= lines.count(head.count("\n") + 5) <= 10_100
 

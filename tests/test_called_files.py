@@ -77,7 +77,7 @@ def test_what_called_programs_call_is_found_before_anything_runs(folder: Path, c
         O0005="G0 X6.\nM99\n",
     )
     trace = trace_of("O1\nIF[1 EQ 1]GOTO 5\nN5 M98 P10002\nM30\n", job=with_folder(folder))
-    np.testing.assert_array_equal(trace.word("X")[trace.has("X")], [2, 4, 6, 5])
+    np.testing.assert_array_equal(trace.blocks.word("X")[trace.blocks.has("X")], [2, 4, 6, 5])
     assert counts == {"texts": 6, "files": 5, "executions": 1}
 
 
@@ -162,7 +162,7 @@ def test_places_move_with_the_files_that_are_left_out(folder: Path) -> None:
     assert [(entry.reason[:13], entry.blocks) for entry in report.not_evaluated] == [("the condition", 1)]
     tables = tables_of(program, job=with_folder(folder))
     trace, run, text = tables["trace"], tables["run"], tables["text"]
-    assert [trace.text.source.part_of(int(line)) for line in trace.line[3:5]] == [("O0003", 1), ("O0003", 2)]
+    assert [trace.text.source.part_of(int(line)) for line in trace.blocks.line[3:5]] == [("O0003", 1), ("O0003", 2)]
     written = [text.source.excerpt(int(run.words.start[i]), int(run.words.end[i])) for i in range(len(run.words))]
     assert written == ["O1", "N10", "M98", "P3", "O0003", "G0", "X3.", "G0", "Z#50", "G0", "X[5/0]", "M99", "M30"]
     assert [int(run.words.block[i]) for i in range(len(written))] == run.block[run.row].tolist()
@@ -176,7 +176,7 @@ def test_a_program_in_a_file_counts_where_the_file_is_used(folder: Path) -> None
     called = "O1\nM98 P5\nM98 P4\nM30\n"
     assert not report_of(called, job=with_folder(folder)).findings
     trace = trace_of(called, job=with_folder(folder))
-    np.testing.assert_array_equal(trace.word("X")[trace.has("X")], [5, 4])
+    np.testing.assert_array_equal(trace.blocks.word("X")[trace.blocks.has("X")], [5, 4])
     assert said(report_of("O1\nM98 P5\nGOTO 9\nM98 P4\nN9 M30\n", job=with_folder(folder)))[0] == (
         2,
         "subprogram-missing",
@@ -196,8 +196,8 @@ def test_a_file_is_read_as_it_is_whatever_stands_before_it(folder: Path) -> None
     program = b"%\rO1\rG0 X1.\rM98 P2\rG0 X3.\rM30\r%\rA NOTE\r\x1a"
     tables = tables_of(program, job=with_folder(folder))
     trace = tables["trace"]
-    np.testing.assert_array_equal(trace.word("X")[trace.has("X")], [1, 2, 3])
-    assert trace.line[trace.has("X")].tolist() == [3, 12, 5]
+    np.testing.assert_array_equal(trace.blocks.word("X")[trace.blocks.has("X")], [1, 2, 3])
+    assert trace.blocks.line[trace.blocks.has("X")].tolist() == [3, 12, 5]
     report = report_of(program, job=with_folder(folder))
     assert said(report) == said(report_of(program.replace(b"M98 P2", b"(M98)")))
 

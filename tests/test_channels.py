@@ -13,12 +13,12 @@ from click.testing import CliRunner
 from programs import job_of, machine_of, moves_of, report_of, said
 
 from polarcheck.checking import check
+from polarcheck.columns.trace import Trace
 from polarcheck.commands import main
 from polarcheck.finding import FileReport, Finding
 from polarcheck.machines import profiles
 from polarcheck.reading.channels import channels
 from polarcheck.reading.source import read
-from polarcheck.table.trace import Trace
 
 FIRST = """G98 G40 G97
 T0101
@@ -215,7 +215,7 @@ def test_a_fault_in_a_program_that_two_channels_call_is_told_once() -> None:
     (found,) = report_of(file, "fanuc", *TOOLS).findings
     assert (found.rule, found.line, found.section_line, found.channel) == ("rapid-in-polar", 17, 15, "$2")
     assert found.program == "O2000"
-    lines = {number: trace.line_in_file[trace.leaves].tolist() for number, trace in traces_of(file).items()}
+    lines = {number: trace.blocks.line_in_file[trace.mode.leaves].tolist() for number, trace in traces_of(file).items()}
     assert lines == {"$1": [19], "$2": [19]}
 
 

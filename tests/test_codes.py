@@ -38,8 +38,8 @@ def test_a_code_of_any_number_is_a_state(cycle: str) -> None:
     changes = {"g_codes": {"drilling_cycle": ["G83", cycle]}}
     program = f"O1\nG98 G0 X60. Z2. C0\n{cycle} Z-5. F100\nG12.1\nG1 X40.\nC10.\nX60.\nG13.1\nM30\n"
     trace = trace_of(program, changes=changes)
-    assert trace.drilling.tolist() == [0, 0, *[int(cycle[1:])] * 2, *[0] * 5]
-    assert trace.in_cycle.tolist() == [False] * 2 + [True] * 2 + [False] * 5
+    assert trace.modal.drilling.tolist() == [0, 0, *[int(cycle[1:])] * 2, *[0] * 5]
+    assert trace.modal.in_cycle.tolist() == [False] * 2 + [True] * 2 + [False] * 5
     (found,) = report_of(program, changes=changes, only=["modal-state-wrong-at-entry"]).findings
     assert cycle in found.message
     stopped = program.replace("G12.1", "G80\nG12.1")

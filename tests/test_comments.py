@@ -7,8 +7,8 @@ import math
 import pytest
 from programs import report_of, said, trace_of
 
+from polarcheck.columns.radius_comments import radius_in
 from polarcheck.finding import FileReport
-from polarcheck.table.radius_comments import radius_in
 
 
 @pytest.mark.parametrize(
@@ -125,8 +125,8 @@ def test_ramps_all_shorter_than_the_cutter_are_those_of_its_center(program: str,
     assert blocks == 2
     assert report.verdict == "unverified"
     trace = trace_of(program + END, job=ASKED)
-    assert set(trace.radius[trace.compensates]) == {0.0}
-    assert not math.isnan(trace.cutter_diameter[trace.compensates][0]), "the cutter itself has one"
+    assert set(trace.compensation.radius[trace.compensation.compensates]) == {0.0}
+    assert not math.isnan(trace.offsets.cutter_diameter[trace.compensation.compensates][0]), "the cutter itself has one"
     # A radius of a job is believed.
     told = asked(program, f"{offset}:radius={taken.split()[0]}")
     assert {rule for _, rule in said(told)} == {"start-up-shorter-than-radius", "cancel-shorter-than-radius"}

@@ -65,14 +65,14 @@ def test_the_example_of_the_manual_closes_in_one_reading_of_x(program: str, name
     assert machine_of(name).polar.x == right
     for reading in ("diameter", "radius"):
         tables = tables_of(program, name, changes={"polar": {"x": reading}, "control": {"x": reading}})
-        assert tables["trace"].is_arc.any()
+        assert tables["trace"].path.is_arc.any()
         assert tables["arcs"].is_no_circle.any() == (reading != right), reading
 
 
 def test_the_haas_example_is_a_quarter_of_a_circle_with_x_as_a_radius() -> None:
     tables = tables_of(HAAS, "haas-lathe")
     trace = tables["trace"]
-    assert trace.center[trace.is_arc] == pytest.approx(25.4 * (0.25 + 0.5j))
+    assert trace.path.center[trace.path.is_arc] == pytest.approx(25.4 * (0.25 + 0.5j))
     assert np.nanmax(tables["arcs"].sweep) == pytest.approx(90)
     assert np.nanmax(tables_of(HAAS, "haas-lathe", changes={"polar": {"x": "diameter"}})["arcs"].sweep) < 80
     rules = {finding.rule for finding in report_of(HAAS, "haas-lathe").findings}
@@ -84,7 +84,7 @@ def test_the_lsis_example_is_a_quarter_of_a_circle_with_x_as_a_radius() -> None:
     tables = tables_of(LSIS, "lsis")
     assert np.nanmax(tables["arcs"].sweep) == pytest.approx(90)
     trace = tables["trace"]
-    assert trace.center[trace.is_arc] == pytest.approx(-8 + 8j)
+    assert trace.path.center[trace.path.is_arc] == pytest.approx(-8 + 8j)
     as_diameter = tables_of(LSIS, "lsis", changes={"polar": {"x": "diameter"}})
     assert np.nanmax(as_diameter["arcs"].sweep) < 80
     assert not report_of(LSIS, "lsis").findings
@@ -99,11 +99,11 @@ def test_the_m700v_example_is_wrong_where_x_is_a_diameter(name: str) -> None:
 def test_x_follows_the_words_that_switch_it() -> None:
     program = "G90 G94 G0 X40. C0\n{}\nG12.1\nG1 X20. F200\nG13.1\n{}\nG0 X40.\n"
     trace = trace_of(program.format("G10.9 X0", "G10.9 X1"), "mazak-eia")
-    assert trace.x.tolist() == [20, 20, 20, 20, 20, 20, 20]
+    assert trace.path.x.tolist() == [20, 20, 20, 20, 20, 20, 20]
     trace = trace_of(program.format("", ""), "mazak-eia")
-    assert trace.x.tolist() == [20, 20, 10, 10, 20]
+    assert trace.path.x.tolist() == [20, 20, 10, 10, 20]
     trace = trace_of("G0 X40 Y0\nDIAMOF\nTRANSMIT\nG1 X20 F9\nTRAFOOF\nDIAMON\nG0 X40\n", "siemens-transmit")
-    assert trace.x.tolist() == [20, 20, 20, 20, 20, 20, 20]
+    assert trace.path.x.tolist() == [20, 20, 20, 20, 20, 20, 20]
 
 
 # ---- F in the mode and after it: both tables of M700V p. 73 ----
@@ -127,7 +127,11 @@ def feeds(mode: str, in_mode: str, system: str) -> tuple[float, float, FileRepor
     """F at the first cutting move in the mode [mm/min], F in force after it, and the report."""
     program, changes = table_program(mode, in_mode, system), system_of(system)
     trace = trace_of(program, "mitsubishi-m700", changes=changes)
-    return float(trace.feed[4]), float(trace.feed_number[7]), report_of(program, "mitsubishi-m700", changes=changes)
+    return (
+        float(trace.feedrate.feed[4]),
+        float(trace.feedrate.feed_number[7]),
+        report_of(program, "mitsubishi-m700", changes=changes),
+    )
 
 
 @pytest.mark.parametrize("system", ["A", "B"])
@@ -181,16 +185,16 @@ def test_the_first_move_at_feed_of_z_alone_needs_an_f_in_each_list_of_codes(syst
 
 def test_last_of_several_feeds_of_the_mode_stays_after_it() -> None:
     program = "G94 F100\nG0 X40. C0\nG12.1\nG1 X30. F300\nX20. F400\nG13.1\nG1 X30.\n"
-    assert trace_of(program, "mitsubishi-m700").feed_number[-1] == 400
+    assert trace_of(program, "mitsubishi-m700").feedrate.feed_number[-1] == 400
     again = "G95 F0.2\nG0 X40. C0\nG12.1\nG1 X30. F300\nG13.1\nG12.1\nG1 X30. F500\nG13.1\nG1 X30.\n"
-    assert trace_of(again, "mitsubishi-m700").feed_number[-1] == 0.2
+    assert trace_of(again, "mitsubishi-m700").feedrate.feed_number[-1] == 0.2
     written = "G95 F0.2\nG0 X40. C0\nG12.1\nG1 X30. F300\nG13.1\nG1 X30. F0.3\n"
-    assert trace_of(written, "mitsubishi-m700").feed_number[-1] == 0.3
+    assert trace_of(written, "mitsubishi-m700").feedrate.feed_number[-1] == 0.3
 
 
 def test_f_is_one_modal_word_on_other_controls() -> None:
     trace = trace_of("G99 F0.2\nG0 X40. C0\nG12.1\nG1 X30. F300\nG13.1\nG1 X30.\n", "fanuc")
-    assert trace.feed_number[-1] == 300
+    assert trace.feedrate.feed_number[-1] == 300
 
 
 # ---- the infeed cycle ----
@@ -332,7 +336,7 @@ def test_words_of_ones_own_need_no_code() -> None:
     program = "G0 X60. Y0\nG1 X40. F9\nRADIUS\nX20.\nDIAM\nX20.\n"
     words = {"x_radius_words": ["RADIUS"], "x_diameter_words": ["DIAM"]}
     trace = trace_of(program, "fanuc", changes={"control": words})
-    assert trace.x.tolist() == [30, 20, 20, 20, 20, 10]
+    assert trace.path.x.tolist() == [30, 20, 20, 20, 20, 10]
 
 
 def test_messages_name_the_native_word() -> None:
@@ -345,16 +349,16 @@ def test_messages_name_the_native_word() -> None:
 def test_codes_of_other_numbers_move() -> None:
     program = "G94 G0 X120. C0\nG137 C0\nG101 X20. Y0 F200\nG101 Y10.\nG103 X10. Y20. L10.\nG136\n"
     trace = trace_of(program, "okuma-osp")
-    assert trace.motion.tolist()[2:5] == [Motion.LINE, Motion.LINE, Motion.CCW]
-    assert trace.center[4] == pytest.approx(10 + 10j)
-    assert trace.end[4] == pytest.approx(10 + 20j)
+    assert trace.axes.motion.tolist()[2:5] == [Motion.LINE, Motion.LINE, Motion.CCW]
+    assert trace.path.center[4] == pytest.approx(10 + 10j)
+    assert trace.path.end[4] == pytest.approx(10 + 20j)
 
 
 def test_virtual_axis_as_a_diameter() -> None:
     trace = trace_of(
         "G98 G0 X60. C0\nG12.1\nG1 X40. C20. F100\nG13.1\n", "fanuc", changes={"parameters": {"5450#0": 1}}
     )
-    assert trace.end[2] == 20 + 10j
+    assert trace.path.end[2] == 20 + 10j
 
 
 # ---- alarms ----
@@ -545,7 +549,7 @@ def test_codes_that_a_haas_has() -> None:
     report = report_of(program, "haas-lathe")
     assert not {"unknown-code", "code-not-allowed-in-polar"} & {found.rule for found in report.findings}
     trace = tables_of(program, "haas-lathe", changes={"control": {"units": "mm"}})["trace"]
-    assert trace.end[[5, 6, 7]] == pytest.approx([20, 15 + 3j, 10 + 3j])
+    assert trace.path.end[[5, 6, 7]] == pytest.approx([20, 15 + 3j, 10 + 3j])
 
 
 @pytest.mark.parametrize("name", ["fanuc", "fanuc-16i", "gsk-988", "turning-center"])
@@ -659,8 +663,10 @@ def test_g390_and_g391_are_executed(absolute: str, incremental: str) -> None:
 def test_g391_outside_the_mode_moves_by_steps_too() -> None:
     program = HAAS_HEAD + "G0 X6. C0 Z1.\nG391\nX-2. Z-.5 C30.\nG390\nG112\nG1 X1. Y0. F15.\n" + HAAS_TAIL
     trace = trace_of(program, "haas-lathe")
-    row = int(np.flatnonzero(trace.enters)[0])
-    np.testing.assert_allclose([trace.x[row], trace.z[row], trace.c_angle[row]], [2 * 25.4, 0.5 * 25.4, 30.0])
+    row = int(np.flatnonzero(trace.mode.enters)[0])
+    np.testing.assert_allclose(
+        [trace.path.x[row], trace.path.z[row], trace.path.c_angle[row]], [2 * 25.4, 0.5 * 25.4, 30.0]
+    )
 
 
 def test_g391_left_in_force_is_no_coordinate() -> None:

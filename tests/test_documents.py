@@ -72,8 +72,8 @@ def test_each_statement_is_covered_by_what_there_is() -> None:
 def is_there(name: str, tables: Tables) -> bool:
     if name.startswith("test_"):
         return re.search(rf"^def {name}\(", TESTS, re.MULTILINE) is not None
-    if name.startswith("path."):
-        return name.removeprefix("path.") in executed.Move.__struct_fields__
+    if name.startswith("move."):
+        return name.removeprefix("move.") in executed.Move.__struct_fields__
     if "." not in name:
         return name in load_all()
     try:
@@ -84,7 +84,7 @@ def is_there(name: str, tables: Tables) -> bool:
 
 
 @pytest.mark.parametrize(
-    "name", ["rapid-in-polars", "test_printed", "path.x", "trace.ends", "tracer.end", "machine.polar.planes"]
+    "name", ["rapid-in-polars", "test_printed", "move.x", "trace.ends", "tracer.end", "machine.polar.planes"]
 )
 def test_what_is_not_there_is_not_taken(name: str) -> None:
     assert not is_there(name, tables_of("G0 X1.\n"))

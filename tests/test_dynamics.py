@@ -31,7 +31,7 @@ def inside(*blocks: str) -> str:
 
 
 def row_of(dynamics: Dynamics, line: int) -> int:
-    return int(np.flatnonzero(dynamics.trace.line == line)[0])
+    return int(np.flatnonzero(dynamics.trace.blocks.line == line)[0])
 
 
 # ---- the moves ----
@@ -178,7 +178,7 @@ def test_what_is_not_known_of_a_time_is_said(block: str, reason: str | None) -> 
         assert math.isinf(dynamics.time[row])
         return
     assert math.isnan(dynamics.time[row])
-    told = dynamics.times(np.flatnonzero(dynamics.trace.section >= 0))
+    told = dynamics.times(np.flatnonzero(dynamics.trace.mode.section >= 0))
     assert [(one[0], one[2]) for one in told.unknown][:1] == [(reason, row)]
     assert told.known == pytest.approx(60 * 10 / 200)
     assert math.isnan(told.whole)

@@ -261,7 +261,7 @@ def test_each_contour_has_the_radius_of_its_own_edge() -> None:
     contour = "G1 X40 Y10 F300\nG41 X20\nY-20\nG40 X40\n"
     program = f"T8 D1\nG94 G0 X60 Y0\nDIAMOF\nTRANSMIT\nG17\n{contour}D2\n{contour}TRAFOOF\n"
     trace = trace_of(program, "siemens-transmit", "8/1:radius=4", "8/2:radius=3")
-    assert trace.radius[trace.side != 40].tolist() == [4.0, 4.0, 3.0, 3.0]
+    assert trace.compensation.radius[trace.compensation.side != 40].tolist() == [4.0, 4.0, 3.0, 3.0]
 
 
 def test_a_named_tool_has_edges_where_numbers_have_offset_digits() -> None:
@@ -275,8 +275,8 @@ def test_a_named_tool_has_edges_where_numbers_have_offset_digits() -> None:
 def test_many_edges_take_no_time_that_grows_with_their_square() -> None:
     program = "".join(f"T{number} D{number % 9 + 1}\n" for number in range(1, 20_001))
     trace = trace_of(program + face("T7 D2"), "siemens-transmit", "7/2:radius=4")
-    assert trace.offset_count > 20_000
-    assert trace.radius_of_offset[-1] == 4.0
+    assert trace.tools.offset_count > 20_000
+    assert trace.offsets.radius_of_offset[-1] == 4.0
 
 
 @pytest.mark.parametrize("word", ["D123456", "D1.5.2", "D", "D-1", "T99999999999999999 D1", "D" + "9" * 400])

@@ -74,7 +74,7 @@ def findings(made: Tables, function: Any, *others: Rule, **options: Any) -> list
 def test_each_table_is_made_once_from_those_that_it_names(made: Tables) -> None:
     assert made["tool_center"] is made["tool_center"]
     assert made["tool_center"].trace is made["trace"]
-    assert made["sections"] is made["trace"].sections
+    assert made["sections"] is made["trace"].mode.sections
     assert made["moves"] is made["tool_center"].moves
     assert made.column("machine.arcs.tolerance") == made["machine"].arcs.tolerance
     assert set(MAKERS) | set(PARTS) <= set(made)
@@ -148,10 +148,10 @@ def test_each_rule_compares_or_says_why_not(path: Path) -> None:
 
 def test_a_rule_that_only_returns_a_column_is_found_out() -> None:
     def passes_on(trace: Any) -> Any:
-        return trace.in_polar
+        return trace.mode.in_polar
 
     def compared(trace: Any) -> Any:
-        return trace.in_polar & trace.cuts
+        return trace.mode.in_polar & trace.path.cuts
 
     for function, expected in ((passes_on, False), (compared, True)):
         (found,) = ast.parse(textwrap.dedent(inspect.getsource(function))).body
@@ -171,13 +171,13 @@ def test_severities_of_a_rule_of_all_or_of_each() -> None:
     made = tables_of(PROGRAM)
 
     def own(trace: Any) -> Any:
-        return trace.enters
+        return trace.mode.enters
 
     def of_all(trace: Any) -> Any:
-        return Hits(trace.enters, NOTE)
+        return Hits(trace.mode.enters, NOTE)
 
     def of_each(trace: Any) -> Any:
-        return graded(error=trace.codes("G12.1"), warning=trace.enters)
+        return graded(error=trace.blocks.codes("G12.1"), warning=trace.mode.enters)
 
     for function, expected in ((own, ["warning"] * 2), (of_all, ["note"] * 2), (of_each, ["error", "warning"])):
         assert [found.severity for found in findings(made, function)] == expected
@@ -187,10 +187,10 @@ def test_words_at_fault_by_mask_and_by_name() -> None:
     made = tables_of(PROGRAM)
 
     def by_mask(trace: Any) -> Any:
-        return Hits(trace.codes("M8"), at=trace.words_at(trace.word_indices("C")))
+        return Hits(trace.blocks.codes("M8"), at=trace.blocks.words_at(trace.blocks.word_indices("C")))
 
     def by_name(trace: Any) -> Any:
-        return trace.codes("M8")
+        return trace.blocks.codes("M8")
 
     for function, options, columns in (
         (by_mask, {}, (1, 4)),
@@ -209,8 +209,8 @@ def test_words_at_fault_by_mask_and_by_name() -> None:
 @pytest.mark.parametrize(
     ("text", "expected", "values"),
     [
-        ("F {trace.feed:feed}", ["F 4 inch/min", "F 100 mm/min"], [{"feed": 101.6}, {"feed": 100.0}]),
-        ("{trace.x:diameter}", ["1 inch", "40 mm"], [{"x": 12.7}, {"x": 20.0}]),
+        ("F {feedrate.feed:feed}", ["F 4 inch/min", "F 100 mm/min"], [{"feed": 101.6}, {"feed": 100.0}]),
+        ("{path.x:diameter}", ["1 inch", "40 mm"], [{"x": 12.7}, {"x": 20.0}]),
         ("{X} {F}", ["X1. F4", "X40. F100"], [{"X": "X1.", "F": "F4"}, {"X": "X40.", "F": "F100"}]),
         ("{machine.title}", ["FANUC lathe control"] * 2, [{}, {}]),
         ("{depth:length}", ["0.0394 inch", "1 mm"], [{"depth": 1.0}] * 2),
@@ -219,7 +219,7 @@ def test_words_at_fault_by_mask_and_by_name() -> None:
 )
 def test_names_in_a_message(text: str, expected: list[str], values: list[dict[str, Any]]) -> None:
     def first_cut(trace: Any) -> Any:
-        return Hits(trace.first_in_section(trace.cuts), values={"depth": 1.0})
+        return Hits(trace.mode.first_in_section(trace.path.cuts), values={"depth": 1.0})
 
     found = findings(tables_of(PROGRAM), first_cut, message=text)
     assert [one.message for one in found] == expected
@@ -228,7 +228,7 @@ def test_names_in_a_message(text: str, expected: list[str], values: list[dict[st
 
 def test_a_name_that_stands_for_nothing_is_a_fault_of_the_rule() -> None:
     def entered(trace: Any) -> Any:
-        return trace.enters
+        return trace.mode.enters
 
     with pytest.raises(RuleError, match="nowhere in a message of the group polar"):
         findings(tables_of(PROGRAM), entered, message="{nowhere}")
@@ -254,7 +254,7 @@ def x_words(words: Any) -> Any:
 
 
 def has_y(trace: Any) -> Any:
-    return trace.has("Y")
+    return trace.blocks.has("Y")
 
 
 def only_sections(sections: Any) -> Any:
@@ -310,7 +310,7 @@ def test_a_chain_of_causes_ends_at_its_first() -> None:
     """What follows from a finding that follows itself is listed under the one that stands alone."""
 
     def has_u(trace: Any) -> Any:
-        return trace.has("U")
+        return trace.blocks.has("U")
 
     made = tables_of("G1 X1. Y1. U1.\n")
     chain = [
@@ -326,10 +326,10 @@ def test_a_cause_reaches_to_the_end_of_its_section_and_no_further() -> None:
     made = tables_of(PROGRAM)
 
     def begins(trace: Any) -> Any:
-        return trace.enters & (trace.program == 0)
+        return trace.mode.enters & (trace.blocks.program == 0)
 
     def has_c(trace: Any) -> Any:
-        return trace.has("C") & (trace.in_polar | trace.leaves)
+        return trace.blocks.has("C") & (trace.mode.in_polar | trace.mode.leaves)
 
     cause, effect = made_rule(begins), made_rule(has_c, follows={"section": ("begins",)})
     found = Engine(made, {}, [cause, effect]).findings()
@@ -352,11 +352,11 @@ def test_a_block_that_ran_often_is_one_finding_at_its_worst_run() -> None:
     made = tables_of("O1\n#1=0\nWHILE[#1LT3]DO1\nG1 X#1 F1\n#1=#1+1\nEND1\nM30\n")
 
     def has_x(trace: Any) -> Any:
-        return trace.has("X")
+        return trace.blocks.has("X")
 
-    (found,) = findings(made, has_x, message="{trace.x:.1f}", worst="trace.x")
+    (found,) = findings(made, has_x, message="{path.x:.1f}", worst="path.x")
     assert (found.count, found.message) == (3, "1.0")
-    (first,) = findings(made, has_x, message="{trace.x:.1f}")
+    (first,) = findings(made, has_x, message="{path.x:.1f}")
     assert (first.count, first.message) == (3, "0.0")
 
 
@@ -412,7 +412,7 @@ def test_advice_is_given_where_somebody_names_its_severity() -> None:
 
 def test_a_rule_names_what_it_is_over() -> None:
     with pytest.raises(RuleError, match="expected one of rows, words"):
-        made_rule(lambda trace: trace.in_polar, over="moves")
+        made_rule(lambda trace: trace.mode.in_polar, over="moves")
 
 
 def test_phrases_take_what_they_name_and_nothing_else() -> None:
@@ -442,14 +442,14 @@ def test_a_rule_whose_table_takes_too_long_is_not_evaluated_and_all_others_are(m
         return slow.depth
 
     def mode_entered(trace: Any) -> Any:
-        return trace.enters
+        return trace.mode.enters
 
     engine = Engine(made, {}, [made_rule(hopeless), made_rule(mode_entered)])
     assert [(found.rule, found.line) for found in engine.findings()] == [("mode-entered", 4), ("mode-entered", 12)]
     (missing,) = engine.unlisted
     assert (missing.rule, missing.reason) == ("hopeless", "the depth takes too long")
     assert missing.matters
-    assert missing.blocks == np.count_nonzero(made["trace"].in_polar)
+    assert missing.blocks == np.count_nonzero(made["trace"].mode.in_polar)
 
 
 def test_what_a_message_needs_may_take_too_long_too(made: Tables) -> None:
@@ -457,10 +457,10 @@ def test_what_a_message_needs_may_take_too_long_too(made: Tables) -> None:
     made.give("slow", Slow())
 
     def mode_entered(trace: Any) -> Any:
-        return trace.enters
+        return trace.mode.enters
 
     def mode_left(trace: Any) -> Any:
-        return trace.enters
+        return trace.mode.enters
 
     told = made_rule(mode_left, follows={"block": ("mode-entered",)})
     engine = Engine(made, {}, [made_rule(mode_entered, message="{slow.depth}"), told])
@@ -473,10 +473,10 @@ def test_a_cause_whose_reach_takes_too_long_explains_nothing(made: Tables, monke
     monkeypatch.setitem(SPANS, "slow", "slow.depth")
 
     def mode_entered(trace: Any) -> Any:
-        return trace.enters
+        return trace.mode.enters
 
     def mode_left(trace: Any) -> Any:
-        return trace.enters
+        return trace.mode.enters
 
     rules = [made_rule(mode_entered), made_rule(mode_left, follows={"slow": ("mode-entered",)})]
     assert len(Engine(made, {}, rules).findings()) == 4
@@ -498,7 +498,7 @@ def test_findings_beyond_the_limit_are_counted() -> None:
     many.give("other_machine", OtherMachine(many))
 
     def x_written(trace: Any) -> Any:
-        return trace.has("X")
+        return trace.blocks.has("X")
 
     engine = Engine(many, {}, [made_rule(x_written)])
     assert len(engine.findings()) == LISTED == 1000

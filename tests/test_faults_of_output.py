@@ -20,8 +20,8 @@ import pytest
 import polarcheck
 from polarcheck.batch import tasks as batch
 from polarcheck.checking.rule import load_all
+from polarcheck.columns.trace import Trace
 from polarcheck.commands import settings
-from polarcheck.table.trace import Trace
 
 GOOD = "G98 G0 X60. C0\nG12.1\nG1 X40. F200\nC5.\nC-5.\nG13.1\n"
 RAPID = GOOD.replace("\nC5.", "\nG0 C5.")
@@ -314,10 +314,11 @@ def checked(bad: Exception, monkeypatch: pytest.MonkeyPatch) -> tuple[batch.Chec
     def rapid(trace: Trace) -> Any:
         if trace.text.source.path == "b.nc":
             raise bad
-        return trace.in_polar & False
+        return trace.mode.in_polar & False
 
     known = load_all()
-    monkeypatch.setitem(known, "rapid-in-polar", msgspec.structs.replace(known["rapid-in-polar"], function=rapid))
+    faulty = msgspec.structs.replace(known["rapid-in-polar"], function=rapid, parameters=("trace",))
+    monkeypatch.setitem(known, "rapid-in-polar", faulty)
     Path("c.nc").write_text(GOOD)
     told: list[str] = []
     bugs: list[Exception] = []

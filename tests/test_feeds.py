@@ -103,7 +103,9 @@ def test_f_is_rounded_as_messages_do() -> None:
             tables = tables_of(program, "fanuc", changes={"limits": {"c_feed": c_feed}})
             trace, row = tables["trace"], 5
             told = highest(trace, tables["highest_feeds"])[row]
-            below = feed_below(trace, row, float(tables["tool_center"].feed_allowed[row]))
+            below = feed_below(
+                trace.blocks, trace.lengths, trace.run, row, float(tables["tool_center"].feed_allowed[row])
+            )
             if tables["highest_feeds"].must_be_lower[row]:
                 assert below == f"F{feed_number(told, points == '.')}"
 
@@ -181,14 +183,14 @@ def test_the_table_in_its_program_leaves_no_finding_and_no_block_slower_than_it_
     assert not report_of(made.data, "fanuc", tool, changes=limits, only=only).findings
     asked, feeds = highest(before["trace"], before["highest_feeds"]), before["highest_feeds"]
     known = feeds.cuts & ~np.isnan(asked)
-    assert after["trace"].programmed_feed[known] == pytest.approx(asked[known])
+    assert after["trace"].feedrate.programmed_feed[known] == pytest.approx(asked[known])
     lowered = np.flatnonzero(feeds.must_be_lower & ~np.isnan(asked))
     if not len(lowered):
         assert made.data == program.encode()
         return
-    line = int(before["trace"].line[random.choice(lowered.tolist())])
+    line = int(before["trace"].blocks.line[random.choice(lowered.tolist())])
     trace = after["trace"]
-    feed = float(trace.programmed_feed[np.flatnonzero(trace.line == line)[0]])
+    feed = float(trace.feedrate.programmed_feed[np.flatnonzero(trace.blocks.line == line)[0]])
     lines = made.data.decode().split("\n")
     raised = max(feed * 1.01, feed + (1 if feed >= 10 else 0))
     lines[line - 1] = re.sub(r" F[\d.]+", "", lines[line - 1]) + f" F{raised:.4f}"

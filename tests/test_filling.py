@@ -8,7 +8,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from polarcheck.table.filling import before, fill_down, positions
+from polarcheck.columns.filling import before, fill_down, positions
 
 ROW = st.tuples(
     st.sampled_from([math.nan, math.nan, 5.0, -2.5]),

@@ -31,13 +31,13 @@ from polarcheck.checking.editing import Replace
 from polarcheck.checking.repair import Mended, Repair
 from polarcheck.checking.rule import load_all
 from polarcheck.checking.settings import Settings
+from polarcheck.columns.trace import Trace
 from polarcheck.commands import main
 from polarcheck.errors import OutputError
 from polarcheck.finding import FileReport
 from polarcheck.fixes import edits, fixing
 from polarcheck.fixes.comparison import _VERDICTS
 from polarcheck.reading import rewriting, source
-from polarcheck.table.trace import Trace
 
 pytestmark = pytest.mark.usefixtures("own_folder")
 

@@ -89,12 +89,12 @@ def test_words_and_positions_are_those_of_the_unrolled_program() -> None:
     macro = f"O1\nG0 X50. Z5.\n{loop}M98 P2 L2\nM30\nO2\nU1.5\nM99\n"
     plain = "O1\nG0 X50. Z5.\n" + "".join(f"G1 X{50 - i}. F100\nW-{i / 2}\n" for i in range(1, 5)) + "U1.5\nU1.5\nM30\n"
     ours, theirs = trace_of(macro), trace_of(plain)
-    rows = ours.has("X", "Z", "U", "W")
-    others = theirs.has("X", "Z", "U", "W")
+    rows = ours.blocks.has("X", "Z", "U", "W")
+    others = theirs.blocks.has("X", "Z", "U", "W")
     for address in "XZUWF":
-        np.testing.assert_array_equal(ours.word(address)[rows], theirs.word(address)[others])
-    np.testing.assert_allclose(ours.x[rows], theirs.x[others])
-    np.testing.assert_allclose(ours.z[rows], theirs.z[others])
+        np.testing.assert_array_equal(ours.blocks.word(address)[rows], theirs.blocks.word(address)[others])
+    np.testing.assert_allclose(ours.path.x[rows], theirs.path.x[others])
+    np.testing.assert_allclose(ours.path.z[rows], theirs.path.z[others])
 
 
 ENDLESS = {
@@ -177,7 +177,7 @@ def test_block_skip_is_judged_both_ways() -> None:
     assert [f.rule for f in report_of(program, job={"run": {"block_skip": "off"}}).findings] == ["rapid-in-polar"]
     later = HEAD + "G12.1\nG1 X60. F1500 /G40\nC5.\nG13.1\nM30\n"
     on = trace_of(later, job={"run": {"block_skip": "on"}})
-    assert not on.codes("G40").any()
+    assert not on.blocks.codes("G40").any()
 
 
 def test_a_called_program_is_found_in_the_folders_only(tmp_path: Path) -> None:
@@ -207,13 +207,13 @@ def test_a_loop_counts_a_finding_and_shows_its_worst_run() -> None:
 def test_modal_call_runs_after_each_move() -> None:
     program = "O1\nG66 P2 A5.\nG0 X50.\nX60.\nG67\nX70.\nM30\nO2\nZ#1\nG0 Z0\nM99\n"
     trace = trace_of(program)
-    np.testing.assert_array_equal(trace.word("Z")[trace.has("Z")], [5.0, 0.0, 5.0, 0.0])
+    np.testing.assert_array_equal(trace.blocks.word("Z")[trace.blocks.has("Z")], [5.0, 0.0, 5.0, 0.0])
     assert not report_of(program).findings
 
 
 def test_return_with_p_goes_to_the_caller() -> None:
     trace = trace_of("O1\nM98 P2\nG0 X1.\nN10 G0 X2.\nM30\nO2\nG0 X5.\nM99 P10\n")
-    np.testing.assert_array_equal(trace.word("X")[trace.has("X")], [5.0, 2.0])
+    np.testing.assert_array_equal(trace.blocks.word("X")[trace.blocks.has("X")], [5.0, 2.0])
 
 
 def test_an_endless_program_is_no_fault_of_those_behind_it() -> None:

@@ -28,7 +28,7 @@ def face(body: str, *, x: float = 120, c: str = "", before: str = "") -> str:
 def ends(program: str, **more: Any) -> list[complex]:
     """Where the moves of the programmed path end, but the last, which leaves the contour."""
     trace = trace_of(program, MACHINE, "8:radius=2", **more)
-    return [complex(point) for point in trace.end[trace.on_plane]][:-1]
+    return [complex(point) for point in trace.path.end[trace.path.on_plane]][:-1]
 
 
 def near(found: list[complex], expected: list[complex]) -> bool:
@@ -72,9 +72,9 @@ def test_a_frame_shifts_and_turns_what_is_programmed(body: str, expected: list[c
 def test_the_center_of_an_arc_turns_with_the_frame() -> None:
     program = face("ROT RPL=90\nATRANS X3 Y4\nG1 X20 Y0 F200\nG3 X10 Y10 I-10 J0\nG2 X20 Y20 CR=10\n")
     trace = trace_of(program, MACHINE, "8:radius=2")
-    centers = trace.center[trace.is_arc]
+    centers = trace.path.center[trace.path.is_arc]
     assert np.allclose(centers, [1j * (13 + 4j), 1j * (23 + 14j)])
-    assert np.allclose(abs(trace.end[trace.is_arc] - centers), 10)
+    assert np.allclose(abs(trace.path.end[trace.path.is_arc] - centers), 10)
 
 
 @settings(max_examples=25, deadline=None)
@@ -93,7 +93,7 @@ def test_a_contour_in_a_frame_is_the_contour_turned_by_formula(
         words = f"TRANS X{shift[0]} Y{shift[1]}\nAROT RPL={angle}\n"
     body = "".join(f"G1 X{x} Y{y} F200\n" for x, y in points)
     trace = trace_of(face(words + body), MACHINE)
-    found = trace.end[trace.moves_plane & trace.in_polar][:-1]
+    found = trace.path.end[trace.axes.moves_plane & trace.mode.in_polar][:-1]
     plain = np.array([complex(*point) for point in points])
     assert np.allclose(found, turn * plain + by if first else turn * (plain + by), atol=1e-6)
 
@@ -143,20 +143,20 @@ def test_the_example_of_the_manual_runs_round_its_square(allowance: float) -> No
 def test_the_tool_stands_where_c_has_turned_the_part_to() -> None:
     program = face("G1 X30 Y0 F200\n", c="C45 ")
     trace = trace_of(program, MACHINE)
-    assert np.allclose(trace.start[trace.on_plane][0], 60 * np.exp(-1j * math.pi / 4))
+    assert np.allclose(trace.path.start[trace.path.on_plane][0], 60 * np.exp(-1j * math.pi / 4))
     turned = trace_of(program, MACHINE, changes={"polar": {"zero_angle": "at-c0"}})
-    assert np.allclose(turned.start[turned.on_plane][0], 60 * np.exp(1j * math.pi / 4))
+    assert np.allclose(turned.path.start[turned.path.on_plane][0], 60 * np.exp(1j * math.pi / 4))
     zero = trace_of(program, MACHINE, changes={"polar": {"zero_angle": "at-switch"}})
-    assert np.allclose(zero.start[zero.on_plane][0], 60)
+    assert np.allclose(zero.path.start[zero.path.on_plane][0], 60)
     for c in ("", "C0 ", "C360 ", "C-720 "):
         trace = trace_of(face("G1 X30 Y0 F200\n", c=c), MACHINE)
-        assert trace.start[trace.on_plane][0] == 60
+        assert trace.path.start[trace.path.on_plane][0] == 60
 
 
 def test_each_section_begins_at_the_angle_that_c_has_there() -> None:
     section = "G0 X120 C{}\nDIAMOF\nTRANSMIT\nG17\nG1 X30 Y5 F200\nTRAFOOF\nDIAMON\n"
     trace = trace_of("T8 D1\nG94\n" + section.format(90) + section.format(180), MACHINE)
-    assert np.allclose(trace.start[trace.on_plane], [-60j, -60])
+    assert np.allclose(trace.path.start[trace.path.on_plane], [-60j, -60])
 
 
 # ---- what is not simulated ----
@@ -169,7 +169,11 @@ def test_other_frames_are_not_evaluated_by_name(word: str) -> None:
     assert [one.reason for one in report.not_evaluated if f"{word} in line 6 is not simulated" in one.reason]
     assert said(report) == []
     trace = trace_of(face(f"{word}\nG1 X20 Y10 F200\nTRANS\nG1 X20 Y10\n"), MACHINE)
-    assert [math.isnan(point.real) for point in trace.end[trace.moves_plane & trace.in_polar]] == [True, False, False]
+    assert [math.isnan(point.real) for point in trace.path.end[trace.axes.moves_plane & trace.mode.in_polar]] == [
+        True,
+        False,
+        False,
+    ]
 
 
 def test_a_frame_that_ends_before_the_mode_is_none_of_its_own() -> None:
@@ -205,7 +209,7 @@ def test_a_frame_that_outlives_the_switch_puts_the_origin_off_center() -> None:
         report = report_of(face("G1 X20 Y10 F200\n", before=harmless), MACHINE, changes=kept)
         assert said(report) == [], harmless
     trace = trace_of(face("G1 X20 Y10 F200\n", before="TRANS X10\n"), MACHINE, changes=kept)
-    assert trace.end[trace.on_plane][0] in (25 + 10j, 30 + 10j)
+    assert trace.path.end[trace.path.on_plane][0] in (25 + 10j, 30 + 10j)
 
 
 def test_a_work_offset_in_the_mode_is_said_where_it_is_another() -> None:
@@ -230,14 +234,14 @@ def test_words_of_frames_are_read_in_any_spelling() -> None:
 
 def test_z_is_shifted_too() -> None:
     trace = trace_of("G0 Z10\nTRANS Z5\nG0 Z1\nATRANS Z2\nG91 Z1\nG90 Z0\nTRANS\nZ3\n", MACHINE)
-    assert trace.z.tolist() == [10, 10, 6, 6, 7, 7, 7, 3]
+    assert trace.path.z.tolist() == [10, 10, 6, 6, 7, 7, 7, 3]
 
 
 def test_many_frames_are_followed_one_after_the_other() -> None:
     body = "".join(f"AROT RPL=90\nG91 X{number % 7} Y1\n" for number in range(20_000))
     trace = trace_of(face("G1 X20 Y10 F200\n" + body + "G90\n"), MACHINE)
     steps = sum(1j ** (number + 1) * (number % 7 + 1j) for number in range(20_000))
-    last = trace.end[trace.moves_plane & trace.in_polar][-2]
+    last = trace.path.end[trace.axes.moves_plane & trace.mode.in_polar][-2]
     assert abs(last - (20 + 10j + steps)) < 1e-4
 
 
@@ -245,7 +249,7 @@ def test_a_negative_radius_is_the_longer_arc() -> None:
     body = "G1 X20 Y0 F200\nG3 X0 Y-20 CR={}20\n"
     for sign, center in (("-", 0), ("", 20 - 20j)):
         trace = trace_of(face(body.format(sign)), MACHINE)
-        assert np.allclose(trace.center[trace.is_arc], center)
+        assert np.allclose(trace.path.center[trace.path.is_arc], center)
     report = report_of(face(body.format("-")), MACHINE, changes={"limits": {"c_feed": 1e6}})
     assert said(report) == []
 

@@ -170,10 +170,10 @@ def test_g98_is_feed_per_minute(code: str, mode: FeedMode, f_is_known: bool) -> 
     """
     twin = SINGLE.replace("N100 G00", f"N100 {code} G00")
     trace = trace_of(twin, "gsk-988", TOOL)
-    cutting = np.flatnonzero(trace.cuts)
-    assert (trace.feed_mode[cutting] == mode).all()
-    assert (trace.feed[cutting] == 200).all() == f_is_known
-    assert np.isnan(trace.feed[cutting]).all() == (not f_is_known)
+    cutting = np.flatnonzero(trace.path.cuts)
+    assert (trace.feedrate.feed_mode[cutting] == mode).all()
+    assert (trace.feedrate.feed[cutting] == 200).all() == f_is_known
+    assert np.isnan(trace.feedrate.feed[cutting]).all() == (not f_is_known)
     rules = [found.rule for found in report_of(twin, "gsk-988", TOOL).findings]
     assert ("feed-per-revolution-in-polar" in rules) == (not f_is_known)
 
@@ -194,9 +194,9 @@ def test_the_plane_of_before_is_dropped_and_comes_back(plane: str) -> None:
     twin = SINGLE.replace("N100 G00", f"N100 {plane} G00").replace("N240 Z100.0;", "N240 G01 Z5. F100;")
     assert judged(twin) == []
     trace = trace_of(twin, "gsk-988", TOOL)
-    assert trace.is_arc.sum() == 4
-    states = trace.state("plane")
-    assert states[trace.enters] == states[trace.leaves] == states[-1]
+    assert trace.path.is_arc.sum() == 4
+    states = trace.modal.state("plane")
+    assert states[trace.mode.enters] == states[trace.mode.leaves] == states[-1]
 
 
 def test_axes_by_number_hold_for_one_section() -> None:
@@ -205,8 +205,8 @@ def test_axes_by_number_hold_for_one_section() -> None:
         "N240 Z100.0;", "N250 G12.1 P1;\nG01 X140. C5. F100;\nX150. C0;\nN260 G13.1;\nN270 G12.1 P3;\nN280 G13.1;"
     )
     trace = trace_of(twice, "gsk-988", TOOL)
-    enters = np.flatnonzero(trace.enters)
-    linear, rotary = trace.axes_written
+    enters = np.flatnonzero(trace.mode.enters)
+    linear, rotary = trace.axes.axes_written
     assert linear[enters].tolist() == [3, 1, 3]
     assert rotary[enters].tolist() == [1, 3, 3]
     assert (block(twice, "N270"), "polar-axis-number-wrong") in judged(twice)

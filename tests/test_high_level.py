@@ -296,7 +296,7 @@ def test_a_called_program_may_lie_in_a_folder(tmp_path: Path) -> None:
     job = {"run": {"subprograms": [str(tmp_path)]}}
     report = report_of("FLACHEN_26\nOTHER\nL7\nM30\n", OWN, job=job)
     assert said(report) == []
-    assert trace_of("FLACHEN_26\nOTHER\nL7\nM30\n", OWN, job=job).word("X").tolist().count(6.0) == 3
+    assert trace_of("FLACHEN_26\nOTHER\nL7\nM30\n", OWN, job=job).blocks.word("X").tolist().count(6.0) == 3
     assert said(report_of("MISSING_1\nL8\nM30\n", OWN, job=job)) == [
         (1, "subprogram-missing"),
         (2, "subprogram-missing"),
@@ -386,8 +386,8 @@ def test_words_of_the_language_were_misread() -> None:
     assert not [finding.rule for finding in report.findings if finding.severity == "error"]
     assert not {"offset-changed-in-polar", "d-word-on-lathe"} & {finding.rule for finding in report.findings}
     trace = trace_of(program(f"T1 D1 / SETMS(3) / {section}"), OWN)
-    assert (trace.tool_called[trace.in_polar] == trace.tool_called[trace.in_polar][0]).all()
-    assert trace.word("X")[trace.in_polar][0] == 20
+    assert (trace.tools.tool_called[trace.mode.in_polar] == trace.tools.tool_called[trace.mode.in_polar][0]).all()
+    assert trace.blocks.word("X")[trace.mode.in_polar][0] == 20
 
 
 EXAMPLE = """N10 T1 D1 G54 G17 G90 F5000 G94
@@ -440,7 +440,7 @@ M17
 """
     report = report_of(text, ISO)
     assert [finding.rule for finding in report.findings if finding.severity != "note"] == []
-    assert [x for x in trace_of(text, ISO).word("X").tolist() if x == x] == [7.0, 8.0]
+    assert [x for x in trace_of(text, ISO).blocks.word("X").tolist() if x == x] == [7.0, 8.0]
 
 
 def test_the_other_language_is_told_and_comes_back() -> None:
@@ -541,15 +541,15 @@ def test_distances_of_words_count_beside_the_modal_ones() -> None:
     section = "G91 G1 X=AC(5) Y3 F100 / X1 Y=AC(2) / G90 X=IC(2) Y=IC(-1)"
     blocks = f"T1 D1 / G0 X20 Y0 / DIAMOF / TRANSMIT / {section} / TRAFOOF / M30"
     trace = trace_of(program(blocks), OWN)
-    inside = trace.end[trace.in_polar]
+    inside = trace.path.end[trace.mode.in_polar]
     np.testing.assert_allclose(inside, [5 + 3j, 6 + 2j, 8 + 1j])
-    angles = trace_of(program("G0 C30 / G0 C=IC(15) / G91 C10 / C=DC(90) / M30"), OWN).c_angle
+    angles = trace_of(program("G0 C30 / G0 C=IC(15) / G91 C10 / C=DC(90) / M30"), OWN).path.c_angle
     np.testing.assert_allclose(angles[:4], [30, 45, 55, 90])
 
 
 def test_a_diameter_of_coordinates_alone() -> None:
     blocks = "DIAM90 / G90 G0 X20 / X=IC(5) / G91 X1 / G90 X30 / DIAMON / X=IC(4) / DIAMOF / X7 / M30"
-    x = trace_of(program(blocks), OWN).x
+    x = trace_of(program(blocks), OWN).path.x
     np.testing.assert_allclose(x[1:9], [10, 15, 16, 15, 15, 17, 17, 7])
 
 

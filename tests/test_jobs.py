@@ -26,9 +26,9 @@ from polarcheck import reports
 from polarcheck.batch import executors
 from polarcheck.batch import tasks as batch
 from polarcheck.checking.rule import load_all
+from polarcheck.columns.trace import Trace
 from polarcheck.commands import progress, running, settings
 from polarcheck.errors import ClusterError
-from polarcheck.table.trace import Trace
 
 RAPID = "G98 G0 X60. C0\nG12.1\nG1 X40. F200\nG0 C5.\nG1 C-5.\nG13.1\n"
 GOOD = RAPID.replace("G0 C5.", "C5.")
@@ -84,7 +84,7 @@ def rule_that(acts: Any, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
 
     def rapid(trace: Trace) -> Any:
         acts(trace.text.source.path)
-        return trace.in_polar & False
+        return trace.mode.in_polar & False
 
     known = load_all()
     monkeypatch.setitem(known, "rapid-in-polar", msgspec.structs.replace(known["rapid-in-polar"], function=rapid))

@@ -27,7 +27,7 @@ def lines(curves: Curves) -> Any:
 def not_reached(tables: Any) -> list[Any]:
     """The areas at the walls of the first depth that no move at that Z or deeper sweeps."""
     level, trace, moves = tables["finished"].levels[0], tables["trace"], tables["tool_center"].moves
-    own = trace.cuts[moves.row] & (trace.z[moves.row] <= level.z + 1e-6) & ~np.isnan(moves.start + moves.end)
+    own = trace.path.cuts[moves.row] & (trace.path.z[moves.row] <= level.z + 1e-6) & ~np.isnan(moves.start + moves.end)
     columns = (moves.start[own], moves.end[own], moves.center[own], moves.kind[own])
     path = lines(Curves(*columns, np.zeros(own.sum(), int), moves.row[own]))
     one = level.outline

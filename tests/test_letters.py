@@ -130,7 +130,7 @@ def test_a_typed_program_of_letters_is_one_finding() -> None:
 def test_a_call_reads_digits_for_letters() -> None:
     program = "O1\nT0101\nM98 P1OO\nM30\nO100\nG0 X5.\nM99\n"
     assert said(report_of(program)) == [(3, "letter-for-digit")]
-    assert tables_of(program)["trace"].line.tolist() == [1, 2, 3, 5, 6, 7, 4]
+    assert tables_of(program)["trace"].blocks.line.tolist() == [1, 2, 3, 5, 6, 7, 4]
 
 
 @pytest.mark.parametrize(

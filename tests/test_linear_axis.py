@@ -97,8 +97,8 @@ def test_mitsubishi_names_the_linear_axis() -> None:
     for axis, words in {"X": "IJ", "Y": "JK", "Z": "KI"}.items():
         changes = {"parameters": {"1533": axis}}
         trace = trace_of(program.format(axis, *words), "mitsubishi-m700", changes=changes)
-        assert trace.center[3] == pytest.approx(10 + 10j)
-        assert trace.end[3] == pytest.approx(10 + 20j)
+        assert trace.path.center[3] == pytest.approx(10 + 10j)
+        assert trace.path.end[3] == pytest.approx(10 + 20j)
 
 
 @pytest.mark.parametrize(("axis", "own", "other"), [("X", "IJ", "K"), ("Y", "JK", "I"), ("Z", "KI", "J")])
@@ -211,10 +211,10 @@ def test_after_the_shift_x_stands_where_the_program_has_it() -> None:
     """G13.1 leaves X as far from the center of C as it is, in the coordinates of the program."""
     trace = trace_of("G98 G0 X60. C0\nG12.1 X10. C5.\nG1 X50. C20. F100\nX-10.\nG13.1\nU2.\n", "gsk-988")
     center = 5 + 5j
-    assert trace.start[2] == pytest.approx(25)
-    assert trace.end[3] == pytest.approx(-5 + 20j - center)
-    assert trace.x[4] == pytest.approx(abs(-5 + 20j - center) + 5)
-    assert trace.x[5] == pytest.approx(abs(-5 + 20j - center) + 6)
+    assert trace.path.start[2] == pytest.approx(25)
+    assert trace.path.end[3] == pytest.approx(-5 + 20j - center)
+    assert trace.path.x[4] == pytest.approx(abs(-5 + 20j - center) + 5)
+    assert trace.path.x[5] == pytest.approx(abs(-5 + 20j - center) + 6)
 
 
 @pytest.mark.parametrize(
@@ -264,7 +264,7 @@ def test_a_shift_beside_the_switch_may_take_back_another(beside: str, told: list
 def test_a_place_has_other_coordinates_after_g52(blocks: str, x: float) -> None:
     """X0 is farther by the shift, so that the coordinate of where the tool stands is less."""
     trace = trace_of(f"G98 G0 X60. C0\n{blocks}\nM30\n", "fanuc")
-    assert trace.x[-1] == pytest.approx(x / 2, nan_ok=True)
+    assert trace.path.x[-1] == pytest.approx(x / 2, nan_ok=True)
 
 
 def test_g52_before_the_mode_is_one_finding() -> None:

@@ -115,7 +115,7 @@ def test_a_word_of_which_nobody_knows_what_the_control_makes_is_not_evaluated_by
 
 def test_nothing_is_judged_by_an_axis_whose_word_was_lost() -> None:
     program = "G98 G40\nT0101\nG0 X120. C0 Z5.\nG12.1\nG1 X=40. F200\nC10.\nX120.\nG13.1\nM30\n"
-    path = tables_of(program, "fanuc-30i", "1:radius=5")["trace"].end
+    path = tables_of(program, "fanuc-30i", "1:radius=5")["trace"].path.end
     assert np.isnan(path[4:6]).all()
 
 

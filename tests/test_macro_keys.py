@@ -51,7 +51,7 @@ KEYS: dict[str, tuple[Any, str]] = {
 def outcome(program: str, changes: dict[str, Any]) -> tuple[Any, ...]:
     trace = trace_of(f"O1\n{program}", changes=changes)
     report = report_of(f"O1\n{program}", changes=changes)
-    words = [[None if value != value else value for value in trace.word(address).tolist()] for address in "XZU"]
+    words = [[None if value != value else value for value in trace.blocks.word(address).tolist()] for address in "XZU"]
     return words, said(report), [(entry.rule, entry.reason) for entry in report.not_evaluated]
 
 
@@ -72,7 +72,7 @@ def test_program_ends_are_those_of_the_machine() -> None:
     ends = {"m_codes": {"program_end": ["M60"]}}
     for program in ("O1\nG0 X1.\nM60\nG0 X2.\n", "O1\n#1=60\nG0 X1.\nM#1\nG0 X2.\n"):
         whole, ended = (trace_of(program, changes=changes) for changes in (None, ends))
-        assert ended.starts.sum() > whole.starts.sum() or len(ended) < len(whole)
+        assert ended.blocks.starts.sum() > whole.blocks.starts.sum() or len(ended) < len(whole)
     unknown = "O1\n#500=#1\nIF[#1 EQ 0]GOTO 5\nN5 {}\nM99\n"
     assert not report_of(unknown.format("M60"), changes=ends).not_evaluated
     assert report_of(unknown.format("M30"), changes=ends).not_evaluated
@@ -98,14 +98,14 @@ def test_an_end_in_a_block_with_macro_ends_the_program(end: str) -> None:
 )
 def test_a_computed_length_is_rounded_to_the_least_increment_of_its_unit(program: str, expected: float) -> None:
     trace = trace_of(f"O1\n{program}")
-    assert trace.word("X")[~(trace.word("X") != trace.word("X"))][-1] == expected
+    assert trace.blocks.word("X")[~(trace.blocks.word("X") != trace.blocks.word("X"))][-1] == expected
 
 
 def test_the_unit_is_that_of_the_job_where_the_program_says_none() -> None:
     program = "O1\nG0 X[1.23456]\nM30\n"
-    assert trace_of(program, job={"program_units": "inch"}).word("X")[1] == 1.2346
-    assert trace_of(program, changes={"control": {"units": "inch"}}).word("X")[1] == 1.2346
-    assert trace_of(program, changes={"control": {"least_increment": 0.01}}).word("X")[1] == 1.23
+    assert trace_of(program, job={"program_units": "inch"}).blocks.word("X")[1] == 1.2346
+    assert trace_of(program, changes={"control": {"units": "inch"}}).blocks.word("X")[1] == 1.2346
+    assert trace_of(program, changes={"control": {"least_increment": 0.01}}).blocks.word("X")[1] == 1.23
 
 
 @pytest.mark.parametrize(

@@ -63,8 +63,8 @@ def test_steps_go_on_from_where_c_stands() -> None:
 
 def test_x_behind_the_map_is_where_the_machine_stands() -> None:
     trace = trace_of(HURCO.format("40.", "90.", "G101", "G1 Y30. F300\n", "G109"), "hurco")
-    np.testing.assert_allclose(trace.x[-1], 30.0, atol=1e-9)
-    assert trace.x[trace.enters].tolist() == [40.0]
+    np.testing.assert_allclose(trace.path.x[-1], 30.0, atol=1e-9)
+    assert trace.path.x[trace.mode.enters].tolist() == [40.0]
 
 
 def test_without_c_before_the_map_it_is_taken_to_begin_at_c0_and_said_to_be_open() -> None:
@@ -98,5 +98,5 @@ def test_a_blank_in_a_native_word_stands_for_any_number_of_them() -> None:
 def test_an_axis_without_an_incremental_address_has_none() -> None:
     program = "O1\nT0101\nG98 G0 X60. C0\nG12.1\nG1 X40. H5. F200\nC10.\nX60.\nG13.1\nM30\n"
     tables = tables_of(program, changes={"polar": {"virtual_axis_incremental": ""}})
-    assert tables["trace"].end[5] == 20 + 10j
+    assert tables["trace"].path.end[5] == 20 + 10j
     assert report_of(program, changes={"polar": {"virtual_axis_incremental": ""}}).findings == []

@@ -79,5 +79,5 @@ def test_a_spur_is_no_rounding() -> None:
     contour = ["X40. C0.", "C10.001", "C10.003", "C4.", "C10.003", "C20.", "X-40."]
     tables = tables_of(program(contour, 60), "fanuc", "1:radius=5")
     kept = tables["tool_center"].stretch
-    rows = np.flatnonzero(tables["trace"].travels)
+    rows = np.flatnonzero(tables["trace"].path.travels)
     assert len(np.unique(kept[rows])) >= len(rows) - 1

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -53,8 +54,9 @@ def test_a_named_axis_is_the_address_that_the_machine_gives_it(names: dict[str, 
     program = named(PLAIN, **names)
     assert "=40." in program or "=10." in program
     plain, own = trace_of(PLAIN, "fanuc", TOOL), trace_of(program, "fanuc", TOOL)
-    for column in ("end", "z", "c_angle", "feed", "side"):
-        assert np.array_equal(getattr(plain, column), getattr(own, column), equal_nan=True), column
+    for column in ("path.end", "path.z", "path.c_angle", "feedrate.feed", "compensation.side"):
+        read = attrgetter(column)
+        assert np.array_equal(read(plain), read(own), equal_nan=True), column
     reports = [report_of(text, "fanuc", TOOL) for text in (PLAIN, program)]
     assert [said(report) for report in reports] == [said(reports[0])] * 2
     assert [report.verdict for report in reports] == ["pass", "pass"]
@@ -128,7 +130,7 @@ def test_an_axis_that_is_not_followed_shifts_no_other() -> None:
     assert (report.verdict, said(report)) == ("pass", [])
     inside = PLAIN.replace("X40. C-10.", "X40. C-10. B2=5.")
     trace = trace_of(inside, "fanuc", TOOL)
-    assert np.array_equal(trace.end, trace_of(PLAIN, "fanuc", TOOL).end, equal_nan=True)
+    assert np.array_equal(trace.path.end, trace_of(PLAIN, "fanuc", TOOL).path.end, equal_nan=True)
     (missing,) = [one for one in report_of(inside, "fanuc", TOOL).not_evaluated if one.matters]
     assert missing.reason.startswith("B2, from line 13 on, is not followed, its section is judged without it")
 

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from polarcheck.checking.check import read
+from polarcheck.columns.trace import Trace
 from polarcheck.geometry import compensation
 from polarcheck.machines import profiles
 from polarcheck.machines.job import Job, Tool
 from polarcheck.table.moves import compensation_path, tool_center_path
-from polarcheck.table.trace import Trace
 
 SAMPLES = Path(__file__).parents[1] / "sample_programs"
 TOOLS = Job(tools={str(number): Tool(radius=3) for number in range(1, 20)})
@@ -28,7 +28,7 @@ def all_samples() -> bytes:
 def test_a_path_in_parts_is_that_of_all_sections(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     ((_, tables), *_) = read(all_samples(), profiles.load(name).machine, TOOLS)
     trace: Trace = tables["trace"]
-    path = compensation_path(trace, np.flatnonzero(trace.in_polar))
+    path = compensation_path(trace, np.flatnonzero(trace.mode.in_polar))
     whole = tool_center_path(trace, path)
     monkeypatch.setattr(compensation, "_PART", 1)
     assert len(compensation._parts(path.section)) == len(np.unique(path.section)) + 1 > 5

@@ -14,7 +14,7 @@ NAN = math.nan
 def after(program: str, axis: str, **more: object) -> list[float]:
     """x [radius], z or c_angle after each block."""
     trace = trace_of(program, **more)  # type: ignore[arg-type]
-    found: list[float] = getattr(trace, axis).tolist()
+    found: list[float] = getattr(trace.path, axis).tolist()
     return found
 
 
@@ -48,34 +48,34 @@ def test_incremental_codes_of_system_b() -> None:
 
 def test_the_plane_begins_at_c0_and_turns_c_about_its_center() -> None:
     trace = trace_of("G98 G0 X60. C90.\nG12.1\nG1 X40. F100\nC20.\nX-40.\nU80. H-40.\nG13.1\nG0 U10.\n")
-    assert trace.end[1:6].tolist() == [30, 20, 20 + 20j, -20 + 20j, 20 - 20j]
-    assert trace.start[2:6].tolist() == [30, 20, 20 + 20j, -20 + 20j]
-    assert np.isnan(trace.end[[0, 7]]).all()
+    assert trace.path.end[1:6].tolist() == [30, 20, 20 + 20j, -20 + 20j, 20 - 20j]
+    assert trace.path.start[2:6].tolist() == [30, 20, 20 + 20j, -20 + 20j]
+    assert np.isnan(trace.path.end[[0, 7]]).all()
     # From 45 deg over 90 to 135, then through the center: half a turn, to -45 or 315.
-    assert trace.c_angle[:5] == pytest.approx([90, 90, 90, 135, 225])
-    assert trace.c_angle[5] % 360 == pytest.approx((90 - 45) % 360)
-    assert trace.length[2:6] == pytest.approx([10, 20, 40, math.hypot(40, 40)])
+    assert trace.path.c_angle[:5] == pytest.approx([90, 90, 90, 135, 225])
+    assert trace.path.c_angle[5] % 360 == pytest.approx((90 - 45) % 360)
+    assert trace.path.length[2:6] == pytest.approx([10, 20, 40, math.hypot(40, 40)])
     # The mode is left with X where the tool stands, on the positive side.
-    assert trace.x[[6, 7]] == pytest.approx([math.hypot(20, 20), math.hypot(20, 20) + 5])
+    assert trace.path.x[[6, 7]] == pytest.approx([math.hypot(20, 20), math.hypot(20, 20) + 5])
 
 
 def test_centers_of_arcs_by_i_and_j_and_by_r() -> None:
     program = "G98 G0 X60. C0\nG12.1\nG1 X40. F100\nG3 X0 C20. I-20. J0\nG2 X40. C0 R20.\nG1 X60.\nG13.1\n"
     trace = trace_of(program)
-    assert trace.is_arc.tolist() == [False] * 3 + [True, True] + [False] * 2
-    assert trace.center[3] == 0
-    assert abs(trace.center[4]) == pytest.approx(0, abs=1e-9)
+    assert trace.path.is_arc.tolist() == [False] * 3 + [True, True] + [False] * 2
+    assert trace.path.center[3] == 0
+    assert abs(trace.path.center[4]) == pytest.approx(0, abs=1e-9)
     other_way = trace_of(program.replace("G2 X40.", "G3 X40."))
-    assert other_way.center[4] == pytest.approx(20 + 20j)
-    assert np.isnan(trace.center[[2, 5]]).all()
-    assert trace.length[3] == pytest.approx(10 * math.pi)
+    assert other_way.path.center[4] == pytest.approx(20 + 20j)
+    assert np.isnan(trace.path.center[[2, 5]]).all()
+    assert trace.path.length[3] == pytest.approx(10 * math.pi)
 
 
 @pytest.mark.parametrize(("reading", "x"), [("diameter", 20.0), ("radius", 40.0)])
 def test_x_in_the_mode_is_what_the_profile_says(reading: str, x: float) -> None:
     trace = trace_of("G98 G0 X60. C0\nG12.1\nG1 X40. F100\nG13.1\n", changes={"polar": {"x": reading}})
-    assert (trace.x[0], trace.end[2]) == (30, x)
-    assert trace.x_factor.tolist() == [0.5, *[x / 40] * 2, 0.5]
+    assert (trace.path.x[0], trace.path.end[2]) == (30, x)
+    assert trace.lengths.x_factor.tolist() == [0.5, *[x / 40] * 2, 0.5]
 
 
 def test_side_and_ramps_of_a_section() -> None:
@@ -83,10 +83,12 @@ def test_side_and_ramps_of_a_section() -> None:
         "G98 T0101\nG0 X60. C0\nG12.1\nG42 G1 X40. F100\nC10.\nX20.\nG40 X60.\nG13.1\nG41\nG12.1\nG1 X10.\nG13.1\n"
     )
     trace = trace_of(program)
-    assert np.flatnonzero(trace.starts_up).tolist() == [3]  # G41 before G12.1 has a finding, and does nothing in it
-    assert np.flatnonzero(trace.cancels).tolist() == [6]
-    assert np.flatnonzero(trace.offset_mode).tolist() == [4, 5, 6]
-    assert np.flatnonzero(trace.cuts).tolist() == [3, 4, 5, 6, 10]
+    assert np.flatnonzero(trace.compensation.starts_up).tolist() == [
+        3
+    ]  # G41 before G12.1 has a finding, and does nothing in it
+    assert np.flatnonzero(trace.compensation.cancels).tolist() == [6]
+    assert np.flatnonzero(trace.compensation.offset_mode).tolist() == [4, 5, 6]
+    assert np.flatnonzero(trace.path.cuts).tolist() == [3, 4, 5, 6, 10]
 
 
 # ---- H beside G43 is the number of an offset ----
@@ -105,11 +107,11 @@ def test_a_length_offset_in_the_mode_moves_nothing_on_the_plane(block: str, at: 
     plain = trace_of(program.format(*blocks))
     blocks[at] = f"{block}\n"
     trace = trace_of(program.format(*blocks))
-    added = trace.listed("tool_length_offset", "tool_length_offset_off")
-    assert not trace.travels[added].any()
-    assert not trace.moves_plane[added].any()
-    np.testing.assert_array_equal(trace.end[~added], plain.end)
-    np.testing.assert_array_equal(trace.c_angle[~added], plain.c_angle)
+    added = trace.blocks.listed("tool_length_offset", "tool_length_offset_off")
+    assert not trace.path.travels[added].any()
+    assert not trace.axes.moves_plane[added].any()
+    np.testing.assert_array_equal(trace.path.end[~added], plain.path.end)
+    np.testing.assert_array_equal(trace.path.c_angle[~added], plain.path.c_angle)
     found = report_of(program.format(*blocks), only=("polar", "compensation", "feed", "setup"))
     assert said(found) == [(6 + at, "tool-length-offset-in-polar")]
 
@@ -150,8 +152,8 @@ def test_a_wrong_address_of_the_virtual_axis_is_read_as_it_was_meant(
     changes = {"parameters": parameters}
     right, wrong = (AROUND.format(*addresses, *switches) for addresses in (own, others))
     meant, read = (trace_of(program, machine, changes=changes) for program in (right, wrong))
-    np.testing.assert_array_equal(read.end, meant.end)
-    np.testing.assert_array_equal(read.c_angle, meant.c_angle)
+    np.testing.assert_array_equal(read.path.end, meant.path.end)
+    np.testing.assert_array_equal(read.path.c_angle, meant.path.c_angle)
     groups = ("polar", "compensation", "feed", "motion")
     plain, found = (said(report_of(program, machine, changes=changes, only=groups)) for program in (right, wrong))
     # H is an increment in G-code system A only.
@@ -164,5 +166,5 @@ def test_one_wrong_address_among_right_ones() -> None:
     program = AROUND.format("C", "H", "G12.1", "G13.1")
     plain = trace_of(program)
     for slip in ("C10.\nX-40.", "Y10.\nX-40."), ("C-10.", "Y-10."), ("H10.", "V10."), ("H10.", "H10. Y3."):
-        np.testing.assert_array_equal(trace_of(program.replace(*slip)).end, plain.end)
+        np.testing.assert_array_equal(trace_of(program.replace(*slip)).path.end, plain.path.end)
         assert len(report_of(program.replace(*slip), only=("polar", "feed", "motion")).findings) == 1

@@ -28,23 +28,23 @@ def power_on(**values: str) -> dict[str, Any]:
     ],
 )
 def test_the_first_words_move_as_the_lathe_powers_on(code: str, motion: Motion, rules: list[tuple[int, str]]) -> None:
-    assert trace_of(WHOLE, changes=power_on(motion=code)).state("motion")[0] == motion
+    assert trace_of(WHOLE, changes=power_on(motion=code)).modal.state("motion")[0] == motion
     found = report_of(WHOLE, changes=power_on(motion=code), only=["rapid-in-polar", "code-not-allowed-in-polar"])
     assert said(found) == rules
 
 
 def test_what_the_program_selects_counts() -> None:
     trace = trace_of(WHOLE.replace("G98", "G98 G1"), changes=power_on(motion="G0", plane="G18"))
-    assert trace.state("motion").tolist() == [Motion.RAPID] + [Motion.LINE] * 7
-    assert trace.state("plane").tolist() == [18] * 8
+    assert trace.modal.state("motion").tolist() == [Motion.RAPID] + [Motion.LINE] * 7
+    assert trace.modal.state("plane").tolist() == [18] * 8
     selected = WHOLE.replace("G98", "G17 G98")
-    assert trace_of(selected, changes=power_on(plane="G18")).state("plane").tolist() == [18] + [17] * 7
+    assert trace_of(selected, changes=power_on(plane="G18")).modal.state("plane").tolist() == [18] + [17] * 7
 
 
 def test_each_program_of_a_file_begins_so() -> None:
     trace = trace_of(WHOLE.replace("G98", "G17 G98") + WHOLE.replace("O1", "O2"), changes=power_on(plane="G18"))
-    assert trace.state("plane")[trace.starts].tolist() == [18, 18]
-    assert trace.state("plane")[-1] == 18
+    assert trace.modal.state("plane")[trace.blocks.starts].tolist() == [18, 18]
+    assert trace.modal.state("plane")[-1] == 18
 
 
 @pytest.mark.parametrize(
@@ -77,7 +77,7 @@ def test_what_f_means_is_known_where_the_lathe_says_it(code: str, rule: str | No
 
 def test_distances_or_coordinates() -> None:
     changes = {"control": {"g_code_system": "B"}, **power_on(distance="G91")}
-    assert trace_of(WHOLE.replace("G98", "G94"), changes=changes).incremental[0]
+    assert trace_of(WHOLE.replace("G98", "G94"), changes=changes).modal.incremental[0]
 
 
 @pytest.mark.parametrize(

@@ -237,8 +237,8 @@ def test_a_remark_in_a_statement_leaves_the_statement() -> None:
         "O1\nT0101\n#1=40. RADIUS OF CUTTER\nG0 X#1 MOVE TO START\nIF[#1GT5]GOTO 20 SKIP THE REST\nG0 X99.\nN20 M30\n"
     )
     assert said(report_of(program)) == [(3, RULE)]
-    assert trace_of(program).line.tolist()[-1] == 7
-    assert 6 not in trace_of(program).line
+    assert trace_of(program).blocks.line.tolist()[-1] == 7
+    assert 6 not in trace_of(program).blocks.line
 
 
 def test_what_nested_comments_leave_over_follows_from_them() -> None:

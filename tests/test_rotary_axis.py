@@ -85,7 +85,7 @@ def test_the_same_program_with_another_address(path: Path, machine: str, name: s
     assert other != program
     tables, twin = tables_of(program, machine, TOOL), tables_of(other, machine, TOOL, changes=changes)
     for table, column in (
-        *(("trace", "end"), ("trace", "c_angle"), ("trace", "z"), ("trace", "x")),
+        *(("path", "end"), ("path", "c_angle"), ("path", "z"), ("path", "x")),
         *(("tool_center", "c_feed"), ("tool_center", "nearest")),
         *(("moves", "start"), ("moves", "end"), ("moves", "c_feed")),
     ):
@@ -193,7 +193,7 @@ def test_words_outside_the_mode_are_angles_of_that_axis() -> None:
     report = report_of(CONTOUR, "fanuc", TOOL, changes=changes)
     assert (said(report), report.verdict) == ([], "pass")
     trace = trace_of(CONTOUR.replace("G28 A0", "G28 A0\nG0 C45."), "fanuc", TOOL, changes=changes)
-    assert trace.section_entry.tolist() == [30.0]
+    assert trace.path.section_entry.tolist() == [30.0]
     assert trace.machine.address_number("C") in trace.run.words.address
 
 
@@ -243,7 +243,7 @@ def test_a_named_axis_beside_the_switch(words: str) -> None:
     if "5." not in words:
         assert said(report_of(program, "fanuc", TOOL, changes=changes)) == []
     trace = trace_of(program, "fanuc", TOOL, changes=changes)
-    assert trace.center_shift[trace.sections.enter[0]] == (5j if "5." in words else 0)
+    assert trace.path.center_shift[trace.mode.sections.enter[0]] == (5j if "5." in words else 0)
 
 
 @pytest.mark.parametrize(("name", "number"), [("A", 4), ("C2", 5)])
@@ -254,7 +254,7 @@ def test_q_names_another_rotary_axis(name: str, number: int) -> None:
     usual = usual.replace("G98 ", "").replace("C30.", "C0").replace("G12.1", "G12.1 P1 Q3")
     other = renamed(usual, name).replace("Q3", f"Q{number}")
     one, two = (trace_of(program, "gsk-988", TOOL, changes=changes) for program in (usual, other))
-    assert np.array_equal(one.end, two.end, equal_nan=True)
+    assert np.array_equal(one.path.end, two.path.end, equal_nan=True)
     reports = [report_of(program, "gsk-988", TOOL, changes=changes) for program in (usual, other)]
     assert [said(report) for report in reports] == [[], []]
     reasons = [[missing.reason for missing in report.not_evaluated if missing.matters] for report in reports]
@@ -263,7 +263,7 @@ def test_q_names_another_rotary_axis(name: str, number: int) -> None:
     assert reasons[1][0].startswith("Q names another rotary axis than 3")
     beside = other.replace("X-20.\n", "X-20. C5.\n")
     assert said(report_of(beside, "gsk-988", TOOL, changes=changes)) == []
-    assert np.array_equal(trace_of(beside, "gsk-988", TOOL, changes=changes).end, two.end, equal_nan=True)
+    assert np.array_equal(trace_of(beside, "gsk-988", TOOL, changes=changes).path.end, two.path.end, equal_nan=True)
 
 
 def test_sections_on_two_rotary_axes() -> None:
@@ -276,8 +276,8 @@ def test_sections_on_two_rotary_axes() -> None:
     )
     program = head + section.format(3, "C", "C") + section.format(4, "A", "A") + section.format(3, "C", "C") + end
     trace = trace_of(program, "gsk-988", changes=changes)
-    ends = [trace.end[trace.in_polar & (trace.section == number)] for number in range(3)]
+    ends = [trace.path.end[trace.mode.in_polar & (trace.mode.section == number)] for number in range(3)]
     assert np.array_equal(ends[0], ends[1])
     assert np.array_equal(ends[0], ends[2])
-    assert [trace.virtual_axis_of(row) for row in trace.sections.enter.tolist()] == ["C", "A", "C"]
+    assert [trace.axes.virtual_axis_of(row) for row in trace.mode.sections.enter.tolist()] == ["C", "A", "C"]
     assert said(report_of(program.replace("G0 X60. C0\n", "T0101\nG0 X60. C0\n", 1), "gsk-988", changes=changes)) == []

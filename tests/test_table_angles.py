@@ -20,14 +20,14 @@ def table(program: str, machine: str = "fanuc", **changes: Any) -> Angles:
 
 
 def lines(angles: Angles, column: str) -> list[int]:
-    return angles.trace.line[getattr(angles, column)].tolist()
+    return angles.trace.blocks.line[getattr(angles, column)].tolist()
 
 
 def test_usual_angles_are_these_and_no_others() -> None:
     values = [*range(0, 400, 5), 30.5, 44.999, 1000]
     program = "G12.1\n" + "".join(f"C{'-' if value % 2 else ''}{value:.3f}\n" for value in values)
     angles = table(program + "G13.1\n")
-    found = angles.trace.word("C")[angles.is_usual]
+    found = angles.trace.blocks.word("C")[angles.is_usual]
     assert np.abs(found).tolist() == USUAL
 
 
@@ -65,7 +65,7 @@ def test_reach_leaves_out_what_may_be_an_angle() -> None:
     program = "G0 X70. C0\nG12.1\nG1 X-80. F1\nC180.\nC-90.\nG13.1\nG0 X500.\nG12.1\nX20.\nC-48.\nC45.\nG13.1\n"
     program += "G12.1\nC48.\nG13.1\n"
     angles = table(program)
-    first, second = angles.trace.section == 0, angles.trace.section == 1
+    first, second = angles.trace.mode.section == 0, angles.trace.mode.section == 1
     assert np.unique(angles.reach[first]).tolist() == [40.0]
     assert np.unique(angles.reach[second]).tolist() == [250.0], "X stands at 250 when the second section begins"
     assert np.isnan(angles.reach[~first & ~second]).all(), "in the third section nothing looks like an angle"
@@ -83,16 +83,16 @@ def test_reach_by_a_plain_loop() -> None:
         program += ["C-90.", "G13.1"]
     angles = table("\n".join(program) + "\n")
     trace = angles.trace
-    farthest = [0.0] * len(trace.sections)
+    farthest = [0.0] * len(trace.mode.sections)
     for row in range(len(trace)):
-        section = int(trace.section[row])
-        written = trace.word("C")[row]
-        lengths = [abs(trace.x[row])] + ([abs(written)] if abs(written) not in USUAL else [])
+        section = int(trace.mode.section[row])
+        written = trace.blocks.word("C")[row]
+        lengths = [abs(trace.path.x[row])] + ([abs(written)] if abs(written) not in USUAL else [])
         if section >= 0:
             farthest[section] = max([farthest[section], *(length for length in lengths if length == length)])
     assert len(farthest) == 6
-    inside = trace.section >= 0
-    assert angles.reach[inside] == pytest.approx(np.array(farthest)[trace.section[inside]])
+    inside = trace.mode.section >= 0
+    assert angles.reach[inside] == pytest.approx(np.array(farthest)[trace.mode.section[inside]])
 
 
 def test_a_misplaced_cycle_is_a_drilling_cycle_that_the_profile_does_not_allow() -> None:

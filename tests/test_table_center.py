@@ -18,9 +18,9 @@ def lines(mask: object) -> list[int]:
 
 
 def test_the_least_increment_is_that_of_the_units() -> None:
-    least = tables_of("G20\nG12.1\nG13.1\nM30\nG21\nM30\n%\n")["trace"].least_step
+    least = tables_of("G20\nG12.1\nG13.1\nM30\nG21\nM30\n%\n")["trace"].lengths.least_step
     assert least == pytest.approx([0.00254] * 4 + [0.001] * 2)
-    changed = tables_of("G21\nM30\n", changes={"control": {"least_increment": 0.0001}})["trace"].least_step
+    changed = tables_of("G21\nM30\n", changes={"control": {"least_increment": 0.0001}})["trace"].lengths.least_step
     assert changed == pytest.approx([0.0001] * 2)
 
 

@@ -32,7 +32,7 @@ def asked(program: str, machine: str = "fanuc", **job: Any) -> list[str]:
     ],
 )
 def test_whole_program(program: str, whole: list[bool]) -> None:
-    assert trace_of(program).whole_program.tolist() == whole
+    assert trace_of(program).blocks.whole_program.tolist() == whole
 
 
 def test_of_an_excerpt_nothing_is_asked() -> None:

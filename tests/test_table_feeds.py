@@ -15,7 +15,7 @@ PER_MINUTE_ONLY = {"feed": {"carried_into_polar": "per-minute-only"}}
 def lines(program: str, column: str, changes: dict[str, Any] | None = None) -> list[int]:
     """The lines of cutting moves in which a column holds; each line of these programs is a row."""
     tables = tables_of(program, changes=changes)
-    found = getattr(tables["feeds"], column) & tables["trace"].cuts
+    found = getattr(tables["feeds"], column) & tables["trace"].path.cuts
     return (np.flatnonzero(found) + 1).tolist()
 
 
@@ -98,17 +98,21 @@ FAST = "O1\nG98 G0 X60. C0\nG1 Z-1. F2000\nG12.1\nG1 X40.\nC10. F200\nX60. F800\
 @pytest.mark.parametrize("name", ["fanuc", "gsk-988"])
 def test_f_of_the_mode_is_clamped_and_f_outside_is_not(name: str) -> None:
     trace = tables_of(FAST, name, changes=CLAMP)["trace"]
-    assert trace.feed[2:].tolist() == [2000, 2000, 500, 200, 500, 500, 800, 900]
-    assert trace.programmed_feed[2:].tolist() == [2000, 2000, 2000, 200, 800, 800, 800, 900]
+    assert trace.feedrate.feed[2:].tolist() == [2000, 2000, 500, 200, 500, 500, 800, 900]
+    assert trace.feedrate.programmed_feed[2:].tolist() == [2000, 2000, 2000, 200, 800, 800, 800, 900]
     off = tables_of(FAST, name, changes=NO_CLAMP)["trace"]
-    assert off.feed[2:].tolist() == off.programmed_feed[2:].tolist() == trace.programmed_feed[2:].tolist()
+    assert (
+        off.feedrate.feed[2:].tolist()
+        == off.feedrate.programmed_feed[2:].tolist()
+        == trace.feedrate.programmed_feed[2:].tolist()
+    )
 
 
 def test_an_unknown_f_or_limit_clamps_nothing() -> None:
     per_revolution = tables_of("O1\nG99 G0 X60. C0\nG12.1\nG1 X40. F.2\nG13.1\n", changes=CLAMP)["trace"]
-    assert np.isnan(per_revolution.feed).all()
+    assert np.isnan(per_revolution.feedrate.feed).all()
     no_limit = tables_of(FAST, changes={"limits": {"polar_feed_clamps": True}})["trace"]
-    assert no_limit.feed[2:].tolist() == no_limit.programmed_feed[2:].tolist()
+    assert no_limit.feedrate.feed[2:].tolist() == no_limit.feedrate.programmed_feed[2:].tolist()
 
 
 @pytest.mark.parametrize("units", ["G21", "G20"])

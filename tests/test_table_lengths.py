@@ -22,7 +22,10 @@ def programs(*parts: str) -> str:
 def in_increments(program: str, **changes: Any) -> list[bool]:
     """Per program of the file."""
     trace = trace_of(program, changes=changes)
-    found = [set(trace.in_increments[trace.program == number].tolist()) for number in np.unique(trace.program)]
+    found = [
+        set(trace.coordinates.in_increments[trace.blocks.program == number].tolist())
+        for number in np.unique(trace.blocks.program)
+    ]
     assert all(len(one) == 1 for one in found), "programs as a whole"
     return [one.pop() for one in found]
 
@@ -57,8 +60,8 @@ def test_what_most_numbers_say(program: str, expected: bool) -> None:
 def test_each_program_of_a_file_speaks_for_itself() -> None:
     assert in_increments(programs(IN_INCREMENTS, POINTED, IN_INCREMENTS, WHOLE)) == [True, False, True, False]
     trace = trace_of(programs(IN_INCREMENTS, WHOLE))
-    assert trace.x[[1, 3, 5, 6]].tolist() == [30, 20, 20, -20]
-    assert trace.x[10 + np.array([0, 2, 3, 4])].tolist() == [30, 20, 20, -20]
+    assert trace.path.x[[1, 3, 5, 6]].tolist() == [30, 20, 20, -20]
+    assert trace.path.x[10 + np.array([0, 2, 3, 4])].tolist() == [30, 20, 20, -20]
 
 
 SUBPROGRAM = "G1 X40000 F200\nC10000\nC-500\nX-40000\nM99\n"
@@ -82,22 +85,22 @@ def test_a_number_counts_once_however_often_it_is_run() -> None:
 def test_what_numbers_are_meant() -> None:
     """In a program in least increments all; in others only those that nothing else can be."""
     trace = trace_of(IN_INCREMENTS)
-    assert trace.length_of("X")[[0, 2, 5]] == pytest.approx([60, 40, -40])
-    assert trace.length_of("C")[[3, 4]] == pytest.approx([10, -0.5])
+    assert trace.lengths.length_of("X")[[0, 2, 5]] == pytest.approx([60, 40, -40])
+    assert trace.lengths.length_of("C")[[3, 4]] == pytest.approx([10, -0.5])
     slip = trace_of("G0 Z1000\nZ999\nX1000.\nG4 X2000\n" + POINTED)
-    assert slip.length_of("Z")[:2] == pytest.approx([1, 999])
-    assert slip.length_of("X")[[2, 3]] == pytest.approx([1000, 2000])
-    assert slip.x[4] == 30
+    assert slip.lengths.length_of("Z")[:2] == pytest.approx([1, 999])
+    assert slip.lengths.length_of("X")[[2, 3]] == pytest.approx([1000, 2000])
+    assert slip.path.x[4] == 30
     inch = trace_of("G20\n" + IN_INCREMENTS.replace("C0", "C90000"))
-    assert inch.length_of("X")[1] == pytest.approx(6 * 25.4)
-    assert inch.c_angle[1] == pytest.approx(90), "an angle has the same increments in inch"
-    assert inch.length_of("C")[4] == pytest.approx(25.4)
+    assert inch.lengths.length_of("X")[1] == pytest.approx(6 * 25.4)
+    assert inch.path.c_angle[1] == pytest.approx(90), "an angle has the same increments in inch"
+    assert inch.lengths.length_of("C")[4] == pytest.approx(25.4)
 
 
 def test_a_control_that_counts_whole_units_has_no_increments() -> None:
     control = {"number_without_point": "whole-unit"}
     assert in_increments(IN_INCREMENTS, control=control) == [False]
-    assert trace_of(IN_INCREMENTS, changes={"control": control}).x[0] == 30000
+    assert trace_of(IN_INCREMENTS, changes={"control": control}).path.x[0] == 30000
 
 
 def test_what_is_a_coordinate() -> None:
@@ -105,12 +108,12 @@ def test_what_is_a_coordinate() -> None:
         "G0 X1 Z2\nG4 X3\nG43 H4\nG1 H5 F6\nG3 X1 C1 R7 I8 K9\nG83 Z-10 R2 Q3\nG80\nM8 S9\nG53 X8\nU1 W0 X2. (X5)\n"
     )
     trace = trace_of(program)
-    words, found = trace.run.words, trace.is_coordinate
+    words, found = trace.run.words, trace.coordinates.is_coordinate
     named = [
         f"{chr(address)}{value:g}" for address, value in zip(words.address[found], words.value[found], strict=True)
     ]
     assert named == ["X1", "Z2", "H5", "X1", "C1", "R7", "I8", "K9", "U1", "W0", "X2"]
-    found = trace.is_unpointed
+    found = trace.coordinates.is_unpointed
     assert chr(words.address[found][-1]) == "U"
 
 
@@ -128,14 +131,16 @@ def test_points_are_counted_by_a_plain_loop(kinds: list[int]) -> None:
     numbers = [kind for kind in kinds if kind != 4]
     expected = len(without) > 1 and 2 * len(without) > len(numbers) and 2 * len(large) > len(without)
     trace = trace_of(program)
-    assert trace.in_increments.tolist() == [expected] * len(trace)
+    assert trace.coordinates.in_increments.tolist() == [expected] * len(trace)
     read = [5, 0.005 if expected else 5, 5, -2, 0]
-    assert [trace.length_of(words[kind][0])[row] for row, kind in enumerate(kinds, 1)] == [read[kind] for kind in kinds]
+    assert [trace.lengths.length_of(words[kind][0])[row] for row, kind in enumerate(kinds, 1)] == [
+        read[kind] for kind in kinds
+    ]
 
 
 def test_tables_of_nothing() -> None:
     for program in ("", "%\n%\n", "(X1000)\n"):
         tables = tables_of(program)
-        assert not tables["trace"].in_increments.any()
+        assert not tables["trace"].coordinates.in_increments.any()
         assert not tables["unpointed"].slips.any()
         assert not tables["unpointed"].in_increments.any()

@@ -38,10 +38,10 @@ def in_mode(column: str, block: str, machine: str = "fanuc", **changes: Any) -> 
 
 def test_rows_and_words_lead_to_each_other() -> None:
     words = table("G1 X1. G40\nC2.\n\nX3. X4.\n")
-    x = words.trace.words_at(words.trace.word_indices("X"))
+    x = words.trace.blocks.words_at(words.trace.blocks.word_indices("X"))
     assert shown(words, x) == ["X1.", "X3.", "X4."]
-    assert words.rows(x).tolist() == [words.trace.line[row] in (1, 4) for row in range(len(words.trace))]
-    assert shown(words, words.in_rows(words.trace.has("G"))) == ["G1", "X1.", "G40"]
+    assert words.rows(x).tolist() == [words.trace.blocks.line[row] in (1, 4) for row in range(len(words.trace))]
+    assert shown(words, words.in_rows(words.trace.blocks.has("G"))) == ["G1", "X1.", "G40"]
     assert not words.rows(np.zeros(len(x), bool)).any()
     assert not words.in_rows(np.zeros(len(words.trace), bool)).any()
 
@@ -184,7 +184,7 @@ def test_changes_tool_offset(block: str, found: list[str]) -> None:
 def test_switches_are_those_of_sections() -> None:
     """Not the G13.1 at the head, nor one more after the section."""
     words = table("G13.1\nG12.1\nG1 X1. F1\nG112\nC1.\nG13.1\nG13.1\nM30\n")
-    assert words.trace.line[words.switches].tolist() == [2, 4, 6]
+    assert words.trace.blocks.line[words.switches].tolist() == [2, 4, 6]
 
 
 @pytest.mark.parametrize(

@@ -51,9 +51,9 @@ def test_a_cycle_in_the_mode_is_no_move() -> None:
 
 def test_rows_as_compensation_takes_them() -> None:
     trace = trace_of(PROGRAM, "fanuc", "1:radius=-4")
-    row = np.flatnonzero(trace.in_polar)
+    row = np.flatnonzero(trace.mode.in_polar)
     path = compensation_path(trace, row)
-    line = trace.line[row]
+    line = trace.blocks.line[row]
     assert line.tolist() == list(range(4, 12))
     assert line[path.moves].tolist() == [4, 6, 7, 8, 9, 11]
     assert line[path.side_written].tolist() == [8]
@@ -179,8 +179,8 @@ def test_z_goes_as_the_way_does_where_a_block_is_several_moves() -> None:
     assert z_from[1:].tolist() == z_to[:-1].tolist()
     several = [row for row in set(moves.row.tolist()) if (moves.row == row).sum() > 1]
     assert several
-    before = dict(zip([*range(1, len(trace))], trace.z[:-1].tolist(), strict=True))
+    before = dict(zip([*range(1, len(trace))], trace.path.z[:-1].tolist(), strict=True))
     for row in set(moves.row.tolist()):
         own = moves.row == row
         share = np.cumsum(moves.length[own]) / moves.length[own].sum()
-        assert z_to[own] == pytest.approx(before[row] + share * (trace.z[row] - before[row]))
+        assert z_to[own] == pytest.approx(before[row] + share * (trace.path.z[row] - before[row]))

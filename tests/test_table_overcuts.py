@@ -19,7 +19,7 @@ GROOVE = (
 def depths(tables: Tables, column: str = "depth") -> dict[int, float]:
     """By line, where there is any."""
     values = getattr(tables["overcuts"], column)
-    return {int(tables["trace"].line[row]): float(values[row]) for row in np.flatnonzero(values)}
+    return {int(tables["trace"].blocks.line[row]): float(values[row]) for row in np.flatnonzero(values)}
 
 
 @pytest.mark.parametrize(("radius", "depth"), [(4, 2), (5, 4), (3.002, 0.004), (3, 0)])
@@ -33,7 +33,7 @@ def test_a_groove_narrower_than_the_cutter(radius: float, depth: float) -> None:
 
 def test_who_is_cut_into_and_where() -> None:
     tables = tables_of(GROOVE, "fanuc", "1:radius=4")
-    line, overcuts = tables["trace"].line, tables["overcuts"]
+    line, overcuts = tables["trace"].blocks.line, tables["overcuts"]
     # The wall opposite begins or ends in a corner, which is of two blocks.
     for row, wall, blocks in ((5, -3, (11, 12)), (11, 3, (6, 7))):
         into, place = overcuts.cuts.deepest(row)
@@ -71,8 +71,8 @@ def test_where_the_control_objects_nothing_else_is_said() -> None:
     )
     tables = tables_of(program, "fanuc", "1:radius=4")
     trace, tool_center = tables["trace"], tables["tool_center"]
-    assert trace.line[tool_center.interferes].tolist() == [8]
-    assert trace.line[objected(trace, tool_center)].tolist() == [7, 8, 9]
+    assert trace.blocks.line[tool_center.interferes].tolist() == [8]
+    assert trace.blocks.line[objected(trace, tool_center)].tolist() == [7, 8, 9]
     assert len(tables["overcuts"].cuts.row)
     assert depths(tables) == {}
 
@@ -108,7 +108,7 @@ def test_a_start_up_over_a_corner() -> None:
     tables = tables_of(OVER_CORNER.format("", ""), "fanuc", "1:radius=5")
     assert depths(tables, "sweep_depth") == {4: pytest.approx(5, abs=0.006)}
     into, place = tables["overcuts"].sweeps.deepest(3)
-    assert (tables["trace"].line[into], place) == (5, pytest.approx(30))
+    assert (tables["trace"].blocks.line[into], place) == (5, pytest.approx(30))
     assert depths(tables) == {}
 
 

@@ -13,7 +13,7 @@ HEAD = "T0101\nG98 G0 X60. C0\nG12.1\n"
 def lines(program: str, column: str, *tools: str, **more: object) -> list[int]:
     """The lines, from 1 after G12.1, at which a column of ramps holds."""
     tables = tables_of(HEAD + program, "fanuc", *tools, **more)  # type: ignore[arg-type]
-    return (tables["trace"].line[getattr(tables["ramps"], column)] - 3).tolist()
+    return (tables["trace"].blocks.line[getattr(tables["ramps"], column)] - 3).tolist()
 
 
 @pytest.mark.parametrize(
@@ -94,7 +94,7 @@ def test_what_hangs_on_a_radius_that_is_not_known() -> None:
     assert lines(on_arc, "cancel_judged_by_radius") == []
     # X is not known before its first word.
     unknown = tables_of("G98\nG12.1\nG1 G41 X40. F100\nC50.\nG40 X100.\nG13.1\n")
-    assert math.isnan(unknown["trace"].length[2])
+    assert math.isnan(unknown["trace"].path.length[2])
     assert unknown["ramps"].start_up_judged_by_radius.tolist() == [False] * 2 + [True] + [False] * 3
 
 
@@ -191,7 +191,7 @@ POCKET = (
 
 def test_of_neighbouring_faults_the_first_is_none_of_another() -> None:
     tables = tables_of(HEAD + POCKET, "fanuc", "1:radius=4")
-    tool_center, ramps, line = tables["tool_center"], tables["ramps"], tables["trace"].line - 3
+    tool_center, ramps, line = tables["tool_center"], tables["ramps"], tables["trace"].blocks.line - 3
     faulty = line[tool_center.interferes | tool_center.no_intersection].tolist()
     assert len(faulty) > 2
     own = line[(tool_center.interferes | tool_center.no_intersection) & ~ramps.is_consequence].tolist()

@@ -8,7 +8,7 @@ import pytest
 from programs import trace_of
 
 from polarcheck.arrays import Mask
-from polarcheck.table.sections import Marks, Sections, find_sections, section_column
+from polarcheck.columns.sections import Marks, Sections, find_sections, section_column
 
 HEAD = "O1\nG21 G98\nT0101\nG0 X60. C0\n"
 
@@ -16,8 +16,8 @@ HEAD = "O1\nG21 G98\nT0101\nG0 X60. C0\n"
 def sections(program: str) -> list[tuple[int, int, bool]]:
     """Line of the G12.1, line of the first row behind the section (0: none), whether its G13.1 is there."""
     trace = trace_of(HEAD + program)
-    lines = [*trace.line.tolist(), 0]
-    found = trace.sections
+    lines = [*trace.blocks.line.tolist(), 0]
+    found = trace.mode.sections
     columns = (found.enter.tolist(), found.leave.tolist(), found.left.tolist())
     return [(lines[enter] - 4, max(lines[leave] - 4, 0), left) for enter, leave, left in zip(*columns, strict=True)]
 
@@ -67,19 +67,24 @@ def test_sections_end_where_they_were_meant_to(program: str, expected: list[tupl
 
 def test_the_rows_of_a_section_are_those_from_its_entry_to_its_exit() -> None:
     trace = trace_of(HEAD + "G12.1\nG1 X40. F100\nG13.1\nG0 X60.\nG112\nG1 X40.\nG113\nM30\n")
-    assert trace.section.tolist() == [-1] * 4 + [0, 0, -1, -1, 1, 1, -1, -1]
-    assert trace.in_polar.tolist() == [False] * 5 + [True, False, False, False, True, False, False]
-    assert trace.anywhere_in_section(trace.codes("G112")).tolist() == [False] * 8 + [True, True, False, False]
-    assert trace.first_in_section(trace.section >= 0).tolist() == trace.enters.tolist()
+    assert trace.mode.section.tolist() == [-1] * 4 + [0, 0, -1, -1, 1, 1, -1, -1]
+    assert trace.mode.in_polar.tolist() == [False] * 5 + [True, False, False, False, True, False, False]
+    assert trace.mode.anywhere_in_section(trace.blocks.codes("G112")).tolist() == [False] * 8 + [
+        True,
+        True,
+        False,
+        False,
+    ]
+    assert trace.mode.first_in_section(trace.mode.section >= 0).tolist() == trace.mode.enters.tolist()
 
 
 def test_a_section_left_open_by_m99_is_for_the_caller_to_leave() -> None:
     trace = trace_of("O1\nG12.1\nG1 X40. F100\nC5.\nM99\n")
-    assert trace.sections.left.tolist() == [True]
-    assert trace.sections.returned.tolist() == [True]
-    assert not trace.leaves.any(), "no row of it holds the G13.1"
+    assert trace.mode.sections.left.tolist() == [True]
+    assert trace.mode.sections.returned.tolist() == [True]
+    assert not trace.mode.leaves.any(), "no row of it holds the G13.1"
     ended = trace_of("O1\nG12.1\nG1 X40. F100\nC5.\nM30\n")
-    assert ended.sections.returned.tolist() == [False]
+    assert ended.mode.sections.returned.tolist() == [False]
 
 
 def marks(generator: np.random.Generator, count: int) -> Marks:

@@ -34,7 +34,7 @@ def table(entry: str, name: str = "gsk-988", **changes: Any) -> SwitchWords:
 
 # ---- P and Q ----
 
-MOST = table("G12.1").trace.most_axes
+MOST = table("G12.1").trace.axes.most_axes
 
 
 @pytest.mark.parametrize(

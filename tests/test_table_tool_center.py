@@ -41,7 +41,7 @@ def tables_with(program: str, *tools: str, **more: Any) -> Tables:
 def test_what_the_control_objects_to(program: str, column: str, lines: list[int]) -> None:
     tables = tables_with(program)
     for name in OBJECTIONS:
-        found = tables["trace"].line[getattr(tables["tool_center"], name)].tolist()
+        found = tables["trace"].blocks.line[getattr(tables["tool_center"], name)].tolist()
         assert found == (lines if name == column else []), name
 
 

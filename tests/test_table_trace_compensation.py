@@ -51,22 +51,22 @@ def read_by_hand(blocks: list[str]) -> dict[str, list[object]]:
 def test_all_orders_of_four_blocks() -> None:
     blocks = sections()
     trace = trace_of("\n".join(blocks) + "\n")
-    assert len(trace.sections) == len(BLOCKS) ** 4
+    assert len(trace.mode.sections) == len(BLOCKS) ** 4
     expected = read_by_hand(blocks)
     assert any(expected["starts_up"])
     assert any(expected["cancels"])
     for name, column in expected.items():
-        assert getattr(trace, name).tolist() == column, name
+        assert getattr(trace.compensation, name).tolist() == column, name
 
 
 def test_rapid_traverse_starts_up_and_cycles_do_not() -> None:
     """G42 takes effect in the block with G0; G90 is a turning cycle in system A."""
     program = "G98 G0 X60. C0 Z2.\nG12.1\nG42 X40.\nG1 C10. F100\nG40 G0 X60.\nG13.1\nG12.1\nG42 G90 X40. Z1.\nG13.1\n"
     trace = trace_of(program)
-    assert trace.line[trace.on_plane].tolist() == [3, 4, 5]
-    assert trace.line[trace.starts_up].tolist() == [3]
-    assert trace.line[trace.cancels].tolist() == [5]
-    assert trace.line[trace.cuts].tolist() == [4]
+    assert trace.blocks.line[trace.path.on_plane].tolist() == [3, 4, 5]
+    assert trace.blocks.line[trace.compensation.starts_up].tolist() == [3]
+    assert trace.blocks.line[trace.compensation.cancels].tolist() == [5]
+    assert trace.blocks.line[trace.path.cuts].tolist() == [4]
 
 
 def test_a_rapid_start_up_compensates_as_one_at_feed() -> None:
@@ -75,13 +75,13 @@ def test_a_rapid_start_up_compensates_as_one_at_feed() -> None:
         trace_of(program.format(*codes), "fanuc", "1:radius=4") for codes in (("G1 ", ""), ("", "G0 "))
     )
     for name in ("starts_up", "cancels", "offset_mode", "side"):
-        assert getattr(at_feed, name).tolist() == getattr(in_rapid, name).tolist()
+        assert getattr(at_feed.compensation, name).tolist() == getattr(in_rapid.compensation, name).tolist()
 
 
 def test_compensation_ends_with_a_forgotten_section() -> None:
     program = "O1\nG98 G0 X60. C0\nG12.1\nG42 G1 X40. F100\nC10.\nG0 Z50.\nM30\n"
     trace = trace_of(program)
-    assert trace.side.tolist() == [*[OFF] * 3, *[RIGHT] * 2, *[OFF] * 2]
+    assert trace.compensation.side.tolist() == [*[OFF] * 3, *[RIGHT] * 2, *[OFF] * 2]
 
 
 # ---- tool offset ----
@@ -89,9 +89,9 @@ def test_compensation_ends_with_a_forgotten_section() -> None:
 
 def test_what_t_calls() -> None:
     trace = trace_of("O1\nG0 X1.\nT0808\nG0 X2.\nT0800\nM30\nO2\nG0 X1.\nM30\n")
-    assert trace.tool_called.tolist() == [0, 0, 808, 808, 800, 800, 0, 0, 0]
-    assert trace.tool_called_before.tolist() == [0, 0, 0, 808, 808, 800, 0, 0, 0]
-    assert trace.has_called_tool.tolist() == [False] * 2 + [True] * 4 + [False] * 3
+    assert trace.tools.tool_called.tolist() == [0, 0, 808, 808, 800, 800, 0, 0, 0]
+    assert trace.tools.tool_called_before.tolist() == [0, 0, 0, 808, 808, 800, 0, 0, 0]
+    assert trace.tools.has_called_tool.tolist() == [False] * 2 + [True] * 4 + [False] * 3
 
 
 @pytest.mark.parametrize(
@@ -100,5 +100,5 @@ def test_what_t_calls() -> None:
 def test_noses_that_a_mill_may_have(nose: str, allowed: list[int], expected: bool) -> None:
     changes = {"compensation": {"nose_types": allowed}}
     trace = trace_of("T0101\nT0202\n", "fanuc", f"1:radius=4,nose={nose}", "2:radius=4", changes=changes)
-    assert trace.nose_is_of_mill.tolist() == [expected, False]
-    assert np.isnan(trace.nose[1])
+    assert trace.offsets.nose_is_of_mill.tolist() == [expected, False]
+    assert np.isnan(trace.offsets.nose[1])

@@ -96,4 +96,4 @@ def test_each_way_out_is_told_once_as_a_plain_loop_tells_it(blocks: list[str]) -
         if told:
             expected.append(line)
     found = load_all()["travel-limit"].hits(tables).mask
-    assert tables["trace"].line[found].tolist() == expected
+    assert tables["trace"].blocks.line[found].tolist() == expected

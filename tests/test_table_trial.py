@@ -7,6 +7,7 @@ import pytest
 from programs import tables_of
 
 from polarcheck.arrays import Floats
+from polarcheck.table.tool_center import OtherRadius
 from polarcheck.table.trial import Trial
 
 HEAD, TAIL = "T0101\nG98 G0 X100. C0\nG12.1\nG1 C20. F500\n", "G40 X100.\nG13.1\n"
@@ -17,7 +18,8 @@ def trial_of(blocks: str, share: float, radius: float = 4.0) -> tuple[Trial, Flo
     tables = tables_of(HEAD + blocks + TAIL, "fanuc", f"1:radius={radius}")
     trace = tables["trace"]
     rows = np.ones(len(trace), bool)
-    return Trial(trace, rows, tables["since"].compensation, share * trace.radius), trace.line
+    other = OtherRadius(rows, tables["since"].compensation, share * trace.compensation.radius)
+    return Trial(trace, other), trace.blocks.line
 
 
 @pytest.mark.parametrize(

@@ -193,14 +193,16 @@ def test_what_the_program_sets_takes_the_place_of_the_job(
 )
 def test_the_radius_on_other_controls(blocks: str, machine: str, expected: tuple[float, str]) -> None:
     trace = trace_of(f"O1\nG21 G94\n{blocks}\nM30\n", machine, "1:radius=3")
-    assert trace.radius_of_offset[-2] == pytest.approx(expected[0])
-    assert (trace.radius_set_in[-2] >= 0) == (expected[1] == "program")
+    assert trace.offsets.radius_of_offset[-2] == pytest.approx(expected[0])
+    assert (trace.offsets.radius_set_in[-2] >= 0) == (expected[1] == "program")
 
 
 def test_from_its_block_on_for_each_tool_and_program() -> None:
     blocks = ["T0101", "G10 P1 R4.", "G10 P2 R5.", "T0202", "T0101", "G10 P1 R6.", "M30", "O2", "T0101", "M30"]
     trace = trace_of("O1\nG21\n" + "\n".join(blocks), "fanuc", "1:radius=3")
-    assert trace.radius_of_offset[2:].tolist() == pytest.approx([3, 4, 4, 5, 4, 6, 6, float("nan"), 3, 3], nan_ok=True)
+    assert trace.offsets.radius_of_offset[2:].tolist() == pytest.approx(
+        [3, 4, 4, 5, 4, 6, 6, float("nan"), 3, 3], nan_ok=True
+    )
 
 
 def test_in_a_called_program_and_behind_a_block_skip() -> None:
@@ -277,7 +279,7 @@ def test_a_nose_type_that_cannot_be_known_has_no_weight() -> None:
     ],
 )
 def test_the_nose_type(blocks: str, nose: int) -> None:
-    assert trace_of(f"{MM}{blocks}\n", "fanuc", "1:nose=2").nose[-1] == nose
+    assert trace_of(f"{MM}{blocks}\n", "fanuc", "1:nose=2").offsets.nose[-1] == nose
 
 
 # ---- comments ----

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from programs import moves_of, report_of, said, tables_of, trace_of
 
+from polarcheck.columns.trace import Trace
 from polarcheck.execution.programs import Program, find_programs
 from polarcheck.finding import FileReport
-from polarcheck.table.trace import Trace
 
 LATHE = "okuma-osp"
 CUTTER = "1:radius=0,nose=0"
@@ -27,7 +27,7 @@ def run(body: str) -> tuple[FileReport, Trace]:
 
 def path(trace: Trace) -> list[tuple[float, float]]:
     """The points of the polar section between its first move and its last."""
-    ends = trace.end[trace.in_polar & trace.moves_plane]
+    ends = trace.path.end[trace.mode.in_polar & trace.axes.moves_plane]
     return [(round(point.real, 3), round(point.imag, 3)) for point in ends[1:-1].tolist()]
 
 
@@ -183,12 +183,12 @@ def test_a_fault_is_one_finding_in_its_block(body: str, rule: str) -> None:
 
 def test_six_digits_of_t_are_offset_of_r_tool_and_tool_offset() -> None:
     trace = trace_of("O1\nT020105\nM1\nT010203\nM1\nT000304\nM1\nT0405\nM2\n", LATHE, "2:radius=3")
-    rows = trace.has("T")
-    assert trace.tool[rows].tolist() == [1, 2, 3, 4]
-    assert trace.offset_number[rows].tolist() == [2, 1, 0, 5]
-    assert trace.tool_offset_number[rows].tolist() == [5, 3, 4, 5]
-    assert trace.radius[rows].tolist()[0] == 3
-    assert trace_of("O1\nT020105\nM30\n").offset_number.tolist()[1:] == [5, 5]
+    rows = trace.blocks.has("T")
+    assert trace.tools.tool[rows].tolist() == [1, 2, 3, 4]
+    assert trace.tools.offset_number[rows].tolist() == [2, 1, 0, 5]
+    assert trace.tools.tool_offset_number[rows].tolist() == [5, 3, 4, 5]
+    assert trace.compensation.radius[rows].tolist()[0] == 3
+    assert trace_of("O1\nT020105\nM30\n").tools.offset_number.tolist()[1:] == [5, 5]
 
 
 def test_names_are_those_of_programs_and_blocks() -> None:
@@ -275,8 +275,8 @@ def test_the_direction_of_the_new_axis_turns_the_whole_plane() -> None:
     plain, turned = (
         trace_of(OWN.replace("{side}", "G42").replace("G137 C0", on), LATHE, CUTTER) for on in ("G137 C0", "G137 C90.")
     )
-    inside = plain.in_polar & plain.moves_plane
-    np.testing.assert_allclose(turned.c_angle[inside], plain.c_angle[inside] + 90)
+    inside = plain.mode.in_polar & plain.axes.moves_plane
+    np.testing.assert_allclose(turned.path.c_angle[inside], plain.path.c_angle[inside] + 90)
 
 
 # ---- hostile files ----

@@ -47,7 +47,7 @@ def test_each_section_has_its_own_form() -> None:
     )
     assert said(report_of(program, "citizen")) == []
     trace = tables_of(program, "citizen")["trace"]
-    assert [trace.virtual_axis_of(row) for row in trace.sections.enter] == ["C", "Y", "Y"]
+    assert [trace.axes.virtual_axis_of(row) for row in trace.mode.sections.enter] == ["C", "Y", "Y"]
     ends = moves_of(program, "citizen").end.reshape(3, -1)
     assert np.array_equal(ends[0], ends[1])
 

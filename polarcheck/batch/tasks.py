@@ -225,9 +225,9 @@ def _check(task: Task, data: bytes) -> tuple[FileReport, Source, set[str]]:
 
 def _offsets(found: Sequence[tuple[str, Tables]]) -> set[str]:
     return {
-        trace.offset_key(number)
+        trace.tools.offset_key(number)
         for trace in (tables["trace"] for _, tables in found)
-        for number in trace.called_offsets
+        for number in trace.tools.called_offsets
     }
 
 

@@ -9,8 +9,8 @@ from collections.abc import Callable, Sequence
 
 import msgspec
 
+from polarcheck.columns.trace import Trace
 from polarcheck.finding import Finding, Silenced
-from polarcheck.table.trace import Trace
 
 #: What a finding is at the block of the file that calls: that may allow it.
 Answered = Callable[[Finding, int], Finding]
@@ -78,12 +78,12 @@ def _call_of(trace: Trace, line: int) -> tuple[int, int, str] | None:
 
     None where none did.
     """
-    rows = (trace.line == line).nonzero()[0]
+    rows = (trace.blocks.line == line).nonzero()[0]
     if not len(rows):
         return None
     first_part = trace.text.source.parts[0][0]
-    own = (trace.line[: rows[0]] < first_part).nonzero()[0]
+    own = (trace.blocks.line[: rows[0]] < first_part).nonzero()[0]
     if not len(own):
         return None
-    found = int(trace.line[own[-1]])
+    found = int(trace.blocks.line[own[-1]])
     return found, int(trace.run.block[own[-1]]), trace.text.source.line_text(found).strip()

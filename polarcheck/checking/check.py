@@ -187,7 +187,7 @@ def report_of(engine: Engine) -> FileReport:
         path=text.source.path,
         programs=own,
         blocks=len(trace),
-        sections=len(trace.sections),
+        sections=len(trace.mode.sections),
         verdict=verdict(findings, not_evaluated),
         polar_sections=polar_sections(tables),
         findings=findings,

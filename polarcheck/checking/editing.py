@@ -11,8 +11,9 @@ from itertools import pairwise
 
 from polarcheck.arrays import stretch
 from polarcheck.checking.places import squeezed
+from polarcheck.execution.run import Run
 from polarcheck.reading.source import CR, LF, Source
-from polarcheck.table.trace import Trace
+from polarcheck.reading.words import Text
 
 Replace = tuple[int, int, str]
 
@@ -21,13 +22,13 @@ _BLANKS = " \t"
 _BLANK_OR_END = " \t\r\n\0\x7f"
 
 
-def is_plain(trace: Trace, row: int) -> bool:
+def is_plain(run: Run, row: int) -> bool:
     """Whether the words of a row stand in the file as they are executed: no macro, no words of another language."""
-    block = int(trace.run.block[row])
-    if trace.text.blocks.is_macro[block]:
+    block = int(run.block[row])
+    if run.text.blocks.is_macro[block]:
         return False
-    words, source = trace.run.words, trace.text.source
-    for index in words_of(trace, row):
+    words, source = run.words, run.text.source
+    for index in words_of(run, row):
         written = source.excerpt(int(words.start[index]), int(words.end[index])).lstrip(",").strip()
         address = chr(int(words.address[index])).upper()
         if written[:1].upper().replace(":", "O") != address:
@@ -35,38 +36,38 @@ def is_plain(trace: Trace, row: int) -> bool:
     return True
 
 
-def words_of(trace: Trace, row: int) -> list[int]:
+def words_of(run: Run, row: int) -> list[int]:
     """The executed words of a row, in the order in which they are written."""
-    low, high = stretch(trace.run.row, row, row + 1)
-    return sorted(range(low, high), key=lambda index: int(trace.run.words.start[index]))
+    low, high = stretch(run.row, row, row + 1)
+    return sorted(range(low, high), key=lambda index: int(run.words.start[index]))
 
 
-def is_head(trace: Trace, index: int) -> bool:
+def is_head(run: Run, index: int) -> bool:
     """An N word, an O word or block skip, which stay at the head of a block."""
-    return chr(int(trace.run.words.address[index])) in "NO/"
+    return chr(int(run.words.address[index])) in "NO/"
 
 
-def begins_program(trace: Trace, row: int) -> bool:
+def begins_program(run: Run, row: int) -> bool:
     """A row with an O word: nothing can be put before its block."""
-    return any(chr(int(trace.run.words.address[index])) == "O" for index in words_of(trace, row))
+    return any(chr(int(run.words.address[index])) == "O" for index in words_of(run, row))
 
 
-def written_word(trace: Trace, index: int) -> str:
+def written_word(run: Run, index: int) -> str:
     """An executed word as it is written, without blanks."""
-    words = trace.run.words
-    text = squeezed(trace.text.source.excerpt(int(words.start[index]), int(words.end[index])))
+    words = run.words
+    text = squeezed(run.text.source.excerpt(int(words.start[index]), int(words.end[index])))
     return "".join(filter(str.isprintable, text))
 
 
-def skip_sign(trace: Trace, row: int) -> str:
+def skip_sign(run: Run, row: int) -> str:
     """The block skip of a row as it is written, `/` or `/2`; empty without."""
-    signs = [index for index in words_of(trace, row) if chr(int(trace.run.words.address[index])) == "/"]
-    return written_word(trace, signs[0]) if signs else ""
+    signs = [index for index in words_of(run, row) if chr(int(run.words.address[index])) == "/"]
+    return written_word(run, signs[0]) if signs else ""
 
 
-def separator(trace: Trace, row: int) -> str:
+def separator(run: Run, row: int) -> str:
     """What stands between the words of a row: a blank, or nothing in a program without blanks."""
-    words, own = trace.run.words, words_of(trace, row)
+    words, own = run.words, words_of(run, row)
     if len(own) < 2:
         return " "
     apart = [int(words.start[after]) - int(words.end[before]) for before, after in pairwise(own)]
@@ -94,77 +95,77 @@ def line_end(source: Source, line: int) -> str:
     return "\n"
 
 
-def _content(trace: Trace, block: int) -> tuple[int, int]:
+def _content(text: Text, block: int) -> tuple[int, int]:
     """The characters of a block without the blanks and line ends around it."""
-    blocks = trace.text.blocks
+    blocks = text.blocks
     start, end = int(blocks.start[block]), int(blocks.end[block])
-    text = trace.text.source.excerpt(start, end)
-    stripped = text.lstrip(_BLANK_OR_END)
-    return end - len(stripped) if stripped else start, start + len(text.rstrip(_BLANK_OR_END)) if stripped else start
+    content = text.source.excerpt(start, end)
+    stripped = content.lstrip(_BLANK_OR_END)
+    return end - len(stripped) if stripped else start, start + len(content.rstrip(_BLANK_OR_END)) if stripped else start
 
 
-def _ends_with_sign(trace: Trace, block: int) -> bool:
+def _ends_with_sign(text: Text, block: int) -> bool:
     """A semicolon ends the block."""
-    code, end = trace.text.source.code, int(trace.text.blocks.end[block])
+    code, end = text.source.code, int(text.blocks.end[block])
     return end < len(code) and int(code[end]) == _SEMICOLON
 
 
-def _line_of(trace: Trace, block: int) -> int:
-    return trace.text.source.line_of(_content(trace, block)[0])
+def _line_of(text: Text, block: int) -> int:
+    return text.source.line_of(_content(text, block)[0])
 
 
-def blocks_before(trace: Trace, block: int, texts: Sequence[str]) -> Replace:
+def blocks_before(text: Text, block: int, texts: Sequence[str]) -> Replace:
     """New blocks before one, each on a line of its own; before a block in the middle of a line beside it."""
-    source, (start, _) = trace.text.source, _content(trace, block)
+    source, (start, _) = text.source, _content(text, block)
     line = source.line_of(start)
     first = int(source.line_starts[line - 1])
     while first < start and source.code[first] == CR:
         first += 1
     if source.excerpt(first, start).strip(_BLANK_OR_END):
-        return start, start, "".join(f"{text}; " for text in texts)
-    sign = ";" * _ends_with_sign(trace, block)
-    return first, first, "".join(f"{text}{sign}{line_end(source, line)}" for text in texts)
+        return start, start, "".join(f"{content}; " for content in texts)
+    sign = ";" * _ends_with_sign(text, block)
+    return first, first, "".join(f"{content}{sign}{line_end(source, line)}" for content in texts)
 
 
-def blocks_behind(trace: Trace, block: int, texts: Sequence[str]) -> Replace:
+def blocks_behind(text: Text, block: int, texts: Sequence[str]) -> Replace:
     """New blocks behind one, each on a line of its own."""
-    end = _content(trace, block)[1]
-    parting = _parting(trace, block)
-    return end, end, "".join(f"{parting}{text}" for text in texts)
+    end = _content(text, block)[1]
+    parting = _parting(text, block)
+    return end, end, "".join(f"{parting}{content}" for content in texts)
 
 
-def _parting(trace: Trace, block: int) -> str:
+def _parting(text: Text, block: int) -> str:
     """What parts a block into two."""
-    return ";" * _ends_with_sign(trace, block) + line_end(trace.text.source, _line_of(trace, block))
+    return ";" * _ends_with_sign(text, block) + line_end(text.source, _line_of(text, block))
 
 
-def parted(trace: Trace, row: int, index: int) -> Replace:
+def parted(run: Run, row: int, index: int) -> Replace:
     """The block of a row parted in two before one of its words; block skip stands at the head of both."""
-    words, source = trace.run.words, trace.text.source
-    block = int(trace.run.block[row])
-    start, begin = int(words.start[index]), int(trace.text.blocks.start[block])
+    words, source = run.words, run.text.source
+    block = int(run.block[row])
+    start, begin = int(words.start[index]), int(run.text.blocks.start[block])
     before = source.excerpt(begin, start)
     blanks = len(before) - len(before.rstrip(_BLANKS))
-    return start - blanks, start, _parting(trace, block) + skip_sign(trace, row)
+    return start - blanks, start, _parting(run.text, block) + skip_sign(run, row)
 
 
-def with_word(trace: Trace, row: int, text: str) -> Replace:
+def with_word(run: Run, row: int, text: str) -> Replace:
     """A word put behind the last one of a row."""
-    index = words_of(trace, row)[-1]
-    end = int(trace.run.words.end[index])
-    return end, end, separator(trace, row) + text
+    index = words_of(run, row)[-1]
+    end = int(run.words.end[index])
+    return end, end, separator(run, row) + text
 
 
-def in_place_of(trace: Trace, index: int, text: str) -> Replace:
+def in_place_of(run: Run, index: int, text: str) -> Replace:
     """Another word in the place of one."""
-    return int(trace.run.words.start[index]), int(trace.run.words.end[index]), text
+    return int(run.words.start[index]), int(run.words.end[index]), text
 
 
-def without(trace: Trace, row: int, removed: Iterable[int]) -> list[Replace]:
+def without(run: Run, row: int, removed: Iterable[int]) -> list[Replace]:
     """The block of a row without some of its words; where nothing is left of it, without its line."""
-    words, source = trace.run.words, trace.text.source
-    block = int(trace.run.block[row])
-    begin, end = _content(trace, block)
+    words, source = run.words, run.text.source
+    block = int(run.block[row])
+    begin, end = _content(run.text, block)
     text = source.excerpt(begin, end)
     gone: list[tuple[int, int]] = []
     for index in sorted(removed, key=lambda index: int(words.start[index])):
@@ -175,7 +176,7 @@ def without(trace: Trace, row: int, removed: Iterable[int]) -> list[Replace]:
             gone.append((first, last))
     kept = [0, *(place for span in gone for place in span), len(text)]
     if not "".join(text[first:last] for first, last in zip(kept[::2], kept[1::2], strict=True)).strip(_BLANKS + "/"):
-        return [_line_without(trace.text.source, begin, end)]
+        return [_line_without(run.text.source, begin, end)]
     return [(begin + first, begin + last, "") for first, last in (_with_blanks(text, *span) for span in gone)]
 
 

@@ -17,6 +17,7 @@ from polarcheck.checking import places
 from polarcheck.checking.places import PLACES, Place
 from polarcheck.checking.rule import Hits, Rule
 from polarcheck.checking.tables import OF_CAUSE, Tables
+from polarcheck.columns.trace import Trace
 from polarcheck.errors import TooHardError
 from polarcheck.execution.programs import name_at_head
 from polarcheck.execution.run import begins_program
@@ -24,7 +25,6 @@ from polarcheck.finding import NOTE, SEVERITIES, Finding, NotEvaluated, Severity
 from polarcheck.machines.codes import code_numbers, code_set
 from polarcheck.reading.excerpt import shortened
 from polarcheck.silence.suppression import Used, allowed
-from polarcheck.table.trace import Trace
 from polarcheck.time_limit import keep_going
 
 if TYPE_CHECKING:
@@ -317,8 +317,8 @@ class Engine:
         own = _severity(rule, hits, place).name.lower()
         is_note = trace.machine.severities.get(rule.name, own) == NOTE.name.lower()
         text, values = fill(rule, hits, self.tables, place, at, count)
-        block = places.block_text(trace, place.block)
-        section = int(trace.section[place.row]) if place.row >= 0 else -1
+        block = places.block_text(trace.text, place.block)
+        section = int(trace.mode.section[place.row]) if place.row >= 0 else -1
         kind = Undecided if hits.undecided is not None and hits.undecided[place.index] else Finding
         return kind(
             rule=rule.name,
@@ -330,7 +330,7 @@ class Engine:
             end_column=end - int(source.line_starts[end_line - 1]) + 1,
             block=block,
             program=self._program_name(place.block),
-            section_line=int(trace.line[trace.sections.enter[section]]) if section >= 0 else None,
+            section_line=int(trace.blocks.line[trace.mode.sections.enter[section]]) if section >= 0 else None,
             alarm=None if is_note else self._alarm(rule, at),
             values=values,
             count=count,
@@ -355,7 +355,9 @@ class Engine:
 
 def too_hard(rule: Rule, error: TooHardError, trace: Trace) -> NotEvaluated:
     """A rule that was given up; what takes long is the geometry of the polar sections."""
-    return NotEvaluated(rule=rule.name, reason=str(error), blocks=int(np.count_nonzero(trace.in_polar)) or len(trace))
+    return NotEvaluated(
+        rule=rule.name, reason=str(error), blocks=int(np.count_nonzero(trace.mode.in_polar)) or len(trace)
+    )
 
 
 def _unlisted(rule: Rule, count: int) -> NotEvaluated:

@@ -2,14 +2,14 @@
 The message of a finding: the template of its rule, filled with what stands at one place.
 
 The form of a name in braces says what it is:
-- `{trace.feed}`: a column of a table, at the row of the place; of `machine` and `job` the value itself;
+- `{feedrate.feed}`: a column of a table, at the row of the place; of `machine` and `job` the value itself;
 - `{X}`: the last word of that address in the row, as it is written;
 - any other: a value that the rule hands over (Hits.values), else a phrase, a function of that name in
   phrases/<group of the rule>.py or phrases/common.py.
 A phrase takes by their names the tables that it needs, and `place`, `row`, `index` (see Place), `at`, the executed
 words at fault, or `count`, how many elements the finding stands for.
 
-The format behind the colon is one of quantity.Quantity; `{trace.feed:feed/limit}` has as many digits as it takes to
+The format behind the colon is one of quantity.Quantity; `{feedrate.feed:feed/limit}` has as many digits as it takes to
 tell the feed from the limit, another name of the message.
 """
 
@@ -81,7 +81,7 @@ class _Template(string.Formatter):
 
     def _named(self, name: str) -> Any:
         if len(name) == 1 and name.isupper():
-            return written(self.tables["trace"], self.place.row, name)
+            return written(self.tables["blocks"], self.tables["run"], self.place.row, name)
         if name not in self.hits.values:
             return called(phrase(name, self.rule.group), self.tables, self.given)
         value = self.hits.values[name]
@@ -89,7 +89,7 @@ class _Template(string.Formatter):
 
     def _shown(self, value: Any) -> Any:
         value = value.item() if isinstance(value, np.generic) else value
-        return value if isinstance(value, str | Quantity) else in_row(value, self.tables["trace"], self.place.row)
+        return value if isinstance(value, str | Quantity) else in_row(value, self.tables["lengths"], self.place.row)
 
 
 def called(function: Callable[..., Any], tables: Mapping[str, Any], given: Mapping[str, Any]) -> Any:

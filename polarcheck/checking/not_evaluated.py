@@ -29,12 +29,12 @@ from polarcheck.checking.phrases.polar import (
 from polarcheck.checking.remedies import option_or_place, place, unlisted_codes
 from polarcheck.checking.rule import Rule
 from polarcheck.checking.tables import Tables
+from polarcheck.columns.filling import before
+from polarcheck.columns.trace import Trace
 from polarcheck.errors import TooHardError
 from polarcheck.finding import Finding, NotEvaluated, Undecided
 from polarcheck.geometry.tolerances import CHORDS, CROSSINGS, FARTHEST
 from polarcheck.machines.machine import Machine, OwnMachine
-from polarcheck.table.filling import before
-from polarcheck.table.trace import Trace
 
 #: Extra reasons that a rule could not be evaluated.
 _Said: TypeAlias = Callable[[Tables, Rule], Iterator["Missing"]]
@@ -42,7 +42,7 @@ _Said: TypeAlias = Callable[[Tables, Rule], Iterator["Missing"]]
 SAID = 1000
 
 #: Columns without which a finding may be missing, but hardly is: lists of offsets have T for turning tools alone.
-_WITHOUT_WEIGHT = ("trace.nose",)
+_WITHOUT_WEIGHT = ("offsets.nose",)
 #: Contours that are named one by one; a hostile file has any number of them.
 NAMED = 20
 
@@ -126,17 +126,17 @@ def unexecuted(tables: Tables) -> Iterator[NotEvaluated]:
     for (reason, matters), count in remarks.items():
         yield NotEvaluated(rule="all", reason=reason, blocks=count, matters=matters)
     for reason, count in (
-        *axes_not_followed(trace),
-        *names_not_known(trace),
-        *names_not_followed(trace),
-        *on_sub_spindle(trace),
+        *axes_not_followed(trace.blocks, trace.axes, trace.mode, trace.run, trace.machine),
+        *names_not_known(trace.blocks, trace.run),
+        *names_not_followed(trace.blocks, trace.axes, trace.mode, trace.run),
+        *on_sub_spindle(trace.blocks, trace.axes, trace.mode, trace.compensation, trace.machine),
         offsets_not_known(trace),
         *frames_not_simulated(trace, tables),
         *not_simulated(tables["infeed"]),
-        not_understood(trace, tables["other_mode"]),
-        on_cylinder(trace),
-        contours_outside(trace),
-        extrudes(trace),
+        not_understood(trace.blocks, tables["other_mode"]),
+        on_cylinder(trace.blocks, trace.mode),
+        contours_outside(trace.blocks, trace.mode),
+        extrudes(trace.blocks, trace.mode, trace.run),
     ):
         if count:
             yield NotEvaluated(rule="all", reason=reason, blocks=count)
@@ -144,30 +144,31 @@ def unexecuted(tables: Tables) -> Iterator[NotEvaluated]:
 
 def frames_not_simulated(trace: Trace, tables: Tables) -> Iterator[tuple[str, int]]:
     """The blocks that begin a frame which is not simulated, where the mode uses it, or an allowance changes in it."""
-    frames = trace.frames
+    frames = trace.path.frames
     if frames is not None:
-        in_force = ~frames.is_known & (trace.in_polar | trace.enters)
-        for row in np.flatnonzero(in_force & ~before(in_force, trace.starts, False))[:NAMED].tolist():
+        in_force = ~frames.is_known & (trace.mode.in_polar | trace.mode.enters)
+        for row in np.flatnonzero(in_force & ~before(in_force, trace.blocks.starts, False))[:NAMED].tolist():
             begins = np.flatnonzero(frames.is_known[: row + 1])
             first = int(begins[-1]) + 1 if len(begins) else 0
-            what = f"{block_and_line(trace, first)} is not simulated"
+            what = f"{block_and_line(trace.blocks, trace.run, first)} is not simulated"
             yield f"{what}: where the tool goes in that frame is not known", int(np.count_nonzero(in_force))
     selects = tables["mode_words"].selects_other_work_offset
     if selects.any():
-        what = f"{block_and_line(trace, int(np.flatnonzero(selects)[0]))} selects another work offset in the mode"
+        block = block_and_line(trace.blocks, trace.run, int(np.flatnonzero(selects)[0]))
+        what = f"{block} selects another work offset in the mode"
         yield f"{what}: it is taken to lie where the one before did", int(np.count_nonzero(selects))
-    changed = np.flatnonzero(trace.changes_allowance_in_offset_mode)
+    changed = np.flatnonzero(trace.compensation.changes_allowance_in_offset_mode)
     if len(changed):
-        what = f"{block_and_line(trace, int(changed[0]))} changes what is added to R in offset mode"
+        what = f"{block_and_line(trace.blocks, trace.run, int(changed[0]))} changes what is added to R in offset mode"
         yield f"{what}: the way from one to the other is not simulated; change it where G40 is in force", len(changed)
 
 
 def offsets_not_known(trace: Trace) -> tuple[str, int]:
     """The blocks that set an offset, or a variable that may be one, nobody knows which."""
-    rows = np.flatnonzero(trace.sets_unknown_offset)
+    rows = np.flatnonzero(trace.offsets.sets_unknown_offset)
     if not len(rows):
         return "", 0
-    what = f"which offset {block_and_line(trace, int(rows[0]))} sets is not known"
+    what = f"which offset {block_and_line(trace.blocks, trace.run, int(rows[0]))} sets is not known"
     return f"{what}, those in force are taken as given: {OF_VARIABLES}", len(rows)
 
 
@@ -181,7 +182,7 @@ def unevaluated(tables: Tables, rule: Rule) -> Iterator[Missing]:
     except TooHardError as error:
         # What takes long is the geometry of the polar sections.
         trace: Trace = tables["trace"]
-        blocks = int(np.count_nonzero(trace.in_polar)) or len(trace)
+        blocks = int(np.count_nonzero(trace.mode.in_polar)) or len(trace)
         yield Missing(rule.name, SAID, str(error), str(error), blocks)
 
 
@@ -193,7 +194,9 @@ def _not_known(tables: Tables, rule: Rule) -> Iterator[Missing]:
         if not where.any():
             continue
         # Of sections that are not followed one entry speaks for all.
-        rows = np.flatnonzero(np.isnan(tables.column(name)) & where & trace.is_followed & ~trace.sides_are_open)
+        rows = np.flatnonzero(
+            np.isnan(tables.column(name)) & where & trace.mode.is_followed & ~trace.compensation.sides_are_open
+        )
         if name in OF_MOVES:
             rows = rows[~(tables["feeds"].missing | tables["feeds"].lost)[rows]]  # a finding says so
         cause = cause_of(trace, name, rows)
@@ -220,7 +223,7 @@ def _c_axis_without_limit(tables: Tables, rule: Rule) -> Iterator[Missing]:
     if not np.isnan(trace.machine.limits.c_feed) or not len(rows):
         return
     at = int(rows[np.argmax(c_feed[rows])])
-    line, rate, axis = int(trace.line[at]), float(c_feed[at]), trace.machine.polar.rotary_address
+    line, rate, axis = int(trace.blocks.line[at]), float(c_feed[at]), trace.machine.polar.rotary_address
     reason = (
         f"{trace.machine.title} gives no limit of the {axis} axis; highest rate found {rate:.0f} deg/min, line {line}"
     )
@@ -238,8 +241,8 @@ def _codes_not_named(key: str, what: str) -> _Said:
         trace: Trace = tables["trace"]
         if not isinstance(trace.machine, OwnMachine) or getattr(trace.machine.m_codes, key):
             return
-        rows = np.flatnonzero(trace.enters)
-        codes = [unlisted_codes(trace, tables["spindles"], int(row)) for row in rows]
+        rows = np.flatnonzero(trace.mode.enters)
+        codes = [unlisted_codes(trace.blocks, trace.run, trace.machine, tables["spindles"], int(row)) for row in rows]
         if any(codes):
             file, first = trace.machine.file, next(filter(None, codes))
             remedy = f"if {first} does, add it to {place(trace.machine, f'm_codes.{key}')}"
@@ -253,14 +256,16 @@ def _codes_not_named(key: str, what: str) -> _Said:
 def _ramps_of_center(tables: Tables, rule: Rule) -> Iterator[Missing]:
     """The ramps of sections that are taken for paths of the tool center since they are all too short for a comment."""
     trace: Trace = tables["trace"]
-    ramps = np.flatnonzero((trace.starts_up | trace.cancels) & trace.is_path_of_center)
-    first, counts = _groups(trace.offset_number[ramps])
+    ramps = np.flatnonzero(
+        (trace.compensation.starts_up | trace.compensation.cancels) & trace.compensation.is_path_of_center
+    )
+    first, counts = _groups(trace.tools.offset_number[ramps])
     for row, count in sorted(zip(ramps[first].tolist(), counts.tolist(), strict=True)):
         reason = (
-            f"R of offset {offset(trace, row)} is taken as 0, since every ramp is shorter than the radius of its "
-            f"comment; whether they are too short is open: {to_give(trace, row, 'radius')}"
+            f"R of offset {offset(trace.tools, row)} is taken as 0, since every ramp is shorter than the radius of its "
+            f"comment; whether they are too short is open: {to_give(trace.tools, trace.machine, row, 'radius')}"
         )
-        yield Missing(rule.name, SAID, int(trace.offset_number[row]), reason, count)
+        yield Missing(rule.name, SAID, int(trace.tools.offset_number[row]), reason, count)
 
 
 def _contours_given_up(tables: Tables, rule: Rule) -> Iterator[Missing]:
@@ -290,13 +295,15 @@ def _parts_not_compared(tables: Tables, rule: Rule) -> Iterator[Missing]:
     yield from _loops_given_up(tables, rule, deviations.asked & tables["overcuts"].tangled, crosses)
     for one in deviations.comparisons:
         if one.is_partial and one.agrees:
-            of_block = f"the contour of line {int(tables['trace'].line[one.row])} does not come back to where it begins"
+            of_block = (
+                f"the contour of line {int(tables['trace'].blocks.line[one.row])} does not come back to where it begins"
+            )
             compared = f"was compared with {compared_with(deviations, one.number)} along its walls alone"
             reason = f"{of_block}, and {compared}: end it where it began, or beyond"
             yield Missing(rule.name, SAID, reason, reason, 1)
     for number, cause in deviations.missing():
         reason = f"{compared_with(deviations, number)} was compared with nothing: {cause}"
-        rows = deviations.asked if deviations.asked.any() else tables["trace"].in_polar
+        rows = deviations.asked if deviations.asked.any() else tables["trace"].mode.in_polar
         yield Missing(rule.name, SAID, reason, reason, int(np.count_nonzero(rows)))
 
 
@@ -325,7 +332,7 @@ def _loops_given_up(tables: Tables, rule: Rule, rows: Mask, reason: str, matters
     first, counts = _groups(tables["ramps"].loop[at])
     order = np.argsort(first)
     for number, count in zip(at[first[order]][:NAMED].tolist(), counts[order].tolist(), strict=False):
-        said = f"the contour at line {int(trace.line[number])} {reason}"
+        said = f"the contour at line {int(trace.blocks.line[number])} {reason}"
         yield Missing(rule.name, SAID, f"{said} {number}", said, count, matters)
     if len(first) > NAMED:
         said = f"each of {len(first) - NAMED} more contours {reason}"

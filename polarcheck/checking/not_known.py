@@ -12,13 +12,13 @@ from polarcheck.checking.phrases.common import block_and_line, linear
 from polarcheck.checking.phrases.offsets import called_tool, example, offset, to_give
 from polarcheck.checking.places import block_in_line
 from polarcheck.checking.tables import Tables
-from polarcheck.table.trace import Trace
+from polarcheck.columns.trace import Trace
 
 #: Why a column is not known in a row.
 _Reason: TypeAlias = Callable[[Tables, int], str]
 
 #: Columns that hang on the offset in force, and those that hang on the whole move.
-_OF_OFFSETS = ("trace.radius", "trace.cutter_diameter", "trace.nose")
+_OF_OFFSETS = ("compensation.radius", "offsets.cutter_diameter", "offsets.nose")
 OF_MOVES = ("tool_center.c_feed", "tool_center.c_acceleration")
 #: What to give where a value of the program is not known.
 OF_VARIABLES = "give its variables as [run.variables] in polarcheck.toml, or write the number"
@@ -29,18 +29,21 @@ _BLOCK_LENGTH = 40
 
 
 def why(name: str, tables: Tables, row: int) -> str:
-    """Why a column, as in `trace.radius`, is not known in a row."""
+    """Why a column, as in `compensation.radius`, is not known in a row."""
     return _REASONS.get(name, _plain(name))(tables, row)
 
 
 def cause_of(trace: Trace, name: str, rows: Any) -> Any:
     """A number for each row, the same for the same reason."""
     if name in _OF_OFFSETS:
-        return trace.offset_number[rows]
+        return trace.tools.offset_number[rows]
     if name in OF_MOVES:
-        stands_nowhere, has_feed = np.isnan(trace.start + trace.end)[rows], ~np.isnan(trace.feed[rows])
-        of_feed = np.where(trace.per_minute[rows], _NO_FEED, _FEED_OF_SPINDLE)
-        of_tool = np.where(np.isnan(trace.radius[rows]), trace.offset_number[rows], _POSITION)
+        stands_nowhere, has_feed = (
+            np.isnan(trace.path.start + trace.path.end)[rows],
+            ~np.isnan(trace.feedrate.feed[rows]),
+        )
+        of_feed = np.where(trace.feedrate.per_minute[rows], _NO_FEED, _FEED_OF_SPINDLE)
+        of_tool = np.where(np.isnan(trace.compensation.radius[rows]), trace.tools.offset_number[rows], _POSITION)
         return np.where(stands_nowhere, _POSITION, np.where(has_feed, of_tool, of_feed))
     return np.zeros(len(rows), np.int64)
 
@@ -49,7 +52,7 @@ def _of_move(tables: Tables, row: int) -> str:
     """Why the tool center path or the speed along it is not known."""
     cause = int(cause_of(tables["trace"], "tool_center.c_feed", np.array([row]))[0])
     if cause >= 0:
-        return _REASONS["trace.radius"](tables, row)
+        return _REASONS["compensation.radius"](tables, row)
     return _position(tables, row) if cause == _POSITION else _feed(tables, row)
 
 
@@ -58,55 +61,56 @@ def _no_offset(what: str, key: str, of_program: Callable[[Trace], Rows] | None =
 
     def reason(tables: Tables, row: int) -> str:
         trace: Trace = tables["trace"]
-        number = int(trace.offset_number[row])
+        number = int(trace.tools.offset_number[row])
         if not number:
             how = example(trace.machine)
             return f"no {what}: no tool offset is in force; call one before the polar mode, as in {how}"
         setter = int(of_program(trace)[row]) if of_program else -1
         if setter >= 0:
             return _not_known_from_program(trace, row, setter, what, key)
-        return f"no {what} for {called_tool(trace, row)}: {to_give(trace, row, key)}"
+        return f"no {what} for {called_tool(trace.tools, row)}: {to_give(trace.tools, trace.machine, row, key)}"
 
     return reason
 
 
 def _not_known_from_program(trace: Trace, row: int, setter: int, what: str, key: str) -> str:
     """Why what the program itself sets of an offset is not known: by which block, and what to give."""
-    unknown = trace.row_of_unknown_setting(int(trace.offset_number[row]), setter, key)
-    missing = f"no {what} for offset {offset(trace, row)}"
+    unknown = trace.offsets.row_of_unknown_setting(int(trace.tools.offset_number[row]), setter, key)
+    missing = f"no {what} for offset {offset(trace.tools, row)}"
     if unknown >= 0:
-        return f"{missing}: {block_and_line(trace, unknown)} sets what is not known; {OF_VARIABLES}"
-    setting = block_and_line(trace, setter)
-    return f"{missing}: {setting} sets wear or a difference alone; {to_give(trace, row, key)}"
+        return f"{missing}: {block_and_line(trace.blocks, trace.run, unknown)} sets what is not known; {OF_VARIABLES}"
+    setting = block_and_line(trace.blocks, trace.run, setter)
+    return f"{missing}: {setting} sets wear or a difference alone; {to_give(trace.tools, trace.machine, row, key)}"
 
 
 def _position(tables: Tables, row: int) -> str:
     trace: Trace = tables["trace"]
-    if trace.frames is not None and not trace.frames.is_known[row]:
+    if trace.path.frames is not None and not trace.path.frames.is_known[row]:
         return "the position is not known: the frame in force is not simulated"
-    open_ends = np.flatnonzero(trace.in_polar & np.isnan(trace.end) & ~np.isnan(trace.start))
+    open_ends = np.flatnonzero(trace.mode.in_polar & np.isnan(trace.path.end) & ~np.isnan(trace.path.start))
     at_or_before = open_ends[open_ends <= row]
-    if not np.isnan(trace.end[row]) and (open_ends > row).any():
+    if not np.isnan(trace.path.end[row]) and (open_ends > row).any():
         row = int(open_ends[open_ends > row][0])  # a corner hangs on the block behind it
     elif len(at_or_before):
         row = int(at_or_before[-1])
     if row in open_ends and not trace.run.unknown[row]:
-        return (
-            f"the position is not known: {block_and_line(trace, row)} leaves open where the tool goes; {OF_VARIABLES}"
-        )
-    lost = np.flatnonzero((trace.run.unknown & (trace.program == trace.program[row]))[: row + 1])
+        block = block_and_line(trace.blocks, trace.run, row)
+        return f"the position is not known: {block} leaves open where the tool goes; {OF_VARIABLES}"
+    lost = np.flatnonzero((trace.run.unknown & (trace.blocks.program == trace.blocks.program[row]))[: row + 1])
     if not len(lost):
-        axis = linear(trace, row)
-        loses = np.isnan(trace.x) & (~np.isnan(trace.x_before) | (trace.uses_axes & trace.has(axis)))
-        loses &= (trace.program == trace.program[row]) & ~trace.in_polar & ~trace.enters
+        axis = linear(trace.axes, row)
+        loses = np.isnan(trace.path.x) & (
+            ~np.isnan(trace.path.x_before) | (trace.modal.uses_axes & trace.blocks.has(axis))
+        )
+        loses &= (trace.blocks.program == trace.blocks.program[row]) & ~trace.mode.in_polar & ~trace.mode.enters
         if loses[: row + 1].any():
-            setting = block_and_line(trace, int(np.flatnonzero(loses[: row + 1])[-1]))
+            setting = block_and_line(trace.blocks, trace.run, int(np.flatnonzero(loses[: row + 1])[-1]))
             return f"the position is not known: {setting} leaves open where {axis} stands; write G0 {axis}... after it"
         return (
             f"the position is not known: {axis} was not programmed before the polar mode; write G0 {axis}... before it"
         )
     at = int(lost[-1])
-    written = f"line {int(trace.line[at])}, {block_in_line(trace, at, _BLOCK_LENGTH)}"
+    written = f"line {int(trace.blocks.line[at])}, {block_in_line(trace.run, at, _BLOCK_LENGTH)}"
     axes = f"X and {trace.machine.polar.rotary_address}"
     remedy = f"--subprograms FOLDER says where called programs lie, or program {axes} after it"
     return f"the position is not known after {written}, which is not executed; {remedy}"
@@ -119,7 +123,7 @@ def _origin(tables: Tables, row: int) -> str:
 
 def _feed(tables: Tables, row: int) -> str:
     trace: Trace = tables["trace"]
-    if trace.per_minute[row]:
+    if trace.feedrate.per_minute[row]:
         return "the feed is not known: no F is in force; write one before the cutting move"
     codes = " or ".join(trace.machine.codes("feed_per_minute"))
     return f"the feed is not known: F is per revolution of a spindle; write feed per minute before it, {codes}"
@@ -130,17 +134,17 @@ def _plain(name: str) -> _Reason:
 
 
 _REASONS: dict[str, _Reason] = {
-    "trace.radius": _no_offset("radius", "radius", lambda trace: trace.radius_set_in),
-    "trace.cutter_diameter": _no_offset("cutter diameter", "diameter"),
-    "trace.nose": _no_offset("nose type", "nose", lambda trace: trace.nose_set_in),
-    "trace.length": _position,
-    "trace.start": _position,
-    "trace.end": _position,
+    "compensation.radius": _no_offset("radius", "radius", lambda trace: trace.offsets.radius_set_in),
+    "offsets.cutter_diameter": _no_offset("cutter diameter", "diameter"),
+    "offsets.nose": _no_offset("nose type", "nose", lambda trace: trace.offsets.nose_set_in),
+    "path.length": _position,
+    "path.start": _position,
+    "path.end": _position,
     "arcs.end_radius": _position,
     "arcs.chord": _position,
     "travel.most_x": _of_move,
     "tool_center.c_feed": _of_move,
     "tool_center.c_acceleration": _of_move,
-    "trace.feed": _feed,
+    "feedrate.feed": _feed,
     "entry.origin_shift": _origin,
 }

@@ -9,6 +9,7 @@ import numpy as np
 
 from polarcheck.arrays import Mask
 from polarcheck.checking.tables import Tables
+from polarcheck.columns.trace import Trace
 from polarcheck.execution.run import straight
 from polarcheck.machines import profiles
 from polarcheck.machines.machine import Machine
@@ -18,7 +19,6 @@ from polarcheck.reading.channels import channel_like
 from polarcheck.reading.translation import translated
 from polarcheck.reading.words import read_words
 from polarcheck.table.mode_words import ModeWords
-from polarcheck.table.trace import Trace
 
 #: More titles than this in one message help nobody.
 NAMED = 3
@@ -61,7 +61,7 @@ def _find(tables: Tables) -> Fit | None:
     other way, make it look at other machines.
     """
     trace: Trace = tables["trace"]
-    if not len(trace.sections) or not np.any(_names_other_axis(tables) | tables["arcs"].x_is_misread):
+    if not len(trace.mode.sections) or not np.any(_names_other_axis(tables) | tables["arcs"].x_is_misread):
         return None
     fitting: dict[tuple[str, ...], list[Profile]] = {}
     told = [_reads(trace.machine)]
@@ -95,7 +95,7 @@ def _reasons(tables: Tables, machine: Machine) -> tuple[str, ...]:
     if not reads_well(there):
         return ()
     reasons = []
-    if mode.virtual_axis not in own.virtual_axes and np.any(other.has(mode.virtual_axis) & other.in_polar):
+    if mode.virtual_axis not in own.virtual_axes and np.any(other.blocks.has(mode.virtual_axis) & other.mode.in_polar):
         reasons.append(f"{mode.virtual_axis} is the second axis of the polar plane there")
     if mode.x != own.x and np.any(tables["arcs"].x_is_misread):
         reasons.append(f"all arcs close there, where X is a {mode.x} in the polar mode")
@@ -106,7 +106,7 @@ def _names_other_axis(tables: Tables) -> Mask:
     """Rows in the mode with the address of the virtual axis of other controls."""
     trace: Trace = tables["trace"]
     words: ModeWords = tables["mode_words"]
-    return trace.in_polar & words.rows(words.of_other_axis)
+    return trace.mode.in_polar & words.rows(words.of_other_axis)
 
 
 def _switch_is_not_alone(tables: Tables) -> bool:
@@ -124,14 +124,14 @@ def reads_well(there: Tables) -> bool:
     """Whether sections of a program begin and end on the machine of the tables, and nothing in them is odd there."""
     trace: Trace = there["trace"]
     arcs = there["arcs"]
-    if not len(trace.sections) or not trace.sections.left.all() or _names_other_axis(there).any():
+    if not len(trace.mode.sections) or not trace.mode.sections.left.all() or _names_other_axis(there).any():
         return False
     if there["words"].is_unreadable.any():
         return False
     if arcs.is_no_circle.any() or arcs.x_is_misread.any() or _switch_is_not_alone(there):
         return False
-    unread = trace.run.unknown | trace.with_words(trace.words_not_followed)
-    return not np.any(unread & (trace.section >= 0))  # else nobody knows how it reads there
+    unread = trace.run.unknown | trace.blocks.with_words(trace.blocks.words_not_followed)
+    return not np.any(unread & (trace.mode.section >= 0))  # else nobody knows how it reads there
 
 
 def _read_by(tables: Tables, machine: Machine) -> Tables:

@@ -10,10 +10,12 @@ import numpy as np
 
 from polarcheck.arrays import Mask, Rows, stretch
 from polarcheck.checking.tables import SPANS, Tables
+from polarcheck.columns.trace import Trace
+from polarcheck.execution.run import Run
 from polarcheck.machines.code_lists import numbers
 from polarcheck.machines.codes import code_numbers
 from polarcheck.reading.excerpt import shortened
-from polarcheck.table.trace import Trace
+from polarcheck.reading.words import Text
 
 #: A % with what else stands on its line, and blanks.
 _MARK = re.compile(r"(?:%[^\r\n]*)?[\0-\x20\x7f\xa0]*")
@@ -43,7 +45,7 @@ def blocks(over: str, tables: Tables) -> Rows:
     if over == "rows":
         return trace.run.block
     if over == "sections":
-        return trace.run.block[trace.sections.enter]
+        return trace.run.block[trace.mode.sections.enter]
     if over == "programs":
         return trace.run.block[_last_rows(trace)]
     if over == "faults":
@@ -62,14 +64,14 @@ def rows(over: str, tables: Tables) -> Rows:
     if over == "rows":
         return np.arange(len(trace))
     if over == "sections":
-        return trace.sections.enter
+        return trace.mode.sections.enter
     if over == "programs":
         return _last_rows(trace)
     if over == "files":
         return np.full(1, -1)
     if over == "faults":
         return np.array([min(fault.row, len(trace) - 1) for fault in trace.run.faults], np.int64)
-    return trace.row_of_block[blocks(over, tables)]
+    return trace.blocks.row_of_block[blocks(over, tables)]
 
 
 def span_of(name: str, over: str, tables: Tables) -> Rows:
@@ -104,12 +106,12 @@ def of_word(tables: Tables, index: int) -> Place:
     trace: Trace = tables["trace"]
     table = trace.text.words
     block = int(table.block[index])
-    return Place(int(table.start[index]), int(table.end[index]), block, int(trace.row_of_block[block]), index)
+    return Place(int(table.start[index]), int(table.end[index]), block, int(trace.blocks.row_of_block[block]), index)
 
 
 def of_section(tables: Tables, index: int) -> Place:
     """The G12.1 of a section."""
-    place = of_row(tables, int(tables["trace"].sections.enter[index]))
+    place = of_row(tables, int(tables["trace"].mode.sections.enter[index]))
     return msgspec.structs.replace(place, index=index)
 
 
@@ -120,7 +122,7 @@ def of_program(tables: Tables, index: int) -> Place:
 
 
 def _last_rows(trace: Trace) -> Rows:
-    return np.append(np.flatnonzero(trace.starts)[1:], len(trace)) - 1
+    return np.append(np.flatnonzero(trace.blocks.starts)[1:], len(trace)) - 1
 
 
 def of_file(tables: Tables, index: int) -> Place:
@@ -141,7 +143,7 @@ def of_allow(tables: Tables, index: int) -> Place:
     """An allow comment."""
     trace, allows = tables["trace"], tables["allows"]
     block = int(allows.block[index])
-    return Place(int(allows.start[index]), int(allows.end[index]), block, int(trace.row_of_block[block]), index)
+    return Place(int(allows.start[index]), int(allows.end[index]), block, int(trace.blocks.row_of_block[block]), index)
 
 
 def _of_span(name: str) -> Callable[[Tables, int], Place]:
@@ -157,7 +159,7 @@ def _of_span(name: str) -> Callable[[Tables, int], Place]:
             start = min(start + (mark.end() if mark else 0), end - 1)
             block = int(np.searchsorted(trace.text.blocks.start, start, side="right")) - 1
             end = min(end, max(int(trace.text.blocks.end[block]), start + 1))
-        return Place(start, end, block, int(trace.row_of_block[block]), index)
+        return Place(start, end, block, int(trace.blocks.row_of_block[block]), index)
 
     return place
 
@@ -198,16 +200,16 @@ def span(tables: Tables, place: Place, at: list[int]) -> tuple[int, int]:
     return int(table.start[at].min()), int(table.end[at].max())
 
 
-def block_text(trace: Trace, block: int) -> str:
+def block_text(text: Text, block: int) -> str:
     """A block as it is written, comments included, without the blanks around it; of a very long one its beginning."""
-    start, end = int(trace.text.blocks.start[block]), int(trace.text.blocks.end[block])
+    start, end = int(text.blocks.start[block]), int(text.blocks.end[block])
     # Beyond the blanks around it only so much is looked at as is shown.
-    return shortened(trace.text.source.excerpt(start, min(end, start + 2 * _BLOCK_LENGTH)).strip(), _BLOCK_LENGTH)
+    return shortened(text.source.excerpt(start, min(end, start + 2 * _BLOCK_LENGTH)).strip(), _BLOCK_LENGTH)
 
 
-def block_in_line(trace: Trace, row: int, length: int) -> str:
+def block_in_line(run: Run, row: int, length: int) -> str:
     """The block of a row in one line, as messages name it, shortened to a length."""
-    return shortened(" ".join(block_text(trace, int(trace.run.block[row])).split()), length)
+    return shortened(" ".join(block_text(run.text, int(run.block[row])).split()), length)
 
 
 def squeezed(text: str) -> str:
@@ -219,7 +221,7 @@ def _is_named(trace: Trace, index: int, names: tuple[str, ...]) -> bool:
     number = int(trace.run.words.address[index])
     address = chr(number)
     if "C" in names:
-        own = (*trace.virtual_addresses(int(trace.run.row[index])), *trace.machine.polar.rotary_words)
+        own = (*trace.axes.virtual_addresses(int(trace.run.row[index])), *trace.machine.polar.rotary_words)
         if number in map(trace.machine.address_number, filter(None, own)):
             return True
         names = tuple(name for name in names if name not in "CH")

@@ -8,20 +8,20 @@ from polarcheck.arrays import Floats, Mask, Rows
 from polarcheck.checking.phrases.offsets import key_of
 from polarcheck.checking.quantity import rounded
 from polarcheck.checking.tables import Tables
+from polarcheck.columns.sections import Sections
+from polarcheck.columns.trace import Trace
 from polarcheck.errors import TooHardError
 from polarcheck.finding import PolarSection
 from polarcheck.machines.modal import Units
 from polarcheck.table.center import Center
 from polarcheck.table.dynamics import Dynamics
 from polarcheck.table.ramps import Ramps
-from polarcheck.table.sections import Sections
-from polarcheck.table.trace import Trace
 
 
 def polar_sections(tables: Tables) -> list[PolarSection]:
     """One element for each polar section, in order."""
     trace: Trace = tables["trace"]
-    if not len(trace.sections):
+    if not len(trace.mode.sections):
         return []
     try:
         return _polar_sections(trace, tables["dynamics"], tables["center"], tables["ramps"])
@@ -30,12 +30,12 @@ def polar_sections(tables: Tables) -> list[PolarSection]:
 
 
 def _polar_sections(trace: Trace, dynamics: Dynamics, center: Center, ramps: Ramps) -> list[PolarSection]:
-    sections, tool_center = trace.sections, dynamics.tool_center
+    sections, tool_center = trace.mode.sections, dynamics.tool_center
     c_feed = np.where(center.cuts_off_center, tool_center.c_feed, -np.inf)
     highest = _of_sections(sections, c_feed, np.maximum, -np.inf)
     fastest = _fastest(trace, c_feed, highest)
     at_entry = _offset_rows(trace)
-    nearest = _of_sections(sections, np.where(trace.cuts, tool_center.nearest, np.inf), np.minimum, np.inf)
+    nearest = _of_sections(sections, np.where(trace.path.cuts, tool_center.nearest, np.inf), np.minimum, np.inf)
     ramp = _ramp_used(trace, ramps)
     limit = rounded(trace.machine.limits.c_feed)
     found = []
@@ -44,15 +44,15 @@ def _polar_sections(trace: Trace, dynamics: Dynamics, center: Center, ramps: Ram
     ):
         found.append(
             PolarSection(
-                line=int(trace.line_in_file[enter]),
-                end_line=int(trace.line_in_file[min(end, len(trace) - 1)]),
-                units="inch" if trace.units[enter] == Units.INCH else "mm",
-                offset=key_of(trace, int(trace.offset_number[row])),
-                radius=rounded(trace.radius[row] - trace.allowance[row]),
+                line=int(trace.blocks.line_in_file[enter]),
+                end_line=int(trace.blocks.line_in_file[min(end, len(trace) - 1)]),
+                units="inch" if trace.lengths.units[enter] == Units.INCH else "mm",
+                offset=key_of(trace.tools, int(trace.tools.offset_number[row])),
+                radius=rounded(trace.compensation.radius[row] - trace.compensation.allowance[row]),
                 radius_source=radius_source(trace, row),
                 nearest=rounded(nearest[index]),
                 c_feed=rounded(highest[index]),
-                c_feed_line=int(trace.line_in_file[fast]) if fast >= 0 else None,
+                c_feed_line=int(trace.blocks.line_in_file[fast]) if fast >= 0 else None,
                 c_feed_limit=limit,
                 ramp_used=rounded(ramp[index]),
                 time=rounded(dynamics.section_time[index]),
@@ -63,20 +63,20 @@ def _polar_sections(trace: Trace, dynamics: Dynamics, center: Center, ramps: Ram
 
 def _offset_rows(trace: Trace) -> Rows:
     """Per section the row whose tool offset counts: the first that is compensated, else G12.1."""
-    rows = trace.sections.enter.copy()
-    first = np.flatnonzero(trace.first_in_section(trace.compensates))
-    rows[trace.section[first]] = first
+    rows = trace.mode.sections.enter.copy()
+    first = np.flatnonzero(trace.mode.first_in_section(trace.compensation.compensates))
+    rows[trace.mode.section[first]] = first
     return rows
 
 
 def radius_source(trace: Trace, row: int) -> str:
     """Where R of the offset in force in a row comes from, as in PolarSection."""
-    if np.isnan(trace.radius[row]):
+    if np.isnan(trace.compensation.radius[row]):
         return "none"
-    if trace.radius_set_in[row] >= 0:
+    if trace.offsets.radius_set_in[row] >= 0:
         return "program"
-    tool = trace.tools.get(int(trace.offset_number[row]))
-    if trace.radius_is_from_comment[row] or tool is None:
+    tool = trace.tools.of_job.get(int(trace.tools.offset_number[row]))
+    if trace.offsets.radius_is_from_comment[row] or tool is None:
         return "comment"
     return tool.source
 
@@ -92,14 +92,16 @@ def _of_sections(sections: Sections, values: Floats, fold: np.ufunc, none: float
 
 def _fastest(trace: Trace, c_feed: Floats, highest: Floats) -> Rows:
     """Per section the first row with its highest rate of C; -1 where that is not known, or C does not turn."""
-    is_highest: Mask = (trace.section >= 0) & (c_feed > 0) & (c_feed == np.append(highest, np.nan)[trace.section])
-    rows = np.full(len(trace.sections), -1)
+    is_highest: Mask = (
+        (trace.mode.section >= 0) & (c_feed > 0) & (c_feed == np.append(highest, np.nan)[trace.mode.section])
+    )
+    rows = np.full(len(trace.mode.sections), -1)
     found = np.flatnonzero(is_highest)[::-1]
-    rows[trace.section[found]] = found
+    rows[trace.mode.section[found]] = found
     return rows
 
 
 def _ramp_used(trace: Trace, ramps: Ramps) -> Floats:
     """Per section how much of a start-up or offset cancel its R needs, the highest."""
-    is_ramp = (trace.starts_up | trace.cancels) & (trace.length != 0)
-    return _of_sections(trace.sections, np.where(is_ramp, ramps.used, -np.inf), np.maximum, -np.inf)
+    is_ramp = (trace.compensation.starts_up | trace.compensation.cancels) & (trace.path.length != 0)
+    return _of_sections(trace.mode.sections, np.where(is_ramp, ramps.used, -np.inf), np.maximum, -np.inf)

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from polarcheck.columns.lengths import Lengths
 from polarcheck.machines.modal import MM_PER_INCH, Units
-from polarcheck.table.trace import Trace
 
 #: Digits behind the point that a program writes, in mm and in inch.
 _DIGITS = {"length": (3, 4), "diameter": (3, 4), "feed": (3, 4), "whole": (0, 0)}
@@ -105,8 +105,8 @@ def _rounded_down(value: float, below: bool) -> str:
     return f"{scaled:.{max(places, 0)}f}".rstrip("0").rstrip(".") if places > 0 else f"{scaled:.0f}"
 
 
-def in_row(value: Any, trace: Trace, row: int) -> Quantity:
+def in_row(value: Any, lengths: Lengths, row: int) -> Quantity:
     """A value [mm, mm/min, radius] as the program of a row of the trace would write it; row -1: in mm and diameters."""
     if row < 0:
         return Quantity(value, False, True)
-    return Quantity(value, bool(trace.units[row] == Units.INCH), bool(trace.x_factor[row] < 1))
+    return Quantity(value, bool(lengths.units[row] == Units.INCH), bool(lengths.x_factor[row] < 1))

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from polarcheck.columns.blocks import ExecutedBlocks
+from polarcheck.execution.run import Run
 from polarcheck.machines.machine import Machine, OwnMachine
 from polarcheck.table.spindles import Spindles
-from polarcheck.table.trace import Trace
 
 #: M codes that are named where any of them may be the one.
 _NAMED = 3
@@ -23,20 +24,20 @@ def option_or_place(machine: Machine, key: str) -> str:
     return place(machine, key) if isinstance(machine, OwnMachine) else f"--set {key}=..."
 
 
-def unlisted_codes(trace: Trace, spindles: Spindles, row: int) -> str:
+def unlisted_codes(blocks: ExecutedBlocks, run: Run, machine: Machine, spindles: Spindles, row: int) -> str:
     """`M76 of line 3 or M70 of line 5`: the M codes above a row of its program that are in no list; empty for none."""
     words = spindles.unlisted
-    words = words[(trace.run.row[words] <= row) & (trace.program[trace.run.row[words]] == trace.program[row])]
-    numbers = trace.run.words.value[words]
+    words = words[(run.row[words] <= row) & (blocks.program[run.row[words]] == blocks.program[row])]
+    numbers = run.words.value[words]
     first = np.sort([np.flatnonzero(numbers == number)[0] for number in dict.fromkeys(numbers.tolist())]).astype(int)
-    return " or ".join(_code_and_line(trace, int(words[index])) for index in first[:_NAMED])
+    return " or ".join(_code_and_line(blocks, run, machine, int(words[index])) for index in first[:_NAMED])
 
 
-def _code_and_line(trace: Trace, word: int) -> str:
+def _code_and_line(blocks: ExecutedBlocks, run: Run, machine: Machine, word: int) -> str:
     """`M76 of line 3`, and `M3 P14` where the machine tells M3 by what P is."""
-    row = int(trace.run.row[word])
-    code = f"M{trace.run.words.value[word]:g}"
-    listed = (one.partition(" ") for one in trace.machine.m_codes.with_words)
+    row = int(run.row[word])
+    code = f"M{run.words.value[word]:g}"
+    listed = (one.partition(" ") for one in machine.m_codes.with_words)
     beside = sorted({other[0] for first, _, other in listed if first == code})
-    told = [f"{letter}{trace.word(letter)[row]:g}" for letter in beside if trace.has(letter)[row]]
-    return f"{' '.join((code, *told))} of line {int(trace.line[row])}"
+    told = [f"{letter}{blocks.word(letter)[row]:g}" for letter in beside if blocks.has(letter)[row]]
+    return f"{' '.join((code, *told))} of line {int(blocks.line[row])}"

@@ -20,9 +20,9 @@ from polarcheck.checking.message import called
 from polarcheck.checking.places import PLACES, Place
 from polarcheck.checking.rule import FOLDER, REPAIR, Hits, Rule
 from polarcheck.checking.tables import Tables
+from polarcheck.columns.trace import Trace
 from polarcheck.finding import Edit, Fix
 from polarcheck.reading.source import Source
-from polarcheck.table.trace import Trace
 
 #: A block that runs more often is not looked at each time, and has no fix.
 _MOST_RUNS = 1000

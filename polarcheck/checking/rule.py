@@ -29,6 +29,20 @@ if TYPE_CHECKING:
     from polarcheck.arrays import States
     from polarcheck.checking.macro_faults import Faults as Faults
     from polarcheck.checking.other_machine import OtherMachine as OtherMachine
+    from polarcheck.columns.axes import PlaneAxes as PlaneAxes
+    from polarcheck.columns.blocks import ExecutedBlocks as ExecutedBlocks
+    from polarcheck.columns.compensation import CutterCompensation as CutterCompensation
+    from polarcheck.columns.coordinates import Coordinates as Coordinates
+    from polarcheck.columns.feedrate import Feedrate as Feedrate
+    from polarcheck.columns.lengths import Lengths as Lengths
+    from polarcheck.columns.modal import ModalStates as ModalStates
+    from polarcheck.columns.mode import PolarMode as PolarMode
+    from polarcheck.columns.offsets import ToolOffsets as ToolOffsets
+    from polarcheck.columns.path import ProgrammedPath as ProgrammedPath
+    from polarcheck.columns.sections import Sections as Sections
+    from polarcheck.columns.tools import CalledTools as CalledTools
+    from polarcheck.columns.trace import Trace as Trace
+    from polarcheck.execution.run import Run as Run
     from polarcheck.machines.job import Job as Job
     from polarcheck.machines.machine import Machine as Machine
     from polarcheck.reading.words import Text as Text
@@ -51,13 +65,11 @@ if TYPE_CHECKING:
     from polarcheck.table.overcuts import Overcuts as Overcuts
     from polarcheck.table.procedure import Procedure as Procedure
     from polarcheck.table.ramps import Ramps as Ramps
-    from polarcheck.table.sections import Sections as Sections
     from polarcheck.table.senses import Senses as Senses
     from polarcheck.table.slots import Slots as Slots
     from polarcheck.table.spindles import Spindles as Spindles
     from polarcheck.table.switch_words import SwitchWords as SwitchWords
     from polarcheck.table.tool_center import ToolCenter as ToolCenter
-    from polarcheck.table.trace import Trace as Trace
     from polarcheck.table.travel import Travel as Travel
     from polarcheck.table.uncompensated_cuts import UncompensatedCuts as UncompensatedCuts
     from polarcheck.table.unpointed import Unpointed as Unpointed
@@ -139,7 +151,8 @@ class Rule(Documented, frozen=True):
     parameters: the tables that the function compares, by name. over: what the elements of the mask stand for.
     at: of the words at fault the addresses, or the lists of the machine that their codes stand in (rapid, line), "on"
     and "off" for the codes of the mode; the whole block if empty or if the block has none of them.
-    needs: columns, as in `trace.radius`, without which the rule cannot say anything where the column `where` holds.
+    needs: columns, as in `compensation.radius`, without which the rule cannot say anything where the column `where`
+    holds.
     once: what is one cause, so that one finding stands for all of it (SPANS): a section, a program, an F word.
     follows: what it follows from: by how far that reaches (SPANS) the rules that report the cause. Where one of them
     fires within the same block, section or the like, the finding is listed under that one.
@@ -192,7 +205,7 @@ def rule(
     over: str = "rows",
     at: tuple[str, ...] = (),
     needs: tuple[str, ...] = (),
-    where: str = "trace.in_polar",
+    where: str = "mode.in_polar",
     once: str = "",
     follows: Mapping[str, tuple[str, ...]] = MappingProxyType({}),
     worst: str = "",

@@ -11,6 +11,7 @@ import numpy as np
 from polarcheck.checking import check
 from polarcheck.checking.other_machine import reads_well
 from polarcheck.checking.tables import Tables
+from polarcheck.columns.trace import Trace
 from polarcheck.errors import PolarcheckError
 from polarcheck.machines import profiles
 from polarcheck.machines.job import Job
@@ -18,7 +19,6 @@ from polarcheck.machines.machine import Machine
 from polarcheck.machines.modal import Side, Units
 from polarcheck.machines.profiles import Profile
 from polarcheck.reading import files
-from polarcheck.table.trace import Trace
 from polarcheck.time_limit import time_limit
 
 #: A program that takes longer tells nothing [s].
@@ -75,7 +75,7 @@ def survey(paths: Sequence[str], asked: Profile | None, awaited: Iterable[str] |
     polar = []
     for path, data in found:
         tables = _tables(data, chosen.machine)
-        if tables is None or not len(tables["trace"].sections):
+        if tables is None or not len(tables["trace"].mode.sections):
             continue
         polar.append(path)
         trace: Trace = tables["trace"]
@@ -144,23 +144,25 @@ def _fitting(programs: Sequence[bytes], known: Sequence[Profile]) -> list[Profil
 def _reads(tables: Tables) -> bool:
     try:
         with time_limit(_SECONDS):
-            return bool(len(tables["trace"].sections)) and reads_well(tables)
+            return bool(len(tables["trace"].mode.sections)) and reads_well(tables)
     except PolarcheckError:
         return False
 
 
 def _of_program(path: str, trace: Trace) -> Iterator[tuple[str, Told]]:
     """The offsets that the program calls in the polar mode or with cutter compensation there."""
-    needed = trace.in_polar & (trace.side != Side.OFF)
-    needed = needed if needed.any() else trace.in_polar
-    given = np.unique(trace.offset_number[needed & (trace.radius_set_in < 0)])
+    needed = trace.mode.in_polar & (trace.compensation.side != Side.OFF)
+    needed = needed if needed.any() else trace.mode.in_polar
+    given = np.unique(trace.tools.offset_number[needed & (trace.offsets.radius_set_in < 0)])
     for number in given[given > 0].tolist():
-        key, told = trace.offset_key(number), trace.radius_told.get(number)
+        key, told = trace.tools.offset_key(number), trace.offsets.radii_in_comments.get(number)
         if key:
             yield key, Told(path, told.radius, told.comment) if told else Told(path)
 
 
 def _units(trace: Trace) -> Iterator[str]:
     """The units that the program itself says."""
-    state = trace.state("units")
-    yield from (name for name, one in (("inch", Units.INCH), ("mm", Units.MM)) if np.any(state[trace.in_polar] == one))
+    state = trace.modal.state("units")
+    yield from (
+        name for name, one in (("inch", Units.INCH), ("mm", Units.MM)) if np.any(state[trace.mode.in_polar] == one)
+    )

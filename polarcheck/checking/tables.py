@@ -16,7 +16,18 @@ if TYPE_CHECKING:
 
 #: What makes each table; the parameters name the tables that it is made from.
 MAKERS = {
-    "trace": "polarcheck.table.trace:Trace",
+    "blocks": "polarcheck.columns.blocks:ExecutedBlocks",
+    "modal": "polarcheck.columns.modal:ModalStates",
+    "tools": "polarcheck.columns.tools:CalledTools",
+    "coordinates": "polarcheck.columns.coordinates:Coordinates",
+    "axes": "polarcheck.columns.axes:PlaneAxes",
+    "mode": "polarcheck.columns.mode:PolarMode",
+    "lengths": "polarcheck.columns.lengths:Lengths",
+    "path": "polarcheck.columns.path:ProgrammedPath",
+    "offsets": "polarcheck.columns.offsets:ToolOffsets",
+    "compensation": "polarcheck.columns.compensation:CutterCompensation",
+    "feedrate": "polarcheck.columns.feedrate:Feedrate",
+    "trace": "polarcheck.columns.trace:Trace",
     "infeed": "polarcheck.table.infeed:Infeed",
     "tool_center": "polarcheck.table.tool_center:ToolCenter",
     "dynamics": "polarcheck.table.dynamics:Dynamics",
@@ -50,13 +61,13 @@ MAKERS = {
     "faults": "polarcheck.checking.macro_faults:Faults",
 }
 #: Tables that are a column of another one.
-PARTS = {"sections": "trace.sections", "moves": "tool_center.moves"}
+PARTS = {"sections": "mode.sections", "moves": "tool_center.moves"}
 #: How far a cause reaches, or what one finding stands for: the column whose value its rows have in common.
 SPANS = {
     "file": "",
     "block": "run.block",
-    "section": "trace.whole_section",
-    "program": "trace.program",
+    "section": "mode.whole_section",
+    "program": "blocks.program",
     "loop": "ramps.loop",
     "pause": "ramps.pause",
     "way": "ramps.way",
@@ -74,8 +85,8 @@ SPANS = {
     "spindle code": "since.spindle_code",
     "c axis code": "since.c_axis_code",
     "live tool code": "since.live_tool_code",
-    "feed": "trace.feed_word",
-    "motion": "trace.motion_word",
+    "feed": "feedrate.feed_word",
+    "motion": "modal.motion_word",
     "row": "since.row",
     "X before": "since.linear_word_before",
     "C before": "since.virtual_word_before",
@@ -129,7 +140,7 @@ class Tables(Mapping[str, Any]):
         return maker(*(self[parameter] for parameter in parameters(maker)))
 
     def column(self, path: str) -> Any:
-        """A column by its path, as in `trace.radius` or `machine.limits.c_feed`."""
+        """A column by its path, as in `compensation.radius` or `machine.limits.c_feed`."""
         name, _, rest = path.partition(".")
         found = self[name]
         for attribute in rest.split(".") if rest else ():

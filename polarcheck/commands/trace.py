@@ -17,8 +17,8 @@ from polarcheck.errors import UsageError
 
 if TYPE_CHECKING:
     from polarcheck.checking.tables import Tables
+    from polarcheck.columns.trace import Trace
     from polarcheck.table.tool_center import ToolCenter
-    from polarcheck.table.trace import Trace
 
 
 @click.command(short_help="Show what a program does, block by block or move by move.")

@@ -11,11 +11,11 @@ import numpy as np
 from polarcheck.arrays import Floats, Mask, Rows
 from polarcheck.checking.editing import Replace, in_place_of, is_plain, with_word, words_of, written_word
 from polarcheck.checking.tables import Tables
+from polarcheck.columns.trace import Trace
 from polarcheck.errors import TooHardError
 from polarcheck.feed_table.edits import takes_feed, writes_points
 from polarcheck.feed_table.table import feed_number, highest
 from polarcheck.table.highest_feeds import HighestFeeds
-from polarcheck.table.trace import Trace
 
 _NUMBER = re.compile(r"F\+?[0-9.]+", re.IGNORECASE)
 #: So often blocks are looked for whose runs need one F each; each time at least one more gets the lowest.
@@ -42,7 +42,7 @@ def feed_words(tables: Tables) -> FeedWords:
     if not lowered.any():
         return FeedWords((), (), ())
     # As a number of F in force, whatever it is per: outside the mode it stays as it was.
-    wanted = np.where(lowered, asked, trace.written_feed)
+    wanted = np.where(lowered, asked, trace.feedrate.written_feed)
     return _Plan(trace, wanted).words()
 
 
@@ -52,10 +52,10 @@ class _Plan:
     def __init__(self, trace: Trace, wanted: Floats) -> None:
         self.trace = trace
         self.wanted = wanted
-        self.moving = takes_feed(trace)
-        self.writes = trace.has("F") & (trace.feed_word == self._own_word)
+        self.moving = takes_feed(trace.axes)
+        self.writes = trace.blocks.has("F") & (trace.feedrate.feed_word == self._own_word)
         self.lowest: set[int] = set()
-        self.writes_points = writes_points(trace)
+        self.writes_points = writes_points(trace.blocks, trace.lengths, trace.run)
         #: The F words of each row, and the first one at each place of the text.
         self.words_of_row: dict[int, list[int]] = {}
         self.word_at: dict[int, int] = {}
@@ -66,13 +66,13 @@ class _Plan:
     @property
     def _own_word(self) -> Rows:
         trace = self.trace
-        words, at = trace.word_indices("F"), np.full(len(trace), -2, np.int64)
+        words, at = trace.blocks.word_indices("F"), np.full(len(trace), -2, np.int64)
         at[trace.run.row[words]] = trace.run.words.start[words]
         return at
 
     def _feed_words(self) -> Iterator[tuple[int, int, int]]:
         """The index of each F word, its row and its place in the text."""
-        run, words = self.trace.run, self.trace.word_indices("F")
+        run, words = self.trace.run, self.trace.blocks.word_indices("F")
         return zip(words.tolist(), run.row[words].tolist(), run.words.start[words].tolist(), strict=True)
 
     def words(self) -> FeedWords:
@@ -95,19 +95,19 @@ class _Plan:
             if not fixed:
                 made = {edit for edit in edits.values() if edit is not None}
                 return FeedWords(tuple(sorted(made)), tuple(sorted(self.lowest)), tuple(sorted(left)))
-            left |= {int(trace.line_in_file[row]) for row in fixed}
+            left |= {int(trace.blocks.line_in_file[row]) for row in fixed}
             self.moving &= ~np.isin(block, block[fixed])
         raise TooHardError("F of too many blocks hangs on that of others")
 
     def _needs(self) -> Mask:
         """Rows that move with another F than the one that is in force before them, or write another one."""
         events = np.flatnonzero(self.moving | self.writes)
-        after = np.where(self.moving[events], self.wanted[events], self.trace.written_feed[events])
-        starts = np.cumsum(self.trace.starts)[events]
+        after = np.where(self.moving[events], self.wanted[events], self.trace.feedrate.written_feed[events])
+        starts = np.cumsum(self.trace.blocks.starts)[events]
         before = np.append(np.nan, after[:-1])
         before[1:][starts[1:] != starts[:-1]] = np.nan
         own = self.writes[events]
-        asked = np.where(own, self.trace.written_feed[events], before)
+        asked = np.where(own, self.trace.feedrate.written_feed[events], before)
         needs = np.zeros(len(self.trace), bool)
         needs[events] = self.moving[events] & (asked != after) & ~(np.isnan(asked) & np.isnan(after))
         return needs
@@ -124,7 +124,7 @@ class _Plan:
         for one in blocks.tolist():
             rows = np.flatnonzero((self.trace.run.block == one) & self.moving)
             self.wanted[rows] = np.nanmin(self.wanted[rows])
-            self.lowest.add(int(self.trace.line_in_file[rows[0]]))
+            self.lowest.add(int(self.trace.blocks.line_in_file[rows[0]]))
 
     def _edit(self, row: int) -> Replace | None:
         trace = self.trace
@@ -133,19 +133,19 @@ class _Plan:
         of_others = int(source.line_starts[source.parts[0].first_line - 1]) if source.parts else len(source.code)
         is_own = int(trace.text.blocks.end[block]) <= of_others
         own = self.words_of_row.get(row, [])
-        takes = is_plain(trace, row) or (_is_as_written(trace, row) and all(_is_number(trace, one) for one in own))
+        takes = is_plain(trace.run, row) or (_is_as_written(trace, row) and all(_is_number(trace, one) for one in own))
         if not is_own or not takes or not value > 0:
             return None
         text = self._text(row, value)
-        return in_place_of(trace, own[-1], text) if own else with_word(trace, row, text)
+        return in_place_of(trace.run, own[-1], text) if own else with_word(trace.run, row, text)
 
     def _text(self, row: int, value: float) -> str:
         """The F word: as it stands in the program, where it is the one that was in force."""
         trace = self.trace
-        found = self.word_at.get(int(trace.feed_word[row]))
-        if value == trace.written_feed[row] and found is not None and _is_number(trace, found):
-            return written_word(trace, found)
-        return f"F{feed_number(round(value / float(trace.scale[row]), 6), bool(self.writes_points[row]))}"
+        found = self.word_at.get(int(trace.feedrate.feed_word[row]))
+        if value == trace.feedrate.written_feed[row] and found is not None and _is_number(trace, found):
+            return written_word(trace.run, found)
+        return f"F{feed_number(round(value / float(trace.lengths.scale[row]), 6), bool(self.writes_points[row]))}"
 
 
 def _is_as_written(trace: Trace, row: int) -> bool:
@@ -153,10 +153,10 @@ def _is_as_written(trace: Trace, row: int) -> bool:
     words, source = trace.run.words, trace.text.source
     return all(
         source.excerpt(int(words.start[index]), int(words.end[index])).upper().startswith(chr(words.address[index]))
-        for index in words_of(trace, row)
+        for index in words_of(trace.run, row)
     )
 
 
 def _is_number(trace: Trace, index: int) -> bool:
     """An F word is written as a number."""
-    return _NUMBER.fullmatch(written_word(trace, index)) is not None
+    return _NUMBER.fullmatch(written_word(trace.run, index)) is not None

@@ -13,11 +13,11 @@ import numpy as np
 from polarcheck.arrays import Floats, Mask, Rows
 from polarcheck.checking.quantity import rounded
 from polarcheck.checking.tables import Tables
+from polarcheck.columns.trace import Trace
 from polarcheck.feed_table.edits import LEAST_WHOLE, writes_points
 from polarcheck.machines.modal import Units
 from polarcheck.table.dynamics import Dynamics, Times
 from polarcheck.table.highest_feeds import LIMITS, HighestFeeds
-from polarcheck.table.trace import Trace
 
 #: What stands in the place of a limit.
 PROGRAMMED, CENTER, UNKNOWN = "programmed", "center", "not known"
@@ -129,19 +129,19 @@ def rounded_down(trace: Trace, feed: Floats, left_out: Mask) -> Floats:
     left_out: where the result must not be F itself. NaN where no F above 0 is left.
     """
     with np.errstate(all="ignore"):
-        value = np.where((feed > 0) & np.isfinite(feed), feed / trace.scale, np.nan)
+        value = np.where((feed > 0) & np.isfinite(feed), feed / trace.lengths.scale, np.nan)
         factor = 10.0 ** (_DIGITS - 1 - np.floor(np.log10(value)))
         whole = value * factor
         found = np.where(left_out, np.ceil(whole - 1e-6) - 1, np.floor(whole + 1e-9)) / factor
-        is_whole = ~writes_points(trace) & (found >= LEAST_WHOLE)
-        return np.where(is_whole, np.floor(found), found) * trace.scale
+        is_whole = ~writes_points(trace.blocks, trace.lengths, trace.run) & (found >= LEAST_WHOLE)
+        return np.where(is_whole, np.floor(found), found) * trace.lengths.scale
 
 
 def highest(trace: Trace, feeds: HighestFeeds) -> Floats:
     """Highest F per row up to the programmed one, as it can be written [mm/min]; NaN unknown, or none is low enough."""
     lower = rounded_down(trace, np.where(feeds.must_be_lower, feeds.allowed, np.nan), feeds.is_left_out)
     keeps = ~feeds.meets_center & ~np.isnan(feeds.allowed)
-    return np.where(feeds.must_be_lower, lower, np.where(keeps, trace.programmed_feed, np.nan))
+    return np.where(feeds.must_be_lower, lower, np.where(keeps, trace.feedrate.programmed_feed, np.nan))
 
 
 def feed_table(tables: Tables) -> FeedTable:
@@ -150,9 +150,9 @@ def feed_table(tables: Tables) -> FeedTable:
     feeds: HighestFeeds = tables["highest_feeds"]
     dynamics: Dynamics = tables["dynamics"]
     found = _Columns(trace, feeds, dynamics)
-    sections = [found.total(number, enter) for number, enter in enumerate(trace.sections.enter.tolist())]
+    sections = [found.total(number, enter) for number, enter in enumerate(trace.mode.sections.enter.tolist())]
     limits = trace.machine.limits
-    inch = bool(len(trace) and np.all(trace.units[feeds.cuts] == Units.INCH) and feeds.cuts.any())
+    inch = bool(len(trace) and np.all(trace.lengths.units[feeds.cuts] == Units.INCH) and feeds.cuts.any())
     return FeedTable(
         units="inch" if inch else "mm",
         limits=FeedLimits(
@@ -174,7 +174,7 @@ class _Columns:
 
     def __init__(self, trace: Trace, feeds: HighestFeeds, dynamics: Dynamics) -> None:
         self.trace, self.feeds, self.dynamics = trace, feeds, dynamics
-        self.feed = trace.programmed_feed
+        self.feed = trace.feedrate.programmed_feed
         self.highest = highest(trace, feeds)
         self.names = np.array(LIMITED_BY)[self._reason()]
         self.highest_time = self.time_with(self.highest)
@@ -188,16 +188,16 @@ class _Columns:
 
     def time_with(self, feed: Floats) -> Floats:
         """How long each row takes at another F, which override leaves alone [s]; NaN unknown."""
-        runs = np.minimum(feed, self.trace.feed)  # the control may clamp F
+        runs = np.minimum(feed, self.trace.feedrate.feed)  # the control may clamp F
         with np.errstate(all="ignore"):
-            return np.where(self.feeds.time == 0, 0.0, self.feeds.time * self.trace.feed / runs)
+            return np.where(self.feeds.time == 0, 0.0, self.feeds.time * self.trace.feedrate.feed / runs)
 
     def rows(self) -> list[FeedRow]:
         """The blocks of the table, in the order in which they are first run."""
         trace, rows = self.trace, np.flatnonzero(self.feeds.cuts)
         if not len(rows):
             return []
-        key = trace.section[rows] * (int(trace.run.block.max()) + 1) + trace.run.block[rows]
+        key = trace.mode.section[rows] * (int(trace.run.block.max()) + 1) + trace.run.block[rows]
         _, first, of_row, runs = np.unique(key, return_index=True, return_inverse=True, return_counts=True)
         ordinal = np.argsort(np.argsort(first))[of_row]
         first, runs = np.sort(first), runs[np.argsort(first)]
@@ -220,9 +220,9 @@ class _Columns:
         several &= ~np.isnan(feed) & ~np.isnan(self.highest[worst])
         return [
             FeedRow(
-                line=int(trace.line_in_file[row]),
+                line=int(trace.blocks.line_in_file[row]),
                 block=_text(trace, row),
-                section=int(trace.section[row]),
+                section=int(trace.mode.section[row]),
                 runs=int(runs[at]),
                 feed=rounded(feed[at]),
                 highest=rounded(self.highest[row]),
@@ -244,15 +244,15 @@ class _Columns:
     def total(self, number: int, enter: int) -> FeedTotal:
         """What a section takes."""
         trace = self.trace
-        inside = np.arange(enter, trace.sections.leave[number])
+        inside = np.arange(enter, trace.mode.sections.leave[number])
         today, best, highest = (column[inside] for column in (self.dynamics.time, self.highest_time, self.highest))
         judged = self.feeds.cuts[inside] & ~np.isnan(best) & ~np.isnan(today)
         lowered = self.feeds.must_be_lower[inside] & ~np.isnan(highest)
         one = float(highest[lowered].min()) if lowered.any() else np.nan
         with np.errstate(all="ignore"):
             # Time and F of a block are in inverse proportion.
-            slow = best * np.where(best == 0, 1.0, np.minimum(highest, trace.feed[inside]))
-            slow = np.where(best == 0, 0.0, slow / np.fmin(np.minimum(highest, trace.feed[inside]), one))
+            slow = best * np.where(best == 0, 1.0, np.minimum(highest, trace.feedrate.feed[inside]))
+            slow = np.where(best == 0, 0.0, slow / np.fmin(np.minimum(highest, trace.feedrate.feed[inside]), one))
         cutting = tuple(float(column[judged].sum()) for column in (today, best, slow))
         return _total(trace, self.dynamics.times(inside), enter, cutting, one)
 
@@ -269,10 +269,10 @@ class _Columns:
 def _total(trace: Trace, times: Times, row: int, cutting: tuple[float, ...], one: float) -> FeedTotal:
     today, best, slow = cutting
     return FeedTotal(
-        line=int(trace.line_in_file[row]) if len(trace) else 1,
+        line=int(trace.blocks.line_in_file[row]) if len(trace) else 1,
         time=round(times.known, 6),
         unknown=[
-            Unknown(reason=reason, blocks=count, line=int(trace.line_in_file[first]))
+            Unknown(reason=reason, blocks=count, line=int(trace.blocks.line_in_file[first]))
             for reason, count, first in times.unknown
         ],
         cutting=round(today, 6),

@@ -15,11 +15,11 @@ from polarcheck.checking.repair import FEED, WAY, Z
 from polarcheck.checking.rule import load_all
 from polarcheck.checking.settings import Settings
 from polarcheck.checking.tables import Tables
+from polarcheck.columns.trace import Trace
 from polarcheck.finding import SEVERITIES, FileReport, Finding
 from polarcheck.reading import source
 from polarcheck.reading.source import Source
 from polarcheck.table.moves import Moves, z_along
-from polarcheck.table.trace import Trace
 from polarcheck.time_limit import seconds_for, time_limit
 
 #: Lengths and feeds that differ by no more are equal [mm, mm/min].
@@ -148,7 +148,7 @@ def _fixed_moves(tables: Tables, changes: Sequence[tuple[Collection[str], range]
     fixed: Moves = moves
     for names, edited in changes:
         if WAY in names:
-            inside = (trace.line_in_file >= edited.start) & (trace.line_in_file < edited.stop)
+            inside = (trace.blocks.line_in_file >= edited.start) & (trace.blocks.line_in_file < edited.stop)
             rows = np.unique(moves.row)
             at = np.flatnonzero(inside[rows])
             free = np.isin(moves.row, rows[np.union1d(at, np.maximum(at - 1, 0))])
@@ -162,29 +162,34 @@ def _may_change(trace: Trace, moves: Moves, changes: Sequence[tuple[Collection[s
 
     For the feed also those for which F words or G codes of motion in these lines are in force.
     """
-    lines = trace.line_in_file
+    lines = trace.blocks.line_in_file
     may = np.zeros(len(trace), bool)
     for names, edited in changes:
         if what in names:
             inside = (lines >= edited.start) & (lines < edited.stop)
             may |= inside
             if what == FEED:
-                may |= np.isin(trace.feed_word, trace.feed_word[inside & trace.has("F")])
-                may |= np.isin(trace.motion_word, trace.motion_word[inside & trace.sets("motion")])
+                may |= np.isin(trace.feedrate.feed_word, trace.feedrate.feed_word[inside & trace.blocks.has("F")])
+                may |= np.isin(trace.modal.motion_word, trace.modal.motion_word[inside & trace.modal.sets("motion")])
     return may[moves.row]
 
 
 def _outside(old: Tables, new: Tables) -> str:
     """Return the first difference in the moves outside the polar mode; empty if there is none."""
     trace, other = old["trace"], new["trace"]
-    was, now = (np.flatnonzero(each.moves & (each.section < 0)) for each in (trace, other))
+    was, now = (np.flatnonzero(each.axes.moves & (each.mode.section < 0)) for each in (trace, other))
     if len(was) != len(now):
         return "the axes would make other moves outside the polar mode"
     same = np.ones(len(was), bool)
-    for name in ("motion", "x", "z", "c_angle"):
-        same &= _alike(getattr(trace, name)[was], getattr(other, name)[now])
+    for was_at, now_at in (
+        (trace.axes.motion, other.axes.motion),
+        (trace.path.x, other.path.x),
+        (trace.path.z, other.path.z),
+        (trace.path.c_angle, other.path.c_angle),
+    ):
+        same &= _alike(was_at[was], now_at[now])
     if not same.all():
-        line = int(trace.line_in_file[was[np.argmin(same)]])
+        line = int(trace.blocks.line_in_file[was[np.argmin(same)]])
         return f"the axes would move otherwise in line {line}, outside the polar mode"
     return ""
 
@@ -198,4 +203,4 @@ def _alike(values: Floats, others: Floats) -> Mask:
 
 def _line(trace: Trace, moves: Moves, wrong: Mask) -> str:
     at = np.flatnonzero(wrong)
-    return f" from line {int(trace.line_in_file[moves.row[at[0]]])} on" if len(at) else ""
+    return f" from line {int(trace.blocks.line_in_file[moves.row[at[0]]])} on" if len(at) else ""

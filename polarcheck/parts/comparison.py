@@ -12,10 +12,10 @@ from polarcheck.checking.channels import first_runs
 from polarcheck.checking.phrases.drawing import told
 from polarcheck.checking.quantity import rounded
 from polarcheck.checking.tables import Tables
+from polarcheck.columns.trace import Trace
 from polarcheck.errors import TooHardError
 from polarcheck.finding import FileReport, PartComparison
 from polarcheck.table.deviations import Deviations
-from polarcheck.table.trace import Trace
 
 
 def compared_in(report: FileReport, runs: Sequence[tuple[str, Tables]]) -> FileReport:
@@ -37,7 +37,7 @@ def compared(tables: Tables) -> list[PartComparison]:
     return [
         PartComparison(
             title=one.title,
-            section_line=int(trace.line[trace.sections.enter[one.section]]),
+            section_line=int(trace.blocks.line[trace.mode.sections.enter[one.section]]),
             z=rounded(one.z),
             agrees=one.agrees,
             largest=rounded(one.difference.largest),
@@ -45,9 +45,9 @@ def compared(tables: Tables) -> list[PartComparison]:
             too_much=rounded(one.difference.proud),
             cut_away=rounded(one.difference.deep),
             at=(rounded(one.difference.at.real), rounded(one.difference.at.imag)),
-            line=int(trace.line[one.row]),
+            line=int(trace.blocks.line[one.row]),
             turned=rounded(math.degrees(one.turned)),
-            text=told(trace, one),
+            text=told(trace.blocks, trace.lengths, one),
         )
         for one in deviations.comparisons
         if not one.is_superseded

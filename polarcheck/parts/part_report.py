@@ -21,9 +21,9 @@ from polarcheck.machines.modal import Units
 from polarcheck.time_limit import keep_time
 
 if TYPE_CHECKING:
+    from polarcheck.columns.trace import Trace
     from polarcheck.table.finished import Finished, Level
     from polarcheck.table.overcuts import Overcuts
-    from polarcheck.table.trace import Trace
 
 
 def part_of(report: FileReport, runs: Sequence[tuple[str, Tables]]) -> FileReport:
@@ -48,12 +48,12 @@ class _Depth(NamedTuple):
 def made_by(tables: Tables) -> list[MadeShape]:
     """What one run makes, an entry for each shape of each section, with all its depths."""
     trace: Trace = tables["trace"]
-    if not len(trace.sections):
+    if not len(trace.mode.sections):
         return []
     try:
         return _by_section(trace, tables)
     except TooHardError as error:
-        return [_nothing(trace, section, str(error)) for section in range(len(trace.sections))]
+        return [_nothing(trace, section, str(error)) for section in range(len(trace.mode.sections))]
 
 
 def _by_section(trace: Trace, tables: Tables) -> list[MadeShape]:
@@ -63,7 +63,7 @@ def _by_section(trace: Trace, tables: Tables) -> list[MadeShape]:
     found = [*_of_contours(tables), *(_Depth(*one) for one in depths_of_paths(tables))]
     standing = _ribs_and_strips(tables)
     made = []
-    for section in range(len(trace.sections)):
+    for section in range(len(trace.mode.sections)):
         own = [depth for depth in found if depth.section == section]
         entries = [*_merged(trace, own)]
         left = [one for number, one in standing if number == section]
@@ -87,13 +87,13 @@ def level_in_words(trace: Trace, level: Level) -> str:
 
 
 def _bar(trace: Trace) -> float:
-    diameter = trace.stock_diameter[trace.compensates]
+    diameter = trace.lengths.stock_diameter[trace.compensation.compensates]
     return float(diameter[0]) if len(diameter) else np.nan
 
 
 def _words(trace: Trace, shape: Shape, row: int) -> str:
-    sizes = Sizes(bool(trace.units[row] == Units.INCH))
-    return shape_in_words(shape, lambda at: int(trace.line_in_file[at]), sizes)
+    sizes = Sizes(bool(trace.lengths.units[row] == Units.INCH))
+    return shape_in_words(shape, lambda at: int(trace.blocks.line_in_file[at]), sizes)
 
 
 # ---- contours with G41 and G42 ----
@@ -107,9 +107,11 @@ def _of_contours(tables: Tables) -> Iterator[_Depth]:
         yield _Depth(level.section, level.z, level.radius, shapes_of_level(trace, level), why)
     for level in finished.meant:
         row = int(level.walls.row[0])
-        why = f"R of {called_tool(trace, row)} is not known, so whether the tool makes it was not looked at"
+        why = f"R of {called_tool(trace.tools, row)} is not known, so whether the tool makes it was not looked at"
         shapes = shapes_of_level(trace, level)
-        yield _Depth(level.section, level.z, np.nan, shapes, f"{why}: {to_give(trace, row, 'radius')}")
+        yield _Depth(
+            level.section, level.z, np.nan, shapes, f"{why}: {to_give(trace.tools, trace.machine, row, 'radius')}"
+        )
 
 
 def _ribs_and_strips(tables: Tables) -> list[tuple[int, LeftStanding]]:
@@ -122,15 +124,15 @@ def _ribs_and_strips(tables: Tables) -> list[tuple[int, LeftStanding]]:
     found = []
     for kind, left in (("rib", coverage.ribs), ("strip", coverage.strips)):
         for row in np.flatnonzero(left.height > 0).tolist():
-            sizes = Sizes(bool(trace.units[row] == Units.INCH))
-            place, line = complex(left.place[row]), int(trace.line_in_file[row])
+            sizes = Sizes(bool(trace.lengths.units[row] == Units.INCH))
+            place, line = complex(left.place[row]), int(trace.blocks.line_in_file[row])
             size = float(left.height[row])
             how = "high" if kind == "rib" else "thick"
             text = f"a {kind} {sizes(size)} {how} behind line {line}, at x {sizes(place.real)} c {sizes(place.imag)}"
             told = LeftStanding(
                 kind=kind, text=text, line=line, size=round(size, 6), place=(round(place.real, 6), round(place.imag, 6))
             )
-            found.append((int(trace.section[row]), told))
+            found.append((int(trace.mode.section[row]), told))
     return found
 
 
@@ -171,11 +173,11 @@ def _alike(one: Shape, other: Shape) -> bool:
 
 def _entry(trace: Trace, group: Sequence[_Depth], shape: Shape) -> MadeShape:
     first = group[0]
-    row = shape.row if shape.row >= 0 else int(trace.sections.enter[first.section])
-    sizes = Sizes(bool(trace.units[row] == Units.INCH))
+    row = shape.row if shape.row >= 0 else int(trace.mode.sections.enter[first.section])
+    sizes = Sizes(bool(trace.lengths.units[row] == Units.INCH))
     known = [depth.z for depth in group if not np.isnan(depth.z)]
     line, end_line = _lines(trace, first.section)
-    odd = [OddSide(line=int(trace.line_in_file[side.row]), size=round(side.size, 6)) for side in shape.odd]
+    odd = [OddSide(line=int(trace.blocks.line_in_file[side.row]), size=round(side.size, 6)) for side in shape.odd]
     words = _words(trace, shape, row)
     return MadeShape(
         line=line,
@@ -215,9 +217,9 @@ def _corners_left(shape: Shape, radius: float, sizes: Sizes) -> Iterator[LeftSta
 
 def _lines(trace: Trace, section: int) -> tuple[int, int]:
     """Of the G12.1 and of the end of a section."""
-    sections = trace.sections
+    sections = trace.mode.sections
     enter, last = int(sections.enter[section]), min(int(sections.last[section]), len(trace) - 1)
-    return int(trace.line_in_file[enter]), int(trace.line_in_file[last])
+    return int(trace.blocks.line_in_file[enter]), int(trace.blocks.line_in_file[last])
 
 
 def _nothing(trace: Trace, section: int, needs: str) -> MadeShape:
@@ -241,9 +243,9 @@ def _why_nothing(tables: Tables, section: int) -> str:
     trace: Trace = tables["trace"]
     from polarcheck.parts.tool_paths import above_the_face
 
-    own = trace.section == section
-    if not (own & trace.cuts & trace.on_plane & ~above_the_face(trace)).any():
+    own = trace.mode.section == section
+    if not (own & trace.path.cuts & trace.path.on_plane & ~above_the_face(trace)).any():
         return "it cuts nothing in the plane"
-    if not (own & trace.compensates).any():
+    if not (own & trace.compensation.compensates).any():
         return "its path is nowhere as long as the cutter is wide at one Z"
     return "its contour leaves nothing standing that could be told: a position is not known, or it does not close"

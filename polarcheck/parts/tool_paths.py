@@ -10,15 +10,15 @@ import numpy as np
 from polarcheck.arrays import Floats, Mask, Rows
 from polarcheck.checking.phrases.offsets import called_tool, to_give
 from polarcheck.checking.tables import Tables
+from polarcheck.columns.filling import before
 from polarcheck.geometry.segments import Curves
 from polarcheck.geometry.shapes.shape import Shape
 from polarcheck.geometry.tolerances import ZERO
-from polarcheck.table.filling import before
 from polarcheck.time_limit import keep_time
 
 if TYPE_CHECKING:
+    from polarcheck.columns.trace import Trace
     from polarcheck.table.moves import Moves
-    from polarcheck.table.trace import Trace
 
 #: Number of the section, Z and R [mm], the shapes, and what is to be given.
 _Depth = tuple[int, float, float, list[Shape], str | None]
@@ -28,23 +28,25 @@ def depths_of_paths(tables: Tables) -> Iterator[_Depth]:
     """Each Z of a section that never uses compensation, with what the cutter leaves and clears there."""
     trace: Trace = tables["trace"]
     moves: Moves = tables["tool_center"].moves
-    plain = ~trace.anywhere_in_section(trace.compensates)[moves.row] & trace.cuts[moves.row]
+    plain = ~trace.mode.anywhere_in_section(trace.compensation.compensates)[moves.row] & trace.path.cuts[moves.row]
     plain &= ~(_changes_depth(trace) | above_the_face(trace))[moves.row]
     chosen = np.flatnonzero(plain & ~np.isnan(moves.start + moves.end) & (moves.length > ZERO))
-    radius = np.fmax(np.abs(trace.radius_of_move), trace.cutter_diameter / 2)[moves.row]
-    for own in _levels(moves.section, trace.z[moves.row], radius, chosen):
+    radius = np.fmax(np.abs(trace.compensation.radius_of_move), trace.offsets.cutter_diameter / 2)[moves.row]
+    for own in _levels(moves.section, trace.path.z[moves.row], radius, chosen):
         keep_time()
         row = int(moves.row[own[0]])
-        section, z, cutter = int(trace.section[row]), float(trace.z[row]), float(radius[own[0]])
+        section, z, cutter = int(trace.mode.section[row]), float(trace.path.z[row]), float(radius[own[0]])
         if np.isnan(cutter) or not cutter:
             yield section, z, np.nan, [], _needs_radius(trace, row)
         elif float(moves.length[own].sum()) >= 2 * cutter:  # less is a step aside, or what is left of a ramp
-            yield section, z, cutter, _left(moves, own, cutter, float(trace.stock_diameter[row])), None
+            yield section, z, cutter, _left(moves, own, cutter, float(trace.lengths.stock_diameter[row])), None
 
 
 def _changes_depth(trace: Trace) -> Mask:
     """A ramp clears its way at the Z of its end at that end alone, where what follows begins."""
-    return np.asarray(trace.moves_z & (np.abs(trace.z - before(trace.z, trace.starts, np.nan)) > ZERO))
+    return np.asarray(
+        trace.axes.moves_z & (np.abs(trace.path.z - before(trace.path.z, trace.blocks.starts, np.nan)) > ZERO)
+    )
 
 
 def above_the_face(trace: Trace) -> Mask:
@@ -54,12 +56,12 @@ def above_the_face(trace: Trace) -> Mask:
     They are no deeper than the tool came to the section, before the face of the part, at Z0, and their section goes on
     to Z0 or deeper. Where the whole section lies on one side of Z0 nobody knows where the face is, and none is.
     """
-    inside = np.flatnonzero(trace.section >= 0)
-    deepest = np.full(len(trace.sections), np.inf)
-    np.fmin.at(deepest, trace.section[inside], trace.z[inside])
+    inside = np.flatnonzero(trace.mode.section >= 0)
+    deepest = np.full(len(trace.mode.sections), np.inf)
+    np.fmin.at(deepest, trace.mode.section[inside], trace.path.z[inside])
     above = np.zeros(len(trace), bool)
-    section, z = trace.section[inside], trace.z[inside]
-    above[inside] = (z > 0) & (z >= trace.z[trace.sections.enter[section]]) & (deepest[section] <= 0)
+    section, z = trace.mode.section[inside], trace.path.z[inside]
+    above[inside] = (z > 0) & (z >= trace.path.z[trace.mode.sections.enter[section]]) & (deepest[section] <= 0)
     return above
 
 
@@ -86,5 +88,5 @@ def _left(moves: Moves, own: Rows, radius: float, bar: float) -> list[Shape]:
 
 
 def _needs_radius(trace: Trace, row: int) -> str:
-    missing = f"the path is that of the tool, and R of {called_tool(trace, row)} is not known"
-    return f"{missing}: {to_give(trace, row, 'radius')}"
+    missing = f"the path is that of the tool, and R of {called_tool(trace.tools, row)} is not known"
+    return f"{missing}: {to_give(trace.tools, trace.machine, row, 'radius')}"

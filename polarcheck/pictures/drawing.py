@@ -11,11 +11,11 @@ import numpy as np
 from polarcheck.checking.channels import first_runs
 from polarcheck.checking.polar_sections import polar_sections
 from polarcheck.checking.tables import Tables
+from polarcheck.columns.trace import Trace
 from polarcheck.errors import TooHardError
 from polarcheck.finding import FileReport, Finding, MadeShape
 from polarcheck.parts.part_report import made_by
 from polarcheck.pictures.picture import Drawn, Mark, SectionPicture
-from polarcheck.table.trace import Trace
 
 #: The most sections of a file that are drawn.
 _MOST = 200

@@ -13,6 +13,7 @@ import shapely  # type: ignore[import-untyped]
 
 from polarcheck.arrays import Floats, Points, Rows
 from polarcheck.checking.quantity import in_row
+from polarcheck.columns.trace import Trace
 from polarcheck.geometry import areas
 from polarcheck.geometry.faces import GRID
 from polarcheck.geometry.segments import segments
@@ -24,7 +25,6 @@ from polarcheck.table.coverage import Coverage, Left
 from polarcheck.table.finished import Level
 from polarcheck.table.moves import Moves
 from polarcheck.table.overcuts import Cuts, Overcuts, curves_of
-from polarcheck.table.trace import Trace
 from polarcheck.time_limit import keep_time
 
 #: The most marks of a kind in a section; the deepest are chosen.
@@ -48,10 +48,11 @@ def overcut_marks(
             chosen.row.tolist(), chosen.into.tolist(), chosen.depth.tolist(), chosen.place.tolist(), strict=True
         ):
             keep_time()
-            lines = [int(trace.line_in_file[each]) for each in (row, into)]
-            text = f"line {lines[0]} {verb} {in_row(deep, trace, row):length} deep into the contour of line {lines[1]}"
+            lines = [int(trace.blocks.line_in_file[each]) for each in (row, into)]
+            size = f"{in_row(deep, trace.lengths, row):length}"
+            text = f"line {lines[0]} {verb} {size} deep into the contour of line {lines[1]}"
             yield (
-                int(trace.section[row]),
+                int(trace.mode.section[row]),
                 Mark(
                     kind="overcut",
                     text=text,
@@ -69,14 +70,14 @@ def left_marks(trace: Trace, coverage: Coverage, levels: Sequence[Level]) -> Ite
     for left, noun, measure, around in (ribs, strips):
         for row in _largest(trace, left).tolist():
             keep_time()
-            line, height = int(trace.line_in_file[row]), float(left.height[row])
-            wide = f" and {in_row(left.width[row], trace, row):length} wide" if left.width[row] > 0 else ""
+            line, height = int(trace.blocks.line_in_file[row]), float(left.height[row])
+            wide = f" and {in_row(left.width[row], trace.lengths, row):length} wide" if left.width[row] > 0 else ""
             reach = around * max(height, float(np.nan_to_num(left.width[row])))
             yield (
-                int(trace.section[row]),
+                int(trace.mode.section[row]),
                 Mark(
                     kind="left",
-                    text=f"{noun} {in_row(height, trace, row):length} {measure}{wide} stays behind line {line}",
+                    text=f"{noun} {in_row(height, trace.lengths, row):length} {measure}{wide} stays behind line {line}",
                     lines=[line],
                     place=_pair(complex(left.place[row])),
                     depth=round(height, LENGTH),
@@ -87,12 +88,17 @@ def left_marks(trace: Trace, coverage: Coverage, levels: Sequence[Level]) -> Ite
 
 def _deepest(trace: Trace, cuts: Cuts) -> Cuts:
     """Return the deepest cut of each line into each other line, at most MOST per section."""
-    order = np.lexsort((-cuts.depth, trace.line_in_file[cuts.into], trace.line_in_file[cuts.row]))
+    order = np.lexsort((-cuts.depth, trace.blocks.line_in_file[cuts.into], trace.blocks.line_in_file[cuts.row]))
     order = order[
-        _first_of_each(trace.section[cuts.row], trace.line_in_file[cuts.row], trace.line_in_file[cuts.into], order)
+        _first_of_each(
+            trace.mode.section[cuts.row],
+            trace.blocks.line_in_file[cuts.row],
+            trace.blocks.line_in_file[cuts.into],
+            order,
+        )
     ]
-    order = order[np.lexsort((-cuts.depth[order], trace.section[cuts.row[order]]))]
-    section = trace.section[cuts.row[order]]
+    order = order[np.lexsort((-cuts.depth[order], trace.mode.section[cuts.row[order]]))]
+    section = trace.mode.section[cuts.row[order]]
     is_chosen = np.zeros(len(cuts.row), bool)
     is_chosen[order[np.arange(len(order)) - np.searchsorted(section, section) < MOST]] = True
     return cuts.some(is_chosen)
@@ -108,15 +114,15 @@ def _first_of_each(section: Rows, line: Rows, other: Rows, order: Rows) -> Rows:
 def _largest(trace: Trace, left: Left) -> Rows:
     """Return the rows that leave something standing, the largest of each section."""
     rows = np.flatnonzero(left.height > 0)
-    rows = rows[np.lexsort((-left.height[rows], trace.section[rows]))]
-    section = trace.section[rows]
+    rows = rows[np.lexsort((-left.height[rows], trace.mode.section[rows]))]
+    section = trace.mode.section[rows]
     return np.sort(rows[np.arange(len(rows)) - np.searchsorted(section, section) < MOST])
 
 
 def _taken(trace: Trace, moves: Moves, row: int, into: int, levels: Sequence[Level], place: complex) -> list[Ring]:
     """Return the area that the cutter takes off the part in the moves of a row, around this place."""
     part = _level_of(trace, into, levels)
-    radius = abs(float(trace.radius_of_move[row]))
+    radius = abs(float(trace.compensation.radius_of_move[row]))
     if part is None or np.isnan(radius):
         return []
     of_row = moves.row == row
@@ -143,7 +149,7 @@ def _untouched(
     if part is None:
         return []
     swept = coverage.swept
-    near = swept[swept.at_depth(trace.z[row], trace.program[row])]
+    near = swept[swept.at_depth(trace.path.z[row], trace.blocks.program[row])]
     near = near[_distance(place, near.start, near.end) < near.radius + reach]
     ends = np.stack([near.start, near.end], axis=1)
     lines = shapely.linestrings(np.stack([ends.real, ends.imag], axis=2))
@@ -164,10 +170,10 @@ def _distance(point: complex, start: Points, end: Points) -> Floats:
 
 def _level_of(trace: Trace, row: int, levels: Sequence[Level]) -> Level | None:
     """Return the finished part that the wall of a row belongs to."""
-    z = float(trace.z[row])
+    z = float(trace.path.z[row])
     for level in levels:
         is_same = abs(level.z - z) <= ROUNDING or (np.isnan(z) and np.isnan(level.z))
-        if level.section == trace.section[row] and is_same:
+        if level.section == trace.mode.section[row] and is_same:
             return level
     return None
 

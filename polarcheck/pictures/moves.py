@@ -9,12 +9,12 @@ import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Points, Rows, States
 from polarcheck.checking.places import block_in_line
+from polarcheck.columns.trace import Trace
 from polarcheck.geometry.compensation import Phase
 from polarcheck.machines.modal import Motion
 from polarcheck.pictures.picture import MoveTable, Role
 from polarcheck.table.dynamics import Dynamics
 from polarcheck.table.moves import Moves, z_along
-from polarcheck.table.trace import Trace
 
 ROLES = get_args(Role)
 POSITIONING, CUT, START_UP, CANCEL, CORNER, UNKNOWN = map(np.int16, range(len(ROLES)))
@@ -48,7 +48,7 @@ class SectionMoves:
     @cached_property
     def true_feed(self) -> Floats:
         """Actual feed, the lowest in each move [mm/min]."""
-        return self._from_path(self.dynamics.true_feed, self.trace.feed[self.moves.row])
+        return self._from_path(self.dynamics.true_feed, self.trace.feedrate.feed[self.moves.row])
 
     @cached_property
     def c_feed(self) -> Floats:
@@ -73,8 +73,8 @@ class SectionMoves:
     def role(self) -> States:
         """How each move is drawn, an index of ROLES."""
         moves, trace = self.moves, self.trace
-        compensated = trace.anywhere_in_section(trace.compensates)[moves.row]
-        rapid = trace.motion[moves.row] == Motion.RAPID
+        compensated = trace.mode.anywhere_in_section(trace.compensation.compensates)[moves.row]
+        rapid = trace.axes.motion[moves.row] == Motion.RAPID
         return np.select(
             [
                 ~moves.is_of_tool,
@@ -115,18 +115,20 @@ class SectionMoves:
         moves, trace = self.moves, self.trace
         row, limit = moves.row[chosen], trace.machine.limits.c_feed
         numbers = _sequence_numbers(trace)
-        written = {each: block_in_line(trace, each, _BLOCK) for each in np.unique(row).tolist()}
+        written = {each: block_in_line(trace.run, each, _BLOCK) for each in np.unique(row).tolist()}
         number = {each: numbers.get(each, "") for each in written}
         roles = cast("tuple[Role, ...]", ROLES)
         return MoveTable(
-            line=trace.line_in_file[row].tolist(),
+            line=trace.blocks.line_in_file[row].tolist(),
             number=[number[each] for each in row.tolist()],
             block=[written[each] for each in row.tolist()],
             role=[roles[role] for role in self.role[chosen].tolist()],
             start=pairs(moves.start[chosen]),
             end=pairs(moves.end[chosen]),
             z=pairs(self.z[0][chosen] + 1j * self.z[1][chosen]),
-            feed=numbers_of(np.where(trace.motion[row] == Motion.RAPID, np.nan, trace.programmed_feed[row]), RATE),
+            feed=numbers_of(
+                np.where(trace.axes.motion[row] == Motion.RAPID, np.nan, trace.feedrate.programmed_feed[row]), RATE
+            ),
             true_feed=numbers_of(self.true_feed[chosen], RATE),
             nearest=numbers_of(moves.nearest[chosen], LENGTH),
             c_feed=numbers_of(self.c_feed[chosen], RATE),
@@ -144,26 +146,26 @@ def _with_standing(trace: Trace, dynamics: Dynamics) -> tuple[Moves, Rows]:
     An inserted move ends at the point where it starts; its number is -1.
     """
     moves = dynamics.moves
-    standing = trace.in_polar & ((trace.moves_z & ~trace.travels) | dynamics.dwells)
+    standing = trace.mode.in_polar & ((trace.axes.moves_z & ~trace.path.travels) | dynamics.dwells)
     row = np.setdiff1d(np.flatnonzero(standing), moves.row)
     if not len(row):
         return moves, np.arange(len(moves))
     # Each pass of an infeed cycle runs over the same rows again.
     at = np.searchsorted(np.maximum.accumulate(moves.row), row)
     last = np.append(moves.end, complex(np.nan, np.nan))[at - 1]
-    follows = np.append(moves.section, -1)[at - 1] == trace.section[row]
-    place = np.where(follows, last, trace.end[row])
+    follows = np.append(moves.section, -1)[at - 1] == trace.mode.section[row]
+    place = np.where(follows, last, trace.path.end[row])
     nowhere = np.full(len(row), complex(np.nan, np.nan))
-    off = np.where(trace.compensates[row], Phase.OFFSET, Phase.CANCELLED)
+    off = np.where(trace.compensation.compensates[row], Phase.OFFSET, Phase.CANCELLED)
     known = np.append(moves.known, True)[at - 1]
     still: dict[str, Any] = {
         "row": row,
-        "section": trace.section[row],
+        "section": trace.mode.section[row],
         "kind": np.int16(Motion.LINE),
         "start": place,
         "end": place,
         "center": nowhere,
-        "feed": trace.feed[row],
+        "feed": trace.feedrate.feed[row],
         "known": np.where(follows, known, True) & ~np.isnan(place),
         "phase": off,
         "corner": False,
@@ -178,7 +180,7 @@ def _sequence_numbers(trace: Trace) -> dict[int, str]:
     words = trace.run.words
     return {
         int(trace.run.row[index]): trace.text.source.excerpt(int(words.start[index]), int(words.end[index]))
-        for index in trace.word_indices("N").tolist()
+        for index in trace.blocks.word_indices("N").tolist()
     }
 
 

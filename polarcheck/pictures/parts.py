@@ -13,6 +13,7 @@ import numpy as np
 import shapely  # type: ignore[import-untyped]
 
 from polarcheck.checking.quantity import in_row
+from polarcheck.columns.trace import Trace
 from polarcheck.geometry import areas
 from polarcheck.geometry.faces import GRID
 from polarcheck.geometry.segments import segments
@@ -20,7 +21,6 @@ from polarcheck.parts.part_report import level_in_words
 from polarcheck.pictures.moves import LENGTH
 from polarcheck.pictures.picture import PartPicture
 from polarcheck.table.finished import Level
-from polarcheck.table.trace import Trace
 
 #: How far a part of unknown outline is shown beyond its walls, as a share of their extent.
 _AROUND = 0.1
@@ -31,7 +31,7 @@ Ring = list[tuple[float, float]]
 def parts(trace: Trace, levels: Sequence[Level], tolerance: float) -> Iterator[PartPicture]:
     """Yield the part at each depth, its outline simplified within the tolerance [mm]."""
     for level in levels:
-        bar = trace.stock_diameter[level.walls.row[0]]
+        bar = trace.lengths.stock_diameter[level.walls.row[0]]
         shown, is_known = within_window(level, bar, trace.machine.compensation.overcut_tolerance)
         polygons = [rings(polygon) for polygon in polygons_of(shapely.simplify(shown, tolerance))]
         if polygons:
@@ -79,4 +79,4 @@ def _points(ring: Any) -> Ring:
 def _text(trace: Trace, level: Level) -> str:
     """`Z-2 mm: hexagon, ...`"""
     words = level_in_words(trace, level) or "what its contour leaves standing"
-    return words if np.isnan(level.z) else f"Z{in_row(level.z, trace, int(level.walls.row[0])):length}: {words}"
+    return words if np.isnan(level.z) else f"Z{in_row(level.z, trace.lengths, int(level.walls.row[0])):length}: {words}"

@@ -11,13 +11,13 @@ from polarcheck.arrays import Floats, Points, Rows
 from polarcheck.checking.channels import first_runs
 from polarcheck.checking.polar_sections import polar_sections
 from polarcheck.checking.tables import Tables
+from polarcheck.columns.trace import Trace
 from polarcheck.errors import TooHardError
 from polarcheck.finding import FileReport
 from polarcheck.geometry.plane import arc_sweep, quiet
 from polarcheck.machines.modal import Motion
 from polarcheck.table.moves import Moves, programmed_moves
 from polarcheck.table.tool_center import ToolCenter
-from polarcheck.table.trace import Trace
 
 #: The size of the picture in distances between points; a terminal has fewer dots.
 _DOTS = 400
@@ -89,7 +89,7 @@ def views_of(tables: Tables, lines: Collection[int] = ()) -> Iterator[SectionVie
     except TooHardError:
         return
     programmed = programmed_moves(trace)
-    is_marked = np.isin(trace.line_in_file, np.array(sorted(lines), np.int64))
+    is_marked = np.isin(trace.blocks.line_in_file, np.array(sorted(lines), np.int64))
     for number, section in enumerate(sections[:_SECTIONS]):
         offset = "" if section.offset is None else f", offset {section.offset}"
         channel = f"{trace.text.source.channel}: " if trace.text.source.channel else ""
@@ -98,7 +98,7 @@ def views_of(tables: Tables, lines: Collection[int] = ()) -> Iterator[SectionVie
         if number + 1 == _SECTIONS < len(sections):
             remarks.append(f"{len(sections) - _SECTIONS} more sections are not shown")
         time, rate = _curve(in_section)
-        marks = trace.end[is_marked & (trace.section == number)]
+        marks = trace.path.end[is_marked & (trace.mode.section == number)]
         yield SectionView(
             title=f"{channel}section of lines {section.line} to {section.end_line}{offset}",
             programmed=points_of(programmed[programmed.section == number]),
@@ -119,7 +119,7 @@ def _highest_line(trace: Trace, moves: Moves) -> int:
     rate = np.nan_to_num(moves.c_feed, nan=-1.0, posinf=np.inf)
     if not len(rate) or rate.max() <= 0:
         return 0
-    return int(trace.line_in_file[moves.row[int(np.argmax(rate))]])
+    return int(trace.blocks.line_in_file[moves.row[int(np.argmax(rate))]])
 
 
 @quiet

@@ -15,6 +15,7 @@ from polarcheck.arrays import Floats, Mask, Rows, States
 from polarcheck.arrays import Points as PlanePoints
 from polarcheck.checking.phrases.offsets import called_tool, to_give
 from polarcheck.checking.quantity import rounded
+from polarcheck.columns.trace import Trace
 from polarcheck.finding import PolarSection
 from polarcheck.machines.modal import MM_PER_INCH
 from polarcheck.pictures import paths, rates
@@ -25,7 +26,6 @@ from polarcheck.pictures.picture import Mark, Points, Rates, SectionPicture
 from polarcheck.table.finished import Level
 from polarcheck.table.moves import Moves
 from polarcheck.table.overcuts import curves_of
-from polarcheck.table.trace import Trace
 
 #: The most points of each path and curve of a section, and moves in its table, not counting those with findings.
 POINTS, MOVES = 20_000, 20_000
@@ -72,9 +72,9 @@ def section_picture(
     """
     chosen = table.of_section(section)
     moves = table.moves[_mask(chosen, len(table))]
-    most = max(min(POINTS, _OF_PROGRAM // len(trace.sections)), _LEAST)
+    most = max(min(POINTS, _OF_PROGRAM // len(trace.mode.sections)), _LEAST)
     role, known = table.role[chosen], table.is_known[chosen]
-    keep = np.isin(trace.line_in_file[moves.row], lines)
+    keep = np.isin(trace.blocks.line_in_file[moves.row], lines)
     path_moves = programmed[programmed.section == section]
     unseen = paths.unseen(_shown(moves, role))
     tool, off = _path(moves, known, keep, role, unseen, most)
@@ -88,7 +88,7 @@ def section_picture(
     first = _first_of(moves.row, path_moves.row[contour.move])
     extremes = (table.c_feed[chosen], table.x_feed[chosen], -moves.nearest)
     listed = _listed(keep, [tool.move, first, curves.move, *map(_highest, extremes)], most)
-    enter = int(trace.sections.enter[section])
+    enter = int(trace.mode.sections.enter[section])
     limits = trace.machine.limits
     return SectionPicture(
         title=_title(summary),
@@ -97,10 +97,10 @@ def section_picture(
         channel=trace.text.source.channel or "",
         units=summary.units,
         scale=MM_PER_INCH if summary.units == "inch" else 1.0,
-        diameter=bool(trace.x_factor[enter] < 1),
+        diameter=bool(trace.lengths.x_factor[enter] < 1),
         radius=summary.radius,
         radius_source=summary.radius_source,
-        stock=rounded(trace.stock_diameter[enter]),
+        stock=rounded(trace.lengths.stock_diameter[enter]),
         keep_out=rounded(limits.keep_out),
         c_limit=rounded(limits.c_feed),
         x_limit=rounded(limits.x_feed),
@@ -204,12 +204,12 @@ def _why_unknown(trace: Trace, moves: Moves, chosen: Rows) -> str:
     unknown = moves.row[chosen[~moves.is_of_tool[chosen]]]
     if not len(unknown):
         return ""
-    lacking = unknown[np.isnan(trace.radius_of_move[unknown])]
-    _, first = np.unique(trace.offset_number[lacking], return_index=True)
+    lacking = unknown[np.isnan(trace.compensation.radius_of_move[unknown])]
+    _, first = np.unique(trace.tools.offset_number[lacking], return_index=True)
     rows = lacking[np.sort(first)].tolist()
     if not rows:
-        line = int(trace.line_in_file[unknown[0]])
+        line = int(trace.blocks.line_in_file[unknown[0]])
         return f"the path of the tool is not known from line {line} on: a position there is not known"
-    missing = ", ".join(f"R of {called_tool(trace, row)}" for row in rows if trace.offset_number[row])
-    remedies = "; ".join(to_give(trace, row, "radius") for row in rows)
+    missing = ", ".join(f"R of {called_tool(trace.tools, row)}" for row in rows if trace.tools.offset_number[row])
+    remedies = "; ".join(to_give(trace.tools, trace.machine, row, "radius") for row in rows)
     return f"what is run with G41 or G42 is drawn as programmed: {missing or 'R'} is not known; {remedies}"

@@ -14,6 +14,7 @@ from polarcheck.checking.polar_sections import radius_source
 from polarcheck.checking.quantity import Quantity, in_row
 from polarcheck.checking.rule import load_all
 from polarcheck.checking.tables import Tables
+from polarcheck.columns.trace import Trace
 from polarcheck.errors import TooHardError
 from polarcheck.finding import Finding
 from polarcheck.machines.modal import FeedMode, Motion, Side
@@ -21,7 +22,6 @@ from polarcheck.reports.pages import manual
 from polarcheck.server.judged import Judged
 from polarcheck.server.markdown import page, plain
 from polarcheck.table.tool_center import ToolCenter
-from polarcheck.table.trace import Trace
 from polarcheck.time_limit import time_limit
 
 #: The time limit of a hover, which may need tables that no rule has used [s].
@@ -114,30 +114,30 @@ def state(judged: Judged, line: int) -> tuple[str, list[tuple[str, str]]]:
 
 
 def _title(trace: Trace, row: int) -> str:
-    if trace.enters[row]:
+    if trace.mode.enters[row]:
         return "The polar mode begins"
-    if row in trace.sections.leave[trace.sections.left]:
+    if row in trace.mode.sections.leave[trace.mode.sections.left]:
         return "The polar mode ends"
-    motion = _MOTIONS.get(Motion(int(trace.motion[row])), "")
-    what = f"{motion[:1].upper()}{motion[1:]}" if trace.moves[row] and motion else "No movement"
-    if not trace.in_polar[row]:
+    motion = _MOTIONS.get(Motion(int(trace.axes.motion[row])), "")
+    what = f"{motion[:1].upper()}{motion[1:]}" if trace.axes.moves[row] and motion else "No movement"
+    if not trace.mode.in_polar[row]:
         return f"{what}, outside the polar mode"
-    enter = int(trace.sections.enter[trace.section[row]])
-    return f"{what}, in the polar mode since line {int(trace.line_in_file[enter])}"
+    enter = int(trace.mode.sections.enter[trace.mode.section[row]])
+    return f"{what}, in the polar mode since line {int(trace.blocks.line_in_file[enter])}"
 
 
 def _facts(tables: Tables, trace: Trace, row: int) -> Iterator[tuple[str, str]]:
-    inside = bool(trace.in_polar[row])
+    inside = bool(trace.mode.in_polar[row])
     # Outside the mode unknown values are left out.
-    if inside or np.isfinite([trace.x[row], trace.z[row], trace.c_angle[row]]).any():
+    if inside or np.isfinite([trace.path.x[row], trace.path.z[row], trace.path.c_angle[row]]).any():
         yield "position behind it", ", ".join(_position(trace, row))
     yield "tool offset", _offset(trace, row)
     if inside:
-        yield "compensation", _SIDES.get(Side(int(trace.side[row])), "off (G40)")
+        yield "compensation", _SIDES.get(Side(int(trace.compensation.side[row])), "off (G40)")
     feed = _feed(trace, row)
     if inside or feed != _UNKNOWN:
         yield "feed", feed
-    if inside and trace.moves_plane[row]:
+    if inside and trace.axes.moves_plane[row]:
         yield from _of_tool_center(tables["tool_center"], trace, row)
     seconds = float(tables["dynamics"].time[row])
     if inside and seconds > 0 and math.isfinite(seconds):
@@ -146,15 +146,16 @@ def _facts(tables: Tables, trace: Trace, row: int) -> Iterator[tuple[str, str]]:
 
 def _position(trace: Trace, row: int) -> Iterator[str]:
     """Yield each axis with its kind of value (diameter, length, angle), since these are often confused."""
-    inside = bool(trace.in_polar[row])
-    is_diameter = bool(trace.x_factor[row] < 1)
-    linear = common.linear(trace, row)
-    x = trace.end[row].real if inside else trace.x[row]
-    yield f"{linear} {_shown(in_row(x, trace, row), 'diameter')}{' (diameter)' if is_diameter else ' (radius)'}"
+    inside = bool(trace.mode.in_polar[row])
+    is_diameter = bool(trace.lengths.x_factor[row] < 1)
+    linear = common.linear(trace.axes, row)
+    x = trace.path.end[row].real if inside else trace.path.x[row]
+    yield f"{linear} {_shown(in_row(x, trace.lengths, row), 'diameter')}{' (diameter)' if is_diameter else ' (radius)'}"
     if inside:
-        yield f"{common.virtual(trace, row)} {_shown(in_row(trace.end[row].imag, trace, row), 'length')} (length)"
-    yield f"Z {_shown(in_row(trace.z[row], trace, row), 'length')}"
-    angle = float(trace.c_angle[row])
+        virtual = in_row(trace.path.end[row].imag, trace.lengths, row)
+        yield f"{common.virtual(trace.axes, row)} {_shown(virtual, 'length')} (length)"
+    yield f"Z {_shown(in_row(trace.path.z[row], trace.lengths, row), 'length')}"
+    angle = float(trace.path.c_angle[row])
     yield f"{common.rotary(trace.machine)} axis {f'{angle:.3f} deg' if math.isfinite(angle) else _UNKNOWN}"
 
 
@@ -163,17 +164,21 @@ def _shown(value: Quantity, form: str) -> str:
 
 
 def _offset(trace: Trace, row: int) -> str:
-    key = key_of(trace, int(trace.offset_number[row]))
+    key = key_of(trace.tools, int(trace.tools.offset_number[row]))
     if key is None:
         return "none in force"
-    radius = in_row(float(trace.radius[row]), trace, row)
+    radius = in_row(float(trace.compensation.radius[row]), trace.lengths, row)
     source = f" ({radius_source(trace, row)})" if np.isfinite(radius.value) else ""
     return f"{key}, R {_shown(radius, 'length')}{source}"
 
 
 def _feed(trace: Trace, row: int) -> str:
-    mode = FeedMode(int(trace.feed_mode[row]))
-    value = in_row(float((trace.feed if mode == FeedMode.PER_MINUTE else trace.feed_number)[row]), trace, row)
+    mode = FeedMode(int(trace.feedrate.feed_mode[row]))
+    value = in_row(
+        float((trace.feedrate.feed if mode == FeedMode.PER_MINUTE else trace.feedrate.feed_number)[row]),
+        trace.lengths,
+        row,
+    )
     if not np.isfinite(value.value):
         return _UNKNOWN
     if mode == FeedMode.PER_MINUTE:
@@ -187,7 +192,7 @@ def _of_tool_center(tool_center: ToolCenter, trace: Trace, row: int) -> Iterator
     limit = trace.machine.limits.c_feed
     of_limit = f" of {limit:.0f}" if math.isfinite(limit) else ""
     yield "C axis", f"{c_feed:.0f}{of_limit} deg/min" if math.isfinite(c_feed) else _UNKNOWN
-    yield "nearest to the center", _shown(in_row(float(tool_center.nearest[row]), trace, row), "length")
-    allowed = in_row(float(tool_center.feed_allowed[row]), trace, row)
+    yield "nearest to the center", _shown(in_row(float(tool_center.nearest[row]), trace.lengths, row), "length")
+    allowed = in_row(float(tool_center.feed_allowed[row]), trace.lengths, row)
     if of_limit and np.isfinite(allowed.value):
         yield "highest F here", f"{allowed:highest}"

@@ -12,12 +12,12 @@ from polarcheck import bounded
 from polarcheck.checking import check
 from polarcheck.checking.settings import Settings
 from polarcheck.checking.tables import Tables
+from polarcheck.columns.trace import Trace
 from polarcheck.errors import PolarcheckError, StoppedError
 from polarcheck.finding import FileReport
 from polarcheck.reading import files
 from polarcheck.reading.words import Text
 from polarcheck.server.open_text import OpenText
-from polarcheck.table.trace import Trace
 from polarcheck.time_limit import seconds_for, time_limit
 
 #: Returns the settings of a program. Raises a PolarcheckError for settings that cannot be used.
@@ -59,7 +59,7 @@ class Judged(NamedTuple):
         """Return the first run that executes a line, the first of its rows and their number; None if no run does."""
         for _, tables in self.runs:
             trace: Trace = tables["trace"]
-            rows = np.flatnonzero(trace.line_in_file == line)
+            rows = np.flatnonzero(trace.blocks.line_in_file == line)
             if len(rows):
                 # Rows of a called program have the line of the call, and are deeper.
                 of_line = rows[trace.run.depth[rows] == trace.run.depth[rows[0]]]

@@ -1,1 +1,1 @@
-"""The executed program as columns, and the tables that rules compare."""
+"""The tables that rules compare, made of the columns of the executed blocks."""

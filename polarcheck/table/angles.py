@@ -7,9 +7,9 @@ from functools import cached_property
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask, repeated
+from polarcheck.columns.trace import Trace
 from polarcheck.machines.codes import code_set
 from polarcheck.table.series import Series, find_series
-from polarcheck.table.trace import Trace
 
 #: What is written where C turns by an angle [deg].
 _USUAL = np.array([30, 45, 60, 90, 120, 135, 150, 180, 210, 225, 240, 270, 300, 315, 330, 360], np.float64)
@@ -25,7 +25,9 @@ class Angles:
     def _written(self) -> Floats:
         """Value of the virtual axis as written in the mode, else NaN."""
         trace = self.trace
-        return np.where(trace.in_polar & trace.uses_axes, trace.of_virtual_axis(trace.word), np.nan)
+        return np.where(
+            trace.mode.in_polar & trace.modal.uses_axes, trace.axes.of_virtual_axis(trace.blocks.word), np.nan
+        )
 
     @cached_property
     def is_usual(self) -> Mask:
@@ -41,9 +43,9 @@ class Angles:
     def has_both_signs(self) -> Mask:
         """A usual angle that the section has with the other sign too, as lengths of a symmetrical contour are."""
         rows = np.flatnonzero(self.is_usual)
-        value, section = self._written[rows], self.trace.section[rows]
+        value, section = self._written[rows], self.trace.mode.section[rows]
         which = np.searchsorted(_USUAL, np.abs(value))
-        seen = np.zeros((2, len(self.trace.sections), len(_USUAL)), bool)
+        seen = np.zeros((2, len(self.trace.mode.sections), len(_USUAL)), bool)
         seen[(value < 0).astype(int), section, which] = True
         both = np.zeros(len(self.trace), bool)
         both[rows] = (seen[0] & seen[1])[section, which]
@@ -64,14 +66,14 @@ class Angles:
     @cached_property
     def virtual_length(self) -> Floats:
         """The virtual axis as a length [mm], without its sign; NaN where it is not written."""
-        return np.abs(self.trace.of_virtual_axis(self.trace.length_of))
+        return np.abs(self.trace.axes.of_virtual_axis(self.trace.lengths.length_of))
 
     @cached_property
     def farthest(self) -> Floats:
         """How far the row goes, or the series that it belongs to, as a length of the virtual axis [mm]."""
         if not self.in_series.any():
             return self.virtual_length
-        ends = np.abs(self.series.in_rows(self.series.end, len(self.trace))) * self.trace.scale
+        ends = np.abs(self.series.in_rows(self.series.end, len(self.trace))) * self.trace.lengths.scale
         return np.where(self.in_series, ends, self.virtual_length)
 
     @cached_property
@@ -85,10 +87,10 @@ class Angles:
         may_be_angle = self.is_usual | self.in_series
         if not may_be_angle.any():
             return repeated(np.float64(np.nan), len(trace))
-        rows = np.flatnonzero(trace.anywhere_in_section(may_be_angle))
-        section, virtual = trace.section[rows], np.where(may_be_angle[rows], np.nan, self.virtual_length[rows])
-        farthest = np.zeros(len(trace.sections))
-        for column in (np.abs(trace.x[rows]), virtual):
+        rows = np.flatnonzero(trace.mode.anywhere_in_section(may_be_angle))
+        section, virtual = trace.mode.section[rows], np.where(may_be_angle[rows], np.nan, self.virtual_length[rows])
+        farthest = np.zeros(len(trace.mode.sections))
+        for column in (np.abs(trace.path.x[rows]), virtual):
             known = np.isfinite(column)
             np.maximum.at(farthest, section[known], column[known])
         reach = np.full(len(trace), np.nan)
@@ -99,5 +101,5 @@ class Angles:
     def in_misplaced_cycle(self) -> Mask:
         """In a drilling cycle that the mode does not allow: C is an angle once the cycle stands outside."""
         allowed = code_set(self.trace.machine.polar.allowed_codes)
-        cycle = self.trace.drilling
+        cycle = self.trace.modal.drilling
         return np.asarray((cycle != 0) & ~allowed[cycle * 10])

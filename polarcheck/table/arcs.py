@@ -7,10 +7,10 @@ from functools import cached_property
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Points, Rows, is_among, repeated
+from polarcheck.columns.trace import Trace
 from polarcheck.geometry import plane
 from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.machines.modal import Motion
-from polarcheck.table.trace import Trace
 
 #: One arc alone speaks for the other reading of X where it misses its circle by this many tolerances.
 _CLEARLY = 10
@@ -28,40 +28,44 @@ class Arcs:
     def in_force(self) -> Mask:
         """G2 or G3 is in force in the polar mode, so that axis words would be those of an arc."""
         trace = self.trace
-        return np.asarray(trace.in_polar & trace.uses_axes & is_among(trace.state("motion"), (Motion.CW, Motion.CCW)))
+        return np.asarray(
+            trace.mode.in_polar & trace.modal.uses_axes & is_among(trace.modal.state("motion"), (Motion.CW, Motion.CCW))
+        )
 
     @cached_property
     def by_radius(self) -> Mask:
         """Arcs with R."""
-        return np.asarray(self.trace.is_arc & self.trace.has(self.trace.machine.arcs.radius_word))
+        return np.asarray(self.trace.path.is_arc & self.trace.blocks.has(self.trace.machine.arcs.radius_word))
 
     @cached_property
     def by_center(self) -> Mask:
         """Arcs with I or J and without R, which would count before them (B-62754EN/01 p. 67)."""
-        return np.asarray(self.trace.is_arc & self.trace.has_center & ~self.by_radius)
+        return np.asarray(self.trace.path.is_arc & self.trace.axes.has_center & ~self.by_radius)
 
     @cached_property
     def has_word_of_other_plane(self) -> Mask:
         """Rows with a center word of another plane: a K with X and C; K0 moves nothing."""
-        other = self.trace.with_words(self.trace.other_center_words)
-        return np.asarray(other & (self.trace.other_center_word != 0))
+        other = self.trace.blocks.with_words(self.trace.axes.other_center_words)
+        return np.asarray(other & (self.trace.axes.other_center_word != 0))
 
     @cached_property
     def has_word_of_plane(self) -> Mask:
         """Rows with a word of the polar plane: X, C, or I or J without a K beside them."""
         trace = self.trace
-        return np.asarray(trace.moves_plane | (trace.has_center & ~trace.with_words(trace.other_center_words)))
+        return np.asarray(
+            trace.axes.moves_plane | (trace.axes.has_center & ~trace.blocks.with_words(trace.axes.other_center_words))
+        )
 
     @cached_property
     def ends_at_start(self) -> Mask:
         """Rows that do not move on the plane; False where it is not known."""
-        return np.asarray(np.abs(self.trace.end - self.trace.start) <= ROUNDING)
+        return np.asarray(np.abs(self.trace.path.end - self.trace.path.start) <= ROUNDING)
 
     # ---- whether it is a circle ----
 
     def _to_center(self, rows: Rows) -> Points:
         """I + jJ of some rows [mm]; what is not written is 0."""
-        i, j = self.trace.to_center
+        i, j = self.trace.path.to_center
         return np.asarray(np.nan_to_num(i[rows]) + 1j * np.nan_to_num(j[rows]))
 
     def _of_arcs(self, rows: Rows, values: Floats) -> Floats:
@@ -82,19 +86,21 @@ class Arcs:
     def end_radius(self) -> Floats:
         """Distance of the end of an arc to its center by I and J [mm]; NaN for other rows and where it is not known."""
         rows = np.flatnonzero(self.by_center)
-        return self._of_arcs(rows, np.abs(self.trace.end[rows] - self.trace.start[rows] - self._to_center(rows)))
+        return self._of_arcs(
+            rows, np.abs(self.trace.path.end[rows] - self.trace.path.start[rows] - self._to_center(rows))
+        )
 
     @cached_property
     def chord(self) -> Floats:
         """Distance from start to end of an arc by R [mm]; NaN for other rows and where it is not known."""
         rows = np.flatnonzero(self.by_radius)
-        return self._of_arcs(rows, np.abs(self.trace.end[rows] - self.trace.start[rows]))
+        return self._of_arcs(rows, np.abs(self.trace.path.end[rows] - self.trace.path.start[rows]))
 
     @cached_property
     def radius(self) -> Floats:
         """R of an arc as written, with its sign [mm]; NaN for other rows."""
         rows = np.flatnonzero(self.by_radius)
-        return self._of_arcs(rows, self.trace.length_of(self.trace.machine.arcs.radius_word)[rows])
+        return self._of_arcs(rows, self.trace.lengths.length_of(self.trace.machine.arcs.radius_word)[rows])
 
     @cached_property
     def is_off_plane(self) -> Mask:
@@ -104,10 +110,10 @@ class Arcs:
         Where one fits, the axis that stays where it is was left out, and Z makes a helix of it.
         """
         trace = self.trace
-        one_axis = trace.programs_linear_axis ^ trace.has_virtual_word
+        one_axis = trace.axes.programs_linear_axis ^ trace.axes.has_virtual_word
         to_start = self.by_radius & self.ends_at_start
         fits_none = ~self.has_word_of_plane | (one_axis & (self._misses_circle | to_start))
-        return np.asarray(self.in_force & trace.moves_z & fits_none)
+        return np.asarray(self.in_force & trace.axes.moves_z & fits_none)
 
     @cached_property
     def is_no_circle(self) -> Mask:
@@ -120,7 +126,7 @@ class Arcs:
         trace, tolerance = self.trace, self.trace.machine.arcs.tolerance
         no_center = ~self.by_radius & ~self.by_center & ~self.ends_at_start
         return np.asarray(
-            (trace.is_arc & (no_center | self.has_word_of_other_plane))
+            (trace.path.is_arc & (no_center | self.has_word_of_other_plane))
             | (self.start_radius <= ROUNDING)
             | (self.end_radius <= ROUNDING)
             | (np.abs(self.start_radius - self.end_radius) > tolerance)
@@ -130,8 +136,10 @@ class Arcs:
     @cached_property
     def sweep(self) -> Floats:
         """Angle of each arc about its own center [deg], 360 for a full circle; NaN for other rows and unknown arcs."""
-        trace, rows = self.trace, np.flatnonzero(self.trace.is_arc)
-        angle = plane.arc_sweep(trace.start[rows], trace.end[rows], trace.center[rows], trace.motion[rows])
+        trace, rows = self.trace, np.flatnonzero(self.trace.path.is_arc)
+        angle = plane.arc_sweep(
+            trace.path.start[rows], trace.path.end[rows], trace.path.center[rows], trace.axes.motion[rows]
+        )
         return self._of_arcs(rows, np.abs(np.degrees(angle)))
 
     # ---- diameter or radius ----
@@ -146,11 +154,15 @@ class Arcs:
         since a quarter of a circle without its C fits by chance. Arcs by R fit often, so that they speak only where
         there are several, and none of them does.
         """
-        trace, arc = self.trace, np.flatnonzero(self.trace.is_arc & ~self.is_off_plane)
+        trace, arc = self.trace, np.flatnonzero(self.trace.path.is_arc & ~self.is_off_plane)
         if not len(arc):
             return np.zeros(len(trace), bool)
         tolerance = trace.machine.arcs.tolerance
-        to_center, step, other = self._to_center(arc), trace.end[arc] - trace.start[arc], self._step_otherwise(arc)
+        to_center, step, other = (
+            self._to_center(arc),
+            trace.path.end[arc] - trace.path.start[arc],
+            self._step_otherwise(arc),
+        )
         moves_x, moves_c = np.abs(step.real) > tolerance, np.abs(step.imag) > tolerance
         center, radius = (self.start_radius > ROUNDING)[arc], self.by_radius[arc]
         miss = np.abs(np.abs(to_center) - np.abs(step - to_center))
@@ -158,7 +170,7 @@ class Arcs:
         limit = 2 * np.abs(self.radius[arc]) + tolerance
 
         def count(of: Mask) -> Rows:
-            return np.bincount(trace.section[arc[of]], minlength=len(trace.sections))
+            return np.bincount(trace.mode.section[arc[of]], minlength=len(trace.mode.sections))
 
         fails, clearly = center & (miss > tolerance), center & (miss > _CLEARLY * tolerance)
         by_center = ((count(fails) > 1) | (count(clearly) > 0)) & (count(fails & moves_c) > 0)
@@ -166,14 +178,18 @@ class Arcs:
         closes = center & moves_x & (miss <= tolerance)
         objects = (center & ~(miss_otherwise <= tolerance)) | (np.abs(other) > limit)
         misread = (by_center | by_radius) & (count(closes | objects) == 0)
-        return np.asarray((trace.section >= 0) & misread[trace.section])
+        return np.asarray((trace.mode.section >= 0) & misread[trace.mode.section])
 
     def _step_otherwise(self, rows: Rows) -> Points:
         """From start to end of some rows [mm], were X the other of diameter and radius; X before G12.1 stays."""
         trace = self.trace
-        factor, start, end = np.where(trace.x_factor[rows] < 1, 2.0, 0.5), trace.start[rows], trace.end[rows]
-        has_x = trace.has("X") & ~trace.is_step("X") & (trace.linear_axis == ord("X"))
+        factor, start, end = (
+            np.where(trace.lengths.x_factor[rows] < 1, 2.0, 0.5),
+            trace.path.start[rows],
+            trace.path.end[rows],
+        )
+        has_x = trace.blocks.has("X") & ~trace.modal.is_step("X") & (trace.axes.linear_axis == ord("X"))
         had_x = np.zeros(len(trace), bool)
-        had_x[1:] = trace.given_in_section(has_x)[:-1]
+        had_x[1:] = trace.mode.given_in_section(has_x)[:-1]
         x = end.real * factor - start.real * np.where((has_x & ~had_x)[rows], 1.0, factor)
         return np.asarray(x + 1j * (end - start).imag)

@@ -7,11 +7,11 @@ from functools import cached_property
 import numpy as np
 
 from polarcheck.arrays import Mask
+from polarcheck.columns.trace import Trace
 from polarcheck.machines.modal import Side
 from polarcheck.table.arcs import Arcs
 from polarcheck.table.moves import any_in_row
 from polarcheck.table.tool_center import ToolCenter
-from polarcheck.table.trace import Trace
 
 
 class Center:
@@ -26,14 +26,16 @@ class Center:
     def cuts_off_center(self) -> Mask:
         """Cutting moves that stay away from the center of C, be it by little; what is not known counts as away."""
         trace = self.trace
-        return np.asarray(trace.cuts & ~(self.tool_center.nearest < self.trace.least_step) & ~self.arcs.is_no_circle)
+        return np.asarray(
+            trace.path.cuts & ~(self.tool_center.nearest < self.trace.lengths.least_step) & ~self.arcs.is_no_circle
+        )
 
     @cached_property
     def stops_at_center(self) -> Mask:
         """Per move of the tool center: it ends at the center of C. Without compensation that is the programmed end."""
         trace, moves = self.trace, self.tool_center.moves
-        known = moves.known | (trace.side[moves.row] == Side.OFF)
-        return np.asarray((np.abs(moves.end) < self.trace.least_step[moves.row]) & known)
+        known = moves.known | (trace.compensation.side[moves.row] == Side.OFF)
+        return np.asarray((np.abs(moves.end) < self.trace.lengths.least_step[moves.row]) & known)
 
     @cached_property
     def meets_center(self) -> Mask:
@@ -43,7 +45,7 @@ class Center:
         Of a move that only leaves it, the one before says so; except for the first of which anything is known.
         """
         moves, stops = self.tool_center.moves, self.stops_at_center
-        least = self.trace.least_step[moves.row]
+        least = self.trace.lengths.least_step[moves.row]
         leaves = np.abs(moves.start) < least
         follows = np.zeros(len(moves), bool)
         follows[1:] = (moves.known | stops)[:-1] & (moves.section[1:] == moves.section[:-1])

@@ -10,11 +10,11 @@ import msgspec
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Points, Rows, computed, different, repeated
-from polarcheck.table.filling import before
+from polarcheck.columns.filling import before
+from polarcheck.columns.path import NOWHERE
+from polarcheck.columns.trace import Trace
 from polarcheck.table.overcuts import Overcuts, curves_of, loop_of_row
-from polarcheck.table.positions import NOWHERE
 from polarcheck.table.tool_center import ToolCenter
-from polarcheck.table.trace import Trace
 from polarcheck.time_limit import keep_time
 
 if TYPE_CHECKING:
@@ -81,14 +81,14 @@ class Coverage:
 
         first = np.flatnonzero(np.diff(walls.loop, prepend=-1))
         last = np.append(first[1:], len(walls)) - 1
-        loops = Loops(walls, left, first, last, np.abs(trace.radius[walls.row[first]]))
+        loops = Loops(walls, left, first, last, np.abs(trace.compensation.radius[walls.row[first]]))
         faulty = different(walls.loop[self.overcuts.objected[walls.row]])
         sound = np.flatnonzero(~np.isin(walls.loop[first], faulty))
         if not len(sound):
             return None
         loops = loops.some(sound)
-        program = trace.program[walls.row[loops.first]]
-        z = np.maximum.reduceat(trace.z[walls.row], first)[sound]
+        program = trace.blocks.program[walls.row[loops.first]]
+        z = np.maximum.reduceat(trace.path.z[walls.row], first)[sound]
         kept = distinct(loops, program, z)
         return _Judged(loops.some(kept), walls.loop[loops.first[kept]], program[kept], z[kept])
 
@@ -178,7 +178,7 @@ class Coverage:
         moves, trace = self.tool_center.moves, self.trace
         unknown = ~moves.is_of_tool | np.isnan(moves.start + moves.end) | np.isnan(self._radius[moves.row])
         unknown |= (self.overcuts.too_far | self.overcuts.too_long)[moves.row]
-        return np.isin(judged.program, trace.program[moves.row[unknown]])
+        return np.isin(judged.program, trace.blocks.program[moves.row[unknown]])
 
     def _own(self, number: Rows) -> Segments:
         """The path of the tool center of these loops, which have a part of that index each."""
@@ -193,7 +193,7 @@ class Coverage:
     def _radius(self) -> Floats:
         """R of the cutter in each row [mm]; of the offset in force also where nothing is compensated."""
         trace = self.trace
-        return np.fmax(np.abs(trace.radius_of_move), trace.cutter_diameter / 2)
+        return np.fmax(np.abs(trace.compensation.radius_of_move), trace.offsets.cutter_diameter / 2)
 
     @cached_property
     def swept(self) -> Swept:
@@ -207,10 +207,10 @@ class Coverage:
         path: Curves = curves_of(moves, np.zeros(len(moves), np.int64), within)
         parts = segments(path, trace.machine.compensation.overcut_tolerance)
         row = path.row[parts.move]
-        z = np.fmin(trace.z, before(trace.z, trace.starts, np.nan))
+        z = np.fmin(trace.path.z, before(trace.path.z, trace.blocks.starts, np.nan))
         known = ~np.isnan(self._radius[row])
         row = row[known]
-        return Swept(parts.start[known], parts.end[known], row, self._radius[row], z[row], trace.program[row])
+        return Swept(parts.start[known], parts.end[known], row, self._radius[row], z[row], trace.blocks.program[row])
 
     # ---- strips ----
 
@@ -240,7 +240,7 @@ class Coverage:
             for strip in found:
                 if strip.thickness > left.height[strip.row]:
                     left.height[strip.row], left.place[strip.row] = strip.thickness, strip.place
-        section = self.trace.whole_section
+        section = self.trace.mode.whole_section
         for number in different(section[left.height > 0]):
             rows = np.flatnonzero((section == number) & (left.height > 0))
             left.height[rows[rows != rows[np.argmax(left.height[rows])]]] = 0
@@ -257,7 +257,7 @@ class Coverage:
         if judged is None:
             return []
         z = np.where(np.isnan(judged.z), np.inf, np.round(judged.z, 4))
-        section = self.trace.section[judged.loops.curves.row[judged.loops.first]]
+        section = self.trace.mode.section[judged.loops.curves.row[judged.loops.first]]
         _, level, members = np.unique(np.stack([section, z], axis=1), axis=0, return_inverse=True, return_counts=True)
         level = level.ravel()
         sure = ~self._unsure(judged)

@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Points
+from polarcheck.columns.trace import Trace
 from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.machines.job import Job
 from polarcheck.machines.part import DrawnPart, Part
 from polarcheck.table.finished import Finished, Level
 from polarcheck.table.overcuts import Overcuts
-from polarcheck.table.trace import Trace
 from polarcheck.time_limit import keep_time
 
 if TYPE_CHECKING:
@@ -136,9 +136,9 @@ class Deviations:
         sections = [part.section for part in self.parts]
         if not sections:
             return np.zeros(len(self.trace), bool)
-        asked: Mask = self.trace.offset_mode.copy()
+        asked: Mask = self.trace.compensation.offset_mode.copy()
         if None not in sections:
-            asked &= np.isin(self.trace.section + 1, np.array(sections))
+            asked &= np.isin(self.trace.mode.section + 1, np.array(sections))
         return asked
 
     @cached_property
@@ -161,7 +161,7 @@ class Deviations:
             for index in members:
                 if index != best and self._is_superseded(found[index], found[best]):
                     found[index] = found[index]._replace(is_superseded=True)
-        if np.isnan(self.trace.radius[self.asked]).any():
+        if np.isnan(self.trace.compensation.radius[self.asked]).any():
             found = [one._replace(is_superseded=one.is_superseded or self._only_leaves_more(one)) for one in found]
         return [one._replace(fit=self._fit(one)) if one.differs else one for one in found]
 
@@ -203,15 +203,15 @@ class Deviations:
 
     def missing(self) -> Iterator[tuple[int, str]]:
         """The parts that nothing was compared with, and why; not where R is unknown, or walls are tangled."""
-        if not len(self.trace.sections):
+        if not len(self.trace.mode.sections):
             return
         compared = {one.number for one in self.comparisons}
         levels = self.finished.levels
-        told = self.overcuts.tangled.any() or bool(np.isnan(self.trace.radius[self.asked]).any())
+        told = self.overcuts.tangled.any() or bool(np.isnan(self.trace.compensation.radius[self.asked]).any())
         for number, part in enumerate(self.parts):
             if number in compared or told:
                 continue
-            count = len(self.trace.sections)
+            count = len(self.trace.mode.sections)
             if part.section is not None and part.section > count:
                 yield number, f"it is for section {part.section}, and the program has {count}"
             elif not any(part.section in (None, level.section + 1) for level in levels):
@@ -266,7 +266,7 @@ class Deviations:
 
     def _scale(self, part: Part, row: int) -> float:
         """mm per unit of what a job says of a part."""
-        return float(np.broadcast_to(self.trace.job_scale, len(self.trace))[row])
+        return float(np.broadcast_to(self.trace.lengths.job_scale, len(self.trace))[row])
 
     def _curves_of(self, number: int, row: int, is_closed: bool) -> list[_Target]:
         from polarcheck.geometry.ways import way_of_curves
@@ -274,7 +274,7 @@ class Deviations:
         part = self.parts[number]
         scale = self._scale(part, row)
         if isinstance(part, DrawnPart):
-            scale = float(self.trace.scale[row]) if math.isnan(part.scale) else part.scale
+            scale = float(self.trace.lengths.scale[row]) if math.isnan(part.scale) else part.scale
         key = number, scale, is_closed
         if key not in self._known:
             curves = self._drawn(part, scale)

@@ -16,13 +16,13 @@ import msgspec
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Rows, is_among
+from polarcheck.columns.filling import before
+from polarcheck.columns.trace import Trace
 from polarcheck.geometry import polar, slowed
 from polarcheck.geometry.tolerances import SHARE, ZERO
 from polarcheck.machines.modal import FeedMode, Motion
-from polarcheck.table.filling import before
 from polarcheck.table.moves import Moves
 from polarcheck.table.tool_center import ToolCenter
-from polarcheck.table.trace import Trace
 
 #: Why the time of a row is not known, in the order in which it is said: the first that holds.
 NOT_EXECUTED, PER_REVOLUTION, NO_FEED, RAPIDS, RADIUS, DWELL, CYCLE, POSITION = (
@@ -66,7 +66,7 @@ class Dynamics:
     @cached_property
     def at_feed(self) -> Mask:
         """Moves at F: in rapid traverse, at which most controls alarm, F says nothing."""
-        return np.asarray(self.trace.motion[self.moves.row] != Motion.RAPID)
+        return np.asarray(self.trace.axes.motion[self.moves.row] != Motion.RAPID)
 
     @cached_property
     def c_limit(self) -> float:
@@ -157,11 +157,11 @@ class Dynamics:
         trace = self.trace
         of_moves = np.where(self.at_feed, self.move_time, 0.0)
         time = np.asarray(np.bincount(self.moves.row, of_moves, minlength=len(trace)), np.float64)
-        switches = trace.enters | trace.leaves
-        rest = np.flatnonzero(~self.on_path & ~switches & (trace.moves | self.dwells | self._returns))
-        at_feed = is_among(trace.motion[rest], (Motion.LINE, Motion.CW, Motion.CCW))
+        switches = trace.mode.enters | trace.mode.leaves
+        rest = np.flatnonzero(~self.on_path & ~switches & (trace.axes.moves | self.dwells | self._returns))
+        at_feed = is_among(trace.axes.motion[rest], (Motion.LINE, Motion.CW, Motion.CCW))
         time[rest] = np.where(at_feed, self._time_of_way(rest), np.nan)
-        rapids = rest[trace.motion[rest] == Motion.RAPID]
+        rapids = rest[trace.axes.motion[rest] == Motion.RAPID]
         time[rapids] = self._time_of_rapids(rapids)
         time[rest] = np.where(self.dwells[rest], self._time_of_dwell[rest], time[rest])
         time[trace.run.unknown] = np.nan
@@ -171,9 +171,9 @@ class Dynamics:
         """Of straight ways in X and Z at F per minute; what moves C or is an arc outside the mode is not followed."""
         trace = self.trace
         x, z, c = self._way(rows)
-        along_x = np.where(trace.in_polar[rows], 0.0, x)
-        is_line = trace.in_polar[rows] | ((trace.motion[rows] == Motion.LINE) & (c <= ZERO))
-        return np.where(is_line, polar.time(np.hypot(along_x, z), trace.feed[rows]), np.nan)
+        along_x = np.where(trace.mode.in_polar[rows], 0.0, x)
+        is_line = trace.mode.in_polar[rows] | ((trace.axes.motion[rows] == Motion.LINE) & (c <= ZERO))
+        return np.where(is_line, polar.time(np.hypot(along_x, z), trace.feedrate.feed[rows]), np.nan)
 
     def _time_of_rapids(self, rows: Rows) -> Floats:
         """The longest of its axes; one that stands still needs no rate."""
@@ -187,13 +187,15 @@ class Dynamics:
     def _way(self, rows: Rows) -> tuple[Floats, Floats, Floats]:
         """What X [mm, radius], Z [mm] and C [deg] move by; 0 for an axis that the row does not program."""
         trace = self.trace
-        on_plane = trace.moves_plane[rows] & trace.in_polar[rows]
-        x = np.where(trace.in_polar[rows], np.abs(trace.end[rows]) - np.abs(trace.start[rows]), 0.0)
-        x = np.where(trace.in_polar[rows], x, trace.x[rows] - trace.x_before[rows])
-        x = np.where(on_plane | trace.programs_linear_axis[rows], x, 0.0)
-        z = np.where(trace.moves_z[rows], (trace.z - before(trace.z, trace.starts, np.nan))[rows], 0.0)
-        c = (trace.c_angle - before(trace.c_angle, trace.starts, np.nan))[rows]
-        c = np.where(on_plane | trace.has(*trace.machine.polar.rotary_words)[rows], c, 0.0)
+        on_plane = trace.axes.moves_plane[rows] & trace.mode.in_polar[rows]
+        x = np.where(trace.mode.in_polar[rows], np.abs(trace.path.end[rows]) - np.abs(trace.path.start[rows]), 0.0)
+        x = np.where(trace.mode.in_polar[rows], x, trace.path.x[rows] - trace.path.x_before[rows])
+        x = np.where(on_plane | trace.axes.programs_linear_axis[rows], x, 0.0)
+        z = np.where(
+            trace.axes.moves_z[rows], (trace.path.z - before(trace.path.z, trace.blocks.starts, np.nan))[rows], 0.0
+        )
+        c = (trace.path.c_angle - before(trace.path.c_angle, trace.blocks.starts, np.nan))[rows]
+        c = np.where(on_plane | trace.blocks.has(*trace.machine.polar.rotary_words)[rows], c, 0.0)
         return np.abs(x), np.abs(z), np.abs(c)
 
     # ---- dwells, and what is not known ----
@@ -201,12 +203,14 @@ class Dynamics:
     @cached_property
     def dwells(self) -> Mask:
         """Rows with a dwell."""
-        return self.trace.listed("dwell")
+        return self.trace.blocks.listed("dwell")
 
     @cached_property
     def _returns(self) -> Mask:
         """Rows that return to a reference position, which is not known."""
-        return self.trace.listed("reference_return", "machine_coordinates") & self.trace.has("X", "U", "Z", "W")
+        return self.trace.blocks.listed("reference_return", "machine_coordinates") & self.trace.blocks.has(
+            "X", "U", "Z", "W"
+        )
 
     @cached_property
     def _time_of_dwell(self) -> Floats:
@@ -216,9 +220,9 @@ class Dynamics:
         All else stands for another time on each control: NaN. Without such a word there is none, but an exact stop.
         """
         trace = self.trace
-        time = np.where(trace.has("X", "U", "P", "F", "K", "S"), np.nan, 0.0)
+        time = np.where(trace.blocks.has("X", "U", "P", "F", "K", "S"), np.nan, 0.0)
         for address, pointed, factor in (("P", False, 0.001), ("U", True, 1.0), ("X", True, 1.0)):
-            words = trace.word_indices(address)
+            words = trace.blocks.word_indices(address)
             words = words[trace.run.words.has_point[words] == pointed]
             time[trace.run.row[words]] = factor * trace.run.words.value[words]
         return time
@@ -227,19 +231,19 @@ class Dynamics:
     def unknown(self) -> tuple[tuple[str, Mask], ...]:
         """Rows of which the time is not known, by reason; each row stands under one."""
         trace, missing = self.trace, np.isnan(self.time)
-        rapid = trace.motion == Motion.RAPID
-        needs_feed = missing & ~rapid & ~self.dwells & ~trace.in_cycle & ~self._returns
+        rapid = trace.axes.motion == Motion.RAPID
+        needs_feed = missing & ~rapid & ~self.dwells & ~trace.modal.in_cycle & ~self._returns
         no_radius = np.zeros(len(trace), bool)
         no_radius[self.moves.row[~self.moves.is_of_tool]] = True
-        no_radius &= np.isnan(trace.radius_of_move)
+        no_radius &= np.isnan(trace.compensation.radius_of_move)
         found = []
         for reason, mask in (
             (NOT_EXECUTED, trace.run.unknown),
             (DWELL, self.dwells),
-            (CYCLE, trace.in_cycle),
+            (CYCLE, trace.modal.in_cycle),
             (RAPIDS, rapid | self._returns),
-            (PER_REVOLUTION, needs_feed & (trace.feed_mode == FeedMode.PER_REVOLUTION)),
-            (NO_FEED, needs_feed & np.isnan(trace.feed)),
+            (PER_REVOLUTION, needs_feed & (trace.feedrate.feed_mode == FeedMode.PER_REVOLUTION)),
+            (NO_FEED, needs_feed & np.isnan(trace.feedrate.feed)),
             (RADIUS, no_radius),
             (POSITION, missing),
         ):
@@ -257,6 +261,6 @@ class Dynamics:
     @cached_property
     def section_time(self) -> Floats:
         """Per section how long it takes [s]; NaN where the time of one of its rows is not known."""
-        trace, count = self.trace, len(self.trace.sections)
-        inside = trace.section >= 0
-        return np.asarray(np.bincount(trace.section[inside], self.time[inside], minlength=count), np.float64)
+        trace, count = self.trace, len(self.trace.mode.sections)
+        inside = trace.mode.section >= 0
+        return np.asarray(np.bincount(trace.mode.section[inside], self.time[inside], minlength=count), np.float64)

@@ -8,11 +8,11 @@ from functools import cached_property
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask, is_among
+from polarcheck.columns.filling import happened
+from polarcheck.columns.trace import Trace
 from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.machines.modal import STATES
-from polarcheck.table.filling import happened
 from polarcheck.table.origin import Origin
-from polarcheck.table.trace import Trace
 
 #: What may stand beside a D that is meant for the cutter: words, and modal groups of G codes.
 _WORDS_BESIDE_D = ("T", "S", "M", "G", "F", "X", "U", "Z", "W")
@@ -30,13 +30,15 @@ class Entry:
     def happened(self, mask: Mask, since: Mask | None = None) -> Mask:
         """Whether a row at or above is in the mask or of unknown effect, from the program head or the last `since`."""
         trace = self.trace
-        return happened(mask | trace.run.unknown, trace.starts if since is None else trace.starts | since)
+        return happened(mask | trace.run.unknown, trace.blocks.starts if since is None else trace.blocks.starts | since)
 
     @cached_property
     def loses_x(self) -> Mask:
         """X is somewhere else afterwards, where no program can know: a tool change, a reference return of X."""
         trace = self.trace
-        return np.asarray(trace.changes_tool | (trace.listed("reference_return") & trace.has("X", "U")))
+        return np.asarray(
+            trace.tools.changes_tool | (trace.blocks.listed("reference_return") & trace.blocks.has("X", "U"))
+        )
 
     @cached_property
     def _is_known(self) -> Mask:
@@ -50,13 +52,15 @@ class Entry:
         """
         if not codes:
             return np.zeros(len(self.trace), bool)
-        return (self.trace.whole_program | self.trace.anywhere_in_program(self.trace.codes(*codes))) & self._is_known
+        return (
+            self.trace.blocks.whole_program | self.trace.blocks.anywhere_in_program(self.trace.blocks.codes(*codes))
+        ) & self._is_known
 
     @cached_property
     def expects_offset(self) -> Mask:
         """A T word stands above, or would: in a whole program."""
         trace = self.trace
-        return trace.has_called_tool | (trace.whole_program & self._is_known)
+        return trace.tools.has_called_tool | (trace.blocks.whole_program & self._is_known)
 
     @cached_property
     def calls_d_before_mode(self) -> Mask:
@@ -67,40 +71,40 @@ class Entry:
         cycles, calls and codes of the builder, which have a D of their own. Above the first T it may be meant for that.
         """
         trace = self.trace
-        if not trace.means_cutter_by_d.any():
+        if not trace.tools.means_cutter_by_d.any():
             return np.zeros(len(trace), bool)
         machine, m_codes = trace.machine, trace.machine.m_codes
         codes = [code for group in _BESIDE_D for key in STATES[group] for code in machine.codes(key)]
         codes += [code for name in m_codes.__struct_fields__ for code in getattr(m_codes, name)]
-        plain = trace.words_at(trace.code_indices(*codes))
-        has_other_code = trace.with_words(is_among(trace.run.words.address, list(b"GM")) & ~plain)
+        plain = trace.blocks.words_at(trace.blocks.code_indices(*codes))
+        has_other_code = trace.blocks.with_words(is_among(trace.run.words.address, list(b"GM")) & ~plain)
         calls = (
-            trace.means_cutter_by_d
-            & trace.consists_of("D", *_WORDS_BESIDE_D, *machine.polar.rotary_words)
+            trace.tools.means_cutter_by_d
+            & trace.blocks.consists_of("D", *_WORDS_BESIDE_D, *machine.polar.rotary_words)
             & ~has_other_code
-            & ~trace.in_cycle
+            & ~trace.modal.in_cycle
         )
         ahead = self._is_before_mode
-        above_tool = np.append((trace.changes_tool & ahead)[1:], False) & (trace.tool == 0)
+        above_tool = np.append((trace.tools.changes_tool & ahead)[1:], False) & (trace.tools.tool == 0)
         return np.asarray(calls & (ahead | above_tool))
 
     @property
     def _is_before_mode(self) -> Mask:
         """Outside the mode, and its program enters the mode before the tool changes."""
         trace = self.trace
-        ahead = np.flatnonzero(trace.enters | trace.changes_tool | trace.ends_program)
+        ahead = np.flatnonzero(trace.mode.enters | trace.tools.changes_tool | trace.blocks.ends_program)
         if not len(ahead):
             return np.zeros(len(trace), bool)
         following = np.searchsorted(ahead, np.arange(len(trace)), side="right")
         event = ahead[np.minimum(following, len(ahead) - 1)]
-        same = (following < len(ahead)) & (trace.program[event] == trace.program)
-        return np.asarray(same & trace.enters[event] & (trace.section < 0))
+        same = (following < len(ahead)) & (trace.blocks.program[event] == trace.blocks.program)
+        return np.asarray(same & trace.mode.enters[event] & (trace.mode.section < 0))
 
     @cached_property
     def after_section(self) -> Mask:
         """A G13.1 has ended a section of the tool in force."""
         trace = self.trace
-        return happened(trace.leaves, trace.changes_tool | trace.starts)
+        return happened(trace.mode.leaves, trace.tools.changes_tool | trace.blocks.starts)
 
     # ---- the plane ----
 
@@ -112,14 +116,14 @@ class Entry:
         the first move may select it.
         """
         trace, wanted = self.trace, self.trace.machine.polar.plane_before
-        right = (trace.state("plane") == 0) | trace.has_state("plane", wanted) | (not wanted)
-        selects = trace.first_in_section((trace.codes(*wanted) | trace.run.unknown) & trace.in_polar)
+        right = (trace.modal.state("plane") == 0) | trace.modal.has_state("plane", wanted) | (not wanted)
+        selects = trace.mode.first_in_section((trace.blocks.codes(*wanted) | trace.run.unknown) & trace.mode.in_polar)
         if selects.any():
-            first = np.full(len(trace.sections), len(trace))
-            moves = trace.first_in_section(trace.moves & trace.in_polar)
-            first[trace.section[moves]] = np.flatnonzero(moves)
+            first = np.full(len(trace.mode.sections), len(trace))
+            moves = trace.mode.first_in_section(trace.axes.moves & trace.mode.in_polar)
+            first[trace.mode.section[moves]] = np.flatnonzero(moves)
             rows = np.flatnonzero(selects)
-            right[trace.sections.enter[trace.section[rows[rows <= first[trace.section[rows]]]]]] = True
+            right[trace.mode.sections.enter[trace.mode.section[rows[rows <= first[trace.mode.section[rows]]]]]] = True
         return np.asarray(right)
 
     # ---- tool offset, origin ----
@@ -137,7 +141,7 @@ class Entry:
         That is X0, or X beside G12.1, which may name the center where nothing else says where X0 lies. NaN where the
         program sets what is not known.
         """
-        shift, named = self.origin.shift, self.trace.center_shift.real / self.trace.x_factor
+        shift, named = self.origin.shift, self.trace.path.center_shift.real / self.trace.lengths.x_factor
         return np.where((named != 0) & (shift == 0), 0.0, shift + named)
 
     # ---- stock and tool ----
@@ -146,8 +150,8 @@ class Entry:
     def first_in_mode(self) -> dict[int, int]:
         """The first row of the mode in which each offset is in force; of a turning tool comments tell the nose."""
         trace = self.trace
-        rows = np.flatnonzero(trace.in_polar | trace.enters)
-        numbers, first = np.unique(trace.offset_number[rows], return_index=True)
+        rows = np.flatnonzero(trace.mode.in_polar | trace.mode.enters)
+        numbers, first = np.unique(trace.tools.offset_number[rows], return_index=True)
         return dict(zip(numbers.tolist(), rows[first].tolist(), strict=True))
 
     @cached_property
@@ -159,13 +163,13 @@ class Entry:
         """
         trace = self.trace
         radius = np.full(len(trace), np.nan)
-        if not (trace.tools or trace.sets_offsets) or not len(trace.sections):
+        if not (trace.tools.of_job or trace.offsets.sets_offsets) or not len(trace.mode.sections):
             return radius
-        called = np.flatnonzero(trace.calls_offset)
-        for number, first in zip(*np.unique(trace.offset_number[called], return_index=True), strict=True):
+        called = np.flatnonzero(trace.tools.calls_offset)
+        for number, first in zip(*np.unique(trace.tools.offset_number[called], return_index=True), strict=True):
             row = self.first_in_mode.get(int(number))
-            if row is not None and not trace.radius_is_from_comment[row]:
-                radius[called[first]] = trace.radius_of_offset[row]
+            if row is not None and not trace.offsets.radius_is_from_comment[row]:
+                radius[called[first]] = trace.offsets.radius_of_offset[row]
         return radius
 
     @cached_property
@@ -173,7 +177,7 @@ class Entry:
         """R that a comment tells of an offset whose R is given or set [mm], at the same word; else NaN."""
         told = np.full(len(self.trace), np.nan)
         for row in np.flatnonzero(~np.isnan(self.radius_in_mode)).tolist():
-            found = self.trace.radius_told.get(int(self.trace.offset_number[row]))
+            found = self.trace.offsets.radii_in_comments.get(int(self.trace.tools.offset_number[row]))
             told[row] = found.radius if found else np.nan
         return told
 
@@ -185,12 +189,12 @@ class Entry:
     @property
     def stock_diameter(self) -> Floats:
         """Of the stock [mm]; NaN where the job gives none."""
-        return self.trace.stock_diameter
+        return self.trace.lengths.stock_diameter
 
     @property
     def clearance(self) -> Floats:
         """What the job wants between the stock and the tool at the approach, on the diameter [mm]."""
-        return np.broadcast_to(self.trace.job.stock.clearance * self.trace.job_scale, len(self.trace))
+        return np.broadcast_to(self.trace.job.stock.clearance * self.trace.lengths.job_scale, len(self.trace))
 
     @cached_property
     def approaches_stock(self) -> Mask:
@@ -198,18 +202,18 @@ class Entry:
         trace = self.trace
         if np.isnan(trace.job.stock.diameter):
             return np.zeros(len(trace), bool)
-        farthest = np.full(len(trace.sections) + 1, -np.inf)
-        np.fmax.at(farthest, trace.section, np.fmax(np.abs(trace.start), np.abs(trace.end)))
-        reach = 2 * farthest[trace.section] + np.nan_to_num(trace.cutter_diameter)
-        return np.asarray(trace.enters & (reach > self.stock_diameter + ROUNDING))
+        farthest = np.full(len(trace.mode.sections) + 1, -np.inf)
+        np.fmax.at(farthest, trace.mode.section, np.fmax(np.abs(trace.path.start), np.abs(trace.path.end)))
+        reach = 2 * farthest[trace.mode.section] + np.nan_to_num(trace.offsets.cutter_diameter)
+        return np.asarray(trace.mode.enters & (reach > self.stock_diameter + ROUNDING))
 
     @cached_property
     def x_needed(self) -> Floats:
         """X of the tool center that clears the stock, as a radius [mm]: half of stock, cutter and clearance."""
-        return (self.stock_diameter + self.trace.cutter_diameter + self.clearance) / 2
+        return (self.stock_diameter + self.trace.offsets.cutter_diameter + self.clearance) / 2
 
     @cached_property
     def is_flat_and_radial(self) -> Mask:
         """The job says of the tool in force that it is a flat end mill that points at the outer diameter."""
-        wrong = [n for n, tool in self.trace.tools.items() if tool.mount == "radial" and tool.shape == "flat"]
-        return np.isin(self.trace.offset_number, wrong)
+        wrong = [n for n, tool in self.trace.tools.of_job.items() if tool.mount == "radial" and tool.shape == "flat"]
+        return np.isin(self.trace.tools.offset_number, wrong)

@@ -67,11 +67,11 @@ def _begun(dynamics: Dynamics, row: Rows, time: Floats) -> Floats:
     if not len(row):
         return np.zeros(0)
     # What a row takes besides its moves: Z alone, dwells.
-    rest = _Sums(np.where(dynamics.on_path | (trace.section < 0), 0.0, dynamics.time))
+    rest = _Sums(np.where(dynamics.on_path | (trace.mode.section < 0), 0.0, dynamics.time))
     moving = _Sums(time)
-    section = trace.section[row]
+    section = trace.mode.section[row]
     first, at = np.searchsorted(section, section), np.arange(len(row))
-    return rest.between(trace.sections.enter[section], row) + moving.between(first, at)
+    return rest.between(trace.mode.sections.enter[section], row) + moving.between(first, at)
 
 
 class _Sums:

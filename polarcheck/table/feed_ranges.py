@@ -7,11 +7,11 @@ from functools import cached_property
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Rows
+from polarcheck.columns.trace import Trace
 from polarcheck.geometry.tolerances import ROUNDING, SHARE
 from polarcheck.machines.modal import Motion, Side
 from polarcheck.table.ramps import Ramps
 from polarcheck.table.tool_center import ToolCenter
-from polarcheck.table.trace import Trace
 
 
 class FeedRanges:
@@ -44,31 +44,33 @@ class FeedRanges:
     def nearest_limit(self) -> Floats:
         """The one of them that F is nearest to [mm/min]; NaN where there is none."""
         ends = np.array([*self.known_limits, np.nan][: max(len(self.known_limits), 1)])
-        return np.asarray(ends[np.argmin(np.abs(self.trace.programmed_feed[:, None] - ends), axis=1)])
+        return np.asarray(ends[np.argmin(np.abs(self.trace.feedrate.programmed_feed[:, None] - ends), axis=1)])
 
     @cached_property
     def too_low(self) -> Mask:
         """Moves on the plane below the range for cutting."""
-        return np.asarray(self.trace.cuts & (self.trace.programmed_feed < self.limits.cutting_minimum * (1 - SHARE)))
+        return np.asarray(
+            self.trace.path.cuts & (self.trace.feedrate.programmed_feed < self.limits.cutting_minimum * (1 - SHARE))
+        )
 
     @cached_property
     def too_high(self) -> Mask:
         """Moves on the plane above the range for positioning."""
-        return self.trace.cuts & self._above(self.limits.positioning_maximum)
+        return self.trace.path.cuts & self._above(self.limits.positioning_maximum)
 
     @cached_property
     def between(self) -> Mask:
         """F above the range for cutting and below that for positioning."""
-        below = self.trace.programmed_feed < self.limits.positioning_minimum * (1 - SHARE)
+        below = self.trace.feedrate.programmed_feed < self.limits.positioning_minimum * (1 - SHARE)
         return np.asarray(self._above(self.limits.cutting_maximum) & below)
 
     @cached_property
     def is_for_cutting(self) -> Mask:
         """F at most the highest for cutting."""
-        return np.asarray(self.trace.programmed_feed <= self.limits.cutting_maximum * (1 + SHARE))
+        return np.asarray(self.trace.feedrate.programmed_feed <= self.limits.cutting_maximum * (1 + SHARE))
 
     def _above(self, limit: float) -> Mask:
-        return np.asarray(self.trace.programmed_feed > limit * (1 + SHARE))
+        return np.asarray(self.trace.feedrate.programmed_feed > limit * (1 + SHARE))
 
     # ---- what cuts ----
 
@@ -76,7 +78,9 @@ class FeedRanges:
     def without_contour(self) -> Mask:
         """Moves of sections without compensation, of which nobody knows whether they cut."""
         trace = self.trace
-        return trace.cuts & ~trace.anywhere_in_section(trace.compensates | (trace.state("side") != Side.OFF))
+        return trace.path.cuts & ~trace.mode.anywhere_in_section(
+            trace.compensation.compensates | (trace.modal.state("side") != Side.OFF)
+        )
 
     @cached_property
     def too_high_for_cut(self) -> Mask:
@@ -100,7 +104,7 @@ class FeedRanges:
 
     @cached_property
     def _on_contour(self) -> Mask:
-        return self.trace.compensates & self.trace.travels & ~self.trace.starts_up
+        return self.trace.compensation.compensates & self.trace.path.travels & ~self.trace.compensation.starts_up
 
     @cached_property
     def _slow(self) -> Mask:
@@ -110,7 +114,7 @@ class FeedRanges:
     @property
     def _reach(self) -> Floats:
         """How far from the center the cutter reaches into the stock, at most [mm]; NaN unknown."""
-        return np.asarray(self.trace.stock_diameter + self.trace.cutter_diameter) / 2
+        return np.asarray(self.trace.lengths.stock_diameter + self.trace.offsets.cutter_diameter) / 2
 
     @cached_property
     def knows_stock(self) -> Mask:
@@ -147,16 +151,16 @@ class FeedRanges:
     @cached_property
     def _is_above(self) -> Mask:
         """Above the highest Z of the moves at an F for cutting, where there are any."""
-        highest = self._most(self.trace.z)
-        return np.asarray((self.trace.z > highest + ROUNDING) & (highest > -np.inf))
+        highest = self._most(self.trace.path.z)
+        return np.asarray((self.trace.path.z > highest + ROUNDING) & (highest > -np.inf))
 
     def _most(self, values: Floats) -> Floats:
         """The largest value of the moves of a section along its contours at an F for cutting; -inf without one."""
         trace = self.trace
-        most = np.full(len(trace.sections) + 1, -np.inf)
+        most = np.full(len(trace.mode.sections) + 1, -np.inf)
         rows = np.flatnonzero(self._slow & np.isfinite(values))
-        np.maximum.at(most, trace.section[rows], values[rows])
-        return np.where(trace.section >= 0, most[trace.section], -np.inf)
+        np.maximum.at(most, trace.mode.section[rows], values[rows])
+        return np.where(trace.mode.section >= 0, most[trace.mode.section], -np.inf)
 
     @cached_property
     def _leads(self) -> Mask:
@@ -170,13 +174,13 @@ class FeedRanges:
         if len(rows):
             parts = np.flatnonzero(np.diff(self.ramps.loop[rows]) != 0)
             ends[rows[np.concatenate(([0], parts, parts + 1, [len(rows) - 1]))]] = True
-        way = trace.end - trace.start
-        begins, finishes = ((point * way.conj()).real for point in (trace.start, trace.end))
-        passes = (trace.motion == Motion.LINE) & (begins < -ROUNDING) & (finishes > ROUNDING)
+        way = trace.path.end - trace.path.start
+        begins, finishes = ((point * way.conj()).real for point in (trace.path.start, trace.path.end))
+        passes = (trace.axes.motion == Motion.LINE) & (begins < -ROUNDING) & (finishes > ROUNDING)
         return np.asarray(ends & ~passes)
 
     def slow_row(self, row: int) -> int:
         """The row of the section at an F for cutting that is the farthest out."""
         trace = self.trace
-        rows: Rows = np.flatnonzero(self._slow & (trace.section == trace.section[row]))
+        rows: Rows = np.flatnonzero(self._slow & (trace.mode.section == trace.mode.section[row]))
         return int(rows[np.nanargmax(self.tool_center.nearest[rows])])

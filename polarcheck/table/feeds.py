@@ -8,11 +8,11 @@ from functools import cached_property
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask, repeated
+from polarcheck.columns.filling import fill_down, happened
+from polarcheck.columns.trace import Trace
 from polarcheck.geometry.tolerances import SHARE
 from polarcheck.machines.modal import FeedMode, Units
-from polarcheck.table.filling import fill_down, happened
 from polarcheck.table.tool_center import ToolCenter
-from polarcheck.table.trace import Trace
 
 #: From here on F is no feed per revolution [in the units of the program: mm, inch].
 _NOT_PER_REVOLUTION = {Units.MM: 5.0, Units.INCH: 0.2}
@@ -33,24 +33,24 @@ class Feeds:
     def missing(self) -> Mask:
         """No F was ever given, or F0 is in force. What stands before an excerpt may have given one."""
         trace = self.trace
-        given = happened(trace.has("F") | trace.run.unknown, trace.starts)
-        return np.asarray((~given & ~self._in_excerpt) | (trace.feed_number == 0))
+        given = happened(trace.blocks.has("F") | trace.run.unknown, trace.blocks.starts)
+        return np.asarray((~given & ~self._in_excerpt) | (trace.feedrate.feed_number == 0))
 
     @cached_property
     def _in_excerpt(self) -> Mask:
         """Rows of sections before which nothing moves, in a program without its head."""
         trace = self.trace
-        begun = happened(trace.whole_program | trace.moves, trace.starts)
-        if not len(trace.sections):
+        begun = happened(trace.blocks.whole_program | trace.axes.moves, trace.blocks.starts)
+        if not len(trace.mode.sections):
             return ~begun
-        return np.asarray(trace.in_polar & ~begun[trace.sections.enter][trace.section])
+        return np.asarray(trace.mode.in_polar & ~begun[trace.mode.sections.enter][trace.mode.section])
 
     @cached_property
     def lost(self) -> Mask:
         """The F of the rows before G12.1, per revolution, is not taken over, and the mode has none of its own yet."""
         trace = self.trace
-        given = trace.given_in_section(trace.has("F"))
-        return np.asarray(trace.entered_per_revolution & ~given & trace.takes_over_per_minute_only)
+        given = trace.mode.given_in_section(trace.blocks.has("F"))
+        return np.asarray(trace.feedrate.entered_per_revolution & ~given & trace.feedrate.takes_over_per_minute_only)
 
     @cached_property
     def mode_is_unknown(self) -> Mask:
@@ -61,8 +61,10 @@ class Feeds:
         trace, machine = self.trace, self.trace.machine
         systems = (machine.g_code_system_a, machine.g_code_system_b, machine.g_code_system_c)
         codes = [code for system in systems for code in (*system.feed_per_minute, *system.feed_per_revolution)]
-        says = trace.codes(*codes) | trace.sets("feed_mode") | trace.run.unknown
-        return np.asarray(trace.whole_program & ~happened(says, trace.starts) & (not machine.power_on.feed_mode))
+        says = trace.blocks.codes(*codes) | trace.modal.sets("feed_mode") | trace.run.unknown
+        return np.asarray(
+            trace.blocks.whole_program & ~happened(says, trace.blocks.starts) & (not machine.power_on.feed_mode)
+        )
 
     @cached_property
     def is_too_high_per_revolution(self) -> Mask:
@@ -71,17 +73,17 @@ class Feeds:
 
     def _is_at_least(self, least: Mapping[Units, float]) -> Mask:
         trace = self.trace
-        in_units = np.where(trace.units == Units.INCH, least[Units.INCH], least[Units.MM])
-        return np.asarray(trace.feed_number / trace.scale >= in_units)
+        in_units = np.where(trace.lengths.units == Units.INCH, least[Units.INCH], least[Units.MM])
+        return np.asarray(trace.feedrate.feed_number / trace.lengths.scale >= in_units)
 
     @cached_property
     def is_left_per_revolution(self) -> Mask:
         """F in force is known, was written for feed per revolution, could be nothing else, and is per minute now."""
         trace = self.trace
-        written = trace.has("F") | trace.starts
-        per_revolution = fill_down(trace.feed_mode == FeedMode.PER_REVOLUTION, written, False)
-        known = ~np.isnan(trace.feed)
-        return np.asarray(per_revolution & trace.per_minute & known & ~self.is_too_high_per_revolution)
+        written = trace.blocks.has("F") | trace.blocks.starts
+        per_revolution = fill_down(trace.feedrate.feed_mode == FeedMode.PER_REVOLUTION, written, False)
+        known = ~np.isnan(trace.feedrate.feed)
+        return np.asarray(per_revolution & trace.feedrate.per_minute & known & ~self.is_too_high_per_revolution)
 
     @cached_property
     def looks_per_revolution(self) -> Mask:
@@ -92,20 +94,26 @@ class Feeds:
         Where no code says that it is per minute, but the mode alone, the same F as before it is that up to higher ones.
         """
         trace = self.trace
-        written = trace.has("F") & (trace.feed_mode == FeedMode.PER_REVOLUTION)
-        number = fill_down(np.where(written, trace.written_feed, np.nan), written | trace.starts, np.nan)
-        same = np.isclose(trace.feed_number, number, rtol=SHARE, atol=0) & trace.entered_per_revolution
-        same &= trace.takes_over_per_minute_only
-        says = trace.in_polar & (trace.modal_feed_mode == FeedMode.PER_REVOLUTION)
+        written = trace.blocks.has("F") & (trace.feedrate.feed_mode == FeedMode.PER_REVOLUTION)
+        number = fill_down(
+            np.where(written, trace.feedrate.written_feed, np.nan), written | trace.blocks.starts, np.nan
+        )
+        same = (
+            np.isclose(trace.feedrate.feed_number, number, rtol=SHARE, atol=0) & trace.feedrate.entered_per_revolution
+        )
+        same &= trace.feedrate.takes_over_per_minute_only
+        says = trace.mode.in_polar & (trace.feedrate.modal_feed_mode == FeedMode.PER_REVOLUTION)
         is_small = ~self._is_at_least(_NOT_PER_MINUTE) & (~np.isnan(number) | says)
         is_small |= same & ~self.is_too_high_per_revolution
-        return np.asarray(is_small & trace.per_minute & ~np.isnan(trace.feed) & ~self.is_left_per_revolution)
+        return np.asarray(
+            is_small & trace.feedrate.per_minute & ~np.isnan(trace.feedrate.feed) & ~self.is_left_per_revolution
+        )
 
     @cached_property
     def begins(self) -> Mask:
         """Cutting moves at another F than the one before in the section."""
-        trace, rows = self.trace, np.flatnonzero(self.trace.cuts)
-        number, section = trace.feed_number[rows], trace.section[rows]
+        trace, rows = self.trace, np.flatnonzero(self.trace.path.cuts)
+        number, section = trace.feedrate.feed_number[rows], trace.mode.section[rows]
         new = np.ones(len(rows), bool)
         new[1:] = (number[1:] != number[:-1]) | (section[1:] != section[:-1])
         mask = np.zeros(len(trace), bool)
@@ -115,7 +123,7 @@ class Feeds:
     def first_at_each(self, mask: Mask) -> Mask:
         """Of the rows of a mask the first in each section at its F."""
         rows = np.flatnonzero(mask)
-        kinds = np.stack((self.trace.section[rows].astype(float), self.trace.feed_number[rows]))
+        kinds = np.stack((self.trace.mode.section[rows].astype(float), self.trace.feedrate.feed_number[rows]))
         first = np.zeros(len(mask), bool)
         if len(rows):
             first[rows[np.unique(kinds, axis=1, return_index=True)[1]]] = True
@@ -126,7 +134,7 @@ class Feeds:
     @cached_property
     def is_limited_in_acceleration(self) -> Mask:
         """Cutting moves, if the profile limits the acceleration of C."""
-        return np.asarray(self.trace.cuts & (not np.isnan(self.trace.machine.limits.c_acceleration)))
+        return np.asarray(self.trace.path.cuts & (not np.isnan(self.trace.machine.limits.c_acceleration)))
 
     @cached_property
     def allowed_by_acceleration(self) -> Floats:
@@ -140,4 +148,4 @@ class Feeds:
             return repeated(np.float64(np.inf), len(trace))
         asked = self.tool_center.c_acceleration
         share = np.divide(limit, asked, out=np.ones(len(trace)), where=~(asked <= limit))
-        return np.asarray(trace.feed * np.sqrt(share))
+        return np.asarray(trace.feedrate.feed * np.sqrt(share))

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from polarcheck.arrays import Mask, Rows
+from polarcheck.columns.trace import Trace
 from polarcheck.table.overcuts import Overcuts, level_of
-from polarcheck.table.trace import Trace
 
 if TYPE_CHECKING:
     from polarcheck.geometry.finished_part import FinishedParts
@@ -71,7 +71,7 @@ class Finished:
         _, first, level = np.unique(level, return_index=True, return_inverse=True)
         place = np.argsort(np.argsort(first))[level]
         radius = np.zeros(len(first))
-        np.maximum.at(radius, place, np.nan_to_num(np.abs(trace.radius[walls.row])))
+        np.maximum.at(radius, place, np.nan_to_num(np.abs(trace.compensation.radius[walls.row])))
         begins = np.flatnonzero(np.diff(walls.loop, prepend=-1))
         order = np.argsort(place[begins], kind="stable")
         loops, groups = walls.loop[begins][order], place[begins][order]
@@ -88,8 +88,8 @@ class Finished:
         own, shift = parts.group == number, parts.pitch * number
         row = int(walls.row[chosen[0]])
         return Level(
-            section=int(self.trace.section[row]),
-            z=float(self.trace.z[row]),
+            section=int(self.trace.mode.section[row]),
+            z=float(self.trace.path.z[row]),
             radius=float(radius[number]),
             polygon=shapely.transform(parts.polygon[number], lambda points: points - [shift, 0.0]),
             open=bool(parts.open[number]),

@@ -7,9 +7,10 @@ from functools import cached_property
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask
+from polarcheck.columns.trace import Trace
 from polarcheck.table.overcuts import Overcuts
 from polarcheck.table.since import Since
-from polarcheck.table.trace import Trace
+from polarcheck.table.tool_center import OtherRadius
 from polarcheck.table.trial import Trial
 from polarcheck.time_limit import keep_time
 
@@ -44,20 +45,21 @@ class Fitting:
         return asked & (np.count_nonzero(asked) <= _MANY)
 
     def _trial(self, radius: Floats) -> Trial:
-        return Trial(self.trace, self._asked, self.since.compensation, radius * np.sign(self.trace.radius))
+        signed = radius * np.sign(self.trace.compensation.radius)
+        return Trial(self.trace, OtherRadius(self._asked, self.since.compensation, signed))
 
     @cached_property
     def never(self) -> Mask:
         """Rows of loops that any cutter cuts into, so that a point of the contour is wrong."""
         cut = np.zeros(len(self.trace), bool)
         if self._asked.any():
-            cut[self._trial(np.abs(self.trace.radius) * _SMALL).cuts.row] = True
+            cut[self._trial(np.abs(self.trace.compensation.radius) * _SMALL).cuts.row] = True
         return self._asked & self._any(cut)
 
     @cached_property
     def radius(self) -> Floats:
         """The largest R that leaves the loop of the row whole [mm]; NaN where there is none, or it is not known."""
-        own = np.abs(self.trace.radius)
+        own = np.abs(self.trace.compensation.radius)
         wanted = self._asked & ~self.never
         low, high = np.where(wanted, 0.0, np.nan), own
         if not wanted.any():

@@ -7,14 +7,14 @@ from functools import cached_property
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask, States
+from polarcheck.columns.filling import fill_down
+from polarcheck.columns.trace import Trace
 from polarcheck.geometry import rates
 from polarcheck.geometry.tolerances import SHARE
 from polarcheck.machines.modal import Motion
 from polarcheck.table.center import Center
 from polarcheck.table.dynamics import Dynamics
-from polarcheck.table.filling import fill_down
 from polarcheck.table.moves import per_row
-from polarcheck.table.trace import Trace
 
 #: What limits F, in the order of the rows of `HighestFeeds.limits`; the first of equals counts.
 LIMITS = C_FEED, C_ACCELERATION, X_FEED, POLAR_FEED = ("C", "acceleration of C", "X", "limit of F in the mode")
@@ -37,7 +37,9 @@ class HighestFeeds:
     def cuts(self) -> Mask:
         """Rows of sections that move at F: on the plane, or Z alone."""
         trace = self.trace
-        return np.asarray(trace.moves_at_feed & (self.dynamics.on_path | (trace.moves_z & ~trace.moves_plane)))
+        return np.asarray(
+            trace.path.moves_at_feed & (self.dynamics.on_path | (trace.axes.moves_z & ~trace.axes.moves_plane))
+        )
 
     @cached_property
     def limits(self) -> Floats:
@@ -76,7 +78,7 @@ class HighestFeeds:
     @cached_property
     def meets_center(self) -> Mask:
         """Cutting moves through the center of C, or too near to it for any F."""
-        return np.asarray(self.cuts & self.trace.cuts & ~self.center.cuts_off_center)
+        return np.asarray(self.cuts & self.trace.path.cuts & ~self.center.cuts_off_center)
 
     @cached_property
     def is_left_out(self) -> Mask:
@@ -92,7 +94,7 @@ class HighestFeeds:
     def must_be_lower(self) -> Mask:
         """F as programmed is above what the limits allow or, where that is left out, at it."""
         edge = np.where(self.is_left_out, 1 - SHARE, 1 + SHARE)
-        above = self.trace.programmed_feed >= self.allowed * edge
+        above = self.trace.feedrate.programmed_feed >= self.allowed * edge
         return np.asarray(self.cuts & ~self.meets_center & above)
 
     @cached_property
@@ -114,24 +116,28 @@ class HighestFeeds:
         no code of the main spindle is beside it; else any S but a surface speed and the limit of G50.
         """
         trace, codes = self.trace, self.trace.machine.m_codes
-        takes = trace.has("S") & ~trace.sets_coordinates & ~trace.listed("dwell")
-        is_speed = trace.state("speed") == 0
+        takes = trace.blocks.has("S") & ~trace.modal.sets_coordinates & ~trace.blocks.listed("dwell")
+        is_speed = trace.modal.state("speed") == 0
         if codes.live_tool_on:
-            starts = trace.codes(*codes.live_tool_on)
-            waits = takes & ~trace.codes(*codes.spindle_on) & (trace.live_tool | self._next_starts_live_tool)
+            starts = trace.blocks.codes(*codes.live_tool_on)
+            waits = (
+                takes & ~trace.blocks.codes(*codes.spindle_on) & (trace.modal.live_tool | self._next_starts_live_tool)
+            )
             is_speed = np.where(starts, takes, waits & is_speed)
-        return fill_down(np.where(takes & is_speed, trace.word("S"), np.nan), takes | trace.starts, np.nan)
+        return fill_down(
+            np.where(takes & is_speed, trace.blocks.word("S"), np.nan), takes | trace.blocks.starts, np.nan
+        )
 
     @property
     def _next_starts_live_tool(self) -> Mask:
         """Of the spindles the live tool is the one that starts next."""
         codes = self.trace.machine.m_codes
-        started = self.trace.codes(*codes.live_tool_on)
-        begins = np.flatnonzero(started | self.trace.codes(*codes.spindle_on))
+        started = self.trace.blocks.codes(*codes.live_tool_on)
+        begins = np.flatnonzero(started | self.trace.blocks.codes(*codes.spindle_on))
         return np.append(started[begins], False)[np.searchsorted(begins, np.arange(len(self.trace)))]
 
     @cached_property
     def cuts_of_teeth(self) -> Floats:
         """Teeth that cut in a minute; NaN where S or the teeth are not known. F by this is the chip load."""
-        cuts = self.speed * self.trace.teeth
-        return np.where(self.cuts & (self.trace.motion != Motion.RAPID) & (cuts > 0), cuts, np.nan)
+        cuts = self.speed * self.trace.offsets.teeth
+        return np.where(self.cuts & (self.trace.axes.motion != Motion.RAPID) & (cuts > 0), cuts, np.nan)

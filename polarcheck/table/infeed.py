@@ -26,11 +26,11 @@ import numpy as np
 from msgspec.structs import replace
 
 from polarcheck.arrays import Floats, Mask, Points, Rows, States, repeated
+from polarcheck.columns.trace import Trace
 from polarcheck.geometry import enclosed, polar
 from polarcheck.geometry.compensation import ToolPath
 from polarcheck.machines.modal import Motion, Side
 from polarcheck.table.moves import Moves, compensation_path, of_tool, tool_center_path
-from polarcheck.table.trace import Trace
 
 #: Points of one contour nearer than this are one [mm]: the rounding of coordinates to 0.001 mm.
 CLOSED = 0.002
@@ -74,7 +74,7 @@ class Infeed:
         trace, word = self.trace, self.trace.machine.polar.infeed_word
         if not word:
             return repeated(np.float64(np.nan), len(trace))
-        return np.where(trace.enters, np.abs(trace.length_of(word)), np.nan)
+        return np.where(trace.mode.enters, np.abs(trace.lengths.length_of(word)), np.nan)
 
     @cached_property
     def depth(self) -> Floats:
@@ -83,7 +83,7 @@ class Infeed:
 
         The control drops what is finer than its least increment, so that an E below that is none.
         """
-        written, step = self.written, self.trace.least_step
+        written, step = self.written, self.trace.lengths.least_step
         if not np.any(written > 0):
             return repeated(np.float64(0), len(written))
         return np.nan_to_num(np.floor(written / step + CUT) * step)
@@ -96,7 +96,7 @@ class Infeed:
     @cached_property
     def _contours(self) -> dict[int, tuple[Rows, bool]]:
         """Of each G12.1 with an E, the rows of its contour and whether that is closed."""
-        return {row: self._contour(int(self.trace.section[row])) for row in self._begins}
+        return {row: self._contour(int(self.trace.mode.section[row])) for row in self._begins}
 
     def _contour(self, section: int) -> tuple[Rows, bool]:
         """
@@ -104,17 +104,17 @@ class Infeed:
         and whether the contour is closed. Without a contour no row, and not closed.
         """
         trace = self.trace
-        enter, leave = trace.sections.enter[section], trace.sections.leave[section]
+        enter, leave = trace.mode.sections.enter[section], trace.mode.sections.leave[section]
         # A start-up in rapid traverse leads to the contour as one at feed does, which is what was meant.
-        leads_or_cuts = trace.cuts | (trace.on_plane & trace.compensates)
+        leads_or_cuts = trace.path.cuts | (trace.path.on_plane & trace.compensation.compensates)
         moving = enter + np.flatnonzero(leads_or_cuts[enter:leave])
         if not len(moving):
             return moving, False
-        compensated = trace.side[moving] != Side.OFF
+        compensated = trace.compensation.side[moving] != Side.OFF
         if compensated.any():
             first = int(np.argmax(compensated))
             moving = moving[first : first + int(np.argmin(np.append(compensated[first:], False)))]
-        back = 1 + np.flatnonzero(np.abs(trace.end[moving[1:]] - trace.end[moving[0]]) <= CLOSED)
+        back = 1 + np.flatnonzero(np.abs(trace.path.end[moving[1:]] - trace.path.end[moving[0]]) <= CLOSED)
         return (moving[: back[-1] + 1], True) if len(back) else (moving, False)
 
     @cached_property
@@ -126,9 +126,9 @@ class Infeed:
         if not self._contours:
             return repeated(np.float64(np.nan), len(self.trace))
         gap = np.full(len(self.trace), np.nan)
-        unknown = self.trace.anywhere_in_section(self.trace.run.unknown)
+        unknown = self.trace.mode.anywhere_in_section(self.trace.run.unknown)
         for row, (contour, closed) in self._contours.items():
-            way = self.trace.end[contour] - self.trace.end[contour[:1]]
+            way = self.trace.path.end[contour] - self.trace.path.end[contour[:1]]
             if closed:
                 gap[row] = 0.0
             elif len(way) and not np.isnan(way).any() and not unknown[row]:
@@ -153,14 +153,17 @@ class Infeed:
     def _seen_from(self, point: complex, contour: Rows) -> tuple[Points, Points, Points, States]:
         """start, end, center, kind of the contour, from a point instead of the center of C."""
         trace, on = self.trace, contour[1:]
-        kind = np.where(np.isnan(trace.center[on]), Motion.LINE, trace.motion[on]).astype(np.int16)
-        return trace.start[on] - point, trace.end[on] - point, trace.center[on] - point, kind
+        kind = np.where(np.isnan(trace.path.center[on]), Motion.LINE, trace.axes.motion[on]).astype(np.int16)
+        return trace.path.start[on] - point, trace.path.end[on] - point, trace.path.center[on] - point, kind
 
     def _room(self, contour: Rows) -> float:
         """From the tool center at the start point to where it runs along the contour [mm]: d - R; 0 if unknown."""
         trace = self.trace
-        shape = self._seen_from(complex(trace.start[contour[0]]), contour)
-        side, radius = int(trace.side[contour[0]]), float(np.nan_to_num(trace.radius[contour[0]]))
+        shape = self._seen_from(complex(trace.path.start[contour[0]]), contour)
+        side, radius = (
+            int(trace.compensation.side[contour[0]]),
+            float(np.nan_to_num(trace.compensation.radius[contour[0]])),
+        )
         if side == Side.OFF:
             radius = 0.0
         elif enclosed.is_on_left(*shape) != ((side == Side.LEFT) == (radius >= 0)):
@@ -249,7 +252,7 @@ class Infeed:
     def _beyond_start(self, cycle: _Cycle) -> Mask:
         """Passes that do not lie between the contour and the start point."""
         trace, tool, count = self.trace, cycle.tool, len(cycle.contour)
-        start = complex(trace.start[cycle.contour[0]])
+        start = complex(trace.path.start[cycle.contour[0]])
         inside = enclosed.goes_round(*self._seen_from(start, cycle.contour))
         on = tool.row % count > 0
         group = tool.row[on] // count
@@ -258,7 +261,7 @@ class Infeed:
 
     def _side_of_start(self, contour: Rows) -> Side:
         """The side of the contour on which the start point lies, where the tool center itself is programmed."""
-        shape = self._seen_from(complex(self.trace.start[contour[0]]), contour)
+        shape = self._seen_from(complex(self.trace.path.start[contour[0]]), contour)
         return Side.LEFT if enclosed.is_on_left(*shape) else Side.RIGHT
 
     # ---- passes that do not fit ----
@@ -299,16 +302,16 @@ class Infeed:
         return np.asarray(rows & (self.gap == 0))
 
     def _is_compensated(self, contour: Rows) -> bool:
-        return bool((self.trace.side[contour] != Side.OFF).any())
+        return bool((self.trace.compensation.side[contour] != Side.OFF).any())
 
     @cached_property
     def has_further_contour(self) -> Mask:
         """G12.1 with an E behind whose contour, offset cancel included, another is cut with compensation."""
         trace, found = self.trace, np.zeros(len(self.trace), bool)
         for row, (contour, _) in self._contours.items():
-            if not len(contour) or trace.side[contour[0]] == Side.OFF:
+            if not len(contour) or trace.compensation.side[contour[0]] == Side.OFF:
                 continue
-            side = trace.side[contour[-1] : trace.sections.leave[trace.section[row]]]
+            side = trace.compensation.side[contour[-1] : trace.mode.sections.leave[trace.mode.section[row]]]
             found[row] = bool((side[int(np.argmax(side == Side.OFF)) :] != Side.OFF).any() and (side == Side.OFF).any())
         return found
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from polarcheck.arrays import Floats, Points, Rows
-from polarcheck.table.trace import Trace
+from polarcheck.columns.trace import Trace
 
 #: Nobody means a coarser digit than this many least increments: X20. is 20, and no number between 19.5 and 20.5.
 _COARSEST = 10
@@ -18,17 +18,19 @@ def half_of_last_digit(trace: Trace) -> Points:
     It is that of the number with the most decimals in the section, since posts leave out zeros at the end. Numbers
     without any are taken as exact to the least increment.
     """
-    x = _last_digit(trace, trace.word_indices("X", "U")) * trace.x_factor
-    virtual = _last_digit(trace, trace.virtual_words)
-    return np.asarray(np.where(trace.section >= 0, (x + 1j * virtual) * trace.scale / 2, complex("nan+nanj")))
+    x = _last_digit(trace, trace.blocks.word_indices("X", "U")) * trace.lengths.x_factor
+    virtual = _last_digit(trace, trace.axes.virtual_words)
+    return np.asarray(
+        np.where(trace.mode.section >= 0, (x + 1j * virtual) * trace.lengths.scale / 2, complex("nan+nanj"))
+    )
 
 
 def _last_digit(trace: Trace, words: Rows) -> Floats:
     """Of these words the finest digit in each section, per row."""
-    section = trace.section[trace.run.row[words]]
+    section = trace.mode.section[trace.run.row[words]]
     own = trace.run.words.decimals[words]
-    decimals = np.zeros(len(trace.sections) + 1, own.dtype)
+    decimals = np.zeros(len(trace.mode.sections) + 1, own.dtype)
     np.maximum.at(decimals, section, np.where(section >= 0, own, 0))
-    finest, least = 10.0**-decimals, trace.least_increment
-    is_written = (decimals > 0)[trace.section]
-    return np.where(is_written, np.minimum(finest[trace.section], _COARSEST * least), least)
+    finest, least = 10.0**-decimals, trace.lengths.least_increment
+    is_written = (decimals > 0)[trace.mode.section]
+    return np.where(is_written, np.minimum(finest[trace.mode.section], _COARSEST * least), least)

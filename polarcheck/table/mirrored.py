@@ -7,11 +7,11 @@ from functools import cached_property
 import numpy as np
 
 from polarcheck.arrays import Mask, Rows
+from polarcheck.columns.trace import Trace
 from polarcheck.table.overcuts import Overcuts
 from polarcheck.table.ramps import Ramps
 from polarcheck.table.since import Since
-from polarcheck.table.tool_center import ToolCenter
-from polarcheck.table.trace import Trace
+from polarcheck.table.tool_center import OtherRadius, ToolCenter
 from polarcheck.table.trial import Trial
 from polarcheck.time_limit import keep_time
 
@@ -72,14 +72,14 @@ class Mirrored:
             if not asked.any():
                 break
             asked &= is_so(asked)
-        return np.asarray(asked & trace.writes_side)
+        return np.asarray(asked & trace.compensation.writes_side)
 
     def _comes_out_at_both_ends(self, rows: Mask) -> Mask:
         """All rows of the loops whose start-up and offset cancel run through the part."""
         ramp = self._trial(rows, 1).comes_out_of_part
-        return self._any(ramp & self.trace.starts_up) & self._any(ramp & self.trace.cancels)
+        return self._any(ramp & self.trace.compensation.starts_up) & self._any(ramp & self.trace.compensation.cancels)
 
     def _trial(self, rows: Mask, share: float) -> Trial:
         """These rows with a share of their R; below 0 it is the other side."""
         keep_time()
-        return Trial(self.trace, rows.copy(), self._loop, share * self.trace.radius)
+        return Trial(self.trace, OtherRadius(rows.copy(), self._loop, share * self.trace.compensation.radius))

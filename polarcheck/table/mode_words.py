@@ -7,11 +7,11 @@ from functools import cached_property
 import numpy as np
 
 from polarcheck.arrays import Mask
+from polarcheck.columns.filling import before
+from polarcheck.columns.trace import Trace
 from polarcheck.machines.code_lists import is_code, numbers
 from polarcheck.machines.codes import NO_CODE, code_set
 from polarcheck.reading.words import NumberFault
-from polarcheck.table.filling import before
-from polarcheck.table.trace import Trace
 
 
 class ModeWords:
@@ -22,15 +22,15 @@ class ModeWords:
 
     def rows(self, words: Mask) -> Mask:
         """Per row: whether it has one of these words."""
-        return self.trace.with_words(words)
+        return self.trace.blocks.with_words(words)
 
     def in_rows(self, rows: Mask) -> Mask:
         """Stands in one of these rows."""
-        return rows[self.trace.run.row] if rows.any() else self.trace.no_words
+        return rows[self.trace.run.row] if rows.any() else self.trace.blocks.no_words
 
     def codes(self, *names: str) -> Mask:
         """One of these G or M codes; `G54-G59` is a range."""
-        return self.trace.words_at(self.trace.code_indices(*names))
+        return self.trace.blocks.words_at(self.trace.blocks.code_indices(*names))
 
     def listed(self, *keys: str) -> Mask:
         """A G code of any of these lists of the machine, as in `plane_xy`."""
@@ -42,7 +42,7 @@ class ModeWords:
         row = trace.run.row
         found, told = np.zeros(len(row), bool), np.zeros(len(trace), bool)
         for name in names:
-            is_named = self.codes(name) if len(name) > 1 else trace.words_at(trace.word_indices(name))
+            is_named = self.codes(name) if len(name) > 1 else trace.blocks.words_at(trace.blocks.word_indices(name))
             at = np.flatnonzero(is_named)
             at = at[~told[row[at]]]
             found[at] = True
@@ -57,14 +57,14 @@ class ModeWords:
         trace = self.trace
         allowed = code_set(trace.machine.polar.allowed_codes)
         found = np.zeros(len(trace.run.words), bool)
-        found[trace.g_words] = ~allowed[trace.g_codes] & (trace.g_codes != NO_CODE)
-        return found & self.in_rows(trace.in_polar)
+        found[trace.blocks.g_words] = ~allowed[trace.blocks.g_codes] & (trace.blocks.g_codes != NO_CODE)
+        return found & self.in_rows(trace.mode.in_polar)
 
     @cached_property
     def ends_drilling(self) -> Mask:
         """G80 of a drilling cycle that is in force: it was that which cannot stand in the mode."""
         trace = self.trace
-        drills = before(trace.drilling, trace.starts, 0) != 0
+        drills = before(trace.modal.drilling, trace.blocks.starts, 0) != 0
         return self.listed("drilling_cycle_off") & self.in_rows(drills)
 
     @cached_property
@@ -73,7 +73,7 @@ class ModeWords:
         trace = self.trace
         if not trace.machine.control.unknown_codes_are_errors:
             return np.zeros(len(trace.run.words), bool)
-        return trace.words_at(trace.g_words) & ~self.codes(*trace.machine.control.known_codes)
+        return trace.blocks.words_at(trace.blocks.g_words) & ~self.codes(*trace.machine.control.known_codes)
 
     @cached_property
     def selects_plane(self) -> Mask:
@@ -97,15 +97,15 @@ class ModeWords:
         by G10. G50 with S in the block of another of them is no mistake of its own, and counts with it.
         """
         trace = self.trace
-        kind = trace.word("L")
+        kind = trace.blocks.word("L")
         # Without L a lathe takes P0 as the work shift, other numbers as tool offsets.
         is_work_offset = np.isin(kind, trace.machine.g_codes.data_input_work_offset) | (
-            np.isnan(kind) & (trace.word("P") == 0)
+            np.isnan(kind) & (trace.blocks.word("P") == 0)
         )
         sets = self.sets_coordinates
         shifts = self.listed("local_shift", "machine_coordinates", "work_offset", "work_offset_extended")
         shifts = shifts | self.listed("coordinate_preset")
-        shifts |= sets & self.in_rows(trace.has(*trace.machine.axis_words, *trace.machine.control.named_axes))
+        shifts |= sets & self.in_rows(trace.blocks.has(*trace.machine.axis_words, *trace.machine.control.named_axes))
         shifts |= self.listed("data_input") & self.in_rows(is_work_offset)
         shifts &= self.not_allowed
         return shifts | (sets & self.not_allowed & self.in_rows(self.rows(shifts)))
@@ -115,14 +115,14 @@ class ModeWords:
         """Per row: selects another work offset than the one in force, in the mode, where the profile allows that."""
         trace = self.trace
         first = next(iter(numbers(trace.machine.codes("work_offset"))), 0) // 10
-        offset = np.where(trace.state("work_offset") == 0, first, trace.state("work_offset"))
-        others = trace.in_polar & (offset != before(offset, trace.starts, first))
+        offset = np.where(trace.modal.state("work_offset") == 0, first, trace.modal.state("work_offset"))
+        others = trace.mode.in_polar & (offset != before(offset, trace.blocks.starts, first))
         return np.asarray(others & self.rows(self.listed("work_offset") & ~self.not_allowed))
 
     @cached_property
     def changes_tool_offset(self) -> Mask:
         """G10 that changes a tool offset."""
-        kind, number = self.trace.word("L"), self.trace.word("P")
+        kind, number = self.trace.blocks.word("L"), self.trace.blocks.word("P")
         is_tool_offset = np.isin(kind, self.trace.machine.g_codes.data_input_tool_offset) | (
             np.isnan(kind) & (number > 0)
         )
@@ -134,7 +134,7 @@ class ModeWords:
     def switches(self) -> Mask:
         """Per row: a G12.1, or the G13.1 of a section; one outside the mode, as at the head of a program, is none."""
         trace = self.trace
-        return trace.enters | trace.enters_again | (trace.leaves & trace.switches_off)
+        return trace.mode.enters | trace.mode.enters_again | (trace.mode.leaves & trace.axes.switches_off)
 
     @cached_property
     def may_stand_beside_switch(self) -> Mask:
@@ -150,8 +150,8 @@ class ModeWords:
         of_begin[[self.trace.machine.address_number(name) for name in addresses]] = True
         of_code = self.codes(*polar.on, *polar.off, *codes)
         # X stands for the linear axis, whichever that is.
-        of_linear = (words.address == self.trace.linear_axis[self.trace.run.row]) & of_begin[ord("X")]
-        begins = (of_begin[words.address] | of_linear) & ~self.in_rows(self.trace.leaves)
+        of_linear = (words.address == self.trace.axes.linear_axis[self.trace.run.row]) & of_begin[ord("X")]
+        begins = (of_begin[words.address] | of_linear) & ~self.in_rows(self.trace.mode.leaves)
         return np.asarray(of_address[words.address] | begins | of_code | (words.fault != NumberFault.NONE))
 
     # ---- the virtual axis ----
@@ -160,4 +160,4 @@ class ModeWords:
     def of_other_axis(self) -> Mask:
         """A coordinate under the address that other controls give the virtual axis."""
         trace = self.trace
-        return trace.foreign_virtual_words & ~trace.linear_words & self.in_rows(trace.uses_axes)
+        return trace.axes.foreign_virtual_words & ~trace.axes.linear_words & self.in_rows(trace.modal.uses_axes)

@@ -7,10 +7,10 @@ from functools import cached_property
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Points, Rows, States, Table
+from polarcheck.columns.filling import before
+from polarcheck.columns.trace import Trace
 from polarcheck.geometry import compensation, polar, rates
 from polarcheck.machines.modal import Motion
-from polarcheck.table.filling import before
-from polarcheck.table.trace import Trace
 
 
 class Moves(Table, frozen=True, dict=True):
@@ -108,7 +108,7 @@ def z_along(trace: Trace, moves: Moves) -> tuple[Floats, Floats]:
     done = way - np.repeat((way - np.nan_to_num(moves.length))[first], count)
     whole = np.repeat(done[ends], count)
     share = np.divide(done, whole, out=np.zeros(len(moves)), where=whole > 0)
-    z_from, z_to = before(trace.z, trace.starts, np.nan)[moves.row], trace.z[moves.row]
+    z_from, z_to = before(trace.path.z, trace.blocks.starts, np.nan)[moves.row], trace.path.z[moves.row]
     after = np.where(ends, z_to, z_from + share * (z_to - z_from))
     return np.where(begins, z_from, np.append(np.nan, after[:-1])[: len(moves)]), after
 
@@ -138,44 +138,44 @@ def any_in_row(hit: Mask, moves: Moves, count: int) -> Mask:
 
 def programmed_moves(trace: Trace) -> Moves:
     """The programmed path: one move per row that moves on the polar plane."""
-    row = np.flatnonzero(trace.on_plane)
-    kind, start, end, center = _kind(trace, row), trace.start[row], trace.end[row], trace.center[row]
+    row = np.flatnonzero(trace.path.on_plane)
+    kind, start, end, center = _kind(trace, row), trace.path.start[row], trace.path.end[row], trace.path.center[row]
     return Moves(
         row=row,
-        section=trace.section[row],
+        section=trace.mode.section[row],
         kind=kind,
         start=start,
         end=end,
         center=center,
-        feed=trace.feed[row],
+        feed=trace.feedrate.feed[row],
         known=~np.isnan(end - start),
         phase=np.zeros(len(row), np.int16),
         corner=np.zeros(len(row), bool),
         allowance=np.zeros(len(row)),
-        entry=trace.section_entry,
+        entry=trace.path.section_entry,
     )
 
 
 def _kind(trace: Trace, row: Rows) -> States:
     """Motion of each move; an arc whose center is not known is followed along its chord."""
-    kind = trace.motion[row]
-    return np.where(trace.is_arc[row] & np.isnan(trace.center[row]), Motion.LINE, kind).astype(np.int16)
+    kind = trace.axes.motion[row]
+    return np.where(trace.path.is_arc[row] & np.isnan(trace.path.center[row]), Motion.LINE, kind).astype(np.int16)
 
 
 def compensation_path(trace: Trace, row: Rows) -> compensation.Path:
     """Some rows as cutter compensation takes them."""
     return compensation.Path(
-        section=trace.section[row],
+        section=trace.mode.section[row],
         motion=_kind(trace, row),
-        moves=trace.moves_plane[row],
-        start=trace.start[row],
-        end=trace.end[row],
-        center=trace.center[row],
-        side=trace.side[row],
-        side_written=trace.writes_side[row],
-        radius=trace.radius[row],
+        moves=trace.axes.moves_plane[row],
+        start=trace.path.start[row],
+        end=trace.path.end[row],
+        center=trace.path.center[row],
+        side=trace.compensation.side[row],
+        side_written=trace.compensation.writes_side[row],
+        radius=trace.compensation.radius[row],
         cancel_vector=_cancel_vector(trace, row),
-        stops_reading=trace.codes(*trace.machine.m_codes.stops_reading_ahead)[row],
+        stops_reading=trace.blocks.codes(*trace.machine.m_codes.stops_reading_ahead)[row],
     )
 
 
@@ -199,25 +199,25 @@ def of_tool(trace: Trace, tool: compensation.ToolPath, row: Rows) -> Moves:
     at = row[tool.row]
     return Moves(
         row=at,
-        section=trace.section[at],
+        section=trace.mode.section[at],
         kind=tool.kind,
         start=tool.start,
         end=tool.end,
         center=tool.center,
-        feed=trace.feed[at],
+        feed=trace.feedrate.feed[at],
         known=tool.known,
         phase=tool.phase,
         corner=tool.corner,
         allowance=np.zeros(len(at)),
-        entry=trace.section_entry,
+        entry=trace.path.section_entry,
     )
 
 
 def _cancel_vector(trace: Trace, row: Rows) -> Points:
     """I and J beside G40 say where the tool leaves (B-63324EN/03 p. 402)."""
     vector = np.full(len(row), complex("nan+nanj"))
-    cancels = np.flatnonzero(trace.writes_cancel[row])
-    i, j = (words[row[cancels]] for words in trace.to_center)
+    cancels = np.flatnonzero(trace.compensation.writes_cancel[row])
+    i, j = (words[row[cancels]] for words in trace.path.to_center)
     written = ~np.isnan(i) | ~np.isnan(j)
     vector[cancels[written]] = (np.nan_to_num(i) + 1j * np.nan_to_num(j))[written]
     return vector

@@ -9,12 +9,12 @@ from functools import cached_property
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Rows, repeated
+from polarcheck.columns.filling import fill_down, positions
+from polarcheck.columns.offset_settings import Settings, X, in_order, of_list
+from polarcheck.columns.trace import Trace
 from polarcheck.machines.code_lists import numbers
 from polarcheck.machines.offsets import steps_above
 from polarcheck.machines.own_language import shown
-from polarcheck.table.filling import fill_down, positions
-from polarcheck.table.offset_settings import Settings, X, in_order, of_list
-from polarcheck.table.trace import Trace
 
 #: Numbers of further work offsets begin here: G54.1 P1 is 1001.
 _EXTENDED = 1000
@@ -38,10 +38,10 @@ class Origin:
     def _number(self) -> Floats:
         """The work offset in force: 54 for G54, 1001 for G54.1 P1."""
         trace = self.trace
-        state = np.where(trace.state("work_offset") == 0, self._plain[0], trace.state("work_offset"))
-        extended = trace.listed("work_offset_extended") | self._is_extended_by_p
-        is_extended = fill_down(extended, trace.sets("work_offset") | trace.starts, False).astype(bool)
-        number = fill_down(np.nan_to_num(trace.word("P")), extended, 0.0)
+        state = np.where(trace.modal.state("work_offset") == 0, self._plain[0], trace.modal.state("work_offset"))
+        extended = trace.blocks.listed("work_offset_extended") | self._is_extended_by_p
+        is_extended = fill_down(extended, trace.modal.sets("work_offset") | trace.blocks.starts, False).astype(bool)
+        number = fill_down(np.nan_to_num(trace.blocks.word("P")), extended, 0.0)
         return np.where(is_extended, _EXTENDED + number, state).astype(np.float64)
 
     @property
@@ -50,8 +50,10 @@ class Origin:
         trace, machine = self.trace, self.trace.machine
         if not machine.codes("work_offset_extended"):
             return np.zeros(len(trace), bool)
-        first = trace.codes(*machine.codes("work_offset")[:1]) & (trace.word("P") >= 1)
-        return first & ~trace.codes(*sorted(machine.macro.call_codes)) & ~trace.listed("data_input", "dwell")
+        first = trace.blocks.codes(*machine.codes("work_offset")[:1]) & (trace.blocks.word("P") >= 1)
+        return (
+            first & ~trace.blocks.codes(*sorted(machine.macro.call_codes)) & ~trace.blocks.listed("data_input", "dwell")
+        )
 
     @cached_property
     def _plain(self) -> list[int]:
@@ -79,8 +81,8 @@ class Origin:
     def _set_by_data_input(self) -> Settings:
         trace = self.trace
         kinds = trace.machine.g_codes.data_input_work_offset
-        rows = np.flatnonzero(trace.listed("data_input") & trace.has("X", "U") & (trace.section < 0))
-        kind, p = trace.word("L")[rows], np.minimum(np.nan_to_num(trace.word("P")[rows]), _LONGEST)
+        rows = np.flatnonzero(trace.blocks.listed("data_input") & trace.blocks.has("X", "U") & (trace.mode.section < 0))
+        kind, p = trace.blocks.word("L")[rows], np.minimum(np.nan_to_num(trace.blocks.word("P")[rows]), _LONGEST)
         # Without L a lathe takes P0 as the work shift; other numbers are tool offsets.
         is_shift = np.isnan(kind) & (p == 0)
         is_external = np.isin(kind, kinds[:1]) & (p == 0)
@@ -88,9 +90,11 @@ class Origin:
         is_extended = np.isin(kind, kinds[1:]) & (p >= 1)
         plain = np.array(self._plain)[np.where(is_plain, p - 1, 0).astype(np.int64)]
         number = np.select((is_shift, is_external, is_plain), (_SHIFT, _EXTERNAL, plain), _EXTENDED + p)
-        has_x = trace.has("X")[rows]
-        value = np.where(has_x, trace.length_of("X")[rows], trace.length_of("U")[rows])
-        found = Settings(rows, number.astype(np.int64), np.full(len(rows), X), value, trace.incremental[rows] | ~has_x)
+        has_x = trace.blocks.has("X")[rows]
+        value = np.where(has_x, trace.lengths.length_of("X")[rows], trace.lengths.length_of("U")[rows])
+        found = Settings(
+            rows, number.astype(np.int64), np.full(len(rows), X), value, trace.modal.incremental[rows] | ~has_x
+        )
         return found.of(is_shift | is_external | is_plain | is_extended)
 
     def _set_by_variables(self) -> Settings:
@@ -107,8 +111,8 @@ class Origin:
                 number = self._plain[plain - 1] if plain else _EXTERNAL
             elif 0 <= extended < _MOST_EXTENDED:
                 number = _EXTENDED + extended + 1
-            if number is not None and trace.section[row] < 0:
-                found.append((row, number, X, assigned.value * float(trace.scale[row]), assigned.is_step))
+            if number is not None and trace.mode.section[row] < 0:
+                found.append((row, number, X, assigned.value * float(trace.lengths.scale[row]), assigned.is_step))
         return of_list(found)
 
     def _x_of(self, number: float) -> tuple[Floats, Rows]:
@@ -122,8 +126,8 @@ class Origin:
         absolute[row[sets]] = np.where(is_way, 0.0, value)[sets]
         steps[row[~sets]] = value[~sets]
         steps[row[sets & np.isnan(value)]] = np.nan
-        forgets = trace.starts | trace.run.unknown
-        given = self._of_job.get(number, ("", 0.0))[1] * np.broadcast_to(trace.job_scale, len(trace))
+        forgets = trace.blocks.starts | trace.run.unknown
+        given = self._of_job.get(number, ("", 0.0))[1] * np.broadcast_to(trace.lengths.job_scale, len(trace))
         written, setter = forgets.copy(), np.full(len(trace), -1)
         written[row], setter[row] = True, row
         x = positions(absolute, steps, forgets, given)
@@ -138,7 +142,7 @@ class Origin:
         Only of those that are in force at a G12.1: a program may set many more.
         """
         trace = self.trace
-        asked = set(self._number[trace.sections.enter].tolist()) - {_EXTERNAL, _SHIFT}
+        asked = set(self._number[trace.mode.sections.enter].tolist()) - {_EXTERNAL, _SHIFT}
         x, setter = np.zeros(len(trace)), np.full(len(trace), -1)
         for number in sorted({*self._of_job, *self._settings.number.tolist()} & asked):
             in_force = self._number == number
@@ -192,25 +196,30 @@ class Origin:
         What is set where it is not known where X stands tells nothing. After a tool change the new tool is meant.
         """
         trace = self.trace
-        sets = trace.sets_coordinates & trace.has("X", "U") & (trace.section < 0)
+        sets = trace.modal.sets_coordinates & trace.blocks.has("X", "U") & (trace.mode.section < 0)
         if not sets.any():
             return repeated(np.float64(0), len(trace))
-        is_step = trace.incremental | ~trace.has("X")
-        step = -np.where(trace.has("X"), trace.length_of("X"), trace.length_of("U"))
-        moved = np.where(is_step, step, trace.x_before / trace.x_factor + step)
+        is_step = trace.modal.incremental | ~trace.blocks.has("X")
+        step = -np.where(trace.blocks.has("X"), trace.lengths.length_of("X"), trace.lengths.length_of("U"))
+        moved = np.where(is_step, step, trace.path.x_before / trace.lengths.x_factor + step)
         # How far X0 moves is not known where the word is not; elsewhere it is where X stands that is not known.
-        by_unknown = sets & np.isnan(step) & (is_step | ~np.isnan(trace.x_before))
-        forgets = trace.changes_tool | trace.run.unknown | trace.presets_x | (sets & np.isnan(moved) & ~by_unknown)
+        by_unknown = sets & np.isnan(step) & (is_step | ~np.isnan(trace.path.x_before))
+        forgets = (
+            trace.tools.changes_tool
+            | trace.run.unknown
+            | trace.modal.presets_x
+            | (sets & np.isnan(moved) & ~by_unknown)
+        )
         steps = np.where(sets & ~forgets, moved, 0.0)
-        return positions(np.full(len(trace), np.nan), steps, forgets | trace.starts, np.zeros(len(trace)))
+        return positions(np.full(len(trace), np.nan), steps, forgets | trace.blocks.starts, np.zeros(len(trace)))
 
     @cached_property
     def frame(self) -> Floats:
         """X of the frame in force; 0 in the mode, where frames are meant, and where nobody knows it."""
         trace = self.trace
-        if trace.frames is None:
+        if trace.path.frames is None:
             return repeated(np.float64(0), len(trace))
-        return np.where(trace.in_polar, 0.0, np.nan_to_num(trace.frames.shift.real / trace.x_factor))
+        return np.where(trace.mode.in_polar, 0.0, np.nan_to_num(trace.path.frames.shift.real / trace.lengths.x_factor))
 
     # ---- all of them ----
 
@@ -218,13 +227,13 @@ class Origin:
     def shift(self) -> Floats:
         """How far X0 is known to lie off the spindle axis; NaN where the program sets what is not known."""
         trace = self.trace
-        shifts = trace.listed("data_input", "local_shift", "coordinate_setting")
+        shifts = trace.blocks.listed("data_input", "local_shift", "coordinate_setting")
         # G50 S2000 is a speed.
         is_shifted = (
-            trace.frames
+            trace.path.frames
             or trace.job.work_offsets
             or trace.run.assigned
-            or (shifts.any() and (shifts & trace.has("X", "U")).any())
+            or (shifts.any() and (shifts & trace.blocks.has("X", "U")).any())
         )
         return (
             sum((part for part, _ in self._parts), np.zeros(len(trace)))
@@ -238,7 +247,7 @@ class Origin:
         offsets = (self.work_offset, self.external, self.work_shift)
         return (
             *((x, functools.partial(self._of_offset, setter)) for x, setter in offsets),
-            (self.trace.local_shift, lambda row: self._code("local_shift")),
+            (self.trace.path.local_shift, lambda row: self._code("local_shift")),
             (self.coordinate_setting, lambda row: self._code("coordinate_setting")),
             (self.frame, lambda row: shown(self.trace.machine.control.native_words, self._code("frame_shift"))),
         )

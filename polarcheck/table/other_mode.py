@@ -10,6 +10,8 @@ from typing import NamedTuple
 import numpy as np
 
 from polarcheck.arrays import Mask, Rows, is_among
+from polarcheck.columns.filling import happened
+from polarcheck.columns.trace import Trace
 from polarcheck.machines import profiles
 from polarcheck.machines.axes import AXES
 from polarcheck.machines.code_lists import is_code
@@ -18,8 +20,6 @@ from polarcheck.machines.modal import Motion
 from polarcheck.machines.profiles import Profile
 from polarcheck.reading.translation import spans
 from polarcheck.reading.words import NumberFault, Words
-from polarcheck.table.filling import happened
-from polarcheck.table.trace import Trace
 
 
 class Switch(NamedTuple):
@@ -46,9 +46,9 @@ class OtherMode:
         trace, words = self.trace, self.trace.run.words
         found = []
         for name in self._in_text:
-            rows = np.flatnonzero(trace.with_words(self._of_name(name, words)) & ~trace.in_polar)
+            rows = np.flatnonzero(trace.blocks.with_words(self._of_name(name, words)) & ~trace.mode.in_polar)
             if name in trace.machine.polar.on_of_other_meaning:
-                rows = rows[~trace.has(*AXES)[rows]]
+                rows = rows[~trace.blocks.has(*AXES)[rows]]
             if name in trace.machine.polar.on_of_macros:
                 rows = rows[self._is_certain(Switch(name, rows, known_by(name)))[rows]]
             if len(rows):
@@ -93,7 +93,9 @@ class OtherMode:
     @cached_property
     def begins(self) -> Mask:
         """The row begins the mode of another control."""
-        return self.trace.mask_of(np.concatenate([np.zeros(0, np.int64), *(switch.rows for switch in self.switches)]))
+        return self.trace.blocks.mask_of(
+            np.concatenate([np.zeros(0, np.int64), *(switch.rows for switch in self.switches)])
+        )
 
     def switch(self, row: int) -> Switch:
         """The code or word in a row that begins the mode elsewhere. Raises IndexError for a row without one."""
@@ -116,13 +118,13 @@ class OtherMode:
         """The row begins it, and nothing in its program tells whether it is no macro of the builder."""
         if not self.switches:
             return self.begins
-        return self.begins & ~self.trace.anywhere_in_program(self.is_meant)
+        return self.begins & ~self.trace.blocks.anywhere_in_program(self.is_meant)
 
     def _is_certain(self, switch: Switch) -> Mask:
         """Per row: the code stands alone, and behind it a move in the mode and the code that ends it."""
         _, cuts, ends = self._marks(switch)
-        alone = self.trace.consists_of("G", "O") & ~self.trace.has("X", "C")
-        stretch = np.cumsum(self.trace.mask_of(switch.rows) | self.trace.starts)
+        alone = self.trace.blocks.consists_of("G", "O") & ~self.trace.blocks.has("X", "C")
+        stretch = np.cumsum(self.trace.blocks.mask_of(switch.rows) | self.trace.blocks.starts)
         found = np.zeros((2, len(self.trace) + 1), bool)
         found[0, stretch[cuts]] = True
         found[1, stretch[ends]] = True
@@ -131,19 +133,19 @@ class OtherMode:
     def _is_followed(self, switch: Switch) -> Mask:
         """Rows from a beginning on to the next one, or to the next program, in which something belongs to the mode."""
         begins, cuts, ends = self._marks(switch)
-        stretch = np.cumsum(begins | self.trace.starts)
+        stretch = np.cumsum(begins | self.trace.blocks.starts)
         found = np.zeros(len(self.trace) + 1, bool)
         found[stretch[ends | cuts]] = True
         return found[stretch]
 
     def _marks(self, switch: Switch) -> tuple[Mask, Mask, Mask]:
         """Rows with the switch, with moves of the virtual axis at feed in its mode, and with what ends it."""
-        begins = self.trace.mask_of(switch.rows)
+        begins = self.trace.blocks.mask_of(switch.rows)
         ends = self._ends(switch)
         axes = {axis for profile in switch.known_by for axis in profile.machine.polar.virtual_axes}
-        at_feed = is_among(self.trace.motion, (Motion.LINE, Motion.CW, Motion.CCW))
+        at_feed = is_among(self.trace.axes.motion, (Motion.LINE, Motion.CW, Motion.CCW))
         at_feed |= self._has(code for profile in switch.known_by for code in profile.machine.control.motion_codes)
-        return begins, at_feed & self.trace.has(*axes) & self._within(begins, ends), ends
+        return begins, at_feed & self.trace.blocks.has(*axes) & self._within(begins, ends), ends
 
     def _ends(self, switch: Switch) -> Mask:
         """Rows with what ends the mode on any of the machines that know the switch."""
@@ -152,7 +154,7 @@ class OtherMode:
     def _within(self, begins: Mask, ends: Mask) -> Mask:
         """Rows in the mode of the other control: until its end, the next tool, or a section of this control."""
         trace = self.trace
-        ends = ends | trace.changes_tool | trace.ends_program | trace.enters | trace.starts
+        ends = ends | trace.tools.changes_tool | trace.blocks.ends_program | trace.mode.enters | trace.blocks.starts
         return happened(begins, ends)
 
     def machines(self, row: int) -> tuple[Profile, ...]:
@@ -161,14 +163,14 @@ class OtherMode:
         axes of the moves behind it. One speaks for all that read it alike.
         """
         switch = self.switch(row)
-        within = self._within(self.trace.mask_of(np.array([row])), self._ends(switch))
+        within = self._within(self.trace.blocks.mask_of(np.array([row])), self._ends(switch))
         beside = {chr(self.trace.run.words.address[at]) for at in np.flatnonzero(self.trace.run.row == row)}
 
         def reads(profile: Profile) -> bool:
             return not is_code(switch.name) or beside <= {*"GNO/", *profile.machine.polar.words_beside_switch}
 
         def moves(profile: Profile) -> bool:
-            return bool(np.any(within & self.trace.has(*profile.machine.polar.virtual_axes)))
+            return bool(np.any(within & self.trace.blocks.has(*profile.machine.polar.virtual_axes)))
 
         found = switch.known_by
         for fits in (reads, moves):
@@ -219,7 +221,7 @@ class OtherMode:
         """Rows with one of these codes or words."""
         found = np.zeros(len(self.trace), bool)
         for name in dict.fromkeys(names):
-            found |= self.trace.with_words(self._of_name(name, self.trace.run.words))
+            found |= self.trace.blocks.with_words(self._of_name(name, self.trace.run.words))
         return found
 
     def _of_name(self, name: str, words: Words) -> Mask:

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Points, Rows, different, repeated
+from polarcheck.columns.filling import before
+from polarcheck.columns.trace import Trace
 from polarcheck.geometry.compensation import Phase
 from polarcheck.geometry.tolerances import ADJUSTMENT, ROUNDING
 from polarcheck.machines.modal import Side
-from polarcheck.table.filling import before
 from polarcheck.table.moves import Moves, programmed_moves
 from polarcheck.table.tool_center import ToolCenter
-from polarcheck.table.trace import Trace
 
 if TYPE_CHECKING:
     from polarcheck.geometry.segments import Curves
@@ -27,18 +27,18 @@ def loop_of_row(trace: Trace) -> Rows:
     A loop reaches from a start-up to its offset cancel, and a Z move in it begins another one: the same contour at
     another depth is another loop.
     """
-    begins = trace.starts_up | (trace.moves_z & ~trace.travels)
-    return np.where(trace.compensates, np.cumsum(begins), -1)
+    begins = trace.compensation.starts_up | (trace.axes.moves_z & ~trace.path.travels)
+    return np.where(trace.compensation.compensates, np.cumsum(begins), -1)
 
 
 def level_of(trace: Trace, walls: Curves) -> Rows:
     """For each of these walls the number of the section and the Z that its loop begins at."""
     first = np.flatnonzero(np.diff(walls.loop, prepend=-1))
     row = walls.row[first]
-    z = np.round(trace.z[row] / ROUNDING)
+    z = np.round(trace.path.z[row] / ROUNDING)
     # Where Z is not known, what lies between two Z moves is at one level.
-    moved = np.where(np.isnan(z), np.cumsum(trace.moves_z & ~trace.travels)[row], 0)
-    keys = np.stack([trace.section[row], np.nan_to_num(z), moved], axis=1)
+    moved = np.where(np.isnan(z), np.cumsum(trace.axes.moves_z & ~trace.path.travels)[row], 0)
+    keys = np.stack([trace.mode.section[row], np.nan_to_num(z), moved], axis=1)
     _, number = np.unique(keys, axis=0, return_inverse=True)
     return np.asarray(number[np.cumsum(np.diff(walls.loop, prepend=-1) != 0) - 1])
 
@@ -72,7 +72,7 @@ class Overcuts:
     @property
     def radius(self) -> Floats:
         """R with its sign [mm], NaN where it is not known."""
-        return self.trace.radius
+        return self.tool_center.radius
 
     @cached_property
     def has_walls(self) -> Mask:
@@ -83,18 +83,22 @@ class Overcuts:
         for an adjustment, and so is a positive one beside a comment that tells a larger cutter.
         """
         trace = self.trace
-        radius = trace.radius
+        radius = trace.compensation.radius
         small = np.abs(radius) <= ADJUSTMENT + ROUNDING
-        cutter = small & (radius > ROUNDING) & trace.in_polar
+        cutter = small & (radius > ROUNDING) & trace.mode.in_polar
         if cutter.any():
-            larger = [number for number, found in trace.radius_told.items() if found.radius > ADJUSTMENT + ROUNDING]
-            cutter &= ~np.isin(trace.offset_number, larger)
+            larger = [
+                number
+                for number, found in trace.offsets.radii_in_comments.items()
+                if found.radius > ADJUSTMENT + ROUNDING
+            ]
+            cutter &= ~np.isin(trace.tools.offset_number, larger)
         return np.asarray(~np.isnan(radius) & (~small | cutter))
 
     @cached_property
     def compensates(self) -> bool:
         """Whether any section is compensated, and has walls."""
-        return bool(np.any(self.trace.compensates & self.has_walls))
+        return bool(np.any(self.trace.compensation.compensates & self.has_walls))
 
     @cached_property
     def loop(self) -> Rows:
@@ -104,7 +108,7 @@ class Overcuts:
     def _loop_of_ramps(self) -> Rows:
         """As loop_of_row; a ramp belongs to the loop of the wall that it leads to or comes from, whatever Z does."""
         trace, wall = self.trace, np.append(self._wall_beside, 0)
-        loop, ramp = self.loop.copy(), np.flatnonzero(trace.starts_up | trace.cancels)
+        loop, ramp = self.loop.copy(), np.flatnonzero(trace.compensation.starts_up | trace.compensation.cancels)
         loop[ramp] = np.where(wall[ramp] >= 0, self.loop[wall[ramp]], -1)
         return loop
 
@@ -113,10 +117,10 @@ class Overcuts:
         """For each start-up the next wall, for each offset cancel the one before, -1 for none and for other rows."""
         trace = self.trace
         beside = np.full(len(trace), -1)
-        moving = np.flatnonzero(trace.in_polar & trace.travels)
-        is_wall = (trace.compensates & ~trace.starts_up)[moving]
-        beside[moving[:-1]] = np.where(trace.starts_up[moving[:-1]] & is_wall[1:], moving[1:], -1)
-        cancels = trace.cancels[moving[1:]]
+        moving = np.flatnonzero(trace.mode.in_polar & trace.path.travels)
+        is_wall = (trace.compensation.compensates & ~trace.compensation.starts_up)[moving]
+        beside[moving[:-1]] = np.where(trace.compensation.starts_up[moving[:-1]] & is_wall[1:], moving[1:], -1)
+        cancels = trace.compensation.cancels[moving[1:]]
         beside[moving[1:][cancels]] = np.where(is_wall[:-1], moving[:-1], -1)[cancels]
         return beside
 
@@ -155,7 +159,7 @@ class Overcuts:
         """
         walls, beyond = self._all_walls, np.concatenate(self._beyond)
         walls = walls[~np.isin(walls.loop, beyond)] if len(beyond) else walls
-        return walls, (self.trace.side[walls.row] == Side.LEFT) ^ (self.radius[walls.row] < 0)
+        return walls, (self.trace.compensation.side[walls.row] == Side.LEFT) ^ (self.radius[walls.row] < 0)
 
     @cached_property
     def _all_walls(self) -> Curves:
@@ -165,7 +169,7 @@ class Overcuts:
         trace = self.trace
         programmed = programmed_moves(trace)
         rows = programmed.row
-        chosen = (self.loop[rows] >= 0) & ~trace.starts_up[rows] & programmed.known & rows_of_cutters[rows]
+        chosen = (self.loop[rows] >= 0) & ~trace.compensation.starts_up[rows] & programmed.known & rows_of_cutters[rows]
         return curves_of(programmed, self.loop[rows], chosen)
 
     @cached_property
@@ -177,10 +181,10 @@ class Overcuts:
         """
         from polarcheck.geometry import bounds
 
-        walls = self._walls_of(np.isnan(self.radius) & ~self.trace.sides_are_open)
+        walls = self._walls_of(np.isnan(self.radius) & ~self.trace.compensation.sides_are_open)
         far = bounds.far_loops(walls, walls) if len(walls) else np.zeros(0, np.int64)
         walls = walls[~np.isin(walls.loop, far)]
-        return walls, self.trace.side[walls.row] == Side.LEFT
+        return walls, self.trace.compensation.side[walls.row] == Side.LEFT
 
     @cached_property
     def path(self) -> tuple[Curves, Mask]:
@@ -212,7 +216,7 @@ class Overcuts:
 
         path, is_ramp = self.path
         # What is left on the contour, the cutter stays away from it.
-        radius = np.abs((self.radius - self.trace.allowance)[path.row])
+        radius = np.abs((self.radius - self.trace.compensation.allowance)[path.row])
         tolerance = self.trace.machine.compensation.overcut_tolerance
         walls, left = self.walls
         if keeps_away(walls, path, radius, tolerance):
@@ -234,10 +238,10 @@ class Overcuts:
         first = np.flatnonzero(np.diff(walls.loop, prepend=-1))
         last = np.append(first[1:], len(walls)) - 1
         start, end = walls.start[first], walls.end[last]
-        apart = np.abs(end - start) > 2 * np.abs(self.trace.radius[walls.row[first]])
+        apart = np.abs(end - start) > 2 * np.abs(self.trace.compensation.radius[walls.row[first]])
         ends = np.where(apart, np.minimum(np.abs(start), np.abs(end)), np.inf)
-        section = self.trace.section[walls.row]
-        least = np.full(len(self.trace.sections) + 1, np.inf)
+        section = self.trace.mode.section[walls.row]
+        least = np.full(len(self.trace.mode.sections) + 1, np.inf)
         np.fmin.at(least, section[first], ends)
         return least[section]
 
@@ -272,9 +276,9 @@ class Overcuts:
         """
         trace, wall = self.trace, self._wall_beside
         ramp = np.flatnonzero(wall >= 0)
-        own = np.fmax(trace.z[ramp], before(trace.z, trace.starts, np.nan)[ramp])
-        of_wall = trace.z[wall[ramp]]
-        moves_z = np.cumsum(trace.moves_z & ~trace.travels)
+        own = np.fmax(trace.path.z[ramp], before(trace.path.z, trace.blocks.starts, np.nan)[ramp])
+        of_wall = trace.path.z[wall[ramp]]
+        moves_z = np.cumsum(trace.axes.moves_z & ~trace.path.travels)
         deep = np.where(
             np.isnan(own - of_wall),
             moves_z[ramp] == moves_z[wall[ramp]],
@@ -287,7 +291,7 @@ class Overcuts:
     @cached_property
     def bar(self) -> float:
         """Diameter of the stock [mm]; NaN if not known."""
-        diameter = self.trace.stock_diameter[self.trace.compensates]
+        diameter = self.trace.lengths.stock_diameter[self.trace.compensation.compensates]
         return float(diameter[0]) if len(diameter) else np.nan
 
     @cached_property
@@ -312,7 +316,7 @@ class Overcuts:
             return block
 
         block, one, other = self.trace.run.block, self.cuts.row, self.cuts.into
-        moving = np.flatnonzero(self.trace.on_plane)
+        moving = np.flatnonzero(self.trace.path.on_plane)
         involved = np.isin(moving, np.concatenate([one, other])) & (self.loop[moving] >= 0)
         beside = np.flatnonzero(involved[1:] & involved[:-1] & (np.diff(self.loop[moving]) == 0))
         one, other = np.append(one, moving[beside]), np.append(other, moving[beside + 1])
@@ -359,7 +363,7 @@ def objected(trace: Trace, tool_center: ToolCenter) -> Mask:
     """
     rows = tool_center.inside_arc_too_small | tool_center.interferes | tool_center.no_intersection
     rows |= tool_center.movement_missing | tool_center.arc_center_on_path
-    moving = np.flatnonzero(trace.travels)
+    moving = np.flatnonzero(trace.path.travels)
     on = rows[moving]
     near = on.copy()
     near[1:] |= on[:-1]

@@ -7,10 +7,10 @@ from functools import cached_property
 import numpy as np
 
 from polarcheck.arrays import Mask, Rows, is_among, repeated
+from polarcheck.columns.filling import before, fill_down, happened, last_row
+from polarcheck.columns.trace import Trace
 from polarcheck.machines.code_lists import is_code
 from polarcheck.machines.modal import FeedMode, Motion, Side
-from polarcheck.table.filling import before, fill_down, happened, last_row
-from polarcheck.table.trace import Trace
 
 #: So many moves of C at feed, with one of X among them, are a contour; one alone is a groove or a position.
 _MOVES_OF_CONTOUR = 2
@@ -39,28 +39,28 @@ class Procedure:
         G13.1 stands outside sections. Beside G7.1 C is the radius of a cylinder, on which offset mode may move C.
         """
         trace = self.trace
-        if not np.any(trace.switches_off & ~trace.leaves):
+        if not np.any(trace.axes.switches_off & ~trace.mode.leaves):
             return repeated(np.int64(-1), len(trace))
-        since = trace.changes_tool | trace.ends_mode | trace.starts
+        since = trace.tools.changes_tool | trace.axes.ends_mode | trace.blocks.starts
         turns = self._turns & ~happened(self._may_begin, since)
-        turns &= trace.whole_program | trace.has_called_tool
-        compensated = turns & ((trace.side != Side.OFF) | self._is_arc)
+        turns &= trace.blocks.whole_program | trace.tools.has_called_tool
+        compensated = turns & ((trace.compensation.side != Side.OFF) | self._is_arc)
         stops = since | self._may_begin | self._leaves_work
-        first = _first(compensated, since | self._may_begin, trace.starts)
+        first = _first(compensated, since | self._may_begin, trace.blocks.starts)
         # G40 G13.1 is written for safety.
-        return np.where((first < 0) & ~trace.writes_cancel, self._stretch(turns, stops), first)
+        return np.where((first < 0) & ~trace.compensation.writes_cancel, self._stretch(turns, stops), first)
 
     @property
     def _turns(self) -> Mask:
         """Moves of the virtual axis at feed outside sections."""
         trace, mode = self.trace, self.trace.machine.polar
-        turns = trace.has(mode.virtual_axis, mode.virtual_axis_incremental) & (trace.section < 0)
-        return np.asarray(turns & is_among(trace.motion, _AT_FEED))
+        turns = trace.blocks.has(mode.virtual_axis, mode.virtual_axis_incremental) & (trace.mode.section < 0)
+        return np.asarray(turns & is_among(trace.axes.motion, _AT_FEED))
 
     @property
     def _is_arc(self) -> Mask:
         """Arcs, where the virtual axis is the rotary one: a Y axis that moves on arcs is a real one."""
-        return is_among(self.trace.motion, (Motion.CW, Motion.CCW)) & self._is_rotary
+        return is_among(self.trace.axes.motion, (Motion.CW, Motion.CCW)) & self._is_rotary
 
     @property
     def _is_rotary(self) -> bool:
@@ -73,15 +73,21 @@ class Procedure:
         """Rows that begin the mode, that of another control, another plane, a cylinder, or nobody knows what."""
         trace, mode = self.trace, self.trace.machine.polar
         foreign = [name for name in mode.on_of_other_controls if is_code(name) and name not in mode.on_of_macros]
-        begins = trace.switches_on | trace.codes(*foreign, *mode.ended_by, *mode.off_of_other_modes) | trace.run.unknown
-        return np.asarray(begins | trace.listed("cylindrical_interpolation"))
+        begins = (
+            trace.axes.switches_on
+            | trace.blocks.codes(*foreign, *mode.ended_by, *mode.off_of_other_modes)
+            | trace.run.unknown
+        )
+        return np.asarray(begins | trace.blocks.listed("cylindrical_interpolation"))
 
     @property
     def _leaves_work(self) -> Mask:
         """Rapid traverse, reference returns, stops between tools: a G13.1 behind them ends no contour."""
         trace = self.trace
-        away = trace.listed("reference_return", "machine_coordinates")
-        return np.asarray((trace.motion == Motion.RAPID) | away | trace.codes(*trace.machine.m_codes.optional_stop))
+        away = trace.blocks.listed("reference_return", "machine_coordinates")
+        return np.asarray(
+            (trace.axes.motion == Motion.RAPID) | away | trace.blocks.codes(*trace.machine.m_codes.optional_stop)
+        )
 
     def _stretch(self, turns: Mask, stops: Mask) -> Rows:
         """The first row of C at feed of a stretch of moves at feed up to the row, if it is a contour; else -1."""
@@ -89,9 +95,9 @@ class Procedure:
         if not self._is_rotary:
             return repeated(np.int64(-1), len(trace))
         plane = turns & ~self._is_arc
-        along_x = is_among(trace.motion, _AT_FEED) & trace.has("X", "U")
-        turning, moving = (before(_count(mask, stops), trace.starts, 0) for mask in (plane, along_x))
-        first = _first(plane, stops, trace.starts)
+        along_x = is_among(trace.axes.motion, _AT_FEED) & trace.blocks.has("X", "U")
+        turning, moving = (before(_count(mask, stops), trace.blocks.starts, 0) for mask in (plane, along_x))
+        first = _first(plane, stops, trace.blocks.starts)
         is_contour = (turning >= _MOVES_OF_CONTOUR) & (moving > 0) & ~self._is_angle(plane, stops)
         return np.where(is_contour, first, -1)
 
@@ -105,11 +111,11 @@ class Procedure:
         stretch = np.cumsum(stops)
         longest, farthest = np.zeros((2, len(trace) + 1))
         for address in (mode.virtual_axis, mode.virtual_axis_incremental):
-            rows = np.flatnonzero(plane & trace.has(address))
-            np.fmax.at(longest, stretch[rows], np.abs(trace.length_of(address)[rows]))
-        np.fmax.at(farthest, stretch, np.where(trace.x < 0, np.inf, trace.x))
+            rows = np.flatnonzero(plane & trace.blocks.has(address))
+            np.fmax.at(longest, stretch[rows], np.abs(trace.lengths.length_of(address)[rows]))
+        np.fmax.at(farthest, stretch, np.where(trace.path.x < 0, np.inf, trace.path.x))
         is_angle = (farthest > 0) & (longest > _FARTHEST_C * farthest)
-        return before(is_angle[stretch], trace.starts, False)
+        return before(is_angle[stretch], trace.blocks.starts, False)
 
     # ---- the live tool ----
 
@@ -123,21 +129,25 @@ class Procedure:
         without T may have given it.
         """
         trace, codes = self.trace, self.trace.machine.m_codes
-        started = trace.codes(*codes.live_tool_on)
+        started = trace.blocks.codes(*codes.live_tool_on)
         if not started.any():
             return started
-        begins = np.flatnonzero(started | trace.codes(*codes.spindle_on))
+        begins = np.flatnonzero(started | trace.blocks.codes(*codes.spindle_on))
         of_live_tool = np.append(started[begins], False)
         rows = np.arange(len(trace))
         following = of_live_tool[np.searchsorted(begins, rows)]
         running = of_live_tool[np.searchsorted(begins, rows, side="right") - 1]
-        is_speed = ~(trace.word("S") == 0) & (started | (trace.state("speed") == 0))
-        takes = (trace.has("S") & ~trace.sets_coordinates) | trace.run.unknown
+        is_speed = ~(trace.blocks.word("S") == 0) & (started | (trace.modal.state("speed") == 0))
+        takes = (trace.blocks.has("S") & ~trace.modal.sets_coordinates) | trace.run.unknown
         is_own = (is_speed & (following | running)) | trace.run.unknown
-        given = fill_down(takes & is_own, takes | trace.starts, False).astype(bool)
-        ends = is_among(trace.motion, _AT_FEED) | trace.codes(*codes.live_tool_off) | trace.ends_program
+        given = fill_down(takes & is_own, takes | trace.blocks.starts, False).astype(bool)
+        ends = (
+            is_among(trace.axes.motion, _AT_FEED) | trace.blocks.codes(*codes.live_tool_off) | trace.blocks.ends_program
+        )
         until = np.append(np.flatnonzero(ends), len(trace) - 1)[np.searchsorted(np.flatnonzero(ends), rows)]
-        known = (trace.whole_program | trace.has_called_tool) & trace.anywhere_in_program(trace.enters)
+        known = (trace.blocks.whole_program | trace.tools.has_called_tool) & trace.blocks.anywhere_in_program(
+            trace.mode.enters
+        )
         return np.asarray(started & ~given[until] & known)
 
     @cached_property
@@ -149,15 +159,15 @@ class Procedure:
         trace, codes = self.trace, self.trace.machine.m_codes
         if not codes.live_tool_on:
             return repeated(np.int64(-1), len(trace))
-        ends = trace.changes_tool | trace.ends_program
-        starts_tool, stops_tool = trace.codes(*codes.live_tool_on), trace.codes(*codes.live_tool_off)
-        ran = before(trace.live_tool, trace.starts, False)
+        ends = trace.tools.changes_tool | trace.blocks.ends_program
+        starts_tool, stops_tool = trace.blocks.codes(*codes.live_tool_on), trace.blocks.codes(*codes.live_tool_off)
+        ran = before(trace.modal.live_tool, trace.blocks.starts, False)
         begun = starts_tool & ~ran
-        since = begun | stops_tool | trace.run.unknown | trace.changes_tool | trace.starts
-        has_cut = before(happened(trace.cuts & trace.live_tool, since), trace.starts, False)
+        since = begun | stops_tool | trace.run.unknown | trace.tools.changes_tool | trace.blocks.starts
+        has_cut = before(happened(trace.path.cuts & trace.modal.live_tool, since), trace.blocks.starts, False)
         still = ran & ~stops_tool & has_cut
-        row = last_row(begun, trace.starts)
-        return np.where(ends & still, before(row, trace.starts, -1), -1)
+        row = last_row(begun, trace.blocks.starts)
+        return np.where(ends & still, before(row, trace.blocks.starts, -1), -1)
 
     # ---- what a section leaves ----
 
@@ -165,7 +175,7 @@ class Procedure:
     def section_before(self) -> Rows:
         """The row in which the last section above ended, -1 without one; of the same program."""
         trace = self.trace
-        return last_row(trace.leaves, trace.enters | trace.starts)
+        return last_row(trace.mode.leaves, trace.mode.enters | trace.blocks.starts)
 
     @cached_property
     def turns_at_feed_of_mill(self) -> Mask:
@@ -176,24 +186,26 @@ class Procedure:
         spindle runs. F of threads is a lead in either mode.
         """
         trace = self.trace
-        of_mode = last_row(trace.sets("feed_mode"), trace.starts)
-        known = ~happened(trace.run.unknown, trace.leaves | trace.starts)
-        carried = (of_mode >= 0) & (of_mode < self.section_before) & (trace.feed_mode == FeedMode.PER_MINUTE) & known
-        is_own = last_row(trace.has("F"), trace.starts) > self.section_before
-        least = np.where(trace.live_tool, _LEAST_OF_LIVE_TOOL, _LEAST_OF_TURNING)
-        is_small = np.abs(trace.feed_number) < least
-        of_section = ~is_own & ~trace.live_tool & trace.spindle
+        of_mode = last_row(trace.modal.sets("feed_mode"), trace.blocks.starts)
+        known = ~happened(trace.run.unknown, trace.mode.leaves | trace.blocks.starts)
+        carried = (
+            (of_mode >= 0) & (of_mode < self.section_before) & (trace.feedrate.feed_mode == FeedMode.PER_MINUTE) & known
+        )
+        is_own = last_row(trace.blocks.has("F"), trace.blocks.starts) > self.section_before
+        least = np.where(trace.modal.live_tool, _LEAST_OF_LIVE_TOOL, _LEAST_OF_TURNING)
+        is_small = np.abs(trace.feedrate.feed_number) < least
+        of_section = ~is_own & ~trace.modal.live_tool & trace.modal.spindle
         return np.asarray(carried & self._turning & ((is_own & is_small) | of_section))
 
     @property
     def _turning(self) -> Mask:
         """Moves of X and Z at feed outside the mode, and cycles, but no threads."""
         trace = self.trace
-        leads = trace.listed("thread_cutting", "threading_cycle", "feed_is_lead")
-        threads = happened(leads, trace.sets("motion") | trace.starts)
-        at_feed = is_among(trace.motion, _AT_FEED) & (trace.moves_plane | trace.moves_z) & ~self._turns
-        cycle = (trace.motion == Motion.CYCLE) | (trace.listed("repetitive_cycle") & trace.has("F"))
-        return np.asarray((trace.section < 0) & (at_feed | cycle) & ~threads)
+        leads = trace.blocks.listed("thread_cutting", "threading_cycle", "feed_is_lead")
+        threads = happened(leads, trace.modal.sets("motion") | trace.blocks.starts)
+        at_feed = is_among(trace.axes.motion, _AT_FEED) & (trace.axes.moves_plane | trace.axes.moves_z) & ~self._turns
+        cycle = (trace.axes.motion == Motion.CYCLE) | (trace.blocks.listed("repetitive_cycle") & trace.blocks.has("F"))
+        return np.asarray((trace.mode.section < 0) & (at_feed | cycle) & ~threads)
 
 
 def _count(mask: Mask, ends: Mask) -> Rows:

@@ -7,10 +7,10 @@ from functools import cached_property
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Rows
+from polarcheck.columns.trace import Trace
 from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.machines.modal import Side
 from polarcheck.table.tool_center import ToolCenter
-from polarcheck.table.trace import Trace
 
 
 class Ramps:
@@ -26,24 +26,24 @@ class Ramps:
     def loop(self) -> Rows:
         """Number of the loop of each row of a section: from its start-up, or G12.1, to the next; -1 outside."""
         trace = self.trace
-        return np.where(trace.whole_section >= 0, np.cumsum(trace.starts_up | trace.enters), -1)
+        return np.where(trace.mode.whole_section >= 0, np.cumsum(trace.compensation.starts_up | trace.mode.enters), -1)
 
     @cached_property
     def pause(self) -> Rows:
         """The same number for a move on the plane and the rows after it that do not move there; -1 outside sections."""
-        moves = self.trace.in_polar & self.trace.travels
-        return np.where(self.trace.whole_section >= 0, np.cumsum(moves), -1)
+        moves = self.trace.mode.in_polar & self.trace.path.travels
+        return np.where(self.trace.mode.whole_section >= 0, np.cumsum(moves), -1)
 
     @cached_property
     def way(self) -> Rows:
         """The same number for a move on the plane and the rows that lead up to it; -1 outside sections."""
-        moves = self.trace.in_polar & self.trace.moves_plane
-        return np.where(self.trace.whole_section >= 0, np.cumsum(moves) - moves, -1)
+        moves = self.trace.mode.in_polar & self.trace.axes.moves_plane
+        return np.where(self.trace.mode.whole_section >= 0, np.cumsum(moves) - moves, -1)
 
     @cached_property
     def mesh(self) -> Rows:
         """The section of moves that do not fit because of the rounding of their ends; -1 for other rows."""
-        return np.where(self.tool_center.interferes_by_rounding, self.trace.whole_section, -1)
+        return np.where(self.tool_center.interferes_by_rounding, self.trace.mode.whole_section, -1)
 
     @cached_property
     def narrow_loop(self) -> Rows:
@@ -56,7 +56,9 @@ class Ramps:
     def start_up_missing(self) -> Mask:
         """G41 or G42 after which nothing moves on the plane before G40 or the end of the mode."""
         trace = self.trace
-        return self._without_move(self._begins_at_rest, trace.writes_cancel | ~trace.in_polar, trace.starts_up)
+        return self._without_move(
+            self._begins_at_rest, trace.compensation.writes_cancel | ~trace.mode.in_polar, trace.compensation.starts_up
+        )
 
     @cached_property
     def start_up_later(self) -> Mask:
@@ -66,18 +68,23 @@ class Ramps:
     @cached_property
     def _begins_at_rest(self) -> Mask:
         trace = self.trace
-        begins = trace.in_polar & trace.writes_side & ~trace.travels & (trace.side_before == Side.OFF)
-        return np.asarray(begins & ~trace.offset_mode)
+        begins = (
+            trace.mode.in_polar
+            & trace.compensation.writes_side
+            & ~trace.path.travels
+            & (trace.compensation.side_before == Side.OFF)
+        )
+        return np.asarray(begins & ~trace.compensation.offset_mode)
 
     @cached_property
     def cancel_missing(self) -> Mask:
         """A G40 after which nothing moves on the plane before the mode is left or compensation begins again."""
         trace = self.trace
-        ends = trace.writes_cancel & ~trace.travels & (trace.side_before != Side.OFF)
+        ends = trace.compensation.writes_cancel & ~trace.path.travels & (trace.compensation.side_before != Side.OFF)
         return self._without_move(
-            ends & trace.offset_mode,
-            trace.writes_side | ~trace.in_polar,
-            trace.cancels,
+            ends & trace.compensation.offset_mode,
+            trace.compensation.writes_side | ~trace.mode.in_polar,
+            trace.compensation.cancels,
         )
 
     def _without_move(self, rows: Mask, ends: Mask, ramp: Mask) -> Mask:
@@ -86,7 +93,7 @@ class Ramps:
             return rows
         trace = self.trace
         ramp = ramp | trace.run.unknown
-        events = np.flatnonzero(trace.travels | ends | ramp)
+        events = np.flatnonzero(trace.path.travels | ends | ramp)
         at = np.flatnonzero(rows)
         found = np.append(events, len(trace))[np.searchsorted(events, at, side="right")]
         alone = np.zeros(len(trace), bool)
@@ -97,25 +104,25 @@ class Ramps:
     def shorter_than_radius(self) -> Mask:
         """The row moves, and less than R on the plane."""
         trace = self.trace
-        return np.asarray(trace.travels & (trace.length < np.abs(trace.radius) - ROUNDING))
+        return np.asarray(trace.path.travels & (trace.path.length < np.abs(trace.compensation.radius) - ROUNDING))
 
     @cached_property
     def start_up_judged_by_radius(self) -> Mask:
         """Start-ups that nothing can be said of without R: straight ones."""
-        return np.asarray(self.trace.starts_up & ~self.trace.is_arc)
+        return np.asarray(self.trace.compensation.starts_up & ~self.trace.path.is_arc)
 
     @cached_property
     def cancel_judged_by_radius(self) -> Mask:
         """Offset cancels likewise."""
-        return np.asarray(self.trace.cancels & ~self.trace.is_arc)
+        return np.asarray(self.trace.compensation.cancels & ~self.trace.path.is_arc)
 
     @cached_property
     def used(self) -> Floats:
         """How much of the move of a ramp its R needs, 1 where it just suffices; NaN for other rows and unknown ones."""
         trace = self.trace
-        is_ramp = (trace.starts_up | trace.cancels) & (trace.length > 0)
+        is_ramp = (trace.compensation.starts_up | trace.compensation.cancels) & (trace.path.length > 0)
         used = np.full(len(trace), np.nan)
-        np.divide(np.abs(trace.radius), trace.length, out=used, where=is_ramp)
+        np.divide(np.abs(trace.compensation.radius), trace.path.length, out=used, where=is_ramp)
         return used
 
     # ---- in offset mode ----
@@ -124,19 +131,19 @@ class Ramps:
     def writes_side_again(self) -> Mask:
         """G41 or G42 in offset mode while one of them is in force."""
         trace = self.trace
-        in_force = (trace.side != Side.OFF) & (trace.side_before != Side.OFF)
-        return np.asarray(trace.offset_mode & in_force & trace.writes_side)
+        in_force = (trace.compensation.side != Side.OFF) & (trace.compensation.side_before != Side.OFF)
+        return np.asarray(trace.compensation.offset_mode & in_force & trace.compensation.writes_side)
 
     @cached_property
     def compensated(self) -> Mask:
         """Moves on the plane with compensation in force."""
-        return np.asarray(self.trace.compensates & self.trace.travels)
+        return np.asarray(self.trace.compensation.compensates & self.trace.path.travels)
 
     @cached_property
     def arc_radius(self) -> Floats:
         """Radius of an arc [mm], the smaller one where start and end differ."""
         trace = self.trace
-        return np.minimum(np.abs(trace.start - trace.center), np.abs(trace.end - trace.center))
+        return np.minimum(np.abs(trace.path.start - trace.path.center), np.abs(trace.path.end - trace.path.center))
 
     @cached_property
     def tight_arc(self) -> Rows:
@@ -144,7 +151,9 @@ class Ramps:
         trace, number = self.trace, np.full(len(self.trace), -1)
         rows = np.flatnonzero(self.tool_center.inside_arc_too_small)
         if len(rows):
-            sizes = np.stack((trace.section[rows], self.arc_radius[rows].round(2), trace.radius[rows]))
+            sizes = np.stack(
+                (trace.mode.section[rows], self.arc_radius[rows].round(2), trace.compensation.radius[rows])
+            )
             number[rows] = np.unique(sizes, axis=1, return_inverse=True)[1].reshape(-1)
         return number
 
@@ -158,8 +167,8 @@ class Ramps:
         ramp on an arc, and another G41 or G42 have rules of their own, and explain what does not fit beside them.
         """
         trace, tool_center = self.trace, self.tool_center
-        moving = np.flatnonzero(trace.travels)
-        on_arc = trace.is_arc & (trace.starts_up | trace.cancels)
+        moving = np.flatnonzero(trace.path.travels)
+        on_arc = trace.path.is_arc & (trace.compensation.starts_up | trace.compensation.cancels)
         cause = (tool_center.inside_arc_too_small | on_arc | self.writes_side_again)[moving]
         interferes = tool_center.interferes & ~tool_center.interferes_by_rounding
         first = np.flatnonzero(cause | (tool_center.no_intersection | interferes)[moving])
@@ -168,8 +177,8 @@ class Ramps:
             rows = np.arange(len(moving))
             above = first[np.maximum(np.searchsorted(first, rows) - 1, 0)]
             near = np.diff((tool_center.stretch[moving][above], tool_center.stretch[moving]), axis=0)[0] <= 1
-            hangs |= near & (above < rows) & (trace.section[moving[above]] == trace.section[moving])
-        hangs[:-1] |= (np.diff(trace.section[moving]) == 0) & cause[1:]
+            hangs |= near & (above < rows) & (trace.mode.section[moving[above]] == trace.mode.section[moving])
+        hangs[:-1] |= (np.diff(trace.mode.section[moving]) == 0) & cause[1:]
         consequence = np.zeros(len(trace), bool)
         consequence[moving[hangs]] = True
         return consequence

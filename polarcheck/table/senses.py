@@ -7,11 +7,11 @@ from functools import cached_property
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Points, Rows, States, is_among
+from polarcheck.columns.trace import Trace
 from polarcheck.geometry.plane import angle_between
 from polarcheck.machines.modal import Motion
 from polarcheck.table.arcs import Arcs
 from polarcheck.table.last_digit import half_of_last_digit
-from polarcheck.table.trace import Trace
 
 #: A turn that is meant as a corner [rad]: 10 degrees, and this many times what rounding turns a tangent by.
 _CORNER, _CLEARLY = np.radians(10), 4
@@ -30,37 +30,47 @@ class Senses:
     def _loop(self) -> Rows:
         """Number of the loop of each block of a contour in offset mode, -1 elsewhere; another depth is another one."""
         trace = self.trace
-        in_contour = trace.compensates & trace.on_plane & ~trace.starts_up
-        begins = trace.starts_up | trace.enters | (trace.moves_z & ~trace.travels)
+        in_contour = trace.compensation.compensates & trace.path.on_plane & ~trace.compensation.starts_up
+        begins = trace.compensation.starts_up | trace.mode.enters | (trace.axes.moves_z & ~trace.path.travels)
         return np.where(in_contour, np.cumsum(begins), -1)
 
     @cached_property
     def _arc(self) -> Rows:
         """The rows that are judged: arcs that are circles, with a block of their contour on either side."""
         rows = self._moving
-        if not self.trace.is_arc[rows].any():
+        if not self.trace.path.is_arc[rows].any():
             return np.zeros(0, np.int64)
         loop = self._loop[rows]
         joined = (loop[1:] == loop[:-1]) & (loop[1:] >= 0)
         between = np.append(False, joined) & np.append(joined, False)
-        judged = self.trace.is_arc & ~self.arcs.is_no_circle & ~self.arcs.ends_at_start & ~np.isnan(self.trace.center)
+        judged = (
+            self.trace.path.is_arc
+            & ~self.arcs.is_no_circle
+            & ~self.arcs.ends_at_start
+            & ~np.isnan(self.trace.path.center)
+        )
         return np.flatnonzero(between & judged[rows])
 
     @cached_property
     def _moving(self) -> Rows:
-        return np.flatnonzero(self.trace.on_plane)
+        return np.flatnonzero(self.trace.path.on_plane)
 
     def _tangents(self, place: Rows) -> tuple[Points, Points]:
         """Directions in which some of the moving rows begin and end."""
         trace, rows = self.trace, self._moving[place]
-        return _tangents(trace.start[rows], trace.end[rows], trace.center[rows], trace.motion[rows])
+        return _tangents(trace.path.start[rows], trace.path.end[rows], trace.path.center[rows], trace.axes.motion[rows])
 
     @cached_property
     def _turns(self) -> tuple[Floats, Floats, Floats]:
         """Of the judged arcs the larger turn at their ends in the other sense, the smaller and larger as written."""
         trace, arc = self.trace, self._arc
         row = self._moving[arc]
-        start, end, center, motion = trace.start[row], trace.end[row], trace.center[row], trace.motion[row]
+        start, end, center, motion = (
+            trace.path.start[row],
+            trace.path.end[row],
+            trace.path.center[row],
+            trace.axes.motion[row],
+        )
         by_radius = self.arcs.by_radius[row]
         # By R it is the other circle through both ends, by I and J the same circle the other way round.
         other = np.where(by_radius, start + end - center, center)
@@ -79,9 +89,9 @@ class Senses:
             return np.zeros(0)
         row = self._moving[arc]
         digit = 2 * np.abs(half_of_last_digit(trace)[row])
-        shortest = np.minimum(trace.length[self._moving[arc - 1]], trace.length[self._moving[arc + 1]])
-        radius = np.abs(trace.start[row] - trace.center[row])
-        half_chord = np.abs(trace.end[row] - trace.start[row]) / 2
+        shortest = np.minimum(trace.path.length[self._moving[arc - 1]], trace.path.length[self._moving[arc + 1]])
+        radius = np.abs(trace.path.start[row] - trace.path.center[row])
+        half_chord = np.abs(trace.path.end[row] - trace.path.start[row]) / 2
         # By R the center hangs on how far the chord is from it: little of that is left of half a circle.
         apart = np.sqrt(np.maximum(radius**2 - half_chord**2, digit * radius))
         with np.errstate(divide="ignore", invalid="ignore"):  # of no length, or without a digit, anything turns

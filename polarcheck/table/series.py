@@ -6,8 +6,8 @@ import msgspec
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Rows, is_among
+from polarcheck.columns.trace import Trace
 from polarcheck.machines.modal import Motion
-from polarcheck.table.trace import Trace
 
 #: So many moves one after another are a series.
 _LEAST_COUNT = 3
@@ -57,14 +57,14 @@ def find_series(trace: Trace) -> Series:
     270. X stays where it is. A contour that goes so far has another side across the center. Where nothing goes so far,
     no series is looked for.
     """
-    written = trace.scale * (0.5 if trace.machine.polar.virtual_axis_programming == "diameter" else 1.0)
-    end = trace.end.imag / written
-    if not np.any(trace.on_plane & (np.abs(end) > _LEAST_END - _SAME)):
+    written = trace.lengths.scale * (0.5 if trace.machine.polar.virtual_axis_programming == "diameter" else 1.0)
+    end = trace.path.end.imag / written
+    if not np.any(trace.path.on_plane & (np.abs(end) > _LEAST_END - _SAME)):
         return _NO_SERIES
-    start = trace.start.imag / written
-    rows = np.flatnonzero(trace.on_plane & (np.abs(end - start) > _SAME))
-    start, end, x, section = start[rows], end[rows], trace.x[rows] / written[rows], trace.section[rows]
-    is_arc = is_among(trace.motion[rows], (Motion.CW, Motion.CCW))
+    start = trace.path.start.imag / written
+    rows = np.flatnonzero(trace.path.on_plane & (np.abs(end - start) > _SAME))
+    start, end, x, section = start[rows], end[rows], trace.path.x[rows] / written[rows], trace.mode.section[rows]
+    is_arc = is_among(trace.axes.motion[rows], (Motion.CW, Motion.CCW))
     direction = np.where(is_arc, 0, np.sign(end - start))
     begins = np.ones(len(rows), bool)
     begins[1:] = (direction[1:] != direction[:-1]) | (section[1:] != section[:-1])
@@ -79,7 +79,7 @@ def find_series(trace: Trace) -> Series:
     is_turn |= (most - least < _SAME) & (np.abs(size + most - _FULL_TURN) < _SAME)
     from_zero = (direction[first] * end[last] > 0) & (np.abs(start[first]) < most + _SAME)
     band = np.maximum.reduceat(x, first) - np.minimum.reduceat(x, first)
-    farthest = np.zeros((2, len(trace.sections)))
+    farthest = np.zeros((2, len(trace.mode.sections)))
     for side, value in ((0, end), (1, -end)):
         np.maximum.at(farthest[side], section, value)
     other_side = farthest[(end[last] > 0).astype(np.int64), section[last]]

@@ -7,9 +7,9 @@ from functools import cached_property
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Rows, computed, repeated
+from polarcheck.columns.trace import Trace
 from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.table.overcuts import Cuts, Overcuts
-from polarcheck.table.trace import Trace
 
 _NOTHING = Cuts(np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0), np.zeros(0, np.complex128))
 
@@ -42,7 +42,7 @@ class Slots:
         path, is_ramp = self.overcuts.path
         beside = np.isin(path.loop, walls.loop) & ~self.overcuts.objected[path.row]
         path, is_ramp = path[beside], is_ramp[beside]
-        radius = np.abs(self.trace.radius[path.row])
+        radius = np.abs(self.trace.compensation.radius[path.row])
         nowhere = np.zeros(0, np.int64)
         tolerance = self.trace.machine.compensation.overcut_tolerance
         contours = Contours(walls, left, nowhere, nowhere, np.zeros(0), self.overcuts.bar, tolerance)
@@ -59,19 +59,19 @@ class Slots:
         """
         trace = self.trace
         level, several = np.full(len(trace), -1), np.zeros(len(trace), bool)
-        rows = np.flatnonzero(trace.compensates & trace.travels & ~trace.starts_up)
+        rows = np.flatnonzero(trace.compensation.compensates & trace.path.travels & ~trace.compensation.starts_up)
         loop = self.overcuts.loop[rows]
         begins = np.diff(loop, prepend=-1) != 0
         first, number = np.flatnonzero(begins), np.cumsum(begins) - 1
         if len(first) < 2:
             return level, several
-        z = np.rint(trace.z[rows] / ROUNDING)
+        z = np.rint(trace.path.z[rows] / ROUNDING)
         low, high = np.minimum.reduceat(z, first), np.maximum.reduceat(z, first)
-        parted = np.cumsum(trace.moves_z)[rows][first]
+        parted = np.cumsum(trace.axes.moves_z)[rows][first]
         unknown, slopes = np.isnan(low), low != high
         depth = np.where(unknown, parted, np.where(slopes, np.arange(len(first)), low))
         kind = np.where(unknown, 0, np.where(slopes, 1, 2))
-        key = np.stack([trace.section[rows][first], kind, depth], axis=1)
+        key = np.stack([trace.mode.section[rows][first], kind, depth], axis=1)
         _, of_loop, count = np.unique(key, axis=0, return_inverse=True, return_counts=True)
         of_loop = of_loop.ravel()
         level[rows], several[rows] = of_loop[number], (count[of_loop] > 1)[number]
@@ -107,7 +107,7 @@ class Slots:
     @property
     def diameter(self) -> Floats:
         """Twice R [mm]."""
-        return np.asarray(2 * np.abs(self.trace.radius))
+        return np.asarray(2 * np.abs(self.trace.compensation.radius))
 
     @cached_property
     def sweep_depth(self) -> Floats:
@@ -143,9 +143,16 @@ class Slots:
         first = merged(int(loop.max()) + 1, one, other)
         pair, number = np.unique(first[one], return_inverse=True)
         # Walls that are written once more at another depth have the same box.
-        ends = np.stack([trace.start[cuts.row], trace.end[cuts.row], trace.start[cuts.into], trace.end[cuts.into]])
+        ends = np.stack(
+            [
+                trace.path.start[cuts.row],
+                trace.path.end[cuts.row],
+                trace.path.start[cuts.into],
+                trace.path.end[cuts.into],
+            ]
+        )
         key = np.full((len(pair), 5), np.inf)
-        key[number, 4] = trace.section[cuts.row]
+        key[number, 4] = trace.mode.section[cuts.row]
         for side, values in enumerate((ends.real, ends.imag, -ends.real, -ends.imag)):
             np.minimum.at(key[:, side], number, np.rint(values.min(axis=0) / ROUNDING))
         _, same = np.unique(key, axis=0, return_inverse=True)

@@ -8,10 +8,10 @@ import numpy as np
 from msgspec.structs import astuple
 
 from polarcheck.arrays import Mask, Rows
+from polarcheck.columns.filling import before, happened
+from polarcheck.columns.trace import Trace
 from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.machines.codes import NO_CODE
-from polarcheck.table.filling import before, happened
-from polarcheck.table.trace import Trace
 
 #: Stops, ends, coolant and the tool change have these numbers everywhere (ISO 6983).
 _OF_EVERY_LATHE = ("M0-M2", "M6-M9", "M30", "M98", "M99")
@@ -33,11 +33,11 @@ class Spindles:
 
     @cached_property
     def _main_c_axis(self) -> Mask:
-        return self.trace.switched(self._codes.c_axis_on, self._codes.c_axis_off)
+        return self.trace.modal.switched(self._codes.c_axis_on, self._codes.c_axis_off)
 
     @cached_property
     def _sub_c_axis(self) -> Mask:
-        return self.trace.switched(self._codes.sub_c_axis_on, self._codes.sub_c_axis_off)
+        return self.trace.modal.switched(self._codes.sub_c_axis_on, self._codes.sub_c_axis_off)
 
     @property
     def c_axis(self) -> Mask:
@@ -50,7 +50,7 @@ class Spindles:
         return self._begins(self._main_c_axis) | self._begins(self._sub_c_axis)
 
     def _begins(self, state: Mask) -> Mask:
-        return np.asarray(state & ~before(state, self.trace.starts, False).astype(bool))
+        return np.asarray(state & ~before(state, self.trace.blocks.starts, False).astype(bool))
 
     @cached_property
     def on_sub_spindle(self) -> Mask:
@@ -59,18 +59,18 @@ class Spindles:
 
         Where both spindles are engaged, it is the one that was engaged last (LinearAxis.on_sub_spindle).
         """
-        trace, is_sub = self.trace, self.trace.on_sub_spindle
-        if not is_sub.any() or not len(trace.sections):
+        trace, is_sub = self.trace, self.trace.modal.on_sub_spindle
+        if not is_sub.any() or not len(trace.mode.sections):
             return is_sub
-        at_entry = is_sub[trace.sections.enter][trace.section]
-        return np.asarray(np.where(trace.section >= 0, at_entry, is_sub))
+        at_entry = is_sub[trace.mode.sections.enter][trace.mode.section]
+        return np.asarray(np.where(trace.mode.section >= 0, at_entry, is_sub))
 
     @property
     def turns(self) -> Mask:
         """A move at feed in the mode that turns C: any but those along a line through the center."""
         trace = self.trace
-        area = np.abs((np.conj(trace.start) * trace.end).imag)
-        return np.asarray(trace.cuts & (trace.is_arc | (area > ROUNDING)))
+        area = np.abs((np.conj(trace.path.start) * trace.path.end).imag)
+        return np.asarray(trace.path.cuts & (trace.path.is_arc | (area > ROUNDING)))
 
     @cached_property
     def clamped(self) -> Mask:
@@ -79,9 +79,9 @@ class Spindles:
 
         What becomes of a clamp when the spindle is engaged or disengaged, or in blocks of unknown effect, is not known.
         """
-        codes, ends = self._codes, self.trace.starts | self.trace.run.unknown
+        codes, ends = self._codes, self.trace.blocks.starts | self.trace.run.unknown
         main, sub = (
-            happened(self.trace.codes(*on), self.trace.codes(*off) | ends)
+            happened(self.trace.blocks.codes(*on), self.trace.blocks.codes(*off) | ends)
             for on, off in (
                 (codes.c_axis_clamp, [*codes.c_axis_unclamp, *codes.c_axis_on, *codes.c_axis_off]),
                 (codes.sub_c_axis_clamp, [*codes.sub_c_axis_unclamp, *codes.sub_c_axis_on, *codes.sub_c_axis_off]),
@@ -99,16 +99,16 @@ class Spindles:
         listed += [
             word for word in (*machine.macro.flow_codes, *machine.polar.on, *machine.polar.off) if word[0] == "M"
         ]
-        known = trace.words_at(trace.code_indices(*_OF_EVERY_LATHE, *listed))
-        return np.asarray(trace.m_words[~known[trace.m_words] & (trace.m_codes != NO_CODE)])
+        known = trace.blocks.words_at(trace.blocks.code_indices(*_OF_EVERY_LATHE, *listed))
+        return np.asarray(trace.blocks.m_words[~known[trace.blocks.m_words] & (trace.blocks.m_codes != NO_CODE)])
 
     # ---- the spindle itself ----
 
     @cached_property
     def runs(self) -> Mask:
         """The spindle whose C axis it is runs as a spindle; on many lathes M3 and M4 start the live tool, too."""
-        sub = self.trace.switched(self._codes.sub_spindle_on, self._codes.sub_spindle_off)
-        return np.where(self.on_sub_spindle, sub, self.trace.spindle)
+        sub = self.trace.modal.switched(self._codes.sub_spindle_on, self._codes.sub_spindle_off)
+        return np.where(self.on_sub_spindle, sub, self.trace.modal.spindle)
 
     @property
     def are_no_live_tool(self) -> Mask:
@@ -122,7 +122,7 @@ class Spindles:
         of_main = (*codes.spindle_on, *codes.spindle_off, *codes.c_axis_on, *codes.c_axis_off)
         of_sub = (*codes.sub_spindle_on, *codes.sub_spindle_off, *codes.sub_c_axis_on, *codes.sub_c_axis_off)
         main, sub, live = (
-            trace.words_at(trace.code_indices(*of_one))
+            trace.blocks.words_at(trace.blocks.code_indices(*of_one))
             for of_one in (of_main, of_sub, (*codes.live_tool_on, *codes.live_tool_off))
         )
         return np.where(self.on_sub_spindle[trace.run.row], sub, main) & ~live
@@ -130,4 +130,4 @@ class Spindles:
     @cached_property
     def has_code(self) -> Mask:
         """Rows with such a code."""
-        return self.trace.with_words(self.words)
+        return self.trace.blocks.with_words(self.words)

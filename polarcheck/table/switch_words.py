@@ -8,11 +8,11 @@ from functools import cached_property
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask, is_among
+from polarcheck.columns.trace import Trace
 from polarcheck.machines.axes import INCREMENTS, numbers_of
 from polarcheck.machines.modal import Distance
 from polarcheck.reading.words import NumberFault
 from polarcheck.table.infeed import CUT, Infeed
-from polarcheck.table.trace import Trace
 
 #: The words that name axes, each with the kind of its axis.
 _KINDS = {"P": "linear", "Q": "rotary"}
@@ -29,8 +29,8 @@ class SwitchWords:
         """Per executed word: of one of these addresses, with a good number, beside a G12.1 that begins a section."""
         trace = self.trace
         words = trace.run.words
-        named = trace.words_at(trace.word_indices(*addresses)) & (words.fault == NumberFault.NONE)
-        return np.asarray(named & trace.enters[trace.run.row])
+        named = trace.blocks.words_at(trace.blocks.word_indices(*addresses)) & (words.fault == NumberFault.NONE)
+        return np.asarray(named & trace.mode.enters[trace.run.row])
 
     @property
     def _taken(self) -> list[str]:
@@ -41,13 +41,13 @@ class SwitchWords:
     @cached_property
     def names_axis(self) -> Mask:
         """Per word: P or Q where both name axes."""
-        return self._beside(*_KINDS) if self.trace.takes_axes else self._beside()
+        return self._beside(*_KINDS) if self.trace.axes.takes_axes else self._beside()
 
     @cached_property
     def names_no_axis(self) -> Mask:
         """Per word: P or Q that is not the number of an axis, a whole one from 1 to that of the last axis."""
         number = self.trace.run.words.value
-        is_axis = (number >= 1) & (number <= self.trace.most_axes) & (number == np.rint(number))
+        is_axis = (number >= 1) & (number <= self.trace.axes.most_axes) & (number == np.rint(number))
         return np.asarray(self.names_axis & ~is_axis)
 
     @cached_property
@@ -64,8 +64,8 @@ class SwitchWords:
     def names_axis_twice(self) -> Mask:
         """Per word: P and Q of a G12.1 that makes one axis both linear and rotary."""
         other_fault = self.names_no_axis | self.names_axis_of_other_kind
-        linear, rotary = self.trace.axes_written
-        is_one = (linear == rotary) & ~self.trace.with_words(other_fault)
+        linear, rotary = self.trace.axes.axes_written
+        is_one = (linear == rotary) & ~self.trace.blocks.with_words(other_fault)
         return np.asarray(self.names_axis & is_one[self.trace.run.row])
 
     # ---- the shift of the center ----
@@ -80,7 +80,7 @@ class SwitchWords:
     @cached_property
     def shifts_incrementally(self) -> Mask:
         """Per word: a shift of the center by an incremental word, or by an absolute one while G91 is in force."""
-        is_incremental = self.trace.state("distance") == Distance.INCREMENTAL
+        is_incremental = self.trace.modal.state("distance") == Distance.INCREMENTAL
         absolute = self._beside(*self.shifts) & is_incremental[self.trace.run.row]
         return np.asarray(self._beside(*self.shifts.values()) | absolute)
 
@@ -88,7 +88,7 @@ class SwitchWords:
 
     @property
     def _increments(self) -> Floats:
-        return self.infeed.written / self.trace.least_step
+        return self.infeed.written / self.trace.lengths.least_step
 
     @property
     def _most_increments(self) -> float:
@@ -98,7 +98,7 @@ class SwitchWords:
     @cached_property
     def infeed_limit(self) -> Floats:
         """Per row: the largest infeed [mm], as many least increments as have the most digits of a number."""
-        return self._most_increments * self.trace.least_step
+        return self._most_increments * self.trace.lengths.least_step
 
     @cached_property
     def infeed_too_large(self) -> Mask:

@@ -6,11 +6,13 @@ of C, and what it asks of the C axis.
 from __future__ import annotations
 
 from functools import cached_property
+from typing import NamedTuple
 
 import msgspec
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Points, Rows
+from polarcheck.columns.trace import Trace
 from polarcheck.geometry.compensation import Path, ToolPath
 from polarcheck.geometry.rounding import kept_ends, may_turn_back
 from polarcheck.geometry.tolerances import SHARE
@@ -18,28 +20,56 @@ from polarcheck.machines.modal import Motion, Side
 from polarcheck.table.infeed import Infeed
 from polarcheck.table.last_digit import half_of_last_digit
 from polarcheck.table.moves import Moves, compensation_path, of_tool, per_row, tool_center_path
-from polarcheck.table.trace import Trace
 
 #: The share of R that must fit beside a stretch of many blocks for their rounding to be what is wrong.
 _SURELY = 7 / 8
 
 
-class ToolCenter:
-    """Columns over the rows of the trace, each from the moves of the tool center in that row; and those moves."""
+class OtherRadius(NamedTuple):
+    """
+    Another R for some of the rows.
 
-    def __init__(self, trace: Trace, infeed: Infeed) -> None:
+    rows: those that have it; no other row is compensated. group: per row of the trace, equal for rows that are
+    compensated together. radius: per row, with its sign [mm]; of the other sign it is the other side.
+    """
+
+    rows: Mask
+    group: Rows
+    radius: Floats
+
+
+class ToolCenter:
+    """
+    Columns over the rows of the trace, each from the moves of the tool center in that row; and those moves.
+
+    other_radius: the R to run with instead of that in force, without the passes of infeed cycles; None for the path
+    that the program makes.
+    """
+
+    def __init__(self, trace: Trace, infeed: Infeed, *, other_radius: OtherRadius | None = None) -> None:
         self.trace = trace
         self.infeed = infeed
+        self.other_radius = other_radius
+
+    @cached_property
+    def radius(self) -> Floats:
+        """R with its sign [mm], NaN where it is not known."""
+        in_force, other = self.trace.compensation.radius, self.other_radius
+        return in_force if other is None else np.where(other.rows, other.radius, in_force)
 
     @cached_property
     def _rows(self) -> Rows:
-        """The rows of the trace that are compensated: those in the mode."""
-        return np.flatnonzero(self.trace.in_polar)
+        """The rows of the trace that are compensated: those in the mode, of another R those that have it."""
+        in_polar, other = self.trace.mode.in_polar, self.other_radius
+        return np.flatnonzero(in_polar if other is None else in_polar & other.rows)
 
     @property
     def _programmed(self) -> Path:
-        """Not kept: large, and asked for again only where the tool interferes."""
-        return compensation_path(self.trace, self._rows)
+        """Not stored: it is large, and needed again only where the tool interferes."""
+        path, other = compensation_path(self.trace, self._rows), self.other_radius
+        if other is None:
+            return path
+        return msgspec.structs.replace(path, section=other.group[self._rows], radius=other.radius[self._rows])
 
     @cached_property
     def _path(self) -> ToolPath:
@@ -48,7 +78,8 @@ class ToolCenter:
     @cached_property
     def moves(self) -> Moves:
         """The moves of the tool center inside sections."""
-        return self.infeed.with_passes(of_tool(self.trace, self._path, self._rows))
+        moves = of_tool(self.trace, self._path, self._rows)
+        return self.infeed.with_passes(moves) if self.other_radius is None else moves
 
     # ---- what the control would object to while it compensates ----
 
@@ -108,8 +139,8 @@ class ToolCenter:
         # Among many such blocks a few that rounding may well turn round tell nothing, whatever is left of them.
         short = self._found(may_turn_back(path.start, path.end, self._half_of_last_digit, path.radius))
         others = self.interferes & short & ~found
-        most = self.trace.count_in_section(found) > self.trace.count_in_section(others)
-        return np.asarray(found | (others & np.append(most, False)[self.trace.section]))
+        most = self.trace.mode.count_in_section(found) > self.trace.mode.count_in_section(others)
+        return np.asarray(found | (others & np.append(most, False)[self.trace.mode.section]))
 
     @cached_property
     def no_intersection(self) -> Mask:
@@ -193,7 +224,7 @@ class ToolCenter:
     @cached_property
     def true_feed(self) -> Floats:
         """F that automatic override leaves [mm/min]."""
-        return np.asarray(self.trace.feed * self.override / 100)
+        return np.asarray(self.trace.feedrate.feed * self.override / 100)
 
 
 def _goes_on(path: Path) -> Mask:

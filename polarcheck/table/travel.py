@@ -7,8 +7,8 @@ from functools import cached_property
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask, repeated
+from polarcheck.columns.trace import Trace
 from polarcheck.table.tool_center import ToolCenter
-from polarcheck.table.trace import Trace
 
 
 class Travel:
@@ -51,13 +51,13 @@ class Travel:
     def _x(self, inside: Floats, none: float) -> Floats:
         """Outside the mode the end of a move is one extreme, the end of the move before the other."""
         trace = self.trace
-        outside = np.where(trace.uses_axes & trace.has("X", "U"), trace.x, none)
-        return np.where(trace.in_polar, inside, outside)
+        outside = np.where(trace.modal.uses_axes & trace.blocks.has("X", "U"), trace.path.x, none)
+        return np.where(trace.mode.in_polar, inside, outside)
 
     @cached_property
     def z(self) -> Floats:
         """Z of the machine axis after the row [mm]; NaN while unknown, and where it has no limits."""
-        return self.trace.z if self._limits_z else repeated(np.float64(np.nan), len(self.trace))
+        return self.trace.path.z if self._limits_z else repeated(np.float64(np.nan), len(self.trace))
 
     @cached_property
     def moves_x(self) -> Mask:
@@ -67,14 +67,14 @@ class Travel:
     @cached_property
     def is_limited_in_x(self) -> Mask:
         """Moves, if the profile limits the travel of X."""
-        return np.asarray(self.trace.moves & self._limits_x)
+        return np.asarray(self.trace.axes.moves & self._limits_x)
 
     def first_beyond(self, beyond: Mask, moving: Mask) -> Mask:
         """
         Of the moving rows beyond a limit those before which the last moving row of the program was not: each way out
         once.
         """
-        rows = np.flatnonzero(moving | self.trace.starts)
+        rows = np.flatnonzero(moving | self.trace.blocks.starts)
         first = beyond & moving
-        first[rows[1:]] &= ~(beyond & moving)[rows[:-1]] | self.trace.starts[rows[1:]]
+        first[rows[1:]] &= ~(beyond & moving)[rows[:-1]] | self.trace.blocks.starts[rows[1:]]
         return first

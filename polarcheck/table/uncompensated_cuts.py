@@ -7,16 +7,16 @@ from functools import cached_property
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Points, Rows, repeated
+from polarcheck.columns.filling import before, fill_down
+from polarcheck.columns.trace import Trace
 from polarcheck.geometry.bare import Bare, flat_loops, may_reach
 from polarcheck.geometry.compensation import Phase
 from polarcheck.geometry.segments import Curves
 from polarcheck.geometry.tolerances import ADJUSTMENT, ROUNDING
 from polarcheck.machines.modal import Motion
-from polarcheck.table.filling import before, fill_down
 from polarcheck.table.overcuts import Cuts, Overcuts
 from polarcheck.table.slots import Slots
 from polarcheck.table.tool_center import ToolCenter
-from polarcheck.table.trace import Trace
 
 _NOTHING = Cuts(np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0), np.zeros(0, np.complex128))
 
@@ -34,16 +34,16 @@ class UncompensatedCuts:
     def _has_contour(self) -> Mask:
         """Rows of sections with compensation, and those behind their G13.1 up to the next G12.1."""
         trace = self.trace
-        section = fill_down(trace.section, (trace.section >= 0) | trace.starts, -1)
-        has = np.zeros(len(trace.sections) + 1, bool)
-        has[trace.section[trace.compensates]] = True
+        section = fill_down(trace.mode.section, (trace.mode.section >= 0) | trace.blocks.starts, -1)
+        has = np.zeros(len(trace.mode.sections) + 1, bool)
+        has[trace.mode.section[trace.compensation.compensates]] = True
         return has[section]
 
     @cached_property
     def _is_behind_contour(self) -> Mask:
         """Rows of sections behind the first ramp, and those behind the section."""
         trace = self.trace
-        return np.asarray((trace.section < 0) | trace.given_in_section(trace.starts_up))
+        return np.asarray((trace.mode.section < 0) | trace.mode.given_in_section(trace.compensation.starts_up))
 
     @cached_property
     def _is_beside_bad_ramp(self) -> Mask:
@@ -52,14 +52,14 @@ class UncompensatedCuts:
         ends too near to the part, which is no second mistake.
         """
         trace = self.trace
-        moving = np.flatnonzero(trace.in_polar & trace.travels)
-        short = trace.length < np.abs(trace.radius) - ROUNDING
+        moving = np.flatnonzero(trace.mode.in_polar & trace.path.travels)
+        short = trace.path.length < np.abs(trace.compensation.radius) - ROUNDING
         bad = short | (self.slots.ramp_depth > 0) | self.overcuts.objected
         rows = np.arange(len(trace))
         after = np.append(moving, -1)[np.searchsorted(moving, rows, side="right")]
         ahead = np.append(-1, moving)[np.searchsorted(moving, rows, side="left")]
-        begins = (after >= 0) & (trace.starts_up & bad)[after]
-        return np.asarray(begins | ((ahead >= 0) & (trace.cancels & bad)[ahead]))
+        begins = (after >= 0) & (trace.compensation.starts_up & bad)[after]
+        return np.asarray(begins | ((ahead >= 0) & (trace.compensation.cancels & bad)[ahead]))
 
     @property
     def cuts(self) -> Cuts:
@@ -82,17 +82,17 @@ class UncompensatedCuts:
             for column in zip(self._on_plane, self._of_z_alone, self._behind_the_mode, strict=True)
         )
         trace, (walls, left) = self.trace, self.overcuts.walls
-        radius = np.abs(trace.radius[row])
+        radius = np.abs(trace.compensation.radius[row])
         known = (radius > ADJUSTMENT + ROUNDING) & ~np.isnan(z + np.abs(start) + np.abs(end))
         # At Z0 or above, the way to the contour leads through air.
         known = np.flatnonzero(known & ((z < -ROUNDING) | self._is_behind_contour[row]))
         if not len(known) or not len(walls):
             return nothing
-        kind = np.where(np.isnan(center), Motion.LINE, trace.motion[row]).astype(np.int16)
+        kind = np.where(np.isnan(center), Motion.LINE, trace.axes.motion[row]).astype(np.int16)
         plunges = np.abs(end - start) == 0
         plunges &= np.isnan(center)
         bare = Bare(Curves(start, end, center, kind, section, row), z, radius, plunges)[known]
-        loops = flat_loops(walls, trace.section[walls.row], trace.z[walls.row])
+        loops = flat_loops(walls, trace.mode.section[walls.row], trace.path.z[walls.row])
         bare = bare[may_reach(loops, bare)]
         if not len(bare.z):
             return nothing
@@ -109,18 +109,28 @@ class UncompensatedCuts:
         """Moves on the plane: row, start, end, center, the highest Z, section."""
         moves = self.tool_center.moves
         moves = moves[(moves.phase == Phase.CANCELLED) & self._has_contour[moves.row]]
-        z = np.maximum(self.trace.z, before(self.trace.z, self.trace.starts, np.nan))[moves.row]
+        z = np.maximum(self.trace.path.z, before(self.trace.path.z, self.trace.blocks.starts, np.nan))[moves.row]
         return moves.row, moves.start, moves.end, moves.center, z, moves.section
 
     @property
     def _of_z_alone(self) -> tuple[Rows, Points, Points, Points, Floats, Rows]:
         """Moves of Z alone down into the material: as points, with the Z where they end."""
         trace = self.trace
-        down = trace.in_polar & trace.moves_z & ~trace.travels & ~trace.compensates & ~trace.offset_mode
-        down &= ~trace.in_cycle & self._has_contour & ~(trace.z >= before(trace.z, trace.starts, np.nan))
+        down = (
+            trace.mode.in_polar
+            & trace.axes.moves_z
+            & ~trace.path.travels
+            & ~trace.compensation.compensates
+            & ~trace.compensation.offset_mode
+        )
+        down &= (
+            ~trace.modal.in_cycle
+            & self._has_contour
+            & ~(trace.path.z >= before(trace.path.z, trace.blocks.starts, np.nan))
+        )
         row = np.flatnonzero(down)
-        place = trace.end[row]
-        return row, place, place, np.full(len(row), np.nan + 0j), trace.z[row], trace.section[row]
+        place = trace.path.end[row]
+        return row, place, place, np.full(len(row), np.nan + 0j), trace.path.z[row], trace.mode.section[row]
 
     @property
     def _behind_the_mode(self) -> tuple[Rows, Points, Points, Points, Floats, Rows]:
@@ -130,18 +140,29 @@ class UncompensatedCuts:
         C stands still, so that the tool runs towards the center or away from it, from where the section has ended.
         """
         trace = self.trace
-        last = np.flatnonzero(trace.leaves) - 1
-        moves = np.flatnonzero(trace.moves | trace.enters | trace.starts | trace.listed("reference_return"))
+        last = np.flatnonzero(trace.mode.leaves) - 1
+        moves = np.flatnonzero(
+            trace.axes.moves | trace.mode.enters | trace.blocks.starts | trace.blocks.listed("reference_return")
+        )
         row = np.append(moves, -1)[np.searchsorted(moves, last, side="right")]
         last, row = last[row >= 0], row[row >= 0]
         others = ("Z", "W", "Y", "V", "B", *trace.machine.polar.rotary_words)
-        alone = (trace.motion == Motion.RAPID) & trace.has("X", "U") & ~trace.has(*others)
-        alone &= self._has_contour & (trace.section < 0) & (trace.side == trace.side_before)
+        alone = (trace.axes.motion == Motion.RAPID) & trace.blocks.has("X", "U") & ~trace.blocks.has(*others)
+        alone &= (
+            self._has_contour & (trace.mode.section < 0) & (trace.compensation.side == trace.compensation.side_before)
+        )
         last, row = last[alone[row]], row[alone[row]]
-        place = trace.end[last]
+        place = trace.path.end[last]
         with np.errstate(invalid="ignore"):  # at the center nobody knows where to
             way = place / np.abs(place)
-        return row, place, way * trace.x[row], np.full(len(row), np.nan + 0j), trace.z[row], trace.section[last]
+        return (
+            row,
+            place,
+            way * trace.path.x[row],
+            np.full(len(row), np.nan + 0j),
+            trace.path.z[row],
+            trace.mode.section[last],
+        )
 
     @cached_property
     def depth(self) -> Floats:
@@ -151,13 +172,13 @@ class UncompensatedCuts:
         column = np.zeros(len(self.trace))
         np.maximum.at(column, self.cuts.row, self.cuts.depth)
         if column.any():
-            column[self._is_beside_bad_ramp & (column < np.abs(self.trace.radius))] = 0
+            column[self._is_beside_bad_ramp & (column < np.abs(self.trace.compensation.radius))] = 0
         return column
 
     @cached_property
     def is_rapid(self) -> Mask:
         """The cut is made in rapid traverse."""
-        return np.asarray((self.depth > 0) & (self.trace.motion == Motion.RAPID))
+        return np.asarray((self.depth > 0) & (self.trace.axes.motion == Motion.RAPID))
 
     @cached_property
     def graveness(self) -> Floats:

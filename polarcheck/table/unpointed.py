@@ -7,9 +7,9 @@ from functools import cached_property
 import numpy as np
 
 from polarcheck.arrays import Mask, Rows, different, repeated
+from polarcheck.columns.coordinates import MEANT_IN_INCREMENTS
+from polarcheck.columns.trace import Trace
 from polarcheck.machines.modal import FeedMode, Units
-from polarcheck.table.lengths import MEANT_IN_INCREMENTS
-from polarcheck.table.trace import Trace
 
 
 class Unpointed:
@@ -22,11 +22,11 @@ class Unpointed:
     def in_increments(self) -> Rows:
         """The first coordinate without a point of each program that is written in least increments, for all of it."""
         trace = self.trace
-        if not trace.in_increments.any():
+        if not trace.coordinates.in_increments.any():
             return self._none
         reported = np.zeros(len(trace.text.words), np.int64)
-        words = trace.is_unpointed & trace.in_increments[trace.run.row]
-        self._add(reported, words, trace.program, np.ones(int(trace.program[-1]) + 1, bool))
+        words = trace.coordinates.is_unpointed & trace.coordinates.in_increments[trace.run.row]
+        self._add(reported, words, trace.blocks.program, np.ones(int(trace.blocks.program[-1]) + 1, bool))
         return reported
 
     @property
@@ -44,22 +44,29 @@ class Unpointed:
         one, which is read otherwise. Beside a number that cannot be read nothing is: what the others mean is open, too.
         """
         trace, words = self.trace, self.trace.run.words
-        if not len(trace.sections) or trace.machine.control.number_without_point == "whole-unit":
+        if not len(trace.mode.sections) or trace.machine.control.number_without_point == "whole-unit":
             return self._none
-        count, section = len(trace.sections), self._sections
+        count, section = len(trace.mode.sections), self._sections
         reported = np.zeros(len(trace.text.words), np.int64)
-        slips = ~trace.in_increments[trace.run.row]
+        slips = ~trace.coordinates.in_increments[trace.run.row]
         if words.fault.any():
-            slips &= ~trace.with_words(words.is_unreadable)[trace.run.row]
+            slips &= ~trace.blocks.with_words(words.is_unreadable)[trace.run.row]
         inch_feed = (words.address == ord("F")) & ~words.has_point & (words.value > 0) & slips
-        inch_feed &= ((trace.units == Units.INCH) & (trace.feed_mode == FeedMode.PER_MINUTE))[trace.run.row]
+        inch_feed &= ((trace.lengths.units == Units.INCH) & (trace.feedrate.feed_mode == FeedMode.PER_MINUTE))[
+            trace.run.row
+        ]
         self._add(reported, inch_feed, section, np.zeros(count, bool))
-        self._add(reported, slips & self._radii_of_offsets, trace.program, np.zeros(int(trace.program[-1]) + 1, bool))
-        if trace.is_unpointed.any():
-            large, is_habit = trace.is_large_unpointed, trace.writes_no_points(section, count)
-            has_section = np.isin(trace.program, trace.program[trace.sections.enter])
+        self._add(
+            reported,
+            slips & self._radii_of_offsets,
+            trace.blocks.program,
+            np.zeros(int(trace.blocks.program[-1]) + 1, bool),
+        )
+        if trace.coordinates.is_unpointed.any():
+            large, is_habit = trace.coordinates.is_large_unpointed, trace.coordinates.writes_no_points(section, count)
+            has_section = np.isin(trace.blocks.program, trace.blocks.program[trace.mode.sections.enter])
             section_or_rest = np.where(has_section & (section < 0), count, section)
-            self._add(reported, slips & trace.is_unpointed & ~large, section, is_habit)
+            self._add(reported, slips & trace.coordinates.is_unpointed & ~large, section, is_habit)
             self._add(reported, slips & large, section_or_rest, np.append(is_habit, False))
         return reported if reported.any() else self._none
 
@@ -70,12 +77,12 @@ class Unpointed:
         """
         trace, start = self.trace, self.trace.text.words.start[index]
         executed = np.flatnonzero(trace.run.words.start == start)
-        if not self.slips[index] or not len(executed) or trace.is_large_unpointed[executed].any():
+        if not self.slips[index] or not len(executed) or trace.coordinates.is_large_unpointed[executed].any():
             return []
         if self.slips[index] == 1:
             return [index]
         own = self._sections == self._sections[trace.run.row[executed[0]]]
-        words = trace.is_unpointed & ~trace.is_large_unpointed & own[trace.run.row]
+        words = trace.coordinates.is_unpointed & ~trace.coordinates.is_large_unpointed & own[trace.run.row]
         at, _ = self._in_file(np.flatnonzero(words))
         found: list[int] = different(at).tolist()
         return found
@@ -85,9 +92,13 @@ class Unpointed:
         """Per executed word: R of a tool offset that G10 sets, too small to be meant in least increments."""
         trace, words = self.trace, self.trace.run.words
         kinds = trace.machine.g_codes.data_input_tool_offset
-        sets = trace.listed("data_input") & (np.isin(trace.word("L"), kinds) | ~trace.has("L")) & (trace.word("P") > 0)
+        sets = (
+            trace.blocks.listed("data_input")
+            & (np.isin(trace.blocks.word("L"), kinds) | ~trace.blocks.has("L"))
+            & (trace.blocks.word("P") > 0)
+        )
         is_small = ~words.has_point & (words.value != 0) & (np.abs(words.value) < MEANT_IN_INCREMENTS)
-        return np.asarray(trace.words_at(trace.word_indices("R")) & is_small & sets[trace.run.row])
+        return np.asarray(trace.blocks.words_at(trace.blocks.word_indices("R")) & is_small & sets[trace.run.row])
 
     @cached_property
     def _sections(self) -> Rows:
@@ -97,18 +108,20 @@ class Unpointed:
         """
         trace = self.trace
         takes_words = bool(trace.machine.polar.words_beside_switch)
-        column = np.where(trace.in_polar | (trace.enters & takes_words), trace.section, -1)
-        enter = trace.sections.enter
+        column = np.where(trace.mode.in_polar | (trace.mode.enters & takes_words), trace.mode.section, -1)
+        enter = trace.mode.sections.enter
         for addresses in (("X", "U"), trace.machine.polar.rotary_words):
-            rows = np.append(-1, np.flatnonzero(trace.uses_axes & trace.has(*addresses) & ~trace.in_polar))
+            rows = np.append(
+                -1, np.flatnonzero(trace.modal.uses_axes & trace.blocks.has(*addresses) & ~trace.mode.in_polar)
+            )
             last = rows[np.searchsorted(rows, enter) - 1]
-            own = (last >= 0) & (trace.program[last] == trace.program[enter])
+            own = (last >= 0) & (trace.blocks.program[last] == trace.blocks.program[enter])
             column[last[own]] = np.flatnonzero(own)
         return column
 
     def _add(self, reported: Rows, words: Mask, group: Rows, as_one: Mask) -> None:
         """Report executed words, those of a group of rows that counts as one at its first word, for all of them."""
-        index, own = self.trace.written_once(words, group)
+        index, own = self.trace.coordinates.written_once(words, group)
         count = np.where(as_one, np.bincount(own, minlength=len(as_one)), 1)
         at, found = self._in_file(index)
         own = own[found]

@@ -10,7 +10,17 @@ from polarcheck.checking.phrases.drawing import drawing as drawing
 from polarcheck.checking.phrases.offsets import called_tool
 from polarcheck.checking.phrases.offsets import offset as offset
 from polarcheck.checking.quantity import in_row
+from polarcheck.columns.axes import PlaneAxes
+from polarcheck.columns.blocks import ExecutedBlocks
+from polarcheck.columns.compensation import CutterCompensation
+from polarcheck.columns.lengths import Lengths
+from polarcheck.columns.mode import PolarMode
+from polarcheck.columns.offsets import ToolOffsets
+from polarcheck.columns.path import ProgrammedPath
+from polarcheck.columns.tools import CalledTools
+from polarcheck.columns.trace import Trace
 from polarcheck.errors import TooHardError
+from polarcheck.execution.run import Run
 from polarcheck.machines.machine import Machine
 from polarcheck.machines.modal import Motion, Side
 from polarcheck.table.coverage import Coverage
@@ -18,51 +28,50 @@ from polarcheck.table.fitting import Fitting
 from polarcheck.table.overcuts import Overcuts
 from polarcheck.table.slots import Slots
 from polarcheck.table.tool_center import ToolCenter
-from polarcheck.table.trace import Trace
 from polarcheck.table.uncompensated_cuts import UncompensatedCuts
 
 
-def side(trace: Trace, row: int) -> str:
+def side(compensation: CutterCompensation, row: int) -> str:
     """G41 or G42, whichever is in force."""
-    return f"G{trace.side[row]}"
+    return f"G{compensation.side[row]}"
 
 
-def side_in_force(trace: Trace, row: int) -> str:
+def side_in_force(lengths: Lengths, compensation: CutterCompensation, row: int) -> str:
     """G41 or G42, and a negative R, by which it is the other one."""
-    radius = float(trace.radius[row])
+    radius = float(compensation.radius[row])
     return (
-        f"{side(trace, row)} with the negative R {in_row(radius, trace, row):length}"
+        f"{side(compensation, row)} with the negative R {in_row(radius, lengths, row):length}"
         if radius < 0
-        else side(trace, row)
+        else side(compensation, row)
     )
 
 
-def remedy(trace: Trace, row: int) -> str:
+def remedy(lengths: Lengths, compensation: CutterCompensation, machine: Machine, row: int) -> str:
     """What to write for the cutter to be on the other side."""
-    other = "compensation_left" if trace.side[row] == Side.RIGHT else "compensation_right"
-    radius = float(trace.radius[row])
-    shown = f", or R {in_row(-radius, trace, row):length} in the tool offset" if radius < 0 else ""
-    return f"write {code_of(trace.machine, other)}{shown}"
+    other = "compensation_left" if compensation.side[row] == Side.RIGHT else "compensation_right"
+    radius = float(compensation.radius[row])
+    shown = f", or R {in_row(-radius, lengths, row):length} in the tool offset" if radius < 0 else ""
+    return f"write {code_of(machine, other)}{shown}"
 
 
-def before(trace: Trace, row: int) -> str:
+def before(compensation: CutterCompensation, row: int) -> str:
     """G41 or G42, whichever was in force before."""
-    return f"G{trace.side_before[row]}"
+    return f"G{compensation.side_before[row]}"
 
 
-def changed_by(trace: Trace, row: int) -> str:
+def changed_by(tools: CalledTools, run: Run, machine: Machine, row: int) -> str:
     """T0808, `T8 edge 2`, G10 or #2001."""
-    if row in trace.run.assigned:
-        return trace.run.assigned[row].name
-    if trace.calls_offset[row]:
-        return called_tool(trace, row)
-    return trace.machine.codes("data_input")[0]
+    if row in run.assigned:
+        return run.assigned[row].name
+    if tools.calls_offset[row]:
+        return called_tool(tools, row)
+    return machine.codes("data_input")[0]
 
 
-def has_nose(trace: Trace, row: int) -> str:
+def has_nose(blocks: ExecutedBlocks, offsets: ToolOffsets, run: Run, row: int) -> str:
     """Where the program has set the nose type of the offset in force: `is set to`, else `has`."""
-    setter = int(trace.nose_set_in[row])
-    return f"is set by {block_and_line(trace, setter)} to" if setter >= 0 else "has"
+    setter = int(offsets.nose_set_in[row])
+    return f"is set by {block_and_line(blocks, run, setter)} to" if setter >= 0 else "has"
 
 
 def allowed(machine: Machine) -> str:
@@ -70,14 +79,14 @@ def allowed(machine: Machine) -> str:
     return " or ".join(str(number) for number in machine.compensation.nose_types)
 
 
-def start_up(trace: Trace, row: int) -> int:
+def start_up(blocks: ExecutedBlocks, path: ProgrammedPath, row: int) -> int:
     """The line of the next move on the plane."""
-    return int(trace.line[row + int(np.argmax(trace.travels[row:]))])
+    return int(blocks.line[row + int(np.argmax(path.travels[row:]))])
 
 
-def misfit(trace: Trace, tool_center: ToolCenter, row: int, count: int) -> str:
+def misfit(lengths: Lengths, compensation: CutterCompensation, tool_center: ToolCenter, row: int, count: int) -> str:
     """Why the tool center runs backwards in a row, or in several for the same reason."""
-    radius = f"{in_row(abs(float(trace.radius[row])), trace, row):length}"
+    radius = f"{in_row(abs(float(compensation.radius[row])), lengths, row):length}"
     if not tool_center.interferes_by_rounding[row]:
         return f"the contour is too narrow or too short for R {radius}"
     others = f" and {count - 1} more" if count > 1 else ""
@@ -87,76 +96,84 @@ def misfit(trace: Trace, tool_center: ToolCenter, row: int, count: int) -> str:
     )
 
 
-def written_sense(trace: Trace, row: int) -> str:
+def written_sense(axes: PlaneAxes, machine: Machine, row: int) -> str:
     """G2 or G3, whichever is in force."""
-    return trace.machine.codes("arc_clockwise" if trace.motion[row] == Motion.CW else "arc_counterclockwise")[0]
+    return machine.codes("arc_clockwise" if axes.motion[row] == Motion.CW else "arc_counterclockwise")[0]
 
 
-def other_sense(trace: Trace, row: int) -> str:
+def other_sense(axes: PlaneAxes, machine: Machine, row: int) -> str:
     """The other one."""
-    return code_of(trace.machine, "arc_counterclockwise" if trace.motion[row] == Motion.CW else "arc_clockwise")
+    return code_of(machine, "arc_counterclockwise" if axes.motion[row] == Motion.CW else "arc_clockwise")
 
 
-def _along(trace: Trace, row: int, length: float, other: float) -> str:
+def _along(axes: PlaneAxes, lengths: Lengths, path: ProgrammedPath, row: int, length: float, other: float) -> str:
     """
     A way on the plane as the program writes it: along X on the diameter, else as it is; other: another way, from which
     it can be told.
     """
-    shown, beside = in_row(length, trace, row), in_row(other, trace, row)
-    start, end = trace.start[row], trace.end[row]
+    shown, beside = in_row(length, lengths, row), in_row(other, lengths, row)
+    start, end = path.start[row], path.end[row]
     if start.imag == end.imag and start != end and shown.diameter:
         return f"{shown.beside(beside, 'diameter')} in X on the diameter"
-    virtual = f" in {trace.virtual_axis_of(row)}" if start.real == end.real and start != end else ""
+    virtual = f" in {axes.virtual_axis_of(row)}" if start.real == end.real and start != end else ""
     return f"{shown.beside(beside, 'length')}{virtual}"
 
 
 def fault(trace: Trace, row: int) -> str:
     """What is wrong with a ramp that is shorter than R, or never comes."""
-    if not trace.travels[row]:
-        code = trace.machine.codes("compensation_off")[0] if trace.writes_cancel[row] else side(trace, row)
-        present = " that leads from the present position" if trace.moves_plane[row] else ""
+    if not trace.path.travels[row]:
+        code = (
+            trace.machine.codes("compensation_off")[0]
+            if trace.compensation.writes_cancel[row]
+            else side(trace.compensation, row)
+        )
+        present = " that leads from the present position" if trace.axes.moves_plane[row] else ""
         return f"is missing: no move on the plane{present} follows {code}"
-    radius = abs(float(trace.radius[row]))
-    shown = in_row(radius, trace, row)
-    length = float(trace.length[row])
-    moved, needed = _along(trace, row, length, radius), _along(trace, row, radius, length)
-    setter = int(trace.radius_set_in[row])
-    of_program = f", set by {block_and_line(trace, setter)}," if setter >= 0 else ""
-    return f"moves {moved}; with R {shown.beside(in_row(length, trace, row), 'length')}{of_program} it needs {needed}"
+    radius = abs(float(trace.compensation.radius[row]))
+    shown = in_row(radius, trace.lengths, row)
+    length = float(trace.path.length[row])
+    moved, needed = (
+        _along(trace.axes, trace.lengths, trace.path, row, length, radius),
+        _along(trace.axes, trace.lengths, trace.path, row, radius, length),
+    )
+    setter = int(trace.offsets.radius_set_in[row])
+    of_program = f", set by {block_and_line(trace.blocks, trace.run, setter)}," if setter >= 0 else ""
+    given = shown.beside(in_row(length, trace.lengths, row), "length")
+    return f"moves {moved}; with R {given}{of_program} it needs {needed}"
 
 
-def why(trace: Trace, row: int) -> str:
+def why(blocks: ExecutedBlocks, mode: PolarMode, path: ProgrammedPath, machine: Machine, row: int) -> str:
     """What keeps the control from knowing the move after this one in time."""
     following = row + 1
-    while following < len(trace) and trace.in_polar[following] and not trace.length[following] > 0:
+    while following < len(blocks) and mode.in_polar[following] and not path.length[following] > 0:
         following += 1
-    stops = trace.codes(*trace.machine.m_codes.stops_reading_ahead)
+    stops = blocks.codes(*machine.m_codes.stops_reading_ahead)
     for at in range(row, following):
         if stops[at]:
-            return f"line {trace.line[at]} stops reading ahead"
+            return f"line {blocks.line[at]} stops reading ahead"
     count = following - row - 1
-    least = trace.machine.compensation.read_ahead - 2
-    blocks = f"{count} blocks" if count > 1 else "a block"
-    return f"{blocks} without a move on the plane follow{'' if count > 1 else 's'}, this control reads past {least}"
+    least = machine.compensation.read_ahead - 2
+    many = f"{count} blocks" if count > 1 else "a block"
+    return f"{many} without a move on the plane follow{'' if count > 1 else 's'}, this control reads past {least}"
 
 
-def place(trace: Trace, overcuts: Overcuts, row: int) -> str:
+def place(blocks: ExecutedBlocks, axes: PlaneAxes, lengths: Lengths, overcuts: Overcuts, row: int) -> str:
     """Where the row cuts deepest, and into which line."""
-    return _contour_at(trace, row, *overcuts.cuts.deepest(row))
+    return _contour_at(blocks, axes, lengths, row, *overcuts.cuts.deepest(row))
 
 
-def swept(trace: Trace, overcuts: Overcuts, slots: Slots, row: int) -> str:
+def swept(blocks: ExecutedBlocks, axes: PlaneAxes, lengths: Lengths, overcuts: Overcuts, slots: Slots, row: int) -> str:
     """The same for the ramp in the row."""
     own = overcuts.sweep_depth[row] >= slots.sweep_depth[row]
-    return _contour_at(trace, row, *(overcuts if own else slots).sweeps.deepest(row))
+    return _contour_at(blocks, axes, lengths, row, *(overcuts if own else slots).sweeps.deepest(row))
 
 
-def _contour_at(trace: Trace, row: int, into: int, place: complex) -> str:
+def _contour_at(blocks: ExecutedBlocks, axes: PlaneAxes, lengths: Lengths, row: int, into: int, place: complex) -> str:
     """A place on the contour, as the program would write it, and the line of the contour."""
-    return f"the contour of line {int(trace.line[into])} at {_point(trace, place, row)}"
+    return f"the contour of line {int(blocks.line[into])} at {_point(axes, lengths, place, row)}"
 
 
-def way_out(trace: Trace, fitting: Fitting, row: int) -> str:
+def way_out(lengths: Lengths, fitting: Fitting, row: int) -> str:
     """What to write where the contour is cut into; nothing where finding that out would take too long."""
     try:
         never, largest = bool(fitting.never[row]), float(fitting.radius[row])
@@ -166,85 +183,101 @@ def way_out(trace: Trace, fitting: Fitting, row: int) -> str:
         return "; a smaller one does, too: look for a wrong point of the contour"
     if largest != largest:  # NaN
         return ""
-    shown = in_row(int(largest * 1000) / 1000, trace, row)
+    shown = in_row(int(largest * 1000) / 1000, lengths, row)
     return f"; the contour has room for R {shown:length} at most"
 
 
-def opposite(trace: Trace, slots: Slots, row: int) -> str:
+def opposite(blocks: ExecutedBlocks, axes: PlaneAxes, lengths: Lengths, slots: Slots, row: int) -> str:
     """Where the row cuts deepest into the contour of another loop."""
-    return _contour_at(trace, row, *slots.cuts.deepest(row))
+    return _contour_at(blocks, axes, lengths, row, *slots.cuts.deepest(row))
 
 
-def room(trace: Trace, slots: Slots, row: int) -> str:
+def room(blocks: ExecutedBlocks, lengths: Lengths, slots: Slots, row: int) -> str:
     """How much room the contour of another loop leaves beside the row."""
     into, _ = slots.cuts.deepest(row)
+    line, other_line = int(blocks.line[row]), int(blocks.line[into])
     width, across = slots.width(row), float(slots.diameter[row])
     if width >= across:
-        return f"line {int(trace.line[into])} leaves no room to go round the corner of line {int(trace.line[row])}"
-    shown = in_row(width, trace, row).beside(in_row(across, trace, row), "length")
-    return f"lines {int(trace.line[row])} and {int(trace.line[into])} leave {shown}"
+        return f"line {other_line} leaves no room to go round the corner of line {line}"
+    shown = in_row(width, lengths, row).beside(in_row(across, lengths, row), "length")
+    return f"lines {line} and {other_line} leave {shown}"
 
 
-def smaller(trace: Trace, slots: Slots, row: int) -> str:
+def smaller(lengths: Lengths, slots: Slots, row: int) -> str:
     """The cutter to take instead."""
     width, across = slots.width(row), float(slots.diameter[row])
     if width >= across:
         return "a smaller cutter"
-    return f"a cutter of {in_row(width, trace, row).beside(in_row(across, trace, row), 'length')} at most"
+    return f"a cutter of {in_row(width, lengths, row).beside(in_row(across, lengths, row), 'length')} at most"
 
 
-def bare(trace: Trace, row: int) -> str:
+def bare(axes: PlaneAxes, machine: Machine, row: int) -> str:
     """The code of a move without compensation."""
     key = {Motion.RAPID: "rapid", Motion.LINE: "line", Motion.CW: "arc_clockwise", Motion.CCW: "arc_counterclockwise"}
-    return f"{trace.machine.codes(key[Motion(int(trace.motion[row]))])[0]} without compensation"
+    return f"{machine.codes(key[Motion(int(axes.motion[row]))])[0]} without compensation"
 
 
-def goes(trace: Trace, uncompensated_cuts: UncompensatedCuts, row: int) -> str:
+def goes(
+    mode: PolarMode,
+    lengths: Lengths,
+    path: ProgrammedPath,
+    compensation: CutterCompensation,
+    uncompensated_cuts: UncompensatedCuts,
+    row: int,
+) -> str:
     """How far a move without compensation goes into the part."""
-    depth, radius = float(uncompensated_cuts.depth[row]), abs(float(trace.radius[row]))
+    depth, radius = float(uncompensated_cuts.depth[row]), abs(float(compensation.radius[row]))
     if depth >= radius:
-        return "leads through" if trace.travels[row] or not trace.in_polar[row] else "goes down into"
-    return f"goes {in_row(depth, trace, row):length} deep into"
+        return "leads through" if path.travels[row] or not mode.in_polar[row] else "goes down into"
+    return f"goes {in_row(depth, lengths, row):length} deep into"
 
 
-def cut_part(trace: Trace, uncompensated_cuts: UncompensatedCuts, row: int) -> str:
+def cut_part(
+    blocks: ExecutedBlocks,
+    axes: PlaneAxes,
+    lengths: Lengths,
+    path: ProgrammedPath,
+    uncompensated_cuts: UncompensatedCuts,
+    row: int,
+) -> str:
     """The part that a move without compensation cuts, and where."""
     into, place = uncompensated_cuts.cuts.deepest(row)
-    at = _point(trace, place, row)
-    z = f"{in_row(float(trace.z[row]), trace, row):length}".split()[0]
-    return f"the part that the contour of line {int(trace.line[into])} leaves, at {at} Z{z}"
+    at = _point(axes, lengths, place, row)
+    z = f"{in_row(float(path.z[row]), lengths, row):length}".split()[0]
+    return f"the part that the contour of line {int(blocks.line[into])} leaves, at {at} Z{z}"
 
 
-def contour_end(trace: Trace, row: int) -> str:
+def contour_end(axes: PlaneAxes, lengths: Lengths, path: ProgrammedPath, row: int) -> str:
     """The point to which the row leads."""
-    return _point(trace, complex(trace.end[row]), row)
+    return _point(axes, lengths, complex(path.end[row]), row)
 
 
-def contour_start(trace: Trace, coverage: Coverage, row: int) -> str:
+def contour_start(axes: PlaneAxes, lengths: Lengths, coverage: Coverage, row: int) -> str:
     """The point at which the contour that ends in the row began."""
-    return _point(trace, complex(coverage.begins[row]), row)
+    return _point(axes, lengths, complex(coverage.begins[row]), row)
 
 
-def left(trace: Trace, coverage: Coverage, row: int) -> str:
+def left(axes: PlaneAxes, lengths: Lengths, compensation: CutterCompensation, coverage: Coverage, row: int) -> str:
     """What is left standing beside the row, and what to write."""
     ribs, strips = coverage.ribs, coverage.strips
-    radius = abs(float(trace.radius_of_move[row]))
+    radius = abs(float(compensation.radius_of_move[row]))
     if strips.height[row] > ribs.height[row]:
-        thickness, place = float(strips.height[row]), _point(trace, complex(strips.place[row]), row)
-        apart, most = (in_row(length, trace, row) for length in (2 * radius + thickness, 2 * radius))
+        thickness, place = float(strips.height[row]), _point(axes, lengths, complex(strips.place[row]), row)
+        apart, most = (in_row(length, lengths, row) for length in (2 * radius + thickness, 2 * radius))
         return (
-            f"a strip {in_row(thickness, trace, row):length} thick stays at {place} between passes {apart:length} "
-            f"apart: with R {in_row(radius, trace, row):length} write passes that are {most:length} apart at most"
+            f"a strip {in_row(thickness, lengths, row):length} thick stays at {place} between passes {apart:length} "
+            f"apart: with R {in_row(radius, lengths, row):length} write passes that are {most:length} apart at most"
         )
-    height, width = (in_row(float(column[row]), trace, row) for column in (ribs.height, ribs.width))
+    height, width = (in_row(float(column[row]), lengths, row) for column in (ribs.height, ribs.width))
+    place = _point(axes, lengths, complex(ribs.place[row]), row)
     more = "more than " if ribs.height[row] >= 2 * radius else ""
     return (
-        f"a rib {more}{height:length} high stays on the contour at {_point(trace, complex(ribs.place[row]), row)}, "
+        f"a rib {more}{height:length} high stays on the contour at {place}, "
         f"where no tool touches it: let the contour go on {width:length} farther beyond its start before the tool "
         "leaves it"
     )
 
 
-def _point(trace: Trace, point: complex, row: int) -> str:
-    axis = trace.virtual_axis_of(row)
-    return f"{in_row(point, trace, row):point}".replace("C", f"{axis}=" if len(axis) > 1 else axis)
+def _point(axes: PlaneAxes, lengths: Lengths, point: complex, row: int) -> str:
+    axis = axes.virtual_axis_of(row)
+    return f"{in_row(point, lengths, row):point}".replace("C", f"{axis}=" if len(axis) > 1 else axis)

@@ -6,9 +6,10 @@ import math
 
 from polarcheck.checking.phrases.common import short
 from polarcheck.checking.quantity import in_row
+from polarcheck.columns.blocks import ExecutedBlocks
+from polarcheck.columns.lengths import Lengths
 from polarcheck.machines.modal import MM_PER_INCH
 from polarcheck.table.deviations import Comparison, Deviations, Fit, title_of
-from polarcheck.table.trace import Trace
 
 #: A turn below this is none [rad].
 _NO_TURN = 1e-5
@@ -21,28 +22,28 @@ def drawing(deviations: Deviations, row: int) -> str:
     return short(deviations.of_row(row).title)
 
 
-def deviation(trace: Trace, deviations: Deviations, row: int) -> str:
+def deviation(lengths: Lengths, deviations: Deviations, row: int) -> str:
     """How the part of a row differs from what it should be, where, and how it would fit."""
-    return _deviation(trace, deviations.of_row(row))
+    return _deviation(lengths, deviations.of_row(row))
 
 
-def told(trace: Trace, one: Comparison) -> str:
+def told(blocks: ExecutedBlocks, lengths: Lengths, one: Comparison) -> str:
     """A comparison in words, in the units of the program; also one that agrees."""
     title, found = short(one.title), one.difference
-    largest, tolerance = in_row(found.largest, trace, one.row), in_row(one.tolerance, trace, one.row)
+    largest, tolerance = in_row(found.largest, lengths, one.row), in_row(one.tolerance, lengths, one.row)
     if not one.agrees:
         by = f"by {largest.beside(tolerance, 'length')}, {tolerance:length} is allowed"
-        return f"differs from {title} {by}: {_deviation(trace, one)}"
+        return f"differs from {title} {by}: {_deviation(lengths, one)}"
     least = _LEAST[largest.inch]
-    shown = in_row(max(found.largest, least), trace, one.row)
-    where = f", largest at {_where(trace, one, found.at)} by line {int(trace.line[one.row])}"
+    shown = in_row(max(found.largest, least), lengths, one.row)
+    where = f", largest at {_where(lengths, one, found.at)} by line {int(blocks.line[one.row])}"
     return (
         f"agrees with {title} within {shown:length} (tolerance {tolerance:length})"
         f"{where if found.largest > least else ''}"
     )
 
 
-def _deviation(trace: Trace, one: Comparison) -> str:
+def _deviation(lengths: Lengths, one: Comparison) -> str:
     found = one.difference
     if one.is_other_way_round:
         does, should = ("a boss", "a pocket") if one.part.is_pocket else ("a pocket", "a boss")
@@ -51,15 +52,15 @@ def _deviation(trace: Trace, one: Comparison) -> str:
     (_, worst, what), (size, place, other) = sorted(sides, key=lambda side: -side[0])
     more = ""
     if size > one.tolerance:
-        more = f", and {in_row(size, trace, one.row):length} {other} at {_where(trace, one, place)}"
-    return f"{what} at {_where(trace, one, worst)}{more}{_fit(trace, one, one.fit)}"
+        more = f", and {in_row(size, lengths, one.row):length} {other} at {_where(lengths, one, place)}"
+    return f"{what} at {_where(lengths, one, worst)}{more}{_fit(lengths, one, one.fit)}"
 
 
-def _where(trace: Trace, one: Comparison, point: complex) -> str:
-    return f"{in_row(point, trace, one.row):point}"
+def _where(lengths: Lengths, one: Comparison, point: complex) -> str:
+    return f"{in_row(point, lengths, one.row):point}"
 
 
-def _fit(trace: Trace, one: Comparison, fit: Fit | None) -> str:
+def _fit(lengths: Lengths, one: Comparison, fit: Fit | None) -> str:
     """How the drawing would have to be placed to fit."""
     if fit is None:
         return ""
@@ -68,7 +69,7 @@ def _fit(trace: Trace, one: Comparison, fit: Fit | None) -> str:
         ways.append(f"turned by {math.degrees(fit.turned):.2f}".rstrip("0").rstrip(".") + " deg")
     if fit.factor != 1:
         ways.append(f"with {'twice' if fit.factor > 1 else 'half of'} its X, as diameter and radius are mixed up")
-    return f". The part would fit {' and '.join(ways)}: within {in_row(fit.largest, trace, one.row):length}"
+    return f". The part would fit {' and '.join(ways)}: within {in_row(fit.largest, lengths, one.row):length}"
 
 
 def compared_with(deviations: Deviations, number: int) -> str:

@@ -7,6 +7,9 @@ import numpy as np
 from polarcheck.checking.phrases.common import code_of, executed_word
 from polarcheck.checking.quantity import in_row
 from polarcheck.checking.remedies import option_or_place
+from polarcheck.columns.blocks import ExecutedBlocks
+from polarcheck.columns.lengths import Lengths
+from polarcheck.columns.trace import Trace
 from polarcheck.geometry.tolerances import SHARE
 from polarcheck.machines.machine import Machine
 from polarcheck.machines.modal import FeedMode
@@ -14,29 +17,30 @@ from polarcheck.table.center import Center
 from polarcheck.table.feed_ranges import FeedRanges
 from polarcheck.table.feeds import Feeds
 from polarcheck.table.tool_center import ToolCenter
-from polarcheck.table.trace import Trace
 
 
-def recommended(trace: Trace, row: int) -> str:
+def recommended(lengths: Lengths, machine: Machine, row: int) -> str:
     """The ranges of F that the builder recommends."""
-    feeds = trace.machine.feed
+    feeds = machine.feed
     ranges = (
         (feeds.cutting_minimum, feeds.cutting_maximum, "cutting"),
         (feeds.positioning_minimum, feeds.positioning_maximum, "positioning"),
     )
-    return ", ".join(f"{_range(trace, row, least, most)} for {what}" for least, most, what in ranges if least == least)
+    return ", ".join(
+        f"{_range(lengths, row, least, most)} for {what}" for least, most, what in ranges if least == least
+    )
 
 
-def _range(trace: Trace, row: int, least: float, most: float) -> str:
+def _range(lengths: Lengths, row: int, least: float, most: float) -> str:
     """Rounded to what lies within."""
-    shown = in_row(least, trace, row)
+    shown = in_row(least, lengths, row)
     places = 10.0 ** (4 if shown.inch else 3)
     low = np.ceil(shown.length(least) * places * (1 - SHARE)) / places
     high = np.floor(shown.length(most) * places * (1 + SHARE)) / places
     return f"{low:.10g} to {high:.10g} {shown.unit}/min"
 
 
-def against_ranges(trace: Trace, feed_ranges: FeedRanges, row: int) -> str:
+def against_ranges(blocks: ExecutedBlocks, lengths: Lengths, feed_ranges: FeedRanges, row: int) -> str:
     """Which of the ranges F is outside of, and why the move is taken to cut."""
     has_both = len(feed_ranges.known_limits) > 2
     if feed_ranges.too_low[row] or feed_ranges.too_high[row]:
@@ -46,15 +50,15 @@ def against_ranges(trace: Trace, feed_ranges: FeedRanges, row: int) -> str:
         return "between the two ranges"
     fast = "a feed for positioning" if has_both else "above the range"
     where = "between the two ranges" if feed_ranges.between[row] else fast
-    return f"{where}, and this move cuts: {_why_it_cuts(trace, feed_ranges, row)}"
+    return f"{where}, and this move cuts: {_why_it_cuts(blocks, lengths, feed_ranges, row)}"
 
 
-def _why_it_cuts(trace: Trace, feed_ranges: FeedRanges, row: int) -> str:
+def _why_it_cuts(blocks: ExecutedBlocks, lengths: Lengths, feed_ranges: FeedRanges, row: int) -> str:
     if feed_ranges.knows_stock[row]:
-        return f"it leads into the stock of {in_row(float(trace.stock_diameter[row]), trace, row):length}"
+        return f"it leads into the stock of {in_row(float(lengths.stock_diameter[row]), lengths, row):length}"
     if feed_ranges.is_of_fast_loop[row]:
         return "no move along this contour is slower"
-    line = int(trace.line[feed_ranges.slow_row(row)])
+    line = int(blocks.line[feed_ranges.slow_row(row)])
     return f"it is as near to the center as that of line {line}"
 
 
@@ -67,18 +71,22 @@ def clamps(machine: Machine) -> str:
 
 def feed_word(trace: Trace, row: int) -> str:
     """The F word in force in a row, its line where that is another, and at what it is clamped."""
-    written, taken = _feed_word(trace, row), float(trace.feed[row])
-    return f"{written} clamped at {in_row(taken, trace, row):feed}" if taken < trace.programmed_feed[row] else written
+    written, taken = _feed_word(trace, row), float(trace.feedrate.feed[row])
+    return (
+        f"{written} clamped at {in_row(taken, trace.lengths, row):feed}"
+        if taken < trace.feedrate.programmed_feed[row]
+        else written
+    )
 
 
 def _feed_word(trace: Trace, row: int) -> str:
-    words = trace.word_indices("F")
-    at = words[trace.run.words.start[words] == trace.feed_word[row]]
+    words = trace.blocks.word_indices("F")
+    at = words[trace.run.words.start[words] == trace.feedrate.feed_word[row]]
     if not len(at):
-        return f"F {in_row(float(trace.programmed_feed[row]), trace, row):feed}"
-    line = int(trace.line[trace.run.row[at[0]]])
-    written = executed_word(trace, int(at[0]))
-    return written if line == trace.line[row] else f"{written} of line {line}"
+        return f"F {in_row(float(trace.feedrate.programmed_feed[row]), trace.lengths, row):feed}"
+    line = int(trace.blocks.line[trace.run.row[at[0]]])
+    written = executed_word(trace.run, int(at[0]))
+    return written if line == trace.blocks.line[row] else f"{written} of line {line}"
 
 
 def left_over(trace: Trace, feeds: Feeds, row: int) -> str:
@@ -86,35 +94,37 @@ def left_over(trace: Trace, feeds: Feeds, row: int) -> str:
     written = feed_word(trace, row)
     if feeds.is_left_per_revolution[row]:
         return f"{written} was written for feed per revolution and is still in force"
-    is_asked = trace.entered_per_revolution[row] or trace.modal_feed_mode[row] == FeedMode.PER_REVOLUTION
-    if is_asked and trace.takes_over_per_minute_only:
+    is_asked = (
+        trace.feedrate.entered_per_revolution[row] or trace.feedrate.modal_feed_mode[row] == FeedMode.PER_REVOLUTION
+    )
+    if is_asked and trace.feedrate.takes_over_per_minute_only:
         return f"{written} is per minute, as every F of the mode on this control, whatever code is in force"
     return f"{written} is per minute now, and as small as one per revolution"
 
 
-def verdict(trace: Trace, tool_center: ToolCenter, row: int) -> str:
+def verdict(lengths: Lengths, machine: Machine, tool_center: ToolCenter, row: int) -> str:
     """What the machine allows of C, as far as the profile knows."""
-    limits = trace.machine.limits
+    limits = machine.limits
     if np.isnan(limits.c_feed):
         turns, most = float(tool_center.c_feed[row]) / 360, limits.c_feed_suspicious / 360
-        known = f"no {trace.machine.polar.rotary_address} axis is known to cut with more than {most:.0f}"
+        known = f"no {machine.polar.rotary_address} axis is known to cut with more than {most:.0f}"
         return f"which is {turns:.0f} turns a minute, and {known}"
     if tool_center.is_at_c_feed_limit[row]:
-        return f"the limit of {trace.machine.title}, below which it must stay"
-    rate, limit = (in_row(float(value), trace, row) for value in (tool_center.c_feed[row], limits.c_feed))
-    allows = f"{trace.machine.title} allows {limit.beside(rate, 'whole')}"
+        return f"the limit of {machine.title}, below which it must stay"
+    rate, limit = (in_row(float(value), lengths, row) for value in (tool_center.c_feed[row], limits.c_feed))
+    allows = f"{machine.title} allows {limit.beside(rate, 'whole')}"
     if not limits.automatic_override:
         return allows
-    slowed = in_row(float(tool_center.true_feed[row]), trace, row)
+    slowed = in_row(float(tool_center.true_feed[row]), lengths, row)
     return f"{allows} and slows the feed down to {tool_center.override[row]:.2g} %, {slowed:highest}"
 
 
-def advice(trace: Trace, tool_center: ToolCenter, row: int, count: int) -> str:
+def advice(lengths: Lengths, machine: Machine, tool_center: ToolCenter, row: int, count: int) -> str:
     """The highest F, or what to give to learn it."""
     where = (f"for its {count} blocks" if count > 1 else "here") + _on_pass(tool_center, row)
-    if np.isnan(trace.machine.limits.c_feed):
-        return f"{option_or_place(trace.machine, 'limits.c_feed')} would give the highest F {where}"
-    return f"highest F {where}: {in_row(float(tool_center.feed_allowed[row]), trace, row):below}"
+    if np.isnan(machine.limits.c_feed):
+        return f"{option_or_place(machine, 'limits.c_feed')} would give the highest F {where}"
+    return f"highest F {where}: {in_row(float(tool_center.feed_allowed[row]), lengths, row):below}"
 
 
 def _on_pass(tool_center: ToolCenter, row: int) -> str:
@@ -122,14 +132,18 @@ def _on_pass(tool_center: ToolCenter, row: int) -> str:
     moves = tool_center.moves
     at = np.flatnonzero(moves.row == row)
     allowance = float(moves.allowance[at[np.argmax(moves.c_feed[at])]])
-    return f", on the pass {in_row(allowance, tool_center.trace, row):length} off the contour" if allowance > 0 else ""
+    return (
+        f", on the pass {in_row(allowance, tool_center.trace.lengths, row):length} off the contour"
+        if allowance > 0
+        else ""
+    )
 
 
-def meeting(trace: Trace, center: Center, tool_center: ToolCenter, row: int) -> str:
+def meeting(lengths: Lengths, machine: Machine, center: Center, tool_center: ToolCenter, row: int) -> str:
     """How the tool center meets the center of C in a row that does."""
-    moves, stops, least = tool_center.moves, center.stops_at_center, trace.least_step[row]
+    moves, stops, least = tool_center.moves, center.stops_at_center, lengths.least_step[row]
     at = np.flatnonzero((moves.row == row) & (stops | (moves.nearest < least)))[-1]
-    axis = trace.machine.polar.rotary_address
+    axis = machine.polar.rotary_address
     if stops[at]:
         return f"stops at the center of the {axis} axis, where {axis} has no angle"
     if abs(moves.start[at]) < least:

@@ -7,10 +7,14 @@ import numpy as np
 from polarcheck.checking.other_machine import OtherMachine
 from polarcheck.checking.phrases.common import linear
 from polarcheck.checking.quantity import in_row
+from polarcheck.columns.axes import PlaneAxes
+from polarcheck.columns.lengths import Lengths
+from polarcheck.columns.mode import PolarMode
+from polarcheck.execution.run import Run
 from polarcheck.geometry.tolerances import ROUNDING
+from polarcheck.machines.machine import Machine
 from polarcheck.machines.modal import MM_PER_INCH, Units
 from polarcheck.table.arcs import Arcs
-from polarcheck.table.trace import Trace
 from polarcheck.table.travel import Travel
 from polarcheck.table.unpointed import Unpointed
 
@@ -18,44 +22,44 @@ from polarcheck.table.unpointed import Unpointed
 _FEED_INCREMENT_INCH = 0.01
 
 
-def least_radius(trace: Trace, arcs: Arcs, row: int) -> str:
+def least_radius(lengths: Lengths, arcs: Arcs, row: int) -> str:
     """The smallest R that reaches from start to end, rounded up to what the program can write."""
-    inch = trace.units[row] == Units.INCH
+    inch = lengths.units[row] == Units.INCH
     least, places = float(arcs.chord[row]) / (2 * MM_PER_INCH if inch else 2), 4 if inch else 3
     text = f"{np.ceil(least * 10**places - 1e-6) / 10**places:.{places}f}".rstrip("0").rstrip(".")
     return f"{text} {'inch' if inch else 'mm'}"
 
 
-def center(trace: Trace, row: int) -> str:
+def center(axes: PlaneAxes, row: int) -> str:
     """`I along X and J along C`."""
-    along, across = trace.center_words(row)
-    return f"{along} along {linear(trace, row)} and {across} along {trace.virtual_axis_of(row)}"
+    along, across = axes.center_words(row)
+    return f"{along} along {linear(axes, row)} and {across} along {axes.virtual_axis_of(row)}"
 
 
-def reading(trace: Trace, row: int) -> str:
+def reading(lengths: Lengths, row: int) -> str:
     """What X is in a row."""
-    return "diameter" if trace.x_factor[row] < 1 else "radius"
+    return "diameter" if lengths.x_factor[row] < 1 else "radius"
 
 
-def written_for(trace: Trace, other_machine: OtherMachine, row: int) -> str:
+def written_for(lengths: Lengths, other_machine: OtherMachine, row: int) -> str:
     """The machines that the program may be for; where there is none, what to write."""
-    return other_machine.text or f"; write X as a {reading(trace, row)}"
+    return other_machine.text or f"; write X as a {reading(lengths, row)}"
 
 
-def other(trace: Trace, row: int) -> str:
+def other(lengths: Lengths, row: int) -> str:
     """What X is not."""
-    return "radius" if trace.x_factor[row] < 1 else "diameter"
+    return "radius" if lengths.x_factor[row] < 1 else "diameter"
 
 
-def taken_as(trace: Trace, unpointed: Unpointed, index: int) -> str:
+def taken_as(mode: PolarMode, lengths: Lengths, run: Run, machine: Machine, unpointed: Unpointed, index: int) -> str:
     """What the control takes a word of the file as, and how many more there are."""
-    table, control = trace.text.words, trace.machine.control
-    row = int(np.flatnonzero(trace.run.block == table.block[index])[0])
+    table, control = run.text.words, machine.control
+    row = int(np.flatnonzero(run.block == table.block[index])[0])
     address, value = chr(int(table.address[index])), float(table.value[index])
-    inch = bool(trace.units[row] == Units.INCH)
+    inch = bool(lengths.units[row] == Units.INCH)
     if address == "F":
         return f"{value * _FEED_INCREMENT_INCH:g} inch/min"
-    is_angle = address in "CH" and not trace.in_polar[row]
+    is_angle = address in "CH" and not mode.in_polar[row]
     least = control.least_increment_inch if inch and not is_angle else control.least_increment
     unit = "deg" if is_angle else "inch" if inch else "mm"
     shown = f"{value * least:.4f}".rstrip("0").rstrip(".")
@@ -71,9 +75,9 @@ def _others(unpointed: Unpointed, index: int) -> str:
     return f"; {more} more coordinates of this section have none" if more > 0 else ""
 
 
-def travel(trace: Trace, travel: Travel, row: int) -> str:
+def travel(lengths: Lengths, machine: Machine, travel: Travel, row: int) -> str:
     """Where a row goes beyond the travel, and where that ends."""
-    limits = trace.machine.limits
+    limits = machine.limits
     ends = (
         ("X", "diameter", float(travel.most_x[row]), limits.x_maximum, 1),
         ("X", "diameter", float(travel.least_x[row]), limits.x_minimum, -1),
@@ -82,6 +86,6 @@ def travel(trace: Trace, travel: Travel, row: int) -> str:
     )
     for axis, form, value, limit, sign in ends:
         if np.isfinite(value) and sign * value > sign * limit + ROUNDING:
-            goes, ends_at = (in_row(length, trace, row) for length in (value, limit))
+            goes, ends_at = (in_row(length, lengths, row) for length in (value, limit))
             return f"{axis} would go to {goes.beside(ends_at, form)}, its travel ends at {ends_at.beside(goes, form)}"
     return ""

@@ -5,47 +5,47 @@ from __future__ import annotations
 import re
 
 from polarcheck.checking.phrases.common import short
+from polarcheck.columns.tools import CalledTools
 from polarcheck.machines.machine import Machine
-from polarcheck.table.trace import Trace
 
 _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
 _BARE_ARGUMENT = re.compile(r"[A-Za-z0-9_./+-]+")
 
 
-def called_tool(trace: Trace, row: int) -> str:
+def called_tool(tools: CalledTools, row: int) -> str:
     """The tool and the offset in force, as the program calls them: T0808, or `T MILL_8 edge 1`."""
-    number = int(trace.offset_number[row])
-    tool = int(trace.tool[row])
-    if not trace.has_edges[row]:
+    number = int(tools.offset_number[row])
+    tool = int(tools.tool[row])
+    if not tools.has_edges[row]:
         return f"T{tool:02d}{number:02d}"
-    found = trace.edge_of(number)
-    return f"{_tool(trace, trace.tool_name(tool) if tool else '')} edge {found[1] if found else 0}"
+    found = tools.edge_of(number)
+    return f"{_tool(tools.tool_name(tool) if tool else '')} edge {found[1] if found else 0}"
 
 
-def _tool(trace: Trace, name: str) -> str:
+def _tool(name: str) -> str:
     return f"T{name}" if name.isdecimal() else f"T {short(name)}" if name else "the tool called before"
 
 
-def offset(trace: Trace, row: int) -> int | str:
+def offset(tools: CalledTools, row: int) -> int | str:
     """The offset in force, for `of offset 8`, `of offset MILL_8/1`."""
-    return shown_offset(trace, int(trace.offset_number[row]))
+    return shown_offset(tools, int(tools.offset_number[row]))
 
 
-def shown_offset(trace: Trace, number: int) -> int | str:
+def shown_offset(tools: CalledTools, number: int) -> int | str:
     """An offset number as it is called: 8, or MILL_8/1."""
-    key = key_of(trace, number)
+    key = key_of(tools, number)
     return short(key) if isinstance(key, str) else number
 
 
-def key_of(trace: Trace, number: int) -> int | str | None:
+def key_of(tools: CalledTools, number: int) -> int | str | None:
     """An offset as reports hold it: its number, `MILL_8/1`, or None for none."""
-    found = trace.edge_of(number)
+    found = tools.edge_of(number)
     return (number or None) if found is None else f"{found[0]}/{found[1]}"
 
 
-def option(trace: Trace, row: int, key: str) -> str:
+def option(tools: CalledTools, row: int, key: str) -> str:
     """The option that gives a value of the offset in force: `--tool 8:radius=...`, as a shell takes it."""
-    name = str(key_of(trace, int(trace.offset_number[row])))
+    name = str(key_of(tools, int(tools.offset_number[row])))
     if _BARE_ARGUMENT.fullmatch(name):
         return f"--tool {name}:{key}=..."
     import shlex
@@ -53,14 +53,14 @@ def option(trace: Trace, row: int, key: str) -> str:
     return f"--tool {shlex.quote(f'{name}:{key}=...')}"
 
 
-def to_give(trace: Trace, row: int, key: str) -> str:
+def to_give(tools: CalledTools, machine: Machine, row: int, key: str) -> str:
     """What to give where a value of the offset in force is not known."""
-    number = int(trace.offset_number[row])
-    if not number or not trace.offset_key(number):
-        return f"call {example(trace.machine)} before it"
-    name = str(key_of(trace, number))
+    number = int(tools.offset_number[row])
+    if not number or not tools.offset_key(number):
+        return f"call {example(machine)} before it"
+    name = str(key_of(tools, number))
     table = name if _BARE_KEY.fullmatch(name) else '"' + name.replace("\\", "\\\\") + '"'
-    return f"give {option(trace, row, key)} or [tools.{table}] {key} in polarcheck.toml"
+    return f"give {option(tools, row, key)} or [tools.{table}] {key} in polarcheck.toml"
 
 
 def example(machine: Machine) -> str:

@@ -11,6 +11,13 @@ from polarcheck.checking.phrases.common import codes, executed_word, linear, out
 from polarcheck.checking.places import block_in_line
 from polarcheck.checking.quantity import in_row
 from polarcheck.checking.remedies import place
+from polarcheck.columns.axes import PlaneAxes
+from polarcheck.columns.blocks import ExecutedBlocks
+from polarcheck.columns.compensation import CutterCompensation
+from polarcheck.columns.lengths import Lengths
+from polarcheck.columns.modal import ModalStates
+from polarcheck.columns.mode import PolarMode
+from polarcheck.execution.run import Run
 from polarcheck.machines.axes import NOT_NAMED, listed
 from polarcheck.machines.codes import spelled
 from polarcheck.machines.machine import Machine
@@ -22,7 +29,6 @@ from polarcheck.table.infeed import Infeed
 from polarcheck.table.other_mode import OtherMode
 from polarcheck.table.procedure import Procedure
 from polarcheck.table.switch_words import SwitchWords
-from polarcheck.table.trace import Trace
 
 #: What the codes of a list of G-code system B are in system A, and what stands for them there.
 _IN_SYSTEM_A = {
@@ -47,20 +53,20 @@ _BLOCK_LENGTH = 60
 _ENDED = {"scaling": "scaling", "rotation": "rotation", "mirror_image": "mirror", "constant_surface_speed": "speed"}
 
 
-def missing_before(trace: Trace, index: int) -> str:
+def missing_before(blocks: ExecutedBlocks, mode: PolarMode, run: Run, machine: Machine, index: int) -> str:
     """Where the G13.1 of a section is missing."""
-    sections = trace.sections
+    sections = mode.sections
     row = int(sections.leave[index])
-    off = switch_off(trace, int(sections.enter[index]))
-    if row >= len(trace) or trace.starts[row]:
+    off = switch_off(blocks, machine, int(sections.enter[index]))
+    if row >= len(blocks) or blocks.starts[row]:
         return f"{off} is missing at the end of the program"
-    return f"{off} is missing before line {int(trace.line[row])}, {block_in_line(trace, row, _BLOCK_LENGTH)}"
+    return f"{off} is missing before line {int(blocks.line[row])}, {block_in_line(run, row, _BLOCK_LENGTH)}"
 
 
-def others(trace: Trace, at: list[int]) -> str:
+def others(run: Run, at: list[int]) -> str:
     """The words at fault as they are written."""
     more = f" and {len(at) - _LISTED} more" if len(at) > _LISTED else ""
-    return " ".join(executed_word(trace, index) for index in at[:_LISTED]) + more
+    return " ".join(executed_word(run, index) for index in at[:_LISTED]) + more
 
 
 def what_z_does(machine: Machine) -> str:
@@ -68,14 +74,14 @@ def what_z_does(machine: Machine) -> str:
     return _OF_Z[machine.polar.other_axes]
 
 
-def since(trace: Trace, row: int) -> int:
+def since(blocks: ExecutedBlocks, mode: PolarMode, row: int) -> int:
     """The line of the G12.1 of this row's section."""
-    return int(trace.line[trace.sections.enter[trace.section[row]]])
+    return int(blocks.line[mode.sections.enter[mode.section[row]]])
 
 
-def plane(trace: Trace, row: int) -> str:
+def plane(modal: ModalStates, row: int) -> str:
     """The plane in force, as in G18."""
-    return f"G{trace.state('plane')[row]}"
+    return f"G{modal.state('plane')[row]}"
 
 
 def wanted(machine: Machine) -> str:
@@ -83,34 +89,34 @@ def wanted(machine: Machine) -> str:
     return " or ".join(machine.polar.plane_before)
 
 
-def side(trace: Trace, row: int) -> str:
+def side(compensation: CutterCompensation, row: int) -> str:
     """G41 or G42, whichever was in force before."""
-    return f"G{trace.side_before[row]}"
+    return f"G{compensation.side_before[row]}"
 
 
-def _states(trace: Trace, row: int) -> list[tuple[str, str]]:
+def _states(modal: ModalStates, machine: Machine, row: int) -> list[tuple[str, str]]:
     """The codes in force in a row that should have ended, each with the code that ends it."""
-    machine, cycle = trace.machine, int(trace.drilling[row])
+    cycle = int(modal.drilling[row])
     found = [(spelled("G", cycle * 10), " or ".join(machine.codes("drilling_cycle_off")))] if cycle else []
     for key, group in _ENDED.items():
         pairs = zip(machine.codes(key), machine.codes(f"{key}_off"), strict=False)
-        found += [(on, off) for on, off in pairs if trace.has_state(group, [on])[row]]
+        found += [(on, off) for on, off in pairs if modal.has_state(group, [on])[row]]
     return found
 
 
-def in_force(trace: Trace, row: int) -> str:
+def in_force(modal: ModalStates, machine: Machine, row: int) -> str:
     """What should have ended before G12.1."""
-    return ", ".join(name for name, _ in _states(trace, row))
+    return ", ".join(name for name, _ in _states(modal, machine, row))
 
 
-def ends(trace: Trace, row: int) -> str:
+def ends(modal: ModalStates, machine: Machine, row: int) -> str:
     """What ends it."""
-    return ", ".join(name for _, name in _states(trace, row))
+    return ", ".join(name for _, name in _states(modal, machine, row))
 
 
-def meaning(trace: Trace, at: list[int]) -> str:
+def meaning(run: Run, machine: Machine, at: list[int]) -> str:
     """The first word at fault and what it means in this G-code system."""
-    machine, word = trace.machine, trace.run.words
+    word = run.words
     address = chr(int(word.address[at[0]]))
     name = spelled("G", round(float(word.value[at[0]]) * 10)) if address == "G" else address
     axis, increment = machine.polar.rotary_words
@@ -123,10 +129,10 @@ def meaning(trace: Trace, at: list[int]) -> str:
     return f"{name} is no incremental word of G-code system {system}, where G91 makes {axes} incremental"
 
 
-def taken_by(trace: Trace, other_machine: OtherMachine, at: list[int], row: int) -> str:
+def taken_by(run: Run, machine: Machine, other_machine: OtherMachine, at: list[int], row: int) -> str:
     """Which machines read the whole program well; where none does, which word beside G12.1 or controls take it."""
-    mode = trace.machine.polar
-    number, of_address = int(trace.run.words.address[at[0]]), trace.machine.address_number
+    mode = machine.polar
+    number, of_address = int(run.words.address[at[0]]), machine.address_number
     choosing = next(
         (word for word, pair in mode.virtual_axis_by_word.items() if number in map(of_address, filter(None, pair))), ""
     )
@@ -157,63 +163,72 @@ def else_a_macro(other_mode: OtherMode, row: int) -> str:
     return "" if other_mode.is_meant[row] else ", unless it is a macro of the builder"
 
 
-def axes_not_followed(trace: Trace) -> Iterator[tuple[str, int]]:
+def axes_not_followed(
+    blocks: ExecutedBlocks, axes: PlaneAxes, mode: PolarMode, run: Run, machine: Machine
+) -> Iterator[tuple[str, int]]:
     """Which axes of the polar plane are not followed, and in how many blocks."""
-    mode, axes = trace.machine.polar, trace.machine.control.axes
-    other = trace.enters & trace.enters_other_axes
-    unknown = trace.enters & ~trace.linear_is_known & ~other
-    named = unknown & trace.has("P") & ("P" in mode.words_beside_switch)
-    names = place(trace.machine, 'control.axes = ["X", "Z", "C"]')
-    remedy = "look at it on the control" if axes else f"give their names in order, as {names}"
+    polar, names_of_axes = machine.polar, machine.control.axes
+    other = mode.enters & axes.enters_other_axes
+    unknown = mode.enters & ~axes.linear_is_known & ~other
+    named = unknown & blocks.has("P") & ("P" in polar.words_beside_switch)
+    names = place(machine, 'control.axes = ["X", "Z", "C"]')
+    remedy = "look at it on the control" if names_of_axes else f"give their names in order, as {names}"
     for rows, what in (
-        (named, f"P beside {mode.on[0]}"),
-        (unknown & ~named, f"{mode.linear_axis}, the number in polar.linear_axis,"),
+        (named, f"P beside {polar.on[0]}"),
+        (unknown & ~named, f"{polar.linear_axis}, the number in polar.linear_axis,"),
     ):
         yield f"{what} is a linear axis that is not known, nothing of the section is judged: {remedy}", int(rows.sum())
-    beside = [int(index) for index in trace.words_not_simulated.nonzero()[0] if trace.enters[trace.run.row[index]]]
-    for name, indices in itertools.groupby(beside, lambda index: executed_word(trace, index)):
+    beside = [int(index) for index in axes.words_not_simulated.nonzero()[0] if mode.enters[run.row[index]]]
+    for name, indices in itertools.groupby(beside, lambda index: executed_word(run, index)):
         effect = "makes another mode of it, which is not simulated: look at the section on the control"
-        yield f"{name} beside {mode.on[0]} {effect}", len(list(indices))
-    other = trace.enters & (trace.rotary_number != mode.rotary_axis)
+        yield f"{name} beside {polar.on[0]} {effect}", len(list(indices))
+    other = mode.enters & (axes.rotary_number != polar.rotary_axis)
     effect = "its angle at the switch and its limits are not followed: look at them on the control"
-    yield f"Q names another rotary axis than {mode.rotary_axis}; {effect}", int(other.sum())
+    yield f"Q names another rotary axis than {polar.rotary_axis}; {effect}", int(other.sum())
 
 
-def names_not_known(trace: Trace) -> Iterator[tuple[str, int]]:
+def names_not_known(blocks: ExecutedBlocks, run: Run) -> Iterator[tuple[str, int]]:
     """The names of axes that the machine does not have, as in C5=10., and in how many blocks each stands."""
     remedy = 'add it to control.named_axes with the address that it is, or with "" for an axis that does not matter'
-    yield from _by_name(trace, trace.words_not_named, f"is an axis that this lathe is not known to have: {remedy}")
-    other = trace.words_of_no_axis
-    yield from _by_name(trace, other, "is no word of this lathe, and not read: give --machine, or mend it")
+    yield from _by_name(
+        blocks, run, blocks.words_not_named, f"is an axis that this lathe is not known to have: {remedy}"
+    )
+    other = blocks.words_of_no_axis
+    yield from _by_name(blocks, run, other, "is no word of this lathe, and not read: give --machine, or mend it")
 
 
-def names_not_followed(trace: Trace) -> Iterator[tuple[str, int]]:
+def names_not_followed(blocks: ExecutedBlocks, axes: PlaneAxes, mode: PolarMode, run: Run) -> Iterator[tuple[str, int]]:
     """The axes of the machine that stand in sections and are not followed, and in how many of their blocks."""
-    words = trace.words_not_followed
-    words = words[trace.section[trace.run.row[words]] >= 0]
-    words = words[(trace.run.words.address[words] != NOT_NAMED) & ~trace.words_at(trace.virtual_words)[words]]
-    is_judged = trace.is_followed[trace.run.row[words]]
+    words = blocks.words_not_followed
+    words = words[mode.section[run.row[words]] >= 0]
+    words = words[(run.words.address[words] != NOT_NAMED) & ~blocks.words_at(axes.virtual_words)[words]]
+    is_judged = mode.is_followed[run.row[words]]
     remedy = "look at it on the control, or give it as polar.rotary_address where it is the axis of the mode"
-    yield from _by_name(trace, words[is_judged], f"is not followed, its section is judged without it: {remedy}")
-    yield from _by_name(trace, words[~is_judged], f"is not followed, nothing of its section is judged: {remedy}")
+    yield from _by_name(blocks, run, words[is_judged], f"is not followed, its section is judged without it: {remedy}")
+    yield from _by_name(blocks, run, words[~is_judged], f"is not followed, nothing of its section is judged: {remedy}")
 
 
-def _by_name(trace: Trace, words: Rows, what: str) -> Iterator[tuple[str, int]]:
+def _by_name(blocks: ExecutedBlocks, run: Run, words: Rows, what: str) -> Iterator[tuple[str, int]]:
     """What is said of each name of an axis among some words, from the line where it stands first; and its blocks."""
-    blocks: dict[str, list[int]] = {}
+    rows_by_name: dict[str, list[int]] = {}
     for index in words.tolist():
-        name = executed_word(trace, index).partition("=")[0].upper()
-        blocks.setdefault(name, []).append(int(trace.run.row[index]))
-    for name, rows in list(blocks.items())[:_NAMES]:
-        yield f"{name}, from line {int(trace.line[rows[0]])} on, {what}", len(set(rows))
-    more = [row for rows in list(blocks.values())[_NAMES:] for row in rows]
-    yield f"each of {len(blocks) - _NAMES} more axes {what}", len(set(more))
+        name = executed_word(run, index).partition("=")[0].upper()
+        rows_by_name.setdefault(name, []).append(int(run.row[index]))
+    for name, rows in list(rows_by_name.items())[:_NAMES]:
+        yield f"{name}, from line {int(blocks.line[rows[0]])} on, {what}", len(set(rows))
+    more = [row for rows in list(rows_by_name.values())[_NAMES:] for row in rows]
+    yield f"each of {len(rows_by_name) - _NAMES} more axes {what}", len(set(more))
 
 
-def on_sub_spindle(trace: Trace) -> Iterator[tuple[str, int]]:
+def on_sub_spindle(
+    blocks: ExecutedBlocks, axes: PlaneAxes, mode: PolarMode, compensation: CutterCompensation, machine: Machine
+) -> Iterator[tuple[str, int]]:
     """Which sections stand on the sub-spindle, of which the machine does not say how it is programmed."""
-    other, open_sides = trace.enters & trace.enters_other_axes, trace.sides_are_open & trace.compensates
-    title = trace.machine.title
+    other, open_sides = (
+        mode.enters & axes.enters_other_axes,
+        compensation.sides_are_open & compensation.compensates,
+    )
+    title = machine.title
     for rows, what in (
         (other, f"whose axes have other addresses on {title}; nothing of it is judged: look at it on the control"),
         (
@@ -223,7 +238,7 @@ def on_sub_spindle(trace: Trace) -> Iterator[tuple[str, int]]:
         ),
     ):
         if rows.any():
-            line = int(trace.line[trace.sections.enter[trace.section[rows.argmax()]]])
+            line = int(blocks.line[mode.sections.enter[mode.section[rows.argmax()]]])
             yield f"the section of line {line} is on the sub-spindle, {what}", int(rows.sum())
 
 
@@ -246,106 +261,108 @@ def absolute(switch_words: SwitchWords) -> str:
     return " and ".join(switch_words.shifts)
 
 
-def axis_fault(trace: Trace, switch_words: SwitchWords, row: int) -> str:
+def axis_fault(blocks: ExecutedBlocks, axes: PlaneAxes, machine: Machine, switch_words: SwitchWords, row: int) -> str:
     """Why P or Q of a G12.1 are no pair of axes."""
-    if trace.with_words(switch_words.names_axis_of_other_kind)[row]:
-        return f"P is the number of a linear axis and Q that of a rotary one, of {listed(trace.machine.control.axes)}"
-    if not trace.with_words(switch_words.names_no_axis)[row]:
-        both = f"would be both the linear and the rotary axis; without P it is {trace.machine.polar.linear_axis}"
-        return f"axis {trace.axes_written[0][row]:.0f} {both}, without Q {trace.machine.polar.rotary_axis}"
-    return f"no such axis; P and Q take whole numbers from 1 to {switch_words.trace.most_axes}"
+    if blocks.with_words(switch_words.names_axis_of_other_kind)[row]:
+        return f"P is the number of a linear axis and Q that of a rotary one, of {listed(machine.control.axes)}"
+    if not blocks.with_words(switch_words.names_no_axis)[row]:
+        both = f"would be both the linear and the rotary axis; without P it is {machine.polar.linear_axis}"
+        return f"axis {axes.axes_written[0][row]:.0f} {both}, without Q {machine.polar.rotary_axis}"
+    return f"no such axis; P and Q take whole numbers from 1 to {switch_words.trace.axes.most_axes}"
 
 
-def infeed_fault(trace: Trace, switch_words: SwitchWords, row: int) -> str:
+def infeed_fault(lengths: Lengths, switch_words: SwitchWords, row: int) -> str:
     """What the control makes of an infeed that its word cannot hold."""
     infeed = switch_words.infeed
     if switch_words.infeed_too_large[row]:
-        return f"is too large: {_every_digit(switch_words.infeed_limit, trace, row)} is the most"
-    least, taken = (_every_digit(column, trace, row) for column in (trace.least_step, infeed.depth))
+        return f"is too large: {_every_digit(switch_words.infeed_limit, lengths, row)} is the most"
+    least, taken = (_every_digit(column, lengths, row) for column in (lengths.least_step, infeed.depth))
     once = "" if infeed.depth[row] > 0 else ", which is a single pass"
     return f"is finer than the least increment, {least}: {taken} is taken{once}"
 
 
-def _every_digit(lengths: Floats, trace: Trace, row: int) -> str:
+def _every_digit(column: Floats, lengths: Lengths, row: int) -> str:
     """A length with all the digits that a control can hold."""
-    shown = in_row(float(lengths[row]), trace, row)
+    shown = in_row(float(column[row]), lengths, row)
     return f"{shown.length(shown.value):.10g} {shown.unit}"
 
 
-def misfit_of_pass(trace: Trace, infeed: Infeed, row: int) -> str:
+def misfit_of_pass(
+    blocks: ExecutedBlocks, lengths: Lengths, compensation: CutterCompensation, run: Run, infeed: Infeed, row: int
+) -> str:
     """From where on the passes of an infeed cycle do not fit, and into what."""
     offset, at = infeed.least_unfit[row]
-    radius = abs(float(trace.radius[at]))
-    tool = f" with R {in_row(radius, trace, row):length}" if radius > 0 and trace.compensates[at] else ""
-    where = f"line {int(trace.line[at])}, {block_in_line(trace, at, _BLOCK_LENGTH)}"
-    return f"already {in_row(offset, trace, row):length} off it{tool} there is no way along {where}"
+    radius = abs(float(compensation.radius[at]))
+    tool = f" with R {in_row(radius, lengths, row):length}" if radius > 0 and compensation.compensates[at] else ""
+    where = f"line {int(blocks.line[at])}, {block_in_line(run, at, _BLOCK_LENGTH)}"
+    return f"already {in_row(offset, lengths, row):length} off it{tool} there is no way along {where}"
 
 
-def first_axis(trace: Trace, index: int) -> str:
+def first_axis(axes: PlaneAxes, mode: PolarMode, index: int) -> str:
     """The linear axis of a section."""
-    return linear(trace, int(trace.sections.enter[index]))
+    return linear(axes, int(mode.sections.enter[index]))
 
 
-def what(trace: Trace, arcs: Arcs, index: int) -> str:
+def what(mode: PolarMode, machine: Machine, arcs: Arcs, index: int) -> str:
     """What becomes of a section without the second axis."""
-    off = int(trace.count_in_section(arcs.is_no_circle)[index])
+    off = int(mode.count_in_section(arcs.is_no_circle)[index])
     return (
         f"and {off} arcs are no circles"
         if off > 1
-        else f"through the center of the {trace.machine.polar.rotary_address} axis"
+        else f"through the center of the {machine.polar.rotary_address} axis"
     )
 
 
-def not_understood(trace: Trace, other_mode: OtherMode) -> tuple[str, int]:
+def not_understood(blocks: ExecutedBlocks, other_mode: OtherMode) -> tuple[str, int]:
     """Which code may begin the mode of another control, of which nothing is looked at, and in how many blocks."""
     rows = other_mode.may_be_macro.nonzero()[0]
     if not len(rows):
         return "", 0
-    code, line = other_mode.switch(int(rows[0])).name, int(trace.line[rows[0]])
+    code, line = other_mode.switch(int(rows[0])).name, int(blocks.line[rows[0]])
     reason = (
         f"{code} in line {line} begins the polar mode on another control, or is a macro of the builder: give --machine"
     )
     return f"{reason}, or take it out of polar.on_of_other_controls", len(rows)
 
 
-def extrudes(trace: Trace) -> tuple[str, int]:
+def extrudes(blocks: ExecutedBlocks, mode: PolarMode, run: Run) -> tuple[str, int]:
     """Where a move has an E, which no control of a lathe takes there, and in how many blocks."""
-    rows = trace.extrudes.nonzero()[0]
+    rows = mode.extrudes.nonzero()[0]
     if not len(rows):
         return "", 0
-    where = f"{written(trace, int(rows[0]), 'E')} in line {int(trace.line[rows[0]])}"
+    where = f"{written(blocks, run, int(rows[0]), 'E')} in line {int(blocks.line[rows[0]])}"
     return f"{where} is no word of a move on a lathe: convert the file, or delete E", len(rows)
 
 
-def contours_outside(trace: Trace) -> tuple[str, int]:
+def contours_outside(blocks: ExecutedBlocks, mode: PolarMode) -> tuple[str, int]:
     """Where a contour is cut outside the mode with C in degrees, which is not simulated, and in how many blocks."""
-    rows = trace.contours_outside.nonzero()[0]
+    rows = mode.contours_outside.nonzero()[0]
     if not len(rows):
         return "", 0
-    line = int(trace.line[rows[0]])
+    line = int(blocks.line[rows[0]])
     reason = f"a contour outside the polar mode, with C in degrees, from line {line} on, is not simulated"
     return f"{reason}: look at it on the control", len(rows)
 
 
-def on_cylinder(trace: Trace) -> tuple[str, int]:
+def on_cylinder(blocks: ExecutedBlocks, mode: PolarMode) -> tuple[str, int]:
     """Where cylindrical interpolation is begun, which is not simulated, and in how many blocks it is in force."""
-    rows = trace.on_cylinder.nonzero()[0]
+    rows = mode.on_cylinder.nonzero()[0]
     if not len(rows):
         return "", 0
-    reason = f"cylindrical interpolation, from line {int(trace.line[rows[0]])} on, is not simulated"
+    reason = f"cylindrical interpolation, from line {int(blocks.line[rows[0]])} on, is not simulated"
     return f"{reason}: look at it on the control", len(rows)
 
 
-def shifted_by(trace: Trace, row: int, at: list[int]) -> str:
+def shifted_by(run: Run, row: int, at: list[int]) -> str:
     """What shifts the origin: codes, as in G55, or the variable of a work offset."""
-    return codes(trace, at) if at else trace.run.assigned[row].name
+    return codes(run, at) if at else run.assigned[row].name
 
 
-def where(trace: Trace, row: int) -> str:
+def where(blocks: ExecutedBlocks, mode: PolarMode, machine: Machine, row: int) -> str:
     """Where a code belongs that the mode does not take; beside a drilling cycle C is an angle there."""
-    is_cycle = trace.listed("drilling_cycle")[row]
-    axis = trace.machine.polar.rotary_address
-    return outside(trace, row) + (f", where its {axis} is an angle again" if is_cycle else "")
+    is_cycle = blocks.listed("drilling_cycle")[row]
+    axis = machine.polar.rotary_address
+    return outside(blocks, mode, machine, row) + (f", where its {axis} is an angle again" if is_cycle else "")
 
 
 def begins(angles: Angles, row: int) -> str:
@@ -357,12 +374,19 @@ def begins(angles: Angles, row: int) -> str:
     return f"is one of {count} steps at nearly the same X to"
 
 
-def turned(trace: Trace, procedure: Procedure, row: int) -> str:
+def turned(
+    blocks: ExecutedBlocks,
+    axes: PlaneAxes,
+    compensation: CutterCompensation,
+    machine: Machine,
+    procedure: Procedure,
+    row: int,
+) -> str:
     """From which line on the virtual axis moves as on a contour, and what tells so."""
     first = int(procedure.contour_without_mode[row])
-    axis, line = trace.machine.polar.virtual_axis, int(trace.line[first])
-    if trace.side[first] != Side.OFF:
+    axis, line = machine.polar.virtual_axis, int(blocks.line[first])
+    if compensation.side[first] != Side.OFF:
         return f"from line {line} on {axis} moves at feed with G41 or G42"
-    if trace.motion[first] != Motion.LINE:
+    if axes.motion[first] != Motion.LINE:
         return f"from line {line} on {axis} moves on an arc"
     return f"from line {line} on X and {axis} move at feed right up to it"

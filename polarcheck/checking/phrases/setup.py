@@ -10,11 +10,18 @@ from polarcheck.checking.phrases.offsets import offset as offset
 from polarcheck.checking.phrases.offsets import option, shown_offset
 from polarcheck.checking.quantity import in_row
 from polarcheck.checking.remedies import place, unlisted_codes
+from polarcheck.columns.blocks import ExecutedBlocks
+from polarcheck.columns.lengths import Lengths
+from polarcheck.columns.modal import ModalStates
+from polarcheck.columns.offsets import ToolOffsets
+from polarcheck.columns.path import ProgrammedPath
+from polarcheck.columns.tools import CalledTools
+from polarcheck.columns.trace import Trace
+from polarcheck.execution.run import Run
 from polarcheck.machines.machine import Machine
 from polarcheck.table.entry import Entry
 from polarcheck.table.procedure import Procedure
 from polarcheck.table.spindles import Spindles
-from polarcheck.table.trace import Trace
 
 
 def name(entry: Entry, row: int) -> str:
@@ -24,73 +31,75 @@ def name(entry: Entry, row: int) -> str:
 
 def _sections_of_center(trace: Trace, row: int) -> tuple[list[int], bool]:
     """Lines of the G12.1 of the sections of a T word in which R is taken as 0; whether it has no others with ramps."""
-    called = np.flatnonzero(trace.calls_offset)
+    called = np.flatnonzero(trace.tools.calls_offset)
     until = int(np.append(called, len(trace))[np.searchsorted(called, row, side="right")])
-    has_ramps = trace.enters & trace.anywhere_in_section(trace.starts_up | trace.cancels)
+    has_ramps = trace.mode.enters & trace.mode.anywhere_in_section(
+        trace.compensation.starts_up | trace.compensation.cancels
+    )
     enters = row + np.flatnonzero(has_ramps[row:until])
-    of_center = trace.is_path_of_center[enters]
-    return trace.line[enters[of_center]].tolist(), bool(of_center.all())
+    of_center = trace.compensation.is_path_of_center[enters]
+    return trace.blocks.line[enters[of_center]].tolist(), bool(of_center.all())
 
 
 def taken(trace: Trace, row: int) -> float:
     """R that is taken for the offset of a T word [mm]."""
     lines, are_all = _sections_of_center(trace, row)
-    return 0.0 if lines and are_all else float(trace.radius_of_offset[row])
+    return 0.0 if lines and are_all else float(trace.offsets.radius_of_offset[row])
 
 
 def origin(trace: Trace, row: int) -> str:
     """The comment that R was taken from, and where it is taken as 0 instead."""
-    comment = short(trace.radius_comments[int(trace.offset_number[row])].comment)
+    comment = short(trace.offsets.radii_from_comments[int(trace.tools.offset_number[row])].comment)
     lines, are_all = _sections_of_center(trace, row)
     if not lines:
         return f"from the comment: {comment}"
-    radius = f"{in_row(float(trace.radius_of_offset[row]), trace, row):length}"
+    radius = f"{in_row(float(trace.offsets.radius_of_offset[row]), trace.lengths, row):length}"
     shorter = "every ramp is shorter there, as on a path of the tool center"
-    remedy = f"give {option(trace, row, 'radius')}"
+    remedy = f"give {option(trace.tools, row, 'radius')}"
     if are_all:
         return f"in place of {radius} of the comment {comment}: {shorter}; {remedy}"
     sections = f"{'line' if len(lines) == 1 else 'lines'} {', '.join(map(str, lines))}"
     return f"from the comment {comment}, but 0 in the polar mode of {sections}: {shorter}; {remedy}"
 
 
-def comment(trace: Trace, row: int) -> str:
+def comment(tools: CalledTools, offsets: ToolOffsets, row: int) -> str:
     """The comment that tells R of the offset that is called."""
-    return short(trace.radius_told[int(trace.offset_number[row])].comment)
+    return short(offsets.radii_in_comments[int(tools.offset_number[row])].comment)
 
 
-def is_given(trace: Trace, entry: Entry, row: int) -> str:
+def is_given(blocks: ExecutedBlocks, tools: CalledTools, offsets: ToolOffsets, run: Run, entry: Entry, row: int) -> str:
     """Who gives R of the offset that is called: `is given for offset 8`, or set by a block of the program."""
-    number = int(trace.offset_number[row])
-    setter = int(trace.radius_set_in[entry.first_in_mode[number]])
+    number = int(tools.offset_number[row])
+    setter = int(offsets.radius_set_in[entry.first_in_mode[number]])
     return (
-        f"is set for offset {offset(trace, row)} by {block_and_line(trace, setter)}"
+        f"is set for offset {offset(tools, row)} by {block_and_line(blocks, run, setter)}"
         if setter >= 0
-        else f"is given for offset {offset(trace, row)}"
+        else f"is given for offset {offset(tools, row)}"
     )
 
 
-def x_changed_by(trace: Trace, row: int) -> str:
+def x_changed_by(blocks: ExecutedBlocks, tools: CalledTools, lengths: Lengths, run: Run, row: int) -> str:
     """The word or the variable that sets X of a tool offset; else the wear of the job's table."""
-    if row in trace.run.assigned:
-        return trace.run.assigned[row].name
-    address = next((address for address in "XU" if trace.has(address)[row]), "")
-    if trace.listed("data_input")[row] and address:
-        return written(trace, row, address)
-    wear = trace.tools[int(trace.offset_number[row])].x_wear * np.broadcast_to(trace.job_scale, len(trace))[row]
-    return f"the wear in X of the offset table, {in_row(float(wear), trace, row):length},"
+    if row in run.assigned:
+        return run.assigned[row].name
+    address = next((address for address in "XU" if blocks.has(address)[row]), "")
+    if blocks.listed("data_input")[row] and address:
+        return written(blocks, run, row, address)
+    wear = tools.of_job[int(tools.offset_number[row])].x_wear * np.broadcast_to(lengths.job_scale, len(blocks))[row]
+    return f"the wear in X of the offset table, {in_row(float(wear), lengths, row):length},"
 
 
-def offset_of_block(trace: Trace, row: int) -> int | str:
+def offset_of_block(tools: CalledTools, offsets: ToolOffsets, row: int) -> int | str:
     """The tool offset that a block sets, or calls."""
-    numbers = trace.offset_settings.number[trace.offset_settings.row == row]
-    return shown_offset(trace, int(numbers[0] if len(numbers) else trace.offset_number[row]))
+    numbers = offsets.offset_settings.number[offsets.offset_settings.row == row]
+    return shown_offset(tools, int(numbers[0] if len(numbers) else tools.offset_number[row]))
 
 
-def to_clear(trace: Trace, entry: Entry, row: int) -> str:
+def to_clear(lengths: Lengths, offsets: ToolOffsets, entry: Entry, row: int) -> str:
     """What X has to clear: stock and cutter, and the clearance where the job wants one."""
     stock, cutter, clearance = (
-        f"{in_row(float(value[row]), trace, row):length}"
-        for value in (entry.stock_diameter, trace.cutter_diameter, entry.clearance)
+        f"{in_row(float(value[row]), lengths, row):length}"
+        for value in (entry.stock_diameter, offsets.cutter_diameter, entry.clearance)
     )
     if entry.clearance[row] > 0:
         return f"stock {stock}, cutter {cutter} and clearance {clearance} need"
@@ -104,30 +113,31 @@ def to_reference(machine: Machine) -> str:
     return f"{code_of(machine, 'c_axis_reference')} {address}0"
 
 
-def axes(trace: Trace, row: int) -> str:
+def axes(path: ProgrammedPath, machine: Machine, row: int) -> str:
     """What is to be positioned: X, and C where that is not known either."""
-    return f"X and {trace.machine.polar.rotary_address}" if np.isnan(trace.c_angle[row]) else "it"
+    return f"X and {machine.polar.rotary_address}" if np.isnan(path.c_angle[row]) else "it"
 
 
-def unknown_since(trace: Trace, entry: Entry, row: int) -> str:
+def unknown_since(blocks: ExecutedBlocks, run: Run, entry: Entry, row: int) -> str:
     """`is not known since T0404 in line 7`, or that X was never positioned."""
-    first = int(np.flatnonzero(trace.starts[: row + 1])[-1]) if trace.starts[: row + 1].any() else 0
+    first = int(np.flatnonzero(blocks.starts[: row + 1])[-1]) if blocks.starts[: row + 1].any() else 0
     lost = first + np.flatnonzero(entry.loses_x[first : row + 1])
     if not len(lost):
         return "has not been positioned in this program"
     at = int(lost[-1])
-    named = "T" if trace.has("T")[at] else "GXU"
-    low, high = np.searchsorted(trace.run.row, (at, at + 1))
-    words = [index for index in range(low, high) if chr(int(trace.run.words.address[index])) in named]
-    return f"is not known since {' '.join(executed_word(trace, word) for word in words)} in line {int(trace.line[at])}"
+    named = "T" if blocks.has("T")[at] else "GXU"
+    low, high = np.searchsorted(run.row, (at, at + 1))
+    words = [index for index in range(low, high) if chr(int(run.words.address[index])) in named]
+    written = " ".join(executed_word(run, word) for word in words)
+    return f"is not known since {written} in line {int(blocks.line[at])}"
 
 
-def started(trace: Trace, procedure: Procedure, row: int) -> str:
+def started(blocks: ExecutedBlocks, run: Run, machine: Machine, procedure: Procedure, row: int) -> str:
     """The code that started the live tool that still runs, and its line."""
     at = int(procedure.live_tool_runs_on[row])
-    words = trace.code_indices(*trace.machine.m_codes.live_tool_on)
-    code = executed_word(trace, int(words[trace.run.row[words] == at][0]))
-    return f"{code} of line {int(trace.line[at])}"
+    words = blocks.code_indices(*machine.m_codes.live_tool_on)
+    code = executed_word(run, int(words[run.row[words] == at][0]))
+    return f"{code} of line {int(blocks.line[at])}"
 
 
 def stop(machine: Machine) -> str:
@@ -135,14 +145,14 @@ def stop(machine: Machine) -> str:
     return next(iter(machine.m_codes.live_tool_off), "the code")
 
 
-def or_engaged_by(trace: Trace, spindles: Spindles, machine: Machine, row: int) -> str:
+def or_engaged_by(blocks: ExecutedBlocks, run: Run, spindles: Spindles, machine: Machine, row: int) -> str:
     """Where to add an M code that may have engaged the C axis; empty where the program has none that is not known."""
-    return _or_by(unlisted_codes(trace, spindles, row), "engages it", machine, "m_codes.c_axis_on")
+    return _or_by(unlisted_codes(blocks, run, machine, spindles, row), "engages it", machine, "m_codes.c_axis_on")
 
 
-def or_started_by(trace: Trace, spindles: Spindles, machine: Machine, row: int) -> str:
+def or_started_by(blocks: ExecutedBlocks, run: Run, spindles: Spindles, machine: Machine, row: int) -> str:
     """The same of the live tool."""
-    return _or_by(unlisted_codes(trace, spindles, row), "starts it", machine, "m_codes.live_tool_on")
+    return _or_by(unlisted_codes(blocks, run, machine, spindles, row), "starts it", machine, "m_codes.live_tool_on")
 
 
 def _or_by(codes: str, what: str, machine: Machine, key: str) -> str:
@@ -173,10 +183,10 @@ def release(spindles: Spindles, machine: Machine, row: int) -> str:
     return next(iter(off), "the code that releases it")
 
 
-def carried_mode(trace: Trace, row: int) -> str:
+def carried_mode(blocks: ExecutedBlocks, modal: ModalStates, machine: Machine, row: int) -> str:
     """The code of feed per minute that is still in force, and its line."""
-    rows = np.flatnonzero(trace.sets("feed_mode")[: row + 1])
-    return f"{code_of(trace.machine, 'feed_per_minute')} of line {int(trace.line[rows[-1]])}"
+    rows = np.flatnonzero(modal.sets("feed_mode")[: row + 1])
+    return f"{code_of(machine, 'feed_per_minute')} of line {int(blocks.line[rows[-1]])}"
 
 
 def per_revolution(machine: Machine) -> str:

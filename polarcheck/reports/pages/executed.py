@@ -14,11 +14,11 @@ from msgspec import UNSET, UnsetType
 from polarcheck.arrays import Floats
 from polarcheck.checking.phrases.offsets import called_tool, key_of, option
 from polarcheck.checking.quantity import rounded
+from polarcheck.columns.trace import Trace
 from polarcheck.machines.modal import FeedMode, Motion, Side
 from polarcheck.table.dynamics import Dynamics
 from polarcheck.table.moves import Moves, programmed_moves, z_along
 from polarcheck.table.tool_center import ToolCenter
-from polarcheck.table.trace import Trace
 
 KINDS = {Motion.CW: "cw", Motion.CCW: "ccw"}
 
@@ -97,7 +97,7 @@ def moves(trace: Trace, tool_center: ToolCenter, path: str) -> Iterator[Move]:
     for index in range(len(table)):
         center, row = table.center[index], table.row[index]
         yield Move(
-            line=int(trace.line_in_file[row]),
+            line=int(trace.blocks.line_in_file[row]),
             section=int(table.section[index]),
             kind=KINDS.get(Motion(int(table.kind[index])), "line"),
             start=_point(table.start[index]),
@@ -105,7 +105,7 @@ def moves(trace: Trace, tool_center: ToolCenter, path: str) -> Iterator[Move]:
             center=None if np.isnan(center) else _point(center),
             z=[rounded(z_from[index]), rounded(z_to[index])],
             path=path if table.is_of_tool[index] else "programmed",
-            radius=rounded(trace.radius_of_move[row]),
+            radius=rounded(trace.compensation.radius_of_move[row]),
             feed=rounded(table.feed[index]),
             x_axis=[rounded(abs(table.start[index])), rounded(abs(table.end[index]))],
             c_axis=[rounded(c_from[index]), rounded(c_to[index])],
@@ -126,16 +126,16 @@ def without_radius(trace: Trace, tool_center: ToolCenter) -> str:
     Empty if there are none.
     """
     table = tool_center.moves
-    unknown = table.row[~table.is_of_tool & np.isnan(trace.radius_of_move[table.row])]
-    offsets = trace.offset_number[unknown]
+    unknown = table.row[~table.is_of_tool & np.isnan(trace.compensation.radius_of_move[table.row])]
+    offsets = trace.tools.offset_number[unknown]
     rows = list(
         {int(number): int(row) for number, row in zip(offsets[::-1], unknown[::-1], strict=True) if number}.values()
     )[::-1]
-    causes = [f"no radius for {', '.join(called_tool(trace, row) for row in rows)}"] * bool(rows)
-    options = " ".join(option(trace, row, "radius") for row in rows)
+    causes = [f"no radius for {', '.join(called_tool(trace.tools, row) for row in rows)}"] * bool(rows)
+    options = " ".join(option(trace.tools, row, "radius") for row in rows)
     remedies = [f"give {options} or --offsets FILE"] * bool(rows)
     if not offsets.all():
-        line = int(trace.line_in_file[unknown[offsets == 0][0]])
+        line = int(trace.blocks.line_in_file[unknown[offsets == 0][0]])
         causes.append(f"no tool offset is in force at line {line}")
         remedies.append("call one with T")
     effect = "what is run with G41 or G42 is shown as programmed, not as the tool runs"
@@ -160,27 +160,27 @@ def rows(trace: Trace, tool_center: ToolCenter) -> Iterator[dict[str, Any]]:
     """
     channel = {"channel": trace.text.source.channel} if trace.text.source.channel else {}
     for row in range(len(trace)):
-        in_polar = bool(trace.in_polar[row])
-        moving = in_polar and bool(trace.moves_plane[row])
-        mode = FeedMode(int(trace.feed_mode[row]))
+        in_polar = bool(trace.mode.in_polar[row])
+        moving = in_polar and bool(trace.axes.moves_plane[row])
+        mode = FeedMode(int(trace.feedrate.feed_mode[row]))
         yield {
-            "line": int(trace.line_in_file[row]),
-            "program": int(trace.program[row]),
+            "line": int(trace.blocks.line_in_file[row]),
+            "program": int(trace.blocks.program[row]),
             "depth": int(trace.run.depth[row]),
-            "section": int(trace.section[row]),
-            "motion": Motion(int(trace.motion[row])).name.lower(),
-            "side": SIDES[Side(int(trace.side[row]))],
-            "tool": trace.run.names.get(int(trace.tool[row]), int(trace.tool[row])),
-            "offset_number": key_of(trace, int(trace.offset_number[row])) or 0,
-            "radius": rounded(trace.radius[row]),
+            "section": int(trace.mode.section[row]),
+            "motion": Motion(int(trace.axes.motion[row])).name.lower(),
+            "side": SIDES[Side(int(trace.compensation.side[row]))],
+            "tool": trace.run.names.get(int(trace.tools.tool[row]), int(trace.tools.tool[row])),
+            "offset_number": key_of(trace.tools, int(trace.tools.offset_number[row])) or 0,
+            "radius": rounded(trace.compensation.radius[row]),
             "feed_mode": FEED_MODES[mode],
-            "feed": rounded(trace.feed[row]),
-            "f": rounded((trace.feed if mode == FeedMode.PER_MINUTE else trace.feed_number)[row]),
-            "x": rounded(trace.x[row]),
-            "z": rounded(trace.z[row]),
-            "c": rounded(trace.c_angle[row]),
-            "plane_x": rounded(trace.end[row].real),
-            "plane_c": rounded(trace.end[row].imag),
+            "feed": rounded(trace.feedrate.feed[row]),
+            "f": rounded((trace.feedrate.feed if mode == FeedMode.PER_MINUTE else trace.feedrate.feed_number)[row]),
+            "x": rounded(trace.path.x[row]),
+            "z": rounded(trace.path.z[row]),
+            "c": rounded(trace.path.c_angle[row]),
+            "plane_x": rounded(trace.path.end[row].real),
+            "plane_c": rounded(trace.path.end[row].imag),
             "nearest": rounded(tool_center.nearest[row]) if moving else None,
             "c_feed": rounded(tool_center.c_feed[row]) if moving else None,
             **channel,

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 
 from polarcheck.checking.quantity import rounded
 from polarcheck.checking.tables import Tables
+from polarcheck.columns.trace import Trace
 from polarcheck.feed_table.table import FeedReport, FeedRow, FeedTable, FeedTotal, highest
 from polarcheck.machines.modal import MM_PER_INCH
 from polarcheck.reading.excerpt import shortened, visible, without_commands
@@ -15,7 +16,6 @@ from polarcheck.table import dynamics as reasons
 from polarcheck.table.dynamics import Dynamics
 from polarcheck.table.feed_curve import FeedCurve, feed_curve
 from polarcheck.table.highest_feeds import HighestFeeds
-from polarcheck.table.trace import Trace
 
 #: The longest text of a block in the table [characters].
 _BLOCK = 36
@@ -135,8 +135,8 @@ def curve(tables: Tables) -> Iterator[tuple[str | int | float | None, ...]]:
 
 
 def _moment(points: FeedCurve, at: int, trace: Trace, row: int) -> tuple[str | int | float | None, ...]:
-    place = int(trace.section[row]), int(trace.line_in_file[row])
-    return rounded(points.time[at]), *place, rounded(trace.programmed_feed[row]), rounded(points.feed[at])
+    place = int(trace.mode.section[row]), int(trace.blocks.line_in_file[row])
+    return rounded(points.time[at]), *place, rounded(trace.feedrate.programmed_feed[row]), rounded(points.feed[at])
 
 
 def _channel(trace: Trace) -> str:

@@ -10,13 +10,13 @@ from numpy.typing import NDArray
 
 from polarcheck.arrays import Floats, Mask
 from polarcheck.checking.phrases.offsets import key_of
+from polarcheck.columns.trace import Trace
 from polarcheck.machines.modal import FeedMode, Motion, Side
 from polarcheck.reading.excerpt import visible
 from polarcheck.reports.pages.aligned import Column, table
 from polarcheck.reports.pages.executed import FEED_MODES, KINDS, SIDES, running
 from polarcheck.table.moves import Moves, z_along
 from polarcheck.table.tool_center import ToolCenter
-from polarcheck.table.trace import Trace
 
 MM, FEED, DEG, C_FEED = "mm", "mm/min", "deg", "deg/min"
 #: The decimals of rates and accelerations of axes.
@@ -46,34 +46,34 @@ def _channel(trace: Trace) -> Iterator[str]:
 
 
 def _block(trace: Trace, row: int) -> str:
-    return trace.text.source.line_text(int(trace.line[row])).lstrip()
+    return trace.text.source.line_text(int(trace.blocks.line[row])).lstrip()
 
 
 def _of_rows(trace: Trace, tool_center: ToolCenter) -> list[Column]:
-    moving = trace.in_polar & trace.moves_plane
-    mode = trace.feed_mode
-    number = np.where(mode == FeedMode.PER_MINUTE, trace.feed, trace.feed_number)
-    tools = {tool: str(trace.run.names.get(tool, tool)) for tool in _distinct(trace.tool)}
-    keys = {offset: str(key_of(trace, offset) or 0) for offset in _distinct(trace.offset_number)}
+    moving = trace.mode.in_polar & trace.axes.moves_plane
+    mode, motion = trace.feedrate.feed_mode, trace.axes.motion
+    number = np.where(mode == FeedMode.PER_MINUTE, trace.feedrate.feed, trace.feedrate.feed_number)
+    tools = {tool: str(trace.run.names.get(tool, tool)) for tool in _distinct(trace.tools.tool)}
+    keys = {offset: str(key_of(trace.tools, offset) or 0) for offset in _distinct(trace.tools.offset_number)}
     return [
-        _count("line", 0, trace.line_in_file),
-        _count("program", 8, trace.program, usual=0),
+        _count("line", 0, trace.blocks.line_in_file),
+        _count("program", 8, trace.blocks.program, usual=0),
         _count("depth", 8, trace.run.depth, usual=0),
-        _count("section", 5, trace.section, usual=-1, is_blank=trace.section < 0),
-        _words("motion", 1, trace.motion, {kind: Motion(kind).name.lower() for kind in _distinct(trace.motion)},
-               is_blank=trace.motion == Motion.NONE),
-        _words("side", 2, trace.side, SIDES, usual=Side.OFF),
-        _words("tool", 6, trace.tool, tools, usual=0),
-        _words("offset_number", 7, trace.offset_number, keys, usual=0),
-        Column("radius", MM, 5, trace.radius, is_blank=trace.offset_number == 0),
+        _count("section", 5, trace.mode.section, usual=-1, is_blank=trace.mode.section < 0),
+        _words("motion", 1, motion, {kind: Motion(kind).name.lower() for kind in _distinct(motion)},
+               is_blank=motion == Motion.NONE),
+        _words("side", 2, trace.compensation.side, SIDES, usual=Side.OFF),
+        _words("tool", 6, trace.tools.tool, tools, usual=0),
+        _words("offset_number", 7, trace.tools.offset_number, keys, usual=0),
+        Column("radius", MM, 5, trace.compensation.radius, is_blank=trace.tools.offset_number == 0),
         _words("feed_mode", 8, mode, FEED_MODES, usual=FeedMode.PER_MINUTE),
-        Column("feed", FEED, 1, trace.feed),
+        Column("feed", FEED, 1, trace.feedrate.feed),
         Column("f", "", 8, number, is_blank=mode == FeedMode.PER_MINUTE),
-        Column("x", MM, 1, trace.x),
-        Column("z", MM, 1, trace.z),
-        Column("c", DEG, 1, trace.c_angle),
-        Column("plane_x", MM, 3, trace.end.real, is_blank=~trace.in_polar),
-        Column("plane_c", MM, 3, trace.end.imag, is_blank=~trace.in_polar),
+        Column("x", MM, 1, trace.path.x),
+        Column("z", MM, 1, trace.path.z),
+        Column("c", DEG, 1, trace.path.c_angle),
+        Column("plane_x", MM, 3, trace.path.end.real, is_blank=~trace.mode.in_polar),
+        Column("plane_c", MM, 3, trace.path.end.imag, is_blank=~trace.mode.in_polar),
         Column("nearest", MM, 4, tool_center.nearest, is_blank=~moving),
         Column("c_feed", C_FEED, 2, tool_center.c_feed, _RATE, is_blank=~moving),
     ]  # fmt: skip
@@ -86,7 +86,7 @@ def _of_moves(trace: Trace, moves: Moves, runs: Mapping[str, Floats], path: str)
     first = int(moves.section[0]) if len(moves) else 0
     path_key = np.where(moves.is_of_tool, 1, 0) if path == "tool" else np.ones(len(moves), np.int64)
     return [
-        _count("line", 0, trace.line_in_file[moves.row]),
+        _count("line", 0, trace.blocks.line_in_file[moves.row]),
         _count("section", 5, moves.section, usual=first),
         _words("kind", 1, moves.kind, {kind: KINDS.get(Motion(kind), "line") for kind in _distinct(moves.kind)}),
         _words("path", 1, path_key, {0: "programmed", 1: path}, usual=1),
@@ -95,7 +95,7 @@ def _of_moves(trace: Trace, moves: Moves, runs: Mapping[str, Floats], path: str)
         *_point("center", 6, moves.center, is_blank=~is_arc),
         Column("z_from", MM, 7, z_from),
         Column("z_to", MM, 2, z_to),
-        Column("radius", MM, 6, trace.radius_of_move[moves.row]),
+        Column("radius", MM, 6, trace.compensation.radius_of_move[moves.row]),
         Column("feed", FEED, 1, moves.feed),
         Column("x_axis_from", MM, 8, np.abs(moves.start)),
         Column("x_axis_to", MM, 7, np.abs(moves.end)),

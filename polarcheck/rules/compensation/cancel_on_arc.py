@@ -1,7 +1,7 @@
 from __future__ import annotations
 
 from polarcheck.checking.causes import NO_SUCH_ARC
-from polarcheck.checking.rule import ERROR, Mask, Trace, rule
+from polarcheck.checking.rule import ERROR, CutterCompensation, Mask, ProgrammedPath, rule
 
 
 @rule(
@@ -10,7 +10,7 @@ from polarcheck.checking.rule import ERROR, Mask, Trace, rule
     at=("compensation_off", "arc_clockwise", "arc_counterclockwise"),
     follows={"block": NO_SUCH_ARC},
 )
-def cancel_on_arc(trace: Trace) -> Mask:
+def cancel_on_arc(path: ProgrammedPath, compensation: CutterCompensation) -> Mask:
     """
     Cutter compensation cancelled on an arc.
 
@@ -41,4 +41,4 @@ def cancel_on_arc(trace: Trace) -> Mask:
         G1 G40 C-25.
         G13.1
     """
-    return trace.cancels & trace.is_arc
+    return compensation.cancels & path.is_arc

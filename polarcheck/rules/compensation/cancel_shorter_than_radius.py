@@ -1,18 +1,29 @@
 from __future__ import annotations
 
 from polarcheck.checking.causes import SECTION_READ_OTHERWISE
-from polarcheck.checking.rule import ERROR, Hits, Machine, Ramps, Trace, graded, rule
+from polarcheck.checking.rule import (
+    ERROR,
+    CutterCompensation,
+    Hits,
+    Machine,
+    ProgrammedPath,
+    Ramps,
+    graded,
+    rule,
+)
 
 
 @rule(
     ERROR,
     "offset cancel {fault}",
     at=("compensation_off",),
-    needs=("trace.radius", "trace.length"),
+    needs=("compensation.radius", "path.length"),
     where="ramps.cancel_judged_by_radius",
     follows={"section": (*SECTION_READ_OTHERWISE, "polar-switched-in-offset-mode")},
 )
-def cancel_shorter_than_radius(trace: Trace, ramps: Ramps, machine: Machine) -> Hits:
+def cancel_shorter_than_radius(
+    path: ProgrammedPath, compensation: CutterCompensation, ramps: Ramps, machine: Machine
+) -> Hits:
     """
     Offset cancel shorter than the cutter radius.
 
@@ -71,9 +82,9 @@ def cancel_shorter_than_radius(trace: Trace, ramps: Ramps, machine: Machine) -> 
         X65. F1500
         G13.1
     """
-    short = trace.cancels & ~trace.is_arc & ramps.shorter_than_radius
+    short = compensation.cancels & ~path.is_arc & ramps.shorter_than_radius
     # With R 0 an offset cancel needs no length; an R that is not known is not 0.
-    missing = ramps.cancel_missing & (trace.radius != 0)
+    missing = ramps.cancel_missing & (compensation.radius != 0)
     if machine.compensation.leaving_cancels:
         return graded(error=short, note=missing)
     return graded(error=short | missing)

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Entry, Mask, Trace, rule
+from polarcheck.checking.rule import ERROR, CalledTools, Entry, Mask, ModalStates, PolarMode, rule
 
 
 @rule(
@@ -8,7 +8,7 @@ from polarcheck.checking.rule import ERROR, Entry, Mask, Trace, rule
     "{D} calls no radius on a lathe: R comes with the tool offset; delete it, and call the offset with T, as in T0808",
     at=("D",),
 )
-def d_word_on_lathe(trace: Trace, entry: Entry) -> Mask:
+def d_word_on_lathe(modal: ModalStates, tools: CalledTools, mode: PolarMode, entry: Entry) -> Mask:
     """
     D word for cutter compensation.
 
@@ -51,4 +51,4 @@ def d_word_on_lathe(trace: Trace, entry: Entry) -> Mask:
         G40 X60.
         G13.1
     """
-    return (trace.in_polar & trace.uses_axes & trace.means_cutter_by_d) | entry.calls_d_before_mode
+    return (mode.in_polar & modal.uses_axes & tools.means_cutter_by_d) | entry.calls_d_before_mode

@@ -1,15 +1,15 @@
 from __future__ import annotations
 
 from polarcheck.checking.causes import NO_SUCH_ARC, SECTION_READ_OTHERWISE
-from polarcheck.checking.rule import ERROR, Mask, ToolCenter, Trace, rule
+from polarcheck.checking.rule import ERROR, CutterCompensation, Mask, ToolCenter, rule
 
 
 @rule(
     ERROR,
-    "arc of {ramps.arc_radius:length/trace.radius} with the tool on its inner side; "
-    "R {trace.radius:length/ramps.arc_radius} must be smaller",
+    "arc of {ramps.arc_radius:length/compensation.radius} with the tool on its inner side; "
+    "R {compensation.radius:length/ramps.arc_radius} must be smaller",
     at=("arc_clockwise", "arc_counterclockwise", "R", "I", "J"),
-    needs=("trace.radius",),
+    needs=("compensation.radius",),
     where="ramps.compensated",
     once="tight arc",
     follows={
@@ -18,7 +18,7 @@ from polarcheck.checking.rule import ERROR, Mask, ToolCenter, Trace, rule
         "section": SECTION_READ_OTHERWISE,
     },
 )
-def inside_arc_smaller_than_radius(trace: Trace, tool_center: ToolCenter) -> Mask:
+def inside_arc_smaller_than_radius(compensation: CutterCompensation, tool_center: ToolCenter) -> Mask:
     """
     Arc into which the cutter does not fit.
 
@@ -69,4 +69,4 @@ def inside_arc_smaller_than_radius(trace: Trace, tool_center: ToolCenter) -> Mas
         G13.1
     """
     # A start-up or an offset cancel on an arc has a rule of its own.
-    return tool_center.inside_arc_too_small & ~trace.starts_up & ~trace.cancels
+    return tool_center.inside_arc_too_small & ~compensation.starts_up & ~compensation.cancels

@@ -7,7 +7,7 @@ from polarcheck.checking.rule import ERROR, Mask, Ramps, ToolCenter, rule
 @rule(
     ERROR,
     "tool center would run backwards here: {misfit}",
-    needs=("trace.radius",),
+    needs=("compensation.radius",),
     where="ramps.compensated",
     once="mesh",
     follows={

@@ -7,7 +7,7 @@ from polarcheck.checking.rule import WARNING, Mask, ToolCenter, rule
 @rule(
     WARNING,
     "{why}; the tool center ends perpendicular to this block, not where the next one needs it",
-    needs=("trace.radius",),
+    needs=("compensation.radius",),
     where="ramps.compensated",
     follows={
         "pause": (*OUT_OF_PLACE, "side-repeated-in-offset-mode", "full-circle-by-radius"),

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import NOTE, Mask, Sections, Trace, rule
+from polarcheck.checking.rule import NOTE, CutterCompensation, Mask, PolarMode, ProgrammedPath, Sections, rule
 
 
 @rule(
@@ -11,7 +11,9 @@ from polarcheck.checking.rule import NOTE, Mask, Sections, Trace, rule
     follows={"section": ("polar-switched-in-offset-mode",)},
     is_advice=True,
 )
-def no_compensation_in_polar(trace: Trace, sections: Sections) -> Mask:
+def no_compensation_in_polar(
+    mode: PolarMode, path: ProgrammedPath, compensation: CutterCompensation, sections: Sections
+) -> Mask:
     """
     Contour cut without cutter compensation.
 
@@ -41,5 +43,5 @@ def no_compensation_in_polar(trace: Trace, sections: Sections) -> Mask:
         G40 X2.4
         G13.1
     """
-    without = trace.anywhere_in_section(trace.cuts) & trace.nowhere_in_section(trace.compensates)
+    without = mode.anywhere_in_section(path.cuts) & mode.nowhere_in_section(compensation.compensates)
     return without[sections.enter]

@@ -6,8 +6,8 @@ from polarcheck.checking.rule import ERROR, Mask, Ramps, ToolCenter, rule
 
 @rule(
     ERROR,
-    "paths of the tool center in this block and the next do not meet with R {trace.radius:length}",
-    needs=("trace.radius",),
+    "paths of the tool center in this block and the next do not meet with R {compensation.radius:length}",
+    needs=("compensation.radius",),
     where="ramps.compensated",
     follows={
         "loop": (*NO_SUCH_ARC, "arc-sense-reversed"),

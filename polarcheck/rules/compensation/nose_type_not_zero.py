@@ -1,17 +1,17 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Mask, Trace, rule
+from polarcheck.checking.rule import ERROR, CutterCompensation, Mask, ToolOffsets, rule
 
 
 @rule(
     ERROR,
-    "offset {offset} {has_nose} nose type T{trace.nose:.0f}; for a mill it must be {allowed}",
+    "offset {offset} {has_nose} nose type T{offsets.nose:.0f}; for a mill it must be {allowed}",
     at=("compensation_left", "compensation_right"),
     once="tool call",
-    needs=("trace.nose",),
-    where="trace.starts_up",
+    needs=("offsets.nose",),
+    where="compensation.starts_up",
 )
-def nose_type_not_zero(trace: Trace) -> Mask:
+def nose_type_not_zero(offsets: ToolOffsets, compensation: CutterCompensation) -> Mask:
     """
     Nose type of a turning tool in the offset of a mill.
 
@@ -61,5 +61,5 @@ def nose_type_not_zero(trace: Trace) -> Mask:
         G40 X60.
         G13.1
     """
-    known = trace.nose >= 0
-    return trace.starts_up & known & ~trace.nose_is_of_mill
+    known = offsets.nose >= 0
+    return compensation.starts_up & known & ~offsets.nose_is_of_mill

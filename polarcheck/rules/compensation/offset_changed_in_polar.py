@@ -1,10 +1,21 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Machine, Mask, ModeWords, Trace, rule
+from polarcheck.checking.rule import (
+    ERROR,
+    CutterCompensation,
+    ExecutedBlocks,
+    Machine,
+    Mask,
+    ModeWords,
+    PolarMode,
+    rule,
+)
 
 
 @rule(ERROR, "tool offset changed in the polar mode by {changed_by}; write it {outside}", at=("T", "D", "data_input"))
-def offset_changed_in_polar(trace: Trace, mode_words: ModeWords, machine: Machine) -> Mask:
+def offset_changed_in_polar(
+    blocks: ExecutedBlocks, mode: PolarMode, compensation: CutterCompensation, mode_words: ModeWords, machine: Machine
+) -> Mask:
     """
     Tool offset changed in the polar mode.
 
@@ -42,7 +53,7 @@ def offset_changed_in_polar(trace: Trace, mode_words: ModeWords, machine: Machin
         G13.1
         T0111
     """
-    calls_another = trace.calls_other_offset_in_polar
+    calls_another = compensation.calls_other_offset_in_polar
     writes_one = mode_words.rows(mode_words.changes_tool_offset & mode_words.not_allowed)
-    assigns_one = trace.in_polar & trace.assigns(machine.macro.tool_offset_variables)
+    assigns_one = mode.in_polar & blocks.assigns(machine.macro.tool_offset_variables)
     return calls_another | writes_one | assigns_one

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Mask, Trace, rule
+from polarcheck.checking.rule import ERROR, CalledTools, CutterCompensation, ExecutedBlocks, Mask, rule
 
 
 @rule(
@@ -10,7 +10,7 @@ from polarcheck.checking.rule import ERROR, Mask, Trace, rule
     once="tool call",
     follows={"section": ("offset-changed-in-polar",)},
 )
-def offset_number_missing(trace: Trace) -> Mask:
+def offset_number_missing(blocks: ExecutedBlocks, tools: CalledTools, compensation: CutterCompensation) -> Mask:
     """
     Cutter compensation without a tool offset.
 
@@ -42,5 +42,5 @@ def offset_number_missing(trace: Trace) -> Mask:
         T0800
     """
     # Before an excerpt the tool may have been called.
-    called_here = trace.has_called_tool | trace.whole_program
-    return trace.starts_up & (trace.offset_number == 0) & called_here
+    called_here = tools.has_called_tool | blocks.whole_program
+    return compensation.starts_up & (tools.offset_number == 0) & called_here

@@ -7,8 +7,8 @@ from polarcheck.checking.rule import ERROR, Mask, Overcuts, rule
 @rule(
     ERROR,
     "the cutter goes {overcuts.depth:length} deep into {place}{way_out}",
-    needs=("trace.radius",),
-    where="trace.offset_mode",
+    needs=("compensation.radius",),
+    where="compensation.offset_mode",
     worst="overcuts.depth",
     once="wall",
     follows={

@@ -8,7 +8,7 @@ from polarcheck.checking.rule import ERROR, Deviations, Mask, rule
     ERROR,
     "the part differs from {drawing} by {deviations.largest:length/deviations.tolerance}, "
     "{deviations.tolerance:length} is allowed: {deviation}",
-    needs=("trace.radius",),
+    needs=("compensation.radius",),
     where="deviations.asked",
     follows={
         "loop": (*NO_SUCH_ARC, "arc-sense-reversed", "number-without-point", "contour-not-closed", *SIDE_WRITTEN_AGAIN),

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Mask, Ramps, Trace, rule
+from polarcheck.checking.rule import WARNING, CutterCompensation, Mask, Ramps, rule
 
 
 @rule(
@@ -8,7 +8,7 @@ from polarcheck.checking.rule import WARNING, Mask, Ramps, Trace, rule
     "{side} while {before} is in force; write G40 with a move between them",
     at=("compensation_left", "compensation_right"),
 )
-def side_changed_in_offset_mode(trace: Trace, ramps: Ramps) -> Mask:
+def side_changed_in_offset_mode(compensation: CutterCompensation, ramps: Ramps) -> Mask:
     """
     Side of compensation changed without G40.
 
@@ -43,4 +43,4 @@ def side_changed_in_offset_mode(trace: Trace, ramps: Ramps) -> Mask:
         G40 X80.
         G13.1
     """
-    return ramps.writes_side_again & (trace.side != trace.side_before)
+    return ramps.writes_side_again & (compensation.side != compensation.side_before)

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Mask, Ramps, Trace, rule
+from polarcheck.checking.rule import WARNING, CutterCompensation, Mask, Ramps, rule
 
 
 @rule(
@@ -9,7 +9,7 @@ from polarcheck.checking.rule import WARNING, Mask, Ramps, Trace, rule
     at=("compensation_left", "compensation_right"),
     once="section",
 )
-def side_repeated_in_offset_mode(trace: Trace, ramps: Ramps) -> Mask:
+def side_repeated_in_offset_mode(compensation: CutterCompensation, ramps: Ramps) -> Mask:
     """
     G41 or G42 written again while it is in force.
 
@@ -46,4 +46,4 @@ def side_repeated_in_offset_mode(trace: Trace, ramps: Ramps) -> Mask:
         G40 X80.
         G13.1
     """
-    return ramps.writes_side_again & (trace.side == trace.side_before)
+    return ramps.writes_side_again & (compensation.side == compensation.side_before)

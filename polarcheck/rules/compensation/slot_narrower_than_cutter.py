@@ -8,7 +8,7 @@ from polarcheck.checking.rule import ERROR, Mask, Slots, rule
     ERROR,
     "{room} for a cutter of {slots.diameter:length}: it goes {slots.depth:length} deep into {opposite}; "
     "take {smaller}, or write the walls farther apart",
-    needs=("trace.radius",),
+    needs=("compensation.radius",),
     where="slots.compared",
     worst="slots.depth",
     once="slot",

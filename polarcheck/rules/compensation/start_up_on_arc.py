@@ -1,7 +1,7 @@
 from __future__ import annotations
 
 from polarcheck.checking.causes import NO_SUCH_ARC
-from polarcheck.checking.rule import ERROR, Mask, Trace, rule
+from polarcheck.checking.rule import ERROR, CutterCompensation, Mask, ProgrammedPath, rule
 
 
 @rule(
@@ -10,7 +10,7 @@ from polarcheck.checking.rule import ERROR, Mask, Trace, rule
     at=("compensation_left", "compensation_right", "arc_clockwise", "arc_counterclockwise"),
     follows={"block": NO_SUCH_ARC},
 )
-def start_up_on_arc(trace: Trace) -> Mask:
+def start_up_on_arc(path: ProgrammedPath, compensation: CutterCompensation) -> Mask:
     """
     Cutter compensation begun on an arc.
 
@@ -41,4 +41,4 @@ def start_up_on_arc(trace: Trace) -> Mask:
         G40 C20.
         G13.1
     """
-    return trace.starts_up & trace.is_arc
+    return compensation.starts_up & path.is_arc

@@ -1,18 +1,18 @@
 from __future__ import annotations
 
 from polarcheck.checking.causes import SECTION_READ_OTHERWISE
-from polarcheck.checking.rule import ERROR, Mask, Ramps, Trace, rule
+from polarcheck.checking.rule import ERROR, CutterCompensation, Mask, ProgrammedPath, Ramps, rule
 
 
 @rule(
     ERROR,
     "start-up {fault}",
     at=("compensation_left", "compensation_right"),
-    needs=("trace.radius", "trace.length"),
+    needs=("compensation.radius", "path.length"),
     where="ramps.start_up_judged_by_radius",
     follows={"way": ("approach-inside-stock",), "section": (*SECTION_READ_OTHERWISE, "polar-switched-in-offset-mode")},
 )
-def start_up_shorter_than_radius(trace: Trace, ramps: Ramps) -> Mask:
+def start_up_shorter_than_radius(path: ProgrammedPath, compensation: CutterCompensation, ramps: Ramps) -> Mask:
     """
     Start-up shorter than the cutter radius.
 
@@ -67,6 +67,6 @@ def start_up_shorter_than_radius(trace: Trace, ramps: Ramps) -> Mask:
         G40 X65. F1500
         G13.1
     """
-    short = trace.starts_up & ~trace.is_arc & ramps.shorter_than_radius
+    short = compensation.starts_up & ~path.is_arc & ramps.shorter_than_radius
     # With R 0 a start-up needs no length; an R that is not known is not 0.
-    return short | (ramps.start_up_missing & (trace.radius != 0))
+    return short | (ramps.start_up_missing & (compensation.radius != 0))

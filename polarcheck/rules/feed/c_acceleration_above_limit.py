@@ -1,7 +1,7 @@
 from __future__ import annotations
 
 from polarcheck.checking.causes import NO_SUCH_ARC, SECTION_READ_OTHERWISE
-from polarcheck.checking.rule import WARNING, Center, Feeds, Mask, Trace, rule
+from polarcheck.checking.rule import WARNING, Center, Feedrate, Feeds, Mask, rule
 
 
 @rule(
@@ -16,7 +16,7 @@ from polarcheck.checking.rule import WARNING, Center, Feeds, Mask, Trace, rule
     follows={"feed": ("c-feed-above-limit",), "block": NO_SUCH_ARC, "section": SECTION_READ_OTHERWISE},
     worst="tool_center.c_acceleration",
 )
-def c_acceleration_above_limit(trace: Trace, center: Center, feeds: Feeds) -> Mask:
+def c_acceleration_above_limit(feedrate: Feedrate, center: Center, feeds: Feeds) -> Mask:
     """
     Feed too high for the acceleration of the C axis.
 
@@ -44,4 +44,4 @@ def c_acceleration_above_limit(trace: Trace, center: Center, feeds: Feeds) -> Ma
         X60.
         G13.1
     """
-    return center.cuts_off_center & (trace.feed > feeds.allowed_by_acceleration)
+    return center.cuts_off_center & (feedrate.feed > feeds.allowed_by_acceleration)

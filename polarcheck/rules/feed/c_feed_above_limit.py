@@ -10,7 +10,7 @@ from polarcheck.checking.rule import ERROR, WARNING, Center, Hits, Machine, Tool
     "{verdict}; nearest distance {tool_center.nearest:length}; {advice}",
     at=("F",),
     needs=("tool_center.c_feed",),
-    where="trace.cuts",
+    where="path.cuts",
     once="feed",
     follows={"block": NO_SUCH_ARC, "section": SECTION_READ_OTHERWISE},
     worst="tool_center.c_feed",

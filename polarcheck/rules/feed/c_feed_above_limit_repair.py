@@ -7,9 +7,9 @@ import numpy as np
 from polarcheck.arrays import Mask
 from polarcheck.checking.editing import Replace, in_place_of, is_plain, with_word, written_word
 from polarcheck.checking.repair import FEED, Mended, repair
+from polarcheck.columns.trace import Trace
 from polarcheck.feed_table.edits import feed_below, feed_in_force, takes_feed
 from polarcheck.table.tool_center import ToolCenter
-from polarcheck.table.trace import Trace
 
 
 @repair(FEED)
@@ -41,26 +41,26 @@ def c_feed_above_limit(trace: Trace, tool_center: ToolCenter, row: int, hit: Mas
         C-10. F500
         G13.1
     """
-    feed = feed_in_force(trace, row)
+    feed = feed_in_force(trace.blocks, trace.feedrate, trace.run, row)
     if feed is None or math.isnan(trace.machine.limits.c_feed):
         return None
-    low = feed_below(trace, row, float(tool_center.feed_allowed[row]))
+    low = feed_below(trace.blocks, trace.lengths, trace.run, row, float(tool_center.feed_allowed[row]))
     if low is None:
         return None
-    old = written_word(trace, feed)
+    old = written_word(trace.run, feed)
     edits: set[Replace] = set()
     is_low = False
-    governed = np.flatnonzero(takes_feed(trace) & (trace.feed_word == trace.feed_word[row]))
+    governed = np.flatnonzero(takes_feed(trace.axes) & (trace.feedrate.feed_word == trace.feedrate.feed_word[row]))
     for moving in governed.tolist():
         if bool(hit[moving]) == is_low:
             continue
         is_low = not is_low
-        if not is_plain(trace, moving):
+        if not is_plain(trace.run, moving):
             return None
-        if trace.has("F")[moving]:
-            edits |= {in_place_of(trace, feed, low)} if is_low else set()
+        if trace.blocks.has("F")[moving]:
+            edits |= {in_place_of(trace.run, feed, low)} if is_low else set()
         else:
-            edits.add(with_word(trace, moving, low if is_low else old))
+            edits.add(with_word(trace.run, moving, low if is_low else old))
     places = [start for start, _, _ in edits]
     if len(set(places)) < len(places):
         return None  # a block of a loop that needs one F here and the other there

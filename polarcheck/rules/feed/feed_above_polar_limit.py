@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import NOTE, WARNING, Feeds, Hits, Machine, Trace, rule
+from polarcheck.checking.rule import NOTE, WARNING, Feedrate, Feeds, Hits, Machine, rule
 
 
 @rule(
@@ -8,7 +8,7 @@ from polarcheck.checking.rule import NOTE, WARNING, Feeds, Hits, Machine, Trace,
     "F is {feed:feed/limit}, {machine.title} {clamps} {limit:feed/feed} in the polar mode",
     at=("F",),
 )
-def feed_above_polar_limit(trace: Trace, feeds: Feeds, machine: Machine) -> Hits:
+def feed_above_polar_limit(feedrate: Feedrate, feeds: Feeds, machine: Machine) -> Hits:
     """
     F above the highest feed of the polar mode.
 
@@ -44,6 +44,6 @@ def feed_above_polar_limit(trace: Trace, feeds: Feeds, machine: Machine) -> Hits
         C10. F200
         G13.1
     """
-    limit, feed = machine.limits.polar_feed, trace.programmed_feed
+    limit, feed = machine.limits.polar_feed, feedrate.programmed_feed
     severity = WARNING if machine.limits.polar_feed_clamps else NOTE
     return Hits(feeds.begins & (feed > limit), severity, values={"limit": limit, "feed": feed})

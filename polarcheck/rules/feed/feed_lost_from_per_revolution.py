@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Feeds, Mask, Trace, rule
+from polarcheck.checking.rule import ERROR, Feeds, Mask, PolarMode, ProgrammedPath, rule
 
 
 @rule(
@@ -9,7 +9,7 @@ from polarcheck.checking.rule import ERROR, Feeds, Mask, Trace, rule
     at=("line", "arc_clockwise", "arc_counterclockwise"),
     follows={"block": ("feed-missing-in-polar",)},
 )
-def feed_lost_from_per_revolution(trace: Trace, feeds: Feeds) -> Mask:
+def feed_lost_from_per_revolution(mode: PolarMode, path: ProgrammedPath, feeds: Feeds) -> Mask:
     """
     Feed per revolution before G12.1, and no F in the mode.
 
@@ -57,4 +57,4 @@ def feed_lost_from_per_revolution(trace: Trace, feeds: Feeds) -> Mask:
         C10.
         G13.1
     """
-    return trace.first_in_section(trace.moves_at_feed & feeds.lost)
+    return mode.first_in_section(path.moves_at_feed & feeds.lost)

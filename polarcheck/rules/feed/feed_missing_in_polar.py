@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Feeds, Mask, Trace, rule
+from polarcheck.checking.rule import ERROR, Feeds, Mask, PolarMode, ProgrammedPath, rule
 
 
 @rule(
@@ -9,7 +9,7 @@ from polarcheck.checking.rule import ERROR, Feeds, Mask, Trace, rule
     at=("line", "arc_clockwise", "arc_counterclockwise", "F"),
     follows={"block": ("vacant-variable",)},
 )
-def feed_missing_in_polar(trace: Trace, feeds: Feeds) -> Mask:
+def feed_missing_in_polar(mode: PolarMode, path: ProgrammedPath, feeds: Feeds) -> Mask:
     """
     Cutting move without a feed.
 
@@ -52,4 +52,4 @@ def feed_missing_in_polar(trace: Trace, feeds: Feeds) -> Mask:
         C10.
         G13.1
     """
-    return trace.first_in_section(trace.moves_at_feed & feeds.missing)
+    return mode.first_in_section(path.moves_at_feed & feeds.missing)

@@ -1,16 +1,16 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Feeds, Mask, Trace, rule
+from polarcheck.checking.rule import WARNING, Feeds, Mask, ProgrammedPath, rule
 
 
 @rule(
     WARNING,
     "no code of feed per minute or per revolution stands before this F: where the lathe powers on with feed per "
-    "revolution it is {trace.feed_number:length} for each turn; write {per_minute} at the head of the program",
+    "revolution it is {feedrate.feed_number:length} for each turn; write {per_minute} at the head of the program",
     at=("F",),
     once="program",
 )
-def feed_mode_unknown(trace: Trace, feeds: Feeds) -> Mask:
+def feed_mode_unknown(path: ProgrammedPath, feeds: Feeds) -> Mask:
     """
     F without feed per minute or per revolution.
 
@@ -72,4 +72,4 @@ def feed_mode_unknown(trace: Trace, feeds: Feeds) -> Mask:
         G13.1
         M30
     """
-    return trace.moves_at_feed & feeds.mode_is_unknown & feeds.is_too_high_per_revolution
+    return path.moves_at_feed & feeds.mode_is_unknown & feeds.is_too_high_per_revolution

@@ -1,15 +1,15 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Feeds, Mask, Trace, rule
+from polarcheck.checking.rule import WARNING, Feeds, Mask, ProgrammedPath, rule
 
 
 @rule(
     WARNING,
-    "{trace.feed:feed} here: {left_over}; write an F per minute",
+    "{feedrate.feed:feed} here: {left_over}; write an F per minute",
     at=("F", "feed_per_minute", "line", "arc_clockwise", "arc_counterclockwise"),
     once="feed",
 )
-def feed_of_revolution_per_minute(trace: Trace, feeds: Feeds) -> Mask:
+def feed_of_revolution_per_minute(path: ProgrammedPath, feeds: Feeds) -> Mask:
     """
     F of feed per revolution, read per minute.
 
@@ -58,4 +58,4 @@ def feed_of_revolution_per_minute(trace: Trace, feeds: Feeds) -> Mask:
         C10.
         G13.1
     """
-    return trace.moves_at_feed & (feeds.is_left_per_revolution | feeds.looks_per_revolution)
+    return path.moves_at_feed & (feeds.is_left_per_revolution | feeds.looks_per_revolution)

@@ -5,8 +5,8 @@ from polarcheck.checking.rule import NOTE, FeedRanges, Feeds, Mask, rule
 
 @rule(
     NOTE,
-    "{feed_word} is {trace.programmed_feed:feed/feed_ranges.nearest_limit}, {against_ranges}; recommended in the polar "
-    "mode: {recommended}",
+    "{feed_word} is {feedrate.programmed_feed:feed/feed_ranges.nearest_limit}, {against_ranges}; recommended in the "
+    "polar mode: {recommended}",
     at=("F",),
     follows={"feed": ("c-feed-above-limit", "feed-of-revolution-per-minute")},
 )

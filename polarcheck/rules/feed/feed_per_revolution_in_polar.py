@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import NOTE, Mask, Trace, rule
+from polarcheck.checking.rule import NOTE, Feedrate, Mask, PolarMode, ProgrammedPath, rule
 from polarcheck.machines.modal import FeedMode
 
 
@@ -10,7 +10,7 @@ from polarcheck.machines.modal import FeedMode
     at=("feed_per_revolution", "line", "arc_clockwise", "arc_counterclockwise"),
     follows={"block": ("feed-missing-in-polar",)},
 )
-def feed_per_revolution_in_polar(trace: Trace) -> Mask:
+def feed_per_revolution_in_polar(mode: PolarMode, path: ProgrammedPath, feedrate: Feedrate) -> Mask:
     """
     Feed per revolution in the polar mode.
 
@@ -46,4 +46,4 @@ def feed_per_revolution_in_polar(trace: Trace) -> Mask:
         G13.1
         G99 G0 X60.
     """
-    return trace.first_in_section(trace.cuts & (trace.feed_mode == FeedMode.PER_REVOLUTION))
+    return mode.first_in_section(path.cuts & (feedrate.feed_mode == FeedMode.PER_REVOLUTION))

@@ -1,7 +1,7 @@
 from __future__ import annotations
 
 from polarcheck.checking.causes import NO_SUCH_ARC, SECTION_READ_OTHERWISE
-from polarcheck.checking.rule import ERROR, Arcs, Center, Mask, Trace, rule
+from polarcheck.checking.rule import ERROR, Arcs, Center, Mask, ProgrammedPath, rule
 
 
 @rule(
@@ -10,7 +10,7 @@ from polarcheck.checking.rule import ERROR, Arcs, Center, Mask, Trace, rule
     at=("X", "U", "C", "H"),
     follows={"way": ("x-not-positive-at-entry",), "block": NO_SUCH_ARC, "section": SECTION_READ_OTHERWISE},
 )
-def path_through_center(trace: Trace, center: Center, arcs: Arcs) -> Mask:
+def path_through_center(path: ProgrammedPath, center: Center, arcs: Arcs) -> Mask:
     """
     Path through the center of the C axis.
 
@@ -59,4 +59,4 @@ def path_through_center(trace: Trace, center: Center, arcs: Arcs) -> Mask:
         C10.
         G13.1
     """
-    return trace.cuts & center.meets_center & ~arcs.is_no_circle
+    return path.cuts & center.meets_center & ~arcs.is_no_circle

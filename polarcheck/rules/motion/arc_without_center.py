@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Arcs, Mask, Trace, rule
+from polarcheck.checking.rule import ERROR, Arcs, Mask, ProgrammedPath, rule
 
 
 @rule(
@@ -10,7 +10,7 @@ from polarcheck.checking.rule import ERROR, Arcs, Mask, Trace, rule
     once="motion",
     follows={"block": ("arc-off-polar-plane", "arc-word-of-other-plane")},
 )
-def arc_without_center(trace: Trace, arcs: Arcs) -> Mask:
+def arc_without_center(path: ProgrammedPath, arcs: Arcs) -> Mask:
     """
     Arc with neither radius nor center.
 
@@ -47,4 +47,4 @@ def arc_without_center(trace: Trace, arcs: Arcs) -> Mask:
         G13.1
     """
     has_center = arcs.by_radius | arcs.by_center | arcs.has_word_of_other_plane
-    return trace.is_arc & ~has_center & ~arcs.ends_at_start
+    return path.is_arc & ~has_center & ~arcs.ends_at_start

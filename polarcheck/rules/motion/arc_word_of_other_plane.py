@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Arcs, Hits, Trace, rule
+from polarcheck.checking.rule import ERROR, Arcs, Hits, PlaneAxes, ProgrammedPath, rule
 
 
 @rule(
@@ -8,7 +8,7 @@ from polarcheck.checking.rule import ERROR, Arcs, Hits, Trace, rule
     "{word} is not of the polar plane; the center is {center}",
     follows={"block": ("arc-off-polar-plane",), "section": ("linear-axis-never-programmed",)},
 )
-def arc_word_of_other_plane(trace: Trace, arcs: Arcs) -> Hits:
+def arc_word_of_other_plane(axes: PlaneAxes, path: ProgrammedPath, arcs: Arcs) -> Hits:
     """
     Center of an arc with K.
 
@@ -44,4 +44,4 @@ def arc_word_of_other_plane(trace: Trace, arcs: Arcs) -> Hits:
         G1 X60.
         G13.1
     """
-    return Hits(trace.is_arc & arcs.has_word_of_other_plane, at=trace.other_center_words)
+    return Hits(path.is_arc & arcs.has_word_of_other_plane, at=axes.other_center_words)

@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Mask, Trace, rule
+from polarcheck.checking.rule import WARNING, ExecutedBlocks, Mask, PolarMode, rule
 
 
 @rule(WARNING, "chamfer, corner or angle word in the polar mode", at=(",C", ",R", ",A"))
-def corner_word_in_polar(trace: Trace) -> Mask:
+def corner_word_in_polar(blocks: ExecutedBlocks, mode: PolarMode) -> Mask:
     """
     Chamfer or corner by ,C ,R or ,A in the polar mode.
 
@@ -41,4 +41,4 @@ def corner_word_in_polar(trace: Trace) -> Mask:
         G1 X-40.
         G13.1
     """
-    return trace.in_polar & trace.has(",C", ",R", ",A")
+    return mode.in_polar & blocks.has(",C", ",R", ",A")

@@ -1,12 +1,12 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Arcs, Machine, Mask, Trace, rule
+from polarcheck.checking.rule import WARNING, Arcs, ExecutedBlocks, Machine, Mask, PlaneAxes, rule
 
 
 @rule(
     WARNING, "arc by radius that ends where it starts: nothing moves; a full circle needs {centers}", at=("X", "C", "R")
 )
-def full_circle_by_radius(trace: Trace, arcs: Arcs, machine: Machine) -> Mask:
+def full_circle_by_radius(blocks: ExecutedBlocks, axes: PlaneAxes, arcs: Arcs, machine: Machine) -> Mask:
     """
     Full circle with R.
 
@@ -42,5 +42,5 @@ def full_circle_by_radius(trace: Trace, arcs: Arcs, machine: Machine) -> Mask:
         G1 X60.
         G13.1
     """
-    has_radius = arcs.in_force & trace.has(machine.arcs.radius_word)
-    return has_radius & ~trace.moves_z & (~trace.moves_plane | arcs.ends_at_start)
+    has_radius = arcs.in_force & blocks.has(machine.arcs.radius_word)
+    return has_radius & ~axes.moves_z & (~axes.moves_plane | arcs.ends_at_start)

@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Arcs, Mask, Trace, rule
+from polarcheck.checking.rule import WARNING, Arcs, Mask, PlaneAxes, rule
 
 
 @rule(WARNING, "arc that moves Z, too: only with the helical option, else an alarm", at=("Z", "W"))
-def helical_arc_in_polar(trace: Trace, arcs: Arcs) -> Mask:
+def helical_arc_in_polar(axes: PlaneAxes, arcs: Arcs) -> Mask:
     """
     Arc in the polar mode that moves Z.
 
@@ -41,4 +41,4 @@ def helical_arc_in_polar(trace: Trace, arcs: Arcs) -> Mask:
         G1 X60.
         G13.1
     """
-    return arcs.in_force & trace.moves_z & ~arcs.is_off_plane
+    return arcs.in_force & axes.moves_z & ~arcs.is_off_plane

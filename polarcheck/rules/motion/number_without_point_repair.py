@@ -63,4 +63,6 @@ def _is_above_all(unpointed: Unpointed, start: int) -> bool:
     words = trace.run.words
     at = np.flatnonzero((words.start == start) & (words.address == ord("F")))
     feeds = trace.machine.feed
-    return bool(np.any(trace.feed[trace.run.row[at]] > np.fmax(feeds.cutting_maximum, feeds.positioning_maximum)))
+    return bool(
+        np.any(trace.feedrate.feed[trace.run.row[at]] > np.fmax(feeds.cutting_maximum, feeds.positioning_maximum))
+    )

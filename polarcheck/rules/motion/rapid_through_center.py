@@ -1,18 +1,29 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Entry, Mask, Trace, rule
+from polarcheck.checking.rule import (
+    WARNING,
+    Entry,
+    ExecutedBlocks,
+    Mask,
+    PlaneAxes,
+    PolarMode,
+    ProgrammedPath,
+    rule,
+)
 from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.machines.modal import Motion
 
 
 @rule(
     WARNING,
-    "{word} in rapid traverse outside the polar mode goes across the center, to {trace.x:diameter} in X, the other "
+    "{word} in rapid traverse outside the polar mode goes across the center, to {path.x:diameter} in X, the other "
     "side of the spindle; write an X above 0",
     at=("X", "U"),
     follows={"block": ("travel-limit",)},
 )
-def rapid_through_center(trace: Trace, entry: Entry) -> Mask:
+def rapid_through_center(
+    blocks: ExecutedBlocks, axes: PlaneAxes, mode: PolarMode, path: ProgrammedPath, entry: Entry
+) -> Mask:
     """
     Rapid traverse to X below 0 after the polar mode.
 
@@ -57,5 +68,5 @@ def rapid_through_center(trace: Trace, entry: Entry) -> Mask:
         G13.1
         G1 X-1. F100
     """
-    is_rapid = (trace.motion == Motion.RAPID) & trace.has("X", "U") & ~trace.in_polar
-    return entry.after_section & is_rapid & (trace.x < -ROUNDING) & ~(trace.x_before < -ROUNDING)
+    is_rapid = (axes.motion == Motion.RAPID) & blocks.has("X", "U") & ~mode.in_polar
+    return entry.after_section & is_rapid & (path.x < -ROUNDING) & ~(path.x_before < -ROUNDING)

@@ -1,7 +1,7 @@
 from __future__ import annotations
 
 from polarcheck.checking.causes import SECTION_READ_OTHERWISE
-from polarcheck.checking.rule import ERROR, Machine, Mask, Trace, Travel, rule
+from polarcheck.checking.rule import ERROR, Machine, Mask, PlaneAxes, Travel, rule
 from polarcheck.geometry.tolerances import ROUNDING
 
 
@@ -13,7 +13,7 @@ from polarcheck.geometry.tolerances import ROUNDING
     where="travel.is_limited_in_x",
     follows={"section": SECTION_READ_OTHERWISE},
 )
-def travel_limit(trace: Trace, travel: Travel, machine: Machine) -> Mask:
+def travel_limit(axes: PlaneAxes, travel: Travel, machine: Machine) -> Mask:
     """
     Move beyond the travel of X or Z.
 
@@ -56,4 +56,4 @@ def travel_limit(trace: Trace, travel: Travel, machine: Machine) -> Mask:
     limits = machine.limits
     x_beyond = (travel.most_x > limits.x_maximum + ROUNDING) | (travel.least_x < limits.x_minimum - ROUNDING)
     z_beyond = (travel.z > limits.z_maximum + ROUNDING) | (travel.z < limits.z_minimum - ROUNDING)
-    return travel.first_beyond(x_beyond, travel.moves_x) | travel.first_beyond(z_beyond, trace.moves_z)
+    return travel.first_beyond(x_beyond, travel.moves_x) | travel.first_beyond(z_beyond, axes.moves_z)

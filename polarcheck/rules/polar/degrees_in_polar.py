@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Angles, Entry, Hits, Trace, rule
+from polarcheck.checking.rule import WARNING, Angles, Entry, ExecutedBlocks, Hits, PlaneAxes, rule
 
 #: A length that many times as far out as the rest of the section is taken for an angle.
 _FAR = 2.0
@@ -13,7 +13,7 @@ _FAR = 2.0
     once="section",
     follows={"block": ("rapid-in-polar",)},
 )
-def degrees_in_polar(trace: Trace, angles: Angles, entry: Entry) -> Hits:
+def degrees_in_polar(blocks: ExecutedBlocks, axes: PlaneAxes, angles: Angles, entry: Entry) -> Hits:
     """
     Angle written where the polar mode takes a length.
 
@@ -91,5 +91,5 @@ def degrees_in_polar(trace: Trace, angles: Angles, entry: Entry) -> Hits:
     is_angle = angles.in_series | (angles.is_usual & ~angles.has_both_signs)
     far_out = (angles.reach > 0) & (angles.farthest > _FAR * angles.reach)
     in_stock = angles.farthest <= entry.stock_diameter / 2
-    words = trace.words_at(trace.virtual_words)
+    words = blocks.words_at(axes.virtual_words)
     return Hits(is_angle & far_out & ~in_stock & ~angles.in_misplaced_cycle, at=words)

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Machine, Mask, Trace, rule
+from polarcheck.checking.rule import WARNING, ExecutedBlocks, Machine, Mask, PolarMode, rule
 
 
 @rule(
@@ -9,7 +9,7 @@ from polarcheck.checking.rule import WARNING, Machine, Mask, Trace, rule
     "{machine.polar.direction_word}0 beside it",
     at=("on",),
 )
-def direction_word_missing(trace: Trace, machine: Machine) -> Mask:
+def direction_word_missing(blocks: ExecutedBlocks, mode: PolarMode, machine: Machine) -> Mask:
     """
     Coordinate conversion without the direction of its first axis.
 
@@ -37,4 +37,4 @@ def direction_word_missing(trace: Trace, machine: Machine) -> Mask:
         X60.
         G136
     """
-    return trace.enters & (machine.polar.direction_word != "") & ~trace.has(machine.polar.direction_word)
+    return mode.enters & (machine.polar.direction_word != "") & ~blocks.has(machine.polar.direction_word)

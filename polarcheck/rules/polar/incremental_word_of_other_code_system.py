@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Hits, Machine, ModeWords, Trace, rule
+from polarcheck.checking.rule import ERROR, Hits, Machine, ModalStates, ModeWords, PlaneAxes, PolarMode, rule
 
 
 @rule(
@@ -8,7 +8,9 @@ from polarcheck.checking.rule import ERROR, Hits, Machine, ModeWords, Trace, rul
     "{meaning}; if the lathe runs another system, set control.g_code_system",
     once="program",
 )
-def incremental_word_of_other_code_system(trace: Trace, mode_words: ModeWords, machine: Machine) -> Hits:
+def incremental_word_of_other_code_system(
+    modal: ModalStates, axes: PlaneAxes, mode: PolarMode, mode_words: ModeWords, machine: Machine
+) -> Hits:
     """
     Absolute, incremental or feed word of another G-code system.
 
@@ -60,12 +62,12 @@ def incremental_word_of_other_code_system(trace: Trace, mode_words: ModeWords, m
         G13.1
     """
     in_system_a = machine.control.g_code_system == "A"
-    mode, of_b = machine.polar, machine.g_code_system_b
-    of_axis = (mode.virtual_axis_incremental, *(pair[1] for pair in mode.virtual_axis_by_word.values()))
+    polar, of_b = machine.polar, machine.g_code_system_b
+    of_axis = (polar.virtual_axis_incremental, *(pair[1] for pair in polar.virtual_axis_by_word.values()))
     increments = ("U", "W", *filter(None, of_axis))
     codes = (*of_b.absolute, *of_b.incremental, *of_b.feed_per_minute, *of_b.feed_per_revolution)
     # The address of another control has a rule of its own: wrong-axis-address-in-polar.
     wrong = mode_words.first_of(*(codes if in_system_a else increments)) & ~mode_words.of_other_axis
     # U is no increment beside a code that takes it for something else, such as G4, nor where it is an axis.
-    is_meant = (in_system_a | trace.uses_axes) & trace.linear_is_known
-    return Hits(trace.in_polar & mode_words.rows(wrong) & is_meant, at=wrong)
+    is_meant = (in_system_a | modal.uses_axes) & axes.linear_is_known
+    return Hits(mode.in_polar & mode_words.rows(wrong) & is_meant, at=wrong)

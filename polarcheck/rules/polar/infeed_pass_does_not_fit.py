@@ -8,7 +8,7 @@ from polarcheck.checking.rule import WARNING, Infeed, Mask, rule
     WARNING,
     "{infeed.unfit} of {infeed.passes} passes do not fit into the contour: {misfit_of_pass}",
     at=("E",),
-    needs=("trace.radius",),
+    needs=("compensation.radius",),
     where="infeed.judged_by_radius",
     follows={
         "section": (

@@ -1,6 +1,15 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Mask, Sections, Trace, rule
+from polarcheck.checking.rule import (
+    ERROR,
+    ExecutedBlocks,
+    Mask,
+    ModalStates,
+    PlaneAxes,
+    PolarMode,
+    Sections,
+    rule,
+)
 
 
 @rule(
@@ -10,7 +19,9 @@ from polarcheck.checking.rule import ERROR, Mask, Sections, Trace, rule
     over="sections",
     at=("on",),
 )
-def linear_axis_never_programmed(trace: Trace, sections: Sections) -> Mask:
+def linear_axis_never_programmed(
+    blocks: ExecutedBlocks, modal: ModalStates, axes: PlaneAxes, mode: PolarMode, sections: Sections
+) -> Mask:
     """
     Section whose linear axis is another than X, written in X.
 
@@ -39,6 +50,6 @@ def linear_axis_never_programmed(trace: Trace, sections: Sections) -> Mask:
         Y40.
         G13.1
     """
-    beside = trace.has("X", "U") & trace.uses_axes & trace.in_polar & (trace.linear_axis != ord("X"))
-    is_meant = trace.anywhere_in_section(beside) & trace.anywhere_in_section(trace.programs_virtual_axis)
-    return (is_meant & trace.nowhere_in_section(trace.programs_linear_axis))[sections.enter]
+    beside = blocks.has("X", "U") & modal.uses_axes & mode.in_polar & (axes.linear_axis != ord("X"))
+    is_meant = mode.anywhere_in_section(beside) & mode.anywhere_in_section(axes.programs_virtual_axis)
+    return (is_meant & mode.nowhere_in_section(axes.programs_linear_axis))[sections.enter]

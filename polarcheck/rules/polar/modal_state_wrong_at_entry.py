@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Hits, Trace, graded, rule
+from polarcheck.checking.rule import ERROR, Hits, ModalStates, PolarMode, graded, rule
 
 
 @rule(
@@ -10,7 +10,7 @@ from polarcheck.checking.rule import ERROR, Hits, Trace, graded, rule
     once="modal state",
     follows={"modal state": ("code-not-allowed-in-polar",)},
 )
-def modal_state_wrong_at_entry(trace: Trace) -> Hits:
+def modal_state_wrong_at_entry(modal: ModalStates, mode: PolarMode) -> Hits:
     """
     Cycle, scaling, rotation, mirror image or constant surface speed in force on entry.
 
@@ -54,8 +54,8 @@ def modal_state_wrong_at_entry(trace: Trace) -> Hits:
         X60.
         G13.1
     """
-    transformed = (trace.state("scaling") != 0) | (trace.state("rotation") != 0) | (trace.state("mirror") != 0)
+    transformed = (modal.state("scaling") != 0) | (modal.state("rotation") != 0) | (modal.state("mirror") != 0)
     return graded(
-        error=trace.enters & (transformed | (trace.drilling != 0)),
-        warning=trace.enters & (trace.state("speed") != 0),
+        error=mode.enters & (transformed | (modal.drilling != 0)),
+        warning=mode.enters & (modal.state("speed") != 0),
     )

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Machine, Mask, ModeWords, Trace, rule
+from polarcheck.checking.rule import ERROR, ExecutedBlocks, Machine, Mask, ModeWords, PolarMode, rule
 
 
 @rule(
@@ -17,7 +17,7 @@ from polarcheck.checking.rule import ERROR, Machine, Mask, ModeWords, Trace, rul
         "work_offset_extended",
     ),
 )
-def origin_shifted_in_polar(mode_words: ModeWords, trace: Trace, machine: Machine) -> Mask:
+def origin_shifted_in_polar(mode_words: ModeWords, blocks: ExecutedBlocks, mode: PolarMode, machine: Machine) -> Mask:
     """
     Origin shifted in the polar mode.
 
@@ -64,5 +64,5 @@ def origin_shifted_in_polar(mode_words: ModeWords, trace: Trace, machine: Machin
         G13.1
         G55
     """
-    assigns_one = trace.in_polar & trace.assigns(machine.macro.work_offset_variables)
+    assigns_one = mode.in_polar & blocks.assigns(machine.macro.work_offset_variables)
     return mode_words.rows(mode_words.not_allowed & mode_words.shifts_origin) | assigns_one

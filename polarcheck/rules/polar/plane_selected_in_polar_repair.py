@@ -2,13 +2,17 @@ from __future__ import annotations
 
 from polarcheck.checking.editing import is_plain, without, written_word
 from polarcheck.checking.repair import Mended, repair
+from polarcheck.columns.blocks import ExecutedBlocks
+from polarcheck.columns.filling import before
+from polarcheck.columns.modal import ModalStates
+from polarcheck.execution.run import Run
 from polarcheck.machines.codes import code_numbers
-from polarcheck.table.filling import before
-from polarcheck.table.trace import Trace
 
 
 @repair()
-def plane_selected_in_polar(trace: Trace, row: int, at: list[int]) -> Mended | None:
+def plane_selected_in_polar(
+    blocks: ExecutedBlocks, modal: ModalStates, run: Run, row: int, at: list[int]
+) -> Mended | None:
     """
     G17, G18 or G19 in the mode is deleted.
 
@@ -34,10 +38,10 @@ def plane_selected_in_polar(trace: Trace, row: int, at: list[int]) -> Mended | N
         G1 X60.
         G13.1
     """
-    if not is_plain(trace, row) or not at:
+    if not is_plain(run, row) or not at:
         return None
-    numbers = code_numbers(trace.run.words.value[at]) // 10
-    in_force = int(before(trace.state("plane"), trace.starts, 0)[row])
-    names = ", ".join(written_word(trace, index) for index in at)
+    numbers = code_numbers(run.words.value[at]) // 10
+    in_force = int(before(modal.state("plane"), blocks.starts, 0)[row])
+    names = ", ".join(written_word(run, index) for index in at)
     is_safe = bool((numbers == in_force).all())
-    return Mended(f"Delete {names}", is_safe, tuple(without(trace, row, at)))
+    return Mended(f"Delete {names}", is_safe, tuple(without(run, row, at)))

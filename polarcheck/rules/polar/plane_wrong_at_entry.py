@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Entry, Mask, Trace, rule
+from polarcheck.checking.rule import ERROR, Entry, Mask, PolarMode, rule
 
 
 @rule(
@@ -9,7 +9,7 @@ from polarcheck.checking.rule import ERROR, Entry, Mask, Trace, rule
     at=("on",),
     once="plane",
 )
-def plane_wrong_at_entry(trace: Trace, entry: Entry) -> Mask:
+def plane_wrong_at_entry(mode: PolarMode, entry: Entry) -> Mask:
     """
     Polar mode entered in another plane than the lathe wants.
 
@@ -61,4 +61,4 @@ def plane_wrong_at_entry(trace: Trace, entry: Entry) -> Mask:
         X60.
         G13.1
     """
-    return trace.enters & ~entry.plane_is_right
+    return mode.enters & ~entry.plane_is_right

@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Hits, SwitchWords, Trace, rule
+from polarcheck.checking.rule import ERROR, ExecutedBlocks, Hits, SwitchWords, rule
 
 
 @rule(ERROR, "{others} beside {switch}: {axis_fault}")
-def polar_axis_number_wrong(trace: Trace, switch_words: SwitchWords) -> Hits:
+def polar_axis_number_wrong(blocks: ExecutedBlocks, switch_words: SwitchWords) -> Hits:
     """
     P or Q of G12.1 that gives no pair of axes.
 
@@ -43,4 +43,4 @@ def polar_axis_number_wrong(trace: Trace, switch_words: SwitchWords) -> Hits:
         G13.1
     """
     found = switch_words.names_no_axis | switch_words.names_axis_of_other_kind | switch_words.names_axis_twice
-    return Hits(trace.with_words(found), at=found)
+    return Hits(blocks.with_words(found), at=found)

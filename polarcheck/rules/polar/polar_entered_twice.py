@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Mask, Trace, rule
+from polarcheck.checking.rule import WARNING, Mask, PlaneAxes, PolarMode, rule
 
 
 @rule(
@@ -9,7 +9,7 @@ from polarcheck.checking.rule import WARNING, Mask, Trace, rule
     at=("on",),
     follows={"block": ("polar-switched-in-offset-mode",), "section": ("polar-never-left",)},
 )
-def polar_entered_twice(trace: Trace) -> Mask:
+def polar_entered_twice(axes: PlaneAxes, mode: PolarMode) -> Mask:
     """
     Polar mode switched on while it is on.
 
@@ -44,4 +44,4 @@ def polar_entered_twice(trace: Trace) -> Mask:
         X60.
         G13.1
     """
-    return trace.in_polar & trace.switches_on
+    return mode.in_polar & axes.switches_on

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Mask, Procedure, Trace, rule
+from polarcheck.checking.rule import ERROR, Mask, PlaneAxes, Procedure, rule
 
 
 @rule(
@@ -9,7 +9,7 @@ from polarcheck.checking.rule import ERROR, Mask, Procedure, Trace, rule
     "write {switch_on} before it",
     at=("off",),
 )
-def polar_never_entered(trace: Trace, procedure: Procedure) -> Mask:
+def polar_never_entered(axes: PlaneAxes, procedure: Procedure) -> Mask:
     """
     G13.1 after a contour that no G12.1 began.
 
@@ -102,4 +102,4 @@ def polar_never_entered(trace: Trace, procedure: Procedure) -> Mask:
         G40 G13.1
         M30
     """
-    return trace.switches_off & (procedure.contour_without_mode >= 0)
+    return axes.switches_off & (procedure.contour_without_mode >= 0)

@@ -3,11 +3,14 @@ from __future__ import annotations
 from polarcheck.checking.editing import begins_program, blocks_before, blocks_behind, skip_sign
 from polarcheck.checking.phrases.common import switch_off
 from polarcheck.checking.repair import Mended, repair
-from polarcheck.table.trace import Trace
+from polarcheck.columns.blocks import ExecutedBlocks
+from polarcheck.columns.mode import PolarMode
+from polarcheck.execution.run import Run
+from polarcheck.machines.machine import Machine
 
 
 @repair()
-def polar_never_left(trace: Trace, index: int) -> Mended | None:
+def polar_never_left(blocks: ExecutedBlocks, mode: PolarMode, run: Run, machine: Machine, index: int) -> Mended | None:
     """
     G13.1 is put behind the last block of the section.
 
@@ -36,17 +39,17 @@ def polar_never_left(trace: Trace, index: int) -> Mended | None:
         G0 Z50.
         M30
     """
-    enter, leave = int(trace.sections.enter[index]), int(trace.sections.leave[index])
-    text = skip_sign(trace, enter) + switch_off(trace, enter)
-    blocks, last = trace.text.blocks, int(trace.run.block[leave - 1])
+    enter, leave = int(mode.sections.enter[index]), int(mode.sections.leave[index])
+    text = skip_sign(run, enter) + switch_off(blocks, machine, enter)
+    blocks_of_text, last = run.text.blocks, int(run.block[leave - 1])
     title = f"Write {text} behind the last block of the section"
-    if leave >= len(trace) or trace.starts[leave]:
-        return None if blocks.is_macro[last] else Mended(title, False, (blocks_behind(trace, last, [text]),))
-    first = int(trace.run.block[leave])
-    between = trace.text.words.block
+    if leave >= len(blocks) or blocks.starts[leave]:
+        return None if blocks_of_text.is_macro[last] else Mended(title, False, (blocks_behind(run.text, last, [text]),))
+    first = int(run.block[leave])
+    between = run.text.words.block
     is_next = last < first and not ((between > last) & (between < first)).any()
-    if is_next and not blocks.is_macro[last:first].any():
-        return Mended(title, False, (blocks_behind(trace, last, [text]),))
-    if begins_program(trace, leave):
+    if is_next and not blocks_of_text.is_macro[last:first].any():
+        return Mended(title, False, (blocks_behind(run.text, last, [text]),))
+    if begins_program(run, leave):
         return None
-    return Mended(title, False, (blocks_before(trace, first, [text]),))
+    return Mended(title, False, (blocks_before(run.text, first, [text]),))

@@ -1,13 +1,13 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Hits, SwitchWords, Trace, rule
+from polarcheck.checking.rule import ERROR, ExecutedBlocks, Hits, SwitchWords, rule
 
 
 @rule(
     ERROR,
     "{others} beside {switch} is incremental: the shift of the center is taken in absolute words only, {absolute}",
 )
-def polar_shift_incremental(trace: Trace, switch_words: SwitchWords) -> Hits:
+def polar_shift_incremental(blocks: ExecutedBlocks, switch_words: SwitchWords) -> Hits:
     """
     Center of the polar plane shifted by an incremental word.
 
@@ -47,4 +47,4 @@ def polar_shift_incremental(trace: Trace, switch_words: SwitchWords) -> Hits:
     """
     # Compares nothing: polar-switch-not-alone leaves these words to this rule.
     found = switch_words.shifts_incrementally
-    return Hits(trace.with_words(found), at=found)
+    return Hits(blocks.with_words(found), at=found)

@@ -1,11 +1,11 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Mask, Trace, rule
+from polarcheck.checking.rule import ERROR, CutterCompensation, Mask, PolarMode, rule
 from polarcheck.machines.modal import Side
 
 
 @rule(ERROR, "{switch} while {side} is in force; G40 must be in force here", at=("on", "off"), once="section")
-def polar_switched_in_offset_mode(trace: Trace) -> Mask:
+def polar_switched_in_offset_mode(mode: PolarMode, compensation: CutterCompensation) -> Mask:
     """
     Polar mode switched on or off while G41 or G42 is in force.
 
@@ -65,6 +65,6 @@ def polar_switched_in_offset_mode(trace: Trace) -> Mask:
         G13.1
     """
     # A G41 after which nothing has moved is no offset mode yet; that is start-up-shorter-than-radius.
-    in_offset_mode = (trace.leaves | trace.enters_again) & (trace.side_of_move_before != Side.OFF)
-    side_in_force = (trace.side_before != Side.OFF) & ~trace.writes_cancel
-    return (trace.enters | in_offset_mode) & side_in_force
+    in_offset_mode = (mode.leaves | mode.enters_again) & (compensation.side_of_move_before != Side.OFF)
+    side_in_force = (compensation.side_before != Side.OFF) & ~compensation.writes_cancel
+    return (mode.enters | in_offset_mode) & side_in_force

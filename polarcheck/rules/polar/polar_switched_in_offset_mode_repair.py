@@ -5,9 +5,9 @@ import numpy as np
 from polarcheck.checking.editing import begins_program, blocks_before, is_head, is_plain, separator, skip_sign, words_of
 from polarcheck.checking.phrases.common import code_of
 from polarcheck.checking.repair import WAY, Mended, repair
+from polarcheck.columns.trace import Trace
 from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.machines.modal import Motion
-from polarcheck.table.trace import Trace
 
 #: A move goes outward where so much of its length adds to the distance from the center: within 45 deg.
 OUTWARD = 0.7
@@ -66,28 +66,30 @@ def polar_switched_in_offset_mode(trace: Trace, row: int) -> Mended | None:
         G13.1
     """
     off = code_of(trace.machine, "compensation_off")
-    if trace.enters[row]:
-        if not is_plain(trace, row) or begins_program(trace, row):
+    if trace.mode.enters[row]:
+        if not is_plain(trace.run, row) or begins_program(trace.run, row):
             return None
-        edit = blocks_before(trace, int(trace.run.block[row]), [skip_sign(trace, row) + off])
+        edit = blocks_before(trace.text, int(trace.run.block[row]), [skip_sign(trace.run, row) + off])
         return Mended(f"Write {off} before it", False, (edit,))
-    last = _move_away(trace, row) if trace.leaves[row] else None
-    if last is None or not is_plain(trace, last):
+    last = _move_away(trace, row) if trace.mode.leaves[row] else None
+    if last is None or not is_plain(trace.run, last):
         return None
-    body = [index for index in words_of(trace, last) if not is_head(trace, index)]
+    body = [index for index in words_of(trace.run, last) if not is_head(trace.run, index)]
     others = [index for index in body if chr(int(trace.run.words.address[index])) != "G"]
     start = int(trace.run.words.start[(others or body)[0]])
-    return Mended(f"Write {off} with the last move", False, ((start, start, off + separator(trace, last)),))
+    return Mended(f"Write {off} with the last move", False, ((start, start, off + separator(trace.run, last)),))
 
 
 def _move_away(trace: Trace, row: int) -> int | None:
     """The last move on the plane before a row, where it leads away from the contour."""
-    moving = np.flatnonzero(trace.travels & (trace.section == trace.section[row - 1]) & (np.arange(len(trace)) < row))
-    begins = moving[trace.starts_up[moving]]
-    if not len(begins) or moving[-1] <= begins[-1] or trace.motion[moving[-1]] != Motion.LINE:
+    moving = np.flatnonzero(
+        trace.path.travels & (trace.mode.section == trace.mode.section[row - 1]) & (np.arange(len(trace)) < row)
+    )
+    begins = moving[trace.compensation.starts_up[moving]]
+    if not len(begins) or moving[-1] <= begins[-1] or trace.axes.motion[moving[-1]] != Motion.LINE:
         return None
     *path, last = moving[moving >= begins[-1]].tolist()
-    end, farthest = trace.end[last], float(np.abs(trace.end[path]).max())
-    leads_back = abs(end - trace.start[begins[-1]]) <= ROUNDING
-    leads_out = abs(end) - abs(trace.start[last]) > OUTWARD * abs(end - trace.start[last])
+    end, farthest = trace.path.end[last], float(np.abs(trace.path.end[path]).max())
+    leads_back = abs(end - trace.path.start[begins[-1]]) <= ROUNDING
+    leads_out = abs(end) - abs(trace.path.start[last]) > OUTWARD * abs(end - trace.path.start[last])
     return int(last) if leads_back or (leads_out and abs(end) > farthest + ROUNDING) else None

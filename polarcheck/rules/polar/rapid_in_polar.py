@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Mask, Trace, rule
+from polarcheck.checking.rule import ERROR, ExecutedBlocks, Mask, ModalStates, PlaneAxes, PolarMode, rule
 from polarcheck.machines.modal import Motion
 
 
@@ -10,7 +10,7 @@ from polarcheck.machines.modal import Motion
     at=("rapid",),
     follows={"block": ("code-not-allowed-in-polar", "polar-entered-twice")},
 )
-def rapid_in_polar(trace: Trace) -> Mask:
+def rapid_in_polar(blocks: ExecutedBlocks, modal: ModalStates, axes: PlaneAxes, mode: PolarMode) -> Mask:
     """
     Rapid traverse in the polar mode.
 
@@ -47,8 +47,8 @@ def rapid_in_polar(trace: Trace) -> Mask:
         G0 X60.
     """
     # What G0 means beside a code that can only stand outside is no question of its own.
-    outside = trace.listed("reference_check", "reference_return", "machine_coordinates")
-    in_rapid = trace.in_polar & (trace.state("motion") == Motion.RAPID) & ~outside
-    written = trace.listed("rapid")
-    first_move = trace.first_in_section(in_rapid & (trace.motion == Motion.RAPID)) & ~trace.given_in_section(written)
+    outside = blocks.listed("reference_check", "reference_return", "machine_coordinates")
+    in_rapid = mode.in_polar & (modal.state("motion") == Motion.RAPID) & ~outside
+    written = blocks.listed("rapid")
+    first_move = mode.first_in_section(in_rapid & (axes.motion == Motion.RAPID)) & ~mode.given_in_section(written)
     return in_rapid & (written | first_move)

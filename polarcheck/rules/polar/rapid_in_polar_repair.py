@@ -6,9 +6,9 @@ import numpy as np
 
 from polarcheck.checking.editing import in_place_of, is_head, is_plain, separator, with_word, words_of, written_word
 from polarcheck.checking.repair import FEED, Mended, repair
+from polarcheck.columns.trace import Trace
 from polarcheck.feed_table.edits import feed_below, feed_text, restored
 from polarcheck.table.tool_center import ToolCenter
-from polarcheck.table.trace import Trace
 
 _RAPID = re.compile(r"(G\s*0*?)0", re.IGNORECASE)
 
@@ -60,29 +60,33 @@ def rapid_in_polar(trace: Trace, tool_center: ToolCenter, row: int, at: list[int
         G1 C5.
         G13.1
     """
-    of_same_code = (trace.motion_word == trace.motion_word[row]) & (np.arange(len(trace)) > row)
-    if not is_plain(trace, row) or np.any(of_same_code & trace.moves & ~trace.in_polar):
+    of_same_code = (trace.modal.motion_word == trace.modal.motion_word[row]) & (np.arange(len(trace)) > row)
+    if not is_plain(trace.run, row) or np.any(of_same_code & trace.axes.moves & ~trace.mode.in_polar):
         return None
     edits = []
     for index in at:
-        code = _RAPID.fullmatch(written_word(trace, index))
+        code = _RAPID.fullmatch(written_word(trace.run, index))
         if code is None:
             return None
-        edits.append(in_place_of(trace, index, f"{code[1]}1"))
+        edits.append(in_place_of(trace.run, index, f"{code[1]}1"))
     if not at:
-        body = [index for index in words_of(trace, row) if not is_head(trace, index)]
+        body = [index for index in words_of(trace.run, row) if not is_head(trace.run, index)]
         start = int(trace.run.words.start[body[0]])
-        edits.append((start, start, f"G1{separator(trace, row)}"))
-    if trace.has("F")[row]:
+        edits.append((start, start, f"G1{separator(trace.run, row)}"))
+    if trace.blocks.has("F")[row]:
         return Mended("Write G1", False, tuple(edits))
     feed = trace.machine.feed.positioning_minimum
     again = restored(trace, row)
-    if not feed > 0 or not trace.per_minute[row] or again is None:
+    if not feed > 0 or not trace.feedrate.per_minute[row] or again is None:
         return None
-    moving = np.append(row, np.flatnonzero(of_same_code & trace.in_polar))
+    moving = np.append(row, np.flatnonzero(of_same_code & trace.mode.in_polar))
     allowed = float(np.nanmin(np.append(tool_center.feed_allowed[moving], np.inf)))
-    word = feed_text(trace, row, feed) if feed < allowed else feed_below(trace, row, allowed)
+    word = (
+        feed_text(trace.blocks, trace.lengths, trace.run, row, feed)
+        if feed < allowed
+        else feed_below(trace.blocks, trace.lengths, trace.run, row, allowed)
+    )
     if word is None:
         return None
-    edits += [with_word(trace, row, word), *again]
+    edits += [with_word(trace.run, row, word), *again]
     return Mended(f"Write G1 with {word}", False, tuple(edits))

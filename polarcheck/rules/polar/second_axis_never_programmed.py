@@ -1,6 +1,16 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Arcs, Center, Mask, Sections, Trace, rule
+from polarcheck.checking.rule import (
+    ERROR,
+    Arcs,
+    Center,
+    Mask,
+    PlaneAxes,
+    PolarMode,
+    ProgrammedPath,
+    Sections,
+    rule,
+)
 
 #: One arc or one way across the center may be a slip of its own.
 _SEVERAL = 2
@@ -13,7 +23,9 @@ _SEVERAL = 2
     over="sections",
     at=("on",),
 )
-def second_axis_never_programmed(trace: Trace, sections: Sections, arcs: Arcs, center: Center) -> Mask:
+def second_axis_never_programmed(
+    axes: PlaneAxes, mode: PolarMode, path: ProgrammedPath, sections: Sections, arcs: Arcs, center: Center
+) -> Mask:
     """
     Section without any word of the second axis.
 
@@ -42,7 +54,7 @@ def second_axis_never_programmed(trace: Trace, sections: Sections, arcs: Arcs, c
         G1 X50.
         G13.1
     """
-    without = trace.nowhere_in_section(trace.programs_virtual_axis)[sections.enter]
-    no_circle = trace.count_in_section(arcs.is_no_circle) >= _SEVERAL
-    across = trace.count_in_section(trace.cuts & center.meets_center) >= _SEVERAL
+    without = mode.nowhere_in_section(axes.programs_virtual_axis)[sections.enter]
+    no_circle = mode.count_in_section(arcs.is_no_circle) >= _SEVERAL
+    across = mode.count_in_section(path.cuts & center.meets_center) >= _SEVERAL
     return without & (no_circle | across)

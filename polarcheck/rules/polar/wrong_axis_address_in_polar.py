@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Hits, ModeWords, Trace, rule
+from polarcheck.checking.rule import ERROR, Hits, ModeWords, PolarMode, rule
 
 
 @rule(
@@ -9,7 +9,7 @@ from polarcheck.checking.rule import ERROR, Hits, ModeWords, Trace, rule
     once="section",
     follows={"block": ("polar-entered-twice",)},
 )
-def wrong_axis_address_in_polar(trace: Trace, mode_words: ModeWords) -> Hits:
+def wrong_axis_address_in_polar(mode: PolarMode, mode_words: ModeWords) -> Hits:
     """
     Second axis of the polar plane under the address of another control.
 
@@ -40,4 +40,4 @@ def wrong_axis_address_in_polar(trace: Trace, mode_words: ModeWords) -> Hits:
         G13.1
         G28 V0
     """
-    return Hits(trace.in_polar & mode_words.rows(mode_words.of_other_axis), at=mode_words.of_other_axis)
+    return Hits(mode.in_polar & mode_words.rows(mode_words.of_other_axis), at=mode_words.of_other_axis)

@@ -1,6 +1,16 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, NOTE, WARNING, Hits, Machine, Trace, rule
+from polarcheck.checking.rule import (
+    ERROR,
+    NOTE,
+    WARNING,
+    Hits,
+    Machine,
+    PlaneAxes,
+    PolarMode,
+    ProgrammedPath,
+    rule,
+)
 from polarcheck.machines.modal import Motion
 
 
@@ -9,7 +19,7 @@ from polarcheck.machines.modal import Motion
     "{others} in one block in the polar mode: {what_z_does}; write Z in a block of its own",
     at=("X", "U", "C", "H", "Y", "V", "Z", "W"),
 )
-def z_with_plane_axis(trace: Trace, machine: Machine) -> Hits:
+def z_with_plane_axis(axes: PlaneAxes, mode: PolarMode, path: ProgrammedPath, machine: Machine) -> Hits:
     """
     Z in one block with X or C.
 
@@ -60,6 +70,6 @@ def z_with_plane_axis(trace: Trace, machine: Machine) -> Hits:
         X60.
         G13.1
     """
-    moves_both = trace.in_polar & trace.moves_plane & trace.moves_z
+    moves_both = mode.in_polar & axes.moves_plane & axes.moves_z
     severity = {"forbidden": ERROR, "independent": WARNING, "together": NOTE}[machine.polar.other_axes]
-    return Hits(moves_both & (trace.motion == Motion.LINE) & (trace.length > 0), severity)
+    return Hits(moves_both & (axes.motion == Motion.LINE) & (path.length > 0), severity)

@@ -11,13 +11,19 @@ from polarcheck.checking.editing import (
     written_word,
 )
 from polarcheck.checking.repair import Mended, Z, repair
+from polarcheck.columns.axes import PlaneAxes
+from polarcheck.columns.blocks import ExecutedBlocks
+from polarcheck.columns.filling import before
+from polarcheck.columns.path import ProgrammedPath
+from polarcheck.execution.run import Run
 from polarcheck.machines.codes import code_numbers, code_set
-from polarcheck.table.filling import before
-from polarcheck.table.trace import Trace
+from polarcheck.machines.machine import Machine
 
 
 @repair(Z)
-def z_with_plane_axis(trace: Trace, row: int) -> Mended | None:
+def z_with_plane_axis(
+    blocks: ExecutedBlocks, axes: PlaneAxes, path: ProgrammedPath, run: Run, machine: Machine, row: int
+) -> Mended | None:
     """
     Z gets a block of its own: behind the move on the plane where it goes in, before it where it comes out.
 
@@ -43,18 +49,18 @@ def z_with_plane_axis(trace: Trace, row: int) -> Mended | None:
         X60.
         G13.1
     """
-    if not is_plain(trace, row) or begins_program(trace, row):
+    if not is_plain(run, row) or begins_program(run, row):
         return None
-    depth = float(trace.z[row] - before(trace.z, trace.starts, float("nan"))[row])
-    if depth != depth and trace.has("W")[row] and not trace.has("Z")[row]:
-        depth = float(trace.word("W")[row])
+    depth = float(path.z[row] - before(path.z, blocks.starts, float("nan"))[row])
+    if depth != depth and blocks.has("W")[row] and not blocks.has("Z")[row]:
+        depth = float(blocks.word("W")[row])
     if not depth:  # nothing moves Z
         return None
-    machine, words = trace.machine, trace.run.words
-    own = words_of(trace, row)
+    words = run.words
+    own = words_of(run, row)
     names = [chr(int(words.address[index])) for index in own]
     of_z = [index for index, name in zip(own, names, strict=True) if name in "ZW"]
-    axes = {"X", "U", *machine.polar.rotary_words, machine.polar.virtual_axis, trace.virtual_axis_of(row)}
+    addresses = {"X", "U", *machine.polar.rotary_words, machine.polar.virtual_axis, axes.virtual_axis_of(row)}
     sides = (
         *machine.codes("compensation_off"),
         *machine.codes("compensation_left"),
@@ -62,12 +68,14 @@ def z_with_plane_axis(trace: Trace, row: int) -> Mended | None:
     )
     is_side = code_set(sides)[code_numbers(words.value[own])]
     of_plane = [
-        index for index, name, side in zip(own, names, is_side, strict=True) if name in axes or (name == "G" and side)
+        index
+        for index, name, side in zip(own, names, is_side, strict=True)
+        if name in addresses or (name == "G" and side)
     ]
     if depth != depth or not of_z or not of_plane:
         return None
     moved = of_z if depth < 0 else of_plane
-    text = skip_sign(trace, row) + separator(trace, row).join(written_word(trace, index) for index in moved)
-    edits = [*without(trace, row, moved), blocks_behind(trace, int(trace.run.block[row]), [text])]
+    text = skip_sign(run, row) + separator(run, row).join(written_word(run, index) for index in moved)
+    edits = [*without(run, row, moved), blocks_behind(run.text, int(run.block[row]), [text])]
     where = "behind" if depth < 0 else "before"
     return Mended(f"Write Z in a block of its own {where} the move on the plane", False, tuple(edits))

@@ -1,17 +1,17 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Entry, Hits, Trace, graded, rule
+from polarcheck.checking.rule import ERROR, Entry, Hits, ProgrammedPath, graded, rule
 from polarcheck.geometry.tolerances import ROUNDING
 
 
 @rule(
     ERROR,
-    "X stands at {trace.x:diameter/needed} at {switch}; {to_clear} {needed:diameter/trace.x} or more",
+    "X stands at {path.x:diameter/needed} at {switch}; {to_clear} {needed:diameter/path.x} or more",
     at=("on",),
-    needs=("trace.cutter_diameter",),
+    needs=("offsets.cutter_diameter",),
     where="entry.approaches_stock",
 )
-def approach_inside_stock(trace: Trace, entry: Entry) -> Hits:
+def approach_inside_stock(path: ProgrammedPath, entry: Entry) -> Hits:
     """
     Approach point inside the stock.
 
@@ -62,6 +62,6 @@ def approach_inside_stock(trace: Trace, entry: Entry) -> Hits:
         G1 Z2. F1500
         G13.1
     """
-    inside = entry.approaches_stock & (trace.x < entry.x_needed - entry.clearance / 2 - ROUNDING)
-    near = entry.approaches_stock & (trace.x < entry.x_needed - ROUNDING)
+    inside = entry.approaches_stock & (path.x < entry.x_needed - entry.clearance / 2 - ROUNDING)
+    near = entry.approaches_stock & (path.x < entry.x_needed - ROUNDING)
     return graded(error=inside, warning=near, values={"stock": entry.stock_diameter, "needed": entry.x_needed})

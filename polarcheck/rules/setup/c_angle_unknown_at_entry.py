@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Entry, Mask, Spindles, Trace, rule
+from polarcheck.checking.rule import WARNING, Entry, ExecutedBlocks, Machine, Mask, PolarMode, Spindles, rule
 
 
 @rule(
@@ -9,7 +9,9 @@ from polarcheck.checking.rule import WARNING, Entry, Mask, Spindles, Trace, rule
     at=("on",),
     follows={"block": ("c-axis-not-engaged", "c-axis-not-referenced", "x-unknown-at-entry")},
 )
-def c_angle_unknown_at_entry(trace: Trace, entry: Entry, spindles: Spindles) -> Mask:
+def c_angle_unknown_at_entry(
+    blocks: ExecutedBlocks, mode: PolarMode, machine: Machine, entry: Entry, spindles: Spindles
+) -> Mask:
     """
     C never positioned before the polar mode.
 
@@ -55,10 +57,10 @@ def c_angle_unknown_at_entry(trace: Trace, entry: Entry, spindles: Spindles) -> 
         G13.1
         M30
     """
-    positioned = (trace.has(*trace.machine.polar.rotary_words) & (trace.section < 0)) | trace.moves_unnamed
+    positioned = (blocks.has(*machine.polar.rotary_words) & (mode.section < 0)) | blocks.moves_unnamed
     return (
-        trace.enters
-        & trace.rotary_is_followed
-        & trace.whole_program
+        mode.enters
+        & mode.rotary_is_followed
+        & blocks.whole_program
         & ~entry.happened(positioned, since=spindles.engages_c_axis)
     )

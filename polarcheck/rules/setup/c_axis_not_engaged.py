@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Entry, Hits, Machine, Spindles, Trace, rule
+from polarcheck.checking.rule import WARNING, Entry, Hits, Machine, PolarMode, Spindles, rule
 
 
 @rule(
@@ -9,7 +9,7 @@ from polarcheck.checking.rule import WARNING, Entry, Hits, Machine, Spindles, Tr
     at=("on",),
     once="c axis code",
 )
-def c_axis_not_engaged(trace: Trace, entry: Entry, spindles: Spindles, machine: Machine) -> Hits:
+def c_axis_not_engaged(mode: PolarMode, entry: Entry, spindles: Spindles, machine: Machine) -> Hits:
     """
     Polar mode without the spindle as C axis.
 
@@ -88,5 +88,5 @@ def c_axis_not_engaged(trace: Trace, entry: Entry, spindles: Spindles, machine: 
     codes, engaging = machine.m_codes, spindles.c_axis_codes
     # A sub-spindle alone does not tell by which code the main spindle is engaged.
     expected = entry.expects(codes.c_axis_on and [*engaging, *codes.c_axis_off, *codes.sub_c_axis_off])
-    missing = trace.enters & trace.rotary_is_followed & ~spindles.c_axis & expected
+    missing = mode.enters & mode.rotary_is_followed & ~spindles.c_axis & expected
     return Hits(missing, values={"codes": " or ".join(engaging)})

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Entry, Mask, Spindles, Trace, rule
+from polarcheck.checking.rule import WARNING, Entry, ExecutedBlocks, Machine, Mask, PolarMode, Spindles, rule
 
 
 @rule(
@@ -9,7 +9,9 @@ from polarcheck.checking.rule import WARNING, Entry, Mask, Spindles, Trace, rule
     at=("on",),
     once="c axis code",
 )
-def c_axis_not_referenced(trace: Trace, entry: Entry, spindles: Spindles) -> Mask:
+def c_axis_not_referenced(
+    blocks: ExecutedBlocks, mode: PolarMode, machine: Machine, entry: Entry, spindles: Spindles
+) -> Mask:
     """
     C axis engaged but not referenced.
 
@@ -52,8 +54,8 @@ def c_axis_not_referenced(trace: Trace, entry: Entry, spindles: Spindles) -> Mas
         G13.1
     """
     # C of a sub-spindle has another name on many lathes.
-    of_sub_spindle = trace.has("A", "B") & spindles.on_sub_spindle
-    named = trace.has(*trace.machine.polar.rotary_words) | of_sub_spindle | trace.moves_unnamed
-    referenced = trace.listed("c_axis_reference") & named
-    entered = trace.enters & trace.rotary_is_followed & spindles.c_axis
+    of_sub_spindle = blocks.has("A", "B") & spindles.on_sub_spindle
+    named = blocks.has(*machine.polar.rotary_words) | of_sub_spindle | blocks.moves_unnamed
+    referenced = blocks.listed("c_axis_reference") & named
+    entered = mode.enters & mode.rotary_is_followed & spindles.c_axis
     return entered & ~entry.happened(referenced, since=spindles.engages_c_axis)

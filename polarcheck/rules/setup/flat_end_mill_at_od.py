@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Entry, Mask, Trace, rule
+from polarcheck.checking.rule import ERROR, Entry, Mask, PolarMode, rule
 
 
 @rule(
@@ -9,7 +9,7 @@ from polarcheck.checking.rule import ERROR, Entry, Mask, Trace, rule
     at=("on",),
     once="tool call",
 )
-def flat_end_mill_at_od(trace: Trace, entry: Entry) -> Mask:
+def flat_end_mill_at_od(mode: PolarMode, entry: Entry) -> Mask:
     """
     Flat end mill that points at the outer diameter of the part.
 
@@ -56,4 +56,4 @@ def flat_end_mill_at_od(trace: Trace, entry: Entry) -> Mask:
         X60.
         G13.1
     """
-    return trace.enters & entry.is_flat_and_radial
+    return mode.enters & entry.is_flat_and_radial

@@ -1,13 +1,13 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Hits, Machine, Procedure, Trace, graded, rule
+from polarcheck.checking.rule import WARNING, ExecutedBlocks, Hits, Machine, Procedure, graded, rule
 
 
 @rule(
     WARNING,
     "the live tool still runs at {word}: {started} was not stopped after the polar mode; write {stop} on the retract",
 )
-def live_tool_never_stopped(trace: Trace, procedure: Procedure, machine: Machine) -> Hits:
+def live_tool_never_stopped(blocks: ExecutedBlocks, procedure: Procedure, machine: Machine) -> Hits:
     """
     Live tool not stopped after the polar mode.
 
@@ -74,7 +74,7 @@ def live_tool_never_stopped(trace: Trace, procedure: Procedure, machine: Machine
         T0101
         M30
     """
-    still, ends = procedure.live_tool_runs_on >= 0, trace.ends_program
-    ending = trace.words_at(trace.code_indices(*machine.m_codes.program_end))
-    at = ending | trace.words_at(trace.word_indices("T"))
+    still, ends = procedure.live_tool_runs_on >= 0, blocks.ends_program
+    ending = blocks.words_at(blocks.code_indices(*machine.m_codes.program_end))
+    at = ending | blocks.words_at(blocks.word_indices("T"))
     return graded(warning=still & ~ends, note=still & ends, at=at)

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Entry, Hits, Machine, Trace, rule
+from polarcheck.checking.rule import ERROR, Entry, Hits, Machine, ModalStates, PolarMode, ProgrammedPath, rule
 
 
 @rule(
@@ -9,7 +9,9 @@ from polarcheck.checking.rule import ERROR, Entry, Hits, Machine, Trace, rule
     at=("line", "arc_clockwise", "arc_counterclockwise"),
     once="live tool code",
 )
-def live_tool_stopped_in_cut(trace: Trace, entry: Entry, machine: Machine) -> Hits:
+def live_tool_stopped_in_cut(
+    modal: ModalStates, mode: PolarMode, path: ProgrammedPath, entry: Entry, machine: Machine
+) -> Hits:
     """
     Cutting move in the polar mode with the live tool stopped.
 
@@ -58,5 +60,5 @@ def live_tool_stopped_in_cut(trace: Trace, entry: Entry, machine: Machine) -> Hi
     """
     codes = machine.m_codes
     expected = entry.expects(codes.live_tool_on and [*codes.live_tool_on, *codes.live_tool_off])
-    stopped = trace.first_in_section(trace.cuts & ~trace.live_tool & expected)
+    stopped = mode.first_in_section(path.cuts & ~modal.live_tool & expected)
     return Hits(stopped, values={"codes": " or ".join(codes.live_tool_on)})

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Hits, Machine, Procedure, Trace, rule
+from polarcheck.checking.rule import WARNING, ExecutedBlocks, Hits, Machine, Procedure, rule
 
 
 @rule(
@@ -11,7 +11,7 @@ from polarcheck.checking.rule import WARNING, Hits, Machine, Procedure, Trace, r
     follows={"block": ("vacant-variable",)},
     is_advice=True,
 )
-def live_tool_without_speed(trace: Trace, procedure: Procedure, machine: Machine) -> Hits:
+def live_tool_without_speed(blocks: ExecutedBlocks, procedure: Procedure, machine: Machine) -> Hits:
     """
     Live tool started without a speed.
 
@@ -59,5 +59,5 @@ def live_tool_without_speed(trace: Trace, procedure: Procedure, machine: Machine
         M30
     """
     # Compares nothing: for which of two spindles an S is hangs on what starts after it.
-    started = trace.words_at(trace.code_indices(*machine.m_codes.live_tool_on))
+    started = blocks.words_at(blocks.code_indices(*machine.m_codes.live_tool_on))
     return Hits(procedure.live_tool_without_speed, at=started)

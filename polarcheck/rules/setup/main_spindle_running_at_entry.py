@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Hits, Machine, Spindles, Trace, graded, rule
+from polarcheck.checking.rule import ERROR, Hits, Machine, PolarMode, Spindles, graded, rule
 
 
 @rule(ERROR, "{spindle_codes} is in force at {switch}{spindle_remedy}", at=("on",), once="spindle code")
-def main_spindle_running_at_entry(trace: Trace, spindles: Spindles, machine: Machine) -> Hits:
+def main_spindle_running_at_entry(mode: PolarMode, spindles: Spindles, machine: Machine) -> Hits:
     """
     Main spindle not stopped before the polar mode.
 
@@ -45,6 +45,6 @@ def main_spindle_running_at_entry(trace: Trace, spindles: Spindles, machine: Mac
         X60.
         G13.1
     """
-    running = trace.enters & spindles.runs
+    running = mode.enters & spindles.runs
     must_stop = spindles.are_no_live_tool | machine.polar.main_spindle_must_stop
     return graded(error=running & must_stop, note=running & ~must_stop)

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Entry, Mask, Trace, rule
+from polarcheck.checking.rule import WARNING, CalledTools, CutterCompensation, Entry, Mask, PolarMode, rule
 from polarcheck.machines.modal import Side
 
 
@@ -11,7 +11,9 @@ from polarcheck.machines.modal import Side
     follows={"section": ("offset-changed-in-polar",)},
     once="tool call",
 )
-def no_tool_offset_at_entry(trace: Trace, entry: Entry) -> Mask:
+def no_tool_offset_at_entry(
+    tools: CalledTools, mode: PolarMode, compensation: CutterCompensation, entry: Entry
+) -> Mask:
     """
     Polar mode without a tool offset.
 
@@ -54,6 +56,6 @@ def no_tool_offset_at_entry(trace: Trace, entry: Entry) -> Mask:
         T0800
     """
     # Where compensation begins without one in the section, offset-number-missing says it better.
-    compensated = trace.in_polar & (trace.side != Side.OFF) & (trace.offset_number == 0)
-    missing = trace.enters & (trace.tool_offset_number == 0) & entry.expects_offset
-    return missing & trace.nowhere_in_section(compensated)
+    compensated = mode.in_polar & (compensation.side != Side.OFF) & (tools.offset_number == 0)
+    missing = mode.enters & (tools.tool_offset_number == 0) & entry.expects_offset
+    return missing & mode.nowhere_in_section(compensated)

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Entry, Hits, Trace, rule
+from polarcheck.checking.rule import ERROR, Entry, Hits, PolarMode, rule
 from polarcheck.geometry.tolerances import ROUNDING
 
 
@@ -10,10 +10,10 @@ from polarcheck.geometry.tolerances import ROUNDING
     at=("on",),
     once="origin",
     needs=("entry.origin_shift",),
-    where="trace.enters",
+    where="mode.enters",
     follows={"origin": ("origin-shifted-in-polar",)},
 )
-def origin_off_center(trace: Trace, entry: Entry) -> Hits:
+def origin_off_center(mode: PolarMode, entry: Entry) -> Hits:
     """
     Origin of the polar plane off the spindle axis.
 
@@ -110,4 +110,4 @@ def origin_off_center(trace: Trace, entry: Entry) -> Hits:
         G13.1
     """
     shift = entry.origin_shift
-    return Hits(trace.enters & (abs(shift) > ROUNDING), values={"shift": shift})
+    return Hits(mode.enters & (abs(shift) > ROUNDING), values={"shift": shift})

@@ -1,10 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import NOTE, Mask, Trace, rule
+from polarcheck.checking.rule import NOTE, CalledTools, Mask, ToolOffsets, rule
 
 
 @rule(NOTE, "R {taken:length} is taken {origin}", at=("T",))
-def radius_from_comment(trace: Trace) -> Mask:
+def radius_from_comment(tools: CalledTools, offsets: ToolOffsets) -> Mask:
     """
     Cutter radius taken from a comment.
 
@@ -69,4 +69,4 @@ def radius_from_comment(trace: Trace) -> Mask:
         X60.
         G13.1
     """
-    return trace.calls_offset & trace.radius_is_from_comment & ~trace.sets_radius_after_call
+    return tools.calls_offset & offsets.radius_is_from_comment & ~offsets.sets_radius_after_call

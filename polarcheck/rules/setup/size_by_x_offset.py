@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import NOTE, Mask, Trace, rule
+from polarcheck.checking.rule import NOTE, Mask, ToolOffsets, rule
 
 
 @rule(
@@ -9,7 +9,7 @@ from polarcheck.checking.rule import NOTE, Mask, Trace, rule
     at=("X", "U", "T"),
     is_advice=True,
 )
-def size_by_x_offset(trace: Trace) -> Mask:
+def size_by_x_offset(offsets: ToolOffsets) -> Mask:
     """
     Size of what is milled adjusted by the X offset.
 
@@ -59,4 +59,4 @@ def size_by_x_offset(trace: Trace) -> Mask:
         G13.1
     """
     # Compares nothing: what is set of which offset is a list of settings, and no column.
-    return trace.sizes_by_x
+    return offsets.sizes_by_x

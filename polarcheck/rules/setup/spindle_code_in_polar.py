@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Hits, Machine, Spindles, Trace, graded, rule
+from polarcheck.checking.rule import WARNING, ExecutedBlocks, Hits, Machine, PolarMode, Spindles, graded, rule
 
 
 @rule(
@@ -8,7 +8,7 @@ from polarcheck.checking.rule import WARNING, Hits, Machine, Spindles, Trace, gr
     "{codes} in the polar mode; the spindle is the {rotary} axis here",
     follows={"section": ("polar-never-left",)},
 )
-def spindle_code_in_polar(trace: Trace, spindles: Spindles, machine: Machine) -> Hits:
+def spindle_code_in_polar(blocks: ExecutedBlocks, mode: PolarMode, spindles: Spindles, machine: Machine) -> Hits:
     """
     Main spindle started or stopped, or the C axis released, in the polar mode.
 
@@ -55,6 +55,6 @@ def spindle_code_in_polar(trace: Trace, spindles: Spindles, machine: Machine) ->
         M5
     """
     codes = machine.m_codes
-    in_mode = trace.in_polar & spindles.has_code
-    is_known = spindles.are_no_live_tool | trace.codes(*codes.c_axis_on, *codes.c_axis_off)
+    in_mode = mode.in_polar & spindles.has_code
+    is_known = spindles.are_no_live_tool | blocks.codes(*codes.c_axis_on, *codes.c_axis_off)
     return graded(warning=in_mode & is_known, note=in_mode & ~is_known, at=spindles.words)

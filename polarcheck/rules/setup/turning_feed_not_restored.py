@@ -5,7 +5,7 @@ from polarcheck.checking.rule import WARNING, Mask, Procedure, rule
 
 @rule(
     WARNING,
-    "{feed_word} is {trace.feed_number:length} a minute in this move: {carried_mode} is still in force from "
+    "{feed_word} is {feedrate.feed_number:length} a minute in this move: {carried_mode} is still in force from "
     "the polar mode; write {per_revolution} after it",
     at=("F",),
     once="feed mode",

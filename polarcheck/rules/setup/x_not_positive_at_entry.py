@@ -1,11 +1,11 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Mask, Trace, rule
+from polarcheck.checking.rule import WARNING, Mask, PolarMode, ProgrammedPath, rule
 from polarcheck.geometry.tolerances import ROUNDING
 
 
-@rule(WARNING, "{linear} stands at {trace.x:diameter} at {switch}; enter the polar mode above 0", at=("on",))
-def x_not_positive_at_entry(trace: Trace) -> Mask:
+@rule(WARNING, "{linear} stands at {path.x:diameter} at {switch}; enter the polar mode above 0", at=("on",))
+def x_not_positive_at_entry(mode: PolarMode, path: ProgrammedPath) -> Mask:
     """
     X at the center or beyond it where the polar mode begins.
 
@@ -32,4 +32,4 @@ def x_not_positive_at_entry(trace: Trace) -> Mask:
         X60.
         G13.1
     """
-    return trace.enters & (trace.x < ROUNDING)
+    return mode.enters & (path.x < ROUNDING)

@@ -1,6 +1,15 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Entry, Mask, Trace, rule
+from polarcheck.checking.rule import (
+    WARNING,
+    Entry,
+    ExecutedBlocks,
+    Mask,
+    ModalStates,
+    PlaneAxes,
+    PolarMode,
+    rule,
+)
 
 
 @rule(
@@ -9,7 +18,9 @@ from polarcheck.checking.rule import WARNING, Entry, Mask, Trace, rule
     at=("on",),
     follows={"way": ("rapid-in-polar",)},
 )
-def x_unknown_at_entry(trace: Trace, entry: Entry) -> Mask:
+def x_unknown_at_entry(
+    blocks: ExecutedBlocks, modal: ModalStates, axes: PlaneAxes, mode: PolarMode, entry: Entry
+) -> Mask:
     """
     X not positioned before the polar mode.
 
@@ -68,6 +79,6 @@ def x_unknown_at_entry(trace: Trace, entry: Entry) -> Mask:
         G13.1
         M99
     """
-    positioned = (trace.has("X", "U") & (trace.uses_axes | trace.sets_coordinates)) | trace.moves_unnamed
-    by_x = trace.is_followed & (trace.linear_axis == ord("X"))
-    return trace.enters & by_x & trace.whole_program & ~entry.happened(positioned, since=entry.loses_x)
+    positioned = (blocks.has("X", "U") & (modal.uses_axes | modal.sets_coordinates)) | blocks.moves_unnamed
+    by_x = mode.is_followed & (axes.linear_axis == ord("X"))
+    return mode.enters & by_x & blocks.whole_program & ~entry.happened(positioned, since=entry.loses_x)

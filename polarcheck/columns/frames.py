@@ -14,8 +14,12 @@ import msgspec
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Points, is_among
-from polarcheck.table.filling import fill_down, positions
-from polarcheck.table.virtual_axis import VirtualAxis
+from polarcheck.columns.axes import PlaneAxes
+from polarcheck.columns.blocks import ExecutedBlocks
+from polarcheck.columns.filling import fill_down, positions
+from polarcheck.columns.lengths import RADIUS_FACTOR, Lengths
+from polarcheck.columns.modal import ModalStates
+from polarcheck.columns.mode import PolarMode
 
 #: G18 and G19.
 _OTHER_PLANES = (18, 19)
@@ -62,35 +66,35 @@ class Frames(msgspec.Struct, frozen=True, dict=True):
         return ~np.isnan(self.angle + self.shift.real + self.shift.imag)
 
 
-def find_frames(columns: VirtualAxis, x_factor: Floats, in_polar: Mask) -> Frames | None:
-    """The frames of a program; None where it has none. x_factor: radius per written X. in_polar: rows in the mode."""
-    shifts = columns.listed("frame_shift", "frame_shift_added")
-    turns = columns.listed("frame_rotation", "frame_rotation_added")
-    lost = columns.listed("frame_not_simulated")
+def find_frames(
+    blocks: ExecutedBlocks, modal: ModalStates, axes: PlaneAxes, mode: PolarMode, lengths: Lengths
+) -> Frames | None:
+    """The frames of a program; None where it has none."""
+    shifts = blocks.listed("frame_shift", "frame_shift_added")
+    turns = blocks.listed("frame_rotation", "frame_rotation_added")
+    lost = blocks.listed("frame_not_simulated")
     if not (shifts.any() or turns.any() or lost.any()):
         return None
-    own, polar = columns.machine.frames, columns.machine.polar
-    ends = columns.starts | ((columns.switches_on | columns.switches_off) & own.ended_by_switch)
-    written = columns.has(own.angle_word)
+    keys, polar = blocks.machine.frames, blocks.machine.polar
+    ends = blocks.starts | ((axes.switches_on | axes.switches_off) & keys.ended_by_switch)
+    written = blocks.has(keys.angle_word)
     # About X or Y nothing turns within the plane; and another plane than that of the mode is turned in none.
-    lost = lost | (turns & ~written & (columns.has("X") | columns.has_virtual_word))
-    lost |= turns & in_polar & is_among(columns.state("plane"), _OTHER_PLANES)
-    angle = _or_nothing(np.where(written, columns.word(own.angle_word), columns.word("Z")), written | columns.has("Z"))
-    virtual = columns.of_virtual_axis(columns.length_of) * (
-        0.5 if polar.virtual_axis_programming == "diameter" else 1.0
-    )
-    shift = np.zeros(len(columns), np.complex128)
-    shift.real = _or_nothing(columns.length_of("X") * x_factor, shifts & columns.has("X"))
-    shift.imag = _or_nothing(virtual, shifts & columns.has_virtual_word)
+    lost = lost | (turns & ~written & (blocks.has("X") | axes.has_virtual_word))
+    lost |= turns & mode.in_polar & is_among(modal.state("plane"), _OTHER_PLANES)
+    angle = _or_nothing(np.where(written, blocks.word(keys.angle_word), blocks.word("Z")), written | blocks.has("Z"))
+    virtual = axes.of_virtual_axis(lengths.length_of) * RADIUS_FACTOR[polar.virtual_axis_programming]
+    shift = np.zeros(len(blocks), np.complex128)
+    shift.real = _or_nothing(lengths.length_of("X") * lengths.x_factor, shifts & blocks.has("X"))
+    shift.imag = _or_nothing(virtual, shifts & axes.has_virtual_word)
     return in_force(
         FrameWords(
-            begins=columns.listed("frame_shift", "frame_rotation"),
-            adds=columns.listed("frame_shift_added", "frame_rotation_added"),
+            begins=blocks.listed("frame_shift", "frame_rotation"),
+            adds=blocks.listed("frame_shift_added", "frame_rotation_added"),
             ends=ends,
             unknown=lost,
             angle=np.where(turns, angle, 0.0),
             shift=shift,
-            z=_or_nothing(columns.length_of("Z"), shifts & columns.has("Z")),
+            z=_or_nothing(lengths.length_of("Z"), shifts & blocks.has("Z")),
         )
     )
 

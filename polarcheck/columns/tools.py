@@ -1,4 +1,4 @@
-"""The tool that each row has in force, and its offset: by the last digits of T, or by T and the edge that D calls."""
+"""The tool in force in each executed block, and its offset: by the last digits of T, or by T and the edge of D."""
 
 from __future__ import annotations
 
@@ -7,10 +7,12 @@ from functools import cached_property
 import numpy as np
 
 from polarcheck.arrays import Mask, Rows
-from polarcheck.machines.job import Tool
+from polarcheck.columns.blocks import ExecutedBlocks
+from polarcheck.columns.filling import before, fill_down, happened
+from polarcheck.execution.run import Run
+from polarcheck.machines.job import Job, Tool
+from polarcheck.machines.machine import Machine
 from polarcheck.machines.offset_keys import key_of
-from polarcheck.table.columns import Columns
-from polarcheck.table.filling import before, fill_down, happened
 
 _LONGEST_TOOL_NUMBER = 1e15
 #: Of T, where digits of their own say which offset has R.
@@ -23,56 +25,78 @@ _UNKNOWN = _EDGES - 1
 _NO_TOOL = _LARGEST_TOOL
 
 
-class CalledTools(Columns):
-    """The columns of the tool and the offset in force; see the properties."""
+class CalledTools:
+    """The tool and the tool offset that the program calls."""
+
+    def __init__(
+        self,
+        run: Run,
+        machine: Machine,
+        job: Job,
+        blocks: ExecutedBlocks,
+    ) -> None:
+        self.run = run
+        self.machine = machine
+        self.job = job
+        self.blocks = blocks
 
     @cached_property
     def _t(self) -> Rows:
         """The number that the last T has, 0 before the first."""
-        written, called = self.has("T"), self.word("T")
+        written, called = self.blocks.has("T"), self.blocks.word("T")
         # A longer number calls nothing (too-many-digits), and none that a whole number could hold.
         value = np.where(np.abs(called) < _LONGEST_TOOL_NUMBER, called, 0).astype(np.int64)
-        return fill_down(value, written | self.starts, 0)
+        return fill_down(value, written | self.blocks.starts, 0)
 
     @cached_property
     def has_edges(self) -> Mask:
         """The tool in force has edges: T is the tool alone, and D calls the offset. One with a name always has."""
         if self.machine.offsets.called_by == "edge":
-            return np.ones(len(self), bool)
+            return np.ones(len(self.run), bool)
         return np.isin(self._t, list(self.run.names))
 
     @cached_property
     def calls_edge(self) -> Mask:
         """A D word that calls an edge of the tool in force."""
-        return self.has("D") & self.has_edges
+        return self.blocks.has("D") & self.has_edges
 
     @property
     def means_cutter_by_d(self) -> Mask:
         """A D word where D calls nothing: tools have no edges."""
-        return self.has("D") & ~self.has_edges
+        return self.blocks.has("D") & ~self.has_edges
 
     @cached_property
     def calls_offset(self) -> Mask:
         """A word stands in the row that calls a tool offset, be it the one in force: T, or D of a tool with edges."""
-        return self.has("T") | self.calls_edge
+        return self.blocks.has("T") | self.calls_edge
 
     @cached_property
     def edge(self) -> Rows:
         """The edge in force by D, or by the tool change that calls one by itself; 0 for none."""
         called, default = self.calls_edge, self.machine.offsets.edge_after_tool
-        by_tool = self.has("T") & (self._t != before(self._t, self.starts, 0)) & ~called & (default >= 0)
-        written = np.where(np.abs(self.word("D")) < _UNKNOWN, np.abs(self.word("D")), _UNKNOWN)
+        by_tool = self.blocks.has("T") & (self._t != before(self._t, self.blocks.starts, 0)) & ~called & (default >= 0)
+        written = np.where(np.abs(self.blocks.word("D")) < _UNKNOWN, np.abs(self.blocks.word("D")), _UNKNOWN)
         value = np.where(called, written, np.where(by_tool, default, 0)).astype(np.int64)
-        return fill_down(value, called | by_tool | self.starts, 0)
+        return fill_down(value, called | by_tool | self.blocks.starts, 0)
 
     @cached_property
     def tool_called(self) -> Rows:
         """What is called in each row, tool and offset as one number: 808 for T0808; 0 before the first call."""
         if not self.has_edges.any():
             return self._t
-        tool = np.where(happened(self.has("T"), self.starts), self._t, _NO_TOOL)
+        tool = np.where(happened(self.blocks.has("T"), self.blocks.starts), self._t, _NO_TOOL)
         is_edge = (self.edge > 0) & (tool != 0) & (np.abs(tool) <= _NO_TOOL)
         return np.where(self.has_edges, np.where(is_edge, np.abs(tool) * _EDGES + self.edge, 0), self._t)
+
+    @cached_property
+    def tool_called_before(self) -> Rows:
+        """What T called above the row."""
+        return before(self.tool_called, self.blocks.starts, 0)
+
+    @cached_property
+    def has_called_tool(self) -> Mask:
+        """A tool or its offset has been called in the row or above it in its program."""
+        return happened(self.calls_offset, self.blocks.starts)
 
     @cached_property
     def tool(self) -> Rows:
@@ -85,19 +109,19 @@ class CalledTools(Columns):
     def _names_radius_offset(self) -> Mask:
         """T has digits of its own for the offset with R: T010203 is R of offset 1, tool 2, offset 3."""
         control, words = self.machine.control, self.run.words
-        found, short = np.zeros(len(self), bool), _TOOL_DIGITS + control.offset_digits
+        names_offset, short = np.zeros(len(self.run), bool), _TOOL_DIGITS + control.offset_digits
         if not control.radius_offset_digits:
-            return found
-        at = self.word_indices("T")
+            return names_offset
+        at = self.blocks.word_indices("T")
         is_long = (words.digits[at] > short) | (np.nan_to_num(words.value[at]) >= 10**short)
-        found[self.run.row[at]] = is_long
-        return fill_down(found, self.has("T") | self.starts, False).astype(bool)
+        names_offset[self.run.row[at]] = is_long
+        return fill_down(names_offset, self.blocks.has("T") | self.blocks.starts, False).astype(bool)
 
     @cached_property
     def _plain_offset(self) -> Rows:
         """Number of the offset with R as the digits of T name it, which is that of the tool unless T names another."""
-        own = self._t // (10**_TOOL_DIGITS * self._most_plain) % self._most_plain
-        return np.where(self._names_radius_offset, own, self._t % self._most_plain)
+        named = self._t // (10**_TOOL_DIGITS * self._most_plain) % self._most_plain
+        return np.where(self._names_radius_offset, named, self._t % self._most_plain)
 
     @cached_property
     def tool_offset_number(self) -> Rows:
@@ -112,9 +136,9 @@ class CalledTools(Columns):
     @cached_property
     def _edges_called(self) -> Rows:
         """The edges of tools that are in force anywhere, as tool_called has them, each once, ascending."""
-        found = np.sort(self.tool_called[self.has_edges & (self.tool_called > 0)])
+        edges = np.sort(self.tool_called[self.has_edges & (self.tool_called > 0)])
         # NumPy's unique would load its masked arrays.
-        return np.asarray(found[np.append(True, np.diff(found) > 0)[: len(found)]])
+        return np.asarray(edges[np.append(True, np.diff(edges) > 0)[: len(edges)]])
 
     @cached_property
     def offset_number(self) -> Rows:
@@ -139,9 +163,8 @@ class CalledTools(Columns):
     @cached_property
     def changes_tool(self) -> Mask:
         """A T word that names another tool than the one in force."""
-        return np.asarray(self.has("T") & (self.tool != before(self.tool, self.starts, 0)) & (self.tool > 0))
-
-    # ---- what they are called, and what the job says of them ----
+        is_other = self.tool != before(self.tool, self.blocks.starts, 0)
+        return np.asarray(self.blocks.has("T") & is_other & (self.tool > 0))
 
     def tool_name(self, tool: int) -> str:
         """The name or the number of a tool in force; empty for the one that is there before the first T."""
@@ -156,21 +179,21 @@ class CalledTools(Columns):
 
     def offset_key(self, offset: int) -> str:
         """The key by which a job gives an offset number (offset_keys); of what nobody knows, none that a job has."""
-        found = self.edge_of(offset)
-        if found is None:
+        pair = self.edge_of(offset)
+        if pair is None:
             return str(offset)
-        tool, edge = found
+        tool, edge = pair
         return key_of(tool, int(edge)) if tool and edge.isdecimal() else ""
 
     @cached_property
-    def tools(self) -> dict[int, Tool]:
+    def of_job(self) -> dict[int, Tool]:
         """What the job says of the offsets of this file, by offset number."""
         if not self.job.tools:
             return {}
         plain = {int(key): tool for key, tool in self.job.tools.items() if key.isdecimal()}
-        found = {number: tool for number, tool in plain.items() if number < self._most_plain}
+        tools = {number: tool for number, tool in plain.items() if number < self._most_plain}
         for number in range(self._most_plain, self.offset_count):
             key = self.offset_key(number)
             if key in self.job.tools:
-                found[number] = self.job.tools[key]
-        return found
+                tools[number] = self.job.tools[key]
+        return tools

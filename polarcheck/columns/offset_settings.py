@@ -8,8 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Rows
+from polarcheck.columns.filling import fill_down, positions
 from polarcheck.geometry.tolerances import ADJUSTMENT, ROUNDING
-from polarcheck.table.filling import fill_down, positions
 
 #: What a setting is of.
 RADIUS, RADIUS_WEAR, NOSE, X, X_WEAR = range(5)

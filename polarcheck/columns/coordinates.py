@@ -1,4 +1,4 @@
-"""Coordinates as lengths and angles: what a number without a decimal point counts."""
+"""The coordinates among the words: which count in least increments since they have no decimal point, and angles."""
 
 from __future__ import annotations
 
@@ -6,10 +6,13 @@ from functools import cached_property
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Rows, computed, is_among
-from polarcheck.machines.modal import Units
-from polarcheck.table.called_tools import CalledTools
-from polarcheck.table.filling import fill_down
+from polarcheck.arrays import Floats, Mask, Rows, is_among
+from polarcheck.columns.blocks import ExecutedBlocks
+from polarcheck.columns.filling import fill_down
+from polarcheck.columns.lookups import Lookups
+from polarcheck.columns.modal import ModalStates
+from polarcheck.execution.run import Run
+from polarcheck.machines.machine import Machine
 
 #: Without a point, a length of this many units can only be meant in least increments: no lathe moves a meter.
 MEANT_IN_INCREMENTS = 1000.0
@@ -17,8 +20,21 @@ MEANT_IN_INCREMENTS = 1000.0
 _FARTHEST = 1e7
 
 
-class Lengths(CalledTools):
-    """What the coordinates of the rows are, in mm and degrees."""
+class Coordinates(Lookups):
+    """What the numbers of the coordinates count. Most columns have one element per executed word."""
+
+    def __init__(
+        self,
+        run: Run,
+        machine: Machine,
+        blocks: ExecutedBlocks,
+        modal: ModalStates,
+    ) -> None:
+        super().__init__()
+        self.run = run
+        self.machine = machine
+        self.blocks = blocks
+        self.modal = modal
 
     @cached_property
     def is_coordinate(self) -> Mask:
@@ -26,13 +42,13 @@ class Lengths(CalledTools):
         words = self.run.words
         mode = self.machine.polar
         is_length = is_among(words.address, [*b"XYZUVWIJKR", *map(self.machine.address_number, mode.axis_addresses)])
-        is_offset_number = (words.address == ord("H")) & self.switches_length_offset[self.run.row]
-        moves = self.uses_axes & ~self.in_cycle
-        found = np.asarray(is_length & ~is_offset_number & moves[self.run.row])
+        is_offset_number = (words.address == ord("H")) & self.blocks.switches_length_offset[self.run.row]
+        moves = self.modal.uses_axes & ~self.modal.in_cycle
+        is_axis_word = np.asarray(is_length & ~is_offset_number & moves[self.run.row])
         if mode.infeed_word:
             is_infeed = words.address == ord(mode.infeed_word)
-            found |= is_infeed & self.codes(*mode.on)[self.run.row]
-        return found
+            is_axis_word |= is_infeed & self.blocks.codes(*mode.on)[self.run.row]
+        return is_axis_word
 
     @cached_property
     def is_unpointed(self) -> Mask:
@@ -53,11 +69,11 @@ class Lengths(CalledTools):
         indices in the order in which they run, and the group of each. Rows of a negative group are left out.
         """
         index = np.flatnonzero(words)
-        own = group[self.run.row[index]]
-        index, own = index[own >= 0], own[own >= 0]
-        key = self.run.words.start[index] * (own.max(initial=0) + 1) + own
+        group_of_word = group[self.run.row[index]]
+        index, group_of_word = index[group_of_word >= 0], group_of_word[group_of_word >= 0]
+        key = self.run.words.start[index] * (group_of_word.max(initial=0) + 1) + group_of_word
         first = np.sort(np.unique(key, return_index=True)[1])
-        return index[first], own[first]
+        return index[first], group_of_word[first]
 
     def writes_no_points(self, group: Rows, count: int) -> Mask:
         """Per group of rows: more than one of its coordinates other than 0, and most of them, have no point."""
@@ -77,15 +93,15 @@ class Lengths(CalledTools):
         large for anything else. A single one is a slip.
         """
         if not self.is_large_unpointed.any():
-            return np.zeros(len(self), bool)
-        program, count = self.program, int(self.program[-1]) + 1
+            return np.zeros(len(self.run), bool)
+        program, count = self.blocks.program, int(self.blocks.program[-1]) + 1
         unpointed, large = (
             np.bincount(self.written_once(words, program)[1], minlength=count)
             for words in (self.is_unpointed, self.is_large_unpointed)
         )
         mode = self.machine.polar
-        on, off = self.codes(*mode.on), self.codes(*mode.off, *mode.ended_by)
-        inside = fill_down(on & ~off, on | off | self.starts, False)
+        on, off = self.blocks.codes(*mode.on), self.blocks.codes(*mode.off, *mode.ended_by)
+        inside = fill_down(on & ~off, on | off | self.blocks.starts, False)
         in_the_mode = self.writes_no_points(np.where(inside, program, -1), count)
         without_points = self.writes_no_points(program, count) | in_the_mode
         return np.asarray((without_points & (2 * large > unpointed))[program])
@@ -101,41 +117,17 @@ class Lengths(CalledTools):
             return self.is_large_unpointed
         return self.is_large_unpointed | (self.is_unpointed & self.in_increments[self.run.row])
 
-    def _meant(self, least: Floats | float) -> Floats:
+    def meant(self, least: Floats | float) -> Floats:
         """Per word: the value that is meant; least: what an increment is."""
         value, in_increments = self.run.words.value, self._counts_increments
         meant = np.where(in_increments, value * least, value) if in_increments.any() else value
         too_far = np.abs(meant) > _FARTHEST
         return np.where(too_far, np.nan, meant) if too_far.any() else meant
 
-    def length_of(self, address: str) -> Floats:
-        """A word as a length [mm], as written: a diameter stays one."""
-        return self._column(f"length {address}", lambda: self._length_of(address))
-
-    def _length_of(self, address: str) -> Floats:
-        if not len(self.word_indices(address)):
-            return self._scatter(address, self._lengths)
-        return self._scatter(address, self._lengths) * self.scale
-
-    @cached_property
-    def least_increment(self) -> Floats:
-        """Per row: least input increment of lengths, in the units in force [mm or inch]."""
-        least, of_inch = self.machine.control.least_increment, self.machine.control.least_increment_inch
-        return computed(lambda units: np.where(units == Units.INCH, of_inch, least), self.units)
-
-    @cached_property
-    def least_step(self) -> Floats:
-        """Per row: the same [mm]."""
-        return computed(np.multiply, self.least_increment, self.scale)
-
-    @cached_property
-    def _lengths(self) -> Floats:
-        return self._meant(self.least_increment[self.run.row])
-
     def angle_of(self, address: str) -> Floats:
         """A word as an angle [deg]."""
-        return self._column(f"angle {address}", lambda: self._scatter(address, self._angles))
+        return self._column(f"angle {address}", lambda: self.blocks.in_rows(address, self._angles))
 
     @cached_property
     def _angles(self) -> Floats:
-        return self._meant(self.machine.control.least_increment)
+        return self.meant(self.machine.control.least_increment)

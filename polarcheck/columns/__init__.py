@@ -1,0 +1,1 @@
+"""The executed program as columns: a table of one element per executed block for each subject."""

@@ -1,0 +1,375 @@
+"""
+The programmed path: where the tool is programmed to be before and after each executed block.
+
+Inside everything is mm, deg and X as radius; points of the polar plane are complex, x + 1j*c.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+
+from polarcheck.arrays import Floats, Mask, Points, States, is_among, repeated
+from polarcheck.columns.axes import PlaneAxes
+from polarcheck.columns.blocks import ExecutedBlocks
+from polarcheck.columns.coordinates import Coordinates
+from polarcheck.columns.filling import before, fill_down, positions
+from polarcheck.columns.frames import Frames, Way, along, find_frames, in_frame
+from polarcheck.columns.lengths import RADIUS_FACTOR, Lengths
+from polarcheck.columns.modal import ModalStates
+from polarcheck.columns.mode import PolarMode
+from polarcheck.columns.tools import CalledTools
+from polarcheck.execution.run import Run
+from polarcheck.geometry import polar
+from polarcheck.geometry.tolerances import ZERO
+from polarcheck.machines.axes import INCREMENTS
+from polarcheck.machines.machine import Machine
+from polarcheck.machines.modal import Distance, Motion
+
+#: The point of a row of which none is known.
+NOWHERE = complex("nan+nanj")
+_PASSES = 8
+
+
+class ProgrammedPath:
+    """Positions, centers of arcs, and the moves on the polar plane."""
+
+    def __init__(
+        self,
+        run: Run,
+        machine: Machine,
+        blocks: ExecutedBlocks,
+        modal: ModalStates,
+        tools: CalledTools,
+        coordinates: Coordinates,
+        axes: PlaneAxes,
+        mode: PolarMode,
+        lengths: Lengths,
+    ) -> None:
+        self.run = run
+        self.machine = machine
+        self.blocks = blocks
+        self.modal = modal
+        self.tools = tools
+        self.coordinates = coordinates
+        self.axes = axes
+        self.mode = mode
+        self.lengths = lengths
+
+    def _programmed(
+        self, address: str, increment: str, factor: Floats | float, where: Mask, of_step: Floats | None = None
+    ) -> tuple[Floats, Floats]:
+        """
+        Absolute coordinates (NaN where none) and increments (0 where none) of an axis in the rows `where`.
+
+        factor: what the words are multiplied by; of_step: those that are distances, where that is another.
+        """
+        is_step = self.modal.is_step(address)
+        if of_step is not None:
+            factor = np.where(is_step, of_step, factor)
+        value, step = self.lengths.length_of(address) * factor, self.lengths.length_of(increment) * factor
+        where = where & self.modal.uses_axes
+        written = self.blocks.has(address) & where
+        has_step = self.blocks.has(increment) & where
+        absolute = np.where(written & ~is_step, value, np.nan)
+        absolute[~where] = np.nan
+        steps = np.where(written & is_step, value, 0.0) + np.where(has_step, step, 0.0)
+        broken = written & np.isnan(value)
+        return absolute, np.where(broken, np.nan, steps)
+
+    @property
+    def _virtual_coordinates(self) -> tuple[Floats, Floats]:
+        """
+        The virtual axis as _programmed gives an axis.
+
+        A row that names it by the address of another control has a finding for that, and means it nevertheless.
+        """
+        factor = RADIUS_FACTOR[self.machine.polar.virtual_axis_programming]
+        absolute, steps = np.full(len(self.run), np.nan), np.zeros(len(self.run))
+        for pair, rows in self.axes.virtual_pairs:
+            if rows.any():
+                coordinates = self._programmed(*pair, factor, self.mode.in_polar & rows)
+                absolute, steps = np.where(rows, coordinates[0], absolute), np.where(rows, coordinates[1], steps)
+        return in_frame(self.frames, self.mode.in_polar, absolute, steps, along_virtual=True)
+
+    def _forgets(self, axis: str, increment: str) -> Mask:
+        """Rows after which an axis is not where its words say: references, shifts, cycles, blocks not executed."""
+        named = self.blocks.has(axis, increment)
+        lost = self.blocks.listed("data_input", "reference_return", "machine_coordinates", "coordinate_preset")
+        lost = lost | self.modal.sets_coordinates | (self.blocks.listed("local_shift") & (axis != "X"))
+        lost &= named
+        work_offset = self.modal.state("work_offset")
+        lost |= self.modal.sets("work_offset") & (work_offset != before(work_offset, self.blocks.starts, 0))
+        if axis in "XZ":
+            cycle = (self.axes.motion == Motion.CYCLE) | self.blocks.listed("repetitive_cycle")
+            lost |= cycle | self.tools.changes_tool
+        return (lost & (self.mode.section < 0)) | self.run.unknown | self.blocks.starts
+
+    def _set_by(self, axis: str) -> Floats:
+        """What G50 (G92) or G28 make the coordinate of an axis; NaN where that is not known."""
+        return np.where(self.modal.sets_coordinates & self.blocks.has(axis), self.lengths.length_of(axis), np.nan)
+
+    @cached_property
+    def center_shift(self) -> Points:
+        """
+        Where the program has the center of C on the polar plane of each row [mm]: at the origin, or at the coordinates
+        beside G12.1 where the control knows such (5450#2 PLS; GSK: offsets of the linear and of the rotary axis).
+        """
+        polar, takes = self.machine.polar, set(self.machine.polar.words_beside_switch)
+        if not len(self.mode.sections) or not takes:
+            return repeated(np.complex128(0), len(self.run))
+        enter = self.mode.sections.enter
+        of_section = np.zeros(len(enter) + 1, np.complex128)
+        if "X" in takes:
+            linear = self.axes.of_linear_axis(lambda axis: self.lengths.length_of(axis)) * self.lengths.x_factor
+            of_section[:-1] += np.nan_to_num(linear[enter])
+        shifts = np.array([self.axes.virtual_axis_of(row) in takes for row in enter.tolist()])
+        if shifts.any():
+            virtual = self.axes.of_virtual_axis(self.lengths.length_of) * RADIUS_FACTOR[polar.virtual_axis_programming]
+            of_section[:-1] += np.where(shifts, 1j * np.nan_to_num(virtual[enter]), 0)
+        return of_section[self.mode.section] if of_section.any() else repeated(np.complex128(0), len(self.run))
+
+    @property
+    def _linear_coordinates(self) -> tuple[Floats, Floats]:
+        """The linear axis of each row as _programmed gives an axis; X outside the mode."""
+        is_x = ~self.mode.enters & (self.axes.linear_axis == ord("X"))
+        absolute, steps = self._programmed("X", "U", self.lengths.x_factor, is_x, self.lengths.x_step_factor)
+        shifted = np.diff(self.local_shift, prepend=0.0) * self.lengths.x_factor
+        # In the mode that is a finding, and changes nothing of what is meant.
+        steps = steps - np.where(self._shifts & (self.mode.section < 0), shifted, 0.0)
+        for axis in self.axes.other_linear_axes:
+            where = self.mode.in_polar & (self.axes.linear_axis == ord(axis))
+            other = self._programmed(axis, INCREMENTS[axis], 1.0, where)
+            absolute, steps = np.where(np.isnan(absolute), other[0], absolute), steps + other[1]
+        return in_frame(self.frames, self.mode.in_polar, absolute, steps, along_virtual=False)
+
+    @cached_property
+    def local_shift(self) -> Floats:
+        """X of the G52 in force, as written [mm], by which the coordinate of a place is less; NaN where not known."""
+        if not self._shifts.any():
+            return repeated(np.float64(0), len(self.run))
+        shift = np.where(self.blocks.listed("local_shift"), self.lengths.length_of("X"), 0.0)
+        return fill_down(shift, self._shifts | self.blocks.starts, 0.0).astype(np.float64)
+
+    @cached_property
+    def _shifts(self) -> Mask:
+        """G52 with X, and what takes it back."""
+        return np.asarray((self.blocks.listed("local_shift") & self.blocks.has("X")) | self.modal.presets_x)
+
+    @cached_property
+    def frames(self) -> Frames | None:
+        """The frame in force in each row; None where the program has none."""
+        return find_frames(self.blocks, self.modal, self.axes, self.mode, self.lengths)
+
+    def _alone(self, axis: str) -> Floats:
+        """An axis after each row [mm] by what stands outside the mode."""
+        where = self.mode.section < 0
+        resets = self._forgets(axis, INCREMENTS[axis]) | self.mode.leaves
+        return positions(*self._programmed(axis, INCREMENTS[axis], 1.0, where), resets, self._set_by(axis))
+
+    @cached_property
+    def _after(self) -> Points:
+        """Plane point after each row; the virtual coordinate is NaN outside the mode."""
+        shift, turn = self.center_shift, self.axes.c_direction
+        leave = self.mode.sections.leave[self.mode.sections.leave < len(self.run)]
+        # Where C does not turn the plane, the tool stands at its angle there, and not on the linear axis.
+        enter = self.mode.sections.enter[turn[self.mode.sections.enter] != 1]
+        resets = self._forgets("X", "U") | self.blocks.mask_of(leave) | self.blocks.mask_of(enter)
+        values, virtual = self._set_by("X") * self.lengths.x_factor, shift.imag.copy()
+        # Outside its section nobody asks where another linear axis is but at G12.1, and X is not followed within.
+        for axis in self.axes.other_linear_axes:
+            begins = self.mode.enters & (self.axes.linear_axis == ord(axis))
+            resets, values = resets | begins, np.where(begins, self._alone(axis), values)
+        leave = leave[(self.axes.linear_axis == ord("X"))[leave - 1]]
+        x_words = Way(*self._linear_coordinates, resets, values)
+        c_words = Way(*self._virtual_coordinates, self.mode.enters, virtual)
+        alone = None if len(enter) else self._virtual(c_words)
+        for _ in range(_PASSES):
+            x, c = self._both(x_words, c_words, alone)
+            # The control leaves the mode with X where the machine stands: never negative (B-62764EN/01 p. 51).
+            last = leave - 1
+            x_left = np.hypot(x[last] - shift.real[last], c[last] - shift.imag[last]) + shift.real[last]
+            entry = before(x, self.blocks.starts, np.nan)[enter] * turn[enter]
+            assumed = np.concatenate((values[leave], values[enter], virtual[enter]))
+            if np.array_equal(assumed, np.concatenate((x_left, entry.real, entry.imag)), equal_nan=True):
+                break
+            values[leave], values[enter], virtual[enter] = x_left, entry.real, entry.imag
+        else:
+            values[leave] = np.nan  # sections that hang on each other by increments alone, one after another
+            x, c = self._both(x_words, c_words, alone)
+        end = np.empty(len(self.run), np.complex128)
+        end.real, end.imag = np.where(self.mode.is_followed, x, np.nan), c
+        end -= shift
+        return end
+
+    def _virtual(self, words: Way) -> Floats:
+        """The virtual axis after each row where no frame turns it; NaN outside the mode."""
+        return np.where(self.mode.section >= 0, positions(*words), np.nan)
+
+    def _both(self, x_words: Way, c_words: Way, alone: Floats | None) -> tuple[Floats, Floats]:
+        """The linear and the virtual axis after each row; alone: the latter without frames, where it is known."""
+        if self.frames is None or not np.any((self.frames.angle != 0) & self.mode.in_polar):
+            return positions(*x_words), self._virtual(c_words) if alone is None else alone
+        point = along(x_words, c_words, np.where(self.mode.in_polar, self.frames.turn, 1.0))
+        return point.real, np.where(self.mode.section >= 0, point.imag, np.nan)
+
+    @cached_property
+    def end(self) -> Points:
+        """Programmed plane point after the row [mm]; NaN outside the mode or while unknown."""
+        return np.where(self.mode.section >= 0, self._after, NOWHERE)
+
+    @cached_property
+    def start(self) -> Points:
+        """Programmed plane point before the row [mm]."""
+        return np.where(self.mode.in_polar, before(self._after, self.blocks.starts, NOWHERE), NOWHERE)
+
+    @cached_property
+    def x(self) -> Floats:
+        """X after the row as a radius [mm]; the programmed one, so that it may be negative in the mode."""
+        after = self._after.real
+        # A plane that does not turn with C has another X there than the lathe, which has not moved.
+        turns = self.machine.polar.zero_angle == "at-switch"
+        return after if turns else np.where(self.mode.enters, self.x_before, after)
+
+    @cached_property
+    def x_before(self) -> Floats:
+        """X before the row as a radius [mm]."""
+        return before(self._after.real, self.blocks.starts, np.nan)
+
+    @cached_property
+    def z(self) -> Floats:
+        """Z after the row [mm]; NaN while unknown."""
+        absolute, steps = self._programmed("Z", "W", 1.0, np.ones(len(self.run), bool))
+        if self.frames is not None:
+            absolute = absolute + self.frames.z
+        return positions(absolute, steps, self._forgets("Z", "W"), self._set_by("Z"))
+
+    @cached_property
+    def written_to_center(self) -> tuple[Floats, Floats]:
+        """The words of the center of an arc along the linear and the virtual axis [mm]; NaN where not written."""
+        along, across = (
+            self.axes.of_linear_axis(lambda axis, at=at: self.lengths.length_of(self.axes.center_words_along(axis)[at]))  # type: ignore[misc]
+            for at in (0, 1)
+        )
+        return along, across
+
+    @cached_property
+    def to_center(self) -> tuple[Floats, Floats]:
+        """
+        From the start of an arc to its center along the linear and the virtual axis [mm]; NaN where not written.
+
+        Where the word says that it is a coordinate, I=AC(10), it is one of the program.
+        """
+        along, across = self.written_to_center
+        if self.run.distance is None:
+            return along, across
+        start = self.start + self.center_shift
+        if self.frames is not None:
+            start = np.conj(self.frames.turn) * (start - self.frames.shift)
+        is_place, is_place_across = (
+            self.axes.of_linear_axis(lambda axis, at=at: self.is_coordinate_of_center(axis, at))  # type: ignore[misc]
+            for at in (0, 1)
+        )
+        along = np.where(is_place, along * self.lengths.x_factor - start.real, along)
+        return along, np.where(is_place_across, across - start.imag, across)
+
+    def is_coordinate_of_center(self, axis: str, at: int) -> Mask:
+        """Whether a word of the center of an arc is a coordinate; at: 0 along the linear axis, 1 along the other."""
+        distance = self.blocks.distance(self.axes.center_words_along(axis)[at])
+        return np.zeros(len(self.run), bool) if distance is None else distance == Distance.ABSOLUTE
+
+    @cached_property
+    def center(self) -> Points:
+        """Center of an arc on the polar plane [mm]; NaN for lines and where it cannot be known."""
+        arcs = self.is_arc
+        center = np.full(len(self.run), NOWHERE)
+        if not arcs.any():
+            return center
+        i, j = (words[arcs] for words in self.to_center)
+        written = ~np.isnan(i) | ~np.isnan(j)
+        start, end, kind = self.start[arcs], self.end[arcs], self.axes.motion[arcs]
+        to_center = np.nan_to_num(i) + 1j * np.nan_to_num(j)
+        if self.frames is not None:
+            to_center = to_center * self.frames.turn[arcs]
+        by_center = np.where(written, start + to_center, NOWHERE)
+        radius = self.lengths.length_of(self.machine.arcs.radius_word)[arcs]
+        by_radius = polar.center_from_radius(start, end, radius, kind, np.inf)
+        center[arcs] = np.where(np.isnan(radius), by_center, by_radius)
+        return center
+
+    @cached_property
+    def is_arc(self) -> Mask:
+        """An arc on the polar plane."""
+        return self.mode.in_polar & self.axes.moves_plane & is_among(self.axes.motion, (Motion.CW, Motion.CCW))
+
+    @cached_property
+    def travels(self) -> Mask:
+        """
+        A move on the polar plane of some length, round a full circle, or of a length that is not known.
+
+        Words that name the present position are no movement (B-63664EN p. 170), nor is an arc by R to its start.
+        """
+        still = np.abs(self.end - self.start) <= ZERO
+        is_full = self.is_arc & ~np.isnan(self.center)
+        return np.asarray(self.mode.in_polar & self.axes.moves_plane & (~still | is_full))
+
+    @cached_property
+    def length(self) -> Floats:
+        """Way of the row on the polar plane [mm]; 0 where it does not move there, NaN where unknown."""
+        moving = self.mode.in_polar & self.axes.moves_plane
+        length = np.zeros(len(self.run))
+        length[moving] = polar.length(*self._move(moving))
+        return length
+
+    def _move(self, rows: Mask) -> tuple[Points, Points, Points, States]:
+        return self.start[rows], self.end[rows], self.center[rows], self.axes.motion[rows]
+
+    @cached_property
+    def c_angle(self) -> Floats:
+        """C angle of the machine after the row [deg], continuous along a section; NaN while unknown."""
+        axis, increment = self.machine.polar.rotary_words
+        moving = self.modal.uses_axes & (self.mode.section < 0)
+        written, stepped = self.blocks.has(axis) & moving, self.blocks.has(increment) & moving
+        is_step = self.modal.is_step(axis)
+        absolute = np.where(written & ~is_step, self.coordinates.angle_of(axis), np.nan)
+        turn = np.where(written & is_step, self.coordinates.angle_of(axis), 0.0)
+        turn += np.where(stepped, self.coordinates.angle_of(increment), 0.0)
+        on_plane = self.mode.in_polar & self.axes.moves_plane
+        turn[on_plane] = polar.c_sweep(*self._move(on_plane))
+        # G28 H0 takes C to its reference point, the zero of its angle (builder's guide: "zero return C-axis").
+        referenced = self.blocks.listed("c_axis_reference") & self.blocks.has(axis, increment)
+        set_to = np.where(self.modal.sets_coordinates, self.coordinates.angle_of(axis), np.nan)
+        values = np.where(referenced, 0.0, set_to)
+        resets, direction = self._forgets(axis, increment), self.machine.polar.direction_word
+        turns_plane = self.mode.enters & self.blocks.has(direction)
+        if turns_plane.any():
+            # Where the tool stands is not told by it, but in which direction of C the first axis of the plane points.
+            resets, values = resets | turns_plane, np.where(turns_plane, self.coordinates.angle_of(direction), values)
+        return positions(absolute, turn, resets, values)
+
+    @cached_property
+    def section_entry(self) -> Floats:
+        """C angle [deg] of the linear axis of each section's plane: that at its G12.1, or C0; 0 where not known."""
+        return np.nan_to_num(self.c_angle[self.mode.sections.enter]) - self.axes.kept_angle[self.mode.sections.enter]
+
+    @cached_property
+    def on_plane(self) -> Mask:
+        """
+        A move on the polar plane, be it in rapid traverse; a cycle is none, and neither is a move of no length.
+
+        At G0 most controls alarm. A start-up or offset cancel in it is one nevertheless: what was meant is G1, and
+        compensation itself asks for G0 or G1 (B-63324EN/03 p. 402).
+        """
+        return np.asarray(self.travels & ~self.modal.in_cycle)
+
+    @cached_property
+    def cuts(self) -> Mask:
+        """A move on the polar plane at feed."""
+        at_feed = is_among(self.axes.motion, (Motion.LINE, Motion.CW, Motion.CCW))
+        return self.mode.in_polar & self.axes.moves_plane & at_feed
+
+    @cached_property
+    def moves_at_feed(self) -> Mask:
+        """A move in the polar mode at feed, that of Z alone included."""
+        return self.mode.in_polar & self.axes.moves & is_among(self.axes.motion, (Motion.LINE, Motion.CW, Motion.CCW))

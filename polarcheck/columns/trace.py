@@ -1,0 +1,79 @@
+"""The executed program: all tables of one element per executed block, and what they are made from, under one name."""
+
+from __future__ import annotations
+
+from polarcheck.columns.axes import PlaneAxes
+from polarcheck.columns.blocks import ExecutedBlocks
+from polarcheck.columns.compensation import CutterCompensation
+from polarcheck.columns.coordinates import Coordinates
+from polarcheck.columns.feedrate import Feedrate
+from polarcheck.columns.lengths import Lengths
+from polarcheck.columns.modal import ModalStates
+from polarcheck.columns.mode import PolarMode
+from polarcheck.columns.offsets import ToolOffsets
+from polarcheck.columns.path import ProgrammedPath
+from polarcheck.columns.tools import CalledTools
+from polarcheck.execution.run import Run
+from polarcheck.machines.job import Job
+from polarcheck.machines.machine import Machine
+from polarcheck.reading.words import Text
+
+
+class Trace:
+    """
+    The tables of the executed blocks of one file on one machine for one job, for what reads many of them.
+
+    Inside everything is mm, deg, min and X as a radius; unknown is NaN. A column is computed when it is first read.
+
+    run: the executed blocks and their words.
+    text: the file.
+    machine, job: the merged profile; tools, stock and options.
+    blocks: words, codes, lines and programs.
+    modal: modal states in force.
+    tools: the tool and the offset called.
+    coordinates: what numbers without a decimal point count; one element per executed word.
+    axes: the axes of the polar plane, and which of them a block moves.
+    mode: the polar sections.
+    lengths: units in force, words as lengths.
+    path: programmed positions and moves.
+    offsets: R and nose type of the offset in force.
+    compensation: side, ramps and the radius that the control compensates with.
+    feedrate: F in force and its mode.
+    """
+
+    def __init__(
+        self,
+        run: Run,
+        text: Text,
+        machine: Machine,
+        job: Job,
+        blocks: ExecutedBlocks,
+        modal: ModalStates,
+        tools: CalledTools,
+        coordinates: Coordinates,
+        axes: PlaneAxes,
+        mode: PolarMode,
+        lengths: Lengths,
+        path: ProgrammedPath,
+        offsets: ToolOffsets,
+        compensation: CutterCompensation,
+        feedrate: Feedrate,
+    ) -> None:
+        self.run = run
+        self.text = text
+        self.machine = machine
+        self.job = job
+        self.blocks = blocks
+        self.modal = modal
+        self.tools = tools
+        self.coordinates = coordinates
+        self.axes = axes
+        self.mode = mode
+        self.lengths = lengths
+        self.path = path
+        self.offsets = offsets
+        self.compensation = compensation
+        self.feedrate = feedrate
+
+    def __len__(self) -> int:
+        return len(self.run)
