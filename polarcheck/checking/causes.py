@@ -1,38 +1,80 @@
-"""Rules that report a cause from which findings of many other rules follow, by what is wrong."""
+"""
+Which findings follow from which: one mistake is one finding, and what would not be there without it is listed under it.
+
+A rule says what its finding makes doubtful, and how far (`doubts`). What a rule judges is taken from the tables that it
+compares. Its finding follows from one that makes doubtful what it rests on. Rules that judge the same subject do not
+follow each other, unless the cause stands in a row above; where two of them say the same thing twice, the one that
+follows names the other (`follows`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Final
+
+#: What is doubtful, and the span (SPANS) within which it is; UNIT for the one in which a subject is judged.
+Doubt = tuple[str, str]
+UNIT: Final = "unit"
+
+#: The subject of a rule, by the tables that it compares; the first of these counts. A rule without any of them judges
+#: words and states, which no finding makes doubtful.
+SUBJECT_OF_TABLE: Final = {
+    "infeed": "infeed",
+    "overcuts": "metal",
+    "slots": "metal",
+    "coverage": "metal",
+    "uncompensated_cuts": "metal",
+    "deviations": "metal",
+    "mirrored": "side",
+    "center": "move",
+    "travel": "move",
+    "tool_center": "compensation",
+    "ramps": "compensation",
+    "arcs": "arc",
+    "senses": "side",
+}
+#: What each subject rests on. A move is judged by itself: rates of its axes, travel, a ramp on an arc.
+RESTS_ON: Final = {
+    "arc": ("position", "arc"),
+    "move": ("position", "arc", "move"),
+    "side": ("position", "arc"),
+    "compensation": ("position", "arc", "compensation"),
+    "metal": ("position", "arc", "compensation", "metal"),
+    "infeed": ("position", "arc", "compensation", "metal"),
+}
+#: The span in which each subject is judged: a wrong arc costs its own rate of C, but all of the contour.
+UNIT_OF: Final = {
+    "arc": "block",
+    "move": "block",
+    "side": "compensation",
+    "compensation": "loop",
+    "metal": "loop",
+    "infeed": "section",
+}
+#: All that may be doubtful.
+DOUBTFUL: Final = frozenset(what for subject in RESTS_ON.values() for what in subject)
 
 #: X or the second axis is another than the one that the section was written for, or there is none.
-SECTION_READ_OTHERWISE = (
+SECTION_READ_OTHERWISE: Final = (("position", "section"),)
+#: There is no such arc.
+NO_SUCH_ARC: Final = (("arc", UNIT),)
+#: There is no such arc, and its end may be what is wrong, so that the next move begins elsewhere.
+END_IN_DOUBT: Final = (*NO_SUCH_ARC, ("position", "X before"), ("position", "C before"))
+#: Rules whose findings say that the sections, or the words themselves, are others than were meant, so that nobody knows
+#: what else would be found.
+READ_OTHERWISE: Final = (
     "wrong-axis-address-in-polar",
     "diameter-radius-mixed",
     "second-axis-never-programmed",
     "linear-axis-never-programmed",
-)
-#: The polar sections, or the words themselves, are others than were meant: what else would be found is not known.
-READ_OTHERWISE = (
-    *SECTION_READ_OTHERWISE,
     "polar-never-left",
     "polar-never-entered",
     "polar-code-of-another-control",
     "comment-not-closed",
     "other-dialect",
 )
-#: An arc whose end may be what is wrong, and then what begins there is, too.
-END_IN_DOUBT = (
-    "arc-center-on-path",
-    "arc-end-off-circle",
-    "arc-radius-too-small",
-    "arc-without-center",
-)
-#: What is written for C may be what is wrong, so that an arc that begins there has another start.
-C_IN_DOUBT = (*END_IN_DOUBT, "degrees-in-polar")
-#: An arc that there is not, so that nobody knows the way to its end.
-NO_SUCH_ARC = (
-    *END_IN_DOUBT,
-    "arc-word-of-other-plane",
-    "arc-off-polar-plane",
-)
 #: What stands in a block of its own in the mode and cannot: without it there would be fewer blocks without movement.
-OUT_OF_PLACE = (
+OUT_OF_PLACE: Final = (
     "plane-selected-in-polar",
     "origin-shifted-in-polar",
     "offset-changed-in-polar",
@@ -44,5 +86,9 @@ OUT_OF_PLACE = (
     "unknown-code",
     "rapid-in-polar",
 )
-#: G41 or G42 in offset mode: another side of the contour, or another ramp.
-SIDE_WRITTEN_AGAIN = ("side-changed-in-offset-mode", "side-repeated-in-offset-mode")
+
+
+def subject_of(parameters: Iterable[str]) -> str:
+    """What a rule judges that compares these tables; "" for words and states."""
+    compared = {*parameters}
+    return next((subject for table, subject in SUBJECT_OF_TABLE.items() if table in compared), "")

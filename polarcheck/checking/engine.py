@@ -253,7 +253,7 @@ class Engine:
         """
         cause, element = np.full(len(index), -1), np.full(len(index), -1)
         may_follow = self.hits(rule).follows
-        for span, names in rule.follows.items():
+        for span, names in rule.causes(self.rules).items():
             for name in names:
                 if name not in self.rules:
                     continue
@@ -269,6 +269,9 @@ class Engine:
                 order = np.argsort(theirs, kind="stable")
                 at = order[np.minimum(np.searchsorted(theirs[order], own), len(hit) - 1)]
                 found = (theirs[at] == own) & (own >= 0) & (cause < 0)
+                if span in OF_CAUSE:
+                    rows_of_cause = places.rows(other.over, self.tables)[hit[at]]
+                    found &= rows_of_cause < places.rows(rule.over, self.tables)[index]
                 if span in may_follow:
                     found &= may_follow[span][index]
                 cause[found], element[found] = self._names.index(name), hit[at[found]]
@@ -290,8 +293,9 @@ class Engine:
             key = places.span_of(rule.once, rule.over, self.tables)[index]
             key = np.where(key < 0, -1 - np.arange(len(index)), key)  # outside of all, each is by itself
             _, first, group = np.unique(key, return_index=True, return_inverse=True)
-            # What begins in the same block runs again, as in a program that is called twice.
-            group = block[first][group]
+            if rule.over in ("rows", "sections"):
+                # What begins in the same block runs again, as in a program that is called twice.
+                group = block[first][group]
         _, first, group, count = np.unique(group, return_index=True, return_inverse=True, return_counts=True)
         if rule.worst and len(first) < len(index):
             value = self.tables.column(rule.worst)[index]

@@ -21,6 +21,12 @@ from polarcheck.reading.words import Text
 _MARK = re.compile(r"(?:%[^\r\n]*)?[\0-\x20\x7f\xa0]*")
 
 
+#: A name of two letters or more, or a variable by its number, behind an address and = or for itself.
+_NAME = re.compile(r"(?:[A-Z]=?(?=#)|[A-Z]=)?([A-Z][A-Z_][A-Z0-9_]*|#\d+)")
+#: Of a name [characters].
+_NAME_LENGTH = 40
+#: Faults that stand at the name of which something is not known.
+_OF_NAMES = frozenset({"format", "word-vacant"})
 #: Of a block that is shown [characters].
 _BLOCK_LENGTH = 200
 
@@ -78,11 +84,35 @@ def span_of(name: str, over: str, tables: Tables) -> Rows:
     """For each element of what a rule is over which block, section or the like (SPANS) it belongs to, -1 for none."""
     if name == "block":
         return blocks(over, tables)
+    if name == "structure":
+        structure: Rows = tables["since"].structure_of_block
+        return structure[blocks(over, tables)]
+    if name == "name":
+        return _names(over, tables)
     if name == "file":
         return np.zeros(len(rows(over, tables)), np.int64)
     column: Rows = tables.column(SPANS[name])
     at = rows(over, tables)
     return np.where(at >= 0, column[at], -1) if len(column) else np.full(len(at), -1)
+
+
+def _names(over: str, tables: Tables) -> Rows:
+    """The same number for elements at which the same name of macro stands, or the same variable; -1 for others."""
+    trace: Trace = tables["trace"]
+    source, words = trace.text.source, trace.text.words
+    numbers: dict[str, int] = {}
+    column = np.full(len(blocks(over, tables)), -1)
+    if over == "words":
+        at = np.flatnonzero(words.is_unreadable)
+        starts = words.start[at]
+    else:
+        faults = trace.run.faults
+        at = np.flatnonzero([fault.kind in _OF_NAMES for fault in faults])
+        starts = np.array([faults[index].start for index in at], np.int64)
+    for index, start in zip(at.tolist(), starts.tolist(), strict=True):
+        if name := _NAME.match(source.excerpt(start, start + _NAME_LENGTH)):
+            column[index] = numbers.setdefault(name[1], len(numbers))
+    return column
 
 
 def of_row(tables: Tables, index: int) -> Place:

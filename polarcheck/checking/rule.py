@@ -14,8 +14,9 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 
+from polarcheck.checking.causes import DOUBTFUL, RESTS_ON, UNIT, UNIT_OF, Doubt, subject_of
 from polarcheck.checking.documented import Documented
-from polarcheck.checking.tables import OF_TEXT, SPANS
+from polarcheck.checking.tables import OF_CAUSE, OF_TEXT, SPANS
 from polarcheck.checking.tables import parameters as parameters_of
 from polarcheck.errors import RuleError, UsageError, suggestion
 from polarcheck.finding import ERROR as ERROR
@@ -154,8 +155,9 @@ class Rule(Documented, frozen=True):
     needs: columns, as in `compensation.radius`, without which the rule cannot say anything where the column `where`
     holds.
     once: what is one cause, so that one finding stands for all of it (SPANS): a section, a program, an F word.
-    follows: what it follows from: by how far that reaches (SPANS) the rules that report the cause. Where one of them
-    fires within the same block, section or the like, the finding is listed under that one.
+    subject: what it judges (causes.RESTS_ON); "" for words and states, which no finding makes doubtful.
+    doubts: what its finding makes doubtful, and within which span; what rests on that is listed under it.
+    follows: by span the rules that say the same thing first, so that this finding is listed under theirs.
     worst: of those that one finding stands for, the one with the highest value of this column is reported.
     is_advice: off where neither the machine nor the user names a severity for it.
     """
@@ -168,6 +170,8 @@ class Rule(Documented, frozen=True):
     needs: tuple[str, ...]
     where: str
     once: str
+    subject: str
+    doubts: tuple[Doubt, ...]
     follows: Mapping[str, tuple[str, ...]]
     worst: str
     is_advice: bool
@@ -191,6 +195,22 @@ class Rule(Documented, frozen=True):
         found = self.function(*(tables[name] for name in self.parameters))
         return found if isinstance(found, Hits) else Hits(found)
 
+    def causes(self, rules: Mapping[str, Rule]) -> dict[str, list[str]]:
+        """
+        By span the names of those of `rules` from which its findings follow, the narrowest spans first.
+
+        An infeed cycle runs the contour of its section as a whole, so that a doubt anywhere in the section counts.
+        """
+        causes = {span: [*names] for span, names in self.follows.items()}
+        rests_on = RESTS_ON.get(self.subject, ())
+        for other in rules.values():
+            for what, span in other.doubts:
+                is_peer = other.subject == self.subject and span not in OF_CAUSE
+                if what in rests_on and not is_peer:
+                    reach = UNIT_OF[self.subject] if span == UNIT or self.subject == "infeed" else span
+                    causes.setdefault(reach, []).append(other.name)
+        return {span: causes[span] for span in SPANS if span in causes}
+
     @property
     def source(self) -> str:
         """What the page names as its source."""
@@ -207,6 +227,8 @@ def rule(
     needs: tuple[str, ...] = (),
     where: str = "mode.in_polar",
     once: str = "",
+    subject: str | None = None,
+    doubts: tuple[Doubt, ...] = (),
     follows: Mapping[str, tuple[str, ...]] = MappingProxyType({}),
     worst: str = "",
     is_advice: bool = False,
@@ -218,9 +240,15 @@ def rule(
         name = function.__name__.replace("_", "-")
         if over not in OVER:
             raise RuleError(f"rule {name}: over={over!r}: expected one of {', '.join(OVER)}")
-        if unknown := {*follows, *([once] if once else [])} - set(SPANS):
+        spans = {*follows, *([once] if once else []), *(span for _, span in doubts if span != UNIT)}
+        if unknown := spans - set(SPANS):
             raise RuleError(f"rule {name}: {unknown.pop()!r}: expected one of {', '.join(SPANS)}")
+        if unknown := {what for what, _ in doubts} - DOUBTFUL:
+            raise RuleError(f"rule {name}: {unknown.pop()!r}: expected one of {', '.join(sorted(DOUBTFUL))}")
+        if subject and subject not in RESTS_ON:
+            raise RuleError(f"rule {name}: {subject!r}: expected one of {', '.join(RESTS_ON)}")
         parameters = parameters_of(function)
+        judged = subject_of(parameters) if subject is None else subject
         return Rule(
             name,
             function,
@@ -232,6 +260,8 @@ def rule(
             needs,
             where,
             once,
+            judged,
+            doubts,
             follows,
             worst,
             is_advice,

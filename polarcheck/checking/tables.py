@@ -62,38 +62,45 @@ MAKERS = {
 }
 #: Tables that are a column of another one.
 PARTS = {"sections": "mode.sections", "moves": "tool_center.moves"}
-#: How far a cause reaches, or what one finding stands for: the column whose value its rows have in common.
+#: How far a cause reaches, or what one finding stands for: the column whose value its rows have in
+#: common. The narrowest come first: the nearest cause of a finding counts.
 SPANS = {
-    "file": "",
     "block": "run.block",
-    "section": "mode.whole_section",
-    "program": "blocks.program",
-    "loop": "ramps.loop",
+    "row": "since.row",
+    "name": "",
+    "X": "since.linear_word",
+    "C": "since.virtual_word",
+    "X before": "since.linear_word_before",
+    "C before": "since.virtual_word_before",
+    "arc before": "since.arc_before",
+    "structure": "",
     "pause": "ramps.pause",
     "way": "ramps.way",
+    "motion": "modal.motion_word",
+    "feed": "feedrate.feed_word",
     "wall": "overcuts.wall",
     "slot": "slots.slot",
     "mesh": "ramps.mesh",
     "tight arc": "ramps.tight_arc",
     "narrow loop": "ramps.narrow_loop",
+    "loop": "ramps.loop",
+    "compensation": "since.compensation",
+    "first start-up": "ramps.first_start_up",
     "tool call": "since.tool_call",
     "modal state": "since.modal_state",
     "plane": "since.plane",
     "feed mode": "since.feed_mode",
     "origin": "since.origin",
-    "compensation": "since.compensation",
     "spindle code": "since.spindle_code",
     "c axis code": "since.c_axis_code",
     "live tool code": "since.live_tool_code",
-    "feed": "feedrate.feed_word",
-    "motion": "modal.motion_word",
-    "row": "since.row",
-    "X before": "since.linear_word_before",
-    "C before": "since.virtual_word_before",
+    "section": "mode.whole_section",
+    "program": "blocks.program",
+    "file": "",
 }
-#: Where the rows of the cause are counted otherwise than those of what follows: a coordinate that was written before
-#: is that of the row of the cause.
-OF_CAUSE = {"X before": "row", "C before": "row"}
+#: Spans that lead from a row to one above it, and the span of the cause that counts there: the X with which a row
+#: begins is the X that is in force behind the row of the cause.
+OF_CAUSE = {"X before": "X", "C before": "C", "arc before": "row"}
 #: Tables that hang on the text and the machine alone: what is found in them is the same however the program runs.
 OF_TEXT = frozenset({"text", "words", "machine", "job", "written", "dialect"})
 

@@ -50,6 +50,18 @@ class Ramps:
         """As loop, for what does not fit there; -1 for moves that do not fit because of their rounding alone."""
         return np.where(self.tool_center.interferes_by_rounding, -1, self.loop)
 
+    @cached_property
+    def first_start_up(self) -> Rows:
+        """The section of the rows from its G12.1 to its first start-up; -1 for other rows."""
+        trace = self.trace
+        section = trace.mode.whole_section
+        begun: Rows = np.cumsum(trace.compensation.starts_up) - trace.compensation.starts_up
+        inside = np.flatnonzero(section >= 0)
+        column = np.full(len(trace), -1)
+        first = inside[begun[inside] == begun[trace.mode.sections.enter[section[inside]]]]
+        column[first] = section[first]
+        return column
+
     # ---- start-up and offset cancel ----
 
     @cached_property

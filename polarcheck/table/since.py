@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from functools import cached_property
 from itertools import chain
 
@@ -11,6 +12,9 @@ from polarcheck.arrays import Mask, Rows
 from polarcheck.columns.filling import before, fill_down
 from polarcheck.columns.trace import Trace
 from polarcheck.machines.code_lists import FRAME_LISTS
+
+#: The head of a structure of several blocks, its other branches and its end; no IF with a jump or an assignment.
+_STRUCTURE = re.compile(rb"^[/0-9N ]*(IF(?![^\n]*(?:GOTO|THEN[ ]*[^\s]))|ELSEIF|ELSE|ENDIF)(?![A-Z])", re.MULTILINE)
 
 
 class Since:
@@ -27,20 +31,56 @@ class Since:
         return np.arange(len(self.trace))
 
     @cached_property
+    def linear_word(self) -> Rows:
+        """The row that wrote the X in force, itself or above; -1 for none."""
+        return self._written(self.trace.blocks.has("X", "U"))
+
+    @cached_property
+    def virtual_word(self) -> Rows:
+        """The same of the virtual axis."""
+        return self._written(self.trace.axes.programs_virtual_axis)
+
+    @cached_property
     def linear_word_before(self) -> Rows:
-        """The row above that wrote X last; -1 for none."""
-        return self._written_before(self.trace.blocks.has("X", "U"))
+        """The row above that wrote the X with which a row begins; -1 for none."""
+        return before(self.linear_word, self.trace.blocks.starts, -1)
 
     @cached_property
     def virtual_word_before(self) -> Rows:
-        """The row above that wrote the virtual axis last; -1 for none."""
-        return self._written_before(self.trace.axes.programs_virtual_axis)
+        """The same of the virtual axis."""
+        return before(self.virtual_word, self.trace.blocks.starts, -1)
 
-    def _written_before(self, written: Mask) -> Rows:
-        starts = self.trace.blocks.starts
-        return before(fill_down(self.row, written | starts, -1), starts, -1)
+    @cached_property
+    def arc_before(self) -> Rows:
+        """The axis row above under the same G2 or G3 word; -1 for none."""
+        trace = self.trace
+        axes = np.flatnonzero(trace.modal.uses_axes & (trace.modal.motion_word >= 0))
+        column = np.full(len(trace), -1)
+        same = trace.modal.motion_word[axes[1:]] == trace.modal.motion_word[axes[:-1]]
+        column[axes[1:][same]] = axes[:-1][same]
+        return column
+
+    def _written(self, written: Mask) -> Rows:
+        return fill_down(self.row, written | self.trace.blocks.starts, -1)
 
     # ---- since when a state is in force ----
+
+    @cached_property
+    def structure_of_block(self) -> Rows:
+        """Per block of the file the same number for IF, ELSE and ENDIF that belong together; -1 for other blocks."""
+        source, blocks = self.trace.text.source, self.trace.text.blocks
+        numbers: list[int] = []
+        opened: list[int] = []
+        marks = list(_STRUCTURE.finditer(source.code.tobytes()))
+        for number, mark in enumerate(marks):
+            if mark[1] == b"IF" or not opened:
+                opened.append(number)
+            numbers.append(opened[-1])
+            if mark[1] == b"ENDIF":
+                opened.pop()
+        structure = np.full(len(blocks), -1)
+        structure[np.searchsorted(blocks.start, [mark.start(1) for mark in marks], side="right") - 1] = numbers
+        return structure
 
     def _last(self, sets: Mask) -> Rows:
         return np.cumsum(sets | self.trace.blocks.starts)

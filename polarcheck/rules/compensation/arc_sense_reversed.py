@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-from polarcheck.checking.causes import NO_SUCH_ARC, SECTION_READ_OTHERWISE
 from polarcheck.checking.rule import WARNING, Mask, Senses, rule
 
 
@@ -9,7 +8,7 @@ from polarcheck.checking.rule import WARNING, Mask, Senses, rule
     "{written_sense} turns a corner of {senses.corner:whole} deg at both ends; {other_sense} is tangent to the blocks "
     "before and after it: write {other_sense}",
     at=("arc_clockwise", "arc_counterclockwise"),
-    follows={"loop": NO_SUCH_ARC, "section": SECTION_READ_OTHERWISE},
+    doubts=(("compensation", "loop"),),
 )
 def arc_sense_reversed(senses: Senses) -> Mask:
     """

@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-from polarcheck.checking.causes import NO_SUCH_ARC
 from polarcheck.checking.rule import ERROR, CutterCompensation, Mask, ProgrammedPath, rule
 
 
@@ -8,7 +7,8 @@ from polarcheck.checking.rule import ERROR, CutterCompensation, Mask, Programmed
     ERROR,
     "G40 takes effect on an arc; cancel in a G1 block after the arc",
     at=("compensation_off", "arc_clockwise", "arc_counterclockwise"),
-    follows={"block": NO_SUCH_ARC},
+    subject="move",
+    doubts=(("metal", "block"),),
 )
 def cancel_on_arc(path: ProgrammedPath, compensation: CutterCompensation) -> Mask:
     """

@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-from polarcheck.checking.causes import SECTION_READ_OTHERWISE
 from polarcheck.checking.rule import (
     ERROR,
     CutterCompensation,
@@ -19,7 +18,7 @@ from polarcheck.checking.rule import (
     at=("compensation_off",),
     needs=("compensation.radius", "path.length"),
     where="ramps.cancel_judged_by_radius",
-    follows={"section": (*SECTION_READ_OTHERWISE, "polar-switched-in-offset-mode")},
+    doubts=(("metal", "block"),),
 )
 def cancel_shorter_than_radius(
     path: ProgrammedPath, compensation: CutterCompensation, ramps: Ramps, machine: Machine

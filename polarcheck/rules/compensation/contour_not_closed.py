@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-from polarcheck.checking.causes import NO_SUCH_ARC, SECTION_READ_OTHERWISE, SIDE_WRITTEN_AGAIN
 from polarcheck.checking.rule import WARNING, Coverage, Mask, rule
 
 
@@ -9,10 +8,9 @@ from polarcheck.checking.rule import WARNING, Coverage, Mask, rule
     "the contour ends at {contour_end}, {coverage.gap:length} before it is closed: write {contour_start} there",
     once="loop",
     worst="coverage.gap",
-    follows={
-        "loop": (*NO_SUCH_ARC, "arc-sense-reversed", "number-without-point", *SIDE_WRITTEN_AGAIN),
-        "section": (*SECTION_READ_OTHERWISE, "polar-switched-in-offset-mode", "polar-switch-not-alone"),
-    },
+    subject="compensation",
+    doubts=(("metal", "loop"),),
+    follows={"loop": ("number-without-point",), "section": ("polar-switch-not-alone",)},
 )
 def contour_not_closed(coverage: Coverage) -> Mask:
     """

@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-from polarcheck.checking.causes import NO_SUCH_ARC, SECTION_READ_OTHERWISE
 from polarcheck.checking.rule import ERROR, CutterCompensation, Mask, ToolCenter, rule
 
 
@@ -12,11 +11,7 @@ from polarcheck.checking.rule import ERROR, CutterCompensation, Mask, ToolCenter
     needs=("compensation.radius",),
     where="ramps.compensated",
     once="tight arc",
-    follows={
-        "loop": (*NO_SUCH_ARC, "arc-sense-reversed"),
-        "compensation": ("side-of-compensation-mirrored",),
-        "section": SECTION_READ_OTHERWISE,
-    },
+    doubts=(("metal", "narrow loop"),),
 )
 def inside_arc_smaller_than_radius(compensation: CutterCompensation, tool_center: ToolCenter) -> Mask:
     """

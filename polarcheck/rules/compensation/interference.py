@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-from polarcheck.checking.causes import NO_SUCH_ARC, SECTION_READ_OTHERWISE
 from polarcheck.checking.rule import ERROR, Mask, Ramps, ToolCenter, rule
 
 
@@ -10,11 +9,7 @@ from polarcheck.checking.rule import ERROR, Mask, Ramps, ToolCenter, rule
     needs=("compensation.radius",),
     where="ramps.compensated",
     once="mesh",
-    follows={
-        "loop": (*NO_SUCH_ARC, "arc-sense-reversed"),
-        "compensation": ("side-of-compensation-mirrored",),
-        "section": SECTION_READ_OTHERWISE,
-    },
+    doubts=(("metal", "narrow loop"),),
 )
 def interference(tool_center: ToolCenter, ramps: Ramps) -> Mask:
     """

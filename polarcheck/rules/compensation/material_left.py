@@ -1,19 +1,9 @@
 from __future__ import annotations
 
-from polarcheck.checking.causes import NO_SUCH_ARC, SECTION_READ_OTHERWISE, SIDE_WRITTEN_AGAIN
 from polarcheck.checking.rule import WARNING, Coverage, Mask, rule
 
 
-@rule(
-    WARNING,
-    "{left}",
-    once="loop",
-    worst="coverage.height",
-    follows={
-        "loop": (*NO_SUCH_ARC, "arc-sense-reversed", "number-without-point", "contour-not-closed", *SIDE_WRITTEN_AGAIN),
-        "section": (*SECTION_READ_OTHERWISE, "polar-switched-in-offset-mode", "polar-switch-not-alone"),
-    },
-)
+@rule(WARNING, "{left}", once="loop", worst="coverage.height")
 def material_left(coverage: Coverage) -> Mask:
     """
     Material that no tool takes off, though the contour asks for it.

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.causes import NO_SUCH_ARC, OUT_OF_PLACE
+from polarcheck.checking.causes import OUT_OF_PLACE
 from polarcheck.checking.rule import WARNING, Mask, ToolCenter, rule
 
 
@@ -9,11 +9,8 @@ from polarcheck.checking.rule import WARNING, Mask, ToolCenter, rule
     "{why}; the tool center ends perpendicular to this block, not where the next one needs it",
     needs=("compensation.radius",),
     where="ramps.compensated",
-    follows={
-        "pause": (*OUT_OF_PLACE, "side-repeated-in-offset-mode", "full-circle-by-radius"),
-        "way": OUT_OF_PLACE,
-        "loop": NO_SUCH_ARC,
-    },
+    doubts=(("metal", "pause"),),
+    follows={"pause": (*OUT_OF_PLACE, "full-circle-by-radius"), "way": OUT_OF_PLACE},
 )
 def movement_missing_in_offset_mode(tool_center: ToolCenter) -> Mask:
     """

@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-from polarcheck.checking.causes import NO_SUCH_ARC, SECTION_READ_OTHERWISE
 from polarcheck.checking.rule import ERROR, Mask, Ramps, ToolCenter, rule
 
 
@@ -9,11 +8,7 @@ from polarcheck.checking.rule import ERROR, Mask, Ramps, ToolCenter, rule
     "paths of the tool center in this block and the next do not meet with R {compensation.radius:length}",
     needs=("compensation.radius",),
     where="ramps.compensated",
-    follows={
-        "loop": (*NO_SUCH_ARC, "arc-sense-reversed"),
-        "compensation": ("side-of-compensation-mirrored",),
-        "section": SECTION_READ_OTHERWISE,
-    },
+    doubts=(("metal", "narrow loop"),),
 )
 def no_offset_intersection(tool_center: ToolCenter, ramps: Ramps) -> Mask:
     """

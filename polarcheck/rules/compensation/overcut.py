@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-from polarcheck.checking.causes import NO_SUCH_ARC, SECTION_READ_OTHERWISE
 from polarcheck.checking.rule import ERROR, Mask, Overcuts, rule
 
 
@@ -11,21 +10,6 @@ from polarcheck.checking.rule import ERROR, Mask, Overcuts, rule
     where="compensation.offset_mode",
     worst="overcuts.depth",
     once="wall",
-    follows={
-        "loop": (
-            *NO_SUCH_ARC,
-            "arc-sense-reversed",
-            "number-without-point",
-            "contour-not-closed",
-            "start-up-shorter-than-radius",
-            "side-changed-in-offset-mode",
-            "side-repeated-in-offset-mode",
-        ),
-        "narrow loop": ("inside-arc-smaller-than-radius", "interference", "no-offset-intersection"),
-        "pause": ("movement-missing-in-offset-mode",),
-        "compensation": ("side-of-compensation-mirrored",),
-        "section": SECTION_READ_OTHERWISE,
-    },
 )
 def overcut(overcuts: Overcuts) -> Mask:
     """

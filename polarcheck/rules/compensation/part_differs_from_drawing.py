@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-from polarcheck.checking.causes import NO_SUCH_ARC, SECTION_READ_OTHERWISE, SIDE_WRITTEN_AGAIN
 from polarcheck.checking.rule import ERROR, Deviations, Mask, rule
 
 
@@ -10,10 +9,6 @@ from polarcheck.checking.rule import ERROR, Deviations, Mask, rule
     "{deviations.tolerance:length} is allowed: {deviation}",
     needs=("compensation.radius",),
     where="deviations.asked",
-    follows={
-        "loop": (*NO_SUCH_ARC, "arc-sense-reversed", "number-without-point", "contour-not-closed", *SIDE_WRITTEN_AGAIN),
-        "section": (*SECTION_READ_OTHERWISE, "polar-switched-in-offset-mode", "polar-switch-not-alone"),
-    },
 )
 def part_differs_from_drawing(deviations: Deviations) -> Mask:
     """

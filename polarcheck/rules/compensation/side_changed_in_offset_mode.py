@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from polarcheck.checking.causes import UNIT
 from polarcheck.checking.rule import WARNING, CutterCompensation, Mask, Ramps, rule
 
 
@@ -7,6 +8,8 @@ from polarcheck.checking.rule import WARNING, CutterCompensation, Mask, Ramps, r
     WARNING,
     "{side} while {before} is in force; write G40 with a move between them",
     at=("compensation_left", "compensation_right"),
+    subject="",
+    doubts=(("compensation", UNIT),),
 )
 def side_changed_in_offset_mode(compensation: CutterCompensation, ramps: Ramps) -> Mask:
     """

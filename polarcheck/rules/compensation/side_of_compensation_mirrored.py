@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-from polarcheck.checking.causes import NO_SUCH_ARC, SECTION_READ_OTHERWISE
 from polarcheck.checking.rule import WARNING, Mask, Mirrored, rule
 
 
@@ -9,7 +8,7 @@ from polarcheck.checking.rule import WARNING, Mask, Mirrored, rule
     "{side_in_force} has the cutter on the wrong side: both ramps come through the part, on the other side the whole "
     "contour is free; {remedy}",
     at=("compensation_left", "compensation_right"),
-    follows={"compensation": NO_SUCH_ARC, "section": SECTION_READ_OTHERWISE},
+    doubts=(("compensation", "compensation"),),
 )
 def side_of_compensation_mirrored(mirrored: Mirrored) -> Mask:
     """

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from polarcheck.checking.causes import UNIT
 from polarcheck.checking.rule import WARNING, CutterCompensation, Mask, Ramps, rule
 
 
@@ -8,6 +9,8 @@ from polarcheck.checking.rule import WARNING, CutterCompensation, Mask, Ramps, r
     "{side} again: it is in force already, and the tool center does not turn into the corner before it",
     at=("compensation_left", "compensation_right"),
     once="section",
+    subject="",
+    doubts=(("compensation", UNIT),),
 )
 def side_repeated_in_offset_mode(compensation: CutterCompensation, ramps: Ramps) -> Mask:
     """

@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-from polarcheck.checking.causes import NO_SUCH_ARC, SECTION_READ_OTHERWISE
 from polarcheck.checking.rule import ERROR, Mask, Slots, rule
 
 
@@ -12,20 +11,7 @@ from polarcheck.checking.rule import ERROR, Mask, Slots, rule
     where="slots.compared",
     worst="slots.depth",
     once="slot",
-    follows={
-        "loop": (
-            *NO_SUCH_ARC,
-            "arc-sense-reversed",
-            "number-without-point",
-            "start-up-shorter-than-radius",
-            "side-changed-in-offset-mode",
-            "side-repeated-in-offset-mode",
-            "overcut",
-        ),
-        "narrow loop": ("inside-arc-smaller-than-radius", "interference", "no-offset-intersection"),
-        "pause": ("movement-missing-in-offset-mode",),
-        "section": SECTION_READ_OTHERWISE,
-    },
+    follows={"loop": ("overcut",)},
 )
 def slot_narrower_than_cutter(slots: Slots) -> Mask:
     """

@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-from polarcheck.checking.causes import NO_SUCH_ARC
 from polarcheck.checking.rule import ERROR, CutterCompensation, Mask, ProgrammedPath, rule
 
 
@@ -8,7 +7,8 @@ from polarcheck.checking.rule import ERROR, CutterCompensation, Mask, Programmed
     ERROR,
     "{side} begins on an arc; begin it in a G1 block before the arc",
     at=("compensation_left", "compensation_right", "arc_clockwise", "arc_counterclockwise"),
-    follows={"block": NO_SUCH_ARC},
+    subject="move",
+    doubts=(("metal", "block"),),
 )
 def start_up_on_arc(path: ProgrammedPath, compensation: CutterCompensation) -> Mask:
     """

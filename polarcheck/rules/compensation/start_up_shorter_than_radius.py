@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-from polarcheck.checking.causes import SECTION_READ_OTHERWISE
 from polarcheck.checking.rule import ERROR, CutterCompensation, Mask, ProgrammedPath, Ramps, rule
 
 
@@ -10,7 +9,7 @@ from polarcheck.checking.rule import ERROR, CutterCompensation, Mask, Programmed
     at=("compensation_left", "compensation_right"),
     needs=("compensation.radius", "path.length"),
     where="ramps.start_up_judged_by_radius",
-    follows={"way": ("approach-inside-stock",), "section": (*SECTION_READ_OTHERWISE, "polar-switched-in-offset-mode")},
+    doubts=(("metal", "loop"),),
 )
 def start_up_shorter_than_radius(path: ProgrammedPath, compensation: CutterCompensation, ramps: Ramps) -> Mask:
     """

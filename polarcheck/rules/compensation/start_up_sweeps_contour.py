@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-from polarcheck.checking.causes import NO_SUCH_ARC, SECTION_READ_OTHERWISE
 from polarcheck.checking.rule import ERROR, Hits, Slots, rule
 
 
@@ -9,30 +8,9 @@ from polarcheck.checking.rule import ERROR, Hits, Slots, rule
     "the ramp goes {depth:length} deep into {swept}",
     at=("compensation_off", "compensation_left", "compensation_right"),
     once="loop",
-    follows={
-        "block": (
-            "start-up-shorter-than-radius",
-            "cancel-shorter-than-radius",
-            "start-up-on-arc",
-            "cancel-on-arc",
-            "path-through-center",
-        ),
-        "loop": (
-            *NO_SUCH_ARC,
-            "arc-sense-reversed",
-            "contour-not-closed",
-            "degrees-in-polar",
-            "number-without-point",
-            "overcut",
-            "slot-narrower-than-cutter",
-        ),
-        "narrow loop": ("inside-arc-smaller-than-radius", "interference", "no-offset-intersection"),
-        "pause": ("movement-missing-in-offset-mode",),
-        "way": ("x-not-positive-at-entry",),
-        "compensation": ("side-of-compensation-mirrored",),
-        "section": (*SECTION_READ_OTHERWISE, "polar-switched-in-offset-mode"),
-    },
     worst="slots.ramp_depth",
+    doubts=(("metal", "X before"),),
+    follows={"loop": ("overcut", "slot-narrower-than-cutter")},
 )
 def start_up_sweeps_contour(slots: Slots) -> Hits:
     """

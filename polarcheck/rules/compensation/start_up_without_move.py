@@ -7,6 +7,8 @@ from polarcheck.checking.rule import NOTE, Mask, Ramps, rule
     NOTE,
     "{side} without a move on the plane: the offset begins with that of line {start_up}; write {side} there",
     at=("compensation_left", "compensation_right"),
+    is_advice=True,
+    subject="",
     follows={
         "way": (
             "start-up-shorter-than-radius",
@@ -16,7 +18,6 @@ from polarcheck.checking.rule import NOTE, Mask, Ramps, rule
             "nose-type-not-zero",
         )
     },
-    is_advice=True,
 )
 def start_up_without_move(ramps: Ramps) -> Mask:
     """

@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-from polarcheck.checking.causes import NO_SUCH_ARC, SECTION_READ_OTHERWISE
 from polarcheck.checking.rule import ERROR, Hits, UncompensatedCuts, graded, rule
 
 
@@ -9,11 +8,7 @@ from polarcheck.checking.rule import ERROR, Hits, UncompensatedCuts, graded, rul
     "{bare} {goes} {cut_part}; retract Z above the part first, or go round it",
     worst="uncompensated_cuts.graveness",
     once="loop",
-    follows={
-        "motion": ("rapid-in-polar",),
-        "loop": (*NO_SUCH_ARC, "number-without-point", "x-not-positive-at-entry", "approach-inside-stock"),
-        "section": (*SECTION_READ_OTHERWISE, "degrees-in-polar", "polar-switched-in-offset-mode"),
-    },
+    follows={"motion": ("rapid-in-polar",), "loop": ("x-not-positive-at-entry",)},
 )
 def uncompensated_cut_into_part(uncompensated_cuts: UncompensatedCuts) -> Hits:
     """

@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-from polarcheck.checking.causes import NO_SUCH_ARC, SECTION_READ_OTHERWISE
 from polarcheck.checking.rule import WARNING, Center, Feedrate, Feeds, Mask, rule
 
 
@@ -13,8 +12,8 @@ from polarcheck.checking.rule import WARNING, Center, Feedrate, Feeds, Mask, rul
     needs=("tool_center.c_acceleration",),
     where="feeds.is_limited_in_acceleration",
     once="feed",
-    follows={"feed": ("c-feed-above-limit",), "block": NO_SUCH_ARC, "section": SECTION_READ_OTHERWISE},
     worst="tool_center.c_acceleration",
+    follows={"feed": ("c-feed-above-limit",), "block": ("start-up-sweeps-contour",)},
 )
 def c_acceleration_above_limit(feedrate: Feedrate, center: Center, feeds: Feeds) -> Mask:
     """

@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-from polarcheck.checking.causes import NO_SUCH_ARC, SECTION_READ_OTHERWISE
 from polarcheck.checking.rule import ERROR, WARNING, Center, Hits, Machine, ToolCenter, graded, rule
 
 
@@ -12,8 +11,8 @@ from polarcheck.checking.rule import ERROR, WARNING, Center, Hits, Machine, Tool
     needs=("tool_center.c_feed",),
     where="path.cuts",
     once="feed",
-    follows={"block": NO_SUCH_ARC, "section": SECTION_READ_OTHERWISE},
     worst="tool_center.c_feed",
+    follows={"block": ("start-up-sweeps-contour",)},
 )
 def c_feed_above_limit(center: Center, tool_center: ToolCenter, machine: Machine) -> Hits:
     """

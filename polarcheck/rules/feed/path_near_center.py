@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-from polarcheck.checking.causes import NO_SUCH_ARC, SECTION_READ_OTHERWISE
 from polarcheck.checking.rule import WARNING, Center, Hits, Machine, ToolCenter, rule
 
 
@@ -9,8 +8,8 @@ from polarcheck.checking.rule import WARNING, Center, Hits, Machine, ToolCenter,
     "tool center comes within {tool_center.nearest:length/keep_out} of the center of the {rotary} axis; "
     "keep {keep_out:length/tool_center.nearest} away",
     at=("X", "U", "C", "H"),
-    follows={"block": ("c-feed-above-limit", *NO_SUCH_ARC), "section": SECTION_READ_OTHERWISE},
     worst="tool_center.c_feed",
+    follows={"block": ("c-feed-above-limit", "start-up-sweeps-contour")},
 )
 def path_near_center(center: Center, tool_center: ToolCenter, machine: Machine) -> Hits:
     """

@@ -1,15 +1,9 @@
 from __future__ import annotations
 
-from polarcheck.checking.causes import NO_SUCH_ARC, SECTION_READ_OTHERWISE
 from polarcheck.checking.rule import ERROR, Arcs, Center, Mask, ProgrammedPath, rule
 
 
-@rule(
-    ERROR,
-    "tool center {meeting}",
-    at=("X", "U", "C", "H"),
-    follows={"way": ("x-not-positive-at-entry",), "block": NO_SUCH_ARC, "section": SECTION_READ_OTHERWISE},
-)
+@rule(ERROR, "tool center {meeting}", at=("X", "U", "C", "H"), doubts=(("metal", "block"), ("move", "X before")))
 def path_through_center(path: ProgrammedPath, center: Center, arcs: Arcs) -> Mask:
     """
     Path through the center of the C axis.

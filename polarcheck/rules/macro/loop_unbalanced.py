@@ -7,6 +7,7 @@ from polarcheck.checking.rule import ERROR, Faults, Mask, rule
     ERROR,
     "{reason}; the control stops here: close each loop with an END of its own number, the inner loop first",
     over="faults",
+    once="structure",
     follows={"block": ("loop-number-out-of-range",)},
 )
 def loop_unbalanced(faults: Faults) -> Mask:

@@ -3,7 +3,7 @@ from __future__ import annotations
 from polarcheck.checking.rule import ERROR, Faults, Mask, rule
 
 
-@rule(ERROR, "{shown} {reason}; the control stops here", over="faults")
+@rule(ERROR, "{shown} {reason}; the control stops here", over="faults", once="name")
 def macro_syntax(faults: Faults) -> Mask:
     """
     Macro statement that cannot be read.

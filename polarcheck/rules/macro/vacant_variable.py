@@ -8,6 +8,7 @@ from polarcheck.checking.rule import WARNING, Faults, Mask, rule
     "{shown} has a vacant variable: the control drops this address; assign the variable before, or hand it"
     " over as an argument",
     over="faults",
+    once="name",
 )
 def vacant_variable(faults: Faults) -> Mask:
     """

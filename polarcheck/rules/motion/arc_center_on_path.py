@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.causes import C_IN_DOUBT, END_IN_DOUBT, SECTION_READ_OTHERWISE
+from polarcheck.checking.causes import END_IN_DOUBT
 from polarcheck.checking.rule import ERROR, Arcs, Mask, rule
 from polarcheck.geometry.tolerances import ROUNDING
 
@@ -9,13 +9,8 @@ from polarcheck.geometry.tolerances import ROUNDING
     ERROR,
     "the center of the arc is its start or its end: a radius of 0",
     at=("I", "J"),
-    follows={
-        "block": ("arc-off-polar-plane", "arc-word-of-other-plane", "degrees-in-polar"),
-        "loop": ("number-without-point",),
-        "X before": END_IN_DOUBT,
-        "C before": C_IN_DOUBT,
-        "section": SECTION_READ_OTHERWISE,
-    },
+    doubts=END_IN_DOUBT,
+    follows={"loop": ("number-without-point",)},
 )
 def arc_center_on_path(arcs: Arcs) -> Mask:
     """

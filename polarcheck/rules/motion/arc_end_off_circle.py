@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.causes import C_IN_DOUBT, END_IN_DOUBT, SECTION_READ_OTHERWISE
+from polarcheck.checking.causes import END_IN_DOUBT
 from polarcheck.checking.rule import ERROR, Arcs, Hits, Machine, rule
 
 
@@ -12,13 +12,8 @@ from polarcheck.checking.rule import ERROR, Arcs, Hits, Machine, rule
     at=("X", "U", "C", "H", "I", "J"),
     needs=("arcs.end_radius",),
     where="arcs.by_center",
-    follows={
-        "block": ("arc-center-on-path", "arc-off-polar-plane", "arc-word-of-other-plane", "degrees-in-polar"),
-        "loop": ("number-without-point",),
-        "X before": END_IN_DOUBT,
-        "C before": C_IN_DOUBT,
-        "section": SECTION_READ_OTHERWISE,
-    },
+    doubts=END_IN_DOUBT,
+    follows={"block": ("arc-center-on-path",), "loop": ("number-without-point",)},
 )
 def arc_end_off_circle(arcs: Arcs, machine: Machine) -> Hits:
     """

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from polarcheck.checking.causes import NO_SUCH_ARC
 from polarcheck.checking.rule import ERROR, Arcs, Mask, rule
 
 
@@ -7,6 +8,9 @@ from polarcheck.checking.rule import ERROR, Arcs, Mask, rule
     ERROR,
     "arc along Z; in the polar mode arcs lie in the plane of {linear} and {virtual}",
     at=("arc_clockwise", "arc_counterclockwise", "Z", "W"),
+    subject="",
+    doubts=NO_SUCH_ARC,
+    follows={"arc before": ("arc-without-center",)},
 )
 def arc_off_polar_plane(arcs: Arcs) -> Mask:
     """

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.causes import C_IN_DOUBT, END_IN_DOUBT, SECTION_READ_OTHERWISE
+from polarcheck.checking.causes import END_IN_DOUBT
 from polarcheck.checking.rule import ERROR, Arcs, Machine, Mask, rule
 
 
@@ -11,13 +11,8 @@ from polarcheck.checking.rule import ERROR, Arcs, Machine, Mask, rule
     at=("X", "U", "C", "H", "R"),
     needs=("arcs.chord",),
     where="arcs.by_radius",
-    follows={
-        "block": ("arc-off-polar-plane", "degrees-in-polar"),
-        "loop": ("number-without-point",),
-        "X before": END_IN_DOUBT,
-        "C before": C_IN_DOUBT,
-        "section": SECTION_READ_OTHERWISE,
-    },
+    doubts=END_IN_DOUBT,
+    follows={"loop": ("number-without-point",)},
 )
 def arc_radius_too_small(arcs: Arcs, machine: Machine) -> Mask:
     """

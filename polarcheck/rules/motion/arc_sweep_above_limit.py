@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-from polarcheck.checking.causes import NO_SUCH_ARC, SECTION_READ_OTHERWISE
 from polarcheck.checking.rule import WARNING, Arcs, Machine, Mask, rule
 
 #: What the last digit of the coordinates may turn an arc by [deg].
@@ -12,7 +11,8 @@ LAST_DIGIT = 0.1
     "arc of {arcs.sweep:whole/machine.arcs.sweep_limit} deg; {machine.title} takes "
     "{machine.arcs.sweep_limit:whole/arcs.sweep} deg in one block; write it as several arcs",
     at=("X", "U", "C", "H", "I", "J", "R"),
-    follows={"block": (*NO_SUCH_ARC, "arc-sense-reversed"), "section": SECTION_READ_OTHERWISE},
+    subject="move",
+    follows={"block": ("arc-sense-reversed",)},
 )
 def arc_sweep_above_limit(arcs: Arcs, machine: Machine) -> Mask:
     """

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from polarcheck.checking.causes import END_IN_DOUBT
 from polarcheck.checking.rule import ERROR, Arcs, Mask, ProgrammedPath, rule
 
 
@@ -8,7 +9,7 @@ from polarcheck.checking.rule import ERROR, Arcs, Mask, ProgrammedPath, rule
     "arc without {machine.arcs.radius_word}, {centers}",
     at=("arc_clockwise", "arc_counterclockwise", "X", "U", "C", "H"),
     once="motion",
-    follows={"block": ("arc-off-polar-plane", "arc-word-of-other-plane")},
+    doubts=END_IN_DOUBT,
 )
 def arc_without_center(path: ProgrammedPath, arcs: Arcs) -> Mask:
     """

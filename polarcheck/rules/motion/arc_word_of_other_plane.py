@@ -1,11 +1,14 @@
 from __future__ import annotations
 
+from polarcheck.checking.causes import NO_SUCH_ARC
 from polarcheck.checking.rule import ERROR, Arcs, Hits, PlaneAxes, ProgrammedPath, rule
 
 
 @rule(
     ERROR,
     "{word} is not of the polar plane; the center is {center}",
+    subject="",
+    doubts=NO_SUCH_ARC,
     follows={"block": ("arc-off-polar-plane",), "section": ("linear-axis-never-programmed",)},
 )
 def arc_word_of_other_plane(axes: PlaneAxes, path: ProgrammedPath, arcs: Arcs) -> Hits:

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from polarcheck.checking.causes import SECTION_READ_OTHERWISE
 from polarcheck.checking.rule import WARNING, Arcs, Mask, rule
 
 
@@ -8,6 +9,8 @@ from polarcheck.checking.rule import WARNING, Arcs, Mask, rule
     "no arc of this section fits with X read as a {reading}, all fit with X as a {other}{written_for}",
     at=("on",),
     once="section",
+    subject="",
+    doubts=SECTION_READ_OTHERWISE,
     follows={"section": ("wrong-axis-address-in-polar",)},
 )
 def diameter_radius_mixed(arcs: Arcs) -> Mask:

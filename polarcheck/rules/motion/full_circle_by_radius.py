@@ -4,7 +4,10 @@ from polarcheck.checking.rule import WARNING, Arcs, ExecutedBlocks, Machine, Mas
 
 
 @rule(
-    WARNING, "arc by radius that ends where it starts: nothing moves; a full circle needs {centers}", at=("X", "C", "R")
+    WARNING,
+    "arc by radius that ends where it starts: nothing moves; a full circle needs {centers}",
+    at=("X", "C", "R"),
+    subject="",
 )
 def full_circle_by_radius(blocks: ExecutedBlocks, axes: PlaneAxes, arcs: Arcs, machine: Machine) -> Mask:
     """

@@ -3,7 +3,7 @@ from __future__ import annotations
 from polarcheck.checking.rule import WARNING, Arcs, Mask, PlaneAxes, rule
 
 
-@rule(WARNING, "arc that moves Z, too: only with the helical option, else an alarm", at=("Z", "W"))
+@rule(WARNING, "arc that moves Z, too: only with the helical option, else an alarm", at=("Z", "W"), subject="")
 def helical_arc_in_polar(axes: PlaneAxes, arcs: Arcs) -> Mask:
     """
     Arc in the polar mode that moves Z.

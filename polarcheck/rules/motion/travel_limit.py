@@ -1,18 +1,10 @@
 from __future__ import annotations
 
-from polarcheck.checking.causes import SECTION_READ_OTHERWISE
 from polarcheck.checking.rule import ERROR, Machine, Mask, PlaneAxes, Travel, rule
 from polarcheck.geometry.tolerances import ROUNDING
 
 
-@rule(
-    ERROR,
-    "{travel}",
-    at=("X", "U", "C", "H", "Z", "W"),
-    needs=("travel.most_x",),
-    where="travel.is_limited_in_x",
-    follows={"section": SECTION_READ_OTHERWISE},
-)
+@rule(ERROR, "{travel}", at=("X", "U", "C", "H", "Z", "W"), needs=("travel.most_x",), where="travel.is_limited_in_x")
 def travel_limit(axes: PlaneAxes, travel: Travel, machine: Machine) -> Mask:
     """
     Move beyond the travel of X or Z.

@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-from polarcheck.checking.causes import NO_SUCH_ARC
 from polarcheck.checking.rule import ERROR, Infeed, Mask, rule
 
 
@@ -8,7 +7,6 @@ from polarcheck.checking.rule import ERROR, Infeed, Mask, rule
     ERROR,
     "{E} asks for passes around the contour, which ends {infeed.gap:length} from where it begins: it must be closed",
     at=("E",),
-    follows={"section": (*NO_SUCH_ARC, "polar-switched-in-offset-mode")},
 )
 def contour_open_with_infeed(infeed: Infeed) -> Mask:
     """

@@ -11,6 +11,7 @@ _FAR = 2.0
     "{word} {begins} a length of {angles.farthest:length} in the polar mode and looks like an angle: the rest of the "
     "section lies within {angles.reach:length} of the center; write the point of the contour",
     once="section",
+    doubts=(("position", "block"), ("position", "C before"), ("metal", "section")),
     follows={"block": ("rapid-in-polar",)},
 )
 def degrees_in_polar(blocks: ExecutedBlocks, axes: PlaneAxes, angles: Angles, entry: Entry) -> Hits:

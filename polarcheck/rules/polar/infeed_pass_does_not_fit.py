@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-from polarcheck.checking.causes import NO_SUCH_ARC, SECTION_READ_OTHERWISE
 from polarcheck.checking.rule import WARNING, Infeed, Mask, rule
 
 
@@ -10,20 +9,6 @@ from polarcheck.checking.rule import WARNING, Infeed, Mask, rule
     at=("E",),
     needs=("compensation.radius",),
     where="infeed.judged_by_radius",
-    follows={
-        "section": (
-            *NO_SUCH_ARC,
-            *SECTION_READ_OTHERWISE,
-            "arc-sense-reversed",
-            "inside-arc-smaller-than-radius",
-            "interference",
-            "no-offset-intersection",
-            "polar-switched-in-offset-mode",
-            "side-of-compensation-mirrored",
-            "side-changed-in-offset-mode",
-            "side-repeated-in-offset-mode",
-        )
-    },
 )
 def infeed_pass_does_not_fit(infeed: Infeed) -> Mask:
     """

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from polarcheck.checking.causes import SECTION_READ_OTHERWISE
 from polarcheck.checking.rule import (
     ERROR,
     ExecutedBlocks,
@@ -18,6 +19,7 @@ from polarcheck.checking.rule import (
     "it; write {first_axis}, or make X the linear axis",
     over="sections",
     at=("on",),
+    doubts=SECTION_READ_OTHERWISE,
 )
 def linear_axis_never_programmed(
     blocks: ExecutedBlocks, modal: ModalStates, axes: PlaneAxes, mode: PolarMode, sections: Sections

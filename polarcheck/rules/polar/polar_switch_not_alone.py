@@ -3,7 +3,11 @@ from __future__ import annotations
 from polarcheck.checking.rule import ERROR, Hits, ModeWords, SwitchWords, rule
 
 
-@rule(ERROR, "{switch} shares its block with {others}; it must stand in a block of its own")
+@rule(
+    ERROR,
+    "{switch} shares its block with {others}; it must stand in a block of its own",
+    doubts=(("metal", "section"),),
+)
 def polar_switch_not_alone(mode_words: ModeWords, switch_words: SwitchWords) -> Hits:
     """
     G12.1 or G13.1 not in a block of its own.

@@ -4,7 +4,13 @@ from polarcheck.checking.rule import ERROR, CutterCompensation, Mask, PolarMode,
 from polarcheck.machines.modal import Side
 
 
-@rule(ERROR, "{switch} while {side} is in force; G40 must be in force here", at=("on", "off"), once="section")
+@rule(
+    ERROR,
+    "{switch} while {side} is in force; G40 must be in force here",
+    at=("on", "off"),
+    once="section",
+    doubts=(("compensation", "section"),),
+)
 def polar_switched_in_offset_mode(mode: PolarMode, compensation: CutterCompensation) -> Mask:
     """
     Polar mode switched on or off while G41 or G42 is in force.

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from polarcheck.checking.causes import SECTION_READ_OTHERWISE
 from polarcheck.checking.rule import (
     ERROR,
     Arcs,
@@ -22,6 +23,8 @@ _SEVERAL = 2
     "write {virtual} in every block that moves it",
     over="sections",
     at=("on",),
+    subject="",
+    doubts=SECTION_READ_OTHERWISE,
 )
 def second_axis_never_programmed(
     axes: PlaneAxes, mode: PolarMode, path: ProgrammedPath, sections: Sections, arcs: Arcs, center: Center

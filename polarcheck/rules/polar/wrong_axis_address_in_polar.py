@@ -7,6 +7,7 @@ from polarcheck.checking.rule import ERROR, Hits, ModeWords, PolarMode, rule
     ERROR,
     "{word} is no coordinate of the polar plane: its second axis is {virtual} here{taken_by}",
     once="section",
+    doubts=(("position", "loop"),),
     follows={"block": ("polar-entered-twice",)},
 )
 def wrong_axis_address_in_polar(mode: PolarMode, mode_words: ModeWords) -> Hits:

@@ -10,6 +10,7 @@ from polarcheck.geometry.tolerances import ROUNDING
     at=("on",),
     needs=("offsets.cutter_diameter",),
     where="entry.approaches_stock",
+    doubts=(("compensation", "first start-up"),),
 )
 def approach_inside_stock(path: ProgrammedPath, entry: Entry) -> Hits:
     """

@@ -8,8 +8,8 @@ from polarcheck.checking.rule import WARNING, ExecutedBlocks, Hits, Machine, Pro
     "{word} starts the live tool, and no S above 0 that was given for it is in force: it turns at another speed, or "
     "not at all; write S before it",
     once="program",
-    follows={"block": ("vacant-variable",)},
     is_advice=True,
+    follows={"block": ("vacant-variable",)},
 )
 def live_tool_without_speed(blocks: ExecutedBlocks, procedure: Procedure, machine: Machine) -> Hits:
     """

@@ -8,8 +8,8 @@ from polarcheck.machines.modal import Side
     WARNING,
     "no tool offset is in force at {switch}",
     at=("on",),
-    follows={"section": ("offset-changed-in-polar",)},
     once="tool call",
+    follows={"section": ("offset-changed-in-polar",)},
 )
 def no_tool_offset_at_entry(
     tools: CalledTools, mode: PolarMode, compensation: CutterCompensation, entry: Entry

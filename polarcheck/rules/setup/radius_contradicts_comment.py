@@ -6,11 +6,7 @@ from polarcheck.checking.rule import NOTE, Entry, Hits, rule
 _WEAR = 0.25
 
 
-@rule(
-    NOTE,
-    "R {given:length} {is_given}, the comment tells {told:length}: {comment}; measure the cutter",
-    at=("T",),
-)
+@rule(NOTE, "R {given:length} {is_given}, the comment tells {told:length}: {comment}; measure the cutter", at=("T",))
 def radius_contradicts_comment(entry: Entry) -> Hits:
     """
     Given radius that is not that of the program's own comment.

@@ -4,7 +4,12 @@ from polarcheck.checking.rule import WARNING, Mask, PolarMode, ProgrammedPath, r
 from polarcheck.geometry.tolerances import ROUNDING
 
 
-@rule(WARNING, "{linear} stands at {path.x:diameter} at {switch}; enter the polar mode above 0", at=("on",))
+@rule(
+    WARNING,
+    "{linear} stands at {path.x:diameter} at {switch}; enter the polar mode above 0",
+    at=("on",),
+    doubts=(("position", "way"),),
+)
 def x_not_positive_at_entry(mode: PolarMode, path: ProgrammedPath) -> Mask:
     """
     X at the center or beyond it where the polar mode begins.

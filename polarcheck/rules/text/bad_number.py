@@ -7,7 +7,12 @@ from polarcheck.checking.rule import ERROR, Hits, OtherMode, Written, rule
     ERROR,
     "{text}: {number_fault}{count:blocks}",
     over="words",
-    follows={"file": ("polar-code-of-another-control",), "block": ("comment-nested", "comment-not-closed")},
+    once="name",
+    follows={
+        "file": ("polar-code-of-another-control",),
+        "block": ("comment-nested", "comment-not-closed"),
+        "structure": ("macro-syntax",),
+    },
 )
 def bad_number(written: Written, other_mode: OtherMode) -> Hits:
     """

@@ -7,7 +7,10 @@ from polarcheck.checking.rule import ERROR, Hits, OtherMode, Written, rule
     ERROR,
     "{stray}{count:blocks}",
     over="strays",
-    follows={"file": ("polar-code-of-another-control",), "block": ("comment-nested", "comment-not-closed")},
+    follows={
+        "file": ("polar-code-of-another-control",),
+        "block": ("comment-nested", "comment-not-closed"),
+    },
 )
 def stray_character(written: Written, other_mode: OtherMode) -> Hits:
     """
