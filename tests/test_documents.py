@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import runpy
 from itertools import groupby
 
 import pytest
@@ -94,3 +95,9 @@ def test_statements_refer_to_earlier_ones_alone() -> None:
     for place, (number, text, _) in enumerate(STATEMENTS):
         for other in re.findall(r"\b\d{3}-\d+\b", text):
             assert other in [row[0] for row in STATEMENTS[:place]], f"{number}: {other}"
+
+
+def test_one_block_is_shown_as_it_goes_through_the_program() -> None:
+    """`python docs/one_block.py > docs/one_block.md` writes the page anew."""
+    made = runpy.run_path(str(ROOT / "docs" / "one_block.py"))["page"]()
+    assert made == (ROOT / "docs" / "one_block.md").read_text("utf-8")
