@@ -15,8 +15,8 @@ from hypothesis import strategies as st
 from plane_moves import path_of_rows, points_along, turn_of
 
 from polarcheck.geometry.compensation import Method, Path, Phase, tool_center_path
-from polarcheck.geometry.contour import TOLERANCE, Curves, Overcut
-from polarcheck.geometry.contour import overcuts as cuts
+from polarcheck.geometry.contour import TOLERANCE, overcuts
+from polarcheck.geometry.segments import Curves
 from polarcheck.machines.modal import Motion, Side
 
 NAN = complex(math.nan, math.nan)
@@ -35,6 +35,19 @@ def cw(end: complex, center: complex) -> Block:
 IDLE = NAN  # a block without movement in the plane
 
 
+class Overcuts(NamedTuple):
+    """
+    The deepest cut of each move.
+
+    row: int[n], programmed row that is cut. move: int[n]. depth: float64[n] [mm]. place: complex128[n] [mm].
+    """
+
+    row: np.ndarray
+    move: np.ndarray
+    depth: np.ndarray
+    place: np.ndarray
+
+
 class Loop(NamedTuple):
     """A contour from start-up to cancel with the tool center's moves; `alarm` if the control would object to it."""
 
@@ -45,12 +58,12 @@ class Loop(NamedTuple):
     radius: float
     alarm: bool
 
-    def overcuts(self, radius: float | None = None, tolerance: float = TOLERANCE) -> Overcut:
+    def overcuts(self, radius: float | None = None, tolerance: float = TOLERANCE) -> Overcuts:
         sizes = np.full(len(self.path.row), self.radius if radius is None else radius)
         with np.errstate(all="raise", under="ignore"):
             return along(self.contour, self.left, self.path, sizes, tolerance)
 
-    def sweeps(self) -> Overcut:
+    def sweeps(self) -> Overcuts:
         with np.errstate(all="raise", under="ignore"):
             sizes = np.full(len(self.ramps.row), self.radius)
             return swept(self.contour, self.left, self.ramps, sizes)
@@ -264,14 +277,23 @@ def air(contour: Curves) -> np.ndarray:
     return np.full(len(contour), min(ends))
 
 
-def along(contour: Curves, left: np.ndarray, path: Curves, radius: np.ndarray, tolerance: float = TOLERANCE) -> Overcut:
+def along(
+    contour: Curves,
+    left: np.ndarray,
+    path: Curves,
+    radius: np.ndarray,
+    tolerance: float = TOLERANCE,
+    is_ramp: bool = False,
+) -> Overcuts:
     """Cuts by moves in offset mode."""
-    return cuts(contour, left, air(contour), contour.loop, path, radius, np.zeros(len(radius), bool), tolerance)
+    ramps = np.full(len(radius), is_ramp)
+    cuts, _ = overcuts(contour, left, air(contour), contour.loop, path, radius, ramps, tolerance)
+    return Overcuts(contour.row[cuts.wall], cuts.move, cuts.depth, cuts.place)
 
 
-def swept(contour: Curves, left: np.ndarray, ramps: Curves, radius: np.ndarray) -> Overcut:
+def swept(contour: Curves, left: np.ndarray, ramps: Curves, radius: np.ndarray) -> Overcuts:
     """Cuts by start-ups and offset cancels."""
-    return cuts(contour, left, air(contour), contour.loop, ramps, radius, np.ones(len(radius), bool))
+    return along(contour, left, ramps, radius, is_ramp=True)
 
 
 def together(*loops: Loop) -> tuple[Curves, np.ndarray, Curves, np.ndarray]:

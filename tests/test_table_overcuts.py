@@ -7,7 +7,7 @@ import pytest
 from programs import report_of, said, tables_of
 
 from polarcheck.checking.tables import Tables
-from polarcheck.table.overcuts import Cuts, loop_of_row, objected
+from polarcheck.table.overcuts import CutsOfRows, loop_of_row, objected
 
 #: A groove of 6 mm between C3 and C-3 through the middle of a square of 40, gone round on the outside.
 GROOVE = (
@@ -45,7 +45,7 @@ def test_who_is_cut_into_and_where() -> None:
 
 def test_the_deepest_of_the_cuts_of_a_row() -> None:
     depth = np.array([0.5, 0.7, 0.6, 0.9])
-    cuts = Cuts(np.array([3, 3, 3, 5]), np.array([1, 2, 8, 4]), depth, np.array([1j, 2j, 3j, 4j]))
+    cuts = CutsOfRows(np.array([3, 3, 3, 5]), np.array([1, 2, 8, 4]), depth, np.array([1j, 2j, 3j, 4j]))
     assert cuts.deepest(3) == (2, 2j)
     assert cuts.deepest(5) == (4, 4j)
 

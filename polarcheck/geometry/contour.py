@@ -16,40 +16,21 @@ import msgspec
 import numpy as np
 import shapely  # type: ignore[import-untyped]
 
-from polarcheck.arrays import Floats, Mask, Points, Rows, Table
+from polarcheck.arrays import Floats, Mask, Points, Rows
 from polarcheck.geometry import areas
-from polarcheck.geometry.faces import Geometries, coordinates, edges_of, ends_of, gathered, lines_of
+from polarcheck.geometry.cuts import Cuts, cuts_into, with_facing_walls
+from polarcheck.geometry.faces import ends_of, gathered, lines_of, polylines
 from polarcheck.geometry.finished_part import Contours, FinishedParts, finished_parts
 from polarcheck.geometry.segments import Curves, Segments, first_of_its_kind, members, segments
 from polarcheck.geometry.tolerances import ZERO
 from polarcheck.time_limit import keep_time
 
-__all__ = ["TOLERANCE", "Curves", "Overcut", "overcuts"]
-
 #: Depth [mm] up to which nothing is said; two roundings to the least increment.
 TOLERANCE = 0.002
 #: Moves of a loop, or pieces of them, from which on it is worth while to look for passes that are written once more.
 _MANY = 2000
-#: Straight pieces of path that are looked at as one first; and worked on at a time, for the sake of memory.
-_RUN, _BATCH = 64, 4096
-#: The same for whole loops: pieces of a run, and of all runs between two looks at the clock.
+#: Straight pieces of a loop that are compared as one line, and pieces between two looks at the clock.
 _LONG_RUN, _PIECES = 1024, 2048
-
-
-class Overcut(msgspec.Struct, frozen=True):
-    """
-    Cuts into contours, k of them, and the loops that nothing can be said of.
-
-    row: int64[k], programmed row that is cut into. move: int64[k], index of the move of the tool center.
-    depth: float64[k] [mm]. place: complex128[k] [mm], the point of the part that is cut deepest.
-    tangled: int64[j], loops whose walls cross again and again.
-    """
-
-    row: Rows
-    move: Rows
-    depth: Floats
-    place: Points
-    tangled: Rows
 
 
 def overcuts(
@@ -62,9 +43,10 @@ def overcuts(
     is_ramp: Mask,
     tolerance: float = TOLERANCE,
     bar: float = np.nan,
-) -> Overcut:
+) -> tuple[Cuts, Rows]:
     """
     Where the tool center comes nearer than R to the finished part of its loop; the worst place of each of its moves.
+    And the loops whose walls cross too often to tell.
 
     contour: the programmed blocks in offset mode. left: bool[moves of contour], the tool runs left of the block: G41
     with R above 0, G42 with R below. air: float64[moves of contour] [mm], radius about the center of C from which on
@@ -86,29 +68,26 @@ def overcuts(
     repeats = ~first_of_its_kind(path)[ways.move] if _is_long(ways) else np.zeros(len(ways), bool)
     ways = ways[_comes_close(walls, ways, repeats, is_ramp[ways.move], radius[ways.move] - tolerance)]
     if not len(ways):
-        none = np.zeros(0, dtype=np.int64)
-        return Overcut(none, none, np.zeros(0), np.zeros(0, dtype=np.complex128), none)
+        return Cuts.none(), np.zeros(0, np.int64)
     loops, group = np.unique(ways.loop, return_inverse=True)
     smallest = np.full(len(loops), np.inf)
     np.minimum.at(smallest, group, radius[ways.move])
     part = finished_parts(Contours(contour, left, loops, np.arange(len(loops)), smallest, bar, tolerance))
-    ways = ways.shifted(part.pitch * group)
     in_open = part.open[group] & is_ramp[ways.move]
-    ramps = _Ramps.of(contour, air, path, ways[in_open], group[in_open])
-    cuts = _worst(
-        _Cuts.concatenated(
-            [
-                _cuts(part, ways[~in_open], group[~in_open], smallest, tolerance),
-                _cuts_in_the_open(part, ramps, smallest, tolerance),
-            ]
-        )
-    )
+    ramps = _Ramps.of(contour, air, path, ways[in_open].shifted((part.pitch * group)[in_open]), group[in_open])
+    own_loop = Cuts.concatenated(
+        [
+            cuts_into(part, part.open, ways[~in_open], group[~in_open], smallest, tolerance, may_be_far=False),
+            _cuts_in_the_open(part, ramps, smallest, tolerance),
+        ]
+    ).worst()
     loop, first = np.unique(contour.loop, return_index=True)
-    own = level[first][np.searchsorted(loop, loops[cuts.group])]
-    shared = np.bincount(level[first])[own] > 1
-    levels = _levels(contour, left, level, np.unique(own[shared]), smallest.max(), bar, tolerance)
-    kept, again = _left_at_level(levels, path, cuts, np.where(shared, own, -1), radius, tolerance)
-    return _overcut(contour, loops[part.tangled], (part, cuts[kept]), (levels, again))
+    of_cut = level[first][np.searchsorted(loop, loops[own_loop.group])]
+    shared = np.bincount(level[first])[of_cut] > 1
+    levels = _levels(contour, left, level, np.unique(of_cut[shared]), smallest.max(), bar, tolerance)
+    decided, again = _left_at_level(levels, path, own_loop, np.where(shared, of_cut, -1), radius, tolerance)
+    cuts = Cuts.concatenated([with_facing_walls(part, own_loop[decided]), with_facing_walls(levels, again)])
+    return cuts.worst(), loops[part.tangled]
 
 
 def _levels(
@@ -123,47 +102,25 @@ def _levels(
 
 
 def _left_at_level(
-    levels: FinishedParts, path: Curves, cuts: _Cuts, level: Rows, radius: Floats, tolerance: float
-) -> tuple[Mask, _Cuts]:
+    levels: FinishedParts, path: Curves, cuts: Cuts, level: Rows, radius: Floats, tolerance: float
+) -> tuple[Mask, Cuts]:
     """
-    Cuts into what their loop alone leaves standing, those of a level, -1 for none, compared with all that stands there.
+    Cuts into the part of their own loop compared with the part of all loops of their level; level: -1 for none.
 
-    Which of them stay as they are, and the others with what is left of them.
+    Gives the cuts that stay as they are, a boolean each, and what remains of the others.
     """
     wanted, group = np.unique(level, return_inverse=True)
     group = group - np.count_nonzero(wanted < 0)
-    told = ~np.append(levels.tangled | shapely.is_empty(levels.polygon), True)[group]
-    moves = cuts.move[told]
+    compared = ~np.append(levels.tangled | shapely.is_empty(levels.polygon), True)[group]
+    moves = cuts.move[compared]
     ways = segments(path[moves], tolerance)
-    group = group[told][ways.move]
+    group = group[compared][ways.move]
     smallest = np.full(len(levels.polygon), np.inf)
     np.minimum.at(smallest, group, radius[moves[ways.move]])
-    ways = Segments(ways.start, ways.end, moves[ways.move], ways.loop).shifted(levels.pitch * group)
-    again = _worst(_cuts(levels, ways, group, smallest, tolerance))
+    ways = Segments(ways.start, ways.end, moves[ways.move], ways.loop)
+    again = cuts_into(levels, levels.open, ways, group, smallest, tolerance, may_be_far=False).worst()
     before = cuts.depth[np.searchsorted(cuts.move, again.move)]
-    return ~told, msgspec.structs.replace(again, depth=np.minimum(again.depth, before))
-
-
-def _overcut(contour: Curves, tangled: Rows, *found: tuple[FinishedParts, _Cuts]) -> Overcut:
-    """Cuts into parts with the wall that each goes into."""
-    some = [(part, cuts) for part, cuts in found if len(cuts.move)]
-    if not some:
-        return Overcut(_NO_CUTS.move, _NO_CUTS.move, _NO_CUTS.depth, _NO_CUTS.place, tangled)
-    row = np.concatenate([contour.row[part.move[_wall(part, cuts)]] for part, cuts in some])
-    place = np.concatenate([cuts.place - part.pitch * cuts.group for part, cuts in some])
-    cuts = _Cuts.concatenated([cuts for _, cuts in some])
-    order = np.argsort(cuts.move)
-    return Overcut(row[order].astype(np.int64), cuts.move[order], cuts.depth[order], place[order], tangled)
-
-
-def _wall(part: FinishedParts, cuts: _Cuts) -> Rows:
-    """The nearest wall at each place; at a corner the one that faces the tool."""
-    tree = shapely.STRtree(lines_of(part.start, part.end))
-    which, wall = tree.query_nearest(shapely.points(coordinates(cuts.place)), all_matches=True)
-    way = part.end[wall] - part.start[wall]
-    facing = ((cuts.tool - cuts.place)[which] * (-1j * way).conj()).real / np.maximum(np.abs(way), ZERO)
-    order = np.lexsort((part.move[wall], -np.round(facing, 6), which))
-    return np.asarray(wall[order[np.diff(which[order], prepend=-1) != 0]])
+    return ~compared, msgspec.structs.replace(again, depth=np.minimum(again.depth, before))
 
 
 # ---- which loops to look at ----
@@ -188,7 +145,7 @@ def _comes_close(walls: Segments, ways: Segments, again: Mask, is_ramp: Mask, li
 
     again: those that are written once more, which need no second look.
     """
-    contours = _polylines(walls)
+    contours = polylines(walls.start, walls.end, walls.loop)
     shapely.prepare(contours)
     loops = np.unique(walls.loop)
     result = np.zeros(len(ways), bool)
@@ -201,7 +158,7 @@ def _comes_close(walls: Segments, ways: Segments, again: Mask, is_ramp: Mask, li
         near, of_way = np.zeros(len(own), bool), number
         path, number = path[~again[~is_ramp]], number[~again[~is_ramp]]
         run = np.cumsum((np.diff(number, prepend=-1) != 0) | (np.arange(len(number)) % _LONG_RUN == 0))
-        lines, of = _polylines(msgspec.structs.replace(path, loop=run)), number[np.diff(run, prepend=0) != 0]
+        lines, of = polylines(path.start, path.end, run), number[np.diff(run, prepend=0) != 0]
         # Of a loop that comes close at one place no other one is asked; a long one takes long where it does not.
         share = np.cumsum(shapely.get_num_coordinates(lines)) // _PIECES
         for part in np.split(np.arange(len(of)), np.flatnonzero(np.diff(share)) + 1):
@@ -212,101 +169,6 @@ def _comes_close(walls: Segments, ways: Segments, again: Mask, is_ramp: Mask, li
             near[which[close]] = True
         result[~is_ramp] = near[of_way]
     return result
-
-
-# ---- segments to lines ----
-
-
-def _polylines(parts: Segments) -> Geometries:
-    """One line for each loop; where segments do not join, several."""
-    start, end = parts.start, parts.end
-    if not len(start):
-        return np.zeros(0, dtype=object)
-    goes_on = (end[:-1] == start[1:]) & (parts.loop[1:] == parts.loop[:-1])
-    ends = np.flatnonzero(np.append(~goes_on, True))
-    line = np.cumsum(np.append(0, ~goes_on))
-    points, of = np.insert(start, ends + 1, end[ends]), np.insert(line, ends + 1, line[ends])
-    lines = shapely.linestrings(coordinates(points), indices=of)
-    _, number = np.unique(parts.loop[ends], return_inverse=True)
-    return np.asarray(shapely.multilinestrings(lines, indices=number))
-
-
-# ---- cuts ----
-
-
-class _Cuts(Table, frozen=True):
-    """
-    Pieces of way that cut, on the shifted parts: the move that each is of, its group, the depth, the place on the part
-    and the tool center then.
-    """
-
-    move: Rows
-    group: Rows
-    depth: Floats
-    place: Points
-    tool: Points
-
-
-def _worst(cuts: _Cuts) -> _Cuts:
-    """The deepest cut of each move."""
-    order = np.lexsort((-cuts.depth, cuts.move))
-    return cuts[order[np.diff(cuts.move[order], prepend=-1) != 0]]
-
-
-class _Outline(msgspec.Struct, frozen=True):
-    """
-    What is not to be cut. whole: shapely geometry[groups], prepared; of a part that is open its walls alone.
-
-    start, end: its edges, all groups together.
-    """
-
-    whole: Geometries
-    start: Points
-    end: Points
-
-
-def _outline(part: FinishedParts, asked: Mask) -> _Outline:
-    """Of the groups asked for."""
-    whole = part.polygon.copy()
-    whole[~asked] = None
-    by_walls = part.open & asked
-    of_wall = by_walls[part.group]
-    start, end = part.start[of_wall], part.end[of_wall]
-    whole[by_walls] = gathered(lines_of(start, end), part.group[of_wall], len(whole))[by_walls]
-    shapely.prepare(whole)
-    begins, ends = edges_of(part.polygon[~part.open & asked])
-    return _Outline(whole, np.append(start, begins), np.append(end, ends))
-
-
-def _cuts(part: FinishedParts, ways: Segments, group: Rows, radius: Floats, tolerance: float) -> _Cuts:
-    """Where these ways come nearer than R to the part of their group."""
-    if not len(ways):
-        return _NO_CUTS
-    outline = _outline(part, np.isin(np.arange(len(radius)), group))
-    # First of all the runs of ways that do; the ways in them are what is left of most.
-    run = np.cumsum((np.diff(group, prepend=-1) != 0) | (np.arange(len(group)) % _RUN == 0))
-    runs = _polylines(Segments(ways.start, ways.end, ways.move, run))
-    of_run = group[np.diff(run, prepend=0) != 0]
-    near = areas.dwithin(outline.whole[of_run], runs, radius[of_run] - tolerance)[run - 1]
-    ways, group = ways[near], group[near]
-    tree = shapely.STRtree(lines_of(outline.start, outline.end))
-    found = [_NO_CUTS]
-    for first in range(0, len(ways) if len(tree) else 0, _BATCH):
-        keep_time()
-        rows = np.arange(first, min(first + _BATCH, len(ways)))
-        lines = lines_of(ways.start[rows], ways.end[rows])
-        limit = radius[group[rows]] - tolerance
-        near = shapely.dwithin(outline.whole[group[rows]], lines, limit)
-        rows, lines = rows[near], lines[near]
-        (line, edge), distance = tree.query_nearest(lines, all_matches=False, return_distance=True)
-        place, tool = ends_of(shapely.shortest_line(tree.geometries[edge], lines[line]))
-        distance[shapely.intersects(outline.whole[group[rows]], lines)] = 0
-        found.append(_Cuts(ways.move[rows], group[rows], radius[group[rows]] - distance, place, tool))
-    return _Cuts.concatenated(found)
-
-
-_NOWHERE = np.zeros(0, np.complex128)
-_NO_CUTS = _Cuts(np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0), _NOWHERE, _NOWHERE)
 
 
 # ---- ramps of contours that end in the open ----
@@ -336,11 +198,11 @@ class _Ramps(msgspec.Struct, frozen=True):
         return cls(ways, group, begins, air[first], far >= air[first])
 
 
-def _cuts_in_the_open(part: FinishedParts, ramps: _Ramps, radius: Floats, tolerance: float) -> _Cuts:
+def _cuts_in_the_open(part: FinishedParts, ramps: _Ramps, radius: Floats, tolerance: float) -> Cuts:
     """Where ramps cut walls of which one ends where they touch it."""
     ways, group, begins = ramps.ways, ramps.group, ramps.begins
     if not len(ways):
-        return _NO_CUTS
+        return Cuts.none()
     radius = radius[group]
     in_air = ramps.in_air & _is_round_center(part)[group]
     lines = lines_of(ways.start, ways.end)
@@ -352,7 +214,7 @@ def _cuts_in_the_open(part: FinishedParts, ramps: _Ramps, radius: Floats, tolera
     near = _within_reach(part, wall, ways, way, radius)
     wall, way = wall[near], way[near]
     length = np.where(begins[way][:, None], part.along[wall], part.ahead[wall])
-    found = [_NO_CUTS]
+    cuts = [Cuts.none()]
     for low, high, path, allowed in (
         (np.zeros(len(ways)), radius, behind, _slant(ways.end - ways.start, radius)),
         (radius, np.full(len(ways), np.inf), lines, 0.0),
@@ -363,10 +225,10 @@ def _cuts_in_the_open(part: FinishedParts, ramps: _Ramps, radius: Floats, tolera
             walls[in_air] = areas.intersection(walls[in_air], within)
         depth = radius - shapely.distance(walls, path)
         cut = np.flatnonzero(depth > tolerance + allowed)  # NaN without walls, or with nothing behind them
-        found.append(
-            _Cuts(ways.move[cut], group[cut], depth[cut], *ends_of(shapely.shortest_line(walls[cut], path[cut])))
-        )
-    return _Cuts.concatenated(found)
+        place, tool = ends_of(shapely.shortest_line(walls[cut], path[cut]))
+        aside, unknown = (radius - depth)[cut], np.full(len(cut), -1)
+        cuts.append(Cuts(cut, ways.move[cut], group[cut], unknown, depth[cut], aside, place, tool))
+    return Cuts.concatenated(cuts)
 
 
 def _within_reach(part: FinishedParts, wall: Rows, ways: Segments, way: Rows, reach: Floats) -> Mask:

@@ -323,6 +323,31 @@ def lines_of(start: Points, end: Points) -> Geometries:
     return found
 
 
+def polylines(start: Points, end: Points, of: Rows) -> Geometries:
+    """
+    Straight pieces as one polyline for each number in `of`: int[n], rising; several lines
+    where pieces do not join.
+    """
+    if not len(start):
+        return np.zeros(0, dtype=object)
+    joined = (end[:-1] == start[1:]) & (of[1:] == of[:-1])
+    lines, last = lines_through(start, end, joined)
+    _, number = np.unique(of[last], return_inverse=True)
+    return np.asarray(shapely.multilinestrings(lines, indices=number))
+
+
+def lines_through(start: Points, end: Points, joined: Mask) -> tuple[Geometries, Rows]:
+    """
+    A line through each run of straight pieces, and the last piece of each run.
+
+    joined: bool[n - 1], the next piece goes on from where this one ends, in the same line.
+    """
+    last = np.flatnonzero(np.append(~joined, True))
+    line = np.cumsum(np.append(0, ~joined))
+    points, of = np.insert(start, last + 1, end[last]), np.insert(line, last + 1, line[last])
+    return np.asarray(shapely.linestrings(coordinates(points), indices=of)), last
+
+
 def gathered(lines: Geometries, group: Rows, count: int) -> Geometries:
     """The lines of each of so many groups as one; an empty one where it has none. group: int[lines]."""
     found = np.full(count, shapely.MultiLineString(), dtype=object)

@@ -14,15 +14,13 @@ import shapely  # type: ignore[import-untyped]
 
 from polarcheck.arrays import Floats, Mask, Rows
 from polarcheck.geometry import areas
+from polarcheck.geometry.cuts import Cuts, cuts_into, endless, shortened, with_walls
 from polarcheck.geometry.faces import lines_of
 from polarcheck.geometry.finished_part import Contours, finished_parts
-from polarcheck.geometry.reach import NOTHING, Reached, reached, shortened
 from polarcheck.geometry.segments import Curves, boxes, first_of_its_kind, segments
 
 
-def cuts_into_others(
-    contour: Contours, level: Rows, path: Curves, radius: Floats, is_ramp: Mask
-) -> tuple[Reached, Rows]:
+def cuts_into_others(contour: Contours, level: Rows, path: Curves, radius: Floats, is_ramp: Mask) -> tuple[Cuts, Rows]:
     """
     Where the tool center comes nearer than R to a wall of another loop that bounds the part of both; the worst place of
     each of its moves; and the loops that cross each other too often to tell.
@@ -33,7 +31,7 @@ def cuts_into_others(
     """
     loops, group = _together(contour.curves, level, path, float(radius.max(initial=0.0)))
     if not len(loops):
-        return NOTHING, loops
+        return Cuts.none(), loops
     place = np.minimum(np.searchsorted(loops, path.loop), len(loops) - 1)
     chosen = np.flatnonzero(loops[place] == path.loop)
     of_move = np.full(len(path), -1)
@@ -46,11 +44,13 @@ def cuts_into_others(
     tangled = loops[part.tangled[group]]
     ways = segments(path, contour.tolerance)
     ways = ways[of_move[ways.move] >= 0]
+    by_walls = part.open | endless(part)
     found = []
     for of_ramps, outline in ((False, part), (True, shortened(part, smallest))):
-        some = ways[is_ramp[ways.move] == of_ramps]
-        found.append(reached(outline, some, of_move[some.move], smallest, contour.tolerance))
-    cuts = Reached.concatenated(found)
+        pieces = ways[is_ramp[ways.move] == of_ramps]
+        cuts = cuts_into(outline, by_walls, pieces, of_move[pieces.move], smallest, contour.tolerance)
+        found.append(with_walls(outline, cuts))
+    cuts = Cuts.concatenated(found)
     return cuts[contour.curves.loop[cuts.wall] != path.loop[cuts.move]].worst(), tangled
 
 

@@ -19,7 +19,7 @@ import shapely  # type: ignore[import-untyped]
 from polarcheck.arrays import Mask, Rows
 from polarcheck.geometry import areas
 from polarcheck.geometry.closing import WITNESS
-from polarcheck.geometry.faces import GRID, coordinates
+from polarcheck.geometry.faces import GRID, coordinates, lines_through
 from polarcheck.geometry.ribs import Swept, first_tool
 from polarcheck.geometry.segments import Segments
 from polarcheck.geometry.tolerances import ZERO
@@ -83,12 +83,10 @@ def strips(
 
 def _gone(swept: Swept) -> Any:
     """What the tools sweep; None where their paths are too long to be looked at."""
-    start, end = swept.start, swept.end
-    goes_on = (end[:-1] == start[1:]) & (swept.radius[1:] == swept.radius[:-1]) & (swept.z[1:] == swept.z[:-1])
-    last = np.flatnonzero(np.append(~goes_on, True))
-    line = np.cumsum(np.append(0, ~goes_on))
-    points, of = np.insert(start, last + 1, end[last]), np.insert(line, last + 1, line[last])
-    lines, radius = shapely.linestrings(coordinates(points), indices=of), swept.radius[last]
+    joined = swept.end[:-1] == swept.start[1:]
+    joined &= (swept.radius[1:] == swept.radius[:-1]) & (swept.z[1:] == swept.z[:-1])
+    lines, last = lines_through(swept.start, swept.end, joined)
+    radius = swept.radius[last]
     # A pass that is written once more, deeper, sweeps nothing else.
     fresh = list({key: at for at, key in enumerate(zip(shapely.to_wkb(lines), radius.tolist(), strict=True))}.values())
     lines, radius = shapely.simplify(lines[fresh], _STRAIGHT), radius[fresh]

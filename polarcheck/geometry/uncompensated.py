@@ -14,9 +14,9 @@ import shapely  # type: ignore[import-untyped]
 
 from polarcheck.arrays import Floats, Mask, Rows
 from polarcheck.geometry.bare import Bare, FlatLoops
+from polarcheck.geometry.cuts import Cuts, cuts_into, endless, shortened, with_walls
 from polarcheck.geometry.faces import coordinates, lines_of
 from polarcheck.geometry.finished_part import Contours, FinishedParts, finished_parts
-from polarcheck.geometry.reach import NOTHING, Reached, endless, reached, shortened
 from polarcheck.geometry.segments import Curves, Segments, boxes, members, reach_from_start, segments
 from polarcheck.geometry.tolerances import ROUNDING, ZERO
 from polarcheck.time_limit import keep_time
@@ -31,7 +31,7 @@ _BATCH = 1024
 _DEPTHS = 8
 
 
-def cuts_into_part(contour: Contours, loops: FlatLoops, bare: Bare) -> tuple[Reached, Rows]:
+def cuts_into_part(contour: Contours, loops: FlatLoops, bare: Bare) -> tuple[Cuts, Rows]:
     """
     Where moves without compensation come nearer than R to the part of a contour at their Z or above it; the worst place
     of each. And the loops that cross each other too often to tell.
@@ -43,7 +43,7 @@ def cuts_into_part(contour: Contours, loops: FlatLoops, bare: Bare) -> tuple[Rea
     none = np.zeros(0, np.int64)
     groups = _groups(contour.curves, loops, bare)
     if not len(groups.top):
-        return NOTHING, none
+        return Cuts.none(), none
     move, group = _pairs(groups, bare)
     ways, group = _ways(bare, move, group, contour.tolerance)
     radius = np.zeros(len(groups.top))
@@ -51,23 +51,25 @@ def cuts_into_part(contour: Contours, loops: FlatLoops, bare: Bare) -> tuple[Rea
     near = _comes_near(contour, groups, ways, group, radius)
     asked = np.unique(group[near])
     if not len(asked):
-        return NOTHING, none
+        return Cuts.none(), none
     kept = np.isin(groups.group, asked)
     number = np.searchsorted(asked, groups.group[kept])
     radius = radius[asked]
     part = finished_parts(msgspec.structs.replace(contour, loop=groups.loop[kept], group=number, radius=radius))
     tangled = groups.loop[kept][part.tangled[number]]
     ways, group = ways[near], np.searchsorted(asked, group[near])
-    cuts = reached(shortened(part, radius), ways, group, radius, contour.tolerance)
+    outline, is_endless = shortened(part, radius), endless(part)
+    cuts = cuts_into(outline, part.open | is_endless, ways, group, radius, contour.tolerance)
+    cuts = with_walls(outline, cuts)
     deep = ~bare.plunges[cuts.move] | (cuts.aside < radius[cuts.group] - contour.tolerance)
     depth = cuts.depth - radius[cuts.group] + bare.radius[cuts.move]
-    deep &= (depth > contour.tolerance) & ~(endless(part)[cuts.group] & _begins_in(part, cuts, ways))
+    deep &= (depth > contour.tolerance) & ~(is_endless[cuts.group] & _begins_in(part, cuts, ways))
     return msgspec.structs.replace(cuts, depth=depth)[deep].worst(), np.unique(tangled)
 
 
-def _begins_in(part: FinishedParts, cuts: Reached, ways: Segments) -> Mask:
+def _begins_in(part: FinishedParts, cuts: Cuts, ways: Segments) -> Mask:
     """Whether the way of each cut begins in the part: what is far round a pocket may as well be air."""
-    begin = ways.start[cuts.way]
+    begin = ways.start[cuts.piece]
     beyond = np.maximum(np.abs(begin.real), np.abs(begin.imag)) >= part.pitch / 3
     points = shapely.points(coordinates(begin + part.pitch * cuts.group))
     return np.asarray(beyond | shapely.intersects(part.polygon[cuts.group], points))

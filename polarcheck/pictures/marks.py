@@ -24,7 +24,7 @@ from polarcheck.pictures.picture import Mark
 from polarcheck.table.coverage import Coverage, Left
 from polarcheck.table.finished import Level
 from polarcheck.table.moves import Moves
-from polarcheck.table.overcuts import Cuts, Overcuts, curves_of
+from polarcheck.table.overcuts import CutsOfRows, Overcuts, curves_of
 from polarcheck.time_limit import keep_time
 
 #: The most marks of a kind in a section; the deepest are chosen.
@@ -43,7 +43,7 @@ def overcut_marks(
         (overcuts.cuts, overcuts.depth, "cuts"),
         (overcuts.sweeps, overcuts.sweep_depth, "sweeps"),
     ):
-        chosen = _deepest(trace, cuts.some(depth[cuts.row] > 0))
+        chosen = _deepest(trace, cuts[depth[cuts.row] > 0])
         for row, into, deep, place in zip(
             chosen.row.tolist(), chosen.into.tolist(), chosen.depth.tolist(), chosen.place.tolist(), strict=True
         ):
@@ -86,7 +86,7 @@ def left_marks(trace: Trace, coverage: Coverage, levels: Sequence[Level]) -> Ite
             )
 
 
-def _deepest(trace: Trace, cuts: Cuts) -> Cuts:
+def _deepest(trace: Trace, cuts: CutsOfRows) -> CutsOfRows:
     """Return the deepest cut of each line into each other line, at most MOST per section."""
     order = np.lexsort((-cuts.depth, trace.blocks.line_in_file[cuts.into], trace.blocks.line_in_file[cuts.row]))
     order = order[
@@ -101,7 +101,7 @@ def _deepest(trace: Trace, cuts: Cuts) -> Cuts:
     section = trace.mode.section[cuts.row[order]]
     is_chosen = np.zeros(len(cuts.row), bool)
     is_chosen[order[np.arange(len(order)) - np.searchsorted(section, section) < MOST]] = True
-    return cuts.some(is_chosen)
+    return cuts[is_chosen]
 
 
 def _first_of_each(section: Rows, line: Rows, other: Rows, order: Rows) -> Rows:

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Points, Rows, different, repeated
+from polarcheck.arrays import Floats, Mask, Points, Rows, Table, different, repeated
 from polarcheck.columns.filling import before
 from polarcheck.columns.trace import Trace
 from polarcheck.geometry.compensation import Phase
@@ -17,6 +17,7 @@ from polarcheck.table.moves import Moves, programmed_moves
 from polarcheck.table.tool_center import ToolCenter
 
 if TYPE_CHECKING:
+    from polarcheck.geometry.cuts import Cuts
     from polarcheck.geometry.segments import Curves
 
 
@@ -43,23 +44,42 @@ def level_of(trace: Trace, walls: Curves) -> Rows:
     return np.asarray(number[np.cumsum(np.diff(walls.loop, prepend=-1) != 0) - 1])
 
 
-class Cuts(NamedTuple):
-    """Cuts into the contour, one element each: the row that cuts, the row cut into, depth [mm], place (plane point)."""
+class CutsOfRows(Table, frozen=True):
+    """
+    Cuts into contours by rows of the trace, n of them.
+
+    row: int[n], the row that cuts. into: int[n], the row of the contour that is cut. depth: float64[n] [mm]. place:
+    complex128[n] [mm], plane point.
+    """
 
     row: Rows
     into: Rows
     depth: Floats
     place: Points
 
-    def some(self, chosen: Mask) -> Cuts:
-        """Some of the cuts."""
-        return Cuts(self.row[chosen], self.into[chosen], self.depth[chosen], self.place[chosen])
+    @classmethod
+    def none(cls) -> Self:
+        """No cuts."""
+        return cls(np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0), np.zeros(0, np.complex128))
+
+    @classmethod
+    def of(cls, cuts: Cuts, path: Curves, walls: Curves) -> Self:
+        """Cuts of moves into walls, by the rows of both."""
+        return cls(path.row[cuts.move], walls.row[cuts.wall].astype(np.int64), cuts.depth, cuts.place)
 
     def deepest(self, row: int) -> tuple[int, complex]:
         """Of the cuts of a row the deepest: the row cut into, and where."""
-        own = np.flatnonzero(self.row == row)
-        worst = own[np.argmax(self.depth[own])]
+        of_row = np.flatnonzero(self.row == row)
+        worst = of_row[np.argmax(self.depth[of_row])]
         return int(self.into[worst]), complex(self.place[worst])
+
+    def depth_by_row(self, count: int) -> Floats:
+        """A column of so many rows: the depth of the deepest cut of each row [mm], 0 for none."""
+        if not len(self):
+            return repeated(np.float64(0), count)
+        column = np.zeros(count)
+        np.maximum.at(column, self.row, self.depth)
+        return column
 
 
 class Overcuts:
@@ -207,9 +227,9 @@ class Overcuts:
         return curves_of(tool, loop, chosen), is_ramp[chosen]
 
     @cached_property
-    def _found(self) -> tuple[Cuts, Mask, Mask]:
+    def _found(self) -> tuple[CutsOfRows, Mask, Mask]:
         """The cuts of all moves of the tool center, which of them are by ramps, and the rows of tangled loops."""
-        nothing = _NOTHING, np.zeros(0, bool), np.zeros(len(self.trace), bool)
+        nothing = CutsOfRows.none(), np.zeros(0, bool), np.zeros(len(self.trace), bool)
         if not self.compensates:
             return nothing
         from polarcheck.geometry.clearance import keeps_away
@@ -224,9 +244,8 @@ class Overcuts:
         from polarcheck.geometry import contour
 
         around = self._air(walls), self.level
-        found = contour.overcuts(walls, left, *around, path, radius, is_ramp, tolerance, self.bar)
-        cuts = Cuts(path.row[found.move], found.row, found.depth, found.place)
-        return cuts, is_ramp[found.move], np.isin(self.loop, found.tangled)
+        cuts, tangled = contour.overcuts(walls, left, *around, path, radius, is_ramp, tolerance, self.bar)
+        return CutsOfRows.of(cuts, path, walls), is_ramp[cuts.move], np.isin(self.loop, tangled)
 
     def _air(self, walls: Curves) -> Floats:
         """
@@ -251,16 +270,16 @@ class Overcuts:
         return level_of(self.trace, self.walls[0])
 
     @cached_property
-    def cuts(self) -> Cuts:
+    def cuts(self) -> CutsOfRows:
         """Row that cuts, row that is cut into, depth and place of each overcut."""
         cuts, by_ramp, _ = self._found
-        return cuts.some(~by_ramp)
+        return cuts[~by_ramp]
 
     @cached_property
-    def sweeps(self) -> Cuts:
+    def sweeps(self) -> CutsOfRows:
         """The same for start-ups and offset cancels that lie at the depth of their contour."""
         cuts, by_ramp, _ = self._found
-        return cuts.some(by_ramp)
+        return cuts[by_ramp]
 
     @property
     def tangled(self) -> Mask:
@@ -336,16 +355,10 @@ class Overcuts:
         loop = self._loop_of_ramps
         return np.where(np.isin(loop, loop[self.depth > 0]), 0.0, self._depth_of(self.sweeps))
 
-    def _depth_of(self, cuts: Cuts) -> Floats:
+    def _depth_of(self, cuts: CutsOfRows) -> Floats:
         """Per row the depth of its worst cut [mm]; 0 for none, and where the control objects anyway."""
-        if not len(cuts.row):
-            return repeated(np.float64(0), len(self.trace))
-        column = np.zeros(len(self.trace))
-        np.maximum.at(column, cuts.row, cuts.depth)
-        return np.where(self.objected, 0.0, column)
-
-
-_NOTHING = Cuts(np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0), np.zeros(0, np.complex128))
+        depth = cuts.depth_by_row(len(self.trace))
+        return np.where(self.objected, 0.0, depth) if len(cuts) else depth
 
 
 def curves_of(moves: Moves, loop: Rows, chosen: Mask) -> Curves:

@@ -6,12 +6,10 @@ from functools import cached_property
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Rows, computed, repeated
+from polarcheck.arrays import Floats, Mask, Rows, computed
 from polarcheck.columns.trace import Trace
 from polarcheck.geometry.tolerances import ROUNDING
-from polarcheck.table.overcuts import Cuts, Overcuts
-
-_NOTHING = Cuts(np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0), np.zeros(0, np.complex128))
+from polarcheck.table.overcuts import CutsOfRows, Overcuts
 
 
 class Slots:
@@ -22,12 +20,12 @@ class Slots:
         self.overcuts = overcuts
 
     @cached_property
-    def _found(self) -> tuple[Cuts, Mask, Rows]:
+    def _found(self) -> tuple[CutsOfRows, Mask, Rows]:
         """
         The cuts of all moves of the tool center into other loops, which of them are by ramps, and the loops that cross
         each other too often.
         """
-        nothing = _NOTHING, np.zeros(0, bool), np.zeros(0, np.int64)
+        nothing = CutsOfRows.none(), np.zeros(0, bool), np.zeros(0, np.int64)
         if not self.overcuts.compensates:
             return nothing
         level, several = self._levels
@@ -46,9 +44,8 @@ class Slots:
         nowhere = np.zeros(0, np.int64)
         tolerance = self.trace.machine.compensation.overcut_tolerance
         contours = Contours(walls, left, nowhere, nowhere, np.zeros(0), self.overcuts.bar, tolerance)
-        found, tangled = neighbours.cuts_into_others(contours, level[walls.row], path, radius, is_ramp)
-        cuts = Cuts(path.row[found.move], walls.row[found.wall], found.depth, found.place)
-        return cuts, is_ramp[found.move], tangled
+        cuts, tangled = neighbours.cuts_into_others(contours, level[walls.row], path, radius, is_ramp)
+        return CutsOfRows.of(cuts, path, walls), is_ramp[cuts.move], tangled
 
     @cached_property
     def _levels(self) -> tuple[Rows, Mask]:
@@ -88,21 +85,21 @@ class Slots:
         return np.isin(self.overcuts.loop, self._found[2])
 
     @cached_property
-    def cuts(self) -> Cuts:
+    def cuts(self) -> CutsOfRows:
         """Of moves in offset mode: row that cuts, row that is cut into, depth and place."""
         cuts, by_ramp, _ = self._found
-        return cuts.some(~by_ramp)
+        return cuts[~by_ramp]
 
     @cached_property
-    def sweeps(self) -> Cuts:
+    def sweeps(self) -> CutsOfRows:
         """The same for ramps at the depth of their contour."""
         cuts, by_ramp, _ = self._found
-        return cuts.some(by_ramp)
+        return cuts[by_ramp]
 
     @cached_property
     def depth(self) -> Floats:
         """Of the cut of a block in offset mode into a wall of another loop [mm]; none in loops that are overcut."""
-        return self._depth_of(self.cuts)
+        return self.cuts.depth_by_row(len(self.trace))
 
     @property
     def diameter(self) -> Floats:
@@ -112,19 +109,12 @@ class Slots:
     @cached_property
     def sweep_depth(self) -> Floats:
         """The same for ramps."""
-        return self._depth_of(self.sweeps)
+        return self.sweeps.depth_by_row(len(self.trace))
 
     @cached_property
     def ramp_depth(self) -> Floats:
         """Of the cut of a ramp into its own contour, or that of another loop [mm]."""
         return computed(np.maximum, self.overcuts.sweep_depth, self.sweep_depth)
-
-    def _depth_of(self, cuts: Cuts) -> Floats:
-        if not len(cuts.row):
-            return repeated(np.float64(0), len(self.trace))
-        column = np.zeros(len(self.trace))
-        np.maximum.at(column, cuts.row, cuts.depth)
-        return column
 
     @cached_property
     def slot(self) -> Rows:
@@ -134,7 +124,7 @@ class Slots:
         """
         cuts, trace = self.cuts, self.trace
         label = np.full(len(trace), -1)
-        if not len(cuts.row):
+        if not len(cuts):
             return label
         loop = self.overcuts.loop
         one, other = loop[cuts.row], loop[cuts.into]

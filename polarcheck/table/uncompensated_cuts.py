@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Points, Rows, repeated
+from polarcheck.arrays import Floats, Mask, Points, Rows
 from polarcheck.columns.filling import before, fill_down
 from polarcheck.columns.trace import Trace
 from polarcheck.geometry.bare import Bare, flat_loops, may_reach
@@ -14,11 +14,9 @@ from polarcheck.geometry.compensation import Phase
 from polarcheck.geometry.segments import Curves
 from polarcheck.geometry.tolerances import ADJUSTMENT, ROUNDING
 from polarcheck.machines.modal import Motion
-from polarcheck.table.overcuts import Cuts, Overcuts
+from polarcheck.table.overcuts import CutsOfRows, Overcuts
 from polarcheck.table.slots import Slots
 from polarcheck.table.tool_center import ToolCenter
-
-_NOTHING = Cuts(np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0), np.zeros(0, np.complex128))
 
 
 class UncompensatedCuts:
@@ -62,7 +60,7 @@ class UncompensatedCuts:
         return np.asarray(begins | ((ahead >= 0) & (trace.compensation.cancels & bad)[ahead]))
 
     @property
-    def cuts(self) -> Cuts:
+    def cuts(self) -> CutsOfRows:
         """Row that cuts, row of the contour whose part it cuts, depth and place, of each move the worst."""
         return self._found[0]
 
@@ -72,9 +70,9 @@ class UncompensatedCuts:
         return np.isin(self.overcuts.loop, self._found[1])
 
     @cached_property
-    def _found(self) -> tuple[Cuts, Rows]:
+    def _found(self) -> tuple[CutsOfRows, Rows]:
         """The cuts, and the loops that cross each other too often."""
-        nothing = _NOTHING, np.zeros(0, np.int64)
+        nothing = CutsOfRows.none(), np.zeros(0, np.int64)
         if not self.overcuts.compensates:
             return nothing
         row, start, end, center, z, section = (
@@ -101,8 +99,8 @@ class UncompensatedCuts:
 
         none, tolerance = np.zeros(0, np.int64), trace.machine.compensation.overcut_tolerance
         contours = Contours(walls, left, none, none, np.zeros(0), self.overcuts.bar, tolerance)
-        found, tangled = cuts_into_part(contours, loops, bare)
-        return Cuts(bare.curves.row[found.move], walls.row[found.wall], found.depth, found.place), tangled
+        cuts, tangled = cuts_into_part(contours, loops, bare)
+        return CutsOfRows.of(cuts, bare.curves, walls), tangled
 
     @property
     def _on_plane(self) -> tuple[Rows, Points, Points, Points, Floats, Rows]:
@@ -167,10 +165,7 @@ class UncompensatedCuts:
     @cached_property
     def depth(self) -> Floats:
         """Of the cut of a move without compensation into the part of a contour [mm], R at most."""
-        if not len(self.cuts.row):
-            return repeated(np.float64(0), len(self.trace))
-        column = np.zeros(len(self.trace))
-        np.maximum.at(column, self.cuts.row, self.cuts.depth)
+        column = self.cuts.depth_by_row(len(self.trace))
         if column.any():
             column[self._is_beside_bad_ramp & (column < np.abs(self.trace.compensation.radius))] = 0
         return column

@@ -1,12 +1,12 @@
-"""Ways against finished parts, by hand: parts without an end, ends of contours in the open, depths and places."""
+"""The search for cuts into finished parts, by hand: endless parts, ends of contours in the open, depths and places."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
+from polarcheck.geometry.cuts import Cuts, cuts_into, endless, shortened, with_walls
 from polarcheck.geometry.finished_part import Contours, FinishedParts, finished_parts
-from polarcheck.geometry.reach import endless, reached, shortened
 from polarcheck.geometry.segments import Curves, Segments
 from polarcheck.machines.modal import Motion
 
@@ -28,6 +28,12 @@ def parts_of(*loops: tuple[list[complex], bool], radius: float = 2.0) -> Finishe
 def ways(*points: tuple[complex, complex]) -> Segments:
     start, end = np.array(points, complex).T
     return Segments(start, end, np.arange(len(start)), np.zeros(len(start), np.int64))
+
+
+def cuts_of(part: FinishedParts, pieces: Segments, group: np.ndarray, radius: np.ndarray) -> Cuts:
+    """Cuts with their walls, of parts that are open or endless into the walls alone."""
+    by_walls = part.open | endless(part)
+    return with_walls(part, cuts_into(part, by_walls, pieces, group, radius, TOLERANCE))
 
 
 SQUARE = [20, 20 + 20j, -20 + 20j, -20 - 20j, 20 - 20j, 20]
@@ -55,7 +61,7 @@ def test_depth_and_place_of_ways_beside_a_boss(turn: complex) -> None:
     """R 2: at 21.5 from the center 0.5 deep, at 22.5 none; through the part its whole R."""
     part = parts_of(([turn * point for point in SQUARE], False), (SMALL, False))
     given = ways(*((turn * a, turn * b) for a, b in ((21.5 - 9j, 21.5 - 11j), (22.5 - 9j, 22.5 + 9j), (0, 10 + 0j))))
-    cuts = reached(part, given, np.zeros(3, np.int64), np.full(2, 2.0), TOLERANCE)
+    cuts = cuts_of(part, given, np.zeros(3, np.int64), np.full(2, 2.0))
     worst = cuts.worst()
     assert worst.move.tolist() == [0, 2]
     assert worst.depth == pytest.approx([0.5, 2])
@@ -69,7 +75,7 @@ def test_depth_and_place_of_ways_beside_a_boss(turn: complex) -> None:
 def test_each_group_is_compared_with_its_own_part() -> None:
     part = parts_of(BOSS, (SMALL, False), POCKET)
     way = (6 - 2j, 6 + 2j), (6 - 2j, 6 + 2j), (6 - 2j, 6 + 2j), (19 - 2j, 19 + 2j)
-    cuts = reached(part, ways(*way), np.array([0, 1, 2, 2]), np.full(3, 2.0), TOLERANCE).worst()
+    cuts = cuts_of(part, ways(*way), np.array([0, 1, 2, 2]), np.full(3, 2.0)).worst()
     assert cuts.move.tolist() == [0, 1, 3]
     assert cuts.group.tolist() == [0, 1, 2]
     assert cuts.depth == pytest.approx([2, 1, 1])
@@ -79,7 +85,7 @@ def test_each_group_is_compared_with_its_own_part() -> None:
 
 def test_a_corner_is_cut_with_both_of_its_walls() -> None:
     way = ways((21 + 22j, 22 + 21j))
-    cuts = reached(parts_of(BOSS), way, np.zeros(1, np.int64), np.array([3.0]), TOLERANCE)
+    cuts = cuts_of(parts_of(BOSS), way, np.zeros(1, np.int64), np.array([3.0]))
     assert sorted(cuts.wall.tolist()) == [0, 1]
     assert cuts.place == pytest.approx([20 + 20j] * 2)
     assert cuts.depth == pytest.approx([3 - 1.5 * np.sqrt(2)] * 2)
