@@ -35,6 +35,7 @@ from polarcheck.errors import TooHardError
 from polarcheck.finding import Finding, NotEvaluated, Undecided
 from polarcheck.geometry.tolerances import CHORDS, CROSSINGS, FARTHEST
 from polarcheck.machines.machine import Machine, OwnMachine
+from polarcheck.table.skipped_loops import SkipReason
 
 #: Extra reasons that a rule could not be evaluated.
 _Said: TypeAlias = Callable[[Tables, Rule], Iterator["Missing"]]
@@ -268,22 +269,15 @@ def _ramps_of_center(tables: Tables, rule: Rule) -> Iterator[Missing]:
         yield Missing(rule.name, SAID, int(trace.tools.offset_number[row]), reason, count)
 
 
-def _contours_given_up(tables: Tables, rule: Rule) -> Iterator[Missing]:
-    """Loops of which nobody can say, or not in bounded time, what they leave standing."""
-    overcuts = tables["overcuts"]
-    crosses = f"crosses itself more than {CROSSINGS} times a block: no part can be told from it"
-    far = f"reaches farther than {FARTHEST:.0f} mm from the center of C, or turns round a point far beyond"
-    long = f"has arcs of more than {CHORDS} chords"
-    yield from _loops_given_up(
-        tables,
-        rule,
-        overcuts.tangled,
-        f"{crosses}; program each contour by itself, between its own G41 or G42 and G40",
-    )
-    yield from _loops_given_up(tables, rule, overcuts.too_far, f"{far}: no part can be told from it; mend its words")
-    yield from _loops_given_up(
-        tables, rule, overcuts.too_long, f"{long}: they are too many to look at; are their R, I and J meant?"
-    )
+def _contours_skipped(tables: Tables, rule: Rule) -> Iterator[Missing]:
+    """Loops that the table of the rule skips; but those that cross themselves are reported for overcuts alone."""
+    overcuts, table = tables["overcuts"], tables[_TABLE_OF[rule.name]]
+    for reason, sentence in _SENTENCES[rule.name].items():
+        rows = table.skipped.rows(overcuts.loop, reason)
+        if table is not overcuts:
+            rows &= ~overcuts.skipped.rows(overcuts.loop, SkipReason.CROSSES)
+        matters = reason != SkipReason.PATHS_TOO_LONG  # hardly ever is anything amiss beside these
+        yield from _of_contours(tables, rule, rows, sentence, matters)
 
 
 def _parts_not_compared(tables: Tables, rule: Rule) -> Iterator[Missing]:
@@ -292,7 +286,7 @@ def _parts_not_compared(tables: Tables, rule: Rule) -> Iterator[Missing]:
     if not deviations.parts:
         return
     crosses = f"crosses itself or others more than {CROSSINGS} times a block: no part can be told from it"
-    yield from _loops_given_up(tables, rule, deviations.asked & tables["overcuts"].tangled, crosses)
+    yield from _of_contours(tables, rule, deviations.asked & deviations.crosses, crosses)
     for one in deviations.comparisons:
         if one.is_partial and one.agrees:
             of_block = (
@@ -307,24 +301,8 @@ def _parts_not_compared(tables: Tables, rule: Rule) -> Iterator[Missing]:
         yield Missing(rule.name, SAID, reason, reason, int(np.count_nonzero(rows)))
 
 
-def _contours_beside(tables: Tables, rule: Rule) -> Iterator[Missing]:
-    """The same for loops that only together are too hard."""
-    asked = _TOGETHER[rule.name](tables)
-    reason = f"crosses itself or others beside it more than {CROSSINGS} times a block: no part can be told from them"
-    yield from _loops_given_up(
-        tables, rule, asked & ~tables["overcuts"].tangled, f"{reason}; program fewer contours in a section"
-    )
-
-
-def _strips_beside(tables: Tables, rule: Rule) -> Iterator[Missing]:
-    """Loops beside paths that are too long to look for what stays there, which is hardly ever amiss."""
-    yield from _contours_beside(tables, rule)
-    reason = "lies beside so many others, or such long paths, that nobody has looked for what stays between them"
-    yield from _loops_given_up(tables, rule, tables["coverage"].too_long, reason, matters=False)
-
-
-def _loops_given_up(tables: Tables, rule: Rule, rows: Mask, reason: str, matters: bool = True) -> Iterator[Missing]:
-    """One for each loop of these rows, one for all of them from some number on."""
+def _of_contours(tables: Tables, rule: Rule, rows: Mask, reason: str, matters: bool = True) -> Iterator[Missing]:
+    """One entry for each loop of these rows, and one for all beyond the first NAMED."""
     trace: Trace = tables["trace"]
     at = np.flatnonzero(rows & tables["ramps"].compensated)
     if not len(at):
@@ -339,20 +317,48 @@ def _loops_given_up(tables: Tables, rule: Rule, rows: Mask, reason: str, matters
         yield Missing(rule.name, SAID, said, said, int(counts[order[NAMED:]].sum()), matters)
 
 
+_CROSS_BESIDE = {
+    SkipReason.CROSSES: (
+        f"crosses itself or others beside it more than {CROSSINGS} times a block: no part can be told from them; "
+        "program fewer contours in a section"
+    )
+}
+#: By rule and reason, what is said of a contour that is skipped.
+_SENTENCES: dict[str, dict[SkipReason, str]] = {
+    "overcut": {
+        SkipReason.CROSSES: (
+            f"crosses itself more than {CROSSINGS} times a block: no part can be told from it; program each contour by "
+            "itself, between its own G41 or G42 and G40"
+        ),
+        SkipReason.TOO_FAR: (
+            f"reaches farther than {FARTHEST:.0f} mm from the center of C, or turns round a point far beyond: no part "
+            "can be told from it; mend its words"
+        ),
+        SkipReason.TOO_MANY_CHORDS: (
+            f"has arcs of more than {CHORDS} chords: they are too many to look at; are their R, I and J meant?"
+        ),
+    },
+    "slot-narrower-than-cutter": _CROSS_BESIDE,
+    "uncompensated-cut-into-part": _CROSS_BESIDE,
+    "material-left": _CROSS_BESIDE
+    | {
+        SkipReason.PATHS_TOO_LONG: (
+            "lies beside so many others, or such long paths, that nobody has looked for what stays between them"
+        )
+    },
+}
+_TABLE_OF = {
+    "overcut": "overcuts",
+    "slot-narrower-than-cutter": "slots",
+    "uncompensated-cut-into-part": "uncompensated_cuts",
+    "material-left": "coverage",
+}
+
 _SAID_OF: dict[str, _Said] = {
     "c-feed-above-limit": _c_axis_without_limit,
     "c-axis-not-engaged": _codes_not_named("c_axis_on", "engages the C axis"),
     "live-tool-stopped-in-cut": _codes_not_named("live_tool_on", "starts the live tool"),
     "start-up-shorter-than-radius": _ramps_of_center,
-    "overcut": _contours_given_up,
-    "slot-narrower-than-cutter": _contours_beside,
-    "uncompensated-cut-into-part": _contours_beside,
-    "material-left": _strips_beside,
+    **dict.fromkeys(_TABLE_OF, _contours_skipped),
     "part-differs-from-drawing": _parts_not_compared,
-}
-
-_TOGETHER: dict[str, Callable[[Tables], Mask]] = {
-    "slot-narrower-than-cutter": lambda tables: tables["slots"].tangled,
-    "uncompensated-cut-into-part": lambda tables: tables["uncompensated_cuts"].tangled,
-    "material-left": lambda tables: tables["coverage"].tangled,
 }

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from enum import Enum
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -14,6 +13,7 @@ from polarcheck.columns.filling import before
 from polarcheck.columns.path import NOWHERE
 from polarcheck.columns.trace import Trace
 from polarcheck.table.overcuts import Overcuts, curves_of, loop_of_row
+from polarcheck.table.skipped_loops import SkippedLoops, SkipReason
 from polarcheck.table.tool_center import ToolCenter
 from polarcheck.time_limit import keep_time
 
@@ -42,13 +42,6 @@ def _to_fill(count: int) -> Left:
     """Columns in which nothing is left so far."""
     nothing = _nothing_left(count)
     return Left(nothing.height.copy(), nothing.width.copy(), nothing.place.copy())
-
-
-class GivenUp(Enum):
-    """Why nothing is said of the strips of a level: its walls cross too often, its paths are too long."""
-
-    TANGLED = 1
-    LONG = 2
 
 
 class _Judged(NamedTuple):
@@ -156,9 +149,9 @@ class Coverage:
         return self._ribs[0]
 
     @cached_property
-    def _ribs(self) -> tuple[Left, Rows]:
-        """The ribs, and the loops that were not looked at any more."""
-        nothing, none = _nothing_left(len(self.trace)), np.zeros(0, np.int64)
+    def _ribs(self) -> tuple[Left, SkippedLoops]:
+        """The ribs, and the loops beside which none is searched for."""
+        nothing, none = _nothing_left(len(self.trace)), SkippedLoops.of({})
         if self._parts is None:
             return nothing, none
         from polarcheck.geometry.closing import CLOSED
@@ -171,13 +164,13 @@ class Coverage:
         left = _to_fill(len(self.trace))
         found = ribs(part, corners, judged.loops.radius, self._own(judged.number), judged.z, judged.program, self.swept)
         left.height[found.row], left.width[found.row], left.place[found.row] = found.height, found.width, found.place
-        return left, judged.number[found.given_up]
+        return left, SkippedLoops.of({SkipReason.PATHS_TOO_LONG: judged.number[found.given_up]})
 
     def _unsure(self, judged: _Judged) -> Mask:
         """Loops in whose program a tool of unknown R, or on an unknown way, may take off what they leave."""
         moves, trace = self.tool_center.moves, self.trace
         unknown = ~moves.is_of_tool | np.isnan(moves.start + moves.end) | np.isnan(self._radius[moves.row])
-        unknown |= (self.overcuts.too_far | self.overcuts.too_long)[moves.row]
+        unknown |= np.isin(self.overcuts.loop, self.overcuts.beyond_bounds.loop)[moves.row]
         return np.isin(judged.program, trace.blocks.program[moves.row[unknown]])
 
     def _own(self, number: Rows) -> Segments:
@@ -203,7 +196,7 @@ class Coverage:
 
         trace, moves = self.trace, self.tool_center.moves
         # Where loops that are beyond all bounds come, nobody looks: what is left there is not known either.
-        within = ~(self.overcuts.too_far | self.overcuts.too_long)[moves.row]
+        within = ~np.isin(self.overcuts.loop, self.overcuts.beyond_bounds.loop)[moves.row]
         path: Curves = curves_of(moves, np.zeros(len(moves), np.int64), within)
         parts = segments(path, trace.machine.compensation.overcut_tolerance)
         row = path.row[parts.move]
@@ -227,15 +220,15 @@ class Coverage:
         return self._strips[0]
 
     @cached_property
-    def _strips(self) -> tuple[Left, Rows, Rows]:
-        """The strips, the loops that cross too often to tell, and those beside paths that are too long for it."""
+    def _strips(self) -> tuple[Left, SkippedLoops]:
+        """The strips, and the loops between which none is searched for."""
         left = _to_fill(len(self.trace)) if self._levels else _nothing_left(len(self.trace))
-        tangled, long = [np.zeros(0, np.int64)], [np.zeros(0, np.int64)]
+        skipped = [SkippedLoops.of({})]
         for level in self._levels:
             keep_time()
             found = self._strips_of(level)
-            if isinstance(found, GivenUp):
-                (tangled if found is GivenUp.TANGLED else long).append(self._judged_numbers[level])
+            if isinstance(found, SkipReason):
+                skipped.append(SkippedLoops.of({found: self._judged_numbers[level]}))
                 continue
             for strip in found:
                 if strip.thickness > left.height[strip.row]:
@@ -244,7 +237,7 @@ class Coverage:
         for number in different(section[left.height > 0]):
             rows = np.flatnonzero((section == number) & (left.height > 0))
             left.height[rows[rows != rows[np.argmax(left.height[rows])]]] = 0
-        return left, np.concatenate(tangled), np.concatenate(long)
+        return left, SkippedLoops.concatenated(skipped)
 
     @cached_property
     def _levels(self) -> list[Rows]:
@@ -280,8 +273,7 @@ class Coverage:
     def _judged_numbers(self) -> Rows:
         return self._judged.number if self._judged else np.zeros(0, np.int64)
 
-    def _strips_of(self, level: Rows) -> list[Strip] | GivenUp:
-
+    def _strips_of(self, level: Rows) -> list[Strip] | SkipReason:
         from polarcheck.geometry.finished_part import Contours, finished_parts
         from polarcheck.geometry.segments import segments
         from polarcheck.geometry.strips import strips
@@ -294,7 +286,7 @@ class Coverage:
         radius = np.array([loops.radius.max()])
         part = finished_parts(Contours(loops.curves, loops.left, number, together, radius, bar, tolerance))
         if part.tangled[0]:
-            return GivenUp.TANGLED
+            return SkipReason.CROSSES
         if part.open[0]:
             return []
         rows, _ = loops.rows()
@@ -303,23 +295,18 @@ class Coverage:
         swept = self.swept[self.swept.at_depth(judged.z[level[:1]], judged.program[level[:1]])]
         row, left = curves.row[walls.move], loops.left[rows][walls.move]
         found = strips(part.polygon[0], walls, row, left, swept, float(radius[0]), bar)
-        return GivenUp.LONG if found is None else found
+        return SkipReason.PATHS_TOO_LONG if found is None else found
 
     # ---- both ----
 
     @cached_property
-    def tangled(self) -> Mask:
-        """Rows of loops that cross themselves or each other so often that nobody can say what they leave."""
-        loops = [self._strips[1]]
+    def skipped(self) -> SkippedLoops:
+        """Loops beside which no rib, or no strip, is searched for."""
+        skipped = [self._ribs[1], self._strips[1]]
         if self._parts is not None:
             judged, part, _ = self._parts
-            loops.append(judged.number[part.tangled])
-        return np.isin(self.overcuts.loop, np.concatenate(loops))
-
-    @property
-    def too_long(self) -> Mask:
-        """Rows of loops beside so many moves that ribs, or strips between them, were not looked for any more."""
-        return np.isin(self.overcuts.loop, np.append(self._ribs[1], self._strips[2]))
+            skipped.append(SkippedLoops.of({SkipReason.CROSSES: judged.number[part.tangled]}))
+        return SkippedLoops.concatenated(skipped)
 
     @cached_property
     def height(self) -> Floats:

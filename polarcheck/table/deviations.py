@@ -18,6 +18,7 @@ from polarcheck.machines.job import Job
 from polarcheck.machines.part import DrawnPart, Part
 from polarcheck.table.finished import Finished, Level
 from polarcheck.table.overcuts import Overcuts
+from polarcheck.table.skipped_loops import SkipReason
 from polarcheck.time_limit import keep_time
 
 if TYPE_CHECKING:
@@ -142,6 +143,11 @@ class Deviations:
         return asked
 
     @cached_property
+    def crosses(self) -> Mask:
+        """Rows of loops that cross themselves too often to have a part."""
+        return self.overcuts.skipped.rows(self.overcuts.loop, SkipReason.CROSSES)
+
+    @cached_property
     def comparisons(self) -> list[Comparison]:
         """In the order of the program. Raises TooHardError where the faces of the contours cannot be computed."""
         if not self.asked.any():
@@ -207,7 +213,7 @@ class Deviations:
             return
         compared = {one.number for one in self.comparisons}
         levels = self.finished.levels
-        told = self.overcuts.tangled.any() or bool(np.isnan(self.trace.compensation.radius[self.asked]).any())
+        told = self.crosses.any() or bool(np.isnan(self.trace.compensation.radius[self.asked]).any())
         for number, part in enumerate(self.parts):
             if number in compared or told:
                 continue

@@ -14,6 +14,7 @@ from polarcheck.geometry.compensation import Phase
 from polarcheck.geometry.tolerances import ADJUSTMENT, ROUNDING
 from polarcheck.machines.modal import Side
 from polarcheck.table.moves import Moves, programmed_moves
+from polarcheck.table.skipped_loops import SkippedLoops, SkipReason
 from polarcheck.table.tool_center import ToolCenter
 
 if TYPE_CHECKING:
@@ -149,27 +150,24 @@ class Overcuts:
         return objected(self.trace, self.tool_center)
 
     @cached_property
-    def _beyond(self) -> tuple[Rows, Rows]:
-        """Loops that reach farther out than any lathe, and those of too many chords."""
+    def beyond_bounds(self) -> SkippedLoops:
+        """Loops that reach too far out, and those of too many chords: they are not among the walls, nor in the path."""
         if not self.compensates:
-            return np.zeros(0, np.int64), np.zeros(0, np.int64)
+            return SkippedLoops.of({})
         from polarcheck.geometry import bounds
 
         tolerance = self.trace.machine.compensation.overcut_tolerance
         walls, path = self._all_walls, self._whole_path[0]
         far = bounds.far_loops(walls, path)
         near = [curves[~np.isin(curves.loop, far)] if len(far) else curves for curves in (walls, path)]
-        return far, different(np.concatenate([bounds.long_loops(curves, tolerance) for curves in near]))
+        long = different(np.concatenate([bounds.long_loops(curves, tolerance) for curves in near]))
+        return SkippedLoops.of({SkipReason.TOO_FAR: far, SkipReason.TOO_MANY_CHORDS: long})
 
     @property
-    def too_far(self) -> Mask:
-        """Rows of loops that reach farther out than any lathe: nothing is said of what they leave."""
-        return np.isin(self.loop, self._beyond[0])
-
-    @property
-    def too_long(self) -> Mask:
-        """Rows of loops of arcs that are so large that their chords are too many."""
-        return np.isin(self.loop, self._beyond[1])
+    def skipped(self) -> SkippedLoops:
+        """Loops into which no cut is searched for."""
+        crossing = SkippedLoops.of({SkipReason.CROSSES: self._found[2]})
+        return SkippedLoops.concatenated([self.beyond_bounds, crossing])
 
     @cached_property
     def walls(self) -> tuple[Curves, Mask]:
@@ -177,7 +175,7 @@ class Overcuts:
         The contour that is programmed in offset mode, and whether the tool is on the left of each block; without the
         loops that are beyond all bounds.
         """
-        walls, beyond = self._all_walls, np.concatenate(self._beyond)
+        walls, beyond = self._all_walls, self.beyond_bounds.loop
         walls = walls[~np.isin(walls.loop, beyond)] if len(beyond) else walls
         return walls, (self.trace.compensation.side[walls.row] == Side.LEFT) ^ (self.radius[walls.row] < 0)
 
@@ -213,7 +211,7 @@ class Overcuts:
         that it is of; and which are ramps. Without the loops that are beyond all bounds.
         """
         path, is_ramp = self._whole_path
-        beyond = np.concatenate(self._beyond)
+        beyond = self.beyond_bounds.loop
         within = ~np.isin(path.loop, beyond)
         return (path[within], is_ramp[within]) if len(beyond) else (path, is_ramp)
 
@@ -227,9 +225,9 @@ class Overcuts:
         return curves_of(tool, loop, chosen), is_ramp[chosen]
 
     @cached_property
-    def _found(self) -> tuple[CutsOfRows, Mask, Mask]:
-        """The cuts of all moves of the tool center, which of them are by ramps, and the rows of tangled loops."""
-        nothing = CutsOfRows.none(), np.zeros(0, bool), np.zeros(len(self.trace), bool)
+    def _found(self) -> tuple[CutsOfRows, Mask, Rows]:
+        """The cuts of all moves of the tool center, which of them are by ramps, and the loops that cross themselves."""
+        nothing = CutsOfRows.none(), np.zeros(0, bool), np.zeros(0, np.int64)
         if not self.compensates:
             return nothing
         from polarcheck.geometry.clearance import keeps_away
@@ -245,7 +243,7 @@ class Overcuts:
 
         around = self._air(walls), self.level
         cuts, tangled = contour.overcuts(walls, left, *around, path, radius, is_ramp, tolerance, self.bar)
-        return CutsOfRows.of(cuts, path, walls), is_ramp[cuts.move], np.isin(self.loop, tangled)
+        return CutsOfRows.of(cuts, path, walls), is_ramp[cuts.move], tangled
 
     def _air(self, walls: Curves) -> Floats:
         """
@@ -280,11 +278,6 @@ class Overcuts:
         """The same for start-ups and offset cancels that lie at the depth of their contour."""
         cuts, by_ramp, _ = self._found
         return cuts[by_ramp]
-
-    @property
-    def tangled(self) -> Mask:
-        """Rows of loops that cross themselves so often that they are no contour: nothing is said of cuts into them."""
-        return self._found[2]
 
     @cached_property
     def _at_depth(self) -> Mask:

@@ -10,6 +10,7 @@ from polarcheck.arrays import Floats, Mask, Rows, computed
 from polarcheck.columns.trace import Trace
 from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.table.overcuts import CutsOfRows, Overcuts
+from polarcheck.table.skipped_loops import SkippedLoops, SkipReason
 
 
 class Slots:
@@ -80,9 +81,9 @@ class Slots:
         return self._levels[1]
 
     @property
-    def tangled(self) -> Mask:
-        """Rows of loops that cross each other so often that nothing is said of cuts from one into another."""
-        return np.isin(self.overcuts.loop, self._found[2])
+    def skipped(self) -> SkippedLoops:
+        """Loops between which no cut is searched for."""
+        return SkippedLoops.of({SkipReason.CROSSES: self._found[2]})
 
     @cached_property
     def cuts(self) -> CutsOfRows:

@@ -10,6 +10,7 @@ from polarcheck.arrays import Mask
 from polarcheck.columns.trace import Trace
 from polarcheck.table.infeed import Infeed
 from polarcheck.table.overcuts import Overcuts
+from polarcheck.table.skipped_loops import SkipReason
 from polarcheck.table.tool_center import OtherRadius, ToolCenter
 
 #: What two points may differ by that are meant as one [tolerances].
@@ -38,7 +39,7 @@ class Trial(Overcuts):
     @cached_property
     def fails(self) -> Mask:
         """The same without the ramps."""
-        faulty = self.tangled | self.objects
+        faulty = self.skipped.rows(self.loop, SkipReason.CROSSES) | self.objects
         faulty[self.cuts.row] = True
         return faulty
 

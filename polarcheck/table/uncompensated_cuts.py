@@ -15,6 +15,7 @@ from polarcheck.geometry.segments import Curves
 from polarcheck.geometry.tolerances import ADJUSTMENT, ROUNDING
 from polarcheck.machines.modal import Motion
 from polarcheck.table.overcuts import CutsOfRows, Overcuts
+from polarcheck.table.skipped_loops import SkippedLoops, SkipReason
 from polarcheck.table.slots import Slots
 from polarcheck.table.tool_center import ToolCenter
 
@@ -65,9 +66,9 @@ class UncompensatedCuts:
         return self._found[0]
 
     @property
-    def tangled(self) -> Mask:
-        """Rows of loops that cross each other so often that nothing is said of cuts into their part."""
-        return np.isin(self.overcuts.loop, self._found[1])
+    def skipped(self) -> SkippedLoops:
+        """Loops into whose part no cut is searched for."""
+        return SkippedLoops.of({SkipReason.CROSSES: self._found[1]})
 
     @cached_property
     def _found(self) -> tuple[CutsOfRows, Rows]:
