@@ -29,7 +29,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from polarcheck.geometry.compensation import Method, Path, Phase, ToolPath, tool_center_path
+from polarcheck.geometry.cutter_compensation.compensation import Method, Path, Phase, ToolPath, tool_center_path
 from polarcheck.machines.modal import Motion, Side
 
 NAN = complex(math.nan, math.nan)

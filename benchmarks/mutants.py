@@ -2,7 +2,7 @@
 Would a test notice? Plants one small fault at a time in rules, compensation and geometry, and runs the tests on it.
 
     python benchmarks/mutants.py --count 100 --seed 1 [--only rules --only polarcheck/table/ramps.py:158] [--jobs 2]
-    python benchmarks/mutants.py --list --only geometry/corner.py
+    python benchmarks/mutants.py --list --only geometry/cutter_compensation/corner.py
 
 Which faults there are says mutations.py; a sample of them is taken, the same for the same seed. First run the tests
 that are named as the module, the modules above it or their rules, then all of TESTS, until one fails or --budget

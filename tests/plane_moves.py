@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from polarcheck.geometry.compensation import Path
+from polarcheck.geometry.cutter_compensation.compensation import Path
 from polarcheck.machines.modal import Motion
 
 #: In the order of the fields of Path.

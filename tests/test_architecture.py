@@ -222,7 +222,8 @@ def test_what_reads_no_program_loads_no_numpy(arguments: list[str]) -> None:
 #: What only findings, other options, many faces or drawings need; each takes longer than the check of a small file.
 LATE = (
     *("shapely", "numpy.ma", "rich", "plotly", "ezdxf", "multiprocessing"),
-    *("polarcheck.geometry.faces", "polarcheck.geometry.contour", "polarcheck.geometry.finished_part"),
+    *("polarcheck.geometry.polygons", "polarcheck.geometry.material_left", "polarcheck.geometry.comparison"),
+    *("polarcheck.geometry.overcuts.cuts", "polarcheck.geometry.overcuts.own_loop"),
     *("polarcheck.checking.message", "polarcheck.checking.repair", "polarcheck.silence.allow_comments"),
     *("polarcheck.batch.baseline", "polarcheck.parts.part_report", "polarcheck.batch.executors"),
     *("polarcheck.execution.macro", "polarcheck.pictures", "polarcheck.fixes", "polarcheck.server"),

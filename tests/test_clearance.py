@@ -7,7 +7,7 @@ import shapely
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from polarcheck.geometry import clearance
+from polarcheck.geometry.overcuts import clearance
 from polarcheck.geometry.segments import Curves
 from polarcheck.machines.modal import Motion
 

@@ -12,9 +12,9 @@ from programs import tables_of
 
 from polarcheck.arrays import Points, Rows
 from polarcheck.errors import TooHardError
-from polarcheck.geometry import cleared as geometry_of_paths
-from polarcheck.geometry.cleared import cleared
 from polarcheck.geometry.plane import arc_sweep
+from polarcheck.geometry.polygons import cleared as geometry_of_paths
+from polarcheck.geometry.polygons.cleared import cleared
 from polarcheck.geometry.segments import Curves, Segments
 from polarcheck.machines.modal import Motion
 from polarcheck.parts.part_report import made_by

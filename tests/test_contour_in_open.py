@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from polarcheck.geometry.contour import overcuts
-from polarcheck.geometry.cuts import Cuts
+from polarcheck.geometry.overcuts.cuts import Cuts
+from polarcheck.geometry.overcuts.own_loop import overcuts
 from polarcheck.geometry.segments import Curves
 from polarcheck.machines.modal import Motion
 

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from path_sampling import sampled
 from programs import tables_of
 
-from polarcheck.geometry import polar, slowed
+from polarcheck.geometry import automatic_override, polar
 from polarcheck.machines.modal import Motion
 from polarcheck.reports.pages import executed, trace_columns
 from polarcheck.table.dynamics import Dynamics
@@ -82,7 +82,7 @@ def test_override_agrees_with_dense_sampling(
     free = sampled((start, end, center, kind), 300)
     assume(free["c_feed"] > 1)
     allowed = free["c_feed"] * share
-    pieces = slowed.pieces(*shape, np.array([300.0]), allowed)
+    pieces = automatic_override.pieces(*shape, np.array([300.0]), allowed)
     expected = sampled((start, end, center, kind), 300, allowed, 20_001)
     assert pieces.time().sum() == pytest.approx(expected["time"], rel=1e-4)
     assert pieces.c_feed().max() == pytest.approx(expected["c_feed"], rel=1e-4)

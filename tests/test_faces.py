@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 import shapely
 
-from polarcheck.geometry.faces import Standing, Walls, standing
-from polarcheck.geometry.noding import noded
+from polarcheck.geometry.polygons.faces import Standing, Walls, standing
+from polarcheck.geometry.polygons.noding import noded
 from polarcheck.geometry.tolerances import CROSSINGS, FREE_CROSSINGS
 
 SQUARE = [20, 20 + 20j, -20 + 20j, -20 - 20j, 20 - 20j, 20]

@@ -10,7 +10,7 @@ import pytest
 import shapely
 from programs import report_of
 
-from polarcheck.geometry.finished_part import Contours, FinishedParts, finished_parts
+from polarcheck.geometry.polygons.finished_part import Contours, FinishedParts, finished_parts
 from polarcheck.geometry.segments import Curves
 from polarcheck.machines.modal import Motion
 

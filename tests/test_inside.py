@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from polarcheck.geometry.inside import depth_inside
+from polarcheck.geometry.polygons.depth_inside import depth_inside
 from polarcheck.geometry.segments import Curves
 from polarcheck.machines.modal import Motion
 

@@ -16,8 +16,8 @@ import shapely  # type: ignore[import-untyped]
 from test_cli import IMPORTED_FROM
 
 from polarcheck.errors import NoAnswerError, StoppedError, TooHardError
-from polarcheck.geometry import areas
-from polarcheck.geometry.interruption import interruptible
+from polarcheck.geometry.polygons import areas
+from polarcheck.geometry.polygons.interruption import interruptible
 from polarcheck.time_limit import time_limit
 
 pytestmark = pytest.mark.slow

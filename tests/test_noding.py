@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from polarcheck.geometry.noding import noded
+from polarcheck.geometry.polygons.noding import noded
 from polarcheck.geometry.tolerances import CROSSINGS, FREE_CROSSINGS
 
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from plane_moves import path_of_rows
 
-from polarcheck.geometry.compensation import Method, Phase, tool_center_path
+from polarcheck.geometry.cutter_compensation.compensation import Method, Phase, tool_center_path
 from polarcheck.machines.modal import Motion, Side
 
 NAN = complex(math.nan, math.nan)

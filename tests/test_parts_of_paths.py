@@ -9,7 +9,7 @@ import pytest
 
 from polarcheck.checking.check import read
 from polarcheck.columns.trace import Trace
-from polarcheck.geometry import compensation
+from polarcheck.geometry.cutter_compensation import compensation
 from polarcheck.machines import profiles
 from polarcheck.machines.job import Job, Tool
 from polarcheck.table.moves import compensation_path, tool_center_path

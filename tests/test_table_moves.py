@@ -10,7 +10,7 @@ import pytest
 from plane_moves import points_along
 from programs import moves_of, tables_of, trace_of
 
-from polarcheck.geometry.compensation import Phase
+from polarcheck.geometry.cutter_compensation.compensation import Phase
 from polarcheck.machines.modal import Motion
 from polarcheck.table.moves import (
     Moves,

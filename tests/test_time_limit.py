@@ -16,7 +16,9 @@ from polarcheck import time_limit as limits
 from polarcheck.commands import main
 from polarcheck.errors import StoppedError, TooHardError
 from polarcheck.finding import FileReport
-from polarcheck.geometry import areas, bounds, noding, segments
+from polarcheck.geometry import segments
+from polarcheck.geometry.overcuts import bounds
+from polarcheck.geometry.polygons import areas, noding
 from polarcheck.geometry.segments import Curves
 from polarcheck.machines.modal import Motion
 from polarcheck.table import fitting
@@ -186,7 +188,7 @@ def test_walls_that_only_together_are_too_many_are_said(monkeypatch: pytest.Monk
 
 
 def test_what_is_not_looked_for_is_said_without_weight(monkeypatch: pytest.MonkeyPatch) -> None:
-    from polarcheck.geometry import ribs, strips
+    from polarcheck.geometry.material_left import ribs, strips
 
     for family, module, bound in (("slanted-leads", ribs, "_PAIRS"), ("passes", strips, "_MOST_PIECES")):
         program = FAMILIES[family].make(200)
@@ -202,7 +204,7 @@ def test_what_is_not_looked_for_is_said_without_weight(monkeypatch: pytest.Monke
 
 def test_a_pass_that_is_written_once_more_deeper_sweeps_nothing_else(monkeypatch: pytest.MonkeyPatch) -> None:
     """Thirty depths of one contour are looked at as one."""
-    from polarcheck.geometry import strips
+    from polarcheck.geometry.material_left import strips
 
     one = [*square(24, 60), *square(24, 50)]
     blocks = [block for depth in range(30) for block in ("G1 Z2. F500", "X250. C0", f"G1 Z-{depth + 1}.", *one)]
@@ -216,7 +218,7 @@ def test_a_pass_that_is_written_once_more_deeper_sweeps_nothing_else(monkeypatch
 @pytest.mark.parametrize("family", ["pockets", "bosses", "passes"])
 def test_rings_by_what_they_lie_in_or_one_by_one(family: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Parts of many rings are the same, however they are put together."""
-    from polarcheck.geometry import faces
+    from polarcheck.geometry.polygons import faces
 
     found: dict[int, list[Any]] = {}
     polygons = faces._polygons
@@ -239,7 +241,7 @@ def test_rings_by_what_they_lie_in_or_one_by_one(family: str, monkeypatch: pytes
 
 def test_rings_in_rings() -> None:
     """What lies in a hole is solid again; holes in nothing, and solid in solid, are left to who goes one by one."""
-    from polarcheck.geometry.faces import _nested
+    from polarcheck.geometry.polygons.faces import _nested
 
     size = np.arange(20, 0, -1)
     boxes = shapely.box(-size, -size, size, size)
@@ -255,7 +257,7 @@ def test_rings_in_rings() -> None:
 
 def test_loops_that_begin_in_a_row_are_held_together_by_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
     """What they are cut into grows with their number, not with its square."""
-    from polarcheck.geometry import faces
+    from polarcheck.geometry.polygons import faces
 
     counts = []
     for moves in (200, 400):
@@ -319,7 +321,7 @@ def test_areas_are_taken_in_portions(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_points_are_compared_in_portions(monkeypatch: pytest.MonkeyPatch) -> None:
-    from polarcheck.geometry import ribs
+    from polarcheck.geometry.material_left import ribs
 
     count = 5
     start = np.arange(count) * (1 + 1j)

@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 import shapely  # type: ignore[import-untyped]
 
-from polarcheck.geometry import areas
-from polarcheck.geometry.cleared import cleared
+from polarcheck.geometry.polygons import areas
+from polarcheck.geometry.polygons.cleared import cleared
+from polarcheck.geometry.polygons.widened import widened
 from polarcheck.geometry.segments import Curves, segments
-from polarcheck.geometry.widened import widened
 from polarcheck.machines.modal import Motion
 
 TOLERANCE = 0.004

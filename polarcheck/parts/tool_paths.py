@@ -77,7 +77,7 @@ def _levels(section: Rows, z: Floats, radius: Floats, chosen: Rows) -> Iterator[
 
 
 def _left(moves: Moves, own: Rows, radius: float, bar: float) -> list[Shape]:
-    from polarcheck.geometry.cleared import cleared
+    from polarcheck.geometry.polygons.cleared import cleared
     from polarcheck.geometry.shapes.grooves import shapes_of_cleared
 
     path = Curves(

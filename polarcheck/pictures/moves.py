@@ -10,7 +10,7 @@ import numpy as np
 from polarcheck.arrays import Floats, Mask, Points, Rows, States
 from polarcheck.checking.places import block_in_line
 from polarcheck.columns.trace import Trace
-from polarcheck.geometry.compensation import Phase
+from polarcheck.geometry.cutter_compensation.compensation import Phase
 from polarcheck.machines.modal import Motion
 from polarcheck.pictures.picture import MoveTable, Role
 from polarcheck.table.dynamics import Dynamics

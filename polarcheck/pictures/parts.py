@@ -14,8 +14,8 @@ import shapely  # type: ignore[import-untyped]
 
 from polarcheck.checking.quantity import in_row
 from polarcheck.columns.trace import Trace
-from polarcheck.geometry import areas
-from polarcheck.geometry.faces import GRID
+from polarcheck.geometry.polygons import areas
+from polarcheck.geometry.polygons.faces import GRID
 from polarcheck.geometry.segments import segments
 from polarcheck.parts.part_report import level_in_words
 from polarcheck.pictures.moves import LENGTH

@@ -18,11 +18,11 @@ from polarcheck.table.tool_center import ToolCenter
 from polarcheck.time_limit import keep_time
 
 if TYPE_CHECKING:
-    from polarcheck.geometry.closing import Corners, Loops
-    from polarcheck.geometry.finished_part import FinishedParts
-    from polarcheck.geometry.ribs import Swept
+    from polarcheck.geometry.contour_ends import Corners, Loops
+    from polarcheck.geometry.material_left.ribs import Swept
+    from polarcheck.geometry.material_left.strips import Strip
+    from polarcheck.geometry.polygons.finished_part import FinishedParts
     from polarcheck.geometry.segments import Curves, Segments
-    from polarcheck.geometry.strips import Strip
 
 
 class Left(NamedTuple):
@@ -70,7 +70,7 @@ class Coverage:
         walls, left = self.overcuts.walls
         if not len(walls):
             return None
-        from polarcheck.geometry.closing import Loops, distinct
+        from polarcheck.geometry.contour_ends import Loops, distinct
 
         first = np.flatnonzero(np.diff(walls.loop, prepend=-1))
         last = np.append(first[1:], len(walls)) - 1
@@ -91,7 +91,7 @@ class Coverage:
         judged = self._judged
         if judged is None:
             return None
-        from polarcheck.geometry.closing import lead_corners, may_be_open
+        from polarcheck.geometry.contour_ends import lead_corners, may_be_open
 
         corners = lead_corners(judged.loops, self._winds)
         # A path that winds inwards passes its start on the way, and leaves no gap there.
@@ -99,8 +99,8 @@ class Coverage:
         asked[corners.loop] = True
         if not asked.any():
             return None
-        from polarcheck.geometry.closing import Corners
-        from polarcheck.geometry.finished_part import Contours, finished_parts
+        from polarcheck.geometry.contour_ends import Corners
+        from polarcheck.geometry.polygons.finished_part import Contours, finished_parts
 
         loops, number = judged.loops.some(asked), judged.number[asked]
         tolerance, bar = self.trace.machine.compensation.overcut_tolerance, self.overcuts.bar
@@ -131,7 +131,7 @@ class Coverage:
         if self._parts is None:
             nothing = _nothing_left(len(self.trace))
             return nothing.height, nothing.place
-        from polarcheck.geometry.closing import CLOSED, gaps_of
+        from polarcheck.geometry.contour_ends import CLOSED, gaps_of
 
         judged, part, _ = self._parts
         is_open = np.flatnonzero(part.gap > CLOSED)
@@ -154,8 +154,8 @@ class Coverage:
         nothing, none = _nothing_left(len(self.trace)), SkippedLoops.of({})
         if self._parts is None:
             return nothing, none
-        from polarcheck.geometry.closing import CLOSED
-        from polarcheck.geometry.ribs import ribs
+        from polarcheck.geometry.contour_ends import CLOSED
+        from polarcheck.geometry.material_left.ribs import ribs
 
         judged, part, corners = self._parts
         corners = corners[~(part.open | part.tangled | (part.gap > CLOSED) | self._unsure(judged))[corners.loop]]
@@ -191,7 +191,7 @@ class Coverage:
     @cached_property
     def swept(self) -> Swept:
         """All moves in the mode, ramps and those without compensation included."""
-        from polarcheck.geometry.ribs import Swept
+        from polarcheck.geometry.material_left.ribs import Swept
         from polarcheck.geometry.segments import segments
 
         trace, moves = self.trace, self.tool_center.moves
@@ -210,7 +210,7 @@ class Coverage:
     @cached_property
     def _winds(self) -> Mask:
         """Of the judged loops those that go round more than once."""
-        from polarcheck.geometry.closing import winds
+        from polarcheck.geometry.contour_ends import winds
 
         return winds(self._judged.loops) if self._judged else np.zeros(0, bool)
 
@@ -258,7 +258,7 @@ class Coverage:
         if not len(asked):
             return []
 
-        from polarcheck.geometry.closing import chords, may_leave_strips
+        from polarcheck.geometry.contour_ends import chords, may_leave_strips
 
         moves, loop = self.tool_center.moves, loop_of_row(self.trace)
         path = curves_of(moves, loop[moves.row], moves.known & np.isin(loop[moves.row], judged.number[asked]))
@@ -274,9 +274,9 @@ class Coverage:
         return self._judged.number if self._judged else np.zeros(0, np.int64)
 
     def _strips_of(self, level: Rows) -> list[Strip] | SkipReason:
-        from polarcheck.geometry.finished_part import Contours, finished_parts
+        from polarcheck.geometry.material_left.strips import strips
+        from polarcheck.geometry.polygons.finished_part import Contours, finished_parts
         from polarcheck.geometry.segments import segments
-        from polarcheck.geometry.strips import strips
 
         judged = self._judged
         assert judged is not None

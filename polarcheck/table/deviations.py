@@ -22,8 +22,8 @@ from polarcheck.table.skipped_loops import SkipReason
 from polarcheck.time_limit import keep_time
 
 if TYPE_CHECKING:
-    from polarcheck.geometry.deviation import Difference, Made
-    from polarcheck.geometry.ways import Way
+    from polarcheck.geometry.comparison.deviation import Difference, Made
+    from polarcheck.geometry.comparison.measured_path import Way
 
 #: How far a part may differ where nobody says [mm].
 TOLERANCE = 0.02
@@ -230,7 +230,7 @@ class Deviations:
     # ---- which contours are compared with what ----
 
     def _chains(self, level: Level) -> Iterator[_Chain]:
-        from polarcheck.geometry.deviation import made_of
+        from polarcheck.geometry.comparison.deviation import made_of
 
         outline, bar = level.outline, self.overcuts.bar / 2
         closed = outline.closed[outline.chain]
@@ -275,7 +275,7 @@ class Deviations:
         return float(np.broadcast_to(self.trace.lengths.job_scale, len(self.trace))[row])
 
     def _curves_of(self, number: int, row: int, is_closed: bool) -> list[_Target]:
-        from polarcheck.geometry.ways import way_of_curves
+        from polarcheck.geometry.comparison.measured_path import way_of_curves
 
         part = self.parts[number]
         scale = self._scale(part, row)
@@ -301,7 +301,7 @@ class Deviations:
     def _drawn(self, part: Part, scale: float) -> list[Points]:
         if isinstance(part, DrawnPart):
             return [np.array(curve, complex) * complex(scale) for curve in part.curves]
-        from polarcheck.geometry.nominal import curves_of
+        from polarcheck.geometry.comparison.nominal import curves_of
 
         return curves_of(part, scale)
 
@@ -309,7 +309,7 @@ class Deviations:
 
     def _compared(self, chain: _Chain) -> Comparison | None:
         """The contour beside the curve that comes nearest to it."""
-        from polarcheck.geometry.deviation import difference, turned_radius
+        from polarcheck.geometry.comparison.deviation import difference, turned_radius
 
         found: list[Comparison] = []
         for target in self._targets(chain):
@@ -342,7 +342,7 @@ class Deviations:
 
     def _turned(self, chain: _Chain, target: _Target) -> tuple[float, Way]:
         """The best angle of a shape that may be turned in any way [rad], and the shape turned by it."""
-        from polarcheck.geometry.alignment import best_turn
+        from polarcheck.geometry.comparison.alignment import best_turn
 
         center = target.scale * complex(*target.part.center)
         angle = best_turn(chain.made.way, target.way, center)
@@ -361,8 +361,8 @@ class Deviations:
 
     def _fit(self, one: Comparison) -> Fit | None:
         """How the part would have to be placed to agree, or nearly so; None where it would not."""
-        from polarcheck.geometry.alignment import best_turn
-        from polarcheck.geometry.deviation import difference
+        from polarcheck.geometry.comparison.alignment import best_turn
+        from polarcheck.geometry.comparison.deviation import difference
 
         if one.part.shape == "circle" or not math.isnan(one.turned):
             return None
@@ -385,7 +385,7 @@ class Deviations:
 
 def _placed(way: Way, angle: float, mirrored: bool, factor: float, center: complex) -> Way:
     """A way turned about a center [rad], or mirrored first, with C of the other sign, or with its X multiplied."""
-    from polarcheck.geometry.ways import way_of
+    from polarcheck.geometry.comparison.measured_path import way_of
 
     def moved(points: Points) -> Points:
         points = points.conj() if mirrored else points

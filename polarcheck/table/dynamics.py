@@ -2,7 +2,7 @@
 What the axes do at the F that really runs: rates, accelerations and times of the moves, and the time of each row.
 
 F that runs is F in force, clamped in the mode where the control does so (Trace.feed), and slowed down where automatic
-override acts (geometry.slowed). A block that moves Z beside X or C takes the time of its way on the plane, along which
+override acts. A block that moves Z beside X or C takes the time of its way on the plane, along which
 F is; Z alone the time of its own. In rapid traverse each axis runs at its own rate, and the one that takes longest
 counts, be it with a straight way or without (B-63944EN/03, G00). Axes take no time to speed up and to slow down here:
 what the servo adds is not known. Neither are tool changes and M codes counted.
@@ -18,7 +18,7 @@ import numpy as np
 from polarcheck.arrays import Floats, Mask, Rows, is_among
 from polarcheck.columns.filling import before
 from polarcheck.columns.trace import Trace
-from polarcheck.geometry import polar, slowed
+from polarcheck.geometry import automatic_override, polar
 from polarcheck.geometry.tolerances import SHARE, ZERO
 from polarcheck.machines.modal import FeedMode, Motion
 from polarcheck.table.moves import Moves
@@ -80,10 +80,10 @@ class Dynamics:
         return np.asarray(self.at_feed & (self.moves.c_feed > self.c_limit * (1 + SHARE)))
 
     @cached_property
-    def pieces(self) -> slowed.Pieces:
+    def pieces(self) -> automatic_override.Pieces:
         """The moves on which it acts, parted where it begins and ends; `move` is of all moves."""
         chosen = self.moves[self.is_slowed]
-        found = slowed.pieces(*chosen.shape, chosen.feed, self.c_limit)
+        found = automatic_override.pieces(*chosen.shape, chosen.feed, self.c_limit)
         return msgspec.structs.replace(found, move=np.flatnonzero(self.is_slowed)[found.move])
 
     def _largest(self, plain: Floats, name: str) -> Floats:

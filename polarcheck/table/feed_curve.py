@@ -6,8 +6,8 @@ import msgspec
 import numpy as np
 
 from polarcheck.arrays import Floats, Rows
+from polarcheck.geometry.automatic_override import Spokes, c_per_way
 from polarcheck.geometry.plane import lines_from_center, quiet
-from polarcheck.geometry.slowed import Spokes, c_per_way
 from polarcheck.table.dynamics import Dynamics
 
 #: Points of each move besides the nearest of a line: shares of its way, its ends included.

@@ -12,8 +12,8 @@ from polarcheck.columns.trace import Trace
 from polarcheck.table.overcuts import Overcuts, level_of
 
 if TYPE_CHECKING:
-    from polarcheck.geometry.finished_part import FinishedParts
     from polarcheck.geometry.outline import Outline
+    from polarcheck.geometry.polygons.finished_part import FinishedParts
     from polarcheck.geometry.segments import Curves
 
 
@@ -64,7 +64,7 @@ class Finished:
     def _levels_of(self, walls: Curves, left: Mask) -> list[Level]:
         if not len(walls):
             return []
-        from polarcheck.geometry.finished_part import Contours, finished_parts
+        from polarcheck.geometry.polygons.finished_part import Contours, finished_parts
 
         trace, level = self.trace, level_of(self.trace, walls)
         # Levels in the order in which the program comes to them.

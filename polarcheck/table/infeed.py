@@ -28,7 +28,7 @@ from msgspec.structs import replace
 from polarcheck.arrays import Floats, Mask, Points, Rows, States, repeated
 from polarcheck.columns.trace import Trace
 from polarcheck.geometry import enclosed, polar
-from polarcheck.geometry.compensation import ToolPath
+from polarcheck.geometry.cutter_compensation.compensation import ToolPath
 from polarcheck.machines.modal import Motion, Side
 from polarcheck.table.moves import Moves, compensation_path, of_tool, tool_center_path
 

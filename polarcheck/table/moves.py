@@ -9,7 +9,8 @@ import numpy as np
 from polarcheck.arrays import Floats, Mask, Points, Rows, States, Table
 from polarcheck.columns.filling import before
 from polarcheck.columns.trace import Trace
-from polarcheck.geometry import compensation, polar, rates
+from polarcheck.geometry import polar, rates
+from polarcheck.geometry.cutter_compensation import compensation
 from polarcheck.machines.modal import Motion
 
 

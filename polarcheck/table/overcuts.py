@@ -10,7 +10,7 @@ import numpy as np
 from polarcheck.arrays import Floats, Mask, Points, Rows, Table, different, repeated
 from polarcheck.columns.filling import before
 from polarcheck.columns.trace import Trace
-from polarcheck.geometry.compensation import Phase
+from polarcheck.geometry.cutter_compensation.compensation import Phase
 from polarcheck.geometry.tolerances import ADJUSTMENT, ROUNDING
 from polarcheck.machines.modal import Side
 from polarcheck.table.moves import Moves, programmed_moves
@@ -18,7 +18,7 @@ from polarcheck.table.skipped_loops import SkippedLoops, SkipReason
 from polarcheck.table.tool_center import ToolCenter
 
 if TYPE_CHECKING:
-    from polarcheck.geometry.cuts import Cuts
+    from polarcheck.geometry.overcuts.cuts import Cuts
     from polarcheck.geometry.segments import Curves
 
 
@@ -154,7 +154,7 @@ class Overcuts:
         """Loops that reach too far out, and those of too many chords: they are not among the walls, nor in the path."""
         if not self.compensates:
             return SkippedLoops.of({})
-        from polarcheck.geometry import bounds
+        from polarcheck.geometry.overcuts import bounds
 
         tolerance = self.trace.machine.compensation.overcut_tolerance
         walls, path = self._all_walls, self._whole_path[0]
@@ -197,7 +197,7 @@ class Overcuts:
 
         A part hangs on the side of the tool, not on its R, unless R is negative.
         """
-        from polarcheck.geometry import bounds
+        from polarcheck.geometry.overcuts import bounds
 
         walls = self._walls_of(np.isnan(self.radius) & ~self.trace.compensation.sides_are_open)
         far = bounds.far_loops(walls, walls) if len(walls) else np.zeros(0, np.int64)
@@ -230,7 +230,7 @@ class Overcuts:
         nothing = CutsOfRows.none(), np.zeros(0, bool), np.zeros(0, np.int64)
         if not self.compensates:
             return nothing
-        from polarcheck.geometry.clearance import keeps_away
+        from polarcheck.geometry.overcuts.clearance import keeps_away
 
         path, is_ramp = self.path
         # What is left on the contour, the cutter stays away from it.
@@ -239,10 +239,10 @@ class Overcuts:
         walls, left = self.walls
         if keeps_away(walls, path, radius, tolerance):
             return nothing
-        from polarcheck.geometry import contour
+        from polarcheck.geometry.overcuts import own_loop
 
         around = self._air(walls), self.level
-        cuts, tangled = contour.overcuts(walls, left, *around, path, radius, is_ramp, tolerance, self.bar)
+        cuts, tangled = own_loop.overcuts(walls, left, *around, path, radius, is_ramp, tolerance, self.bar)
         return CutsOfRows.of(cuts, path, walls), is_ramp[cuts.move], tangled
 
     def _air(self, walls: Curves) -> Floats:

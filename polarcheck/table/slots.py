@@ -32,8 +32,8 @@ class Slots:
         level, several = self._levels
         if not several.any():
             return nothing
-        from polarcheck.geometry import neighbours
-        from polarcheck.geometry.finished_part import Contours
+        from polarcheck.geometry.overcuts import other_loops
+        from polarcheck.geometry.polygons.finished_part import Contours
 
         walls, left = self.overcuts.walls
         chosen = several[walls.row]
@@ -45,7 +45,7 @@ class Slots:
         nowhere = np.zeros(0, np.int64)
         tolerance = self.trace.machine.compensation.overcut_tolerance
         contours = Contours(walls, left, nowhere, nowhere, np.zeros(0), self.overcuts.bar, tolerance)
-        cuts, tangled = neighbours.cuts_into_others(contours, level[walls.row], path, radius, is_ramp)
+        cuts, tangled = other_loops.cuts_into_others(contours, level[walls.row], path, radius, is_ramp)
         return CutsOfRows.of(cuts, path, walls), is_ramp[cuts.move], tangled
 
     @cached_property
@@ -129,7 +129,7 @@ class Slots:
             return label
         loop = self.overcuts.loop
         one, other = loop[cuts.row], loop[cuts.into]
-        from polarcheck.geometry.noding import merged
+        from polarcheck.geometry.polygons.noding import merged
 
         first = merged(int(loop.max()) + 1, one, other)
         pair, number = np.unique(first[one], return_inverse=True)
@@ -154,7 +154,7 @@ class Slots:
         """How far the place where a row cuts deepest is from the contour of its own loop [mm]."""
         import shapely  # type: ignore[import-untyped]
 
-        from polarcheck.geometry.faces import coordinates, lines_of
+        from polarcheck.geometry.polygons.faces import coordinates, lines_of
         from polarcheck.geometry.segments import segments
 
         walls, _ = self.overcuts.walls

@@ -13,7 +13,7 @@ import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Points, Rows
 from polarcheck.columns.trace import Trace
-from polarcheck.geometry.compensation import Path, ToolPath
+from polarcheck.geometry.cutter_compensation.compensation import Path, ToolPath
 from polarcheck.geometry.rounding import kept_ends, may_turn_back
 from polarcheck.geometry.tolerances import SHARE
 from polarcheck.machines.modal import Motion, Side

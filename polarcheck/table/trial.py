@@ -60,7 +60,7 @@ class Trial(Overcuts):
 
         The part is that for a cutter of any size: only a gap that rounding leaves is closed.
         """
-        from polarcheck.geometry.inside import depth_inside
+        from polarcheck.geometry.polygons.depth_inside import depth_inside
 
         trace, tolerance = self.trace, self.trace.machine.compensation.overcut_tolerance
         has_walls = np.isin(self._loop_of_ramps, self.walls[0].loop)

@@ -9,8 +9,8 @@ import numpy as np
 from polarcheck.arrays import Floats, Mask, Points, Rows
 from polarcheck.columns.filling import before, fill_down
 from polarcheck.columns.trace import Trace
-from polarcheck.geometry.bare import Bare, flat_loops, may_reach
-from polarcheck.geometry.compensation import Phase
+from polarcheck.geometry.cutter_compensation.compensation import Phase
+from polarcheck.geometry.overcuts.uncompensated_moves import Bare, flat_loops, may_reach
 from polarcheck.geometry.segments import Curves
 from polarcheck.geometry.tolerances import ADJUSTMENT, ROUNDING
 from polarcheck.machines.modal import Motion
@@ -95,8 +95,8 @@ class UncompensatedCuts:
         bare = bare[may_reach(loops, bare)]
         if not len(bare.z):
             return nothing
-        from polarcheck.geometry.finished_part import Contours
-        from polarcheck.geometry.uncompensated import cuts_into_part
+        from polarcheck.geometry.overcuts.without_compensation import cuts_into_part
+        from polarcheck.geometry.polygons.finished_part import Contours
 
         none, tolerance = np.zeros(0, np.int64), trace.machine.compensation.overcut_tolerance
         contours = Contours(walls, left, none, none, np.zeros(0), self.overcuts.bar, tolerance)

@@ -16,7 +16,7 @@ import shapely  # type: ignore[import-untyped]
 from shapely.errors import GEOSException  # type: ignore[import-untyped]
 
 from polarcheck.errors import NoAnswerError, TooHardError
-from polarcheck.geometry.interruption import interruptible
+from polarcheck.geometry.polygons.interruption import interruptible
 from polarcheck.time_limit import keep_time
 
 #: Points that go into one step at most, and of many areas at a time; about a second each.

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Points
-from polarcheck.geometry.ways import Way
+from polarcheck.geometry.comparison.measured_path import Way
 
 #: In how many directions a way is looked at, and at how many points of it.
 _DIRECTIONS, _POINTS = 3600, 20_000

@@ -15,10 +15,10 @@ import numpy as np
 import shapely  # type: ignore[import-untyped]
 
 from polarcheck.arrays import Floats, Mask, Points, Rows, Table
-from polarcheck.geometry import areas
-from polarcheck.geometry.closing import WITNESS, Corners
-from polarcheck.geometry.faces import GRID, Geometries, coordinates, gathered
-from polarcheck.geometry.finished_part import FinishedParts
+from polarcheck.geometry.contour_ends import WITNESS, Corners
+from polarcheck.geometry.polygons import areas
+from polarcheck.geometry.polygons.faces import GRID, Geometries, coordinates, gathered
+from polarcheck.geometry.polygons.finished_part import FinishedParts
 from polarcheck.geometry.segments import Segments
 from polarcheck.geometry.tolerances import CORNER, ROUNDING, ZERO
 from polarcheck.time_limit import keep_time

@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 
 from polarcheck.arrays import Mask, Points, Rows
 from polarcheck.errors import NoAnswerError
-from polarcheck.geometry import areas
-from polarcheck.geometry.faces import GRID, Geometries, coordinates, lines_of
+from polarcheck.geometry.polygons import areas
+from polarcheck.geometry.polygons.faces import GRID, Geometries, coordinates, lines_of
 from polarcheck.geometry.segments import Curves, Segments
 from polarcheck.geometry.tolerances import TOUCH
 

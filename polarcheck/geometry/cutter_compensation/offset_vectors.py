@@ -6,8 +6,8 @@ import msgspec
 import numpy as np
 
 from polarcheck.arrays import Mask, Points, Rows
-from polarcheck.geometry.compensation_input import Method, Programmed, fits
-from polarcheck.geometry.corner import Corners, is_inner, is_straight, meeting, squared_off, turn
+from polarcheck.geometry.cutter_compensation.corner import Corners, is_inner, is_straight, meeting, squared_off, turn
+from polarcheck.geometry.cutter_compensation.programmed_path import Method, Programmed, fits
 
 #: The places that a vector can take at the end of a move, in the order in which the tool center passes them.
 BEFORE, CORNER, ACROSS, AFTER = range(4)

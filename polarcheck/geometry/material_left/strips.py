@@ -17,10 +17,10 @@ import numpy as np
 import shapely  # type: ignore[import-untyped]
 
 from polarcheck.arrays import Mask, Rows
-from polarcheck.geometry import areas
-from polarcheck.geometry.closing import WITNESS
-from polarcheck.geometry.faces import GRID, coordinates, lines_through
-from polarcheck.geometry.ribs import Swept, first_tool
+from polarcheck.geometry.contour_ends import WITNESS
+from polarcheck.geometry.material_left.ribs import Swept, first_tool
+from polarcheck.geometry.polygons import areas
+from polarcheck.geometry.polygons.faces import GRID, coordinates, lines_through
 from polarcheck.geometry.segments import Segments
 from polarcheck.geometry.tolerances import ZERO
 from polarcheck.time_limit import keep_time

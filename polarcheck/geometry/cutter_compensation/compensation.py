@@ -1,9 +1,9 @@
 """
 Programmed path in the polar plane to tool center path under cutter compensation: G41, G42, FANUC type C.
 
-`programmed` says which blocks move and what the control knows of them, `vectors` which offset vectors stand at the
-ends, `corner` where those are; here they become moves. Compensation works in the X-C plane, before the path is turned
-into X and C of the lathe (B-62764EN p. 51).
+`programmed_path` has the blocks that move and what the control knows of them, `offset_vectors` the vectors at their
+ends, `corner` the position of these; here they become moves. Compensation works in the X-C plane, before the path is
+turned into X and C of the lathe (B-62764EN p. 51).
 """
 
 from __future__ import annotations
@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from polarcheck.arrays import Floats, Mask, Points, Rows, States, Table
-from polarcheck.geometry.compensation_input import Method, Path, Programmed, fits, moving_rows
-from polarcheck.geometry.offset_vectors import Vectors, end_vectors
+from polarcheck.geometry.cutter_compensation.offset_vectors import Vectors, end_vectors
+from polarcheck.geometry.cutter_compensation.programmed_path import Method, Path, Programmed, fits, moving_rows
 from polarcheck.geometry.tolerances import ROUNDING, ZERO
 from polarcheck.machines.modal import Motion
 

@@ -13,10 +13,10 @@ import numpy as np
 import shapely  # type: ignore[import-untyped]
 
 from polarcheck.arrays import Floats, Mask, Rows
-from polarcheck.geometry import areas
-from polarcheck.geometry.cuts import Cuts, cuts_into, endless, shortened, with_walls
-from polarcheck.geometry.faces import lines_of
-from polarcheck.geometry.finished_part import Contours, finished_parts
+from polarcheck.geometry.overcuts.cuts import Cuts, cuts_into, endless, shortened, with_walls
+from polarcheck.geometry.polygons import areas
+from polarcheck.geometry.polygons.faces import lines_of
+from polarcheck.geometry.polygons.finished_part import Contours, finished_parts
 from polarcheck.geometry.segments import Curves, boxes, first_of_its_kind, segments
 
 

@@ -15,9 +15,9 @@ import numpy as np
 import shapely  # type: ignore[import-untyped]
 
 from polarcheck.arrays import Floats, Mask, Points, Rows, Table
-from polarcheck.geometry import areas
-from polarcheck.geometry.faces import Geometries, coordinates, edges_of, ends_of, gathered, lines_of, polylines
-from polarcheck.geometry.finished_part import FinishedParts
+from polarcheck.geometry.polygons import areas
+from polarcheck.geometry.polygons.faces import Geometries, coordinates, edges_of, ends_of, gathered, lines_of, polylines
+from polarcheck.geometry.polygons.finished_part import FinishedParts
 from polarcheck.geometry.segments import Segments
 from polarcheck.geometry.tolerances import CORNER, ZERO
 from polarcheck.time_limit import keep_time

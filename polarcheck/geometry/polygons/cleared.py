@@ -16,12 +16,12 @@ import shapely  # type: ignore[import-untyped]
 
 from polarcheck.arrays import Floats, Mask, Points, Rows
 from polarcheck.errors import TooHardError
-from polarcheck.geometry.faces import coordinates, edges_of, lines_of
 from polarcheck.geometry.outline import Outline, outline_of
 from polarcheck.geometry.plane import arc_sweep
+from polarcheck.geometry.polygons.faces import coordinates, edges_of, lines_of
+from polarcheck.geometry.polygons.widened import widened
 from polarcheck.geometry.segments import Curves, Segments, first_of_its_kind, segments
 from polarcheck.geometry.tolerances import ROUNDING
-from polarcheck.geometry.widened import widened
 from polarcheck.machines.modal import Motion
 from polarcheck.time_limit import keep_time
 

@@ -7,9 +7,9 @@ import numpy as np
 import shapely  # type: ignore[import-untyped]
 
 from polarcheck.arrays import Floats, Mask, Points, Rows
-from polarcheck.geometry import areas
-from polarcheck.geometry.faces import coordinates
-from polarcheck.geometry.finished_part import Contours, FinishedParts, finished_parts
+from polarcheck.geometry.polygons import areas
+from polarcheck.geometry.polygons.faces import coordinates
+from polarcheck.geometry.polygons.finished_part import Contours, FinishedParts, finished_parts
 from polarcheck.geometry.segments import Curves, first_of_its_kind, members, segments
 
 #: How near its ends must come to the farthest point of a contour that ends outside the bar [share].

@@ -17,8 +17,8 @@ import shapely  # type: ignore[import-untyped]
 from numpy.typing import NDArray
 
 from polarcheck.arrays import Floats, Mask, Points, Rows, Table
-from polarcheck.geometry import areas
-from polarcheck.geometry.noding import Edges, merged, noded
+from polarcheck.geometry.polygons import areas
+from polarcheck.geometry.polygons.noding import Edges, merged, noded
 from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.time_limit import keep_time
 

@@ -13,10 +13,10 @@ import numpy as np
 import shapely  # type: ignore[import-untyped]
 
 from polarcheck.arrays import Floats, Mask, Rows
-from polarcheck.geometry.bare import Bare, FlatLoops
-from polarcheck.geometry.cuts import Cuts, cuts_into, endless, shortened, with_walls
-from polarcheck.geometry.faces import coordinates, lines_of
-from polarcheck.geometry.finished_part import Contours, FinishedParts, finished_parts
+from polarcheck.geometry.overcuts.cuts import Cuts, cuts_into, endless, shortened, with_walls
+from polarcheck.geometry.overcuts.uncompensated_moves import Bare, FlatLoops
+from polarcheck.geometry.polygons.faces import coordinates, lines_of
+from polarcheck.geometry.polygons.finished_part import Contours, FinishedParts, finished_parts
 from polarcheck.geometry.segments import Curves, Segments, boxes, members, reach_from_start, segments
 from polarcheck.geometry.tolerances import ROUNDING, ZERO
 from polarcheck.time_limit import keep_time

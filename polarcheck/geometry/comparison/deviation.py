@@ -14,8 +14,8 @@ import numpy as np
 import shapely  # type: ignore[import-untyped]
 
 from polarcheck.arrays import Floats, Mask, Points, Rows
+from polarcheck.geometry.comparison.measured_path import Way, way_of_outline
 from polarcheck.geometry.outline import Outline
-from polarcheck.geometry.ways import Way, way_of_outline
 
 #: Points that lie so far [mm] from a circle about the axis are on it.
 _ON_CIRCLE = 2e-3

@@ -17,9 +17,9 @@ import numpy as np
 import shapely  # type: ignore[import-untyped]
 
 from polarcheck.arrays import Floats, Mask, Points, Rows
-from polarcheck.geometry import areas
-from polarcheck.geometry.closing import gaps_between_ends
-from polarcheck.geometry.faces import GRID, Geometries, Standing, Walls, standing
+from polarcheck.geometry.contour_ends import gaps_between_ends
+from polarcheck.geometry.polygons import areas
+from polarcheck.geometry.polygons.faces import GRID, Geometries, Standing, Walls, standing
 from polarcheck.geometry.segments import Curves, Segments, directions, first_of_its_kind, members, segments
 from polarcheck.geometry.tolerances import TOUCH
 

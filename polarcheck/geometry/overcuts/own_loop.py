@@ -17,10 +17,10 @@ import numpy as np
 import shapely  # type: ignore[import-untyped]
 
 from polarcheck.arrays import Floats, Mask, Points, Rows
-from polarcheck.geometry import areas
-from polarcheck.geometry.cuts import Cuts, cuts_into, with_facing_walls
-from polarcheck.geometry.faces import ends_of, gathered, lines_of, polylines
-from polarcheck.geometry.finished_part import Contours, FinishedParts, finished_parts
+from polarcheck.geometry.overcuts.cuts import Cuts, cuts_into, with_facing_walls
+from polarcheck.geometry.polygons import areas
+from polarcheck.geometry.polygons.faces import ends_of, gathered, lines_of, polylines
+from polarcheck.geometry.polygons.finished_part import Contours, FinishedParts, finished_parts
 from polarcheck.geometry.segments import Curves, Segments, first_of_its_kind, members, segments
 from polarcheck.geometry.tolerances import ZERO
 from polarcheck.time_limit import keep_time

@@ -1,0 +1,1 @@
+"""The finished part compared with a drawing or a shape with its numbers."""

@@ -1,0 +1,1 @@
+"""Cutter compensation: the programmed path in, the path of the tool center out."""

@@ -1,0 +1,1 @@
+"""What compensated contours leave standing: ribs on an outline, strips between passes. Import late."""
