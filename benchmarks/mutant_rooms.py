@@ -14,13 +14,14 @@ ROOT = Path(__file__).resolve().parent.parent
 ROOMS = {
     "rules": ("polarcheck/rules/*",),
     "compensation": (
-        *(f"polarcheck/geometry/{name}.py" for name in ("compensation*", "corner", "offset_vectors")),
+        "polarcheck/geometry/cutter_compensation/*",
+        "polarcheck/columns/compensation.py",
+        "polarcheck/columns/lengths.py",
         *(
             f"polarcheck/table/{name}.py"
             for name in (
                 "fitting",
                 "infeed",
-                "lengths",
                 "mirrored",
                 "moves",
                 "overcuts",

@@ -170,7 +170,7 @@ def _moves(tables: Tables, row: int) -> Iterator[str]:
     yield from _heading("Row to move of the tool center", "table/, geometry/")
     yield from _wrapped(
         "Cutter compensation moves the path to the right of the programmed one, by the radius. "
-        "`table/tool_center.py` passes the columns of the section to `geometry/compensation.py`, which "
+        "`table/tool_center.py` passes the columns of the section to `geometry/cutter_compensation/`, which "
         "knows arrays only; `table/moves.py` holds the result, one element per move of the tool center. "
         "`geometry/polar.py` and `geometry/rates.py` compute the distance from the center and the rate "
         "of C."
