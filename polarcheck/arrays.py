@@ -51,6 +51,10 @@ class Table(msgspec.Struct, frozen=True):
         return [name for name in cls.__struct_fields__ if name not in cls._shared]
 
 
+class Columns(msgspec.Struct, frozen=True, dict=True, eq=False):
+    """Columns of one subject, computed when they are first read; the fields name the tables that they come from."""
+
+
 def repeated(value: _Number, count: int) -> NDArray[_Number]:
     """
     Return a read-only column that repeats one value and takes the memory of one element (its stride is 0).

@@ -37,6 +37,8 @@ _NAME_LENGTH = 40
 #: Programs with more rows share constant columns; below, that saves less memory than it takes time.
 _MANY_ROWS = 10_000
 Found = TypeVar("Found", bound=Finding)
+#: A finding of a run: its rule, and its number among those of the rule.
+_Number = tuple[str, int]
 
 
 class _Listed(msgspec.Struct, frozen=True):
@@ -138,16 +140,15 @@ class Engine:
         listed = None
         while listed is None:
             listed = self._all_listed()
-        following: dict[tuple[str, int], list[Finding]] = {}
-        for found in listed.values():
-            for finding, cause in zip(found.findings, found.cause, strict=True):
-                if cause is not None:
-                    following.setdefault(_root(listed, cause), []).append(finding)
+        roots = _roots(listed)
+        following: dict[_Number, list[Finding]] = {}
+        for number, root in roots.items():
+            if number != root:
+                following.setdefault(root, []).append(_finding_of(listed, number))
         return [
-            with_following(finding, following.get((name, number), []))
-            for name, found in listed.items()
-            for number, finding in enumerate(found.findings)
-            if found.cause[number] is None
+            with_following(_finding_of(listed, number), following.get(number, []))
+            for number, root in roots.items()
+            if number == root
         ]
 
     def _all_listed(self) -> dict[str, _Listed] | None:
@@ -385,16 +386,38 @@ def program_heads(trace: Trace) -> list[tuple[int, str]]:
     ]
 
 
-def _root(listed: Mapping[str, _Listed], cause: tuple[str, int]) -> tuple[str, int]:
-    """The finding that stands alone at the end of a chain of causes, as rule and number."""
-    while True:
-        name, element = cause
-        found = listed[name]
-        number = int(found.finding[np.searchsorted(found.index, element)])
-        above = found.cause[number]
-        if above is None:
-            return name, number
-        cause = above
+def _roots(listed: Mapping[str, _Listed]) -> dict[_Number, _Number]:
+    """
+    The finding at the end of each chain of causes, for all findings in order; one that stands alone is its own.
+
+    Where a chain leads back to itself, the finding that stands first in the program is its cause.
+    """
+    roots: dict[_Number, _Number] = {}
+    for name, of_rule in listed.items():
+        for number in range(len(of_rule.findings)):
+            roots[name, number] = name, number
+    done = set[_Number]()
+    for start in roots:
+        chain: dict[_Number, None] = {}
+        last = start
+        while last not in done and last not in chain:
+            chain[last] = None
+            cause = listed[last[0]].cause[last[1]]
+            if cause is None:
+                break
+            of_rule = listed[cause[0]]
+            last = cause[0], int(of_rule.finding[np.searchsorted(of_rule.index, cause[1])])
+        root = roots[last]
+        if last in chain and listed[last[0]].cause[last[1]] is not None:
+            circle = list(chain)[list(chain).index(last) :]
+            root = min(circle, key=lambda number: _order(_finding_of(listed, number)))
+        roots.update(dict.fromkeys(chain, root))
+        done.update(chain)
+    return roots
+
+
+def _finding_of(listed: Mapping[str, _Listed], number: _Number) -> Finding:
+    return listed[number[0]].findings[number[1]]
 
 
 def with_following(finding: Finding, following: list[Finding]) -> Finding:
@@ -407,7 +430,11 @@ def with_following(finding: Finding, following: list[Finding]) -> Finding:
 
 def in_order(findings: Iterable[Found]) -> list[Found]:
     """In the order of the lines; at one place the worst first."""
-    return sorted(findings, key=lambda found: (found.line, found.column, -SEVERITIES[found.severity], found.rule))
+    return sorted(findings, key=_order)
+
+
+def _order(finding: Finding) -> tuple[int, int, int, str]:
+    return finding.line, finding.column, -SEVERITIES[finding.severity], finding.rule
 
 
 def _severity(rule: Rule, hits: Hits, place: Place) -> Severity:

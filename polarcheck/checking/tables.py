@@ -165,6 +165,9 @@ def _maker(path: str) -> Callable[..., Any]:
 def parameters(maker: Callable[..., Any]) -> tuple[str, ...]:
     """The names of the parameters of a function, or of what makes an object of a class."""
     # inspect.signature costs more than most rules.
+    fields: tuple[str, ...] | None = getattr(maker, "__struct_fields__", None)
+    if fields is not None:
+        return fields
     function: Any = getattr(maker, "__init__") if isinstance(maker, type) else maker  # noqa: B009 - mypy distrusts the dot
     code = function.__code__
     names: tuple[str, ...] = code.co_varnames[: code.co_argcount]

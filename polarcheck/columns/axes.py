@@ -16,7 +16,7 @@ from typing import TypeVar, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from polarcheck.arrays import Floats, Mask, Points, Rows, States, computed, different, is_among, repeated
+from polarcheck.arrays import Columns, Floats, Mask, Points, Rows, States, computed, different, is_among, repeated
 from polarcheck.columns.blocks import ExecutedBlocks
 from polarcheck.columns.coordinates import Coordinates
 from polarcheck.columns.filling import fill_down
@@ -40,22 +40,14 @@ Pair = tuple[str, str]
 Element = TypeVar("Element", bound=np.generic)
 
 
-class PlaneAxes:
+class PlaneAxes(Columns, frozen=True):
     """Which axes span the polar plane, their words and those of arc centers, and which of them a block moves."""
 
-    def __init__(
-        self,
-        run: Run,
-        machine: Machine,
-        blocks: ExecutedBlocks,
-        modal: ModalStates,
-        coordinates: Coordinates,
-    ) -> None:
-        self.run = run
-        self.machine = machine
-        self.blocks = blocks
-        self.modal = modal
-        self.coordinates = coordinates
+    run: Run
+    machine: Machine
+    blocks: ExecutedBlocks
+    modal: ModalStates
+    coordinates: Coordinates
 
     @cached_property
     def switches_on(self) -> Mask:

@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, States, repeated
+from polarcheck.arrays import Columns, Floats, Mask, States, repeated
 from polarcheck.columns.axes import PlaneAxes
 from polarcheck.columns.blocks import ExecutedBlocks
 from polarcheck.columns.filling import before, fill_down
@@ -22,32 +22,19 @@ from polarcheck.machines.machine import Machine
 from polarcheck.machines.modal import Side
 
 
-class CutterCompensation:
+class CutterCompensation(Columns, frozen=True):
     """Side, start-ups, offset cancels and the radius with which the control compensates."""
 
-    def __init__(
-        self,
-        run: Run,
-        machine: Machine,
-        blocks: ExecutedBlocks,
-        modal: ModalStates,
-        tools: CalledTools,
-        axes: PlaneAxes,
-        mode: PolarMode,
-        lengths: Lengths,
-        path: ProgrammedPath,
-        offsets: ToolOffsets,
-    ) -> None:
-        self.run = run
-        self.machine = machine
-        self.blocks = blocks
-        self.modal = modal
-        self.tools = tools
-        self.axes = axes
-        self.mode = mode
-        self.lengths = lengths
-        self.path = path
-        self.offsets = offsets
+    run: Run
+    machine: Machine
+    blocks: ExecutedBlocks
+    modal: ModalStates
+    tools: CalledTools
+    axes: PlaneAxes
+    mode: PolarMode
+    lengths: Lengths
+    path: ProgrammedPath
+    offsets: ToolOffsets
 
     @cached_property
     def writes_side(self) -> Mask:

@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Rows, States
+from polarcheck.arrays import Columns, Floats, Mask, Rows, States
 from polarcheck.columns.blocks import ExecutedBlocks
 from polarcheck.columns.filling import fill_down
 from polarcheck.columns.lengths import Lengths
@@ -17,24 +17,15 @@ from polarcheck.machines.machine import Machine
 from polarcheck.machines.modal import NO_FEED, FeedMode
 
 
-class Feedrate:
+class Feedrate(Columns, frozen=True):
     """F and the feed mode in force."""
 
-    def __init__(
-        self,
-        run: Run,
-        machine: Machine,
-        blocks: ExecutedBlocks,
-        modal: ModalStates,
-        mode: PolarMode,
-        lengths: Lengths,
-    ) -> None:
-        self.run = run
-        self.machine = machine
-        self.blocks = blocks
-        self.modal = modal
-        self.mode = mode
-        self.lengths = lengths
+    run: Run
+    machine: Machine
+    blocks: ExecutedBlocks
+    modal: ModalStates
+    mode: PolarMode
+    lengths: Lengths
 
     @cached_property
     def modal_feed_mode(self) -> States:

@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from polarcheck.arrays import Mask, Rows, is_among
+from polarcheck.arrays import Columns, Mask, Rows, is_among
 from polarcheck.columns.axes import PlaneAxes
 from polarcheck.columns.blocks import ExecutedBlocks
 from polarcheck.columns.filling import before, fill_down, happened
@@ -23,24 +23,15 @@ from polarcheck.reading.words import NumberFault
 _CYLINDER_WORDS = ("A", "B", "C", "H", "Q", "R")
 
 
-class PolarMode:
+class PolarMode(Columns, frozen=True):
     """The polar sections, and what else cuts contours with C outside of them."""
 
-    def __init__(
-        self,
-        run: Run,
-        machine: Machine,
-        blocks: ExecutedBlocks,
-        modal: ModalStates,
-        tools: CalledTools,
-        axes: PlaneAxes,
-    ) -> None:
-        self.run = run
-        self.machine = machine
-        self.blocks = blocks
-        self.modal = modal
-        self.tools = tools
-        self.axes = axes
+    run: Run
+    machine: Machine
+    blocks: ExecutedBlocks
+    modal: ModalStates
+    tools: CalledTools
+    axes: PlaneAxes
 
     @cached_property
     def sections(self) -> Sections:

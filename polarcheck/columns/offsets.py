@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Rows, computed, is_uniform, repeated
+from polarcheck.arrays import Columns, Floats, Mask, Rows, computed, is_uniform, repeated
 from polarcheck.columns.blocks import ExecutedBlocks
 from polarcheck.columns.lengths import Lengths
 from polarcheck.columns.modal import ModalStates
@@ -39,30 +39,18 @@ class _Set(NamedTuple):
     value: Floats
 
 
-class ToolOffsets:
+class ToolOffsets(Columns, frozen=True):
     """What the tool offset in force holds."""
 
-    def __init__(
-        self,
-        run: Run,
-        text: Text,
-        machine: Machine,
-        job: Job,
-        blocks: ExecutedBlocks,
-        modal: ModalStates,
-        tools: CalledTools,
-        mode: PolarMode,
-        lengths: Lengths,
-    ) -> None:
-        self.run = run
-        self.text = text
-        self.machine = machine
-        self.job = job
-        self.blocks = blocks
-        self.modal = modal
-        self.tools = tools
-        self.mode = mode
-        self.lengths = lengths
+    run: Run
+    text: Text
+    machine: Machine
+    job: Job
+    blocks: ExecutedBlocks
+    modal: ModalStates
+    tools: CalledTools
+    mode: PolarMode
+    lengths: Lengths
 
     @cached_property
     def radius_of_offset(self) -> Floats:

@@ -10,7 +10,7 @@ from functools import cached_property
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Points, States, is_among, repeated
+from polarcheck.arrays import Columns, Floats, Mask, Points, States, is_among, repeated
 from polarcheck.columns.axes import PlaneAxes
 from polarcheck.columns.blocks import ExecutedBlocks
 from polarcheck.columns.coordinates import Coordinates
@@ -32,30 +32,18 @@ NOWHERE = complex("nan+nanj")
 _PASSES = 8
 
 
-class ProgrammedPath:
+class ProgrammedPath(Columns, frozen=True):
     """Positions, centers of arcs, and the moves on the polar plane."""
 
-    def __init__(
-        self,
-        run: Run,
-        machine: Machine,
-        blocks: ExecutedBlocks,
-        modal: ModalStates,
-        tools: CalledTools,
-        coordinates: Coordinates,
-        axes: PlaneAxes,
-        mode: PolarMode,
-        lengths: Lengths,
-    ) -> None:
-        self.run = run
-        self.machine = machine
-        self.blocks = blocks
-        self.modal = modal
-        self.tools = tools
-        self.coordinates = coordinates
-        self.axes = axes
-        self.mode = mode
-        self.lengths = lengths
+    run: Run
+    machine: Machine
+    blocks: ExecutedBlocks
+    modal: ModalStates
+    tools: CalledTools
+    coordinates: Coordinates
+    axes: PlaneAxes
+    mode: PolarMode
+    lengths: Lengths
 
     def _programmed(
         self, address: str, increment: str, factor: Floats | float, where: Mask, of_step: Floats | None = None

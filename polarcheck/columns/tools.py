@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from polarcheck.arrays import Mask, Rows
+from polarcheck.arrays import Columns, Mask, Rows
 from polarcheck.columns.blocks import ExecutedBlocks
 from polarcheck.columns.filling import before, fill_down, happened
 from polarcheck.execution.run import Run
@@ -25,20 +25,13 @@ _UNKNOWN = _EDGES - 1
 _NO_TOOL = _LARGEST_TOOL
 
 
-class CalledTools:
+class CalledTools(Columns, frozen=True):
     """The tool and the tool offset that the program calls."""
 
-    def __init__(
-        self,
-        run: Run,
-        machine: Machine,
-        job: Job,
-        blocks: ExecutedBlocks,
-    ) -> None:
-        self.run = run
-        self.machine = machine
-        self.job = job
-        self.blocks = blocks
+    run: Run
+    machine: Machine
+    job: Job
+    blocks: ExecutedBlocks
 
     @cached_property
     def _t(self) -> Rows:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from polarcheck.arrays import Columns
 from polarcheck.columns.axes import PlaneAxes
 from polarcheck.columns.blocks import ExecutedBlocks
 from polarcheck.columns.compensation import CutterCompensation
@@ -19,7 +20,7 @@ from polarcheck.machines.machine import Machine
 from polarcheck.reading.words import Text
 
 
-class Trace:
+class Trace(Columns, frozen=True):
     """
     The tables of the executed blocks of one file on one machine for one job, for what reads many of them.
 
@@ -41,39 +42,21 @@ class Trace:
     feedrate: F in force and its mode.
     """
 
-    def __init__(
-        self,
-        run: Run,
-        text: Text,
-        machine: Machine,
-        job: Job,
-        blocks: ExecutedBlocks,
-        modal: ModalStates,
-        tools: CalledTools,
-        coordinates: Coordinates,
-        axes: PlaneAxes,
-        mode: PolarMode,
-        lengths: Lengths,
-        path: ProgrammedPath,
-        offsets: ToolOffsets,
-        compensation: CutterCompensation,
-        feedrate: Feedrate,
-    ) -> None:
-        self.run = run
-        self.text = text
-        self.machine = machine
-        self.job = job
-        self.blocks = blocks
-        self.modal = modal
-        self.tools = tools
-        self.coordinates = coordinates
-        self.axes = axes
-        self.mode = mode
-        self.lengths = lengths
-        self.path = path
-        self.offsets = offsets
-        self.compensation = compensation
-        self.feedrate = feedrate
+    run: Run
+    text: Text
+    machine: Machine
+    job: Job
+    blocks: ExecutedBlocks
+    modal: ModalStates
+    tools: CalledTools
+    coordinates: Coordinates
+    axes: PlaneAxes
+    mode: PolarMode
+    lengths: Lengths
+    path: ProgrammedPath
+    offsets: ToolOffsets
+    compensation: CutterCompensation
+    feedrate: Feedrate
 
     def __len__(self) -> int:
         return len(self.run)

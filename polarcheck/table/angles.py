@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, repeated
+from polarcheck.arrays import Columns, Floats, Mask, repeated
 from polarcheck.columns.trace import Trace
 from polarcheck.machines.codes import code_set
 from polarcheck.table.series import Series, find_series
@@ -15,11 +15,10 @@ from polarcheck.table.series import Series, find_series
 _USUAL = np.array([30, 45, 60, 90, 120, 135, 150, 180, 210, 225, 240, 270, 300, 315, 330, 360], np.float64)
 
 
-class Angles:
+class Angles(Columns, frozen=True):
     """Columns of one trace, one value per row."""
 
-    def __init__(self, trace: Trace) -> None:
-        self.trace = trace
+    trace: Trace
 
     @cached_property
     def _written(self) -> Floats:

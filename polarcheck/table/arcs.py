@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Points, Rows, is_among, repeated
+from polarcheck.arrays import Columns, Floats, Mask, Points, Rows, is_among, repeated
 from polarcheck.columns.trace import Trace
 from polarcheck.geometry import plane
 from polarcheck.geometry.tolerances import ROUNDING
@@ -16,11 +16,10 @@ from polarcheck.machines.modal import Motion
 _CLEARLY = 10
 
 
-class Arcs:
+class Arcs(Columns, frozen=True):
     """Columns of one trace, one value per row."""
 
-    def __init__(self, trace: Trace) -> None:
-        self.trace = trace
+    trace: Trace
 
     # ---- what is written ----
 

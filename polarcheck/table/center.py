@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from polarcheck.arrays import Mask
+from polarcheck.arrays import Columns, Mask
 from polarcheck.columns.trace import Trace
 from polarcheck.machines.modal import Side
 from polarcheck.table.arcs import Arcs
@@ -14,13 +14,12 @@ from polarcheck.table.moves import any_in_row
 from polarcheck.table.tool_center import ToolCenter
 
 
-class Center:
+class Center(Columns, frozen=True):
     """Columns of one trace, one value per row where nothing else is said."""
 
-    def __init__(self, trace: Trace, tool_center: ToolCenter, arcs: Arcs) -> None:
-        self.trace = trace
-        self.tool_center = tool_center
-        self.arcs = arcs
+    trace: Trace
+    tool_center: ToolCenter
+    arcs: Arcs
 
     @cached_property
     def cuts_off_center(self) -> Mask:

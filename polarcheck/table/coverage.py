@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import msgspec
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Points, Rows, computed, different, repeated
+from polarcheck.arrays import Columns, Floats, Mask, Points, Rows, computed, different, repeated
 from polarcheck.columns.filling import before
 from polarcheck.columns.path import NOWHERE
 from polarcheck.columns.trace import Trace
@@ -53,13 +53,12 @@ class _Judged(NamedTuple):
     z: Floats
 
 
-class Coverage:
+class Coverage(Columns, frozen=True):
     """Columns of one trace, one value per row."""
 
-    def __init__(self, trace: Trace, tool_center: ToolCenter, overcuts: Overcuts) -> None:
-        self.trace = trace
-        self.tool_center = tool_center
-        self.overcuts = overcuts
+    trace: Trace
+    tool_center: ToolCenter
+    overcuts: Overcuts
 
     # ---- the loops ----
 

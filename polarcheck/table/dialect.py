@@ -6,17 +6,17 @@ from functools import cached_property
 
 import numpy as np
 
-from polarcheck.arrays import Mask
+from polarcheck.arrays import Columns, Mask
 from polarcheck.machines.machine import Machine
 from polarcheck.reading.languages import Recognised, recognised
 from polarcheck.reading.words import Text
 
 
-class Dialect:
+class Dialect(Columns, frozen=True):
     """What is known of the language of a file; one element, the file."""
 
-    def __init__(self, text: Text, machine: Machine) -> None:
-        self.text, self.machine = text, machine
+    text: Text
+    machine: Machine
 
     @cached_property
     def recognised(self) -> Recognised | None:

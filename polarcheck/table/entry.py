@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, is_among
+from polarcheck.arrays import Columns, Floats, Mask, is_among
 from polarcheck.columns.filling import happened
 from polarcheck.columns.trace import Trace
 from polarcheck.geometry.tolerances import ROUNDING
@@ -19,11 +19,10 @@ _WORDS_BESIDE_D = ("T", "S", "M", "G", "F", "X", "U", "Z", "W")
 _BESIDE_D = ("motion", "side", "units", "plane", "feed_mode", "speed")
 
 
-class Entry:
+class Entry(Columns, frozen=True):
     """Columns of one trace, one value per row."""
 
-    def __init__(self, trace: Trace) -> None:
-        self.trace = trace
+    trace: Trace
 
     # ---- what is known of the program ----
 

@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, repeated
+from polarcheck.arrays import Columns, Floats, Mask, repeated
 from polarcheck.columns.filling import fill_down, happened
 from polarcheck.columns.trace import Trace
 from polarcheck.geometry.tolerances import SHARE
@@ -20,12 +20,11 @@ _NOT_PER_REVOLUTION = {Units.MM: 5.0, Units.INCH: 0.2}
 _NOT_PER_MINUTE = {Units.MM: 1.0, Units.INCH: 0.04}
 
 
-class Feeds:
+class Feeds(Columns, frozen=True):
     """Columns of one trace, one value per row."""
 
-    def __init__(self, trace: Trace, tool_center: ToolCenter) -> None:
-        self.trace = trace
-        self.tool_center = tool_center
+    trace: Trace
+    tool_center: ToolCenter
 
     # ---- F in force ----
 

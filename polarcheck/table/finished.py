@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from polarcheck.arrays import Mask, Rows
+from polarcheck.arrays import Columns, Mask, Rows
 from polarcheck.columns.trace import Trace
 from polarcheck.table.overcuts import Overcuts, level_of
 
@@ -40,12 +40,11 @@ class Level(NamedTuple):
     left: Mask
 
 
-class Finished:
+class Finished(Columns, frozen=True):
     """The finished part of one trace."""
 
-    def __init__(self, trace: Trace, overcuts: Overcuts) -> None:
-        self.trace = trace
-        self.overcuts = overcuts
+    trace: Trace
+    overcuts: Overcuts
 
     @cached_property
     def levels(self) -> list[Level]:

@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask
+from polarcheck.arrays import Columns, Floats, Mask
 from polarcheck.columns.trace import Trace
 from polarcheck.table.overcuts import Overcuts
 from polarcheck.table.since import Since
@@ -20,13 +20,12 @@ _SMALL, _NEAR, _TRIALS = 1 / 16, 0.01, 9
 _MANY = 20_000
 
 
-class Fitting:
+class Fitting(Columns, frozen=True):
     """Columns of one trace, one value per row, for loops that are cut into."""
 
-    def __init__(self, trace: Trace, overcuts: Overcuts, since: Since) -> None:
-        self.trace = trace
-        self.overcuts = overcuts
-        self.since = since
+    trace: Trace
+    overcuts: Overcuts
+    since: Since
 
     def _worst(self, values: Floats) -> Floats:
         """The largest of these values in the loop of each row."""

@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, States
+from polarcheck.arrays import Columns, Floats, Mask, States
 from polarcheck.columns.filling import fill_down
 from polarcheck.columns.trace import Trace
 from polarcheck.geometry import rates
@@ -20,7 +20,7 @@ from polarcheck.table.moves import per_row
 LIMITS = C_FEED, C_ACCELERATION, X_FEED, POLAR_FEED = ("C", "acceleration of C", "X", "limit of F in the mode")
 
 
-class HighestFeeds:
+class HighestFeeds(Columns, frozen=True):
     """
     Columns of one trace, one value per row.
 
@@ -28,10 +28,9 @@ class HighestFeeds:
     gives an F in closed form. What is not limited by the machine limits nothing here.
     """
 
-    def __init__(self, trace: Trace, dynamics: Dynamics, center: Center) -> None:
-        self.trace = trace
-        self.dynamics = dynamics
-        self.center = center
+    trace: Trace
+    dynamics: Dynamics
+    center: Center
 
     @cached_property
     def cuts(self) -> Mask:

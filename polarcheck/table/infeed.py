@@ -25,7 +25,7 @@ from typing import NamedTuple
 import numpy as np
 from msgspec.structs import replace
 
-from polarcheck.arrays import Floats, Mask, Points, Rows, States, repeated
+from polarcheck.arrays import Columns, Floats, Mask, Points, Rows, States, repeated
 from polarcheck.columns.trace import Trace
 from polarcheck.geometry import enclosed, polar
 from polarcheck.geometry.cutter_compensation.compensation import ToolPath
@@ -62,11 +62,10 @@ class _Cycle(NamedTuple):
         return np.asarray(self.unfit.any(axis=1))
 
 
-class Infeed:
+class Infeed(Columns, frozen=True):
     """Columns of one trace, one value per row, and the passes of its cycles."""
 
-    def __init__(self, trace: Trace) -> None:
-        self.trace = trace
+    trace: Trace
 
     @cached_property
     def written(self) -> Floats:

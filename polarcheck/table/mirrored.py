@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from polarcheck.arrays import Mask, Rows
+from polarcheck.arrays import Columns, Mask, Rows
 from polarcheck.columns.trace import Trace
 from polarcheck.table.overcuts import Overcuts
 from polarcheck.table.ramps import Ramps
@@ -19,7 +19,7 @@ from polarcheck.time_limit import keep_time
 _SMALL = 1 / 16
 
 
-class Mirrored:
+class Mirrored(Columns, frozen=True):
     """
     Columns of one trace, one value per row.
 
@@ -28,12 +28,11 @@ class Mirrored:
     part that it leaves as it is written, is taken for the reverse of what is meant. And a smaller cutter is no help.
     """
 
-    def __init__(self, trace: Trace, tool_center: ToolCenter, ramps: Ramps, overcuts: Overcuts, since: Since) -> None:
-        self.trace = trace
-        self.tool_center = tool_center
-        self.ramps = ramps
-        self.overcuts = overcuts
-        self.since = since
+    trace: Trace
+    tool_center: ToolCenter
+    ramps: Ramps
+    overcuts: Overcuts
+    since: Since
 
     @cached_property
     def _loop(self) -> Rows:

@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from polarcheck.arrays import Mask
+from polarcheck.arrays import Columns, Mask
 from polarcheck.columns.filling import before
 from polarcheck.columns.trace import Trace
 from polarcheck.machines.code_lists import is_code, numbers
@@ -14,11 +14,10 @@ from polarcheck.machines.codes import NO_CODE, code_set
 from polarcheck.reading.words import NumberFault
 
 
-class ModeWords:
+class ModeWords(Columns, frozen=True):
     """Columns over the executed words of a trace, one value per word; `rows` and `in_rows` lead to rows and back."""
 
-    def __init__(self, trace: Trace) -> None:
-        self.trace = trace
+    trace: Trace
 
     def rows(self, words: Mask) -> Mask:
         """Per row: whether it has one of these words."""

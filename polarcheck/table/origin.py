@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Rows, repeated
+from polarcheck.arrays import Columns, Floats, Mask, Rows, repeated
 from polarcheck.columns.filling import fill_down, positions
 from polarcheck.columns.offset_settings import Settings, X, in_order, of_list
 from polarcheck.columns.trace import Trace
@@ -28,11 +28,10 @@ _LONGEST = 1e9
 _NEAR = 50.0
 
 
-class Origin:
+class Origin(Columns, frozen=True):
     """Columns of one trace, one value per row; lengths are as they are written, diameters of X included [mm]."""
 
-    def __init__(self, trace: Trace) -> None:
-        self.trace = trace
+    trace: Trace
 
     @cached_property
     def _number(self) -> Floats:

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from polarcheck.arrays import Mask, Rows, is_among
+from polarcheck.arrays import Columns, Mask, Rows, is_among
 from polarcheck.columns.filling import happened
 from polarcheck.columns.trace import Trace
 from polarcheck.machines import profiles
@@ -30,15 +30,14 @@ class Switch(NamedTuple):
     known_by: tuple[Profile, ...]
 
 
-class OtherMode:
+class OtherMode(Columns, frozen=True):
     """
     Which rows begin the mode of another control, and whether what follows is meant for it.
 
     Cheap for a program without such a code: only one that has it makes other machines be looked at.
     """
 
-    def __init__(self, trace: Trace) -> None:
-        self.trace = trace
+    trace: Trace
 
     @cached_property
     def switches(self) -> tuple[Switch, ...]:

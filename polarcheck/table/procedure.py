@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from polarcheck.arrays import Mask, Rows, is_among, repeated
+from polarcheck.arrays import Columns, Mask, Rows, is_among, repeated
 from polarcheck.columns.filling import before, fill_down, happened, last_row
 from polarcheck.columns.trace import Trace
 from polarcheck.machines.code_lists import is_code
@@ -21,11 +21,10 @@ _LEAST_OF_TURNING, _LEAST_OF_LIVE_TOOL = 5.0, 1.0
 _AT_FEED = (Motion.LINE, Motion.CW, Motion.CCW)
 
 
-class Procedure:
+class Procedure(Columns, frozen=True):
     """Columns of one trace, one value per row."""
 
-    def __init__(self, trace: Trace) -> None:
-        self.trace = trace
+    trace: Trace
 
     # ---- a contour that no G12.1 has begun ----
 

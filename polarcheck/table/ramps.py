@@ -6,19 +6,18 @@ from functools import cached_property
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Rows
+from polarcheck.arrays import Columns, Floats, Mask, Rows
 from polarcheck.columns.trace import Trace
 from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.machines.modal import Side
 from polarcheck.table.tool_center import ToolCenter
 
 
-class Ramps:
+class Ramps(Columns, frozen=True):
     """Columns of one trace, one value per row. A ramp is a start-up or an offset cancel."""
 
-    def __init__(self, trace: Trace, tool_center: ToolCenter) -> None:
-        self.trace = trace
-        self.tool_center = tool_center
+    trace: Trace
+    tool_center: ToolCenter
 
     # ---- how far a fault reaches ----
 

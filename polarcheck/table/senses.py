@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Points, Rows, States, is_among
+from polarcheck.arrays import Columns, Floats, Mask, Points, Rows, States, is_among
 from polarcheck.columns.trace import Trace
 from polarcheck.geometry.plane import angle_between
 from polarcheck.machines.modal import Motion
@@ -19,12 +19,11 @@ _CORNER, _CLEARLY = np.radians(10), 4
 _SLACK = 2e-3
 
 
-class Senses:
+class Senses(Columns, frozen=True):
     """Columns of one trace, one value per row; arcs count between two blocks of the same contour in offset mode."""
 
-    def __init__(self, trace: Trace, arcs: Arcs) -> None:
-        self.trace = trace
-        self.arcs = arcs
+    trace: Trace
+    arcs: Arcs
 
     @cached_property
     def _loop(self) -> Rows:

@@ -8,7 +8,7 @@ from itertools import chain
 
 import numpy as np
 
-from polarcheck.arrays import Mask, Rows
+from polarcheck.arrays import Columns, Mask, Rows
 from polarcheck.columns.filling import before, fill_down
 from polarcheck.columns.trace import Trace
 from polarcheck.machines.code_lists import FRAME_LISTS
@@ -17,11 +17,10 @@ from polarcheck.machines.code_lists import FRAME_LISTS
 _STRUCTURE = re.compile(rb"^[/0-9N ]*(IF(?![^\n]*(?:GOTO|THEN[ ]*[^\s]))|ELSEIF|ELSE|ENDIF)(?![A-Z])", re.MULTILINE)
 
 
-class Since:
+class Since(Columns, frozen=True):
     """Columns of one trace; of a state the same number in all rows from one block that sets it to the next."""
 
-    def __init__(self, trace: Trace) -> None:
-        self.trace = trace
+    trace: Trace
 
     # ---- which row has written a coordinate ----
 

@@ -6,19 +6,18 @@ from functools import cached_property
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Rows, computed
+from polarcheck.arrays import Columns, Floats, Mask, Rows, computed
 from polarcheck.columns.trace import Trace
 from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.table.overcuts import CutsOfRows, Overcuts
 from polarcheck.table.skipped_loops import SkippedLoops, SkipReason
 
 
-class Slots:
+class Slots(Columns, frozen=True):
     """Columns of one trace, one value per row: how deep it cuts into what another loop keeps, 0 for none."""
 
-    def __init__(self, trace: Trace, overcuts: Overcuts) -> None:
-        self.trace = trace
-        self.overcuts = overcuts
+    trace: Trace
+    overcuts: Overcuts
 
     @cached_property
     def _found(self) -> tuple[CutsOfRows, Mask, Rows]:

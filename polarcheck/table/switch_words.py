@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, is_among
+from polarcheck.arrays import Columns, Floats, Mask, is_among
 from polarcheck.columns.trace import Trace
 from polarcheck.machines.axes import INCREMENTS, numbers_of
 from polarcheck.machines.modal import Distance
@@ -18,12 +18,11 @@ from polarcheck.table.infeed import CUT, Infeed
 _KINDS = {"P": "linear", "Q": "rotary"}
 
 
-class SwitchWords:
+class SwitchWords(Columns, frozen=True):
     """Columns of one trace, over its executed words or its rows, as each says."""
 
-    def __init__(self, trace: Trace, infeed: Infeed) -> None:
-        self.trace = trace
-        self.infeed = infeed
+    trace: Trace
+    infeed: Infeed
 
     def _beside(self, *addresses: str) -> Mask:
         """Per executed word: of one of these addresses, with a good number, beside a G12.1 that begins a section."""

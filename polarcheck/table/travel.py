@@ -6,17 +6,16 @@ from functools import cached_property
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, repeated
+from polarcheck.arrays import Columns, Floats, Mask, repeated
 from polarcheck.columns.trace import Trace
 from polarcheck.table.tool_center import ToolCenter
 
 
-class Travel:
+class Travel(Columns, frozen=True):
     """Columns of one trace, one value per row."""
 
-    def __init__(self, trace: Trace, tool_center: ToolCenter) -> None:
-        self.trace = trace
-        self.tool_center = tool_center
+    trace: Trace
+    tool_center: ToolCenter
 
     # Most profiles have no limits: what nothing is compared with is not simulated.
 

@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Points, Rows
+from polarcheck.arrays import Columns, Floats, Mask, Points, Rows
 from polarcheck.columns.filling import before, fill_down
 from polarcheck.columns.trace import Trace
 from polarcheck.geometry.cutter_compensation.compensation import Phase
@@ -20,14 +20,13 @@ from polarcheck.table.slots import Slots
 from polarcheck.table.tool_center import ToolCenter
 
 
-class UncompensatedCuts:
+class UncompensatedCuts(Columns, frozen=True):
     """Columns of one trace, one value per row: how deep a move without compensation cuts the part, 0 for not at all."""
 
-    def __init__(self, trace: Trace, tool_center: ToolCenter, overcuts: Overcuts, slots: Slots) -> None:
-        self.trace = trace
-        self.tool_center = tool_center
-        self.overcuts = overcuts
-        self.slots = slots
+    trace: Trace
+    tool_center: ToolCenter
+    overcuts: Overcuts
+    slots: Slots
 
     @cached_property
     def _has_contour(self) -> Mask:

@@ -6,17 +6,16 @@ from functools import cached_property
 
 import numpy as np
 
-from polarcheck.arrays import Mask, Rows, different, repeated
+from polarcheck.arrays import Columns, Mask, Rows, different, repeated
 from polarcheck.columns.coordinates import MEANT_IN_INCREMENTS
 from polarcheck.columns.trace import Trace
 from polarcheck.machines.modal import FeedMode, Units
 
 
-class Unpointed:
+class Unpointed(Columns, frozen=True):
     """Columns over the words of the file: for how many numbers without a point each is reported, 0 where it is not."""
 
-    def __init__(self, trace: Trace) -> None:
-        self.trace = trace
+    trace: Trace
 
     @cached_property
     def in_increments(self) -> Rows:
