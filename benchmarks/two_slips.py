@@ -17,8 +17,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "tests"))
 
-from drawn_sections import sections
-from drawn_slips import SLIPS, gives_two_findings, loops, pairs, planted, rules_of
+from drawn_slips import SLIPS, gives_two_findings, loops, pairs, planted, rules_of, sound_sections
 
 
 def main() -> None:
@@ -28,7 +27,7 @@ def main() -> None:
     parser.add_argument("--sections", type=int, default=50)
     parser.add_argument("--seed", type=int, default=1)
     options = parser.parse_args()
-    drawn = [one for number, one in enumerate(sections(options.sections, options.seed)) if not rules_of(number, one)]
+    drawn = sound_sections(options.sections, options.seed)
     print(f"{len(drawn)} of {options.sections} sections are sound")
     for slip in SLIPS:
         draw, counts = random.Random(options.seed), Counter[int]()  # noqa: S311

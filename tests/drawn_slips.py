@@ -12,7 +12,7 @@ import re
 from collections.abc import Callable
 from typing import NamedTuple
 
-from drawn_sections import Section, number, program
+from drawn_sections import Section, number, program, sections
 from programs import report_of
 
 Blocks = list[str]
@@ -209,6 +209,11 @@ def rules_of(number: int, *written: Section, stock: float | None = None) -> list
     job = None if stock is None else {"stock": {"diameter": stock}}
     report = report_of(program(*written), CONTROLS[number % len(CONTROLS)], *tools, changes=limits, job=job)
     return [found.rule for found in report.findings if found.severity != "note"]
+
+
+def sound_sections(count: int, seed: int) -> list[Section]:
+    """Those of the drawn sections of which nothing is reported at the lowest limit of the C axis."""
+    return [section for section in sections(count, seed) if not rules_of(0, section)]
 
 
 class Pair(NamedTuple):

@@ -9,12 +9,12 @@ from __future__ import annotations
 import random
 
 import pytest
-from drawn_sections import Section, sections
-from drawn_slips import SLIPS, Slip, gives_two_findings, loops, pairs, planted, rules_of
+from drawn_sections import Section
+from drawn_slips import SLIPS, Slip, gives_two_findings, loops, pairs, planted, rules_of, sound_sections
 from programs import report_of
 
 #: Two of each family, on all controls.
-DRAWN = [section for number, section in enumerate(sections(12, 1)) if not rules_of(number, section)]
+DRAWN = sound_sections(12, 1)
 
 
 def test_the_drawn_sections_are_sound() -> None:
