@@ -27,7 +27,7 @@ not_on_windows = pytest.mark.skipif(sys.platform == "win32", reason="signals of 
 #: One step of GEOS that would take many minutes.
 TANGLE = """
 import numpy as np, shapely
-from polarcheck.geometry import areas
+from polarcheck.geometry.polygons import areas
 from polarcheck.time_limit import time_limit
 ends = np.random.default_rng(1).uniform(-50, 50, (40000, 2, 2))
 tangle = shapely.multilinestrings(shapely.linestrings(ends))
