@@ -206,7 +206,8 @@ class Rule(Documented, frozen=True):
         for other in rules.values():
             for what, span in other.doubts:
                 is_peer = other.subject == self.subject and span not in OF_CAUSE
-                if what in rests_on and not is_peer:
+                is_named = any(self.name in names for names in other.follows.values())  # it follows this one
+                if what in rests_on and not is_peer and not is_named:
                     reach = UNIT_OF[self.subject] if span == UNIT or self.subject == "infeed" else span
                     causes.setdefault(reach, []).append(other.name)
         return {span: causes[span] for span in SPANS if span in causes}
