@@ -66,10 +66,10 @@ def _known_encoding(ctx: click.Context, parameter: click.Parameter, value: str |
 
 
 def _in_bytes(ctx: click.Context, parameter: click.Parameter, value: str) -> int:
-    found = _SIZE.fullmatch(value)
+    match = _SIZE.fullmatch(value)
     size = 0
-    if found:
-        size = round(float(found[1]) * (1024 if found[3] else 1000) ** _PREFIXES.index((found[2] or " ").upper()))
+    if match:
+        size = round(float(match[1]) * (1024 if match[3] else 1000) ** _PREFIXES.index((match[2] or " ").upper()))
     if not size:
         raise click.BadParameter(f"{value!r}: expected a size above 0, such as 512MB, 2G, 100k or 4096 (bytes)")
     return size

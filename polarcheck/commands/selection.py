@@ -43,8 +43,8 @@ def _of_alarm(alarm: re.Match[str], known: Rules, machine: Machine) -> list[Rule
     letters, number = alarm[1].upper(), int(alarm[2])
     found = []
     for name, text in machine.alarms.items():
-        own = _ALARM.fullmatch(text)
-        if own and name in known and int(own[2]) == number and letters in ("", own[1].upper()):
+        match = _ALARM.fullmatch(text)
+        if match and name in known and int(match[2]) == number and letters in ("", match[1].upper()):
             found.append(known[name])
     return found
 

@@ -88,13 +88,13 @@ class _Reader:
 
     def keyword(self) -> str:
         """The macro word that stands here, spelled out; "" where there is none."""
-        found = _KEYWORD.match(self.text, self.at)
-        return _SHORT.get(found[0], found[0]) if found else ""
+        match = _KEYWORD.match(self.text, self.at)
+        return _SHORT.get(match[0], match[0]) if match else ""
 
     def take_keyword(self) -> str:
-        found = _KEYWORD.match(self.text, self.at)
-        self.at = found.end() if found else self.at
-        return _SHORT.get(found[0], found[0]) if found else ""
+        match = _KEYWORD.match(self.text, self.at)
+        self.at = match.end() if match else self.at
+        return _SHORT.get(match[0], match[0]) if match else ""
 
     def expression(self, *, whole: bool, condition: bool = False, kind: FaultKind = "format") -> Expression | None:
         """Read what gives a number, or a condition; where that fails, the rest of the block is lost."""
@@ -194,12 +194,12 @@ class _Reader:
 
     def loop(self, start: int) -> Number | None:
         """The number after DO or END, which stands at start."""
-        found = _DIGITS.match(self.text, self.at)
-        if found is None:
+        match = _DIGITS.match(self.text, self.at)
+        if match is None:
             self.wrong_rest("statement-format", start)
             return None
-        self.at = found.end()
-        loop = self.number(found[0], start)
+        self.at = match.end()
+        loop = self.number(match[0], start)
         if not 1 <= loop.value <= self.loops:
             self.wrong("loop-number", start, self.at)
         self.nothing_more()
@@ -292,8 +292,8 @@ class _Reader:
         place = self.characters.span(start, self.at)
         if self.lost and place[0] < self.lost[-1].end:
             return
-        found = _LOST.match(self.text, start)
-        shown = found[0] if found else address
+        match = _LOST.match(self.text, start)
+        shown = match[0] if match else address
         end = self.characters.span(start, start + len(shown))[1]
         self.lost.append(Unread(shortened(shown, _SHOWN), place[0], end, address in AXIS_LETTERS))
 
@@ -301,8 +301,8 @@ class _Reader:
         """The name of an axis with its = that stands here; "" where there is none, or where it is the end of a word."""
         if not self.has_equal or (self.at and self.text[self.at - 1].isalpha()):
             return ""
-        found = _NAMED.match(self.text, self.at)
-        return found[1] if found else next((n for n in self.names if self.text.startswith(f"{n}=", self.at)), "")
+        match = _NAMED.match(self.text, self.at)
+        return match[1] if match else next((n for n in self.names if self.text.startswith(f"{n}=", self.at)), "")
 
     def named(self, name: str) -> list[Word]:
         """A word with =: a number, or an expression, which needs no brackets there."""
@@ -318,9 +318,9 @@ class _Reader:
             self.at = len(self.text)
             unknown = constant(UNKNOWN, *place)
             return [Word(name, unknown, None, *self.characters.span(start, self.at))]
-        found = _WRITTEN.match(self.text, begin)
+        match = _WRITTEN.match(self.text, begin)
         value = self.expression(whole=True)
-        written = found[0] if found and found.end() == self.at else None
+        written = match[0] if match and match.end() == self.at else None
         return [Word(name, value, written, *self.characters.span(start, self.at))] if value else []
 
     def calculated(self, begin: int) -> Expression | None:

@@ -129,9 +129,9 @@ def _with_head(data: bytes, file: str, called: ProgramName) -> Source:
     number, name = called
     source = read(data, file)
     text = source.text
-    own = _OWN_NAME.search(text)
-    if own is not None:
-        own_name = own[1] or own[2]
+    match = _OWN_NAME.search(text)
+    if match is not None:
+        own_name = match[1] or match[2]
         if own_name.isdigit() and number is not None and int(own_name) == number:
             return source
         if name is not None and own_name.strip("<>").upper() == name.upper():

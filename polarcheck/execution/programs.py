@@ -129,9 +129,9 @@ class Programs:
         places = [(block, self.text.source.excerpt(*place).upper()) for block, *place in zip(*columns, strict=True)]
         pattern = re.compile(_LABEL, re.IGNORECASE)
         for block in np.flatnonzero(self.text.blocks.is_macro).tolist():
-            found = pattern.match(block_text(self.text, block))
-            if found:
-                places.append((block, (found[1] or found[2]).upper()))
+            match = pattern.match(block_text(self.text, block))
+            if match:
+                places.append((block, (match[1] or match[2]).upper()))
         labels: dict[int, dict[str, list[int]]] = {}
         for block, label in sorted(places):
             labels.setdefault(self._first_of(block), {}).setdefault(label, []).append(block)
@@ -161,9 +161,9 @@ class Programs:
         ]
         pattern = re.compile(_SEQUENCE_NUMBER, re.IGNORECASE)
         for block in np.flatnonzero(text.blocks.is_macro).tolist():
-            found = pattern.match(block_text(text, block))
-            if found and len(found[1]) < 10:
-                places.append((block, int(found[1])))
+            match = pattern.match(block_text(text, block))
+            if match and len(match[1]) < 10:
+                places.append((block, int(match[1])))
         targets: dict[int, dict[int, list[int]]] = {}
         for block, number in sorted(places):
             targets.setdefault(self._first_of(block), {}).setdefault(number, []).append(block)
@@ -226,9 +226,9 @@ def first_blocks(text: Text) -> list[int]:
 
 def turns(text: Text, codes: Iterable[str]) -> Mask:
     """Per block: macro statements, or some codes (calls, returns, program ends), at which the flow stops and looks."""
-    found = text.blocks.is_macro.copy()
-    found[text.words.block[is_code(text.words, codes)]] = True
-    return found
+    mask = text.blocks.is_macro.copy()
+    mask[text.words.block[is_code(text.words, codes)]] = True
+    return mask
 
 
 def needs_flow(text: Text, codes: Iterable[str]) -> bool:

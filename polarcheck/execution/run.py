@@ -122,12 +122,12 @@ def straight(text: Text, ends: Iterable[str]) -> Run:
 
 def is_code(words: Words, codes: Iterable[str]) -> Mask:
     """Per word: whether it is one of some G or M codes."""
-    found = np.zeros(len(words), bool)
+    mask = np.zeros(len(words), bool)
     for letter in "GM":
         index = np.flatnonzero(words.address == ord(letter))
         table = code_set([code for code in codes if code[0] == letter])
-        found[index] = table[code_numbers(words.value[index])]
-    return found
+        mask[index] = table[code_numbers(words.value[index])]
+    return mask
 
 
 def begins_program(words: Words) -> Mask:

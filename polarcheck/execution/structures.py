@@ -41,7 +41,7 @@ class Structures:
 
 def find_structures(statements: Sequence[tuple[int, Statement]]) -> Structures:
     """Pair the heads and ends of a program, given with their blocks in order; where an end is missing, that is all."""
-    found = Structures()
+    structures = Structures()
     open_heads: list[tuple[str, int]] = []
     open_of: Counter[str] = Counter()
     for block, statement in statements:
@@ -55,21 +55,21 @@ def find_structures(statements: Sequence[tuple[int, Statement]]) -> Structures:
                 continue
             wanted = "IF" if keyword == "ELSE" else CLOSES[keyword]
             if not open_of[wanted]:
-                found.faults.append(StructureFault("end-without-structure", block, keyword, wanted))
+                structures.faults.append(StructureFault("end-without-structure", block, keyword, wanted))
                 continue
             while open_heads[-1][0] != wanted:
                 head, at = open_heads.pop()
                 open_of[head] -= 1
-                found.faults.append(StructureFault("structure-without-end", at, head, _ENDS[head]))
+                structures.faults.append(StructureFault("structure-without-end", at, head, _ENDS[head]))
             _, at = open_heads[-1]
             if keyword == "ELSE":
-                found.other[at] = block
+                structures.other[at] = block
                 continue
             open_heads.pop()
             open_of[wanted] -= 1
-            found.end[at], found.head[block] = block, at
-            if at in found.other:
-                found.end[found.other[at]] = block
+            structures.end[at], structures.head[block] = block, at
+            if at in structures.other:
+                structures.end[structures.other[at]] = block
     for head, at in open_heads:
-        found.faults.append(StructureFault("structure-without-end", at, head, _ENDS[head]))
-    return found
+        structures.faults.append(StructureFault("structure-without-end", at, head, _ENDS[head]))
+    return structures

@@ -109,17 +109,17 @@ def _of_line(line: int, text: str, cells: list[str], columns: list[str] | None, 
         is_certain = columns is not None or len(cells) >= len(_USUAL) - 1
         raise NotUnderstoodError(line, f"{said}, found {_short(text)}", is_certain)
     given = dict(zip(names, cells, strict=False))
-    found = _OFFSET.fullmatch(given["number"])
-    if found is None:
+    match = _OFFSET.fullmatch(given["number"])
+    if match is None:
         raise NotUnderstoodError(line, f"expected the number of an offset, found {_short(given['number'])}")
-    is_geometry = found[1] == "G" or (not found[1] and not is_wear)
+    is_geometry = match[1] == "G" or (not match[1] and not is_wear)
     for key in ("radius", "nose", "x"):
         written = given.get(key, "")
-        if not written or not int(found[2]):
+        if not written or not int(match[2]):
             continue
         if _NUMBER.fullmatch(written) is None:
             raise NotUnderstoodError(line, f"expected a number as {_TITLES[key]}, found {_short(written)}")
-        yield Entry(line, int(found[2]), is_geometry, key, float(written.replace(",", ".")))
+        yield Entry(line, int(match[2]), is_geometry, key, float(written.replace(",", ".")))
 
 
 _TITLES = {"number": "NO.", "x": "X", "z": "Z", "radius": "R", "nose": "T", "other": "...", "": "..."}

@@ -61,22 +61,22 @@ def line_of(key: str, lines: Mapping[str, int]) -> int | None:
 
 def placed(title: str, said: str) -> str:
     """`polarcheck.toml:3: ...` for what tomllib says of a file (title), which names the line at its end."""
-    found = _AT_LINE.search(said)
-    if found is None:
+    match = _AT_LINE.search(said)
+    if match is None:
         return f"{title}: {said}"
-    return f"{title}:{found[1]}: {said[: found.start()]} at column {found[2]}{said[found.end() :]}"
+    return f"{title}:{match[1]}: {said[: match.start()]} at column {match[2]}{said[match.end() :]}"
 
 
 def located(said: str) -> str:
     """What is said of a machine file and a key of it, with the line: `lathe.toml:12: limits.c_fed: ...`."""
-    found = _OF_FILE_AND_KEY.match(said)
-    if found is None:
+    match = _OF_FILE_AND_KEY.match(said)
+    if match is None:
         return said
     try:
-        line = line_of(found[2].strip("\"'"), of_keys(toml_text.text_of(found[1], "machine file")))
+        line = line_of(match[2].strip("\"'"), of_keys(toml_text.text_of(match[1], "machine file")))
     except ValueError:
         return said
-    return f"{found[1]}:{line}{said[found.end(1) :]}" if line else said
+    return f"{match[1]}:{line}{said[match.end(1) :]}" if line else said
 
 
 #: The file, and the key as the different faults name it.
@@ -148,11 +148,11 @@ class _Scanner:
 
     def _part(self) -> str:
         quoted = _BASIC.match(self.text, self.at) or _LITERAL.match(self.text, self.at)
-        found = quoted or _BARE.match(self.text, self.at)
-        if found is None or (quoted and quoted[0][0] == '"' and "\\" in quoted[1]):
+        match = quoted or _BARE.match(self.text, self.at)
+        if match is None or (quoted and quoted[0][0] == '"' and "\\" in quoted[1]):
             raise _UnclearError
-        self.at = found.end()
-        return found[1] if quoted else found[0]
+        self.at = match.end()
+        return match[1] if quoted else match[0]
 
     def _value(self, key: tuple[str, ...]) -> Iterator[tuple[int, tuple[str, ...]]]:
         """Go behind a value; the keys of the tables in it."""
@@ -164,10 +164,10 @@ class _Scanner:
             yield from self._elements("]", key)
         else:
             patterns = (_LONG, _BASIC, _LITERAL, _SCALAR)
-            found = next(filter(None, (pattern.match(self.text, self.at) for pattern in patterns)), None)
-            if found is None:
+            match = next(filter(None, (pattern.match(self.text, self.at) for pattern in patterns)), None)
+            if match is None:
                 raise _UnclearError
-            self.at = found.end()
+            self.at = match.end()
 
     def _elements(self, end: str, key: tuple[str, ...]) -> Iterator[tuple[int, tuple[str, ...]]]:
         self.at += 1
@@ -197,5 +197,5 @@ class _Scanner:
                 raise _UnclearError
 
     def _skip(self) -> None:
-        found = _BLANK.match(self.text, self.at)
-        self.at = found.end() if found else self.at
+        match = _BLANK.match(self.text, self.at)
+        self.at = match.end() if match else self.at

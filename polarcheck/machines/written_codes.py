@@ -46,10 +46,10 @@ def plain(text: str) -> str:
     """A code in the form in which it is compared: `g098` is G98, `m3p12` is M3 P12; any other text as it is."""
     if _AS_IT_IS.fullmatch(text):
         return text
-    found = _CODE.fullmatch(text.strip(" "))
-    if found is None:
+    match = _CODE.fullmatch(text.strip(" "))
+    if match is None:
         return text.upper() if _ADDRESS.fullmatch(text) else text
-    letter, number, tenth, other, last, address, value = found.groups()
+    letter, number, tenth, other, last, address, value = match.groups()
     first = f"{letter.upper()}{number}" + (f".{tenth}" if tenth and tenth != "0" else "")
     if other:
         return f"{first}-{other.upper()}{last}"

@@ -84,9 +84,9 @@ class Repositories:
                 self._roots[here] = None
             else:
                 here = outer
-        found = self._roots[here]
-        self._roots.update(dict.fromkeys(passed, found))
-        return found
+        text = self._roots[here]
+        self._roots.update(dict.fromkeys(passed, text))
+        return text
 
 
 def changed(root: str, ref: str) -> set[str]:

@@ -192,9 +192,9 @@ def blank(code: Bytes, ranges: Ranges) -> None:
 def _has_text(code: Bytes, start: Positions, end: Positions) -> Mask:
     """Whether anything but blanks stands between the positions."""
     at, owner = _characters(Ranges(start, end), len(code))
-    found = np.zeros(len(start), bool)
-    found[owner[~_IS_BLANK[code[at]]]] = True
-    return found
+    mask = np.zeros(len(start), bool)
+    mask[owner[~_IS_BLANK[code[at]]]] = True
+    return mask
 
 
 def _within(inner: Ranges, outer: Ranges) -> Mask:

@@ -362,7 +362,7 @@ def _only(words: Words, chosen: Mask) -> Words:
 
 def _begins_statement(words: Words) -> Mask:
     """Letters that begin a macro statement such as GOTO 10."""
-    found = np.zeros(len(words), bool)
+    mask = np.zeros(len(words), bool)
     bare = np.flatnonzero((words.fault == NumberFault.NO_DIGITS) & _BEGINS_STATEMENT[words.address])
     if len(bare):
         is_head = np.append(True, words.block[1:] != words.block[:-1])
@@ -375,8 +375,8 @@ def _begins_statement(words: Words) -> Mask:
         for place, letter in enumerate(letters):
             at = first + place
             spelled &= (words.address[at] == letter) & ((words.fault[at] == NumberFault.NO_DIGITS) | (at == last))
-        found[first[spelled]] = True
-    return found
+        mask[first[spelled]] = True
+    return mask
 
 
 def _mark_alignment(words: Words, code: Bytes) -> None:
