@@ -139,7 +139,7 @@ def plan(
 
 
 def one_by_one(tasks: Iterable[Task], most: int = files.LARGEST) -> Generator[Outcome, None, None]:
-    """What comes of each file, checked in this process when it is asked for."""
+    """Yield the outcome of each file, checked in this process."""
     for number, task in enumerate(tasks):
         if number:
             forget()
@@ -188,7 +188,7 @@ def gather(
 
 
 def outcome(task: Task, most: int = files.LARGEST, data: bytes | None = None) -> Outcome:
-    """What comes of the check of a file, or of its bytes where somebody else has read them; nothing is raised."""
+    """Return the outcome of the check of a file, or of its bytes if they were read before; raises nothing."""
     try:
         found, source, called = _check(task, files.read(task.path, most) if data is None else data)
     except (SourceError, TooHardError) as error:
@@ -206,7 +206,7 @@ def outcome(task: Task, most: int = files.LARGEST, data: bytes | None = None) ->
 
 
 def fails(report: FileReport, settings: Settings) -> bool:
-    """Whether a file has a finding at or above the severity that fails, or is unverified where that fails, too."""
+    """Return True if a file has a finding at or above fail_on, or is unverified and the settings are strict."""
     told = any(check.reaches(found, settings.fail_on) for found in report.findings)
     return told or (settings.strict and report.verdict == "unverified")
 

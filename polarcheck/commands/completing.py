@@ -302,7 +302,7 @@ class _Bash(_Shell):
         return (words[1:], "") if is_new else (words[1:-1], words[-1] if len(words) > 1 else "")
 
     def stays(self, head: str) -> str:
-        """What stands behind the last character at which bash has parted the word."""
+        """Return the text behind the last character at which bash splits the word."""
         line, breaks = os.environ.get("COMP_WORDS", ""), os.environ.get("POLARCHECK_BREAKS", "")
         if _open_quote(line):
             return head
@@ -325,7 +325,7 @@ def _open_quote(line: str) -> str:
 
 
 def _ends_inside_a_word(line: str) -> bool:
-    """Whether the blank at the end of a line belongs to a word, by a quote or a backslash before it."""
+    """Return True if a quote or a backslash makes the blank at the end of a line part of a word."""
     return bool(_open_quote(line) or _open_quote(line[:-1]) == "\\")
 
 

@@ -30,7 +30,7 @@ NAMES = ("fix", "unsafe_fixes", "diff", "backup")
 
 
 class Wanted(NamedTuple):
-    """What of the fixes is asked for."""
+    """The options of --fix and --diff."""
 
     fix: bool
     unsafe_fixes: bool
@@ -39,7 +39,7 @@ class Wanted(NamedTuple):
 
 
 class Shown(NamedTuple):
-    """What the command line says of the output; outputs: whether reports in files are asked for."""
+    """The output options of the command line. outputs: reports are written to files."""
 
     quiet: bool
     color: bool
@@ -212,7 +212,7 @@ class _Work:
             show("".join(f"{line}\n" for line in lines).encode(), self.shown.color or None)
 
     def _count(self, outcome: Outcome, path: str) -> None:
-        """What was made, and what not, line by line; the lines are those of the file as it was."""
+        """Count and report the applied and the refused fixes, a line each; line numbers are those of the old file."""
         self.count += len(outcome.fixed)
         self.files += bool(outcome.fixed)
         self.left += outcome.left

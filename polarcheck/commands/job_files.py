@@ -54,7 +54,7 @@ class JobFile(msgspec.Struct, frozen=True):
 
     @property
     def has_entries(self) -> bool:
-        """Whether what applies hangs on the name of the program."""
+        """True if the settings depend on the name of the program."""
         return any(part.patterns or any(files for _, files in part.parts) for part in self.parts)
 
     def layers(self, folder: str, name: str) -> tuple[tuple[int, int], ...]:
@@ -96,11 +96,11 @@ class JobFile(msgspec.Struct, frozen=True):
 
     @property
     def exclude(self) -> Globs | None:
-        """What walks pass over, as the nearest file says it."""
+        """The excluded patterns of the nearest file."""
         return next((part.exclude for part in reversed(self.parts) if part.exclude is not None), None)
 
     def unmatched(self, names: Iterable[tuple[str, str]]) -> list[str]:
-        """What is to be said of patterns of the nearest file that match none of these programs (folder, name)."""
+        """Return a message for each pattern of the nearest file that matches none of these programs (folder, name)."""
         part = self.parts[-1] if self.parts else None
         if part is None or part.files is None:
             return []
@@ -204,7 +204,7 @@ def load(path: Path, *, pipes: bool = False) -> JobFile:
 
 
 def _part(path: Path, asked_by: str, *, pipes: bool) -> tuple[_Part, str | None]:
-    """What one file says, and the file that it extends. asked_by: the place that names it."""
+    """Return the part that a file gives, and the path of the file that it extends. asked_by: what names it."""
     before = f"{asked_by}: extend: " if asked_by else ""
     try:
         text = toml_text.text_of(path, "job file", pipes=pipes)

@@ -86,7 +86,7 @@ class Layer:
 
     @property
     def says_units(self) -> bool:
-        """Whether the lengths here have units of their own."""
+        """True if the lengths of this layer have units of their own."""
         return "units" in self._table
 
     @cached_property

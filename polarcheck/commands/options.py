@@ -25,7 +25,7 @@ class _Narrower(click.Option):
     """A choice with fewer values than that of `check` of the same name: from the environment it takes its own only."""
 
     def resolve_envvar_value(self, ctx: click.Context) -> str | None:
-        """What the environment says, unless that is a value which only `check` has."""
+        """The value of the environment, unless only `check` has it."""
         value = super().resolve_envvar_value(ctx)
         return value if isinstance(self.type, click.Choice) and value in self.type.choices else None
 

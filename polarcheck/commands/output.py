@@ -51,7 +51,7 @@ def show(text: str | bytes, color: bool | None = None, to_error: bool = False) -
 
 
 def nobody_reads(error: OSError) -> bool:
-    """Whether whoever read the output has gone; Windows calls that an invalid argument."""
+    """Return True if the reader of the output is gone; Windows reports an invalid argument."""
     return isinstance(error, BrokenPipeError) or (ON_WINDOWS and error.errno == errno.EINVAL)
 
 
@@ -64,7 +64,7 @@ def is_of_echo(error: BaseException) -> bool:
 
 
 def abandon_output() -> None:
-    """What is still to be written to standard output goes nowhere: at its end Python would try once more, and fail."""
+    """Discard the rest of standard output: at its end Python would try to write it once more, and fail."""
     with contextlib.suppress(OSError, ValueError, AttributeError):
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
@@ -80,7 +80,7 @@ def warn(message: str) -> None:
 
 
 def said_of_bug(error: Exception, with_traceback: bool) -> list[str]:
-    """What polarcheck did wrong, as lines for `say_lines`; with a traceback for whoever mends it."""
+    """Return the lines of an internal error for `say_lines`, with the traceback if requested."""
     if with_traceback:
         import traceback
 
@@ -112,7 +112,7 @@ def _tell(line: str) -> None:
 
 
 def is_terminal(stream: TextIO | None) -> bool:
-    """Whether a standard stream is one; a process may be started without."""
+    """Return True if a standard stream is a terminal; a process may be started without the stream."""
     return stream is not None and stream.isatty()
 
 
@@ -135,7 +135,7 @@ def columns() -> int:
 
 
 def draws_dots() -> bool:
-    """Whether standard output takes characters that are made of dots and blocks, and not ASCII alone."""
+    """Return True if standard output can encode block and Braille characters."""
     import codecs
 
     encoding = getattr(sys.stdout, "encoding", None) or "ascii"

@@ -56,7 +56,7 @@ def _real(path: str | Path) -> str:
 
 
 def _identity(path: str | Path) -> tuple[int, int] | None:
-    """Of the file itself, whatever its names; None where there is none, or a device, which nothing is lost in."""
+    """Return device and inode of a file; None if it does not exist, or is a device, which cannot be overwritten."""
     try:
         status = Path(path).stat()
     except (OSError, ValueError):

@@ -22,7 +22,7 @@ FORMAT = "html"
 
 
 def extras() -> tuple[Extra, ...]:
-    """What adds pictures to reports. Raises UsageError where plotly is missing, before anything is checked."""
+    """Return the functions that add pictures to reports. Raises UsageError if plotly is missing, before any check."""
     from polarcheck.pictures.drawing import drawn
     from polarcheck.pictures.library import require
 
@@ -39,7 +39,7 @@ def refuse(tasks: Sequence[Task], to_terminal: bool, example: str) -> None:
 
 
 def is_folder(path: Path) -> bool:
-    """Whether an output is a folder: one that is there, or a new one, whose name has no ending."""
+    """Return True if an output is a folder: an existing one, or a new name without an extension."""
     return path.is_dir() or not (path.suffix or path.exists())
 
 
@@ -68,15 +68,15 @@ class Apart:
             yield told
 
     def keep(self, outcome: Outcome, drawn: Drawn) -> None:
-        """What becomes of the pictures of a program."""
+        """Write the pictures of a program."""
         assert outcome.report is not None
         self.drawn[outcome.report.path] = drawn
 
     def begin(self, background: Background) -> None:
-        """What is to be done before the first program."""
+        """Prepare the output before the first program."""
 
     def end(self) -> None:
-        """What is left to be done behind all programs."""
+        """Finish the output after the last program."""
 
 
 class Folder(Apart):

@@ -1,4 +1,4 @@
-"""What the reports of a run are given beside its findings, and where they go besides standard output."""
+"""The context of the reports of a run, and the files that they are written to."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ paths = option("--show", "shown_too", type=click.Choice(["path"]), help="In text
 
 
 def extras(shown_too: str | None, form: str | None, outputs: Iterable[tuple[str, Path]]) -> tuple[Extra, ...]:
-    """What adds the paths to reports. Raises UsageError where they are asked for in a format that cannot show them."""
+    """Return the function that adds paths to reports. Raises UsageError for a format that cannot show them."""
     if shown_too is None:
         return ()
     for other in (form or _WITH_PATHS, *(form for form, _ in outputs)):
@@ -52,7 +52,7 @@ def extras(shown_too: str | None, form: str | None, outputs: Iterable[tuple[str,
 
 
 def background(plain: Background, tasks: Iterable[Task], failures: Sequence[str]) -> Background:
-    """What applied to each file, where paths begin, and what went wrong."""
+    """Return the context of a report: the settings of each file, the root of paths, and the failures."""
     folder = ""
     with contextlib.suppress(OSError):  # the working folder may be gone
         folder = os.getcwd()  # noqa: PTH109

@@ -28,7 +28,7 @@ _WORTH_PROCESSES = 200_000
 
 
 class Faults:
-    """What could not be read or done, and what polarcheck itself did wrong: lines for standard error."""
+    """The failures and internal errors of a run, as lines for standard error."""
 
     def __init__(self, debug: bool) -> None:
         """debug: whether bugs are told with their tracebacks."""
@@ -37,7 +37,7 @@ class Faults:
         self.bugs: list[str] = []
 
     def bug(self, error: Exception) -> None:
-        """What polarcheck did wrong."""
+        """Add an internal error."""
         self.bugs += said_of_bug(error, self._debug)
 
     def told(self) -> int:

@@ -1,4 +1,4 @@
-"""What applies to a program: the command line beats the job file nearest to it, which beats the machine."""
+"""The settings of a program: the command line overrides the nearest job file, which overrides the machine."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from polarcheck.reading.files import STANDARD_INPUT
 
 
 class Options(msgspec.Struct, frozen=True):
-    """What the command line asks for, as it is written there; empty where it does not say."""
+    """The options of the command line as written; empty if absent."""
 
     machine: str | None = None
     changes: Sequence[str] = ()
@@ -95,13 +95,13 @@ class OfPrograms:
         return self._making.applied(found, found.layers(real, name))
 
     def excluded_in(self, folder: str) -> Callable[[str, bool], bool] | None:
-        """What of a folder a walk passes over, as the job file nearest to it says; see files.walk."""
+        """Return the test for entries that the nearest job file excludes, if it excludes any; see files.walk."""
         found, real = self._job_file(folder)
         exclude = found.exclude
         return (lambda name, is_folder: bool(exclude.itself(real, name, is_folder=is_folder))) if exclude else None
 
     def is_within_excluded(self, path: str) -> bool:
-        """Whether a walk from above would pass over a file or folder that is named, or over a folder around it."""
+        """Return True if a walk from above would skip a named file or folder, or a folder around it."""
         folder, name = os.path.split(path.rstrip(os.sep) or path)
         found, real = self._job_file(folder)
         if not found.exclude or path == STANDARD_INPUT:
@@ -112,7 +112,7 @@ class OfPrograms:
         return bool(found.exclude.of_folder(real) or found.exclude.itself(real, name, is_folder=is_folder))
 
     def left(self, paths: Sequence[str], warn: Callable[[str], None]) -> tuple[str, ...]:
-        """Those of some paths that are not excluded; warn is told where none is left."""
+        """Return the paths that are not excluded; calls warn if none is left."""
         left = tuple(path for path in paths if not self.is_within_excluded(path))
         if not left:
             warn("all that is named is excluded: nothing is checked")
@@ -154,7 +154,7 @@ Layers = tuple[tuple[int, int], ...]
 
 
 class Applied(msgspec.Struct, frozen=True):
-    """What applies to a program, with where it comes from: the job as files say it, and its machine."""
+    """The settings of a program and their origin: the job as files give it, and its machine."""
 
     settings: Settings
     merged: Merged
@@ -230,7 +230,7 @@ class _Making:
 
 
 def _with_line(said: str, merged: Merged) -> str:
-    """What is said of [limits], with the line of the key."""
+    """Return the message about [limits], with the line of the key."""
     key = re.search(r"limits\.\w+", said)
     for layer in merged.layers if key else ():
         if key and said.startswith((f"{layer.title}: {key[0]}", f"{layer.title}: unknown key")):

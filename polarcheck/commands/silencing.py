@@ -1,4 +1,4 @@
-"""What is silenced, and the options that say so: allow comments of programs, findings of a baseline."""
+"""Options for suppressed findings: allow comments of programs, findings of a baseline."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ class Known(NamedTuple):
 
 
 def answered(outcomes: Iterable[Outcome], tasks: Sequence[Task], baseline: Known | None) -> Iterator[Outcome]:
-    """What comes of each file, with the findings of a baseline silenced; at the end what no longer occurs is told."""
+    """Yield each outcome with known findings suppressed; at the end warn of entries that no longer occur."""
     if baseline is None:
         yield from outcomes
         return
@@ -69,7 +69,7 @@ def answered(outcomes: Iterable[Outcome], tasks: Sequence[Task], baseline: Known
 
 
 def answers(tasks: Sequence[Task], baseline: Known | None) -> Callable[[FileReport], FileReport] | None:
-    """What silences the findings of a baseline in a report, where there is one."""
+    """Return the function that suppresses the findings of a baseline in a report; None without a baseline."""
     return None if baseline is None else _answering(_baseline(tasks, baseline), settings_of(tasks))
 
 
@@ -90,7 +90,7 @@ def _baseline(tasks: Iterable[Task], known: Known) -> Baseline:
 
 
 def settings_of(tasks: Iterable[Task]) -> dict[str, Settings]:
-    """What applies to each file, by its path as reports have it."""
+    """Return the settings of each file, by its path as reports have it."""
     return {task.title: task.settings for task in tasks}
 
 
@@ -104,7 +104,7 @@ def evaluated(report: FileReport, settings: Settings) -> Collection[str]:
 
 
 def _tell(known: Baseline, path: Path) -> None:
-    """What is known and no longer occurs, and which files were moved, a line each."""
+    """Warn of known findings that no longer occur, and of moved files, a line each."""
     from polarcheck.reading import files
     from polarcheck.reports import counted
 

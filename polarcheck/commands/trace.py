@@ -91,7 +91,7 @@ def trace(
 
 
 def _show_paths(channels: Sequence[Tables], is_colored: bool) -> None:
-    """What is seen of each section, as wide as the terminal."""
+    """Show the picture of each section, as wide as the terminal."""
     from polarcheck.pictures.painting import plain
     from polarcheck.pictures.section_view import views_of
     from polarcheck.reports import painted

@@ -41,7 +41,7 @@ Check = Callable[[Sequence["Task"]], contextlib.AbstractContextManager[Generator
 
 
 class Seen:
-    """What was looked at for the last result, and what came of each program."""
+    """The files that the last result depends on, and the outcome of each program."""
 
     def __init__(self, paths: Sequence[str], written: Iterable[Path] = ()) -> None:
         """written: what the runs themselves write, which is no change."""
@@ -52,7 +52,7 @@ class Seen:
 
     @contextlib.contextmanager
     def outcomes(self, tasks: Sequence[Task], check: Check) -> Iterator[Generator[Outcome, None, None]]:
-        """What comes of each task, in order; only those are checked of which something has changed."""
+        """Yield the outcome of each task, in order; only changed programs are checked again."""
         looks = [self._of(task) for task in tasks]
         self._look = {path: self._state(path) for path in _surroundings(self._asked)}
         for look in looks:
@@ -80,7 +80,7 @@ class Seen:
         return {path: self._state(path) for path in sorted(files)}
 
     def changed(self) -> list[str]:
-        """What has changed since the last result began; empty where nothing has."""
+        """Return the paths that have changed since the last result began."""
         return [path for path, state in self._look.items() if self._state(path) != state]
 
     def states(self, paths: Iterable[str]) -> Look:
@@ -88,14 +88,14 @@ class Seen:
         return {path: self._state(path) for path in paths}
 
     def keep_looking(self) -> None:
-        """What has changed by now is known: it could not be checked."""
+        """Take the present state as seen: it could not be checked."""
         self._look = {path: self._state(path) for path in self._look}
 
     def _state(self, path: str) -> State:
         return state(path, self._of_folder)
 
     def _of_folder(self, path: str, number: int) -> State:
-        """Of a folder it counts what lies in it: its time changes with each report that is written there."""
+        """For a folder its entries count: its time changes with each report that is written there."""
         with os.scandir(path) as entries:
             names = sorted(one.name for one in entries if not one.name.startswith("."))
         written = [name for name in names if os.path.realpath(os.path.join(path, name)) not in self._written]  # noqa: PTH118

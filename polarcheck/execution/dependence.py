@@ -1,4 +1,4 @@
-"""Whether a program calls, directly or through others, a file that has changed."""
+"""Programs that call a changed file, directly or through others."""
 
 from __future__ import annotations
 

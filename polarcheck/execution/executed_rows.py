@@ -78,12 +78,12 @@ class ExecutedRows:
         self.unknown.append(self.count - 1)
 
     def moves(self, words: Sequence[tuple[Word, float]]) -> bool:
-        """Whether any of these words moves an axis."""
+        """Return True if any of these words moves an axis."""
         letters = self.machine.axis_words
         return any(word.address[0] in AXIS_LETTERS if word.is_named else word.address in letters for word, _ in words)
 
     def ends(self, block: int) -> bool:
-        """Whether a plain block ends the program."""
+        """Return True if a plain block ends the program."""
         return block in self.ending
 
     def filled(self, first: int, end: int) -> list[int]:

@@ -164,7 +164,7 @@ class _Reader(SpokenBlock):
             self.leave_unread(f"{first.text}({given})", first)
 
     def takes_value(self) -> bool:
-        """Whether an = follows, or [ ] with = behind."""
+        """Return True if = follows, or [ ] and then =."""
         if not self.is_sign("["):
             return self.is_sign("=")
         at = self.at

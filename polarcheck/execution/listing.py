@@ -91,7 +91,7 @@ class Listing:
         return languages.READERS[macro.language](text, self.machine, self.names, read)
 
     def turns_at(self, block: int) -> bool:
-        """Whether the flow can turn at a block."""
+        """Return True if the flow can turn at a block."""
         at = bisect.bisect_left(self.stops, block)
         return at < len(self.stops) and self.stops[at] == block
 
@@ -149,7 +149,7 @@ class Listing:
         return self._calls[file]
 
     def computes_calls(self, file: int) -> bool:
-        """Whether a file has a call of which its text does not say which program is meant."""
+        """Return True if a file has a call whose program is computed."""
         blocks = np.flatnonzero(turns(self.files[file], self._call_codes)) + self.first_blocks[file]
         return any(self._call_in(block) == _COMPUTED for block in blocks.tolist())
 

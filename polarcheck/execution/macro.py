@@ -32,7 +32,7 @@ class _Locals:
 
 
 class VariableKind(enum.Enum):
-    """What a number of a variable is on a control."""
+    """The kind of a variable number on a control."""
 
     NONE = enum.auto()
     VACANT = enum.auto()  # #0
@@ -65,7 +65,7 @@ class Variables:
         return len(self._levels) - 1
 
     def kind(self, number: float) -> VariableKind:
-        """What a variable of this number is; one that is not whole is rounded."""
+        """Return the kind of a variable number, rounded to a whole one."""
         if not -0.5 < number < 1e9:
             return VariableKind.NONE
         whole = _whole(number)
@@ -74,7 +74,7 @@ class Variables:
         return self._kinds[whole]
 
     def exists(self, number: float) -> bool:
-        """Whether the control has a variable of this number."""
+        """Return True if the control has a variable of this number."""
         return self.kind(number) is not VariableKind.NONE
 
     def value(self, number: float) -> Value:
@@ -218,7 +218,7 @@ _SETS: Final = 10
 
 @dataclass(frozen=True, slots=True)
 class Arguments:
-    """What a call hands over: the local variables by number; sets: how many sets of I J K; the first fault."""
+    """The arguments of a call: local variables by number, the number of I J K sets, the first fault."""
 
     values: dict[int, Value]
     sets: int

@@ -45,5 +45,5 @@ class Names:
         return self.variable(name)
 
     def is_declared(self, name: str) -> bool:
-        """Whether a program defines a variable of this name."""
+        """Return True if a program defines a variable of this name."""
         return name.upper() in self.declared

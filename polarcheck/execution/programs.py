@@ -232,7 +232,7 @@ def turns(text: Text, codes: Iterable[str]) -> Mask:
 
 
 def needs_flow(text: Text, codes: Iterable[str]) -> bool:
-    """Whether the blocks of a file are to be executed one after another, or can be taken as they stand."""
+    """Return True if the blocks of a file must be executed one by one; else they run from top to bottom."""
     return bool(np.any(turns(text, codes)) or np.any(text.words.address == ord("/")) or len(text.names))
 
 

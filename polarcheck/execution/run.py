@@ -1,4 +1,4 @@
-"""What an execution gives: the executed blocks in order, the words of each, and what was found and not known."""
+"""The result of an execution: the executed blocks in order, their words, faults and remarks."""
 
 from __future__ import annotations
 

@@ -105,6 +105,6 @@ def _without_values(job: Job, machine: Machine, others: Iterable[Text]) -> Job:
 
 
 def _skips_macro(text: Text) -> bool:
-    """Whether a block with macro begins with / or has one that is no division."""
+    """Return True if a macro block of the text begins with / or has one that is no division."""
     blocks = np.flatnonzero(text.blocks.is_macro).tolist()
     return any(re.match(r"\s*(?:N\s*\d+\s*)?/", block_text(text, block), re.IGNORECASE) for block in blocks)

@@ -101,7 +101,7 @@ class SpokenBlock(Tokens):
     # ---- what tokens say ----
 
     def effect(self, name: str) -> str | None:
-        """What a statement of this name does to the path of the tool, by macro.statements; None where it is in none."""
+        """Return the effect of a statement on the tool path, by macro.statements; None if it is not listed."""
         found = self.names.effects
         if name not in found:
             listed: Mapping[str, str] = self.machine.macro.statements
@@ -118,7 +118,7 @@ class SpokenBlock(Tokens):
         return written
 
     def value(self) -> tuple[Expression | None, str | None, Distance | None]:
-        """What follows an =: its expression, the number where it is one, and whether it says coordinate or distance."""
+        """Read the value behind =: its expression, its number if it is one, and absolute or incremental."""
         token = self.token
         if token.kind == "name" and self.is_sign("(", 1) and token.text in _DISTANCES:
             self.at += 2

@@ -1,4 +1,4 @@
-"""What one block says, with the place of each of its parts, whatever the language in which it is written."""
+"""A statement of one block, with the place of each of its parts, the same for all languages."""
 
 from __future__ import annotations
 
@@ -80,12 +80,12 @@ class Word(msgspec.Struct, frozen=True):
 
     @property
     def is_named(self) -> bool:
-        """Whether the address is the name of an axis, as in C2=10."""
+        """True if the address is the name of an axis, as in C2=10."""
         return len(self.address) > 1 and self.address[0] != ","
 
     @property
     def has_point(self) -> bool:
-        """Whether the value is not in least increments: a number with a decimal point, or a calculated value."""
+        """True if the value is not in least increments: a number with a decimal point, or a calculated value."""
         return self.written is None or "." in self.written
 
 

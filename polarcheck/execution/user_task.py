@@ -70,7 +70,7 @@ class _Block(Values):
         return replace(parts[0], more=tuple(parts[1:]), unread=tuple(self.unread))
 
     def read_as(self, rewriting: Rewriting) -> Statement:
-        """What custom macro reads, with block skip and sequence number before it."""
+        """Read a rewritten block by the custom macro reader, with block skip and sequence number before it."""
         return self.read(self.head.before(rewriting))
 
     def heads(self) -> None:

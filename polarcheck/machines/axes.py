@@ -39,7 +39,7 @@ def address_number(address: str, names: Sequence[str]) -> int:
 
 
 def is_rotary(name: str) -> bool:
-    """Whether an axis of that name is a rotary one: A, B, C, H, or with a number as C2."""
+    """Return True for the name of a rotary axis: A, B, C, H, or with a number, as C2."""
     return name[:1] in _NAMES["rotary"] and bool(name)
 
 

@@ -33,7 +33,7 @@ class AxisNames(NamedTuple):
 
 
 def axis_names(merged: Mapping[str, Any]) -> AxisNames | None:
-    """Those of what is merged so far; None where it does not say all of them, or not as texts."""
+    """Return the axes of the merged profile so far; None if some are missing, or are no texts."""
     polar = merged.get("polar")
     if not isinstance(polar, Mapping):
         return None
@@ -112,7 +112,7 @@ def _followed(name: str, named_axes: Mapping[str, Any]) -> str:
 
 
 def _rename(merged: dict[str, Any], inherited: AxisNames, put: Callable[[str, Any, str], None]) -> None:
-    """What the profile inherits of the rotary axis, under its new name."""
+    """Copy the inherited keys of the rotary axis to its new name."""
     polar, cause = merged["polar"], "polar.rotary_address"
     old, new = inherited.rotary, (polar["rotary_address"], polar["rotary_incremental"])
     if inherited.virtual[0] == old[0]:

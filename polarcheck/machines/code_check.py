@@ -1,4 +1,4 @@
-"""Whether the code lists of a machine hold codes, and no code stands for two states."""
+"""Checks of a machine's code lists: they hold codes, and no code stands for two states."""
 
 from __future__ import annotations
 

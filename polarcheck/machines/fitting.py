@@ -84,7 +84,7 @@ def _is_finite(value: Any) -> bool:
 
 
 def _misfits(part: _Part) -> Iterator[MisfitError]:
-    """What does not fit, the innermost values first: the table around one fits only if they do."""
+    """Yield the values that do not fit, innermost first: a table fits only if its values do."""
     kind = _bare(part.kind)
     if isinstance(part.value, Mapping):
         if isinstance(kind, type) and issubclass(kind, msgspec.Struct):
@@ -162,7 +162,7 @@ _PLURAL = {float: "numbers", int: "whole numbers", str: "texts"}
 
 
 def _expected(kind: Any) -> str:
-    """What a type holds, in words."""
+    """Return the description of a type."""
     given = get_args(kind)
     if get_origin(kind) in (Union, types.UnionType):
         return " or ".join(_expected(one) for one in given if one is not type(None))
@@ -179,7 +179,7 @@ def _expected(kind: Any) -> str:
 
 
 def _bounds(meta: msgspec.Meta) -> str:
-    """What is expected of a size; bounds that nobody comes near are left out."""
+    """Return the expected range of a number, without bounds that no value comes near."""
     if meta.min_length:
         return ", at least one"
     most = meta.le if meta.le not in _BEYOND else None
@@ -219,7 +219,7 @@ def shown(value: Any) -> str:
 
 
 def _with_point(part: _Part) -> str:
-    """What to write for a number with a decimal comma."""
+    """Return the hint for a number with a decimal comma."""
     text = part.value
     if _bare(part.kind) is float and isinstance(text, str) and re.fullmatch(r"[-+]?\d*,\d+", text.strip()):
         return f"; write {text.strip().replace(',', '.')}, with a decimal point"

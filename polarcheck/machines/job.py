@@ -228,7 +228,7 @@ def key_of_option(option: str) -> str:
 
 
 def _parts_of_tool(option: str) -> tuple[str, str]:
-    """What stands before the colon, and the keys behind it: a name may hold colons, blanks, and stand in quotes."""
+    """Split an option into name and keys at its colon; a name may hold colons, blanks and quotes."""
     first, colon, rest = option.partition(":")
     name = _plain_number(first.strip(), option) if colon else None
     if name is not None:

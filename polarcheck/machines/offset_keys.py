@@ -43,5 +43,5 @@ def key_of(tool: str, edge: int) -> str:
 
 
 def is_plain_number(key: str) -> bool:
-    """Whether it is the number of an offset, which every control has, and names no tool and no edge."""
+    """Return True for a plain offset number, which names no tool and no edge."""
     return key.isdecimal()

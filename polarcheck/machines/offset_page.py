@@ -95,7 +95,7 @@ def _cells(line: str) -> list[str]:
 
 
 def _columns(cells: list[str]) -> list[str] | None:
-    """What the columns are, where the cells name them; None for another line."""
+    """Return the columns if the cells name them; None for another line."""
     names = [_NAMES.get(re.sub(r"[^A-Z#]", "", cell), "") for cell in cells]
     return names if "radius" in names and not any(map(_NUMBER.fullmatch, cells)) else None
 

@@ -75,7 +75,7 @@ def _blank(match: re.Match[str]) -> str:
 
 
 def _punched(text: str, units: Units | None) -> Iterator[Entry]:
-    """What G10 blocks set. Raises NotUnderstoodError for another one."""
+    """Yield the values that G10 blocks set. Raises NotUnderstoodError for any other block."""
     words: list[tuple[int, str, dict[str, str]]] = []
     problem: NotUnderstoodError | None = None
     for line, block in _blocks(text):

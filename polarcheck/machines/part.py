@@ -152,7 +152,7 @@ class Part(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
 
     @property
     def count_of_sides(self) -> int:
-        """Of a regular polygon, or of flats; 0 for other shapes."""
+        """The number of sides of a regular polygon or of flats; 0 for other shapes."""
         if self.shape in ("flats", "flat"):
             return self.count or (2 if self.shape == "flats" else 1)
         return SIDES.get(self.shape or "", self.sides or 0)

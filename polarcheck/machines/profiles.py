@@ -178,7 +178,7 @@ def _find(name: str, folder: Path) -> tuple[Path, str]:
 
 @functools.cache
 def _built_in(path: Path) -> dict[str, Any]:
-    """What stands in a file of ours: most profiles inherit from the same ones."""
+    """Return the contents of a built-in file; most profiles inherit from the same ones."""
     import tomllib
 
     return tomllib.loads(path.read_text("utf-8"))
@@ -285,7 +285,7 @@ def _origin(said: Mapping[str, Any], of_table: Origin) -> Origin:
 
 
 def _is_table(key: str) -> bool:
-    """Whether the value of a key is a table itself."""
+    """Return True if the value of a key is a table itself."""
     group, _, last = key.partition(".")
     return group == "known_parameters" or any(
         field.name == last and get_origin(field.type) is dict for field in _fields(group)
@@ -332,7 +332,7 @@ def _objection(misfit: MisfitError, origins: Mapping[str, Origin], titles: Seque
 
 
 def _unknown_key(written: str, origins: Mapping[str, Origin]) -> str:
-    """What is told of a key that stands in another table, or is the number of a parameter."""
+    """Return the hint for a key of another table, or for the number of a parameter."""
     key = written.rpartition(".")[2]
     if f"known_parameters.{key}" in origins:
         return f"unknown key {written}; it is a parameter of the control: write it under [parameters]"

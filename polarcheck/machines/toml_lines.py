@@ -68,7 +68,7 @@ def placed(title: str, said: str) -> str:
 
 
 def located(said: str) -> str:
-    """What is said of a machine file and a key of it, with the line: `lathe.toml:12: limits.c_fed: ...`."""
+    """Return a message about a key of a machine file, with its line: `lathe.toml:12: limits.c_fed: ...`."""
     match = _OF_FILE_AND_KEY.match(said)
     if match is None:
         return said

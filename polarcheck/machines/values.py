@@ -1,4 +1,4 @@
-"""What values of a profile or job can be, where a type alone does not say it; messages tell what was expected."""
+"""Value checks of profiles and jobs that a type cannot express; their messages say what was expected."""
 
 from typing import Annotated, TypeAlias
 

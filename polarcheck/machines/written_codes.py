@@ -38,7 +38,7 @@ class ListError(ValueError):
 
 
 def is_list(key: str) -> bool:
-    """Whether a key with its table, as in `polar.allowed_codes`, holds a list of codes."""
+    """Return True if a key with its table, as in `polar.allowed_codes`, holds a list of codes."""
     return key in EVERY or key == _FURTHER_KEY or key.partition(".")[0] == _FURTHER_TABLE
 
 
@@ -111,7 +111,7 @@ def is_change(text: Any) -> bool:
 
 
 def holds(codes: Iterable[Any], code: str) -> bool:
-    """Whether a list has a code, be it in a range; of a range, all codes of it."""
+    """Return True if a list contains a code or range, ranges of the list included."""
     listed = list(codes)
     if code in listed or not is_code(code):
         return code in listed

@@ -42,13 +42,13 @@ def channels(source: Source, mark: str, line_comments: str = "") -> list[Source]
 
 
 def channel_like(source: Source, other: Source, mark: str, line_comments: str) -> Source:
-    """Of a file that is read anew the channel that another reading of it is; itself where it has no such channel."""
+    """Return the channel of a re-read file that corresponds to another source, or the file itself."""
     found = channels(source, mark, line_comments) if other.channel else []
     return next((one for one in found if one.channel == other.channel), source)
 
 
 def stands_in(channel: Source, line: int) -> bool:
-    """Whether anything of a line, from 1, stands in a channel."""
+    """Return True if any part of a line, from 1, belongs to a channel."""
     start, *end = channel.line_starts[line - 1 : line + 1].tolist()
     return bool(channel.code[start : end[0] if end else None].tobytes().strip())
 

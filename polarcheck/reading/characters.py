@@ -1,4 +1,4 @@
-"""What each character of a text is to the reader of words."""
+"""The class of each character of a text, for the reader of words."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from polarcheck.reading.surroundings import BLANKS
 
 
 class Character(enum.IntEnum):
-    """What a character is to the reader; above COMMA what is no part of a word."""
+    """The class of a character; those above COMMA are no part of a word."""
 
     BLANK = 0
     LETTER = 1

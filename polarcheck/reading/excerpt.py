@@ -17,7 +17,7 @@ _BEFORE = 24
 
 
 class Excerpt(NamedTuple):
-    """What to show of a line, and where to underline it: cells from the left, number of cells."""
+    """The part of a line to show, and where to underline it: cells from the left, number of cells."""
 
     text: str
     first: int

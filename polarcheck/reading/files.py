@@ -80,7 +80,7 @@ def walk(
 def _entries(
     folder: str, seen: set[tuple[int, int] | str], failed: Callable[[str], None], excluded_in: ExcludedIn | None
 ) -> Iterator[os.DirEntry[str]]:
-    """What lies in a folder, by name; nothing where it has been seen or cannot be read."""
+    """Return the entries of a folder by name; none if it was visited before or cannot be read."""
     try:
         status = Path(folder).stat()
         # Some network drives of Windows number nothing: there all folders would be one.
@@ -107,14 +107,14 @@ def _is_folder(entry: os.DirEntry[str]) -> bool:
 
 
 def is_program(path: str, wanted: Collection[str]) -> bool:
-    """Whether a file of a folder is an NC program, by its extension, its name, or its first lines."""
+    """Return True if a file of a folder is an NC program, by its extension, its name, or its first lines."""
     if has_name_of_program(path, wanted):
         return not _is_special(path)
     return _suffix(path) in _SNIFFED and not _is_special(path) and _looks_like_program(path)
 
 
 def has_name_of_program(path: str, wanted: Collection[str]) -> bool:
-    """Whether the name alone is that of an NC program: one of these extensions, or an O-number."""
+    """Return True for the name of an NC program: one of these extensions, or an O-number."""
     return _suffix(path) in wanted or re.fullmatch(_O_NAME, Path(path).name) is not None
 
 
@@ -168,7 +168,7 @@ def read(path: str, most: int = LARGEST) -> bytes:
 
 
 def size(path: str) -> int:
-    """Of a file [bytes]; 0 where nobody knows."""
+    """Return the size of a file [bytes]; 0 if unknown."""
     try:
         return os.stat(path).st_size  # noqa: PTH116  thousands of them, and Path.stat raises for some names
     except (OSError, ValueError):
@@ -176,7 +176,7 @@ def size(path: str) -> int:
 
 
 def is_standard_input(path: str) -> bool:
-    """Whether a path means standard input."""
+    """Return True if a path means standard input."""
     return path in _STANDARD_INPUTS
 
 

@@ -1,4 +1,4 @@
-"""What git says of a working folder: which files differ from a commit. It is asked, and changes nothing."""
+"""Files of a working folder that differ from a commit, by git; nothing is changed."""
 
 from __future__ import annotations
 
@@ -182,7 +182,7 @@ def _missing(root: str, ref: str) -> str:
 
 
 def _output(root: str, ref: str, *words: str, options: Sequence[str] = ()) -> bytes:
-    """What a command of git prints. Raises UsageError with its first message where it fails."""
+    """Return the output of a git command. Raises UsageError with its first message if it fails."""
     status, output, said = _git(root, ref, *words, options=options)
     if status:
         raise _refusal(ref, words[0], said)

@@ -46,7 +46,7 @@ class Globs:
         return self.of_folder(folder) | self.itself(folder, name, is_folder=False)
 
     def of_folder(self, folder: str) -> frozenset[int]:
-        """Those that match a folder or one around it, from the base on."""
+        """Return the numbers of patterns that match a folder or a folder around it, from the base on."""
         if folder in self._of_folder:
             return self._of_folder[folder]
         passed = []
@@ -65,7 +65,7 @@ class Globs:
         return found
 
     def itself(self, folder: str, name: str, *, is_folder: bool) -> frozenset[int]:
-        """Those that match what lies in a folder by itself, whatever is said of the folder."""
+        """Return the numbers of patterns that match an entry of a folder, whether or not the folder itself matches."""
         own = folded(name)
         found: set[int] = set()
         found |= self._names.get(own, found)
@@ -111,7 +111,7 @@ class Globs:
 
 
 def is_pattern(text: str) -> bool:
-    """Whether a text means some files. `!`, which takes some out again elsewhere, means nothing here, nor `[z-a]`."""
+    """Return True for a usable pattern. `!`, which elsewhere includes files again, and `[z-a]` are not."""
     if not text.strip("/\\ ") or text.startswith("!"):
         return False
     try:

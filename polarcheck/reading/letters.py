@@ -109,7 +109,7 @@ def _in_block(block: bytes) -> list[int]:
 
 
 def _may_be_number(block: bytes, word: re.Match[bytes], first_numbered: int) -> bool:
-    """Whether letters in the number of a word can be digits, and are not a word of prose."""
+    """Return True if the letters in the number of a word can be digits, and are not prose."""
     address, number = word[1].upper(), word[2].upper().lstrip(b"+-\x96")
     if number.count(b".") > 1 or _OTHER_O.fullmatch(word[0]):
         return False

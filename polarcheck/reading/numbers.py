@@ -14,7 +14,7 @@ Masks = NDArray[np.uint64]
 
 
 class NumberFault(enum.IntEnum):
-    """What is wrong with a word."""
+    """The fault of the number of a word."""
 
     NONE = 0
     NO_DIGITS = 1

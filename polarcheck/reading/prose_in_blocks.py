@@ -135,7 +135,7 @@ def _end_of(written: Bytes) -> int:
 
 
 def _has_letters(source: Source, text: bytes, at: int) -> bool:
-    """Of text without letters of ASCII some must be letters of another script, and not full-width ones or any bytes."""
+    """Return True if text without ASCII letters holds letters of another script, but no full-width ones."""
     if _ASCII.search(text) or text[:1] == b"|":
         return True
     others = sum(character >= 0x80 for character in text)

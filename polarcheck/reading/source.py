@@ -78,7 +78,7 @@ class Source(msgspec.Struct, frozen=True, dict=True):
         return (found[-1].name, max(line - found[-1].first_line + 1 - found[-1].added_lines, 1)) if found else None
 
     def is_own(self, part: tuple[str, int]) -> bool:
-        """Whether what part_of gives is a line of the file itself: of another of its channels."""
+        """Return True for a line of the file itself that belongs to another of its channels."""
         return bool(self.channel) and part[0] == self.path
 
     def line_text(self, line: int) -> str:
@@ -100,7 +100,7 @@ def read(data: bytes, path: str = "-", encoding: str | None = None) -> Source:
 
 
 def is_encoding(name: str) -> bool:
-    """Whether a name is that of an encoding of texts: Python's rot13 and base64 are codecs, too, and are of none."""
+    """Return True for the name of a text encoding; Python's codecs rot13 and base64 are none."""
     try:
         "O".encode(name)
     except (LookupError, ValueError):

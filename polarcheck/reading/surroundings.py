@@ -190,7 +190,7 @@ def blank(code: Bytes, ranges: Ranges) -> None:
 
 
 def _has_text(code: Bytes, start: Positions, end: Positions) -> Mask:
-    """Whether anything but blanks stands between the positions."""
+    """Return a mask of the spans that hold more than blanks."""
     at, owner = _characters(Ranges(start, end), len(code))
     mask = np.zeros(len(start), bool)
     mask[owner[~_IS_BLANK[code[at]]]] = True

@@ -46,7 +46,7 @@ def _translation(
 
 
 def _beginning(words: Collection[bytes]) -> bytes:
-    """What the first two characters must be: nearly every place of a program is passed over by that alone."""
+    """Return the first two characters that match: they alone rule out nearly every place of a program."""
     first, second = (b"".join({re.escape(word[at : at + 1]) for word in words}) for at in (0, 1))
     return b"(?=[" + first + b"][" + second + b"])" if all(len(word) > 1 for word in words) else b""
 
@@ -67,7 +67,7 @@ def _pattern(word: bytes) -> bytes:
 
 
 def _end(word: bytes) -> bytes:
-    """What must follow where a word may have arguments, or a calculated value."""
+    """Return the pattern that must follow a word with arguments or a calculated value."""
     if word[-1:] == b"=":
         return rb"(?=[ \t]*+[-+]?+[0-9.]++[ \t]*+(?:[A-Z;\r\n]|\Z))"
     return rb"(?![ \t]*+[(=])"
