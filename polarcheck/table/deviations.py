@@ -1,4 +1,4 @@
-"""How the finished part differs from what the job asks for: from a drawing, or from a shape with its numbers."""
+"""How the finished part differs from the part of the job: a drawing, or a shape with dimensions."""
 
 from __future__ import annotations
 
@@ -25,24 +25,26 @@ if TYPE_CHECKING:
     from polarcheck.geometry.comparison.deviation import Difference, Made
     from polarcheck.geometry.comparison.measured_path import Way
 
-#: How far a part may differ where nobody says [mm].
+#: Tolerance of a part whose job states none [mm].
 TOLERANCE = 0.02
-#: Depths that are nearer to each other [mm] are one: the Z of a part in a job is written to the least increment.
+#: Depths nearer to each other than this are equal [mm]: a job states the Z of a part to the least increment.
 _SAME_Z = 1e-3
 #: A contour that differs by more than this share of its size is another one.
 _OTHER = 0.1
-#: What a part would differ by if it were placed otherwise is worth telling if it is so small a share of what it does.
+#: Another placement is reported if it reduces the difference at least to this share.
 _FAR_LESS = 0.05
-#: Curves of a drawing that a contour is compared with in full, those that come nearest.
+#: A contour is compared in full with this number of curves of a drawing, the nearest ones.
 _NEAREST = 4
 
 
 class Fit(NamedTuple):
     """
-    How a part would have to be changed to agree.
+    A change of the part with which it would agree.
 
-    mirrored: C with the other sign. turned: after that [rad]. factor: X times this. largest: by how much it then
-    differs [mm].
+    turned: angle by which the part is turned, after it is mirrored [rad].
+    mirrored: C has the other sign.
+    factor: X is multiplied by this.
+    largest: the largest difference after the change [mm].
     """
 
     turned: float
@@ -53,14 +55,21 @@ class Fit(NamedTuple):
 
 class Comparison(NamedTuple):
     """
-    One contour beside what it should be.
+    A contour compared with a curve of the job.
 
-    number: of the part in the job. curve: which one of its drawing, -1 for all. section, z: of the contour. tolerance:
-    [mm]. difference: of part and drawing. row: of the block where it is largest. turned: by how much a shape is turned
-    that may be turned in any way [rad], NaN for others. is_other_way_round: a boss where a pocket should be, or the
-    reverse. is_partial: a contour that does not close, along its walls alone, though all that is drawn does.
-    is_superseded: roughing, or another contour than the one that comes nearest; or it leaves more than is asked for,
-    and a contour whose R is not known may take that off.
+    number: index of the part in the job.
+    part: the part of the job.
+    curve: index of the curve in the drawing, -1 for all curves.
+    section: number of the section of the contour.
+    z: Z of the contour [mm].
+    tolerance: allowed difference [mm].
+    difference: of the contour from the curve.
+    row: the row where the difference is largest.
+    turned: angle of a shape that may have any angle [rad], NaN for other shapes.
+    is_other_way_round: a boss where a pocket should be, or the reverse.
+    is_partial: the contour is open though all drawn curves are closed; only its walls are compared.
+    is_superseded: roughing, or not the nearest contour, or it leaves material that a contour of unknown R may remove.
+    fit: the change with which the part would agree; None for none.
     """
 
     number: int
@@ -79,17 +88,17 @@ class Comparison(NamedTuple):
 
     @property
     def agrees(self) -> bool:
-        """Within the tolerance."""
+        """The difference is within the tolerance."""
         return not self.is_other_way_round and self.difference.largest <= self.tolerance + ROUNDING
 
     @property
     def differs(self) -> bool:
-        """It is worth telling."""
+        """The difference is reported."""
         return not self.agrees and not self.is_superseded
 
     @property
     def title(self) -> str:
-        """What it is compared with: the name of the drawing, or the shape."""
+        """The name of the drawing, or the shape, that the contour is compared with."""
         return title_of(self.part)
 
 
@@ -100,8 +109,15 @@ def title_of(part: Part) -> str:
 
 class _Target(NamedTuple):
     """
-    A curve of a drawing, or all of them (-1), that a contour may be. scale: [mm] per unit of the part. is_closed: the
-    curve is. rings: all of its curves are.
+    A curve of the job that a contour may be meant for.
+
+    number: index of the part in the job.
+    part: the part of the job.
+    curve: index of the curve in the drawing, -1 for all curves.
+    way: the curve [mm].
+    scale: [mm] per unit of the part.
+    is_closed: the curve is closed.
+    rings: all curves of the part are closed.
     """
 
     number: int
@@ -114,7 +130,7 @@ class _Target(NamedTuple):
 
 
 class _Chain(NamedTuple):
-    """A contour that is closed, or all of a level that are open."""
+    """A closed contour of a level, or all open contours of a level together."""
 
     level: Level
     made: Made
@@ -123,7 +139,7 @@ class _Chain(NamedTuple):
 
 
 class Deviations:
-    """Columns of one trace, one value per row: by how much the part differs where it does so most; and comparisons."""
+    """Columns of one trace, one value per row: the largest differences of the part; and all comparisons."""
 
     def __init__(self, trace: Trace, overcuts: Overcuts, finished: Finished, job: Job) -> None:
         self.trace = trace
@@ -133,14 +149,14 @@ class Deviations:
 
     @cached_property
     def asked(self) -> Mask:
-        """Rows in offset mode, where the job says what they should make."""
+        """Rows in offset mode in the sections for which the job states a part."""
         sections = [part.section for part in self.parts]
         if not sections:
             return np.zeros(len(self.trace), bool)
-        asked: Mask = self.trace.compensation.offset_mode.copy()
+        mask: Mask = self.trace.compensation.offset_mode.copy()
         if None not in sections:
-            asked &= np.isin(self.trace.mode.section + 1, np.array(sections))
-        return asked
+            mask &= np.isin(self.trace.mode.section + 1, np.array(sections))
+        return mask
 
     @cached_property
     def crosses(self) -> Mask:
@@ -149,10 +165,10 @@ class Deviations:
 
     @cached_property
     def comparisons(self) -> list[Comparison]:
-        """In the order of the program. Raises TooHardError where the faces of the contours cannot be computed."""
+        """All comparisons, in program order. Raises TooHardError if the faces of the contours cannot be computed."""
         if not self.asked.any():
             return []
-        found = [
+        results = [
             comparison
             for level in self.finished.levels
             if not level.tangled and len(level.outline)
@@ -160,62 +176,69 @@ class Deviations:
             if (comparison := self._compared(chain)) is not None
         ]
         groups: dict[tuple[int, int], list[int]] = {}
-        for index, one in enumerate(found):
-            groups.setdefault((one.number, one.curve), []).append(index)
+        for index, result in enumerate(results):
+            groups.setdefault((result.number, result.curve), []).append(index)
         for members in groups.values():
-            best = min(members, key=lambda index: (found[index].is_other_way_round, found[index].difference.largest))
+            best = min(
+                members, key=lambda index: (results[index].is_other_way_round, results[index].difference.largest)
+            )
             for index in members:
-                if index != best and self._is_superseded(found[index], found[best]):
-                    found[index] = found[index]._replace(is_superseded=True)
+                if index != best and self._is_superseded(results[index], results[best]):
+                    results[index] = results[index]._replace(is_superseded=True)
         if np.isnan(self.trace.compensation.radius[self.asked]).any():
-            found = [one._replace(is_superseded=one.is_superseded or self._only_leaves_more(one)) for one in found]
-        return [one._replace(fit=self._fit(one)) if one.differs else one for one in found]
+            results = [
+                result._replace(is_superseded=result.is_superseded or self._only_leaves_more(result))
+                for result in results
+            ]
+        return [result._replace(fit=self._fit(result)) if result.differs else result for result in results]
 
     @cached_property
     def _worst(self) -> dict[int, Comparison]:
-        """By row the comparison that differs most there."""
+        """The comparison with the largest difference of each row, by row."""
         worst: dict[int, Comparison] = {}
-        for one in self.comparisons:
-            if one.differs and (one.row not in worst or worst[one.row].difference.largest < one.difference.largest):
-                worst[one.row] = one
+        for result in self.comparisons:
+            if result.differs and (
+                result.row not in worst or worst[result.row].difference.largest < result.difference.largest
+            ):
+                worst[result.row] = result
         return worst
 
     @cached_property
     def differs(self) -> Mask:
-        """Rows where a part differs most."""
+        """Rows where the difference of a part is largest."""
         column = np.zeros(len(self.trace), bool)
         column[list(self._worst)] = True
         return column
 
     @cached_property
     def largest(self) -> Floats:
-        """By how much [mm], 0 elsewhere."""
+        """The largest difference in such a row [mm], 0 elsewhere."""
         column = np.zeros(len(self.trace))
-        for row, one in self._worst.items():
-            column[row] = one.difference.largest
+        for row, result in self._worst.items():
+            column[row] = result.difference.largest
         return column
 
     @cached_property
     def tolerance(self) -> Floats:
-        """By how much it may differ there [mm], NaN elsewhere."""
+        """The tolerance in such a row [mm], NaN elsewhere."""
         column = np.full(len(self.trace), np.nan)
-        for row, one in self._worst.items():
-            column[row] = one.tolerance
+        for row, result in self._worst.items():
+            column[row] = result.tolerance
         return column
 
     def of_row(self, row: int) -> Comparison:
-        """The comparison that is told in a row which differs."""
+        """The comparison that is reported in a row that differs."""
         return self._worst[row]
 
     def missing(self) -> Iterator[tuple[int, str]]:
-        """The parts that nothing was compared with, and why; not where R is unknown, or walls are tangled."""
+        """Parts that no contour was compared with, each with the reason; none if R is unknown or walls are tangled."""
         if not len(self.trace.mode.sections):
             return
-        compared = {one.number for one in self.comparisons}
+        compared = {comparison.number for comparison in self.comparisons}
         levels = self.finished.levels
-        told = self.crosses.any() or bool(np.isnan(self.trace.compensation.radius[self.asked]).any())
+        has_other_reason = self.crosses.any() or bool(np.isnan(self.trace.compensation.radius[self.asked]).any())
         for number, part in enumerate(self.parts):
-            if number in compared or told:
+            if number in compared or has_other_reason:
                 continue
             count = len(self.trace.mode.sections)
             if part.section is not None and part.section > count:
@@ -243,18 +266,22 @@ class Deviations:
             yield _Chain(level, made_of(outline[~closed], level.polygon, bar), False, False)
 
     def _targets(self, chain: _Chain) -> list[_Target]:
-        """The curves that a contour may be; where none is on its side, those on the other one."""
+        """The curves that a contour may be meant for: those on its side, or if there are none, those on the other."""
         applying = [number for number, part in enumerate(self.parts) if self._applies(part, chain.level)]
         row = int(chain.level.outline.row[0])
-        found = [target for number in applying for target in self._curves_of(number, row, chain.is_closed)]
+        targets = [target for number in applying for target in self._curves_of(number, row, chain.is_closed)]
         if chain.is_closed:
-            right = [one for one in found if one.part.drawing is not None or one.part.is_pocket == chain.is_pocket]
-            found = right or found
-        if len(found) > _NEAREST:
+            same_side = [
+                target
+                for target in targets
+                if target.part.drawing is not None or target.part.is_pocket == chain.is_pocket
+            ]
+            targets = same_side or targets
+        if len(targets) > _NEAREST:
             points, _ = chain.made.way.at(np.linspace(0, chain.made.way.length, 16))
-            far = [float(target.way.nearest(points)[0].mean()) for target in found]
-            found = [found[index] for index in np.argsort(far, kind="stable")[:_NEAREST].tolist()]
-        return found
+            distances = [float(target.way.nearest(points)[0].mean()) for target in targets]
+            targets = [targets[index] for index in np.argsort(distances, kind="stable")[:_NEAREST].tolist()]
+        return targets
 
     def _applies(self, part: Part, level: Level) -> bool:
         if part.section not in (None, level.section + 1):
@@ -263,7 +290,7 @@ class Deviations:
             return self._is_at(part, level)
         if part.drawing is not None:
             return True
-        depths = [one.z for one in self.finished.levels if one.section == level.section and len(one.outline)]
+        depths = [other.z for other in self.finished.levels if other.section == level.section and len(other.outline)]
         return math.isnan(level.z) or level.z <= np.nanmin(depths) + _SAME_Z
 
     def _is_at(self, part: Part, level: Level) -> bool:
@@ -271,7 +298,7 @@ class Deviations:
         return abs(level.z - z) <= _SAME_Z
 
     def _scale(self, part: Part, row: int) -> float:
-        """mm per unit of what a job says of a part."""
+        """The length of a unit of the job for a part [mm]."""
         return float(np.broadcast_to(self.trace.lengths.job_scale, len(self.trace))[row])
 
     def _curves_of(self, number: int, row: int, is_closed: bool) -> list[_Target]:
@@ -308,78 +335,82 @@ class Deviations:
     # ---- comparing ----
 
     def _compared(self, chain: _Chain) -> Comparison | None:
-        """The contour beside the curve that comes nearest to it."""
+        """The contour compared with its nearest curve."""
         from polarcheck.geometry.comparison.deviation import difference, turned_radius
 
-        found: list[Comparison] = []
+        results: list[Comparison] = []
         for target in self._targets(chain):
             keep_time()
             part, angle, way = target.part, math.nan, target.way
             if part.drawing is None and part.shape != "circle" and math.isnan(part.turned):
                 angle, way = self._turned(chain, target)
-            both = target.is_closed and chain.is_closed
-            one = difference(chain.made, way, both_ways=both)
-            row = int(chain.made.outline.row[max(one.of, 0)])
-            wrong = chain.is_closed and target.is_closed and part.drawing is None and part.is_pocket != chain.is_pocket
-            if wrong:
-                # Not even the middle is as it should be.
-                depth = float(np.abs(way.start - way.start.mean()).min())
-                one = one._replace(deep=depth) if chain.is_pocket else one._replace(proud=depth)
-            given = part.tolerance * self._scale(part, row)
-            tolerance = TOLERANCE if math.isnan(given) else given
-            where = chain.level.section, chain.level.z, tolerance
-            partial = not chain.is_closed and target.rings and math.isinf(min(turned_radius(way), chain.made.bar))
-            found.append(
-                Comparison(target.number, part, target.curve, *where, one, row, angle, wrong, partial, False, None)
+            both_ways = target.is_closed and chain.is_closed
+            deviation = difference(chain.made, way, both_ways=both_ways)
+            row = int(chain.made.outline.row[max(deviation.of, 0)])
+            is_other_way = (
+                chain.is_closed and target.is_closed and part.drawing is None and part.is_pocket != chain.is_pocket
             )
-            self._chain_of[target.number, target.curve, row, one.at] = chain, target
-        found = [one for one in found if one.difference.length]
-        return min(found, key=lambda one: one.difference.mean, default=None)
+            if is_other_way:
+                # The whole area is wrong, up to its center.
+                depth = float(np.abs(way.start - way.start.mean()).min())
+                deviation = deviation._replace(deep=depth) if chain.is_pocket else deviation._replace(proud=depth)
+            stated = part.tolerance * self._scale(part, row)
+            tolerance = TOLERANCE if math.isnan(stated) else stated
+            place = chain.level.section, chain.level.z, tolerance
+            partial = not chain.is_closed and target.rings and math.isinf(min(turned_radius(way), chain.made.bar))
+            results.append(
+                Comparison(
+                    target.number, part, target.curve, *place, deviation, row, angle, is_other_way, partial, False, None
+                )
+            )
+            self._chain_of[target.number, target.curve, row, deviation.at] = chain, target
+        results = [deviation for deviation in results if deviation.difference.length]
+        return min(results, key=lambda deviation: deviation.difference.mean, default=None)
 
     @cached_property
     def _chain_of(self) -> dict[tuple[int, int, int, complex], tuple[_Chain, _Target]]:
         return {}
 
     def _turned(self, chain: _Chain, target: _Target) -> tuple[float, Way]:
-        """The best angle of a shape that may be turned in any way [rad], and the shape turned by it."""
+        """The best angle of a shape that may have any angle [rad], and the shape turned by it."""
         from polarcheck.geometry.comparison.alignment import best_turn
 
         center = target.scale * complex(*target.part.center)
         angle = best_turn(chain.made.way, target.way, center)
         return angle, _placed(target.way, angle, False, 1.0, center)
 
-    def _is_superseded(self, one: Comparison, best: Comparison) -> bool:
-        """Another contour agrees, and this one leaves more, as roughing does; or it is another one altogether."""
-        if one.part.section is not None:
-            return one.z > best.z + _SAME_Z and one.difference.deep <= one.tolerance
-        _, target = self._chain_of[one.number, one.curve, one.row, one.difference.at]
+    def _is_superseded(self, result: Comparison, best: Comparison) -> bool:
+        """Another contour agrees, and this one is roughing that leaves material, or is meant for another curve."""
+        if result.part.section is not None:
+            return result.z > best.z + _SAME_Z and result.difference.deep <= result.tolerance
+        _, target = self._chain_of[result.number, result.curve, result.row, result.difference.at]
         size = float(np.abs(target.way.start - target.way.start.mean()).max())
-        return one.difference.deep <= one.tolerance or one.difference.largest > _OTHER * size
+        return result.difference.deep <= result.tolerance or result.difference.largest > _OTHER * size
 
-    def _only_leaves_more(self, one: Comparison) -> bool:
-        return not one.agrees and not one.is_other_way_round and one.difference.deep <= one.tolerance
+    def _only_leaves_more(self, result: Comparison) -> bool:
+        return not result.agrees and not result.is_other_way_round and result.difference.deep <= result.tolerance
 
-    def _fit(self, one: Comparison) -> Fit | None:
-        """How the part would have to be placed to agree, or nearly so; None where it would not."""
+    def _fit(self, result: Comparison) -> Fit | None:
+        """The change with which the part would agree, or nearly agree; None if there is none."""
         from polarcheck.geometry.comparison.alignment import best_turn
         from polarcheck.geometry.comparison.deviation import difference
 
-        if one.part.shape == "circle" or not math.isnan(one.turned):
+        if result.part.shape == "circle" or not math.isnan(result.turned):
             return None
-        chain, target = self._chain_of[one.number, one.curve, one.row, one.difference.at]
-        center = target.scale * complex(*one.part.center)
-        enough = max(one.tolerance, _FAR_LESS * one.difference.largest)
+        chain, target = self._chain_of[result.number, result.curve, result.row, result.difference.at]
+        center = target.scale * complex(*result.part.center)
+        enough = max(result.tolerance, _FAR_LESS * result.difference.largest)
         for mirrored, factor in ((False, 1.0), (True, 1.0), (False, 2.0), (False, 0.5)):
             keep_time()
-            if one.part.drawing is None and (mirrored or factor != 1):
+            if result.part.drawing is None and (mirrored or factor != 1):
                 break
             way = _placed(target.way, 0.0, mirrored, factor, center)
             angles = [best_turn(chain.made.way, way, center)] if factor == 1 else [0.0]
             for angle in [0.0, *angles] if mirrored else angles:
                 turned = _placed(way, angle, False, 1.0, center)
-                found = difference(chain.made, turned, both_ways=target.is_closed and chain.is_closed)
-                if found.length and found.largest <= enough:
-                    return Fit(angle if mirrored else -angle, mirrored, 1 / factor, found.largest)
+                remaining = difference(chain.made, turned, both_ways=target.is_closed and chain.is_closed)
+                if remaining.length and remaining.largest <= enough:
+                    return Fit(angle if mirrored else -angle, mirrored, 1 / factor, remaining.largest)
         return None
 
 

@@ -1,4 +1,4 @@
-"""Which blocks of a trace cut into the contour: loops are given to `contour`, what it finds is taken back to rows."""
+"""Blocks that cut into the contour: the cuts that the geometry finds in loops, by rows of the trace."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def loop_of_row(trace: Trace) -> Rows:
     """
     Number of the loop of each row in offset mode, -1 elsewhere.
 
-    A loop reaches from a start-up to its offset cancel, and a Z move in it begins another one: the same contour at
+    A loop lasts from a start-up to its offset cancel. A Z move within it begins a new loop: the same contour at
     another depth is another loop.
     """
     begins = trace.compensation.starts_up | (trace.axes.moves_z & ~trace.path.travels)
@@ -34,11 +34,11 @@ def loop_of_row(trace: Trace) -> Rows:
 
 
 def level_of(trace: Trace, walls: Curves) -> Rows:
-    """For each of these walls the number of the section and the Z that its loop begins at."""
+    """For each wall a number of the level of its loop: its section, and the Z at which the loop begins."""
     first = np.flatnonzero(np.diff(walls.loop, prepend=-1))
     row = walls.row[first]
     z = np.round(trace.path.z[row] / ROUNDING)
-    # Where Z is not known, what lies between two Z moves is at one level.
+    # Where Z is not known, all loops between two Z moves are at one level.
     moved = np.where(np.isnan(z), np.cumsum(trace.axes.moves_z & ~trace.path.travels)[row], 0)
     keys = np.stack([trace.mode.section[row], np.nan_to_num(z), moved], axis=1)
     _, number = np.unique(keys, axis=0, return_inverse=True)
@@ -49,8 +49,10 @@ class CutsOfRows(Table, frozen=True):
     """
     Cuts into contours by rows of the trace, n of them.
 
-    row: int[n], the row that cuts. into: int[n], the row of the contour that is cut. depth: float64[n] [mm]. place:
-    complex128[n] [mm], plane point.
+    row: int[n], the row that cuts.
+    into: int[n], the row of the contour that is cut.
+    depth: float64[n] [mm].
+    place: complex128[n] [mm], plane point.
     """
 
     row: Rows
@@ -65,17 +67,17 @@ class CutsOfRows(Table, frozen=True):
 
     @classmethod
     def of(cls, cuts: Cuts, path: Curves, walls: Curves) -> Self:
-        """Cuts of moves into walls, by the rows of both."""
+        """Cuts of moves into walls, by the rows of the moves and of the walls."""
         return cls(path.row[cuts.move], walls.row[cuts.wall].astype(np.int64), cuts.depth, cuts.place)
 
     def deepest(self, row: int) -> tuple[int, complex]:
-        """Of the cuts of a row the deepest: the row cut into, and where."""
+        """The deepest cut of a row: the row that is cut, and the place."""
         of_row = np.flatnonzero(self.row == row)
         worst = of_row[np.argmax(self.depth[of_row])]
         return int(self.into[worst]), complex(self.place[worst])
 
     def depth_by_row(self, count: int) -> Floats:
-        """A column of so many rows: the depth of the deepest cut of each row [mm], 0 for none."""
+        """The depth of the deepest cut of each row [mm], 0 for none; count: the number of rows."""
         if not len(self):
             return repeated(np.float64(0), count)
         column = np.zeros(count)
@@ -84,7 +86,7 @@ class CutsOfRows(Table, frozen=True):
 
 
 class Overcuts:
-    """Columns of one trace, one value per row: the depth of the worst cut, 0 for none; and the cuts themselves."""
+    """Columns of one trace, one value per row: the depth of the deepest cut, 0 for none; and all cuts."""
 
     def __init__(self, trace: Trace, tool_center: ToolCenter) -> None:
         self.trace = trace
@@ -98,10 +100,10 @@ class Overcuts:
     @cached_property
     def has_walls(self) -> Mask:
         """
-        Rows whose R is known as that of a cutter, so that what is programmed is the wall of the part.
+        Rows whose R is the radius of a cutter, so that the programmed path is the wall of the part.
 
-        Of a path of the tool center, which a small R adjusts, neither side is one. A negative R that small is taken
-        for an adjustment, and so is a positive one beside a comment that tells a larger cutter.
+        A small R may only adjust a programmed tool center path, which is no wall. A small negative R is an adjustment.
+        A small positive R is one if a comment states a larger cutter.
         """
         trace = self.trace
         radius = trace.compensation.radius
@@ -110,15 +112,15 @@ class Overcuts:
         if cutter.any():
             larger = [
                 number
-                for number, found in trace.offsets.radii_in_comments.items()
-                if found.radius > ADJUSTMENT + ROUNDING
+                for number, comment in trace.offsets.radii_in_comments.items()
+                if comment.radius > ADJUSTMENT + ROUNDING
             ]
             cutter &= ~np.isin(trace.tools.offset_number, larger)
         return np.asarray(~np.isnan(radius) & (~small | cutter))
 
     @cached_property
     def compensates(self) -> bool:
-        """Whether any section is compensated, and has walls."""
+        """True if any section is compensated and has walls."""
         return bool(np.any(self.trace.compensation.compensates & self.has_walls))
 
     @cached_property
@@ -127,7 +129,7 @@ class Overcuts:
 
     @cached_property
     def _loop_of_ramps(self) -> Rows:
-        """As loop_of_row; a ramp belongs to the loop of the wall that it leads to or comes from, whatever Z does."""
+        """As loop_of_row, but a ramp has the loop of the wall beside it even if Z moves."""
         trace, wall = self.trace, np.append(self._wall_beside, 0)
         loop, ramp = self.loop.copy(), np.flatnonzero(trace.compensation.starts_up | trace.compensation.cancels)
         loop[ramp] = np.where(wall[ramp] >= 0, self.loop[wall[ramp]], -1)
@@ -135,7 +137,7 @@ class Overcuts:
 
     @cached_property
     def _wall_beside(self) -> Rows:
-        """For each start-up the next wall, for each offset cancel the one before, -1 for none and for other rows."""
+        """The row of the wall after a start-up or before an offset cancel; -1 for none and for other rows."""
         trace = self.trace
         beside = np.full(len(trace), -1)
         moving = np.flatnonzero(trace.mode.in_polar & trace.path.travels)
@@ -151,7 +153,7 @@ class Overcuts:
 
     @cached_property
     def beyond_bounds(self) -> SkippedLoops:
-        """Loops that reach too far out, and those of too many chords: they are not among the walls, nor in the path."""
+        """Loops that reach too far out or have too many chords: walls and path leave them out."""
         if not self.compensates:
             return SkippedLoops.of({})
         from polarcheck.geometry.overcuts import bounds
@@ -165,15 +167,16 @@ class Overcuts:
 
     @property
     def skipped(self) -> SkippedLoops:
-        """Loops into which no cut is searched for."""
-        crossing = SkippedLoops.of({SkipReason.CROSSES: self._found[2]})
+        """Loops that are not searched for cuts."""
+        crossing = SkippedLoops.of({SkipReason.CROSSES: self._all_cuts[2]})
         return SkippedLoops.concatenated([self.beyond_bounds, crossing])
 
     @cached_property
     def walls(self) -> tuple[Curves, Mask]:
         """
-        The contour that is programmed in offset mode, and whether the tool is on the left of each block; without the
-        loops that are beyond all bounds.
+        The contour programmed in offset mode, and a mask of the walls with the tool on their left.
+
+        Loops beyond all bounds are left out.
         """
         walls, beyond = self._all_walls, self.beyond_bounds.loop
         walls = walls[~np.isin(walls.loop, beyond)] if len(beyond) else walls
@@ -193,9 +196,9 @@ class Overcuts:
     @cached_property
     def walls_of_unknown_radius(self) -> tuple[Curves, Mask]:
         """
-        The same of rows whose R is not known: what they are programmed to make if R is that of a cutter.
+        The same for rows of unknown R: the contour if R is the radius of a cutter.
 
-        A part hangs on the side of the tool, not on its R, unless R is negative.
+        The part depends on the side of the tool, not on R, unless R is negative.
         """
         from polarcheck.geometry.overcuts import bounds
 
@@ -207,13 +210,14 @@ class Overcuts:
     @cached_property
     def path(self) -> tuple[Curves, Mask]:
         """
-        The moves of the tool center in offset mode, and the ramps at the depth of their contour, each with the loop
-        that it is of; and which are ramps. Without the loops that are beyond all bounds.
+        The moves of the tool center in offset mode, the ramps at the depth of their contour, and a mask of the ramps.
+
+        Each move has the number of its loop. Loops beyond all bounds are left out.
         """
         path, is_ramp = self._whole_path
-        beyond = self.beyond_bounds.loop
-        within = ~np.isin(path.loop, beyond)
-        return (path[within], is_ramp[within]) if len(beyond) else (path, is_ramp)
+        skipped = self.beyond_bounds.loop
+        within = ~np.isin(path.loop, skipped)
+        return (path[within], is_ramp[within]) if len(skipped) else (path, is_ramp)
 
     @cached_property
     def _whole_path(self) -> tuple[Curves, Mask]:
@@ -225,15 +229,15 @@ class Overcuts:
         return curves_of(tool, loop, chosen), is_ramp[chosen]
 
     @cached_property
-    def _found(self) -> tuple[CutsOfRows, Mask, Rows]:
-        """The cuts of all moves of the tool center, which of them are by ramps, and the loops that cross themselves."""
+    def _all_cuts(self) -> tuple[CutsOfRows, Mask, Rows]:
+        """The cuts of all moves of the tool center, a mask of cuts by ramps, and the loops that cross themselves."""
         nothing = CutsOfRows.none(), np.zeros(0, bool), np.zeros(0, np.int64)
         if not self.compensates:
             return nothing
         from polarcheck.geometry.overcuts.clearance import keeps_away
 
         path, is_ramp = self.path
-        # What is left on the contour, the cutter stays away from it.
+        # With an allowance, the cutter stays away from the contour.
         radius = np.abs((self.radius - self.trace.compensation.allowance)[path.row])
         tolerance = self.trace.machine.compensation.overcut_tolerance
         walls, left = self.walls
@@ -241,14 +245,15 @@ class Overcuts:
             return nothing
         from polarcheck.geometry.overcuts import own_loop
 
-        around = self._air(walls), self.level
+        around = self._air_radius(walls), self.level
         cuts, tangled = own_loop.overcuts(walls, left, *around, path, radius, is_ramp, tolerance, self.bar)
         return CutsOfRows.of(cuts, path, walls), is_ramp[cuts.move], tangled
 
-    def _air(self, walls: Curves) -> Floats:
+    def _air_radius(self, walls: Curves) -> Floats:
         """
-        For each wall the radius about the center of C from which on there is air [mm]: the bar does not reach beyond
-        the ends of contours, in its section, that end apart from where they begin.
+        For each wall the radius about the center of C outside which there is air [mm].
+
+        In a section with contours that do not end where they begin, the bar reaches no farther than their ends.
         """
         if not len(walls):
             return np.zeros(0)
@@ -264,41 +269,41 @@ class Overcuts:
 
     @cached_property
     def level(self) -> Rows:
-        """For each of the walls the number of the section and the Z that its loop begins at."""
+        """For each wall the number of its level, see level_of."""
         return level_of(self.trace, self.walls[0])
 
     @cached_property
     def cuts(self) -> CutsOfRows:
-        """Row that cuts, row that is cut into, depth and place of each overcut."""
-        cuts, by_ramp, _ = self._found
+        """All cuts by moves in offset mode."""
+        cuts, by_ramp, _ = self._all_cuts
         return cuts[~by_ramp]
 
     @cached_property
     def sweeps(self) -> CutsOfRows:
-        """The same for start-ups and offset cancels that lie at the depth of their contour."""
-        cuts, by_ramp, _ = self._found
+        """All cuts by start-ups and offset cancels at the depth of their contour."""
+        cuts, by_ramp, _ = self._all_cuts
         return cuts[by_ramp]
 
     @cached_property
     def _at_depth(self) -> Mask:
         """
-        Ramps on whose way there would be material above the contour: not above its Z, or yet below the face.
+        Ramps that may cut material: they run at the Z of the contour or lower, or below the face.
 
-        The face is at Z0, as is the custom on lathes. Where Z is not known, a ramp without a Z block beside it.
+        The face is at Z0, as is usual on lathes. Where Z is not known, these are ramps without a Z move beside them.
         """
         trace, wall = self.trace, self._wall_beside
         ramp = np.flatnonzero(wall >= 0)
-        own = np.fmax(trace.path.z[ramp], before(trace.path.z, trace.blocks.starts, np.nan)[ramp])
-        of_wall = trace.path.z[wall[ramp]]
+        z_of_ramp = np.fmax(trace.path.z[ramp], before(trace.path.z, trace.blocks.starts, np.nan)[ramp])
+        z_of_wall = trace.path.z[wall[ramp]]
         moves_z = np.cumsum(trace.axes.moves_z & ~trace.path.travels)
         deep = np.where(
-            np.isnan(own - of_wall),
+            np.isnan(z_of_ramp - z_of_wall),
             moves_z[ramp] == moves_z[wall[ramp]],
-            (own <= of_wall + ROUNDING) | (own < -ROUNDING),
+            (z_of_ramp <= z_of_wall + ROUNDING) | (z_of_ramp < -ROUNDING),
         )
-        result = np.zeros(len(trace), bool)
-        result[ramp] = deep
-        return result
+        mask = np.zeros(len(trace), bool)
+        mask[ramp] = deep
+        return mask
 
     @cached_property
     def bar(self) -> float:
@@ -308,48 +313,48 @@ class Overcuts:
 
     @cached_property
     def depth(self) -> Floats:
-        """Of the cut into the contour by the tool center path of the row [mm]; none where the control objects."""
+        """Depth of the deepest cut of the row into its contour [mm]; 0 for none, and where the control objects."""
         return self._depth_of(self.cuts)
 
     @cached_property
     def wall(self) -> Rows:
         """
-        The same number for all blocks that cut into one another, as the two walls of a groove, and for the next ones of
-        the loop that cut or are cut, as round a point that is wrong; -1 for other rows.
+        The same number for all blocks that belong to one overcut; -1 for other rows.
 
-        It is the first of these blocks.
+        Blocks belong together if one cuts the other, as the two walls of a groove do, or if both cut or are cut and
+        follow each other in a loop, as round a wrong point. The number is the first of these blocks.
         """
         first: dict[int, int] = {}
 
-        def found(block: int) -> int:
-            while (one := first.setdefault(block, block)) != block:
-                first[block] = first[one]  # a shorter way for the next
-                block = one
+        def root(block: int) -> int:
+            while (parent := first.setdefault(block, block)) != block:
+                first[block] = first[parent]  # shortens the next search
+                block = parent
             return block
 
-        block, one, other = self.trace.run.block, self.cuts.row, self.cuts.into
+        block, cutting, cut = self.trace.run.block, self.cuts.row, self.cuts.into
         moving = np.flatnonzero(self.trace.path.on_plane)
-        involved = np.isin(moving, np.concatenate([one, other])) & (self.loop[moving] >= 0)
+        involved = np.isin(moving, np.concatenate([cutting, cut])) & (self.loop[moving] >= 0)
         beside = np.flatnonzero(involved[1:] & involved[:-1] & (np.diff(self.loop[moving]) == 0))
-        one, other = np.append(one, moving[beside]), np.append(other, moving[beside + 1])
-        for pair in zip(block[one].tolist(), block[other].tolist(), strict=True):
-            here, there = found(pair[0]), found(pair[1])
-            first[max(here, there)] = min(here, there)
+        cutting, cut = np.append(cutting, moving[beside]), np.append(cut, moving[beside + 1])
+        for pair in zip(block[cutting].tolist(), block[cut].tolist(), strict=True):
+            left_root, right_root = root(pair[0]), root(pair[1])
+            first[max(left_root, right_root)] = min(left_root, right_root)
         label = np.full(len(self.trace.text.blocks), -1)
         for number in list(first):
-            label[number] = found(number)
+            label[number] = root(number)
         return np.asarray(label[block])
 
     @cached_property
     def sweep_depth(self) -> Floats:
-        """Of the cut into the contour by a ramp [mm], in loops that are not overcut anyway."""
+        """Depth of the deepest cut of a ramp into its contour [mm], 0 in loops with other overcuts."""
         if not len(self.sweeps.row):
             return repeated(np.float64(0), len(self.trace))
         loop = self._loop_of_ramps
         return np.where(np.isin(loop, loop[self.depth > 0]), 0.0, self._depth_of(self.sweeps))
 
     def _depth_of(self, cuts: CutsOfRows) -> Floats:
-        """Per row the depth of its worst cut [mm]; 0 for none, and where the control objects anyway."""
+        """The depth of the deepest cut of each row [mm]; 0 for none, and where the control objects."""
         depth = cuts.depth_by_row(len(self.trace))
         return np.where(self.objected, 0.0, depth) if len(cuts) else depth
 
@@ -363,9 +368,9 @@ def curves_of(moves: Moves, loop: Rows, chosen: Mask) -> Curves:
 
 def objected(trace: Trace, tool_center: ToolCenter) -> Mask:
     """
-    Rows to which the control would object while it compensates, and those before and after them that move.
+    Rows that the control would reject while it compensates, and the moves before and after them.
 
-    They cut into the contour as a consequence, which is no second mistake.
+    Their cuts into the contour are consequences, not mistakes of their own.
     """
     rows = tool_center.inside_arc_too_small | tool_center.interferes | tool_center.no_intersection
     rows |= tool_center.movement_missing | tool_center.arc_center_on_path

@@ -1,4 +1,4 @@
-"""Walls of different loops of one section at one depth: which blocks of one of them cut into another, as in a slot."""
+"""Blocks of a loop that cut into another loop of the same section at the same depth, as in a slot."""
 
 from __future__ import annotations
 
@@ -14,16 +14,17 @@ from polarcheck.table.skipped_loops import SkippedLoops, SkipReason
 
 
 class Slots(Columns, frozen=True):
-    """Columns of one trace, one value per row: how deep it cuts into what another loop keeps, 0 for none."""
+    """Columns of one trace, one value per row: the depth of cuts into the part of another loop, 0 for none."""
 
     trace: Trace
     overcuts: Overcuts
 
     @cached_property
-    def _found(self) -> tuple[CutsOfRows, Mask, Rows]:
+    def _all_cuts(self) -> tuple[CutsOfRows, Mask, Rows]:
         """
-        The cuts of all moves of the tool center into other loops, which of them are by ramps, and the loops that cross
-        each other too often.
+        All cuts of moves of the tool center into other loops.
+
+        Further: a mask of the cuts by ramps, and the loops that cross each other too often to be searched.
         """
         nothing = CutsOfRows.none(), np.zeros(0, bool), np.zeros(0, np.int64)
         if not self.overcuts.compensates:
@@ -41,18 +42,19 @@ class Slots(Columns, frozen=True):
         beside = np.isin(path.loop, walls.loop) & ~self.overcuts.objected[path.row]
         path, is_ramp = path[beside], is_ramp[beside]
         radius = np.abs(self.trace.compensation.radius[path.row])
-        nowhere = np.zeros(0, np.int64)
+        no_rows = np.zeros(0, np.int64)
         tolerance = self.trace.machine.compensation.overcut_tolerance
-        contours = Contours(walls, left, nowhere, nowhere, np.zeros(0), self.overcuts.bar, tolerance)
+        contours = Contours(walls, left, no_rows, no_rows, np.zeros(0), self.overcuts.bar, tolerance)
         cuts, tangled = other_loops.cuts_into_others(contours, level[walls.row], path, radius, is_ramp)
         return CutsOfRows.of(cuts, path, walls), is_ramp[cuts.move], tangled
 
     @cached_property
     def _levels(self) -> tuple[Rows, Mask]:
         """
-        Per row in offset mode the same number for loops of one section at one depth, and whether there are several.
+        For rows in offset mode a number of the level of their loop; and a mask of levels with several loops.
 
-        Where Z is not known, what no Z block parts is at one depth. A loop that changes its depth is by itself.
+        Loops of one section at one depth have the same level. Where Z is not known, loops without a Z move between
+        them have the same depth. A loop that changes its depth has a level of its own.
         """
         trace = self.trace
         level, several = np.full(len(trace), -1), np.zeros(len(trace), bool)
@@ -76,29 +78,29 @@ class Slots(Columns, frozen=True):
 
     @property
     def compared(self) -> Mask:
-        """Rows in offset mode beside whose loop there is another one at the same depth."""
+        """Rows in offset mode of loops that have another loop at the same level."""
         return self._levels[1]
 
     @property
     def skipped(self) -> SkippedLoops:
-        """Loops between which no cut is searched for."""
-        return SkippedLoops.of({SkipReason.CROSSES: self._found[2]})
+        """Loops that are not searched for cuts into each other."""
+        return SkippedLoops.of({SkipReason.CROSSES: self._all_cuts[2]})
 
     @cached_property
     def cuts(self) -> CutsOfRows:
-        """Of moves in offset mode: row that cuts, row that is cut into, depth and place."""
-        cuts, by_ramp, _ = self._found
+        """All cuts by moves in offset mode."""
+        cuts, by_ramp, _ = self._all_cuts
         return cuts[~by_ramp]
 
     @cached_property
     def sweeps(self) -> CutsOfRows:
-        """The same for ramps at the depth of their contour."""
-        cuts, by_ramp, _ = self._found
+        """All cuts by ramps at the depth of their contour."""
+        cuts, by_ramp, _ = self._all_cuts
         return cuts[by_ramp]
 
     @cached_property
     def depth(self) -> Floats:
-        """Of the cut of a block in offset mode into a wall of another loop [mm]; none in loops that are overcut."""
+        """Depth of the deepest cut of a row in offset mode into a wall of another loop [mm], 0 for none."""
         return self.cuts.depth_by_row(len(self.trace))
 
     @property
@@ -108,31 +110,32 @@ class Slots(Columns, frozen=True):
 
     @cached_property
     def sweep_depth(self) -> Floats:
-        """The same for ramps."""
+        """Depth of the deepest cut of a ramp into a wall of another loop [mm], 0 for none."""
         return self.sweeps.depth_by_row(len(self.trace))
 
     @cached_property
     def ramp_depth(self) -> Floats:
-        """Of the cut of a ramp into its own contour, or that of another loop [mm]."""
+        """Depth of the deepest cut of a ramp into its contour or another loop [mm], 0 for none."""
         return computed(np.maximum, self.overcuts.sweep_depth, self.sweep_depth)
 
     @cached_property
     def slot(self) -> Rows:
         """
-        The same number for all blocks that cut from one loop into another one and back, at whatever depth they are
-        written again; -1 for other rows.
+        The same number for all blocks of one slot: those of two loops that cut into each other; -1 for other rows.
+
+        The same walls written again at another depth have the same number.
         """
         cuts, trace = self.cuts, self.trace
         label = np.full(len(trace), -1)
         if not len(cuts):
             return label
         loop = self.overcuts.loop
-        one, other = loop[cuts.row], loop[cuts.into]
+        cutting_loop, cut_loop = loop[cuts.row], loop[cuts.into]
         from polarcheck.geometry.polygons.noding import merged
 
-        first = merged(int(loop.max()) + 1, one, other)
-        pair, number = np.unique(first[one], return_inverse=True)
-        # Walls that are written once more at another depth have the same box.
+        first = merged(int(loop.max()) + 1, cutting_loop, cut_loop)
+        group, number = np.unique(first[cutting_loop], return_inverse=True)
+        # The same walls written again at another depth have the same bounding box.
         ends = np.stack(
             [
                 trace.path.start[cuts.row],
@@ -141,22 +144,26 @@ class Slots(Columns, frozen=True):
                 trace.path.end[cuts.into],
             ]
         )
-        key = np.full((len(pair), 5), np.inf)
+        key = np.full((len(group), 5), np.inf)
         key[number, 4] = trace.mode.section[cuts.row]
         for side, values in enumerate((ends.real, ends.imag, -ends.real, -ends.imag)):
             np.minimum.at(key[:, side], number, np.rint(values.min(axis=0) / ROUNDING))
-        _, same = np.unique(key, axis=0, return_inverse=True)
-        label[cuts.row] = same.ravel()[number]
+        _, box = np.unique(key, axis=0, return_inverse=True)
+        label[cuts.row] = box.ravel()[number]
         return label
 
     def width(self, row: int) -> float:
-        """How far the place where a row cuts deepest is from the contour of its own loop [mm]."""
+        """Distance of the deepest cut of a row from the contour of the same loop [mm]."""
         import shapely  # type: ignore[import-untyped]
 
         from polarcheck.geometry.polygons.faces import coordinates, lines_of
         from polarcheck.geometry.segments import segments
 
         walls, _ = self.overcuts.walls
-        own = segments(walls[walls.loop == self.overcuts.loop[row]], self.trace.machine.compensation.overcut_tolerance)
+        chords = segments(
+            walls[walls.loop == self.overcuts.loop[row]], self.trace.machine.compensation.overcut_tolerance
+        )
         _, place = self.cuts.deepest(row)
-        return float(shapely.distance(lines_of(own.start, own.end), shapely.points(coordinates(np.array(place)))).min())
+        return float(
+            shapely.distance(lines_of(chords.start, chords.end), shapely.points(coordinates(np.array(place)))).min()
+        )

@@ -1,4 +1,4 @@
-"""Moves without compensation that cut the part which the contours of their section leave, taken back to rows."""
+"""Moves without compensation that cut into the part of the contours of their section, by rows."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from polarcheck.table.tool_center import ToolCenter
 
 
 class UncompensatedCuts(Columns, frozen=True):
-    """Columns of one trace, one value per row: how deep a move without compensation cuts the part, 0 for not at all."""
+    """Columns of one trace, one value per row: the depth of cuts by moves without compensation, 0 for none."""
 
     trace: Trace
     tool_center: ToolCenter
@@ -30,7 +30,7 @@ class UncompensatedCuts(Columns, frozen=True):
 
     @cached_property
     def _has_contour(self) -> Mask:
-        """Rows of sections with compensation, and those behind their G13.1 up to the next G12.1."""
+        """Rows of sections with compensation, and the rows after them up to the next G12.1."""
         trace = self.trace
         section = fill_down(trace.mode.section, (trace.mode.section >= 0) | trace.blocks.starts, -1)
         has = np.zeros(len(trace.mode.sections) + 1, bool)
@@ -39,15 +39,16 @@ class UncompensatedCuts(Columns, frozen=True):
 
     @cached_property
     def _is_behind_contour(self) -> Mask:
-        """Rows of sections behind the first ramp, and those behind the section."""
+        """Rows of sections after the first start-up, and all rows outside sections."""
         trace = self.trace
         return np.asarray((trace.mode.section < 0) | trace.mode.given_in_section(trace.compensation.starts_up))
 
     @cached_property
     def _is_beside_bad_ramp(self) -> Mask:
         """
-        Rows that lead to a start-up that is too short or cuts itself, or away from such an offset cancel: it begins or
-        ends too near to the part, which is no second mistake.
+        Rows before a start-up or after an offset cancel that is too short or cuts the part.
+
+        Such a ramp begins or ends too near to the part: cuts beside it are consequences.
         """
         trace = self.trace
         moving = np.flatnonzero(trace.mode.in_polar & trace.path.travels)
@@ -61,28 +62,28 @@ class UncompensatedCuts(Columns, frozen=True):
 
     @property
     def cuts(self) -> CutsOfRows:
-        """Row that cuts, row of the contour whose part it cuts, depth and place, of each move the worst."""
-        return self._found[0]
+        """The deepest cut of each move, with the row of the contour whose part is cut."""
+        return self._all_cuts[0]
 
     @property
     def skipped(self) -> SkippedLoops:
-        """Loops into whose part no cut is searched for."""
-        return SkippedLoops.of({SkipReason.CROSSES: self._found[1]})
+        """Loops whose part is not searched for cuts."""
+        return SkippedLoops.of({SkipReason.CROSSES: self._all_cuts[1]})
 
     @cached_property
-    def _found(self) -> tuple[CutsOfRows, Rows]:
-        """The cuts, and the loops that cross each other too often."""
+    def _all_cuts(self) -> tuple[CutsOfRows, Rows]:
+        """The cuts, and the loops that cross each other too often to be searched."""
         nothing = CutsOfRows.none(), np.zeros(0, np.int64)
         if not self.overcuts.compensates:
             return nothing
         row, start, end, center, z, section = (
             np.concatenate(column)
-            for column in zip(self._on_plane, self._of_z_alone, self._behind_the_mode, strict=True)
+            for column in zip(self._on_plane, self._of_z_alone, self._after_the_mode, strict=True)
         )
         trace, (walls, left) = self.trace, self.overcuts.walls
         radius = np.abs(trace.compensation.radius[row])
         known = (radius > ADJUSTMENT + ROUNDING) & ~np.isnan(z + np.abs(start) + np.abs(end))
-        # At Z0 or above, the way to the contour leads through air.
+        # At Z0 or above, a move to the contour is in air.
         known = np.flatnonzero(known & ((z < -ROUNDING) | self._is_behind_contour[row]))
         if not len(known) or not len(walls):
             return nothing
@@ -97,8 +98,8 @@ class UncompensatedCuts(Columns, frozen=True):
         from polarcheck.geometry.overcuts.without_compensation import cuts_into_part
         from polarcheck.geometry.polygons.finished_part import Contours
 
-        none, tolerance = np.zeros(0, np.int64), trace.machine.compensation.overcut_tolerance
-        contours = Contours(walls, left, none, none, np.zeros(0), self.overcuts.bar, tolerance)
+        no_rows, tolerance = np.zeros(0, np.int64), trace.machine.compensation.overcut_tolerance
+        contours = Contours(walls, left, no_rows, no_rows, np.zeros(0), self.overcuts.bar, tolerance)
         cuts, tangled = cuts_into_part(contours, loops, bare)
         return CutsOfRows.of(cuts, bare.curves, walls), tangled
 
@@ -112,7 +113,7 @@ class UncompensatedCuts(Columns, frozen=True):
 
     @property
     def _of_z_alone(self) -> tuple[Rows, Points, Points, Points, Floats, Rows]:
-        """Moves of Z alone down into the material: as points, with the Z where they end."""
+        """Moves of Z alone down into the material, as points at the Z of their end."""
         trace = self.trace
         down = (
             trace.mode.in_polar
@@ -131,11 +132,11 @@ class UncompensatedCuts(Columns, frozen=True):
         return row, place, place, np.full(len(row), np.nan + 0j), trace.path.z[row], trace.mode.section[row]
 
     @property
-    def _behind_the_mode(self) -> tuple[Rows, Points, Points, Points, Floats, Rows]:
+    def _after_the_mode(self) -> tuple[Rows, Points, Points, Points, Floats, Rows]:
         """
-        The first rapid move behind a G13.1 if it is one of X alone, while Z has not moved.
+        The first move after a G13.1, if it is a rapid move of X alone.
 
-        C stands still, so that the tool runs towards the center or away from it, from where the section has ended.
+        C stands still: from the end of the section the tool moves on a straight line through the center of C.
         """
         trace = self.trace
         last = np.flatnonzero(trace.mode.leaves) - 1
@@ -151,12 +152,12 @@ class UncompensatedCuts(Columns, frozen=True):
         )
         last, row = last[alone[row]], row[alone[row]]
         place = trace.path.end[last]
-        with np.errstate(invalid="ignore"):  # at the center nobody knows where to
-            way = place / np.abs(place)
+        with np.errstate(invalid="ignore"):  # at the center the direction is not known
+            direction = place / np.abs(place)
         return (
             row,
             place,
-            way * trace.path.x[row],
+            direction * trace.path.x[row],
             np.full(len(row), np.nan + 0j),
             trace.path.z[row],
             trace.mode.section[last],
@@ -164,7 +165,7 @@ class UncompensatedCuts(Columns, frozen=True):
 
     @cached_property
     def depth(self) -> Floats:
-        """Of the cut of a move without compensation into the part of a contour [mm], R at most."""
+        """Depth of the deepest cut of a move without compensation into the part [mm], at most R; 0 for none."""
         column = self.cuts.depth_by_row(len(self.trace))
         if column.any():
             column[self._is_beside_bad_ramp & (column < np.abs(self.trace.compensation.radius))] = 0
@@ -172,10 +173,10 @@ class UncompensatedCuts(Columns, frozen=True):
 
     @cached_property
     def is_rapid(self) -> Mask:
-        """The cut is made in rapid traverse."""
+        """Rows that cut in rapid traverse."""
         return np.asarray((self.depth > 0) & (self.trace.axes.motion == Motion.RAPID))
 
     @cached_property
     def graveness(self) -> Floats:
-        """The depth; above all of these for rapid traverse."""
+        """The depth, increased for rapid traverse above that of all moves at feed."""
         return np.where(self.is_rapid, self.depth + self.depth.max(initial=0.0), self.depth)
