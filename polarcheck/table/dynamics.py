@@ -39,9 +39,10 @@ NOT_EXECUTED, PER_REVOLUTION, NO_FEED, RAPIDS, RADIUS, DWELL, CYCLE, POSITION = 
 
 class Times(msgspec.Struct, frozen=True):
     """
-    How long some rows take together [s], as far as that is known.
+    The total time of a set of rows.
 
-    unknown: of those of which it is not, the reason, how many they are, and the first row.
+    known: time of the rows whose time is known [s].
+    unknown: for the other rows by reason: the reason, the number of rows, and the first row.
     """
 
     known: float
@@ -88,11 +89,11 @@ class Dynamics:
 
     def _largest(self, plain: Floats, name: str) -> Floats:
         """Per move the largest of its pieces; NaN in rapid traverse."""
-        found = np.where(self.at_feed, plain, np.nan)
+        largest = np.where(self.at_feed, plain, np.nan)
         if self.is_slowed.any():
-            found[self.is_slowed] = 0.0
-            np.maximum.at(found, self.pieces.move, getattr(self.pieces, name)())
-        return found
+            largest[self.is_slowed] = 0.0
+            np.maximum.at(largest, self.pieces.move, getattr(self.pieces, name)())
+        return largest
 
     @cached_property
     def true_feed(self) -> Floats:
@@ -130,15 +131,15 @@ class Dynamics:
     @cached_property
     def move_time(self) -> Floats:
         """How long each move takes [s]; NaN where it is not known. That of a rapid is a matter of its row."""
-        found = self.time_without_override.copy()
+        time = self.time_without_override.copy()
         if self.is_slowed.any():
-            found[self.is_slowed] = 0.0
-            np.add.at(found, self.pieces.move, self.pieces.time())
-        return found
+            time[self.is_slowed] = 0.0
+            np.add.at(time, self.pieces.move, self.pieces.time())
+        return time
 
     @cached_property
     def time_without_override(self) -> Floats:
-        """The same, did the tool run at F in force all the way."""
+        """The same without override: the tool runs at F in force throughout."""
         is_known = self.at_feed & self.moves.is_of_tool
         return np.where(is_known, polar.time(self.moves.length, self.moves.feed), np.nan)
 
@@ -181,8 +182,8 @@ class Dynamics:
         rates = (limits.x_rapid, limits.z_rapid, limits.c_rapid)
         ways = self._way(rows)
         times = [np.where(way <= ZERO, 0.0, 60 * way / rate) for way, rate in zip(ways, rates, strict=True)]
-        found: Floats = np.max(np.stack(times), axis=0) if len(rows) else np.zeros(0)
-        return found
+        longest: Floats = np.max(np.stack(times), axis=0) if len(rows) else np.zeros(0)
+        return longest
 
     def _way(self, rows: Rows) -> tuple[Floats, Floats, Floats]:
         """What X [mm, radius], Z [mm] and C [deg] move by; 0 for an axis that the row does not program."""
@@ -236,7 +237,7 @@ class Dynamics:
         no_radius = np.zeros(len(trace), bool)
         no_radius[self.moves.row[~self.moves.is_of_tool]] = True
         no_radius &= np.isnan(trace.compensation.radius_of_move)
-        found = []
+        reasons = []
         for reason, mask in (
             (NOT_EXECUTED, trace.run.unknown),
             (DWELL, self.dwells),
@@ -248,9 +249,9 @@ class Dynamics:
             (POSITION, missing),
         ):
             if (rows := missing & mask).any():
-                found.append((reason, rows))
+                reasons.append((reason, rows))
                 missing &= ~rows
-        return tuple(found)
+        return tuple(reasons)
 
     def times(self, rows: Rows) -> Times:
         """How long these rows take together."""

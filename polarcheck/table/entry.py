@@ -27,13 +27,13 @@ class Entry(Columns, frozen=True):
     # ---- what is known of the program ----
 
     def happened(self, mask: Mask, since: Mask | None = None) -> Mask:
-        """Whether a row at or above is in the mask or of unknown effect, from the program head or the last `since`."""
+        """True from a row of the mask or of unknown effect to the next program head or row of `since`."""
         trace = self.trace
         return happened(mask | trace.run.unknown, trace.blocks.starts if since is None else trace.blocks.starts | since)
 
     @cached_property
     def loses_x(self) -> Mask:
-        """X is somewhere else afterwards, where no program can know: a tool change, a reference return of X."""
+        """Rows after which the position of X is not known: a tool change, a reference return of X."""
         trace = self.trace
         return np.asarray(
             trace.tools.changes_tool | (trace.blocks.listed("reference_return") & trace.blocks.has("X", "U"))
@@ -173,26 +173,26 @@ class Entry(Columns, frozen=True):
 
     @cached_property
     def radius_told(self) -> Floats:
-        """R that a comment tells of an offset whose R is given or set [mm], at the same word; else NaN."""
-        told = np.full(len(self.trace), np.nan)
+        """R that a comment states for an offset with an R of the job or program [mm], at the same word; else NaN."""
+        stated = np.full(len(self.trace), np.nan)
         for row in np.flatnonzero(~np.isnan(self.radius_in_mode)).tolist():
-            found = self.trace.offsets.radii_in_comments.get(int(self.trace.tools.offset_number[row]))
-            told[row] = found.radius if found else np.nan
-        return told
+            comment = self.trace.offsets.radii_in_comments.get(int(self.trace.tools.offset_number[row]))
+            stated[row] = comment.radius if comment else np.nan
+        return stated
 
     @property
     def radius_off_comment(self) -> Floats:
-        """How far a given R is from what a comment tells of its offset [mm]; NaN where none does."""
+        """Difference of R from the R in a comment on the same offset [mm]; NaN without such a comment."""
         return np.abs(np.abs(self.radius_in_mode) - self.radius_told)
 
     @property
     def stock_diameter(self) -> Floats:
-        """Of the stock [mm]; NaN where the job gives none."""
+        """Diameter of the stock [mm]; NaN if the job states none."""
         return self.trace.lengths.stock_diameter
 
     @property
     def clearance(self) -> Floats:
-        """What the job wants between the stock and the tool at the approach, on the diameter [mm]."""
+        """Clearance between stock and tool that the job demands at the approach, on the diameter [mm]."""
         return np.broadcast_to(self.trace.job.stock.clearance * self.trace.lengths.job_scale, len(self.trace))
 
     @cached_property

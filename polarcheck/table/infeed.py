@@ -43,10 +43,14 @@ CUT = 1e-6
 
 class _Cycle(NamedTuple):
     """
-    The simulated passes of one cycle: the rows of its contour, how far each pass lies off it [mm], the farthest first.
+    The simulated passes of one cycle.
 
-    rows: of the trace, those of the contour for each pass. tool: its path, of which `row` leads into `rows`. known:
-    bool[rows]. unfit: bool[passes, contour], where the control would object to a pass.
+    contour: rows of the trace, those of its contour.
+    offsets: float64[passes] [mm], distance of each pass from the contour, the farthest first.
+    rows: rows of the trace, those of the contour repeated for each pass.
+    tool: the tool center path; its `row` is an index of `rows`.
+    known: bool[rows], the path is known.
+    unfit: bool[passes, contour], moves that the control would reject.
     """
 
     contour: Rows
@@ -58,7 +62,7 @@ class _Cycle(NamedTuple):
 
     @property
     def is_unfit(self) -> Mask:
-        """Passes to which the control would object anywhere."""
+        """Passes with any move that the control would reject."""
         return np.asarray(self.unfit.any(axis=1))
 
 
@@ -94,7 +98,7 @@ class Infeed(Columns, frozen=True):
 
     @cached_property
     def _contours(self) -> dict[int, tuple[Rows, bool]]:
-        """Of each G12.1 with an E, the rows of its contour and whether that is closed."""
+        """The rows of the contour of each G12.1 with an E, and True if the contour is closed."""
         return {row: self._contour(int(self.trace.mode.section[row])) for row in self._begins}
 
     def _contour(self, section: int) -> tuple[Rows, bool]:
@@ -135,12 +139,12 @@ class Infeed(Columns, frozen=True):
         return gap
 
     def offsets(self, row: int) -> Floats:
-        """How far the passes before the last lie off the contour [mm], the farthest first."""
+        """Distances of the passes before the last from the contour [mm], the farthest first."""
         return np.asarray(self.depth[row] * np.arange(self._counts_before_last[row], 0, -1.0))
 
     @cached_property
     def _counts_before_last(self) -> dict[int, int]:
-        """Of each G12.1 with an E, how many passes come before the last."""
+        """The number of passes before the last of each G12.1 with an E."""
         return {row: self._count_before_last(row) for row in self._begins}
 
     def _count_before_last(self, row: int) -> int:
@@ -175,18 +179,18 @@ class Infeed(Columns, frozen=True):
         cycles: dict[int, _Cycle] = {}
         added = 0
         for row, (contour, _) in self._contours.items():
-            found = self._simulated(row, MOST_MOVES - added)
-            if len(found):
-                cycle = self._passes(contour, found)
+            offsets = self._simulated(row, MOST_MOVES - added)
+            if len(offsets):
+                cycle = self._passes(contour, offsets)
                 cycles.update({row: cycle} if len(cycle.offsets) else {})
                 added += len(cycle.tool.row)
         return cycles
 
     def _simulated(self, row: int, moves_left: int) -> Floats:
-        """Of the passes behind a G12.1 those that are simulated: the ones next to the contour."""
+        """The simulated passes of a G12.1, by their distances: those next to the contour."""
         contour, _ = self._contours[row]
-        found = self.offsets(row)
-        return found[max(len(found) - min(MOST_PASSES, moves_left // max(len(contour), 1)), 0) :]
+        offsets = self.offsets(row)
+        return offsets[max(len(offsets) - min(MOST_PASSES, moves_left // max(len(contour), 1)), 0) :]
 
     def with_passes(self, moves: Moves) -> Moves:
         """The moves of the tool center with the passes that come before the last one."""
@@ -212,7 +216,7 @@ class Infeed(Columns, frozen=True):
         return Moves.concatenated([*parts, _between(moves, done, len(moves))])
 
     def _moves(self, cycle: _Cycle, start: complex) -> Moves:
-        """The rounds of a cycle one after the other, from a start point; of one that does not fit nobody knows it."""
+        """The moves of the passes that fit, in order, from a start point; the path of other passes is not known."""
         tool, number = cycle.tool, cycle.tool.row // len(cycle.contour)
         allowance, known = cycle.offsets[number], tool.known & cycle.known[tool.row]
         rounds = replace(of_tool(self.trace, tool, cycle.rows), known=known, allowance=allowance)
@@ -223,22 +227,22 @@ class Infeed(Columns, frozen=True):
         begin[first] = np.append(start, rounds.end[first[1:] - 1])[: len(first)]
         return replace(rounds, start=begin)
 
-    def _passes(self, contour: Rows, found: Floats) -> _Cycle:
-        """The rounds at some offsets: the contour as if the cutter were larger by each of them."""
-        cycle = self._rounds(contour, found)
+    def _passes(self, contour: Rows, offsets: Floats) -> _Cycle:
+        """The passes at these offsets: the contour with a cutter that is larger by each offset."""
+        cycle = self._rounds(contour, offsets)
         beyond = self._beyond_start(cycle) & ~cycle.is_unfit
-        return self._rounds(contour, found[~beyond]) if beyond.any() else cycle
+        return self._rounds(contour, offsets[~beyond]) if beyond.any() else cycle
 
-    def _rounds(self, contour: Rows, found: Floats) -> _Cycle:
+    def _rounds(self, contour: Rows, offsets: Floats) -> _Cycle:
         trace, count = self.trace, len(contour)
-        rows, offset = np.tile(contour, len(found)), np.repeat(found, count)
-        path = replace(compensation_path(trace, rows), section=np.repeat(np.arange(len(found)), count))
+        rows, offset = np.tile(contour, len(offsets)), np.repeat(offsets, count)
+        path = replace(compensation_path(trace, rows), section=np.repeat(np.arange(len(offsets)), count))
         is_known = np.ones(len(rows), bool)
         if (path.side == Side.OFF).all():
             side = np.full(len(rows), self._side_of_start(contour), np.int16)
             path = replace(path, side=side, radius=offset)
         else:
-            # Of an unknown radius the pass shows where it lies to the contour, and is marked as not known.
+            # With an unknown radius the pass only shows its place beside the contour; it is marked as not known.
             is_known = ~np.isnan(path.radius)
             radius = np.nan_to_num(path.radius)
             path = replace(path, radius=np.where(radius < 0, radius - offset, radius + offset))
@@ -246,7 +250,7 @@ class Infeed(Columns, frozen=True):
         unfit = ((tool.inside_arc_too_small | tool.interferes | tool.no_intersection) & is_known).reshape(-1, count)
         # The way to the contour is no part of it, and has rules of its own.
         unfit[:, :1] = False
-        return _Cycle(contour, found, rows, tool, is_known, unfit)
+        return _Cycle(contour, offsets, rows, tool, is_known, unfit)
 
     def _beyond_start(self, cycle: _Cycle) -> Mask:
         """Passes that do not lie between the contour and the start point."""
@@ -279,23 +283,23 @@ class Infeed(Columns, frozen=True):
 
     @cached_property
     def unfit(self) -> Rows:
-        """How many of them run along arcs or corners into which the tool does not fit so far off the contour."""
+        """The number of passes along arcs or corners into which the tool does not fit at that offset."""
         return self._counts({row: int(cycle.is_unfit.sum()) for row, cycle in self._cycles.items()})
 
     @cached_property
     def least_unfit(self) -> dict[int, tuple[float, int]]:
-        """Of each G12.1 with such passes how far the nearest lies off the contour [mm], and the first row at fault."""
-        found = {}
+        """For each G12.1 with such passes: the offset of the nearest one [mm], and its first row at fault."""
+        least = {}
         for row, cycle in self._cycles.items():
             bad = np.flatnonzero(cycle.is_unfit)
             if len(bad):
                 at = int(cycle.contour[np.argmax(cycle.unfit[bad[-1]])])
-                found[row] = float(cycle.offsets[bad[-1]]), at
-        return found
+                least[row] = float(cycle.offsets[bad[-1]]), at
+        return least
 
     @cached_property
     def judged_by_radius(self) -> Mask:
-        """G12.1 with an E whose passes nothing can be said of without R: along a closed contour with G41 or G42."""
+        """G12.1 with an E whose passes depend on R: along a closed contour with G41 or G42."""
         rows = np.zeros(len(self.trace), bool)
         rows[[row for row, (contour, _) in self._contours.items() if self._is_compensated(contour)]] = True
         return np.asarray(rows & (self.gap == 0))
@@ -306,17 +310,17 @@ class Infeed(Columns, frozen=True):
     @cached_property
     def has_further_contour(self) -> Mask:
         """G12.1 with an E behind whose contour, offset cancel included, another is cut with compensation."""
-        trace, found = self.trace, np.zeros(len(self.trace), bool)
+        trace, mask = self.trace, np.zeros(len(self.trace), bool)
         for row, (contour, _) in self._contours.items():
             if not len(contour) or trace.compensation.side[contour[0]] == Side.OFF:
                 continue
             side = trace.compensation.side[contour[-1] : trace.mode.sections.leave[trace.mode.section[row]]]
-            found[row] = bool((side[int(np.argmax(side == Side.OFF)) :] != Side.OFF).any() and (side == Side.OFF).any())
-        return found
+            mask[row] = bool((side[int(np.argmax(side == Side.OFF)) :] != Side.OFF).any() and (side == Side.OFF).any())
+        return mask
 
     @cached_property
     def is_simulated_in_part(self) -> Mask:
-        """G12.1 with an E of which only the passes next to the contour are simulated."""
+        """G12.1 with an E with more passes than are simulated."""
         rows = np.zeros(len(self.trace), bool)
         before_last = self._counts_before_last
         rows[[row for row in self._begins if before_last[row] > len(self._simulated(row, MOST_MOVES))]] = True

@@ -40,10 +40,10 @@ class Mirrored(Columns, frozen=True):
         return self.since.compensation
 
     def _any(self, rows: Mask) -> Mask:
-        """All rows of the loops that any of these rows is of."""
-        found = np.zeros(int(self._loop[-1]) + 1, bool)
-        found[self._loop[rows]] = True
-        return found[self._loop]
+        """All rows of the loops with any of these rows."""
+        has_row = np.zeros(int(self._loop[-1]) + 1, bool)
+        has_row[self._loop[rows]] = True
+        return has_row[self._loop]
 
     @cached_property
     def _fails(self) -> Mask:
@@ -57,21 +57,21 @@ class Mirrored(Columns, frozen=True):
     @cached_property
     def is_mirrored(self) -> Mask:
         """Rows with the G41 or G42 of a loop that is meant for the other one."""
-        trace, asked = self.trace, self._fails
-        if not asked.any():
-            return asked
-        asked = self._any(asked) & ~self._any(self.ramps.writes_side_again)
-        # From what costs little to what costs much, as long as any loop is left that it may be.
-        for is_so in (
+        trace, candidates = self.trace, self._fails
+        if not candidates.any():
+            return candidates
+        candidates = self._any(candidates) & ~self._any(self.ramps.writes_side_again)
+        # The cheap tests come first; the search ends when no candidate is left.
+        for test in (
             self._comes_out_at_both_ends,
             lambda rows: ~self._any(self._trial(rows, -1).objects),
             lambda rows: ~self._any(self._trial(rows, -1).faulty),
             lambda rows: self._any(self._trial(rows, _SMALL).faulty),
         ):
-            if not asked.any():
+            if not candidates.any():
                 break
-            asked &= is_so(asked)
-        return np.asarray(asked & trace.compensation.writes_side)
+            candidates &= test(candidates)
+        return np.asarray(candidates & trace.compensation.writes_side)
 
     def _comes_out_at_both_ends(self, rows: Mask) -> Mask:
         """All rows of the loops whose start-up and offset cancel run through the part."""

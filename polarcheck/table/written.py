@@ -1,4 +1,4 @@
-"""What the words and characters of a file say of themselves, without being executed."""
+"""Faults of words and characters that show in the text of a file, before it is executed."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _ADDRESS_BITS[65:123] = np.uint64(1) << np.arange(58, dtype=np.uint64)
 _ADDRESS_BITS[list(b"GMN")] = 0
 #: In macro calls, argument specification II.
 _ARGUMENT_SETS = b"IJK"
-#: What is wrong in the same way more often than this is one habit, of a post or of whoever typed it, and is told once.
+#: A fault that occurs more often than this is a habit of a post or an author, and is reported once.
 _HABIT = 5
 #: Groups whose codes have other meanings on lathes with two turrets, or take arguments.
 _UNSURE_GROUPS = ("scaling", "rotation", "mirror")
@@ -51,71 +51,72 @@ class Written:
 
     def _habits(self, index: Rows, *kinds: NDArray[Any], block: Rows | None = None, often: int = _HABIT) -> Rows:
         """
-        Of faulty elements those to tell, each with the number of blocks that it stands for, 0 where it is not told.
+        Per element: the number of blocks that a reported fault stands for, 0 where none is reported.
 
-        index: ascending. kinds: of each; more than `often` of one kind are told at the first of them.
-        block: of each element, where they are no words.
+        index: faulty elements, ascending.
+        kinds: kinds of each faulty element; more than `often` of one kind are reported once, at the first.
+        block: block of each element, if the elements are not words.
         """
-        of_all = self.words.block if block is None else block
+        all_blocks = self.words.block if block is None else block
         if not len(index):
-            return repeated(np.int64(0), len(of_all))
-        found = np.zeros(len(of_all), np.int64)
+            return repeated(np.int64(0), len(all_blocks))
+        counts = np.zeros(len(all_blocks), np.int64)
         order = np.lexsort((index, *kinds))
-        at, begins = of_all[index[order]], np.zeros(len(index), bool)
+        blocks, begins = all_blocks[index[order]], np.zeros(len(index), bool)
         begins[0] = True
         for kind in kinds:
             begins[1:] |= np.diff(kind[order].astype(np.int64)) != 0
         of_kind = np.cumsum(begins) - 1
-        in_new_block = begins | np.append(True, np.diff(at) != 0)
+        in_new_block = begins | np.append(True, np.diff(blocks) != 0)
         is_habit = (np.bincount(of_kind) > often)[of_kind]
         count = np.where(is_habit, np.bincount(of_kind, in_new_block)[of_kind], 1)
-        found[index[order]] = np.where(begins | ~is_habit, count, 0)
-        return found
+        counts[index[order]] = np.where(begins | ~is_habit, count, 0)
+        return counts
 
     # ---- words of a block ----
 
     @cached_property
     def unreadable_count(self) -> Rows:
-        """Per word: where a number that cannot be read is told, in how many blocks such ones stand, else 0."""
+        """Per word: the number of blocks with unreadable numbers where one is reported, else 0."""
         index = np.flatnonzero(self.words.is_unreadable)
         return self._habits(index, self.words.fault[index], self.words.address[index])
 
     @cached_property
     def wrong_dash_count(self) -> Rows:
-        """The same of words with a dash of print."""
+        """The same for words with a typographic dash."""
         return self._habits(np.flatnonzero(self.words.has_wrong_dash))
 
     def _in_broken_block(self, index: Rows) -> Mask:
-        """Whether something in the block of a word cannot be read, so that what else is there means little."""
+        """True for words in a block with anything unreadable: its other words are not reliable."""
         broken = np.concatenate((self.words.block[self.words.is_unreadable], self.text.strays.block))
         return np.isin(self.words.block[index], broken)
 
     def first_beyond(self, counted: Mask, limit: int) -> Mask:
-        """Of the counted words the first in each block that is one too many."""
+        """The first counted word of each block that exceeds the limit."""
         index = np.flatnonzero(counted)
         block = self.words.block[index]
         is_next = np.append(np.ones(min(limit, len(index)), bool), block[limit:] != block[: max(len(block) - limit, 0)])
         beyond = ~is_next
         beyond[1:] &= is_next[:-1]
-        found = np.zeros(len(self.words), bool)
+        mask = np.zeros(len(self.words), bool)
         index = index[beyond]
-        found[index[~self._in_broken_block(index)]] = True
-        return found
+        mask[index[~self._in_broken_block(index)]] = True
+        return mask
 
     def in_block(self, counted: Mask, asked: Mask) -> Rows:
-        """Per word that is asked about: how many of the counted words its block has; 0 for others."""
+        """Per word of the mask `asked`: the number of counted words in its block; 0 for other words."""
         if not asked.any():
             return repeated(np.int64(0), len(asked))
         block = self.words.block
         return np.where(asked, np.bincount(block[counted], minlength=int(block[-1]) + 1)[block], 0)
 
     def _suspects(self, index: Rows, bits: NDArray[np.uint64]) -> Rows:
-        """Of the words with bits those of blocks in which a bit stands twice, or something that cannot be read."""
+        """Words with bits in blocks that have a bit twice; not in blocks with anything unreadable."""
         if not len(index):
             return index
         block = self.words.block[index]
         head = np.flatnonzero(np.append(True, block[1:] != block[:-1]))
-        # Bits that are all different add up to what they are joined by `or`.
+        # The sum of bits equals their bitwise or if all are different.
         differs = np.add.reduceat(bits, head) != np.bitwise_or.reduceat(bits, head)
         if not differs.any():
             return index[:0]
@@ -123,7 +124,7 @@ class Written:
         return chosen[~self._in_broken_block(chosen)]
 
     def _again(self, index: Rows, kind: NDArray[Any]) -> tuple[Rows, Rows]:
-        """Of the words those before which one of the same kind stands in the block, and that one."""
+        """Words that follow a word of the same kind in their block, and the word before each of them."""
         order = np.lexsort((index, kind, self.words.block[index]))
         index, kind = index[order], kind[order]
         block = self.words.block[index]
@@ -133,9 +134,9 @@ class Written:
     @cached_property
     def repeat_count(self) -> Rows:
         """
-        Per word: at the first word of a block whose address stood in it before 1, else 0.
+        Per word: 1 at the first word of a block that repeats an address of the block, else 0.
 
-        Where that is so of one address in many blocks, how many they are, at the first of them.
+        If an address is repeated in many blocks, the first word has the number of these blocks, and the others have 0.
         """
         words = self.words
         suspects = self._suspects(np.arange(len(words)), _ADDRESS_BITS[words.address])
@@ -158,7 +159,7 @@ class Written:
 
     @cached_property
     def overruled(self) -> Rows:
-        """Per word: the word of another code of the same modal group that stands before it in the block, else -1."""
+        """Per word: the word before it in the block that is another code of the same modal group, else -1."""
         system = self.machine.control.g_code_system
         names, group_of, _ = modal_tables(self.machine)
         group = group_of.copy()
@@ -173,13 +174,13 @@ class Written:
         differs = self.words.value[other] != self.words.value[later]
         if not differs.any():
             return repeated(np.int64(-1), len(self.words))
-        found = np.full(len(self.words), -1)
-        found[later[differs]] = other[differs]
-        return found
+        earlier_word = np.full(len(self.words), -1)
+        earlier_word[later[differs]] = other[differs]
+        return earlier_word
 
     @cached_property
     def unknown_code_count(self) -> Rows:
-        """Per word: at the first of an unknown G code in the file how often the code stands there, else 0."""
+        """Per word: the number of times that an unknown G code occurs, at its first word in the file, else 0."""
         machine = self.machine
         polar = machine.polar
         listed = (*machine.control.known_codes, *machine.control.motion_codes, *machine.listed_codes)
@@ -196,7 +197,7 @@ class Written:
 
     @cached_property
     def overruled_count(self) -> Rows:
-        """Per word: where an overruled code is told, in how many blocks the same two codes stand, else 0."""
+        """Per word: the number of blocks with the same two codes where an overruled code is reported, else 0."""
         index = np.flatnonzero(self.overruled >= 0)
         later, other = (code_numbers(self.words.value[at]) for at in (index, self.overruled[index]))
         return self._habits(index, later, other)
@@ -206,39 +207,37 @@ class Written:
     @cached_property
     def long_number_digits(self) -> Rows:
         """
-        Per word: how many digits the control counts where there are more than it takes, else 0.
+        Per word: the number of digits where it exceeds the limit of the control, else 0.
 
-        Leading zeros and digits beyond the least increment do not count, nor words in a block that cannot be read.
+        Leading zeros and digits beyond the least increment do not count. Blocks with anything unreadable are left out.
         """
         control, words = self.machine.control, self.words
         long = np.flatnonzero(words.digits > control.digit_limit)
         counted = np.minimum(words.decimals[long], round(-np.log10(control.least_increment)))
         digits = words.digits[long] - words.decimals[long] + counted
-        # A number of more than 22 digits has a value that is only about right.
+        # The value of a number of more than 22 digits is only approximate.
         is_large = np.abs(words.value[long]) >= 10.0 ** (control.digit_limit - counted)
-        kept = (digits > control.digit_limit) & is_large & ~self._in_broken_block(long)
-        if not kept.any():
+        is_too_long = (digits > control.digit_limit) & is_large & ~self._in_broken_block(long)
+        if not is_too_long.any():
             return repeated(np.int64(0), len(words))
-        found = np.zeros(len(words), np.int64)
-        found[long[kept]] = digits[kept]
-        return found
+        column = np.zeros(len(words), np.int64)
+        column[long[is_too_long]] = digits[is_too_long]
+        return column
 
     @cached_property
     def is_first_lower_case(self) -> Mask:
         """The first word of the file with a lower case letter."""
-        found = np.zeros(len(self.words), bool)
+        mask = np.zeros(len(self.words), bool)
         code = self.text.source.code
         letter = code[self.words.start]
         index = np.flatnonzero((letter >= ord("a")) & (letter <= ord("z")))
         index = index[~np.isin(self.words.block[index], self.text.prose.block)]
-        found[index[~self._in_broken_block(index)][:1]] = True
-        return found
+        mask[index[~self._in_broken_block(index)][:1]] = True
+        return mask
 
     @cached_property
     def letter_count(self) -> Rows:
-        """
-        Per word: at the first of a word with letters for digits how often it is written so in the file, else 0.
-        """
+        """Per word: the number of blocks with letters for digits where one is reported, else 0."""
         starts, letters = self.words.start, self.text.letters
         index, first = np.unique(np.searchsorted(starts, letters, side="right") - 1, return_index=True)
         return self._habits(index, self._characters(letters[first]))
@@ -247,7 +246,7 @@ class Written:
 
     @cached_property
     def lacks_end(self) -> Mask:
-        """The last word of a program that has a head, or stands between %, and has no code that ends it or returns."""
+        """The last word of a program with a head, or between %, that has no code for its end or for a return."""
         m_words = np.flatnonzero(self.words.address == ord("M"))
         ends = code_set([*self.machine.m_codes.program_end, *self.machine.macro.program_returns])
         ending = self.words.block[m_words[ends[code_numbers(self.words.value[m_words])]]]
@@ -260,13 +259,13 @@ class Written:
         # A head alone is no program.
         words_before = np.searchsorted(self.words.block, np.array([first, end]))
         lacking &= words_before[1] - words_before[0] > 1
-        found = np.zeros(len(self.words), bool)
+        mask = np.zeros(len(self.words), bool)
         for index in np.flatnonzero(lacking).tolist():
-            found[words_before[1, index] - 1] = not self._ends_in_macro(int(first[index]), int(end[index]))
-        return found
+            mask[words_before[1, index] - 1] = not self._ends_in_macro(int(first[index]), int(end[index]))
+        return mask
 
     def _ends_in_macro(self, first: int, end: int) -> bool:
-        """A block with macro ends the program or leads back."""
+        """True if a macro block ends the program, returns or jumps."""
         macro = np.flatnonzero(self.text.blocks.is_macro[first:end]) + first
         codes = (*self.machine.m_codes.program_end, *self.machine.macro.program_returns)
         spelled_out = "|".join(rf"{code[0]}\s*0*{re.escape(code[1:])}(?![.\d])" for code in codes)
@@ -278,9 +277,9 @@ class Written:
     @cached_property
     def stray_count(self) -> Rows:
         """
-        Per stray character: at the first in the file in how many blocks it is the first stray one, else 0.
+        Per stray character: the number of blocks in which it is the first stray one, at its first place, else 0.
 
-        Not where a word of the block cannot be read for itself, nor a ) that a nested comment has left over.
+        Left out are blocks with an unreadable word, and a ) that remains of a nested comment.
         """
         strays = self.text.strays
         first = np.ones(len(strays), bool)
@@ -301,22 +300,22 @@ class Written:
 
     @cached_property
     def nested_count(self) -> Rows:
-        """Per comment: where it is told that another one opens in it, in how many blocks that is so, else 0."""
+        """Per comment: the number of blocks with nested comments where one is reported, else 0."""
         block = self.text.comments.block
         return self._habits(np.flatnonzero(self.text.nested), block=block)
 
     @cached_property
     def unclosed_count(self) -> Rows:
-        """The same of comments that are not closed."""
+        """The same for comments that are not closed."""
         block = self.text.comments.block
         return self._habits(np.flatnonzero(self.text.unclosed), block=block)
 
     @cached_property
     def prose_count(self) -> Rows:
         """
-        Per text in no parentheses: at the first of the file in how many blocks such stands, else 0.
+        Per text without parentheses: the number of blocks with such text, at the first of the file, else 0.
 
-        What nested comments or one that is not closed leave over is told by itself, since it is no mistake of its own.
+        Remains of nested or unclosed comments are counted separately, since they are consequences.
         """
         text = self.text
         broken = text.comments.block[text.nested | text.unclosed]
@@ -325,7 +324,7 @@ class Written:
 
     @cached_property
     def is_first_dots(self) -> Mask:
-        """The first of lines of points that follow each other."""
+        """The first of successive lines of dots."""
         first = np.ones(len(self.text.dots), bool)
         first[1:] = np.diff(self.text.dots.block) > 1
         return first
@@ -342,21 +341,21 @@ class Written:
     @cached_property
     def foreign_count(self) -> Rows:
         """
-        Per run of foreign characters: at the first on its line how many there are on the line, else 0.
+        Per run of foreign characters: the number of them on its line, at the first run of the line, else 0.
 
-        Those reported as stray characters, wrong dashes, text in no parentheses or outside a program are left out,
-        and all before the first % are taken together: the leader of a tape.
+        Left out are stray characters, wrong dashes, text without parentheses and text outside a program. Characters
+        before the first %, the leader of a tape, count as one line.
         """
         text, spans = self.text, self.text.foreign
         code = text.source.code[spans.start]
         is_blank = np.isin(code, list(BLANKS))
-        kept = (is_blank | _inside(spans.start, text.comments) | _inside(spans.start, text.names)) & ~_inside(
+        is_counted = (is_blank | _inside(spans.start, text.comments) | _inside(spans.start, text.names)) & ~_inside(
             spans.start, text.outside
         )
-        kept &= ~_inside(spans.start, text.prose)
+        is_counted &= ~_inside(spans.start, text.prose)
         leader = text.tape_marks[0] if len(text.tape_marks) else 0
         line = np.where(spans.start < leader, 0, text.blocks.line[spans.block])
-        index = np.flatnonzero(kept)
+        index = np.flatnonzero(is_counted)
         length = (spans.end - spans.start)[index]
         first = np.flatnonzero(np.append(True, line[index][1:] != line[index][:-1])) if len(index) else index
         count = np.zeros(len(spans), np.int64)
@@ -365,11 +364,11 @@ class Written:
 
     @cached_property
     def foreign_line_count(self) -> Rows:
-        """Per run of foreign characters: where a line with such is told, how many lines it stands for, else 0."""
+        """Per run of foreign characters: the number of lines that a reported line stands for, else 0."""
         return self._habits(np.flatnonzero(self.foreign_count > 0), block=self.text.foreign.block)
 
 
 def _inside(at: Rows, spans: object) -> Mask:
-    """Whether the positions lie in one of the spans, which may stand in any order."""
+    """True for positions in any of the spans; the spans may have any order."""
     start, end = np.sort(spans.start), np.sort(spans.end)  # type: ignore[attr-defined]
     return np.asarray(np.searchsorted(start, at, side="right") > np.searchsorted(end, at, side="right"))
