@@ -1,4 +1,4 @@
-"""Where X0 lies: the work offset in force, and what job, G10, variables, G52 and G50 make of it, as far as is known."""
+"""The known position of X0: the work offset in force, changed by the job, G10, variables, G52 and G50."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from polarcheck.machines.own_language import shown
 _EXTENDED = 1000
 #: The work offset that is added to all others, and the work shift, which is added, too.
 _EXTERNAL, _SHIFT = 0, -1
-#: No control has more of the further work offsets.
+#: The largest number of further work offsets of any control.
 _MOST_EXTENDED = 300
 #: P of no work offset.
 _LONGEST = 1e9
@@ -62,13 +62,13 @@ class Origin(Columns, frozen=True):
     @cached_property
     def _of_job(self) -> dict[float, tuple[str, float]]:
         """The work offsets that the job gives, by number: their names, and X."""
-        found = {}
+        offsets = {}
         for name, offset in self.trace.job.work_offsets.items():
             written, _, extension = name.upper().partition(" P")
             number = _number(extension) + _EXTENDED if extension else _number(written)
             if number == number:
-                found[number] = name.upper(), offset.x
-        return found
+                offsets[number] = name.upper(), offset.x
+        return offsets
 
     # ---- G10, and the variables of work offsets ----
 
@@ -91,15 +91,15 @@ class Origin(Columns, frozen=True):
         number = np.select((is_shift, is_external, is_plain), (_SHIFT, _EXTERNAL, plain), _EXTENDED + p)
         has_x = trace.blocks.has("X")[rows]
         value = np.where(has_x, trace.lengths.length_of("X")[rows], trace.lengths.length_of("U")[rows])
-        found = Settings(
+        settings = Settings(
             rows, number.astype(np.int64), np.full(len(rows), X), value, trace.modal.incremental[rows] | ~has_x
         )
-        return found.of(is_shift | is_external | is_plain | is_extended)
+        return settings.of(is_shift | is_external | is_plain | is_extended)
 
     def _set_by_variables(self) -> Settings:
         trace, offsets = self.trace, self.trace.machine.offsets
         first, step = offsets.work_offset_variable, offsets.work_offset_step
-        found = []
+        settings = []
         for row, assigned in trace.run.assigned.items():
             plain = steps_above(assigned.variable, first, step)
             extended = steps_above(assigned.variable, offsets.work_offset_extended_variable, step)
@@ -111,8 +111,8 @@ class Origin(Columns, frozen=True):
             elif 0 <= extended < _MOST_EXTENDED:
                 number = _EXTENDED + extended + 1
             if number is not None and trace.mode.section[row] < 0:
-                found.append((row, number, X, assigned.value * float(trace.lengths.scale[row]), assigned.is_step))
-        return of_list(found)
+                settings.append((row, number, X, assigned.value * float(trace.lengths.scale[row]), assigned.is_step))
+        return of_list(settings)
 
     def _x_of(self, number: float) -> tuple[Floats, Rows]:
         """X of a work offset in each row, NaN where it is not known, and the row that has set it; -1 where none has."""
@@ -141,12 +141,12 @@ class Origin(Columns, frozen=True):
         Only of those that are in force at a G12.1: a program may set many more.
         """
         trace = self.trace
-        asked = set(self._number[trace.mode.sections.enter].tolist()) - {_EXTERNAL, _SHIFT}
+        selected = set(self._number[trace.mode.sections.enter].tolist()) - {_EXTERNAL, _SHIFT}
         x, setter = np.zeros(len(trace)), np.full(len(trace), -1)
-        for number in sorted({*self._of_job, *self._settings.number.tolist()} & asked):
+        for number in sorted({*self._of_job, *self._settings.number.tolist()} & selected):
             in_force = self._number == number
-            given, row = self._x_of(number)
-            x[in_force], setter[in_force] = given[in_force], row[in_force]
+            x_of_offset, row = self._x_of(number)
+            x[in_force], setter[in_force] = x_of_offset[in_force], row[in_force]
         return x, setter
 
     @cached_property
@@ -224,7 +224,7 @@ class Origin(Columns, frozen=True):
 
     @cached_property
     def shift(self) -> Floats:
-        """How far X0 is known to lie off the spindle axis; NaN where the program sets what is not known."""
+        """The known distance of X0 from the spindle axis; NaN where the program sets an unknown value."""
         trace = self.trace
         shifts = trace.blocks.listed("data_input", "local_shift", "coordinate_setting")
         # G50 S2000 is a speed.
@@ -242,7 +242,7 @@ class Origin(Columns, frozen=True):
 
     @cached_property
     def _parts(self) -> tuple[tuple[Floats, Callable[[int], str]], ...]:
-        """What is added up, and what each part is called in a row."""
+        """The parts of the shift, each with a function that names its cause in a row."""
         offsets = (self.work_offset, self.external, self.work_shift)
         return (
             *((x, functools.partial(self._of_offset, setter)) for x, setter in offsets),
@@ -255,11 +255,11 @@ class Origin(Columns, frozen=True):
         return self._set_in(row, int(setter[row]))
 
     def causes(self, row: int) -> list[str]:
-        """What shifts the origin in a row: a work offset by its name, G10, a variable, G52, G50."""
+        """Names of the causes of the shift in a row: a work offset, G10, a variable, G52, G50."""
         return list(dict.fromkeys(name(row) for part, name in self._parts if part[row]))
 
     def unknown_causes(self, row: int) -> list[str]:
-        """Those of them that set what is not known."""
+        """Names of the causes whose value is not known."""
         return list(dict.fromkeys(name(row) for part, name in self._parts if np.isnan(part[row])))
 
 

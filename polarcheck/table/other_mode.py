@@ -43,7 +43,7 @@ class OtherMode(Columns, frozen=True):
     def switches(self) -> tuple[Switch, ...]:
         """The codes that begin the mode on other controls, of those that the program executes."""
         trace, words = self.trace, self.trace.run.words
-        found = []
+        switches = []
         for name in self._in_text:
             rows = np.flatnonzero(trace.blocks.with_words(self._of_name(name, words)) & ~trace.mode.in_polar)
             if name in trace.machine.polar.on_of_other_meaning:
@@ -51,8 +51,8 @@ class OtherMode(Columns, frozen=True):
             if name in trace.machine.polar.on_of_macros:
                 rows = rows[self._is_certain(Switch(name, rows, known_by(name)))[rows]]
             if len(rows):
-                found.append(Switch(name, rows, known_by(name)))
-        return tuple(found)
+                switches.append(Switch(name, rows, known_by(name)))
+        return tuple(switches)
 
     @cached_property
     def _in_text(self) -> list[str]:
@@ -78,10 +78,10 @@ class OtherMode(Columns, frozen=True):
     @cached_property
     def _codes_in_text(self) -> Mask:
         """Over code numbers: the G code stands in the file, executed or not."""
-        found = np.zeros(CODE_LIMIT + 1, bool)
+        mask = np.zeros(CODE_LIMIT + 1, bool)
         for words in self._tables:
-            found[code_numbers(words.value[words.address == ord("G")])] = True
-        return found
+            mask[code_numbers(words.value[words.address == ord("G")])] = True
+        return mask
 
     @cached_property
     def _tables(self) -> tuple[Words, ...]:
@@ -98,8 +98,8 @@ class OtherMode(Columns, frozen=True):
 
     def switch(self, row: int) -> Switch:
         """The code or word in a row that begins the mode elsewhere. Raises IndexError for a row without one."""
-        found = [switch for switch in self.switches if row in switch.rows]
-        return found[0]
+        switches = [switch for switch in self.switches if row in switch.rows]
+        return switches[0]
 
     @cached_property
     def is_meant(self) -> Mask:
@@ -107,10 +107,10 @@ class OtherMode(Columns, frozen=True):
         Of the rows that begin it those that can be nothing else: behind them the code that ends it follows, or a move
         in the mode, or a word begins it, while macros are called by codes.
         """
-        found = np.zeros(len(self.trace), bool)
+        mask = np.zeros(len(self.trace), bool)
         for switch in self.switches:
-            found[switch.rows] = self._is_followed(switch)[switch.rows] if is_code(switch.name) else True
-        return found
+            mask[switch.rows] = self._is_followed(switch)[switch.rows] if is_code(switch.name) else True
+        return mask
 
     @cached_property
     def may_be_macro(self) -> Mask:
@@ -124,18 +124,18 @@ class OtherMode(Columns, frozen=True):
         _, cuts, ends = self._marks(switch)
         alone = self.trace.blocks.consists_of("G", "O") & ~self.trace.blocks.has("X", "C")
         stretch = np.cumsum(self.trace.blocks.mask_of(switch.rows) | self.trace.blocks.starts)
-        found = np.zeros((2, len(self.trace) + 1), bool)
-        found[0, stretch[cuts]] = True
-        found[1, stretch[ends]] = True
-        return np.asarray(alone & (found[0] & found[1])[stretch])
+        has_mark = np.zeros((2, len(self.trace) + 1), bool)
+        has_mark[0, stretch[cuts]] = True
+        has_mark[1, stretch[ends]] = True
+        return np.asarray(alone & (has_mark[0] & has_mark[1])[stretch])
 
     def _is_followed(self, switch: Switch) -> Mask:
         """Rows from a beginning on to the next one, or to the next program, in which something belongs to the mode."""
         begins, cuts, ends = self._marks(switch)
         stretch = np.cumsum(begins | self.trace.blocks.starts)
-        found = np.zeros(len(self.trace) + 1, bool)
-        found[stretch[ends | cuts]] = True
-        return found[stretch]
+        has_mark = np.zeros(len(self.trace) + 1, bool)
+        has_mark[stretch[ends | cuts]] = True
+        return has_mark[stretch]
 
     def _marks(self, switch: Switch) -> tuple[Mask, Mask, Mask]:
         """Rows with the switch, with moves of the virtual axis at feed in its mode, and with what ends it."""
@@ -171,21 +171,21 @@ class OtherMode(Columns, frozen=True):
         def moves(profile: Profile) -> bool:
             return bool(np.any(within & self.trace.blocks.has(*profile.machine.polar.virtual_axes)))
 
-        found = switch.known_by
+        candidates = switch.known_by
         for fits in (reads, moves):
-            found = tuple(filter(fits, found)) or found
+            candidates = tuple(filter(fits, candidates)) or candidates
         alike: dict[object, Profile] = {}
-        for profile in found:
+        for profile in candidates:
             alike.setdefault(_reading(profile), profile)
         return tuple(alike.values())
 
     @cached_property
     def words(self) -> Mask:
         """Per executed word: the code or word that begins the mode."""
-        found = np.zeros(len(self.trace.run.words), bool)
+        mask = np.zeros(len(self.trace.run.words), bool)
         for switch in self.switches:
-            found |= self._of_name(switch.name, self.trace.run.words) & np.isin(self.trace.run.row, switch.rows)
-        return found
+            mask |= self._of_name(switch.name, self.trace.run.words) & np.isin(self.trace.run.row, switch.rows)
+        return mask
 
     @cached_property
     def explained(self) -> Mask:
@@ -194,7 +194,7 @@ class OtherMode(Columns, frozen=True):
         its moves, or a word of its own. That the control does not know it is no fault of its own.
         """
         words = self.trace.text.words
-        found = np.zeros(len(words), bool)
+        mask = np.zeros(len(words), bool)
         mode = self.trace.machine.polar
         of_other_meaning = [] if self.switches else [*mode.on_of_other_meaning, *mode.on_of_macros]
         for name in self._in_text:
@@ -202,10 +202,10 @@ class OtherMode(Columns, frozen=True):
                 control, polar = profile.machine.control, profile.machine.polar
                 codes = code_set([*polar.on, *polar.off, *control.motion_codes])
                 of_g = words.address == ord("G")
-                found[of_g] |= codes[code_numbers(words.value[of_g])]
+                mask[of_g] |= codes[code_numbers(words.value[of_g])]
                 for word in control.native_words:
-                    found |= self._of_name(word, words)
-        return found
+                    mask |= self._of_name(word, words)
+        return mask
 
     @cached_property
     def explained_strays(self) -> Mask:
@@ -218,29 +218,29 @@ class OtherMode(Columns, frozen=True):
 
     def _has(self, names: Iterable[str]) -> Mask:
         """Rows with one of these codes or words."""
-        found = np.zeros(len(self.trace), bool)
+        mask = np.zeros(len(self.trace), bool)
         for name in dict.fromkeys(names):
-            found |= self.trace.blocks.with_words(self._of_name(name, self.trace.run.words))
-        return found
+            mask |= self.trace.blocks.with_words(self._of_name(name, self.trace.run.words))
+        return mask
 
     def _of_name(self, name: str, words: Words) -> Mask:
         """Per word of the file, or executed word: is this code, or stands in this word."""
         if not is_code(name):
             return self._of_word(name, words)
-        found = words.address == ord("G")
-        found[found] = code_set([name])[code_numbers(words.value[found])]
-        return np.asarray(found)
+        mask = words.address == ord("G")
+        mask[mask] = code_set([name])[code_numbers(words.value[mask])]
+        return np.asarray(mask)
 
     def _of_word(self, name: str, words: Words) -> Mask:
         """Per word: stands in this word of a control's own language, which reads as letters without digits here."""
-        found = np.zeros(len(words), bool)
+        mask = np.zeros(len(words), bool)
         bare = np.flatnonzero(words.fault == NumberFault.NO_DIGITS)
         if not len(bare):
-            return found
+            return mask
         begins, ends = spans(self.trace.text.source, name)
         at = words.start[bare]
-        found[bare] = np.searchsorted(begins, at, side="right") > np.searchsorted(ends, at, side="right")
-        return found
+        mask[bare] = np.searchsorted(begins, at, side="right") > np.searchsorted(ends, at, side="right")
+        return mask
 
 
 @functools.cache
@@ -267,6 +267,6 @@ def _meant(profile: Profile, name: str) -> str:
 
 
 def _reading(profile: Profile) -> tuple[object, ...]:
-    """What of a machine makes it read a section otherwise than another."""
+    """The settings of a machine that decide how it reads a section."""
     mode = profile.machine.polar
     return tuple(mode.virtual_axes), mode.x, tuple(mode.words_beside_switch), profile.machine.arcs.radius_word

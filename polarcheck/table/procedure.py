@@ -12,7 +12,7 @@ from polarcheck.columns.trace import Trace
 from polarcheck.machines.code_lists import is_code
 from polarcheck.machines.modal import FeedMode, Motion, Side
 
-#: So many moves of C at feed, with one of X among them, are a contour; one alone is a groove or a position.
+#: Least number of C moves at feed, with a move of X among them, of a contour; one alone is a groove or a position.
 _MOVES_OF_CONTOUR = 2
 #: C of a contour hardly passes the X from which it is approached; as a length, an angle of the C axis does. Its share.
 _FARTHEST_C = 1.25
@@ -63,7 +63,7 @@ class Procedure(Columns, frozen=True):
 
     @property
     def _is_rotary(self) -> bool:
-        """Whether the virtual axis has the address of the rotary one."""
+        """True if the virtual axis has the address of the rotary axis."""
         mode = self.trace.machine.polar
         return mode.virtual_axis == mode.rotary_address
 
@@ -139,7 +139,7 @@ class Procedure(Columns, frozen=True):
         is_speed = ~(trace.blocks.word("S") == 0) & (started | (trace.modal.state("speed") == 0))
         takes = (trace.blocks.has("S") & ~trace.modal.sets_coordinates) | trace.run.unknown
         is_own = (is_speed & (following | running)) | trace.run.unknown
-        given = fill_down(takes & is_own, takes | trace.blocks.starts, False).astype(bool)
+        has_speed = fill_down(takes & is_own, takes | trace.blocks.starts, False).astype(bool)
         ends = (
             is_among(trace.axes.motion, _AT_FEED) | trace.blocks.codes(*codes.live_tool_off) | trace.blocks.ends_program
         )
@@ -147,7 +147,7 @@ class Procedure(Columns, frozen=True):
         known = (trace.blocks.whole_program | trace.tools.has_called_tool) & trace.blocks.anywhere_in_program(
             trace.mode.enters
         )
-        return np.asarray(started & ~given[until] & known)
+        return np.asarray(started & ~has_speed[until] & known)
 
     @cached_property
     def live_tool_runs_on(self) -> Rows:
@@ -208,7 +208,7 @@ class Procedure(Columns, frozen=True):
 
 
 def _count(mask: Mask, ends: Mask) -> Rows:
-    """How many rows of the mask stand at or above, back to the last row of `ends`."""
+    """The number of rows of the mask at or above each row, back to the last row of `ends`."""
     count = np.cumsum(mask)
     return np.asarray(count - fill_down(count, ends, 0))
 

@@ -99,16 +99,16 @@ class Ramps(Columns, frozen=True):
         )
 
     def _without_move(self, rows: Mask, ends: Mask, ramp: Mask) -> Mask:
-        """Of these rows those after which one of `ends` comes before a move of the ramp, or a row of unknown effect."""
+        """Rows after which a row of `ends` comes before any ramp move or row of unknown effect."""
         if not rows.any():
             return rows
         trace = self.trace
         ramp = ramp | trace.run.unknown
         events = np.flatnonzero(trace.path.travels | ends | ramp)
         at = np.flatnonzero(rows)
-        found = np.append(events, len(trace))[np.searchsorted(events, at, side="right")]
+        next_event = np.append(events, len(trace))[np.searchsorted(events, at, side="right")]
         alone = np.zeros(len(trace), bool)
-        alone[at] = ~np.append(ramp, False)[found]
+        alone[at] = ~np.append(ramp, False)[next_event]
         return alone
 
     @cached_property
@@ -129,7 +129,7 @@ class Ramps(Columns, frozen=True):
 
     @cached_property
     def used(self) -> Floats:
-        """How much of the move of a ramp its R needs, 1 where it just suffices; NaN for other rows and unknown ones."""
+        """R as a share of the length of the ramp move, 1 where it just suffices; NaN for other or unknown rows."""
         trace = self.trace
         is_ramp = (trace.compensation.starts_up | trace.compensation.cancels) & (trace.path.length > 0)
         used = np.full(len(trace), np.nan)
