@@ -1,6 +1,8 @@
 """
-What of a program is looked at: the loops that would take out of all proportion are given up one by one, before the rest
-is looked at. They are found by counting alone, so that the same program gives the same answer everywhere.
+Limits on the loops of a program that are checked.
+
+Loops that would take too long are given up one by one before the check. Only counts decide, so a program gives the same
+result on every computer.
 """
 
 from __future__ import annotations
@@ -14,22 +16,21 @@ from polarcheck.geometry.tolerances import CHORDS, CHORDS_OF_FILE, FARTHEST, FAR
 
 def far_loops(*curves: Curves) -> Rows:
     """
-    Loops with a point farther from the center than any lathe reaches, or an arc round one so far away that nothing is
-    left of its digits.
+    Loops with a point beyond the reach of any lathe, or with an arc center so far away that the digits of the arc are
+    lost.
     """
-    found = [np.zeros(0, np.int64)]
-    for some in curves:
-        far = np.zeros(len(some), bool)
-        for points, limit in ((some.start, FARTHEST), (some.end, FARTHEST), (some.center, FARTHEST_CENTER)):
+    loops = [np.zeros(0, np.int64)]
+    for table in curves:
+        far = np.zeros(len(table), bool)
+        for points, limit in ((table.start, FARTHEST), (table.end, FARTHEST), (table.center, FARTHEST_CENTER)):
             far |= (np.abs(points.real) > limit) | (np.abs(points.imag) > limit)
-        found.append(some.loop[far])
-    return different(np.concatenate(found))
+        loops.append(table.loop[far])
+    return different(np.concatenate(loops))
 
 
 def long_loops(curves: Curves, tolerance: float) -> Rows:
     """
-    Loops whose arcs are of too many chords, each arc once; of all those of a file the longest are left out until the
-    rest is few enough.
+    Loops whose distinct arcs have too many chords, and the longest loops of a file beyond the total for one file.
     """
     count = chord_counts(curves, tolerance)
     if count.sum() <= CHORDS:
@@ -39,5 +40,5 @@ def long_loops(curves: Curves, tolerance: float) -> Rows:
     loops, number = np.unique(curves.loop[arcs], return_inverse=True)
     total = np.bincount(number, count[arcs])
     order = np.argsort(total, kind="stable")
-    kept = (total[order] <= CHORDS) & (np.cumsum(total[order]) <= CHORDS_OF_FILE)
-    return np.sort(loops[order[~kept]])
+    fits = (total[order] <= CHORDS) & (np.cumsum(total[order]) <= CHORDS_OF_FILE)
+    return np.sort(loops[order[~fits]])

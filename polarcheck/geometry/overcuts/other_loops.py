@@ -1,8 +1,8 @@
 """
-Loops of one section at one depth against each other: what one of them cuts of what another one keeps.
+Overcuts of a loop into the walls of other loops of the same section and depth.
 
-All loops that lie beside each other make one part, as the faces between their walls show it. So passes inside each
-other, in a loop each, and flats whose leads cross each other's walls cut nothing; the two walls of a slot do where the
+Neighbouring loops bound one common part, which consists of faces between their walls. Nested passes with a loop each
+cut nothing of it, nor do flats whose leads cross each other's walls. The loops of a slot cut each other's walls if the
 tool does not fit between them. Floats in mm, plane points complex, x + 1j*c. Import late.
 """
 
@@ -22,71 +22,74 @@ from polarcheck.geometry.segments import Curves, boxes, first_of_its_kind, segme
 
 def cuts_into_others(contour: Contours, level: Rows, path: Curves, radius: Floats, is_ramp: Mask) -> tuple[Cuts, Rows]:
     """
-    Where the tool center comes nearer than R to a wall of another loop that bounds the part of both; the worst place of
-    each of its moves; and the loops that cross each other too often to tell.
+    The deepest cut of each move into a wall of another loop of the common part, and the loops that cross too often.
 
-    contour: the programmed blocks in offset mode, its loops, groups and radius are not asked. level: int[curves], the
-    same number for loops of one section and depth. path, radius, is_ramp: the tool center's moves and ramps, each with
-    the loop whose wall it is for, |R| [mm].
+    contour: the programmed blocks in offset mode; its loops, groups and radius are not used.
+    level: int[curves], the same number for loops of one section and depth.
+    path: the tool center's moves with ramps, each with the loop that it machines.
+    radius: float64[moves of path] [mm], |R|.
+    is_ramp: bool[moves of path], start-ups and offset cancels.
     """
-    loops, group = _together(contour.curves, level, path, float(radius.max(initial=0.0)))
+    loops, group = _neighbours(contour.curves, level, path, float(radius.max(initial=0.0)))
     if not len(loops):
         return Cuts.none(), loops
     place = np.minimum(np.searchsorted(loops, path.loop), len(loops) - 1)
     chosen = np.flatnonzero(loops[place] == path.loop)
-    of_move = np.full(len(path), -1)
-    of_move[chosen] = group[place[chosen]]
+    group_of_move = np.full(len(path), -1)
+    group_of_move[chosen] = group[place[chosen]]
     smallest = np.full(int(group.max()) + 1, np.inf)
-    np.minimum.at(smallest, of_move[chosen], radius[chosen])
+    np.minimum.at(smallest, group_of_move[chosen], radius[chosen])
     order = np.argsort(group, kind="stable")
     smallest = np.where(np.isfinite(smallest), smallest, 0.0)
     part = finished_parts(msgspec.structs.replace(contour, loop=loops[order], group=group[order], radius=smallest))
     tangled = loops[part.tangled[group]]
     ways = segments(path, contour.tolerance)
-    ways = ways[of_move[ways.move] >= 0]
+    ways = ways[group_of_move[ways.move] >= 0]
     by_walls = part.open | endless(part)
-    found = []
+    batches = []
     for of_ramps, outline in ((False, part), (True, shortened(part, smallest))):
         pieces = ways[is_ramp[ways.move] == of_ramps]
-        cuts = cuts_into(outline, by_walls, pieces, of_move[pieces.move], smallest, contour.tolerance)
-        found.append(with_walls(outline, cuts))
-    cuts = Cuts.concatenated(found)
+        cuts = cuts_into(outline, by_walls, pieces, group_of_move[pieces.move], smallest, contour.tolerance)
+        batches.append(with_walls(outline, cuts))
+    cuts = Cuts.concatenated(batches)
     return cuts[contour.curves.loop[cuts.wall] != path.loop[cuts.move]].worst(), tangled
 
 
-def _together(curves: Curves, level: Rows, path: Curves, reach: float) -> tuple[Rows, Rows]:
+def _neighbours(curves: Curves, level: Rows, path: Curves, reach: float) -> tuple[Rows, Rows]:
     """
-    The loops that the tool may come near on the way along another one of their level, but for what is written once
-    more, and the group of each.
+    The loops that the tool may approach while it machines another loop of their level, and the group of each.
+
+    A repeated loop counts as one.
     """
-    loops, first, which = np.unique(curves.loop, return_index=True, return_inverse=True)
+    loops, first, loop_of_curve = np.unique(curves.loop, return_index=True, return_inverse=True)
     of_level, number = np.unique(level[first], return_inverse=True)
-    several = np.bincount(number, minlength=len(of_level))[number] > 1
-    if not several.any():
-        return loops[several], loops[several]
-    fresh = first_of_its_kind(msgspec.structs.replace(curves, loop=number[which]))
-    distinct = np.bincount(which[fresh], minlength=len(loops)) > 0
-    several &= np.bincount(number[distinct], minlength=len(of_level))[number] > 1
+    is_candidate = np.bincount(number, minlength=len(of_level))[number] > 1
+    if not is_candidate.any():
+        return loops[is_candidate], loops[is_candidate]
+    fresh = first_of_its_kind(msgspec.structs.replace(curves, loop=number[loop_of_curve]))
+    distinct = np.bincount(loop_of_curve[fresh], minlength=len(loops)) > 0
+    is_candidate &= np.bincount(number[distinct], minlength=len(of_level))[number] > 1
     box = _joined_boxes(boxes(curves, first), path, loops)
-    far = 2 * float(np.abs(box).max()) + 4 * reach
-    shift = 2 * far * number
+    spacing = 2 * float(np.abs(box).max()) + 4 * reach
+    shift = 2 * spacing * number
     area = shapely.box(box[0] + shift - reach, box[1] - reach, box[2] + shift + reach, box[3] + reach)
-    piece = shapely.get_parts(areas.union_all(area[several & distinct]))
+    piece = shapely.get_parts(areas.union_all(area[is_candidate & distinct]))
     middle = lines_of(
-        box[0][several] + shift[several] + 1j * box[1][several], box[2][several] + shift[several] + 1j * box[3][several]
+        box[0][is_candidate] + shift[is_candidate] + 1j * box[1][is_candidate],
+        box[2][is_candidate] + shift[is_candidate] + 1j * box[3][is_candidate],
     )
-    of_loop, group = shapely.STRtree(piece).query(middle, predicate="intersects")
-    of_loop = np.flatnonzero(several)[of_loop]
-    shared = np.bincount(group[distinct[of_loop]], minlength=len(piece)) > 1
-    kept = shared[group]
-    of_loop, group = of_loop[kept], group[kept]
+    loop_number, group = shapely.STRtree(piece).query(middle, predicate="intersects")
+    loop_number = np.flatnonzero(is_candidate)[loop_number]
+    shared = np.bincount(group[distinct[loop_number]], minlength=len(piece)) > 1
+    has_neighbour = shared[group]
+    loop_number, group = loop_number[has_neighbour], group[has_neighbour]
     _, group = np.unique(group, return_inverse=True)
-    order = np.argsort(of_loop)
-    return loops[of_loop[order]], group[order]
+    order = np.argsort(loop_number)
+    return loops[loop_number[order]], group[order]
 
 
 def _joined_boxes(box: Floats, path: Curves, loops: Rows) -> Floats:
-    """The boxes of these loops with the path of the tool center along each, ramps included."""
+    """The boxes of these loops, enlarged to hold the tool center path along each, with its ramps."""
     order = np.argsort(path.loop, kind="stable")
     path = path[order]
     begins = np.flatnonzero(np.diff(path.loop, prepend=-1))

@@ -1,13 +1,13 @@
 """
-The tool center path against the finished part: where the tool cuts what the contour keeps.
+Overcuts of a loop into its finished part: where the tool cuts material that the contour should leave.
 
 Floats in mm, plane points complex, x + 1j*c. Import late: shapely takes its time.
 
-An overcut is R less the distance from the path of the tool center to the finished part; 0 inside it. Arcs become chords
-with their ends on the arc and a sagitta of a quarter of the tolerance; part and path together shift a distance by half
-the tolerance at most. Nothing is decided by areas.
+The depth of an overcut is R less the distance from the tool center path to the finished part. Inside the part that
+distance is 0. Arcs become chords with their ends on the arc and a sagitta of a quarter of the tolerance. The chords of
+part and path together change a distance by half the tolerance at most. No decision depends on areas.
 
-Most loops are let off without a part: where the tool center stays at R from every wall, it does so from the part.
+Most loops need no part polygon: a tool center that stays at R from every wall also stays at R from the part.
 """
 
 from __future__ import annotations
@@ -25,11 +25,11 @@ from polarcheck.geometry.segments import Curves, Segments, first_of_its_kind, me
 from polarcheck.geometry.tolerances import ZERO
 from polarcheck.time_limit import keep_time
 
-#: Depth [mm] up to which nothing is said; two roundings to the least increment.
+#: Overcuts up to this depth [mm] are not reported: two roundings to the least increment.
 TOLERANCE = 0.002
-#: Moves of a loop, or pieces of them, from which on it is worth while to look for passes that are written once more.
+#: From this number of moves, or chords of them, a loop is searched for repeated passes.
 _MANY = 2000
-#: Straight pieces of a loop that are compared as one line, and pieces between two looks at the clock.
+#: Chords of a loop that are compared as one line; points of lines between two checks of the time limit.
 _LONG_RUN, _PIECES = 1024, 2048
 
 
@@ -45,20 +45,22 @@ def overcuts(
     bar: float = np.nan,
 ) -> tuple[Cuts, Rows]:
     """
-    Where the tool center comes nearer than R to the finished part of its loop; the worst place of each of its moves.
-    And the loops whose walls cross too often to tell.
+    The deepest overcut of each move into the finished part of its loop, and the loops whose walls cross too often.
 
-    contour: the programmed blocks in offset mode. left: bool[moves of contour], the tool runs left of the block: G41
-    with R above 0, G42 with R below. air: float64[moves of contour] [mm], radius about the center of C from which on
-    there is nothing to cut for all that is known. level: int[moves of contour], the same for loops of which each takes
-    away what another one leaves standing. path: the tool center's moves in offset mode, corners included, and start-ups
-    and offset cancels, which is_ramp says; each with the row of its block. radius: float64[moves of path] [mm], |R|,
-    the smallest of a loop is taken. bar: its diameter [mm], NaN if not known. What is unknown is left out.
+    contour: the programmed blocks in offset mode.
+    left: bool[moves of contour], the tool runs left of the block: G41 with R above 0, G42 with R below.
+    air: float64[moves of contour] [mm], radius about the center of C beyond which no material is known.
+    level: int[moves of contour], the same number for loops that remove what another one of them leaves.
+    path: the tool center's moves in offset mode with corners, start-ups and offset cancels, each with its block's row.
+    radius: float64[moves of path] [mm], |R|; the smallest value of a loop applies.
+    is_ramp: bool[moves of path], start-ups and offset cancels.
+    tolerance: depth [mm] up to which a cut is not reported.
+    bar: its diameter [mm], NaN if unknown. Unknown moves are left out.
 
-    A ramp touches the contour at one end and comes there at a slant, whereby it nicks the corner of a contour that ends
-    in the open, where nobody knows what the part is like. There, within R of that end along the contour, only what lies
-    behind the contour counts, and only where that cuts more than the slant makes unavoidable. Of a part round the
-    center a ramp from the air cuts nothing out there.
+    A ramp reaches one end of the contour at a slant. If the contour is open there, the ramp nicks its corner, and the
+    part beyond that end is unknown. Within R of that end along the contour, a ramp therefore cuts only what lies behind
+    the contour, and only cuts deeper than the slant itself count. A ramp that comes from the air does not cut a part
+    round the center beyond the air radius.
     """
     rows = np.flatnonzero(is_ramp | first_of_its_kind(path)) if _is_long(path) else np.arange(len(path))
     ways = segments(path[rows], tolerance)
@@ -82,18 +84,22 @@ def overcuts(
         ]
     ).worst()
     loop, first = np.unique(contour.loop, return_index=True)
-    of_cut = level[first][np.searchsorted(loop, loops[own_loop.group])]
-    shared = np.bincount(level[first])[of_cut] > 1
-    levels = _levels(contour, left, level, np.unique(of_cut[shared]), smallest.max(), bar, tolerance)
-    decided, again = _left_at_level(levels, path, own_loop, np.where(shared, of_cut, -1), radius, tolerance)
-    cuts = Cuts.concatenated([with_facing_walls(part, own_loop[decided]), with_facing_walls(levels, again)])
+    level_of_cut = level[first][np.searchsorted(loop, loops[own_loop.group])]
+    shared = np.bincount(level[first])[level_of_cut] > 1
+    levels = _levels(contour, left, level, np.unique(level_of_cut[shared]), smallest.max(), bar, tolerance)
+    unshared, compared_with_level = _left_at_level(
+        levels, path, own_loop, np.where(shared, level_of_cut, -1), radius, tolerance
+    )
+    cuts = Cuts.concatenated(
+        [with_facing_walls(part, own_loop[unshared]), with_facing_walls(levels, compared_with_level)]
+    )
     return cuts.worst(), loops[part.tangled]
 
 
 def _levels(
     contour: Curves, left: Mask, level: Rows, wanted: Rows, radius: float, bar: float, tolerance: float
 ) -> FinishedParts:
-    """What all loops of each of these levels together leave standing."""
+    """The finished part of each of these levels, bounded by all its loops."""
     loop, first = np.unique(contour.loop, return_index=True)
     chosen = np.flatnonzero(np.isin(level[first], wanted))
     chosen = chosen[np.argsort(level[first][chosen], kind="stable")]
@@ -105,9 +111,10 @@ def _left_at_level(
     levels: FinishedParts, path: Curves, cuts: Cuts, level: Rows, radius: Floats, tolerance: float
 ) -> tuple[Mask, Cuts]:
     """
-    Cuts into the part of their own loop compared with the part of all loops of their level; level: -1 for none.
+    Compares cuts into the part of one loop with the part of their whole level.
 
-    Gives the cuts that stay as they are, a boolean each, and what remains of the others.
+    level: int[cuts], -1 for none.
+    Returns a mask of the cuts that need no comparison, and the cuts that remain of the others.
     """
     wanted, group = np.unique(level, return_inverse=True)
     group = group - np.count_nonzero(wanted < 0)
@@ -118,32 +125,33 @@ def _left_at_level(
     smallest = np.full(len(levels.polygon), np.inf)
     np.minimum.at(smallest, group, radius[moves[ways.move]])
     ways = Segments(ways.start, ways.end, moves[ways.move], ways.loop)
-    again = cuts_into(levels, levels.open, ways, group, smallest, tolerance, may_be_far=False).worst()
-    before = cuts.depth[np.searchsorted(cuts.move, again.move)]
-    return ~compared, msgspec.structs.replace(again, depth=np.minimum(again.depth, before))
+    remaining = cuts_into(levels, levels.open, ways, group, smallest, tolerance, may_be_far=False).worst()
+    before = cuts.depth[np.searchsorted(cuts.move, remaining.move)]
+    return ~compared, msgspec.structs.replace(remaining, depth=np.minimum(remaining.depth, before))
 
 
 # ---- which loops to look at ----
 
 
 def _is_long(curves: Curves | Segments) -> bool:
-    """Whether a loop is so long that it may well hold passes that are written once more."""
+    """True where a loop is long enough to hold repeated passes."""
     return len(curves) >= _MANY and bool(np.bincount(curves.loop - curves.loop.min()).max() >= _MANY)
 
 
 def _once(curves: Curves, tolerance: float) -> Segments:
-    """The straight parts of curves, without what a long loop holds once more; their moves are not to be asked for."""
+    """The chords of curves without the repeats of long loops. The `move` column of the result is not valid."""
     if _is_long(curves):
         return segments(curves[first_of_its_kind(curves)], tolerance)
     parts = segments(curves, tolerance)
     return parts[first_of_its_kind(curves)[parts.move]] if _is_long(parts) else parts
 
 
-def _comes_close(walls: Segments, ways: Segments, again: Mask, is_ramp: Mask, limit: Floats) -> Mask:
+def _comes_close(walls: Segments, ways: Segments, repeated: Mask, is_ramp: Mask, limit: Floats) -> Mask:
     """
-    Which ways are ramps that come nearer than the limit to a wall of their loop, or of a path that does.
+    Ramps that come nearer than the limit to a wall of their loop, and all chords of paths that do; bool[ways].
 
-    again: those that are written once more, which need no second look.
+    repeated: bool[ways], chords of repeated moves; they are not compared a second time.
+    is_ramp: bool[ways]. limit: float64[ways] [mm].
     """
     contours = polylines(walls.start, walls.end, walls.loop)
     shapely.prepare(contours)
@@ -152,22 +160,24 @@ def _comes_close(walls: Segments, ways: Segments, again: Mask, is_ramp: Mask, li
     ramps, path = np.flatnonzero(is_ramp), ways[~is_ramp]
     lines = lines_of(ways.start[ramps], ways.end[ramps])
     result[ramps] = shapely.dwithin(contours[np.searchsorted(loops, ways.loop[ramps])], lines, limit[ramps])
-    own, first, number = np.unique(path.loop, return_index=True, return_inverse=True)
-    if len(own):
+    path_loops, first, number = np.unique(path.loop, return_index=True, return_inverse=True)
+    if len(path_loops):
         smallest = np.minimum.reduceat(limit[~is_ramp], first)
-        near, of_way = np.zeros(len(own), bool), number
-        path, number = path[~again[~is_ramp]], number[~again[~is_ramp]]
+        near, loop_of_way = np.zeros(len(path_loops), bool), number
+        path, number = path[~repeated[~is_ramp]], number[~repeated[~is_ramp]]
         run = np.cumsum((np.diff(number, prepend=-1) != 0) | (np.arange(len(number)) % _LONG_RUN == 0))
-        lines, of = polylines(path.start, path.end, run), number[np.diff(run, prepend=0) != 0]
-        # Of a loop that comes close at one place no other one is asked; a long one takes long where it does not.
+        lines, loop_of_line = polylines(path.start, path.end, run), number[np.diff(run, prepend=0) != 0]
+        # A loop is decided by its first close line. A long loop that stays away takes long.
         share = np.cumsum(shapely.get_num_coordinates(lines)) // _PIECES
-        for part in np.split(np.arange(len(of)), np.flatnonzero(np.diff(share)) + 1):
+        for part in np.split(np.arange(len(loop_of_line)), np.flatnonzero(np.diff(share)) + 1):
             keep_time()
-            asked = part[~near[of[part]]]
-            which = of[asked]
-            close = shapely.dwithin(contours[np.searchsorted(loops, own[which])], lines[asked], smallest[which])
-            near[which[close]] = True
-        result[~is_ramp] = near[of_way]
+            undecided = part[~near[loop_of_line[part]]]
+            loop_number = loop_of_line[undecided]
+            close = shapely.dwithin(
+                contours[np.searchsorted(loops, path_loops[loop_number])], lines[undecided], smallest[loop_number]
+            )
+            near[loop_number[close]] = True
+        result[~is_ramp] = near[loop_of_way]
     return result
 
 
@@ -176,10 +186,13 @@ def _comes_close(walls: Segments, ways: Segments, again: Mask, is_ramp: Mask, li
 
 class _Ramps(msgspec.Struct, frozen=True):
     """
-    Straight ramps and their groups.
+    Straight ramps, n of them.
 
-    begins: start-ups. air: radius about the center of C [mm] from which on there is nothing but air. in_air: those
-    whose far end is that far out.
+    ways: the ramps, shifted to their groups.
+    group: int[n], the group of each.
+    begins: bool[n], start-ups.
+    air: float64[n] [mm], radius about the center of C beyond which there is only air.
+    in_air: bool[n], the far end of the ramp lies beyond that radius.
     """
 
     ways: Segments
@@ -190,7 +203,7 @@ class _Ramps(msgspec.Struct, frozen=True):
 
     @classmethod
     def of(cls, contour: Curves, air: Floats, path: Curves, ways: Segments, group: Rows) -> _Ramps:
-        """Of shifted ways."""
+        """Ramps from chords that are shifted to their groups."""
         order = np.argsort(contour.loop, kind="stable")
         first = order[np.searchsorted(contour.loop[order], ways.loop)]
         begins = path.row[ways.move] < contour.row[first]
@@ -199,7 +212,7 @@ class _Ramps(msgspec.Struct, frozen=True):
 
 
 def _cuts_in_the_open(part: FinishedParts, ramps: _Ramps, radius: Floats, tolerance: float) -> Cuts:
-    """Where ramps cut walls of which one ends where they touch it."""
+    """Cuts of ramps into contours that are open where the ramp touches them."""
     ways, group, begins = ramps.ways, ramps.group, ramps.begins
     if not len(ways):
         return Cuts.none()
@@ -232,7 +245,7 @@ def _cuts_in_the_open(part: FinishedParts, ramps: _Ramps, radius: Floats, tolera
 
 
 def _within_reach(part: FinishedParts, wall: Rows, ways: Segments, way: Rows, reach: Floats) -> Mask:
-    """Which of these walls could be within reach of the ways given with them, judged from their boxes."""
+    """Pairs of a wall and a way whose boxes come within reach [mm] of each other; bool[pairs]."""
     result = np.ones(len(wall), bool)
     for a, b, c, d in (
         (part.start.real, part.end.real, ways.start.real, ways.end.real),
@@ -244,16 +257,20 @@ def _within_reach(part: FinishedParts, wall: Rows, ways: Segments, way: Rows, re
 
 
 def _is_round_center(part: FinishedParts) -> Mask:
-    """Whether the center of C is in the part."""
+    """True where the center of C lies in the part; bool[groups]."""
     center = shapely.points(part.pitch * np.arange(len(part.polygon)), 0.0)
     return np.asarray(shapely.intersects(part.polygon, center))
 
 
 def _between(part: FinishedParts, wall: Rows, length: Floats, low: Floats, high: Floats) -> tuple[Points, Points, Rows]:
-    """Of walls, given how far along they start and end, what lies between two lengths [mm]; and which have any."""
+    """
+    The stretch of each wall between two distances along its contour: start, end, and the pairs that have one.
+
+    length: float64[pairs, 2] [mm], distances at which the wall starts and ends. low, high: float64[pairs] [mm].
+    """
     start, way = part.start[wall], part.end[wall] - part.start[wall]
     long = length[:, 1] - length[:, 0]
-    with np.errstate(all="ignore"):  # an infinite length is meant
+    with np.errstate(all="ignore"):  # infinite lengths are intended
         shares = [np.clip((limit - length[:, 0]) / long, 0, 1) for limit in (low, high)]
     chosen = np.flatnonzero(np.abs(shares[1] - shares[0]) * np.abs(way) > ZERO)
     from_, to = (start[chosen] + way[chosen] * share[chosen] for share in shares)
@@ -261,6 +278,6 @@ def _between(part: FinishedParts, wall: Rows, length: Floats, low: Floats, high:
 
 
 def _slant(way: Points, radius: Floats) -> Floats:
-    """How deep a ramp nicks the point that it leads to if it ends perpendicular to its own programmed direction."""
+    """The depth [mm] at which a ramp cuts its end point if it ends perpendicular to its programmed direction."""
     far = np.maximum(np.abs(way), ZERO)
     return np.asarray(radius * (1 - np.sqrt(np.maximum(far**2 - radius**2, 0)) / far))

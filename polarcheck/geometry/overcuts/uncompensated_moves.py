@@ -1,5 +1,5 @@
 """
-Moves without compensation, and which of them come anywhere near a contour of their section, by their boxes.
+Moves without compensation, and a test by boxes for those that may reach a contour of their section.
 
 Floats in mm, plane points complex, x + 1j*c.
 """
@@ -16,8 +16,12 @@ from polarcheck.geometry.tolerances import ROUNDING
 
 class Bare(Table, frozen=True):
     """
-    Moves without compensation. curves: with their section as the loop. z: float64[n] [mm], the highest on the way;
-    of a move of Z alone where it ends. radius: float64[n] [mm], |R|. plunges: bool[n], Z alone moves.
+    Moves without compensation, n of them.
+
+    curves: their paths, with the section as the loop.
+    z: float64[n] [mm], the highest Z of the move; for a move of Z alone, its end.
+    radius: float64[n] [mm], |R|.
+    plunges: bool[n], moves of Z alone.
     """
 
     curves: Curves
@@ -27,7 +31,14 @@ class Bare(Table, frozen=True):
 
 
 class FlatLoops(msgspec.Struct, frozen=True):
-    """Loops that stay at one Z, in their order: number, section, Z and box of each."""
+    """
+    Loops that stay at one Z, n of them in order.
+
+    loop: int[n], the number of the loop.
+    section: int[n], its section.
+    z: float64[n] [mm].
+    box: float64[4, n] [mm], lowest X and C, highest X and C.
+    """
 
     loop: Rows
     section: Rows
@@ -44,19 +55,19 @@ def flat_loops(curves: Curves, section: Rows, z: Floats) -> FlatLoops:
 
 
 def may_reach(loops: FlatLoops, bare: Bare) -> Mask:
-    """Moves whose box comes within R of that of the contours of their section, not above the highest of these."""
+    """True for moves not above the highest contour of their section whose box comes within R of the contours' box."""
     result = np.zeros(len(bare), bool)
     if not len(loops.loop):
         return result
     first = np.flatnonzero(np.diff(loops.section, prepend=-1))
-    known = loops.section[first]
-    at = np.minimum(np.searchsorted(known, bare.curves.loop), len(known) - 1)
-    top = np.maximum.reduceat(loops.z, first)[at]
+    section = loops.section[first]
+    section_number = np.minimum(np.searchsorted(section, bare.curves.loop), len(section) - 1)
+    top = np.maximum.reduceat(loops.z, first)[section_number]
     box = np.concatenate(
         [np.minimum.reduceat(loops.box[:2], first, axis=1), np.maximum.reduceat(loops.box[2:], first, axis=1)]
-    )[:, at]
-    own = boxes(bare.curves, np.arange(len(bare)))
-    result = (known[at] == bare.curves.loop) & (bare.z <= top + ROUNDING)
+    )[:, section_number]
+    move_box = boxes(bare.curves, np.arange(len(bare)))
+    result = (section[section_number] == bare.curves.loop) & (bare.z <= top + ROUNDING)
     for side in (0, 1):
-        result &= (own[side] <= box[side + 2] + bare.radius) & (own[side + 2] >= box[side] - bare.radius)
+        result &= (move_box[side] <= box[side + 2] + bare.radius) & (move_box[side + 2] >= box[side] - bare.radius)
     return np.asarray(result)

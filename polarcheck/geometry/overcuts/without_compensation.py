@@ -1,9 +1,9 @@
 """
-Moves without compensation against the part that the contours of their section leave.
+Overcuts of moves without compensation into the part that the contours of their section leave.
 
-The material of a contour stands from its Z up to the face. At the Z of a contour all loops of the section that are at
-that Z or deeper have been there, and so bound its part: a pocket that goes deeper is no part of the boss round it. A
-move cuts the part of each contour at its own Z or above it. Floats in mm, plane points complex, x + 1j*c. Import late.
+The material of a contour reaches from its Z up to the face. All loops of the section at that Z or deeper bound the part
+at that Z: a deeper pocket is not part of the boss round it. A move cuts the part of each contour whose Z is not below
+the Z of the move. Floats in mm, plane points complex, x + 1j*c. Import late.
 """
 
 from __future__ import annotations
@@ -21,24 +21,26 @@ from polarcheck.geometry.segments import Curves, Segments, boxes, members, reach
 from polarcheck.geometry.tolerances import ROUNDING, ZERO
 from polarcheck.time_limit import keep_time
 
-#: Sums over a loop that differ by less [mm] are the same: their rounding grows with the square of its blocks.
+#: Sums over a loop are equal if they differ by less [mm]: their rounding grows with the square of its blocks.
 _SAME_SUM = 1e-3
-#: Pairs of a wall and a way up to which walls are looked through one by one, without a tree.
+#: Up to this number of pairs of a wall and a way, all pairs are compared, without a tree.
 _PAIRS = 4_000_000
-#: Ways between two looks at the clock.
+#: Ways between two checks of the time limit.
 _BATCH = 1024
-#: Depths of the contours of a section that are looked at, the deepest ones.
+#: Only this number of contour depths per section is checked, from the deepest up.
 _DEPTHS = 8
 
 
 def cuts_into_part(contour: Contours, loops: FlatLoops, bare: Bare) -> tuple[Cuts, Rows]:
     """
-    Where moves without compensation come nearer than R to the part of a contour at their Z or above it; the worst place
-    of each. And the loops that cross each other too often to tell.
+    The deepest cut of each move into the part of a contour at its Z or above, and the loops that cross too often.
 
-    contour: the programmed blocks in offset mode, its loops, groups and radius are not asked. loops: those of it that
-    stay at one Z. bare: what may reach them. Of a move of Z alone within the part, away from its walls, nothing is
-    said: it begins a hole; nor of what comes out of surroundings without an end, as to a pocket.
+    contour: the programmed blocks in offset mode; its loops, groups and radius are not used.
+    loops: the loops of the contour that stay at one Z.
+    bare: moves without compensation that may reach these loops.
+
+    Two kinds of cuts are not reported. A move of Z alone inside the part, away from its walls, begins a hole. A move
+    that starts in the endless surroundings of a pocket may start in air.
     """
     none = np.zeros(0, np.int64)
     groups = _groups(contour.curves, loops, bare)
@@ -49,15 +51,15 @@ def cuts_into_part(contour: Contours, loops: FlatLoops, bare: Bare) -> tuple[Cut
     radius = np.zeros(len(groups.top))
     np.maximum.at(radius, group, bare.radius[ways.move])
     near = _comes_near(contour, groups, ways, group, radius)
-    asked = np.unique(group[near])
-    if not len(asked):
+    near_groups = np.unique(group[near])
+    if not len(near_groups):
         return Cuts.none(), none
-    kept = np.isin(groups.group, asked)
-    number = np.searchsorted(asked, groups.group[kept])
-    radius = radius[asked]
-    part = finished_parts(msgspec.structs.replace(contour, loop=groups.loop[kept], group=number, radius=radius))
-    tangled = groups.loop[kept][part.tangled[number]]
-    ways, group = ways[near], np.searchsorted(asked, group[near])
+    is_near = np.isin(groups.group, near_groups)
+    number = np.searchsorted(near_groups, groups.group[is_near])
+    radius = radius[near_groups]
+    part = finished_parts(msgspec.structs.replace(contour, loop=groups.loop[is_near], group=number, radius=radius))
+    tangled = groups.loop[is_near][part.tangled[number]]
+    ways, group = ways[near], np.searchsorted(near_groups, group[near])
     outline, is_endless = shortened(part, radius), endless(part)
     cuts = cuts_into(outline, part.open | is_endless, ways, group, radius, contour.tolerance)
     cuts = with_walls(outline, cuts)
@@ -68,7 +70,7 @@ def cuts_into_part(contour: Contours, loops: FlatLoops, bare: Bare) -> tuple[Cut
 
 
 def _begins_in(part: FinishedParts, cuts: Cuts, ways: Segments) -> Mask:
-    """Whether the way of each cut begins in the part: what is far round a pocket may as well be air."""
+    """True where the way of a cut begins in the part. The surroundings far from a pocket may be air."""
     begin = ways.start[cuts.piece]
     beyond = np.maximum(np.abs(begin.real), np.abs(begin.imag)) >= part.pitch / 3
     points = shapely.points(coordinates(begin + part.pitch * cuts.group))
@@ -76,7 +78,14 @@ def _begins_in(part: FinishedParts, cuts: Cuts, ways: Segments) -> Mask:
 
 
 class _Groups(msgspec.Struct, frozen=True):
-    """Groups of loops that bound one part: section and highest Z of each, the loops and their groups."""
+    """
+    Groups of loops that bound one part, n groups with m loops together.
+
+    section: int[n], the section of each group.
+    top: float64[n] [mm], the highest Z of each group.
+    loop: int[m], the loops, group after group.
+    group: int[m], the group of each.
+    """
 
     section: Rows
     top: Floats
@@ -86,19 +95,19 @@ class _Groups(msgspec.Struct, frozen=True):
 
 def _groups(curves: Curves, loops: FlatLoops, bare: Bare) -> _Groups:
     """
-    For each depth of the contours that a move may cut the loops that bound the part there.
+    The loops that bound the part at each contour depth that a move may cut.
 
-    A contour that is written once more, higher, bounds nothing else; depths with the same loops make one group.
+    A contour that is repeated higher up adds no boundary. Depths with the same loops make one group.
     """
     lowest = np.full(int(max(loops.section.max(), bare.curves.loop.max())) + 1, np.inf)
     np.minimum.at(lowest, bare.curves.loop, bare.z)
-    wanted = np.isfinite(lowest[loops.section])
-    order = np.flatnonzero(wanted)[np.lexsort((loops.z[wanted], loops.section[wanted]))]
-    is_fresh = _fresh(curves, loops.section[order], loops.loop[order])
+    is_reached = np.isfinite(lowest[loops.section])
+    order = np.flatnonzero(is_reached)[np.lexsort((loops.z[is_reached], loops.section[is_reached]))]
+    is_first = _first_of_equal(curves, loops.section[order], loops.loop[order])
     section, z = loops.section[order], loops.z[order]
     begin = np.searchsorted(section, section)
-    bounding = np.cumsum(is_fresh)
-    # The last loop of each depth, in the order of depths, and of depths with the same loops the highest.
+    bounding = np.cumsum(is_first)
+    # The last loop of each depth, in the order of depths. Of depths with the same loops, only the highest.
     last = np.append((np.diff(section) != 0) | (np.diff(z) > ROUNDING), True)
     level = np.flatnonzero(last & (z >= lowest[section] - ROUNDING))
     same = (np.diff(bounding[level]) == 0) & (np.diff(section[level]) == 0)
@@ -108,18 +117,18 @@ def _groups(curves: Curves, loops: FlatLoops, bare: Bare) -> _Groups:
     count = level - begin[level] + 1
     group = np.repeat(np.arange(len(level)), count)
     loop = np.arange(len(group)) - np.repeat(np.cumsum(count) - count, count) + begin[level][group]
-    kept = is_fresh[loop]
-    return _Groups(section[level], z[level], loops.loop[order][loop[kept]], group[kept])
+    bounds = is_first[loop]
+    return _Groups(section[level], z[level], loops.loop[order][loop[bounds]], group[bounds])
 
 
-def _fresh(curves: Curves, section: Rows, loop: Rows) -> Mask:
-    """Of these loops the first of its kind in its section; loops with the same sums are one."""
-    here, _ = members(curves.loop, loop)
-    start, first = curves.start[here], np.searchsorted(curves.loop, loop)
+def _first_of_equal(curves: Curves, section: Rows, loop: Rows) -> Mask:
+    """True for the first of equal loops in a section; loops with equal sums are equal."""
+    curve, _ = members(curves.loop, loop)
+    start, first = curves.start[curve], np.searchsorted(curves.loop, loop)
     count = np.searchsorted(curves.loop, loop, side="right") - first
     begin = np.cumsum(count) - count
-    place = np.arange(1, len(here) + 1) - np.repeat(begin, count)
-    sums = [np.add.reduceat(column, begin) for column in (start, start * place, np.abs(curves.end[here]))]
+    place = np.arange(1, len(curve) + 1) - np.repeat(begin, count)
+    sums = [np.add.reduceat(column, begin) for column in (start, start * place, np.abs(curves.end[curve]))]
     key = [section, count, *(np.rint(part / _SAME_SUM) for total in sums for part in (total.real, total.imag))]
     _, first = np.unique(np.stack(key, axis=1), axis=0, return_index=True)
     fresh = np.zeros(len(loop), bool)
@@ -128,14 +137,14 @@ def _fresh(curves: Curves, section: Rows, loop: Rows) -> Mask:
 
 
 def _pairs(groups: _Groups, bare: Bare) -> tuple[Rows, Rows]:
-    """Each move with each group whose part it may cut."""
+    """Pairs of a move and a group whose part it may cut."""
     group, move = members(groups.section, bare.curves.loop)
-    kept = bare.z[move] <= groups.top[group] + ROUNDING
-    return move[kept], group[kept]
+    is_deep = bare.z[move] <= groups.top[group] + ROUNDING
+    return move[is_deep], group[is_deep]
 
 
 def _ways(bare: Bare, move: Rows, group: Rows, tolerance: float) -> tuple[Segments, Rows]:
-    """The moves as straight ways, those of Z alone as points, and the group of each."""
+    """The chords of the moves, a point for a move of Z alone, and the group of each."""
     curves = msgspec.structs.replace(bare.curves[move], loop=np.arange(len(move)))
     parts = segments(curves, tolerance)
     point = np.flatnonzero(bare.plunges[move])
@@ -146,13 +155,13 @@ def _ways(bare: Bare, move: Rows, group: Rows, tolerance: float) -> tuple[Segmen
 
 def _comes_near(contour: Contours, groups: _Groups, ways: Segments, group: Rows, radius: Floats) -> Mask:
     """
-    Ways that come within R of a wall, or that begin behind the wall next to them.
+    True for ways that come within R of a wall, or that begin behind their nearest wall.
 
-    From a point to the wall next to it there is no other wall: where that shows its tool side there is no part. Nor is
-    there any that is known outside of the box round all walls, and of the bar.
+    No other wall lies between a point and its nearest wall. If that wall turns its tool side to the point, the point is
+    outside the part. Outside the box round all walls and outside the bar no part is known.
     """
-    here, which = members(contour.curves.loop, groups.loop)
-    curves = msgspec.structs.replace(contour.curves[here], loop=groups.group[which])
+    curve, entry = members(contour.curves.loop, groups.loop)
+    curves = msgspec.structs.replace(contour.curves[curve], loop=groups.group[entry])
     box = boxes(curves, np.flatnonzero(np.diff(curves.loop, prepend=-1)))[:, group]
     inside = (ways.start.real >= box[0]) & (ways.start.real <= box[2])
     inside &= (ways.start.imag >= box[1]) & (ways.start.imag <= box[3])
@@ -160,32 +169,32 @@ def _comes_near(contour: Contours, groups: _Groups, ways: Segments, group: Rows,
     far = 4 * float(np.abs(box).max() + max(np.abs(ways.start).max(), np.abs(ways.end).max())) + 1
     begin = (ways.start + far * group)[inside]
     points, line = shapely.points(coordinates(begin)), lines_of(ways.start + far * group, ways.end + far * group)
-    kept = _nearby(curves, ways, group, radius)
-    curves, here = curves[kept], here[kept]
+    candidates = _nearby(curves, ways, group, radius)
+    curves, curve = curves[candidates], curve[candidates]
     walls = segments(curves, contour.tolerance)
     start, end = walls.start + far * walls.loop, walls.end + far * walls.loop
     near = np.zeros(len(ways), bool)
     if not len(walls):
         return near
     tree = shapely.STRtree(lines_of(start, end))
-    most = max(float(radius.max(initial=0.0)), ZERO)
+    largest = max(float(radius.max(initial=0.0)), ZERO)
     for first in range(0, len(line), _BATCH):
         keep_time()
-        # Whether there is any wall is known from the next one, however many there are.
+        # The nearest wall decides, however many walls are near.
         (close, _), apart = tree.query_nearest(
-            line[first : first + _BATCH], max_distance=most, return_distance=True, all_matches=False
+            line[first : first + _BATCH], max_distance=largest, return_distance=True, all_matches=False
         )
         near[first + close] = apart <= radius[group[first + close]]
-    (asked, _), distance = tree.query_nearest(points, all_matches=False, return_distance=True)
-    way, wall = tree.query(points[asked], predicate="dwithin", distance=distance + ROUNDING)
-    way = asked[way]
+    (begins_at, _), distance = tree.query_nearest(points, all_matches=False, return_distance=True)
+    way, wall = tree.query(points[begins_at], predicate="dwithin", distance=distance + ROUNDING)
+    way = begins_at[way]
     aside = ((begin[way] - start[wall]) * (end - start)[wall].conj()).imag > 0
-    near[inside[way[aside != contour.left[here[walls.move[wall]]]]]] = True
+    near[inside[way[aside != contour.left[curve[walls.move[wall]]]]]] = True
     return near
 
 
 def _nearby(curves: Curves, ways: Segments, group: Rows, radius: Floats) -> Rows:
-    """The curves that may come within R of a way of their group, or be next to where it begins; or all of them."""
+    """Curves that may be within R of a way of their group or nearest to its start; all if there are too many pairs."""
     _, first = np.unique(np.stack([group, ways.start, ways.end], axis=1), axis=0, return_index=True)
     start, end, group = ways.start[first], ways.end[first], group[first]
     count = np.bincount(curves.loop, minlength=len(radius))[group]
@@ -200,7 +209,7 @@ def _nearby(curves: Curves, ways: Segments, group: Rows, radius: Floats) -> Rows
     length = np.maximum(np.abs(along), ZERO)
     place = np.clip((far * (along / length)[way].conj()).real, 0, length[way])
     aside = np.abs(far - place * (along / length)[way])
-    kept = (apart - long[curve] <= nearest[way] + ROUNDING) | (aside - long[curve] <= radius[group][way] + ROUNDING)
+    is_close = (apart - long[curve] <= nearest[way] + ROUNDING) | (aside - long[curve] <= radius[group][way] + ROUNDING)
     chosen = np.zeros(len(curves), bool)
-    chosen[curve[kept]] = True
+    chosen[curve[is_close]] = True
     return np.flatnonzero(chosen)
