@@ -1,5 +1,5 @@
 """
-Where contours begin and end: which may leave something there, by comparing a few blocks of each; and their gaps.
+Cheap tests at the ends of contours: which contours may leave a rib or a strip, which nearly close, and their gaps.
 
 Lengths in mm, plane points complex, x + 1j*c.
 """
@@ -13,27 +13,30 @@ from polarcheck.arrays import Floats, Mask, Points, Rows, States, Table
 from polarcheck.geometry.segments import Curves, directions, first_of_its_kind, segments
 from polarcheck.geometry.tolerances import TOUCH
 
-#: Height [mm] from which on a rib is one: below it no hand feels it, and the wear of a cutter leaves as much.
+#: Ribs above this height [mm] count: a lower one cannot be felt, and a worn cutter leaves as much.
 WITNESS = 0.02
-#: What may be missing of a contour that is closed [mm]: its points are rounded.
+#: Largest gap [mm] of a contour that counts as closed: its points are rounded.
 CLOSED = 0.005
-#: How many blocks from either end of a contour may be leads.
+#: Number of blocks at either end of a contour that may be leads.
 _LEADS = 4
-#: How far a gap may turn off the way of the contour [cosine].
+#: Least cosine of the angle between a gap and the direction of the contour.
 _AHEAD = 0.87
-#: Arcs from which on it is worth while to look for those that are written once more.
+#: From this number of arcs, repeated arcs are searched for and left out.
 _MANY = 2000
-#: How much longer than straight across the way over a strip may be.
+#: Greatest ratio between the oblique and the perpendicular width of a strip.
 _SLANT = 1.6
-#: A corner turns by this much at most [rad]; beyond, the contour runs back over itself.
+#: Largest turn of a corner [rad]; beyond it the contour runs back over itself.
 _SHARPEST = 2.65
 
 
 class Loops(msgspec.Struct, frozen=True):
     """
-    The loops of a contour: their first and last curves, int[loops] each, and R of each [mm].
+    The loops of a contour, n of them.
 
-    curves: those of offset mode, loop after loop. left: bool[curves], the tool runs left of it.
+    curves: the curves in offset mode, loop after loop.
+    left: bool[curves], the tool runs left of the curve.
+    first, last: int[n], the first and the last curve of each loop.
+    radius: float64[n] [mm], R of each loop.
     """
 
     curves: Curves
@@ -46,21 +49,22 @@ class Loops(msgspec.Struct, frozen=True):
         return len(self.first)
 
     def some(self, chosen: Rows | Mask) -> Loops:
-        """Some of the loops, of the same curves."""
+        """A selection of the loops, with the same curves."""
         return Loops(self.curves, self.left, self.first[chosen], self.last[chosen], self.radius[chosen])
 
     def rows(self) -> tuple[Rows, Rows]:
-        """All their curves, loop after loop, and which of the loops each is of."""
+        """The numbers of all curves of the loops, loop after loop, and the number of the loop of each."""
         count = self.last - self.first + 1
-        of = np.repeat(np.arange(len(self)), count)
-        return np.arange(len(of)) + (self.first - np.cumsum(count) + count)[of], of
+        loop = np.repeat(np.arange(len(self)), count)
+        return np.arange(len(loop)) + (self.first - np.cumsum(count) + count)[loop], loop
 
 
 def distinct(loops: Loops, program: Rows, z: Floats) -> Rows:
     """
-    Of loops that are the same on the plane in one program the deepest, the last of these; z: of each loop [mm].
+    The deepest of loops that are equal on the plane in one program; of several equally deep, the last.
 
-    What that one leaves standing stands in all of them, since the tool does not come there any deeper.
+    program: int[loops]. z: float64[loops] [mm].
+    All of them leave what the deepest one leaves, since the tool goes no deeper there.
     """
     if len(loops) < 2:
         return np.arange(len(loops))
@@ -70,7 +74,7 @@ def distinct(loops: Loops, program: Rows, z: Floats) -> Rows:
         np.add.reduceat(column, loops.first)
         for column in (curves.start, curves.start * curves.end.conj(), center, center * curves.kind)
     ]
-    columns = [np.round(part, 5) for one in sums for part in (one.real, one.imag)]
+    columns = [np.round(part, 5) for total in sums for part in (total.real, total.imag)]
     columns += [program, loops.last - loops.first, np.round(loops.radius, 5), loops.left[loops.first]]
     _, shape = np.unique(np.stack(columns, axis=1), axis=0, return_inverse=True)
     order = np.lexsort((np.arange(len(loops)), -np.nan_to_num(z, nan=np.inf), shape.ravel()))
@@ -78,7 +82,14 @@ def distinct(loops: Loops, program: Rows, z: Floats) -> Rows:
 
 
 class Corners(Table, frozen=True):
-    """Inside corners that keep the tool off what lies beside them: point, how far [mm], its turn [rad], its loop."""
+    """
+    Inside corners, n of them, that keep the tool away from the material beside them.
+
+    point: complex128[n] [mm].
+    reach: float64[n] [mm], distance before the corner at which the tool stops.
+    turn: float64[n] [rad].
+    loop: int[n], the number of the loop.
+    """
 
     point: Points
     reach: Floats
@@ -88,31 +99,31 @@ class Corners(Table, frozen=True):
 
 def lead_corners(loops: Loops, winds: Mask) -> Corners:
     """
-    Inside corners where a lead may meet its contour: near the ends of a loop, anywhere in one that winds round twice.
+    Inside corners where a lead may meet its contour: near the ends of a loop, or anywhere in a loop of several turns.
 
-    At such a corner the tool stops R * tan(turn / 2) before the point that is programmed.
+    At such a corner the tool stops R * tan(turn / 2) before the programmed point.
     """
     near = np.arange(_LEADS + 1)
     head, tail = loops.first[:, None] + near, loops.last[:, None] - 1 - near
-    of = np.repeat(np.arange(len(loops)), len(near))
-    curve, of = np.append(head, tail), np.append(of, of)
+    loop = np.repeat(np.arange(len(loops)), len(near))
+    curve, loop = np.append(head, tail), np.append(loop, loop)
     if winds.any():
         rows, winding = loops.some(winds).rows()
-        curve, of = np.append(curve, rows), np.append(of, np.flatnonzero(winds)[winding])
-    inside = (curve >= loops.first[of]) & (curve < loops.last[of])
-    curve, at = np.unique(curve[inside], return_index=True)
-    of = of[inside][at]
+        curve, loop = np.append(curve, rows), np.append(loop, np.flatnonzero(winds)[winding])
+    inside = (curve >= loops.first[loop]) & (curve < loops.last[loop])
+    curve, first_use = np.unique(curve[inside], return_index=True)
+    loop = loop[inside][first_use]
 
     curves, after = loops.curves, curve + 1
     joined = np.abs(curves.end[curve] - curves.start[after]) < TOUCH
-    curve, after, of = curve[joined], after[joined], of[joined]
+    curve, after, loop = curve[joined], after[joined], loop[joined]
     _, arriving = directions(*_shape(curves, curve))
     leaving, _ = directions(*_shape(curves, after))
     turn = np.angle(leaving * arriving.conj()) * np.where(loops.left[curve], 1, -1)
-    reach = loops.radius[of] * np.tan(np.clip(turn, 0, _SHARPEST) / 2)
+    reach = loops.radius[loop] * np.tan(np.clip(turn, 0, _SHARPEST) / 2)
     # The same corner on both sides leaves a rib of R - sqrt(R**2 - reach**2), a little more than this.
-    sharp = reach**2 / (2 * loops.radius[of]) > WITNESS / 2
-    return Corners(curves.end[curve[sharp]], reach[sharp], turn[sharp], of[sharp])
+    sharp = reach**2 / (2 * loops.radius[loop]) > WITNESS / 2
+    return Corners(curves.end[curve[sharp]], reach[sharp], turn[sharp], loop[sharp])
 
 
 def _shape(curves: Curves, rows: Rows) -> tuple[Points, Points, Points, States]:
@@ -121,7 +132,7 @@ def _shape(curves: Curves, rows: Rows) -> tuple[Points, Points, Points, States]:
 
 class Gaps(msgspec.Struct, frozen=True):
     """
-    Where loops may be open: from the end of a curve near the last one to the start of a curve near the first one.
+    Possible gaps of loops, from the end of a curve near the last one to the start of a curve near the first one.
 
     before: int[loops, pairs], the curve at whose end the gap begins.
     after: int[loops, pairs], the curve at whose start it ends.
@@ -138,7 +149,7 @@ class Gaps(msgspec.Struct, frozen=True):
 
     @property
     def lead_on(self) -> Mask:
-        """The gap lies on the way of the contour: the tool would have to go on straight ahead."""
+        """True where the gap continues the direction of the contour."""
         return np.asarray(self.ahead >= _AHEAD * self.length)
 
 
@@ -155,7 +166,7 @@ def gaps_between_ends(curves: Curves, first: Rows, last: Rows) -> Gaps:
 
 
 def may_be_open(loops: Loops) -> Mask:
-    """Loops that come back to their start but for a gap below 2R that lies ahead, and nowhere without a gap."""
+    """True for loops that have a gap below 2R straight ahead of their end, and no pair of ends that closes them."""
     gaps = gaps_between_ends(loops.curves, loops.first, loops.last)
     fits = gaps.lead_on & (gaps.length < 2 * loops.radius[:, None])
     return np.asarray(fits.any(axis=1) & (gaps.length > CLOSED).all(axis=1))
@@ -163,9 +174,9 @@ def may_be_open(loops: Loops) -> Mask:
 
 def gaps_of(loops: Loops, length: Floats) -> tuple[Rows, Rows]:
     """
-    For each loop the curves after and before its gap of this length [mm].
+    The curves after and before the gap of this length [mm], for each loop.
 
-    Leads side by side are as far apart as the ends of the contour, but it does not lead from one to the other.
+    Leads side by side may be as far apart as the ends of the contour. The gap that lies most straight ahead is chosen.
     """
     gaps = gaps_between_ends(loops.curves, loops.first, loops.last)
     best = np.argmax(np.where(np.abs(gaps.length - length[:, None]) < TOUCH, gaps.ahead, -np.inf), axis=1)
@@ -173,35 +184,35 @@ def gaps_of(loops: Loops, length: Floats) -> tuple[Rows, Rows]:
     return gaps.after[row, best], gaps.before[row, best]
 
 
-# ---- how often a path goes round ----
+# ---- turns of a path round its middle ----
 
 
 def winds(loops: Loops) -> Mask:
-    """Whether a loop goes round its middle more than once; the same arcs again do not count."""
-    rows, of = loops.rows()
+    """True for loops that turn round their middle more than once; repeated arcs count once."""
+    rows, loop = loops.rows()
     curves = loops.curves if len(rows) == len(loops.curves) else loops.curves[rows]
-    start, end, of = chords(msgspec.structs.replace(curves, loop=of), float(loops.radius.min(initial=1.0)) / 4)
-    axis, at, _ = crossings(start, end, of, middles(start, of))
-    count = np.bincount(4 * at + axis, minlength=4 * len(loops)).reshape(-1, 4)
+    start, end, loop = chords(msgspec.structs.replace(curves, loop=loop), float(loops.radius.min(initial=1.0)) / 4)
+    axis, crossed_loop, _ = crossings(start, end, loop, middles(start, loop))
+    count = np.bincount(4 * crossed_loop + axis, minlength=4 * len(loops)).reshape(-1, 4)
     return np.asarray(count.min(axis=1) > 1)
 
 
 def chords(curves: Curves, sagitta: float) -> tuple[Points, Points, Rows]:
-    """Start, end and loop of curves, loop after loop; arcs in coarse chords, each arc once."""
+    """Start, end and loop of the lines and coarse chords of curves, loop after loop; each distinct arc once."""
     is_arc = ~np.isnan(curves.center)
     if not is_arc.any():
         return curves.start, curves.end, curves.loop
     arcs = curves[is_arc]
     parts = segments(arcs[first_of_its_kind(arcs)] if len(arcs) > _MANY else arcs, 4 * sagitta)
-    start, end, of = (
+    start, end, loop = (
         np.concatenate([getattr(curves, name)[~is_arc], getattr(parts, name)]) for name in ("start", "end", "loop")
     )
-    order = np.argsort(of, kind="stable")
-    return start[order], end[order], of[order]
+    order = np.argsort(loop, kind="stable")
+    return start[order], end[order], loop[order]
 
 
 def middles(points: Points, of: Rows) -> Points:
-    """For each of these points the middle of the box round all that belong together; of: rising."""
+    """The middle of the box round the points of a group, for each point; of: int[n], the group of each, rising."""
     begins = np.diff(of, prepend=-1) != 0
     first = np.flatnonzero(begins)
     x, c = points.real, points.imag
@@ -212,12 +223,13 @@ def middles(points: Points, of: Rows) -> Points:
 
 def crossings(start: Points, end: Points, of: Rows, middle: Points) -> tuple[Rows, Rows, Floats]:
     """
-    Where straight lines cross the half axes from their middle, one point for each.
+    Crossings of straight lines with the half axes from their middle.
 
-    Per crossing: the half axis (0 to 3), what the line is of, how far from the middle it is [mm].
+    of: int[n], the group of each line. middle: complex128[n] [mm], the middle for each line.
+    Returns per crossing: the half axis (0 to 3), the group of the line, the distance from the middle [mm].
     """
     a, b = start - middle, end - middle
-    axes, found, apart = [], [], []
+    axes, groups, apart = [], [], []
     for number, (a_along, a_across, b_along, b_across) in enumerate(
         ((a.real, a.imag, b.real, b.imag), (a.imag, a.real, b.imag, b.real))
     ):
@@ -225,23 +237,23 @@ def crossings(start: Points, end: Points, of: Rows, middle: Points) -> tuple[Row
         share = a_across[rows] / (a_across[rows] - b_across[rows])
         at = a_along[rows] + share * (b_along[rows] - a_along[rows])
         axes.append(2 * number + (at < 0))
-        found.append(of[rows])
+        groups.append(of[rows])
         apart.append(np.abs(at))
-    return np.concatenate(axes), np.concatenate(found), np.concatenate(apart)
+    return np.concatenate(axes), np.concatenate(groups), np.concatenate(apart)
 
 
 def may_leave_strips(start: Points, end: Points, of: Rows, radius: Floats) -> Mask:
     """
-    Whether paths of the tool center lie so far apart, on the way out from their middle, that a strip may stay.
+    True for levels whose tool center paths lie so far apart, outward from their middle, that a strip may remain.
 
-    of: which of the levels each straight line is of, rising; radius: of each level [mm].
+    of: int[n], the level of each straight line, rising. radius: float64[levels] [mm].
     """
-    axis, at, apart = crossings(start, end, of, middles(start, of))
-    order = np.lexsort((apart, axis, at))
-    axis, at, apart = axis[order], at[order], apart[order]
-    same = (axis[1:] == axis[:-1]) & (at[1:] == at[:-1])
-    step, limit = np.diff(apart), radius[at[1:]]
-    found = same & (step > 2 * limit + WITNESS) & (step < _SLANT * 3 * limit)
+    axis, level, apart = crossings(start, end, of, middles(start, of))
+    order = np.lexsort((apart, axis, level))
+    axis, level, apart = axis[order], level[order], apart[order]
+    same = (axis[1:] == axis[:-1]) & (level[1:] == level[:-1])
+    step, limit = np.diff(apart), radius[level[1:]]
+    is_wide = same & (step > 2 * limit + WITNESS) & (step < _SLANT * 3 * limit)
     result = np.zeros(len(radius), bool)
-    result[at[1:][found]] = True
+    result[level[1:][is_wide]] = True
     return result

@@ -1,11 +1,11 @@
 """
-Ribs: what stays on the outline of a finished part, since no tool touches it there.
+Ribs: material that remains on the outline of a finished part where no tool touches it.
 
 Floats in mm, plane points complex, x + 1j*c. Import late: shapely takes its time.
 
-A tool that turns into a contour from a lead, or out of it, stops short of the corner between them. What it leaves there
-is cut as well only if the contour goes on far enough beyond its start. At an inside corner of the part no tool of that
-R reaches more, so that nothing is missing there.
+A tool that turns from a lead into a contour, or out of it, stops short of the corner between them. The material there
+is removed only if the contour goes on far enough beyond its start. At an inside corner of the part itself, no tool of
+that R reaches farther, so the material there is no rib.
 """
 
 from __future__ import annotations
@@ -23,27 +23,31 @@ from polarcheck.geometry.segments import Segments
 from polarcheck.geometry.tolerances import CORNER, ROUNDING, ZERO
 from polarcheck.time_limit import keep_time
 
-#: The tool touches what it comes this near to [mm]; more than arcs in chords and two roundings shift it.
+#: Distance [mm] that counts as a touch; larger than the error of chords and of two roundings.
 _CONTACT = 0.003
-#: Corners of the outline that turn as much as this share of the corner between two blocks are that corner.
+#: A corner of the outline is the corner between two blocks if it turns by at least this share of it.
 _SAME_TURN = 0.8
 #: Farther than any lathe reaches [mm].
 _FAR = 1e6
-#: A ray that goes on farther than this share of R, if tools are larger by a touch, goes through a slit.
+#: A ray that is shorter by more than this share of R with tools enlarged by a touch has passed through a slit.
 _SLIT = 0.25
-#: Directions of an outline that goes on without a corner differ by less.
+#: Unit directions of an outline without a corner differ by less than this.
 _STRAIGHT_ON = 0.1
-#: Points and pieces that are compared at a time, for the sake of memory, and in all, for the sake of time.
+#: Pairs of points and pieces compared at a time, to limit memory, and in total, to limit time.
 _PAIRS_AT_A_TIME, _PAIRS = 500_000, 50_000_000
-#: Samples for the least gap that is looked for; points for the top of a rib.
+#: Samples along the smallest rib that is searched for; points compared round the top of a rib.
 _SAMPLES, _POINTS = 8, 33
 
 
 class Swept(Table, frozen=True):
     """
-    Where tools run, as straight pieces: start, end [mm], of which row of the program, and R of the cutter there [mm].
+    Straight pieces of tool paths, n of them.
 
-    z: the deepest that each comes to [mm], NaN unknown. program: of each.
+    start, end: complex128[n] [mm].
+    row: int[n], the programmed row of each.
+    radius: float64[n] [mm], R of the cutter.
+    z: float64[n] [mm], the deepest Z of each, NaN unknown.
+    program: int[n], the program of each.
     """
 
     start: Points
@@ -54,15 +58,20 @@ class Swept(Table, frozen=True):
     program: Rows
 
     def at_depth(self, z: Floats, program: Rows) -> Mask:
-        """Whether each runs in that program at that Z or deeper; where one of the two is not known, it does."""
+        """True for pieces of that program at that Z or deeper; an unknown Z counts as deep enough."""
         return np.asarray((self.program == program) & ~(self.z > z + ROUNDING))
 
 
 class Ribs(msgspec.Struct, frozen=True):
     """
-    Ribs, k of them: the group, where it stands on the outline, how high it is, how wide at its foot [mm], and the row
-    of the program with which the tool leaves it. given_up: groups that were not looked at any more, since so many tools
-    come near so many corners.
+    Ribs, k of them.
+
+    group: int[k], the group of the part.
+    place: complex128[k] [mm], the place on the outline.
+    height: float64[k] [mm].
+    width: float64[k] [mm], at the foot.
+    row: int[k], the programmed row that leaves the rib.
+    given_up: int[m], groups that were not checked completely, since too many tools come near too many corners.
     """
 
     group: Rows
@@ -74,7 +83,14 @@ class Ribs(msgspec.Struct, frozen=True):
 
 
 class _Samples(Table, frozen=True):
-    """Points of an outline with the direction there, the part on its left; the corner that each is near, its group."""
+    """
+    Sample points of an outline, n of them.
+
+    point: complex128[n] [mm].
+    along: complex128[n], unit direction of the outline, with the part on its left.
+    corner: int[n], the corner that the point is near.
+    group: int[n], the group of the part.
+    """
 
     point: Points
     along: Points
@@ -86,10 +102,12 @@ def ribs(
     part: FinishedParts, corners: Corners, radius: Floats, own: Segments, z: Floats, program: Rows, swept: Swept
 ) -> Ribs:
     """
-    What stands on the outline of these parts near their corners.
+    Ribs on the outlines of these parts near their corners.
 
-    corners: their loop is the group of the part. radius, z, program: of each group. own: the path of the tool center of
-    each group. swept: all that tools run through.
+    corners: their loop is the group of the part.
+    radius, z: float64[groups] [mm]. program: int[groups].
+    own: the tool center path of each group.
+    swept: the paths of all tools.
     """
     part = _without_fins(part, radius)
     shift = np.asarray(part.pitch * corners.loop, np.float64)
@@ -100,29 +118,31 @@ def ribs(
     if not len(samples):
         return _none()
     tree = shapely.STRtree(_lines(swept.start, swept.end))
-    touched, asked = _touched_by_any(swept, tree, samples, z, program)
-    given_up = [samples.group[asked:]]
-    samples = samples[:asked][~touched]
+    touched, compared_samples = _touched_by_any(swept, tree, samples, z, program)
+    given_up = [samples.group[compared_samples:]]
+    samples = samples[:compared_samples][~touched]
     samples = samples[np.argsort(samples.corner, kind="stable")]
-    found, pairs = [], 0
-    for here in np.split(np.arange(len(samples)), np.flatnonzero(np.diff(samples.corner)) + 1) if len(samples) else []:
+    candidates, pairs = [], 0
+    for at_corner in (
+        np.split(np.arange(len(samples)), np.flatnonzero(np.diff(samples.corner)) + 1) if len(samples) else []
+    ):
         keep_time()
         if pairs > _PAIRS:
-            given_up.append(samples.group[here])
+            given_up.append(samples.group[at_corner])
             continue
-        group = int(samples.group[here[0]])
-        rib, compared = _measured(swept, tree, samples[here], radius[group], z[group], program[group])
-        pairs += compared
+        group = int(samples.group[at_corner[0]])
+        rib, pair_count = _measured(swept, tree, samples[at_corner], radius[group], z[group], program[group])
+        pairs += pair_count
         if rib is not None:
-            found.append((group, *rib))
-    return msgspec.structs.replace(_one_each(found, radius), given_up=np.unique(np.concatenate(given_up)))
+            candidates.append((group, *rib))
+    return msgspec.structs.replace(_distinct_ribs(candidates, radius), given_up=np.unique(np.concatenate(given_up)))
 
 
 def _without_fins(part: FinishedParts, radius: Floats) -> FinishedParts:
     """
-    The parts without what hangs on them at a point and is thinner than R.
+    The parts without pieces that touch the main piece only at a point and are thinner than R.
 
-    Leads and passes that cross may see nothing but backs between them, and nobody means that as a part.
+    Leads and passes that cross may enclose such a piece with their backs alone. It is not intended as a part.
     """
     polygon = part.polygon.copy()
     for group in np.flatnonzero(shapely.get_num_geometries(polygon) > 1):
@@ -140,32 +160,32 @@ def _none() -> Ribs:
 
 
 def _along_outline(part: FinishedParts, corners: Corners, shift: Floats, radius: Floats) -> _Samples:
-    """Samples of the outline within reach of the corners, but for those that are corners of the part itself."""
+    """Samples of the outline within reach of the corners; corners of the part itself are left out."""
     tree = shapely.STRtree(_lines(part.start, part.end))
     points = corners.point + shift
-    # Where the path before or behind comes to the contour at a slant, more is left than at the corner itself.
+    # If the path before or after meets the contour at a slant, more remains than at the corner itself.
     reach = np.maximum(corners.reach, 2 * radius[corners.loop])
-    which, wall = tree.query(shapely.points(coordinates(points)), "dwithin", reach)
-    own = part.group[wall] == corners.loop[which]
-    which, wall = which[own], wall[own]
-    kept = ~_of_part(part, corners, points, which, wall)[which]
-    which, wall = which[kept], wall[kept]
+    corner, wall = tree.query(shapely.points(coordinates(points)), "dwithin", reach)
+    same_group = part.group[wall] == corners.loop[corner]
+    corner, wall = corner[same_group], wall[same_group]
+    is_lead = ~_of_part(part, corners, points, corner, wall)[corner]
+    corner, wall = corner[is_lead], wall[is_lead]
 
     start, way = part.start[wall], part.end[wall] - part.start[wall]
     length = np.maximum(np.abs(way), ZERO)
     along = way / length
-    foot = ((points[which] - start) * along.conj()).real
-    low, high = (np.clip(foot + sign * reach[which], 0, length) for sign in (-1, 1))
-    step = np.sqrt(8 * WITNESS * radius[corners.loop[which]]) / _SAMPLES
+    foot = ((points[corner] - start) * along.conj()).real
+    low, high = (np.clip(foot + sign * reach[corner], 0, length) for sign in (-1, 1))
+    step = np.sqrt(8 * WITNESS * radius[corners.loop[corner]]) / _SAMPLES
     count = np.ceil((high - low) / step).astype(np.int64)
-    of = np.repeat(np.arange(len(wall)), count)
-    place = np.arange(len(of)) - np.repeat(np.cumsum(count) - count, count)
-    at = low[of] + (place + 0.5) * ((high - low) / np.maximum(count, 1))[of]
-    return _Samples(start[of] + at * along[of], along[of], which[of], corners.loop[which[of]])
+    pair = np.repeat(np.arange(len(wall)), count)
+    place = np.arange(len(pair)) - np.repeat(np.cumsum(count) - count, count)
+    position = low[pair] + (place + 0.5) * ((high - low) / np.maximum(count, 1))[pair]
+    return _Samples(start[pair] + position * along[pair], along[pair], corner[pair], corners.loop[corner[pair]])
 
 
 def _of_part(part: FinishedParts, corners: Corners, points: Points, which: Rows, wall: Rows) -> Mask:
-    """The corners at which the outline itself turns as the blocks do."""
+    """True for corners at which the outline turns as the blocks do; bool[corners]."""
     way = part.end[wall] - part.start[wall]
     arrives = np.abs(part.end[wall] - points[which]) < CORNER
     leaves = np.abs(part.start[wall] - points[which]) < CORNER
@@ -175,7 +195,7 @@ def _of_part(part: FinishedParts, corners: Corners, points: Points, which: Rows,
 
 
 def _reachable(part: FinishedParts, samples: _Samples, radius: Floats) -> Mask:
-    """Whether each sample is on the part, and within the bar, and a cutter could touch it without cutting the part."""
+    """True for samples on the part and within the bar that a cutter could touch without an overcut."""
     center = samples.point - 1j * samples.along * radius[samples.group]
     solid = part.polygon.copy()
     shapely.prepare(solid)
@@ -186,7 +206,7 @@ def _reachable(part: FinishedParts, samples: _Samples, radius: Floats) -> Mask:
 
 
 def _touched(path: Segments, samples: _Samples, radius: Floats) -> Mask:
-    """Whether the path of its own group touches each sample."""
+    """True for samples that the path of their group touches."""
     lines = gathered(_lines(path.start, path.end), path.loop, len(radius))
     shapely.prepare(lines)
     limit = radius[samples.group] + _CONTACT
@@ -196,27 +216,27 @@ def _touched(path: Segments, samples: _Samples, radius: Floats) -> Mask:
 def _touched_by_any(
     swept: Swept, tree: shapely.STRtree, samples: _Samples, z: Floats, program: Rows
 ) -> tuple[Mask, int]:
-    """Whether any tool touches each sample, of as many as there was time for; and how many these are."""
+    """True for samples that any tool touches, up to the limit of pairs; and the number of samples compared."""
     limit = float(swept.radius.max(initial=0.0)) + _CONTACT
     result = np.zeros(len(samples), bool)
     begin, step, pairs = 0, 16, 0
     while begin < len(samples) and pairs <= _PAIRS:
         keep_time()
-        some = samples[begin : begin + step]
-        which, piece = tree.query(shapely.points(coordinates(some.point)), "dwithin", limit)
-        group = some.group[which]
+        batch = samples[begin : begin + step]
+        sample, piece = tree.query(shapely.points(coordinates(batch.point)), "dwithin", limit)
+        group = batch.group[sample]
         near = swept[piece]
-        distance = np.abs(_to_way(near, some.point[which]))
+        distance = np.abs(_to_way(near, batch.point[sample]))
         touches = near.at_depth(z[group], program[group]) & (distance <= near.radius + _CONTACT)
-        result[begin + which[touches]] = True
-        begin, pairs = begin + step, pairs + len(which)
-        step = int(np.clip(step * _PAIRS_AT_A_TIME // (len(which) + 1), 16, 2 * step))
-    asked = min(begin, len(samples))
-    return result[:asked], asked
+        result[begin + sample[touches]] = True
+        begin, pairs = begin + step, pairs + len(sample)
+        step = int(np.clip(step * _PAIRS_AT_A_TIME // (len(sample) + 1), 16, 2 * step))
+    compared = min(begin, len(samples))
+    return result[:compared], compared
 
 
 def _to_way(pieces: Swept, point: Points) -> Points:
-    """From points to the nearest point of pieces, one for each or all for all."""
+    """The vector from each point to the nearest point of a piece; the shapes broadcast."""
     way = pieces.end - pieces.start
     share = ((point - pieces.start) * way.conj()).real / np.maximum(np.abs(way) ** 2, ZERO**2)
     nearest: Points = pieces.start + np.clip(share, 0, 1) * way - point
@@ -227,17 +247,18 @@ def _measured(
     swept: Swept, tree: shapely.STRtree, samples: _Samples, radius: float, z: float, program: int
 ) -> tuple[tuple[complex, float, float, int] | None, int]:
     """
-    Place, height, width and row of the rib on these samples of one outline, None if it is no witness; and with how many
-    pieces points were compared for that.
+    Place, height, width and row of the rib at these samples, and the number of pairs compared.
+
+    None for the rib if it is not above WITNESS. The samples belong to one corner of one outline.
     """
-    around = shapely.MultiPoint(coordinates(samples.point))
-    pieces = swept[np.sort(tree.query(around, "dwithin", 3 * radius + float(swept.radius.max())))]
+    sample_points = shapely.MultiPoint(coordinates(samples.point))
+    pieces = swept[np.sort(tree.query(sample_points, "dwithin", 3 * radius + float(swept.radius.max())))]
     pieces = pieces[pieces.at_depth(np.array(z), np.array(program))]
     order = np.argsort((samples.point * samples.along[len(samples) // 2].conj()).real, kind="stable")
     point, along = samples.point[order], samples.along[order]
     if not len(pieces):
         return None, 0
-    compared = len(pieces) * (len(point) + 2 * _POINTS)
+    pair_count = len(pieces) * (len(point) + 2 * _POINTS)
     feet, rows = zip(*(_foot(pieces, point[end], along[end]) for end in (0, -1)), strict=True)
     place, height = point[0], 0.0
     for _ in range(3):
@@ -245,79 +266,79 @@ def _measured(
         top = int(np.argmax(heights))
         place, height = point[top], float(heights[top])
         beside = max(top - 1, 0), min(top + 1, len(point) - 1)
-        # Round a corner of the outline the straight line to the next sample would run through the part.
+        # At a corner of the outline the straight line to the next sample would cross the part.
         ends = [end if abs(along[end] - along[top]) < _STRAIGHT_ON else top for end in beside]
         share = np.linspace(0, 1, _POINTS)
         point, along = point[ends[0]] + share * (point[ends[1]] - point[ends[0]]), np.full(_POINTS, along[top])
     if height <= WITNESS:
-        return None, compared
-    return (complex(place), height, float(abs(feet[1] - feet[0])), max(rows)), compared
+        return None, pair_count
+    return (complex(place), height, float(abs(feet[1] - feet[0])), max(rows)), pair_count
 
 
 def _foot(pieces: Swept, point: complex, along: complex) -> tuple[complex, int]:
-    """Where the tool that comes nearest to the end of a rib touches the outline, and in which row it does."""
+    """The point where the tool nearest to the end of a rib touches the outline, and the row of that tool."""
     way = _to_way(pieces, np.asarray(point))
     beyond = np.abs(way) - pieces.radius
     nearest = np.flatnonzero(beyond <= beyond.min() + _CONTACT)
     runs = np.abs(((pieces.end - pieces.start)[nearest] * np.conj(along)).real)
     best = nearest[np.argmax(runs / np.maximum(np.abs(pieces.end - pieces.start)[nearest], ZERO))]
     beside = (way[best] * np.conj(along)).real
-    # Farther off than a touch is seen, the tool does not stand on this wall but on one round a corner.
+    # Beyond this distance the tool does not touch this wall but one round a corner.
     limit = 2 * np.sqrt(2 * pieces.radius[best] * _CONTACT)
     return point + np.clip(beside, -limit, limit) * along, int(pieces.row[best])
 
 
 def _heights(pieces: Swept, point: Points, along: Points, radius: float) -> Floats:
     """
-    How far from each point of the outline the first tool is, straight away from the part; twice R at most.
+    The distance [mm] from each point of the outline to the first tool, perpendicular to the outline; at most 2R.
 
-    Where a ray goes through between two tools that touch each other, the slit is rounding.
+    If a ray passes between two tools that touch each other, that slit is a rounding error and is closed.
     """
     exact, wider = (first_tool(pieces, pieces.radius + more, point, -1j * along) for more in (0, _CONTACT))
     return np.asarray(np.clip(np.where(exact - wider < _SLIT * radius, exact, wider), 0, 2 * radius))
 
 
 def first_tool(pieces: Swept, radius: Floats, point: Points, away: Points) -> Floats:
-    """How far it is from each point to the first piece that a tool of this radius sweeps; _FAR where there is none."""
+    """The distance [mm] along a ray from each point to the first swept piece; _FAR where there is none."""
     step = max(1, _PAIRS_AT_A_TIME // max(1, len(pieces)))
-    found = [np.zeros(0)]
+    distances = [np.zeros(0)]
     for begin in range(0, len(point), step):
         keep_time()
-        chosen = slice(begin, begin + step)
-        found.append(_first_tool(pieces, radius, point[chosen], away[chosen]))
-    return np.concatenate(found)
+        batch = slice(begin, begin + step)
+        distances.append(_first_tool(pieces, radius, point[batch], away[batch]))
+    return np.concatenate(distances)
 
 
 def _first_tool(pieces: Swept, radius: Floats, point: Points, away: Points) -> Floats:
-    """The same, all points with all pieces at once."""
+    """The same for one batch: all points with all pieces at once."""
     away = away[:, None]
     way = pieces.end - pieces.start
     length = np.maximum(np.abs(way), ZERO)
-    found = []
-    with np.errstate(all="ignore"):  # a ray that misses a tool meets it nowhere
+    distances = []
+    with np.errstate(all="ignore"):  # a ray that misses a tool gives NaN
         for middle in (pieces.start, pieces.end):
-            to = (middle - point[:, None]) * away.conj()
-            half = np.sqrt(radius**2 - to.imag**2)
-            found.append(np.where(to.real + half > 0, to.real - half, np.inf))
+            local = (middle - point[:, None]) * away.conj()
+            half = np.sqrt(radius**2 - local.imag**2)
+            distances.append(np.where(local.real + half > 0, local.real - half, np.inf))
         beside = (point[:, None] - pieces.start) * (way / length).conj()
         slope = away * (way / length).conj()
         for side in (-1, 1):
-            until = (side * radius - beside.imag) / slope.imag
-            share = beside.real + until * slope.real
-            found.append(np.where((until > 0) & (share > 0) & (share < length), until, np.inf))
-    nearest = np.nan_to_num(np.concatenate(found, axis=1), nan=np.inf).min(axis=1)
+            hit = (side * radius - beside.imag) / slope.imag
+            share = beside.real + hit * slope.real
+            distances.append(np.where((hit > 0) & (share > 0) & (share < length), hit, np.inf))
+    nearest = np.nan_to_num(np.concatenate(distances, axis=1), nan=np.inf).min(axis=1)
     return np.asarray(np.minimum(nearest, _FAR))
 
 
-def _one_each(found: list[tuple[int, complex, float, float, int]], radius: Floats) -> Ribs:
-    """Each rib once, at its highest: two corners are beside most of them, and several loops may leave the same."""
-    kept: list[tuple[int, complex, float, float, int]] = []
-    for one in sorted(found, key=lambda rib: (round(rib[2], 3), rib[-1]), reverse=True):
-        if all(abs(one[1] - other[1]) > max(radius[one[0]], other[3]) for other in kept):
-            kept.append(one)
-    if not kept:
+def _distinct_ribs(candidates: list[tuple[int, complex, float, float, int]], radius: Floats) -> Ribs:
+    """Each rib once, at its highest: most ribs lie between two corners, and several loops may leave the same one."""
+    distinct: list[tuple[int, complex, float, float, int]] = []
+    for candidate in sorted(candidates, key=lambda rib: (round(rib[2], 3), rib[-1]), reverse=True):
+        if all(abs(candidate[1] - other[1]) > max(radius[candidate[0]], other[3]) for other in distinct):
+            distinct.append(candidate)
+    if not distinct:
         return _none()
-    group, place, height, width, row = zip(*kept, strict=True)
+    group, place, height, width, row = zip(*distinct, strict=True)
     none = np.zeros(0, np.int64)
     return Ribs(np.array(group), np.array(place), np.array(height), np.array(width), np.array(row), none)
 

@@ -1,11 +1,11 @@
 """
-Strips: what stays between passes that are farther apart than the cutter is wide.
+Strips: material that remains between passes that are farther apart than the cutter is wide.
 
 Floats in mm, plane points complex, x + 1j*c. Import late: shapely takes its time.
 
-What no tool sweeps and is no part is left. It is a strip where it is thinner than R, and lies behind a block of a pass
-or goes round a pass. What is thicker is a groove's wall or an island, which is meant. What only a single pass goes
-round, as the middle of a pocket, has been drilled, or falls out.
+Material outside the part that no tool sweeps is left over. A strip is thinner than R, and lies behind a block of a pass
+or goes round a pass. Thicker material is the wall of a groove or an island, and is intended. Material inside a single
+pass, such as the middle of a pocket, was drilled before, or falls out.
 """
 
 from __future__ import annotations
@@ -25,20 +25,26 @@ from polarcheck.geometry.segments import Segments
 from polarcheck.geometry.tolerances import ZERO
 from polarcheck.time_limit import keep_time
 
-#: How near two outlines are one [mm]; more than arcs in chords.
+#: Two outlines touch if they are this near [mm]; larger than the error of chords.
 _BESIDE = 0.01
-#: Corners of a quarter of the end of a swept way, and of what is only widened to look at it.
+#: Corners per quarter circle: at the ends of swept ways, and of areas that are widened only for a test.
 _CORNERS, _COARSE = 32, 16
-#: What a path may be straightened by [mm], and how many pieces of it are looked at.
+#: Tolerance [mm] to which paths are simplified, and the largest number of their points.
 _STRAIGHT, _MOST_PIECES = 0.002, 20_000
-#: How far from a ring the cut of one way of the tool through it is no more open, as a share of R.
+#: Widened by this share of R, a ring that a tool has cut through once is closed again.
 _CLOSING = 1.1
-#: A strip that runs out into what lies round all passes is so many R long, and as thick everywhere as this share.
+#: A strip that runs out into the surroundings is at least this many R long; least ratio of mean to largest thickness.
 _LONG, _EVEN = 6, 0.75
 
 
 class Strip(msgspec.Struct, frozen=True):
-    """A strip: how thick it is, the row of the pass behind which it stands, and where."""
+    """
+    A strip.
+
+    thickness: [mm].
+    row: the programmed row of the pass in front of it.
+    place: a point in it [mm].
+    """
 
     thickness: float
     row: int
@@ -49,31 +55,35 @@ def strips(
     part: Any, walls: Segments, row: Rows, left: Mask, swept: Swept, radius: float, bar: float
 ) -> list[Strip] | None:
     """
-    The strips of one level; None where the paths of its tools are too long to be looked at.
+    The strips of one level; None if the paths of its tools have too many points.
 
-    part: what its loops leave, a polygon. walls: their blocks as straight pieces, `row` and `left` those of each.
-    swept: all that tools run through there. radius: R of the passes. bar: diameter [mm], NaN if not known.
+    part: the finished part of its loops, a polygon.
+    walls: the blocks of the loops as straight pieces.
+    row: int[walls], their rows. left: bool[walls], the tool runs left of the block.
+    swept: the paths of all tools at that level.
+    radius: R of the passes [mm].
+    bar: diameter [mm], NaN if unknown.
     """
-    gone = _gone(swept)
-    if gone is None:
+    removed = _swept_area(swept)
+    if removed is None:
         return None
-    around = shapely.box(*shapely.bounds(gone)).buffer(radius)
-    left_over = areas.difference(around, areas.union(gone, part, grid_size=GRID), grid_size=GRID)
+    around = shapely.box(*shapely.bounds(removed)).buffer(radius)
+    left_over = areas.difference(around, areas.union(removed, part, grid_size=GRID), grid_size=GRID)
     if not np.isnan(bar):
         round_bar = shapely.Point(0, 0).buffer(bar / 2, quad_segs=4 * _CORNERS)
         left_over = areas.intersection(left_over, round_bar, grid_size=GRID)
-    found = []
+    candidates = []
     for piece in shapely.get_parts(left_over):
         if shapely.distance(piece, around.exterior) > _BESIDE:
-            found.append((piece, False))
+            candidates.append((piece, False))
         else:
             thick = areas.buffer(
                 areas.buffer(piece, -radius / 2, quad_segs=_COARSE), radius / 2 + _BESIDE, quad_segs=_COARSE
             )
-            found += [(thin, True) for thin in shapely.get_parts(areas.difference(piece, thick, grid_size=GRID))]
+            candidates += [(thin, True) for thin in shapely.get_parts(areas.difference(piece, thick, grid_size=GRID))]
     result = []
     middles = shapely.STRtree(shapely.points(coordinates((walls.start + walls.end) / 2)))
-    for piece, runs_out in found:
+    for piece, runs_out in candidates:
         keep_time()
         strip = _strip(piece, part, walls, middles, row, left, swept, radius, runs_out)
         if strip is not None:
@@ -81,13 +91,13 @@ def strips(
     return result
 
 
-def _gone(swept: Swept) -> Any:
-    """What the tools sweep; None where their paths are too long to be looked at."""
+def _swept_area(swept: Swept) -> Any:
+    """The area that the tools sweep; None if their paths have too many points."""
     joined = swept.end[:-1] == swept.start[1:]
     joined &= (swept.radius[1:] == swept.radius[:-1]) & (swept.z[1:] == swept.z[:-1])
     lines, last = lines_through(swept.start, swept.end, joined)
     radius = swept.radius[last]
-    # A pass that is written once more, deeper, sweeps nothing else.
+    # A pass that is repeated deeper sweeps the same area.
     fresh = list({key: at for at, key in enumerate(zip(shapely.to_wkb(lines), radius.tolist(), strict=True))}.values())
     lines, radius = shapely.simplify(lines[fresh], _STRAIGHT), radius[fresh]
     if shapely.get_num_coordinates(lines).sum() > _MOST_PIECES:
@@ -106,19 +116,19 @@ def _strip(
     radius: float,
     runs_out: bool,
 ) -> Strip | None:
-    """This piece of what is left, if it is a strip."""
+    """The strip that this piece of left-over material is; None if it is none."""
     length = max(piece.length / 2, ZERO)
     thickness = piece.area / length
     if not WITNESS < thickness < radius or shapely.distance(piece, part) < _BESIDE:
         return None
     middle = (walls.start + walls.end) / 2
     behind = np.sort(middles.query(piece, "dwithin", _BESIDE))
-    on = np.abs(walls.end - walls.start)[behind]
+    wall_length = np.abs(walls.end - walls.start)[behind]
     if runs_out:
         widest = 2 * areas.maximum_inscribed_circle(piece).length
-        if length < _LONG * radius or thickness < _EVEN * widest or on.sum() < length / 2:
+        if length < _LONG * radius or thickness < _EVEN * widest or wall_length.sum() < length / 2:
             return None
-    if on.sum() < radius:
+    if wall_length.sum() < radius:
         # A ramp or a link cuts through a ring, as wide as the cutter.
         if not shapely.get_num_interior_rings(areas.buffer(piece, _CLOSING * radius, quad_segs=_COARSE)):
             return None
@@ -130,6 +140,6 @@ def _strip(
     begin = middle[behind] + _BESIDE * back
     across = first_tool(swept, swept.radius, begin, back) + _BESIDE
     order = np.argsort(across)
-    at = order[np.searchsorted(np.cumsum(on[order]), on.sum() / 2)]
-    place = complex(middle[behind][at] + back[at] * across[at] / 2)
-    return Strip(float(across[at]), int(row[behind][at]), place) if across[at] < radius else None
+    median = order[np.searchsorted(np.cumsum(wall_length[order]), wall_length.sum() / 2)]
+    place = complex(middle[behind][median] + back[median] * across[median] / 2)
+    return Strip(float(across[median]), int(row[behind][median]), place) if across[median] < radius else None

@@ -1,8 +1,8 @@
 """
 The search for cuts: where straight pieces of a tool center path come nearer than R to finished parts, and how deep.
 
-Each piece is compared with the part of its group. A caller says of which parts the walls alone count, as the rest of
-their outline is not known, and picks the cuts that it reports. Floats in mm, plane points complex, x + 1j*c. Import
+Each piece is compared with the part of its group. The caller marks the parts whose walls alone count, since the rest of
+their outline is unknown, and selects the cuts that it reports. Floats in mm, plane points complex, x + 1j*c. Import
 late: shapely takes its time.
 """
 
@@ -22,7 +22,7 @@ from polarcheck.geometry.segments import Segments
 from polarcheck.geometry.tolerances import CORNER, ZERO
 from polarcheck.time_limit import keep_time
 
-#: Pieces of path that are compared as one polyline first, and pieces worked on at a time, for the sake of memory.
+#: Pieces of path that are first compared as one polyline; pieces processed at a time, to limit memory.
 _RUN, _BATCH = 64, 4096
 
 
@@ -154,7 +154,7 @@ def shortened(part: FinishedParts, radius: Floats) -> FinishedParts:
     total = part.along[:, 0] + part.ahead[:, 0]
     long = part.along[:, 1] - part.along[:, 0]
     reach = np.where(part.open, radius, -np.inf)[part.group]
-    with np.errstate(all="ignore"):  # an infinite length is meant
+    with np.errstate(all="ignore"):  # infinite lengths are intended
         one, other = ((limit - part.along[:, 0]) / long for limit in (reach, total - reach))
     low, high = np.clip(np.minimum(one, other), 0, 1), np.clip(np.maximum(one, other), 0, 1)
     way = part.end - part.start
@@ -215,7 +215,7 @@ def _beside(
 
 
 def _run_is_near(whole: Geometries, pieces: Segments, group: Rows, limit: Floats) -> Mask:
-    """Pieces in a run of which any comes within the limit of its group [mm]; most runs of a sound program do not."""
+    """True for pieces of a run that comes within the limit [mm] of its part; most runs of a sound program do not."""
     run = np.cumsum((np.diff(group, prepend=-1) != 0) | (np.arange(len(group)) % _RUN == 0)) - 1
     of_run = group[np.diff(run, prepend=-1) != 0]
     lines = polylines(pieces.start, pieces.end, run)
