@@ -1,4 +1,4 @@
-"""By which angle a part would fit what is drawn; lengths in mm, plane points complex, x + 1j*c."""
+"""The angle by which a drawing is turned to fit a part; lengths in mm, plane points complex, x + 1j*c."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ import numpy as np
 from polarcheck.arrays import Floats, Mask, Points
 from polarcheck.geometry.comparison.measured_path import Way
 
-#: In how many directions a way is looked at, and at how many points of it.
+#: Directions from the center in which distances are compared; points sampled along a way.
 _DIRECTIONS, _POINTS = 3600, 20_000
-#: Turns that are looked at more closely, at how many points, and how often.
+#: Candidate angles that are refined, points compared for each, and steps of the refinement.
 _TURNS, _FEW, _STEPS = 12, 400, 22
 #: Turns whose mean distances differ by less [mm] fit equally well: distances between points rounded to 0.001 mm.
 _AS_GOOD = 1e-3
-#: What is farther out than this many times the part, such as a line without end, is as good as there.
+#: Distances are cut off at this multiple of the size of the part, for lines without an end.
 _FARTHEST = 1.5
 _GOLDEN = (5**0.5 - 1) / 2
 
@@ -22,12 +22,12 @@ def best_turn(way: Way, drawn: Way, center: complex) -> float:
     """
     The angle [rad] by which the drawing is to be turned about the center to fit the way, from -pi to pi.
 
-    Seen from the center both are distances by direction: their correlation names a few angles, the least mean distance
-    along the way decides.
+    Both are described by their distances from the center in each direction. The correlation of these distances yields a
+    few candidate angles; the least mean distance along the way decides between them.
     """
-    own, seen = _distances(way, center, np.inf)
-    other, _ = _distances(drawn, center, _FARTHEST * float(own[seen].max(initial=0)))
-    cost = _correlated(seen * own**2, np.ones_like(own)) - 2 * _correlated(seen * own, other)
+    measured, seen = _distances(way, center, np.inf)
+    other, _ = _distances(drawn, center, _FARTHEST * float(measured[seen].max(initial=0)))
+    cost = _correlated(seen * measured**2, np.ones_like(measured)) - 2 * _correlated(seen * measured, other)
     cost += _correlated(seen.astype(float), other**2)
     turns = np.flatnonzero((cost <= np.roll(cost, 1)) & (cost <= np.roll(cost, -1)))
     turns = turns[np.argsort(cost[turns], kind="stable")][:_TURNS]
@@ -37,11 +37,11 @@ def best_turn(way: Way, drawn: Way, center: complex) -> float:
     means = np.array([_mean(points, drawn, center, angle) for angle in angles.tolist()])
     near = means <= 2 * means.min() + step * float(np.abs(points - center).max())
     least = float(angles[near][np.argmin(np.abs(angles[near]))])
-    # What fits at several angles, as a hexagon does, is turned as little as it can.
-    found = [
+    # If several angles fit, as for a hexagon, the smallest turn is taken.
+    refined = [
         _refined(points, drawn, center, at - 2 * step, at + 2 * step) for at in (least, float(angles[means.argmin()]))
     ]
-    return found[0][1] if found[0][0] <= found[1][0] + _AS_GOOD else found[1][1]
+    return refined[0][1] if refined[0][0] <= refined[1][0] + _AS_GOOD else refined[1][1]
 
 
 def _mean(points: Points, drawn: Way, center: complex, angle: float) -> float:
@@ -51,7 +51,7 @@ def _mean(points: Points, drawn: Way, center: complex, angle: float) -> float:
 
 
 def _distances(way: Way, center: complex, farthest: float) -> tuple[Floats, Mask]:
-    """By direction from the center the distance of the nearest point of a way, and which directions have one."""
+    """The distance of the nearest point of a way in each direction from the center; a mask of measured directions."""
     points, _ = way.at(np.linspace(0, way.length, _POINTS))
     if np.isfinite(farthest):
         points = np.concatenate([points, _near(way, center, farthest)])
@@ -66,7 +66,7 @@ def _distances(way: Way, center: complex, farthest: float) -> tuple[Floats, Mask
 
 
 def _near(way: Way, center: complex, farthest: float) -> Points:
-    """Points of the long segments of a way, as dense as directions ask for where they are near."""
+    """Points on the long segments of a way, dense enough near the center for every direction."""
     long = np.abs(way.end - way.start) > farthest / 10
     start, along = way.start[long], (way.end - way.start)[long]
     foot = np.clip(((center - start) * along.conj()).real / np.abs(along) ** 2, 0, 1)
@@ -81,7 +81,7 @@ def _correlated(one: Floats, other: Floats) -> Floats:
 
 
 def _refined(points: Points, drawn: Way, center: complex, low: float, high: float) -> tuple[float, float]:
-    """The least mean distance [mm] between two angles, and where that is: by golden section."""
+    """The least mean distance [mm] between two angles, and its angle, by golden section search."""
     inner = [high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)]
     values = [_mean(points, drawn, center, angle) for angle in inner]
     for _ in range(_STEPS):

@@ -1,8 +1,8 @@
 """
-By how much a part differs from what is drawn, to either side; lengths in mm, plane points complex, x + 1j*c.
+The deviation of a part from a drawing, to either side; lengths in mm, plane points complex, x + 1j*c.
 
-What the program bounds is measured to the drawing, and the drawing to that: either alone would not see a notch that the
-other has. Where the nearest of the drawing lies within the part, too much stays there; else too much is cut away.
+The outline of the part is measured to the drawing, and the drawing to the outline: either one alone would miss a notch
+in the other. If the nearest point of the drawing lies inside the part, too much material remains; else too much is cut.
 """
 
 from __future__ import annotations
@@ -35,9 +35,13 @@ class Difference(NamedTuple):
     """
     How a part differs from a drawing.
 
-    proud, deep: by how much too much stays, and too much is cut away, at most [mm]; 0 for none. proud_at, deep_at:
-    where, on the part or on the drawing. proud_of, deep_of: the element of the outline there, -1 for none. mean: of all
-    [mm]. length: of what could be compared [mm].
+    proud: greatest excess of material [mm], 0 for none.
+    proud_at: the point of it, on the part or on the drawing [mm].
+    proud_of: the element of the outline at that point, -1 for none.
+    deep: greatest lack of material [mm], 0 for none.
+    deep_at, deep_of: the point of it, and the element.
+    mean: mean deviation [mm].
+    length: length of the outline that was compared [mm].
     """
 
     proud: float = 0.0
@@ -51,24 +55,29 @@ class Difference(NamedTuple):
 
     @property
     def largest(self) -> float:
-        """Of both sides [mm]."""
+        """The greatest deviation to either side [mm]."""
         return max(self.proud, self.deep)
 
     @property
     def at(self) -> complex:
-        """Where that is."""
+        """The point of the greatest deviation [mm]."""
         return self.proud_at if self.proud >= self.deep else self.deep_at
 
     @property
     def of(self) -> int:
-        """The element there."""
+        """The element at that point."""
         return self.proud_of if self.proud >= self.deep else self.deep_of
 
 
 class Made(NamedTuple):
     """
-    Chains of the outline of a part. way: of_outline. closed: bool[elements]. about_axis: bool[elements], arcs about the
-    axis. polygon: the part, prepared. bar: radius of the stock [mm], inf where it is not known.
+    The outline of a part, ready to be compared.
+
+    outline: its chains of lines and arcs.
+    way: the same as chords.
+    about_axis: bool[elements], arcs about the axis.
+    polygon: the part, prepared by shapely.
+    bar: radius of the stock [mm], inf if unknown.
     """
 
     outline: Outline
@@ -79,7 +88,7 @@ class Made(NamedTuple):
 
 
 def made_of(outline: Outline, polygon: Any, bar: float) -> Made:
-    """What is to be compared. bar: radius of the stock [mm], NaN if unknown."""
+    """The outline of a part, prepared for comparison. bar: radius of the stock [mm], NaN if unknown."""
     about = outline.is_arc & (np.abs(np.where(outline.is_arc, outline.center, np.inf)) <= _ABOUT_AXIS)
     shapely.prepare(polygon)
     return Made(outline, way_of_outline(outline), about, polygon, np.inf if np.isnan(bar) else bar)
@@ -87,15 +96,15 @@ def made_of(outline: Outline, polygon: Any, bar: float) -> Made:
 
 def difference(made: Made, drawn: Way, *, both_ways: bool) -> Difference:
     """
-    How chains differ from curves of a drawing.
+    The deviation of the chains of a part from the curves of a drawing.
 
-    both_ways: whether the chains should make all of these curves; else only what they make is compared.
+    both_ways: the chains should cover all of these curves; else only the chains are measured to the curves.
     """
     turned = turned_radius(drawn)
     first = _extremes(made.way, lambda points: _from_part(made, drawn, points), _compared(made, drawn, turned))
-    found = _difference(made, first, lambda points: made.way.of[made.way.nearest(points)[2]])
+    of_part = _difference(made, first, lambda points: made.way.of[made.way.nearest(points)[2]])
     if not both_ways:
-        return found
+        return of_part
     along = drawn.samples()
     points, _ = drawn.at(along)
     # What lies on the round of the drawing is turned, where the part is not milled there.
@@ -104,11 +113,11 @@ def difference(made: Made, drawn: Way, *, both_ways: bool) -> Difference:
     compared = ~(on_round & _within(made.polygon, inward))
     second = _extremes(drawn, lambda points: _from_drawing(made, points), (along, compared))
     if not second.length:
-        return found
-    other = _difference(made, second, lambda points: made.way.of[made.way.nearest(points)[2]])
-    proud = found if found.proud >= other.proud else other
-    deep = found if found.deep >= other.deep else other
-    return Difference(*proud[:3], *deep[3:6], (found.mean + other.mean) / 2, found.length)
+        return of_part
+    of_drawing = _difference(made, second, lambda points: made.way.of[made.way.nearest(points)[2]])
+    proud = of_part if of_part.proud >= of_drawing.proud else of_drawing
+    deep = of_part if of_part.deep >= of_drawing.deep else of_drawing
+    return Difference(*proud[:3], *deep[3:6], (of_part.mean + of_drawing.mean) / 2, of_part.length)
 
 
 def _within(polygon: Any, points: Points) -> Mask:
@@ -116,8 +125,8 @@ def _within(polygon: Any, points: Points) -> Mask:
 
 
 def _from_part(made: Made, drawn: Way, points: Points) -> Floats:
-    far, there, _ = drawn.nearest(points)
-    return np.where(_within(made.polygon, there), far, -far)
+    far, closest, _ = drawn.nearest(points)
+    return np.where(_within(made.polygon, closest), far, -far)
 
 
 def _from_drawing(made: Made, points: Points) -> Floats:
@@ -141,7 +150,7 @@ _LEAST_ARC = 0.01
 
 
 def _compared(made: Made, drawn: Way, turned: float) -> tuple[Floats, Mask]:
-    """How far along the chains points lie [mm], and which of them are compared."""
+    """Distances of sample points along the chains [mm], and a mask of the points to compare."""
     along = made.way.samples()
     points, which = made.way.at(along)
     size, compared = np.abs(points), np.ones(len(points), bool)
@@ -152,15 +161,15 @@ def _compared(made: Made, drawn: Way, turned: float) -> tuple[Floats, Mask]:
         excess = np.zeros(run[-1] + 1)
         np.maximum.at(excess, run, size - turned)
         compared &= ~(beyond & (excess[run] > _IN_AIR))
-    far, there, _ = drawn.nearest(points)
-    compared &= ~_is_open_end(drawn, there) | (far <= _ON_CIRCLE)
+    far, closest, _ = drawn.nearest(points)
+    compared &= ~_is_open_end(drawn, closest) | (far <= _ON_CIRCLE)
     if np.isinf(min(turned, made.bar)):
         compared &= ~_leading(made, which, far)
     return along, compared if compared.any() else size <= made.bar + _ON_CIRCLE
 
 
 def _is_open_end(drawn: Way, points: Points) -> Mask:
-    """The points at which a curve of a drawing ends, and nobody knows how it goes on."""
+    """True for points at an open end of a curve of the drawing."""
     begins = np.flatnonzero(np.diff(drawn.of, prepend=-1))
     last = np.append(begins[1:], len(drawn.of)) - 1
     is_open = np.abs(drawn.start[begins] - drawn.end[last]) > 0
@@ -175,17 +184,23 @@ def _leading(made: Made, which: Rows, far: Floats) -> Mask:
     """
     chain = made.outline.chain[made.way.of[which]]
     is_open = ~made.outline.closed[chain]
-    found = np.zeros(len(far), bool)
+    result = np.zeros(len(far), bool)
     for number in np.unique(chain[is_open]).tolist():
-        own = np.flatnonzero(chain == number)
-        for order in (own, own[::-1]):
+        points_of_chain = np.flatnonzero(chain == number)
+        for order in (points_of_chain, points_of_chain[::-1]):
             stops = np.append(far[order[1:]] >= far[order[:-1]], True)
-            found[order[: int(np.argmax(stops))]] = True
-    return found
+            result[order[: int(np.argmax(stops))]] = True
+    return result
 
 
 class _Extremes(NamedTuple):
-    """The largest of both sides, each with its point; the mean, and the length of what is compared [mm]."""
+    """
+    The greatest deviations to both sides.
+
+    proud, deep: the greatest deviation [mm] and its point [mm].
+    mean: mean deviation [mm].
+    length: length that was compared [mm].
+    """
 
     proud: tuple[float, complex]
     deep: tuple[float, complex]
@@ -194,22 +209,22 @@ class _Extremes(NamedTuple):
 
 
 def _extremes(way: Way, measured: Callable[[Points], Floats], places: tuple[Floats, Mask]) -> _Extremes:
-    """The extremes along a way, looked at more closely where they are. places: how far along, and which are asked."""
-    along, asked = places
-    if not asked.any():
+    """The greatest deviations along a way, refined near them. places: distances along the way [mm], mask to compare."""
+    along, compared = places
+    if not compared.any():
         return _Extremes((0.0, complex(np.nan)), (0.0, complex(np.nan)), np.inf, 0.0)
     value = np.full(len(along), np.nan)
-    value[asked] = measured(way.at(along[asked])[0])
+    value[compared] = measured(way.at(along[compared])[0])
     share = np.gradient(along) if len(along) > 1 else np.ones(1)
-    length = float(share[asked].sum())
-    mean = float((np.abs(value[asked]) * share[asked]).sum() / length) if length else np.inf
+    length = float(share[compared].sum())
+    mean = float((np.abs(value[compared]) * share[compared]).sum() / length) if length else np.inf
     # Nothing is looked for beyond a neighbour that is not compared.
-    low = np.where(np.append(False, asked[:-1]), np.append(along[0], along[:-1]), along)
-    high = np.where(np.append(asked[1:], False), np.append(along[1:], along[-1]), along)
-    found: list[tuple[float, complex]] = []
+    low = np.where(np.append(False, compared[:-1]), np.append(along[0], along[:-1]), along)
+    high = np.where(np.append(compared[1:], False), np.append(along[1:], along[-1]), along)
+    extremes: list[tuple[float, complex]] = []
     for sign in (1, -1):
-        best = np.argsort(np.where(asked, -sign * value, np.inf), kind="stable")[:_PLACES]
-        best = best[asked[best]]
+        best = np.argsort(np.where(compared, -sign * value, np.inf), kind="stable")[:_PLACES]
+        best = best[compared[best]]
         at, least, most = along[best], low[best], high[best]
         for _ in range(_TURNS):
             tried = least[:, None] + (most - least)[:, None] * np.linspace(0, 1, _PARTS + 1)
@@ -221,13 +236,13 @@ def _extremes(way: Way, measured: Callable[[Points], Floats], places: tuple[Floa
         values = sign * measured(way.at(at)[0])
         top = int(values.argmax())
         size = float(values[top])
-        where = _middle(along, asked & (sign * np.nan_to_num(value) >= size - _AS_LARGE), float(at[top]))
-        found.append((max(size, 0.0), complex(way.at(np.array([where]))[0][0])))
-    return _Extremes(found[0], found[1], mean, length)
+        where = _middle(along, compared & (sign * np.nan_to_num(value) >= size - _AS_LARGE), float(at[top]))
+        extremes.append((max(size, 0.0), complex(way.at(np.array([where]))[0][0])))
+    return _Extremes(extremes[0], extremes[1], mean, length)
 
 
 def _middle(along: Floats, largest: Mask, otherwise: float) -> float:
-    """The middle of the longest stretch that is as far off as any: a side is told there, and not at a corner."""
+    """The middle of the longest stretch with the greatest deviation: it is reported on a side, not at a corner."""
     ends = np.flatnonzero(np.diff(np.concatenate([[False], largest, [False]])))
     if not len(ends):
         return otherwise
@@ -236,6 +251,6 @@ def _middle(along: Floats, largest: Mask, otherwise: float) -> float:
     return float(low[longest] + high[longest]) / 2 if high[longest] > low[longest] else otherwise
 
 
-def _difference(made: Made, found: _Extremes, element: Callable[[Points], Rows]) -> Difference:
-    of = [int(element(np.array([at]))[0]) if size > 0 else -1 for size, at in (found.proud, found.deep)]
-    return Difference(*found.proud, of[0], *found.deep, of[1], found.mean, found.length)
+def _difference(made: Made, extremes: _Extremes, element: Callable[[Points], Rows]) -> Difference:
+    of = [int(element(np.array([at]))[0]) if size > 0 else -1 for size, at in (extremes.proud, extremes.deep)]
+    return Difference(*extremes.proud, of[0], *extremes.deep, of[1], extremes.mean, extremes.length)

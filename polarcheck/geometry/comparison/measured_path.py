@@ -1,4 +1,4 @@
-"""Ways of straight segments that are measured to: points along them, and the nearest of them; lengths in mm."""
+"""Ways of straight segments: points along them, and distances to them; lengths in mm."""
 
 from __future__ import annotations
 
@@ -22,8 +22,12 @@ _TOLERANCE = 4e-4
 @dataclass(frozen=True, slots=True)
 class Way:
     """
-    Segments, n of them. start, end: complex128[n] [mm]. of: int[n], the element or curve that each is part of. until:
-    float64[n], the length of the way up to the end of each [mm]. tree: of the segments.
+    Straight segments in a row, n of them.
+
+    start, end: complex128[n] [mm].
+    of: int[n], the element or curve that each segment is part of.
+    until: float64[n] [mm], the length of the way up to the end of each segment.
+    tree: a shapely STRtree of the segments.
     """
 
     start: Points
@@ -34,33 +38,33 @@ class Way:
 
     @property
     def length(self) -> float:
-        """All of it [mm]."""
+        """The length of the way [mm]."""
         return float(self.until[-1]) if len(self.until) else 0.0
 
     def at(self, along: Floats) -> tuple[Points, Rows]:
-        """The points so far along the way [mm], and the segment of each."""
+        """The points at these distances along the way [mm], and the segment of each."""
         which = np.minimum(np.searchsorted(self.until, along), len(self.until) - 1)
         size = np.abs(self.end - self.start)[which]
         share = np.clip(1 - (self.until[which] - along) / size, 0, 1)
         return self.start[which] + (self.end - self.start)[which] * share, which
 
     def samples(self, count: int = _SAMPLES) -> Floats:
-        """How far along the way points lie that show all its corners: the ends of segments and others between [mm]."""
+        """Distances along the way [mm] of all ends of segments, and of points between them."""
         between = np.linspace(0, self.length, count)
         return np.unique(np.concatenate([between, np.append(0.0, self.until)]))
 
     def nearest(self, points: Points) -> tuple[Floats, Points, Rows]:
-        """For each point how far the way is [mm], the point of it that is nearest, and the segment of that."""
+        """The distance from each point to the way [mm], the nearest point of the way, and its segment."""
         keep_time()
         _, which = self.tree.query_nearest(shapely.points(points.real, points.imag), all_matches=False)
         start, along = self.start[which], (self.end - self.start)[which]
         share = np.clip(((points - start) * along.conj()).real / np.abs(along) ** 2, 0, 1)
-        there = start + along * share
-        return np.abs(points - there), there, which
+        closest = start + along * share
+        return np.abs(points - closest), closest, which
 
 
 def way_of(start: Points, end: Points, of: Rows) -> Way:
-    """The way of some segments; those without a length are left out."""
+    """The way of these segments; segments without a length are left out."""
     long = np.abs(end - start) > 0
     start, end, of = start[long], end[long], of[long]
     ends = np.stack([start, end], axis=1)

@@ -1,9 +1,9 @@
 """
-What shapely makes of areas: joined, cut out of each other, widened. The names are those of shapely.
+Operations of shapely on areas, under the names that shapely gives them.
 
-The cost of each of these steps grows faster than the points that go in, and it may find no answer where points of
-areas all but meet. So each is interrupted when the time is over, many areas are taken in portions, and one that is too
-large, or for which there is no answer, is a TooHardError. Import late.
+The time for an operation grows faster than the number of its points, and it may fail where points of areas almost
+meet. Each operation is therefore interrupted at the time limit, and many areas are processed in batches. An operation
+that is too large or fails raises a TooHardError. Import late.
 """
 
 from __future__ import annotations
@@ -19,14 +19,14 @@ from polarcheck.errors import NoAnswerError, TooHardError
 from polarcheck.geometry.polygons.interruption import interruptible
 from polarcheck.time_limit import keep_time
 
-#: Points that go into one step at most, and of many areas at a time; about a second each.
+#: Most points of one operation, and points of a batch of areas; about a second each.
 _MOST, _AT_A_TIME = 1_000_000, 200_000
-#: Points of lines whose distance to other lines is asked for at a time.
+#: Points of lines compared with other lines in one batch.
 _PIECES_AT_A_TIME = 4096
 
 
-def _asked(function: Callable[..., Any], points: int, *arguments: Any, **how: Any) -> Any:
-    """What the function makes of these, if there is time for so many points."""
+def _bounded(function: Callable[..., Any], points: int, *arguments: Any, **how: Any) -> Any:
+    """The result of the function; raises TooHardError for too many points and where the operation fails."""
     keep_time()
     if points > _MOST:
         raise TooHardError(f"areas with {points} points are too many to compare: check fewer contours in a file")
@@ -38,18 +38,18 @@ def _asked(function: Callable[..., Any], points: int, *arguments: Any, **how: An
         raise NoAnswerError("the areas of its contours cannot be computed: points of them all but meet") from error
 
 
-def _of_each(function: Callable[..., Any]) -> Callable[..., Any]:
-    """A function that makes one area of each, or of each pair; of arrays an array."""
+def _element_wise(function: Callable[..., Any]) -> Callable[..., Any]:
+    """A function that applies an operation to each area or pair of areas; for arrays it returns an array."""
 
     def step(*arguments: Any, **how: Any) -> Any:
         columns = np.broadcast_arrays(*arguments)
         points = sum(shapely.get_num_coordinates(column) for column in columns if column.dtype == object)
         if not columns[0].ndim:
-            return _asked(function, int(points), *arguments, **how)
+            return _bounded(function, int(points), *arguments, **how)
         result = np.empty(columns[0].shape, object)
         share = np.cumsum(points) // _AT_A_TIME
         for part in np.split(np.arange(len(result)), np.flatnonzero(np.diff(share)) + 1):
-            result[part] = _asked(
+            result[part] = _bounded(
                 function, int(points[part].max(initial=0)), *(column[part] for column in columns), **how
             )
         return result
@@ -58,22 +58,22 @@ def _of_each(function: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def _with_itself(area: Any) -> Any:
-    """What lies twice in it once."""
+    """Each area or set of lines without its overlaps with itself."""
     return shapely.unary_union(np.asarray(area)[..., None], axis=-1)
 
 
-union = _of_each(shapely.union)
-difference = _of_each(shapely.difference)
-intersection = _of_each(shapely.intersection)
-buffer = _of_each(shapely.buffer)
-make_valid = _of_each(shapely.make_valid)
-maximum_inscribed_circle = _of_each(shapely.maximum_inscribed_circle)
-with_itself = _of_each(_with_itself)
+union = _element_wise(shapely.union)
+difference = _element_wise(shapely.difference)
+intersection = _element_wise(shapely.intersection)
+buffer = _element_wise(shapely.buffer)
+make_valid = _element_wise(shapely.make_valid)
+maximum_inscribed_circle = _element_wise(shapely.maximum_inscribed_circle)
+with_itself = _element_wise(_with_itself)
 
 
 def union_all(areas: Any, grid_size: float | None = None) -> Any:
     """All of them as one area."""
-    return _asked(shapely.union_all, int(np.sum(shapely.get_num_coordinates(areas))), areas, grid_size=grid_size)
+    return _bounded(shapely.union_all, int(np.sum(shapely.get_num_coordinates(areas))), areas, grid_size=grid_size)
 
 
 def dwithin(one: Any, other: Any, distance: Any) -> Any:
@@ -81,5 +81,5 @@ def dwithin(one: Any, other: Any, distance: Any) -> Any:
     share = np.cumsum(shapely.get_num_coordinates(other)) // _PIECES_AT_A_TIME
     result = np.zeros(len(other), bool)
     for part in np.split(np.arange(len(other)), np.flatnonzero(np.diff(share)) + 1):
-        result[part] = _asked(shapely.dwithin, 0, one[part], other[part], distance=distance[part])
+        result[part] = _bounded(shapely.dwithin, 0, one[part], other[part], distance=distance[part])
     return result

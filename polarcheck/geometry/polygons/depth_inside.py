@@ -1,4 +1,4 @@
-"""How deep straight ways run in the finished part."""
+"""The depth of straight ways in the finished part."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _SLIVER = 0.1
 _LEAST = 0.4
 #: How much of the length of an outline a contour may run back over itself [share].
 _RETRACED = 0.15
-#: Points of a way that are looked at.
+#: Points per way at which the depth is measured.
 _POINTS = 17
 
 
@@ -28,11 +28,17 @@ def depth_inside(
     contour: Curves, left: Mask, ways: tuple[Points, Points], loop: Rows, tolerance: float, gap: float
 ) -> Floats:
     """
-    How deep each way, from start to end, runs in the finished part of its loop [mm]; 0 where that is not known.
+    The greatest depth [mm] of each way in the finished part of its loop; 0 where the part is unknown.
 
-    contour, left: as for contour.overcuts. loop: of each way. gap: what is closed [mm]. Of a contour that does not
-    close the part is known only if it ends outside the bar, so that none of its points is farther out than its ends;
-    of one that encloses a sliver or a corner of itself, as a wrong sign makes it run the other way, it is not.
+    contour, left: as for overcuts.own_loop.overcuts.
+    ways: complex128[n] each [mm], start and end.
+    loop: int[n], the loop of each way.
+    tolerance: of the chords of arcs [mm].
+    gap: the largest gap that is closed [mm].
+
+    The part of an open contour is known only if the contour ends outside the bar, so that no point lies farther out
+    than its ends. A contour that encloses only a sliver or a corner of itself has no known part: a wrong sign makes it
+    run the other way.
     """
     loops, group = np.unique(loop, return_inverse=True)
     half = np.full(len(loops), gap / 2)
@@ -43,44 +49,44 @@ def depth_inside(
     points = shapely.points(coordinates(place))
     shapely.prepare(part.polygon)
     inside = shapely.contains(part.polygon[group][:, None], points)
-    with np.errstate(invalid="ignore"):  # from what has no outline there is no distance
+    with np.errstate(invalid="ignore"):  # an empty part has no outline
         depth = shapely.distance(shapely.boundary(part.polygon)[group][:, None], points)
     return np.asarray(np.where(inside & known[group][:, None], depth, 0.0).max(axis=1, initial=0.0))
 
 
 def _ends_outside(contour: Curves, loops: Rows) -> Mask:
-    """The loops whose contour is nowhere farther from the center than at its ends."""
+    """True for loops whose contour is farthest from the center at its ends."""
     first, last = np.searchsorted(contour.loop, loops), np.searchsorted(contour.loop, loops, side="right") - 1
-    here, group = members(contour.loop, loops)
+    row, group = members(contour.loop, loops)
     out = np.maximum(np.abs(contour.start), np.abs(contour.end))
     farthest = np.zeros(len(loops))
-    np.maximum.at(farthest, group, out[here])
+    np.maximum.at(farthest, group, out[row])
     nearer = np.minimum(np.abs(contour.start[first]), np.abs(contour.end[last]))
     return np.asarray(nearer >= _OUTSIDE * farthest)
 
 
 def _is_whole(part: FinishedParts, contour: Curves, loops: Rows, tolerance: float) -> Mask:
     """
-    The parts whose outline encloses an area that its length is worth, and reaches as far as the contour does.
+    True for parts that are no sliver and whose outline reaches about as far as the contour.
 
-    What runs back over itself is at best a lead: no part has a wall whose both sides the tool passes.
+    A contour that runs back over itself is at best a lead: no part has a wall with the tool on both sides.
     """
     count = len(loops)
     area = np.bincount(part.group, (part.start.conj() * part.end).imag / 2, count)
     length = np.bincount(part.group, np.abs(part.end - part.start), count)
-    here, group = members(contour.loop, loops)
-    reach = _reach(np.concatenate([contour.start[here], contour.end[here]]), np.tile(group, 2), count)
+    row, group = members(contour.loop, loops)
+    reach = _reach(np.concatenate([contour.start[row], contour.end[row]]), np.tile(group, 2), count)
     whole = _reach(part.start, part.group, count) >= _LEAST * reach
-    # Of walls that cross again and again there is no part, and what they have in common grows with their square.
-    asked = np.flatnonzero(whole & ~part.open & ~shapely.is_empty(part.polygon))
-    whole[asked] &= _retraced(contour, loops[asked], tolerance) <= _RETRACED * length[asked]
+    # Walls that cross again and again bound no part, and their common length would take quadratic time.
+    compared = np.flatnonzero(whole & ~part.open & ~shapely.is_empty(part.polygon))
+    whole[compared] &= _retraced(contour, loops[compared], tolerance) <= _RETRACED * length[compared]
     return np.asarray((4 * np.pi * np.abs(area) >= _SLIVER * length**2) & whole)
 
 
 def _retraced(contour: Curves, loops: Rows, tolerance: float) -> Floats:
-    """How long each loop runs where it has run before, by other blocks [mm]."""
-    here, group = members(contour.loop, loops)
-    chosen = msgspec.structs.replace(contour[here], loop=group)
+    """The length [mm] over which each loop runs along earlier blocks of itself."""
+    row, group = members(contour.loop, loops)
+    chosen = msgspec.structs.replace(contour[row], loop=group)
     walls = segments(chosen[first_of_its_kind(chosen)], tolerance)
     lines = shapely.linestrings(coordinates(np.stack([walls.start, walls.end], axis=1)))
     every = shapely.multilinestrings(lines, indices=walls.loop)

@@ -1,13 +1,13 @@
 """
 The finished part, as the walls that are programmed in offset mode leave it.
 
-All walls of a group are cut into faces; the part fills those that see nothing but backs. So leads, passes inside each
-other, spirals and overlaps need no order of their own: a lead shows its tool side to the air that it runs through, and
-a pass to the material that the next one takes. What surrounds a pocket is a face as well.
+The walls of a group cut the plane into faces. The part consists of the faces that are bounded by backs of walls alone.
+Leads, nested passes, spirals and overlaps need no special treatment: a lead turns its tool side to the air it crosses,
+and a pass to the material that the next pass removes. The surroundings of a pocket are a face as well.
 
-A contour that does not close bounds no face. Where it comes back to its start but for a gap, the gap is closed. Else
-its first and its last wall go on straight ahead, as a flat does beyond the bar; what the part is like there is not
-known, but where the bar is, beyond which there is nothing.
+A contour that does not close bounds no face. If only a gap separates its end from its start, the gap is closed. Else
+its first and last walls are extended straight ahead, as a flat continues beyond the bar. The part is unknown there
+unless the bar is known.
 """
 
 from __future__ import annotations
@@ -29,10 +29,15 @@ _BAR_CORNERS = 256
 
 class Contours(msgspec.Struct, frozen=True):
     """
-    Programmed walls with the groups that are looked at together.
+    Programmed walls, and the groups of loops that bound a part together.
 
-    curves: those of offset mode, loop after loop. left: bool[curves], the tool runs left of it. loop, group: int[m],
-    the loops of each group, groups from 0 and rising. radius: float64[groups] [mm]. bar: diameter [mm], NaN if unknown.
+    curves: the curves in offset mode, loop after loop.
+    left: bool[curves], the tool runs left of the curve.
+    loop: int[m], the loops of the groups.
+    group: int[m], the group of each loop, from 0, rising.
+    radius: float64[groups] [mm].
+    bar: diameter [mm], NaN if unknown.
+    tolerance: of the chords of arcs [mm].
     """
 
     curves: Curves
@@ -48,11 +53,16 @@ class FinishedParts(msgspec.Struct, frozen=True):
     """
     The finished part of each group, groups side by side: everything of group k is shifted by pitch * k along X.
 
-    polygon: shapely geometry[groups] [mm], empty where there is none. open: bool[groups], its outline is known along
-    the walls only. gap: float64[groups], what was closed [mm], 0 for none. tangled: bool[groups], no contour at all.
-    start, end: complex128[k] [mm], the walls that bound the part, with it on their left; move: int[k], of the curves;
-    group: int[k]; along: float64[k, 2], how far along the contour of its loop each starts and ends, and ahead:
-    float64[k, 2], how far that goes on from there [mm].
+    polygon: shapely geometry[groups] [mm], empty where there is no part.
+    open: bool[groups], the outline is known only along the walls.
+    gap: float64[groups] [mm], length of the gap that was closed, 0 for none.
+    tangled: bool[groups], the walls cross too often.
+    start, end: complex128[k] [mm], the walls that bound the part, with the part on their left.
+    move: int[k], the curve that each wall is part of.
+    group: int[k], the group of each wall.
+    along: float64[k, 2] [mm], distance of the start and the end of each wall from the start of its loop.
+    ahead: float64[k, 2] [mm], distance of the start and the end of each wall from the end of its loop.
+    pitch: distance between neighbouring groups [mm].
     """
 
     polygon: Geometries
@@ -69,24 +79,24 @@ class FinishedParts(msgspec.Struct, frozen=True):
 
 
 def finished_parts(contours: Contours) -> FinishedParts:
-    """What the walls of each group leave standing."""
+    """The finished part of each group."""
     plane = _plane(contours)
     groups = len(contours.radius)
-    found, outline = _standing(plane, None, np.ones(groups, bool), contours.tolerance)
-    polygon, tangled, outlines = found.polygon, found.tangled, [outline]
+    result, outline = _standing(plane, None, np.ones(groups, bool), contours.tolerance)
+    polygon, tangled, outlines = result.polygon, result.tangled, [outline]
     gap, is_open = np.zeros(groups), np.zeros(groups, bool)
     for closing in (_bridges, _rays):
-        asked = shapely.is_empty(polygon) & ~tangled
-        if not asked.any():
+        searched = shapely.is_empty(polygon) & ~tangled
+        if not searched.any():
             break
         lines, length = closing(plane, contours)
-        asked &= length > 0
-        if not asked.any():
+        searched &= length > 0
+        if not searched.any():
             continue
-        found, outline = _standing(plane, lines, asked, contours.tolerance)
-        closed = asked & ~shapely.is_empty(found.polygon)
-        polygon[closed] = found.polygon[closed]
-        tangled |= found.tangled
+        result, outline = _standing(plane, lines, searched, contours.tolerance)
+        closed = searched & ~shapely.is_empty(result.polygon)
+        polygon[closed] = result.polygon[closed]
+        tangled |= result.tangled
         outlines.append(outline)
         if closing is _bridges:
             gap[closed & (length > contours.tolerance)] = length[closed & (length > contours.tolerance)]
@@ -108,9 +118,15 @@ class _Plane(msgspec.Struct, frozen=True):
     """
     All groups side by side.
 
-    walls; move: the curve that each is part of, -1 for other lines; along, total: how far along its loop it begins, and
-    how long that is [mm]. chosen: the curves, `loop` their group; left: bool of each, the tool runs left of it; first,
-    last: of each loop of a group. half: half the side of the square round each group [mm].
+    walls: the walls, n of them, and other lines.
+    move: int[n], the curve that each wall is part of, -1 for other lines.
+    along: float64[n] [mm], distance of the start of each wall from the start of its loop.
+    total: float64[n] [mm], length of that loop.
+    chosen: the curves of all groups, m of them, with the group as their loop.
+    left: bool[m], the tool runs left of the curve.
+    first, last: int[loops], the first and the last curve of each loop of a group.
+    half: half the side of the square round each group [mm].
+    pitch: distance between neighbouring groups [mm].
     """
 
     walls: Walls
@@ -125,41 +141,41 @@ class _Plane(msgspec.Struct, frozen=True):
     pitch: float
 
 
-#: Start, end and wall of what bounds a part.
+#: The outline of parts: start and end of each edge, and its wall.
 _Outline = tuple[Points, Points, Rows]
 
 
 def _plane(contours: Contours) -> _Plane:
     curves = contours.curves
     order = np.argsort(curves.loop, kind="stable")
-    here, which = members(curves.loop[order], contours.loop)
-    here = order[here]
-    known = ~np.isnan(curves.start[here] + curves.end[here])
-    here, which = here[known], which[known]
+    row, which = members(curves.loop[order], contours.loop)
+    row = order[row]
+    is_known = ~np.isnan(curves.start[row] + curves.end[row])
+    row, which = row[is_known], which[is_known]
     group = contours.group[which]
-    chosen = msgspec.structs.replace(curves[here], loop=group)
+    chosen = msgspec.structs.replace(curves[row], loop=group)
 
     parts = segments(chosen, contours.tolerance)
     reach = float(np.abs([parts.start.real, parts.start.imag, parts.end.real, parts.end.imag]).max(initial=1.0))
     half = 2 * reach + 4 * float(contours.radius.max(initial=0.0))
     pitch = 3 * half
     along, total = _lengths(parts, which)
-    kept = first_of_its_kind(chosen)[parts.move]
-    parts, along, total = parts[kept].shifted(pitch * parts.loop[kept]), along[kept], total[kept]
-    left = contours.left[here][parts.move]
+    is_first = first_of_its_kind(chosen)[parts.move]
+    parts, along, total = parts[is_first].shifted(pitch * parts.loop[is_first]), along[is_first], total[is_first]
+    left = contours.left[row][parts.move]
     nothing = np.zeros(len(parts), bool)
     walls = Walls(parts.start, parts.end, left, ~left, nothing, parts.loop)
     first = np.flatnonzero(np.diff(which, prepend=-1))
     more = [_joints(chosen, first, half, pitch), _square(np.unique(group), half, pitch)]
     walls, origin = _together([walls, *more])
     others = np.full(len(origin) - len(parts), -1)
-    move, along, total = (np.append(column, others)[origin] for column in (here[parts.move], along, total))
+    move, along, total = (np.append(column, others)[origin] for column in (row[parts.move], along, total))
     last = np.append(first[1:], len(which))[: len(first)] - 1
-    return _Plane(walls, move, along, total, chosen, contours.left[here], first, last, half, pitch)
+    return _Plane(walls, move, along, total, chosen, contours.left[row], first, last, half, pitch)
 
 
 def _lengths(parts: Segments, which: Rows) -> tuple[Floats, Floats]:
-    """How far along its loop each part begins, and how long that loop is [mm]; which: the loop of each move."""
+    """The distance of each part from the start of its loop, and the length of the loop [mm]; which: loop per move."""
     loop = which[parts.move]
     until = np.cumsum(np.abs(parts.end - parts.start))
     first, last = (np.searchsorted(loop, loop, side) for side in ("left", "right"))
@@ -175,19 +191,19 @@ def _lines(start: Points, end: Points, group: Rows, pitch: float, joins: bool) -
 
 
 def _together(lines: list[Walls]) -> tuple[Walls, Rows]:
-    """All these walls, those of one group together; and which each was when counted through."""
+    """These walls sorted by group, and the original number of each."""
     walls = Walls.concatenated(lines)
     order = np.argsort(walls.group, kind="stable")
     return walls[order], order
 
 
 def _joints(curves: Curves, first: Rows, half: float, pitch: float) -> Walls:
-    """What holds a group together: across gaps between curves, and from each loop to the square round the group."""
+    """Lines that connect a group: across gaps between curves, and from each loop to the square round the group."""
     torn = np.flatnonzero(np.abs(curves.start[1:] - curves.end[:-1]) > TOUCH / 10)
     torn = torn[curves.loop[torn] == curves.loop[torn + 1]]
     group, begin = curves.loop[first], curves.start[first]
     out = half + 1j * begin.imag
-    # Of starts in a row each leads to the next: all the way to the square, they would run over each other.
+    # Starts in one row are joined each to the next: lines all the way to the square would overlap.
     order = np.lexsort((begin.real, begin.imag, group))
     here, after = order[:-1], order[1:]
     in_row = (group[here] == group[after]) & (begin.imag[here] == begin.imag[after])
@@ -204,18 +220,18 @@ def _square(group: Rows, half: float, pitch: float) -> Walls:
     return _lines(start, end, of, pitch, joins=False)
 
 
-def _standing(plane: _Plane, lines: Walls | None, asked: Mask, thinnest: float) -> tuple[Standing, _Outline]:
-    """What stands of the groups asked for, with these lines; and its outline, as far as it is of curves."""
+def _standing(plane: _Plane, lines: Walls | None, chosen: Mask, thinnest: float) -> tuple[Standing, _Outline]:
+    """The standing faces of the chosen groups with these added lines, and the outline along programmed curves."""
     walls, origin, is_curve = plane.walls, np.arange(len(plane.move)), plane.move >= 0
     if lines is not None:
         is_curve = np.append(is_curve, np.zeros(len(lines.group), bool))
         walls, origin = _together([walls, lines])
-        kept = asked[walls.group]
-        walls, origin = walls[kept], origin[kept]
-    found = standing(walls, len(asked), thinnest)
-    wall = origin[found.wall]
+        in_chosen = chosen[walls.group]
+        walls, origin = walls[in_chosen], origin[in_chosen]
+    faces = standing(walls, len(chosen), thinnest)
+    wall = origin[faces.wall]
     of_curve = is_curve[wall]
-    return found, (found.start[of_curve], found.end[of_curve], wall[of_curve])
+    return faces, (faces.start[of_curve], faces.end[of_curve], wall[of_curve])
 
 
 # ---- contours that do not close ----
@@ -223,11 +239,11 @@ def _standing(plane: _Plane, lines: Walls | None, asked: Mask, thinnest: float) 
 
 def _bridges(plane: _Plane, contours: Contours) -> tuple[Walls, Floats]:
     """
-    Over the gap of each group whose last walls lead back to its first ones, and how long it is, 0 for none [mm].
+    Lines across the gaps of loops, and the length of the longest gap of each group [mm], 0 for none.
 
-    A gap is below 2R, so that no tool goes through it, and lies on the way of the contour: the tool would have to go on
-    straight ahead. The walls of a blade that is machined round its end are as near to each other, side by side. And the
-    leads beside a gap have the tool on their other side, else they are the walls of a slot.
+    A gap is shorter than 2R, so that no tool passes through it, and continues the direction of the contour. The walls
+    of a blade that is machined round its end are as near to each other, but lie side by side. The leads beside a gap
+    have the tool on their far side, else they are the walls of a slot.
     """
     curves, first, last = plane.chosen, plane.first, plane.last
     gaps = gaps_between_ends(curves, first, last)
@@ -252,7 +268,7 @@ def _bridges(plane: _Plane, contours: Contours) -> tuple[Walls, Floats]:
 
 
 def _rays(plane: _Plane, contours: Contours) -> tuple[Walls, Floats]:
-    """Straight on from both ends of each loop to the square round its group, and how long by group, 0 for none."""
+    """Lines straight on from both ends of each loop to the square, and the longest of each group [mm], 0 for none."""
     curves = plane.chosen
     begins, ends = directions(curves.start, curves.end, curves.center, curves.kind)
     point = np.concatenate([curves.start[plane.first], curves.end[plane.last]])
@@ -269,7 +285,7 @@ def _rays(plane: _Plane, contours: Contours) -> tuple[Walls, Floats]:
 
 
 def _within_bar(polygon: Geometries, diameter: float, pitch: float) -> Geometries:
-    """What of these lies within the bar."""
+    """The polygons cut off at the bar."""
     middle = shapely.points(pitch * np.arange(len(polygon)), 0.0)
     bar = areas.buffer(middle, diameter / 2, quad_segs=_BAR_CORNERS)
     return np.asarray(areas.intersection(polygon, bar, grid_size=GRID))
