@@ -1,4 +1,4 @@
-"""What a move on the polar plane asks of the axes of the machine: rates and accelerations of C and of X."""
+"""The rates and accelerations of C and X that a move on the polar plane needs."""
 
 from __future__ import annotations
 

@@ -12,7 +12,7 @@ from polarcheck.geometry.tolerances import CHORDS_OF_FILE, TOUCH, ZERO
 from polarcheck.machines.modal import Motion
 from polarcheck.time_limit import keep_time
 
-#: A chord shorter than this share of the others is left to its neighbour.
+#: A chord shorter than this share of the others is merged with its neighbour.
 _STUB = 1e-3
 
 
@@ -33,7 +33,13 @@ class Curves(Table, frozen=True):
 
 
 class Segments(Table, frozen=True):
-    """Straight parts of moves, those of one loop together: start, end [mm], the move they are of, its loop."""
+    """
+    Straight parts of moves, n of them, loop after loop.
+
+    start, end: complex128[n] [mm].
+    move: int[n], the move that each is part of.
+    loop: int[n], the loop of that move.
+    """
 
     start: Points
     end: Points
@@ -41,16 +47,16 @@ class Segments(Table, frozen=True):
     loop: Rows
 
     def shifted(self, by: NDArray[np.floating]) -> Segments:
-        """The same ones, each moved along X [mm]."""
+        """The segments, each shifted along X [mm]."""
         return Segments(self.start + by, self.end + by, self.move, self.loop)
 
 
 def segments(moves: Curves, tolerance: float) -> Segments:
     """
-    All moves that are known and have a length; arcs with a sagitta of a quarter of the tolerance at most.
+    The lines and chords of all known moves with a length. The sagitta of chords is at most a quarter of the tolerance.
 
-    Two arcs of one circle have the same chords where they run over each other: their ends stand at whole multiples of
-    one angle. Raises TooHardError for more than CHORDS_OF_FILE, and where the time is over.
+    Overlapping arcs of one circle have the same chords: their ends lie at whole multiples of one angle.
+    Raises TooHardError for more than CHORDS_OF_FILE, and where the time is over.
     """
     keep_time()
     start, end, center = moves.start, moves.end, moves.center
@@ -91,13 +97,13 @@ def segments(moves: Curves, tolerance: float) -> Segments:
 
 
 def _angle_of_chords(radius: Floats, tolerance: float) -> Floats:
-    """The angle of the chords of arcs with this R [rad]: a whole part of a circle."""
+    """The angle of the chords of arcs with this R [rad]; it divides a full circle."""
     flat = np.clip(tolerance / 4 / np.maximum(radius, ZERO), 1e-9, 0.25)
     return np.asarray(2 * np.pi / np.ceil(np.pi / np.arccos(1 - flat)))
 
 
 def chord_counts(moves: Curves, tolerance: float) -> Floats:
-    """Of how many chords each move is, about; 0 for lines."""
+    """The approximate number of chords of each move; 0 for lines."""
     result = np.zeros(len(moves))
     arcs = ((moves.kind == Motion.CW) | (moves.kind == Motion.CCW)) & ~np.isnan(moves.start + moves.end + moves.center)
     start, end, center = moves.start[arcs], moves.end[arcs], moves.center[arcs]
@@ -107,7 +113,7 @@ def chord_counts(moves: Curves, tolerance: float) -> Floats:
 
 
 def first_of_its_kind(curves: Curves) -> Mask:
-    """Of curves of one loop that are the same the first; a pass that is written once more needs no second look."""
+    """True for the first of equal curves in a loop: a repeated pass needs no second check."""
     center = np.where(np.isnan(curves.center), 0, curves.center)
     columns = [
         *(np.rint(part / TOUCH) for point in (curves.start, curves.end, center) for part in (point.real, point.imag))
@@ -125,7 +131,7 @@ def first_of_its_kind(curves: Curves) -> Mask:
 
 
 def directions(start: Points, end: Points, center: Points, kind: States) -> tuple[Points, Points]:
-    """Unit vectors along which curves begin and end."""
+    """The unit directions of curves at their start and at their end."""
     turning = np.where(kind == Motion.CCW, 1j, -1j)
     is_arc = ~np.isnan(center)
     way = end - start
@@ -140,7 +146,7 @@ def _unit(way: Points) -> Points:
 
 
 def boxes(curves: Curves, first: Rows) -> Floats:
-    """Of curves from each of these on to the next: least x and c, greatest x and c [mm]."""
+    """Boxes of runs of curves, each from one `first` to the next: least x and c, greatest x and c [mm]."""
     low, high = (
         [extreme(at(curves.start), at(curves.end)) for at in (np.real, np.imag)] for extreme in (np.minimum, np.maximum)
     )
@@ -155,7 +161,7 @@ def boxes(curves: Curves, first: Rows) -> Floats:
 
 
 def reach_from_start(curves: Curves) -> Floats:
-    """How far from its start a curve gets at most: float64[curves] [mm]."""
+    """The greatest distance of a curve from its start: float64[curves] [mm]."""
     reach = np.abs(curves.end - curves.start)
     arcs = np.flatnonzero(~np.isnan(curves.center))
     start, end, center = curves.start[arcs], curves.end[arcs], curves.center[arcs]
@@ -168,7 +174,7 @@ def reach_from_start(curves: Curves) -> Floats:
 
 
 def members(loop: Rows, wanted: Rows) -> tuple[Rows, Rows]:
-    """Rows of each wanted loop, one after the other, and which of the wanted each row is for."""
+    """The rows of each wanted loop, loop after loop, and the number of the wanted loop of each row."""
     low, high = np.searchsorted(loop, wanted), np.searchsorted(loop, wanted, side="right")
     group = np.repeat(np.arange(len(wanted)), high - low)
     before = np.cumsum(high - low) - (high - low)

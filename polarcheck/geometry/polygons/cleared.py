@@ -1,5 +1,6 @@
 """
-What a cutter clears whose center runs along a path, and its outline; lengths in mm, plane points complex, x + 1j*c.
+The area that a cutter clears along a path of its center, and the outline of that area. Lengths in mm,
+plane points complex, x + 1j*c.
 
 Each point of the outline is at R from what of the path is nearest to it: beside a line there is a parallel, beside an
 arc one about the same center, and round a corner one about that. So the chords of shapely give what bounds the area in
@@ -39,8 +40,11 @@ _TURNS = 30
 
 class Cleared(NamedTuple):
     """
-    polygon: the area (shapely), with chords. outline: what bounds it, as lines and arcs with the cleared area on the
-    right. across: share of the path beside which there is material on both sides, so that a groove remains.
+    A cleared area.
+
+    polygon: the area as a shapely geometry, with chords.
+    outline: its boundary as lines and arcs, with the cleared area on the right.
+    across: share of the path with material on both sides, which makes a groove.
     """
 
     polygon: Any
@@ -50,7 +54,7 @@ class Cleared(NamedTuple):
 
 def cleared(path: Curves, radius: float) -> Cleared:
     """
-    What a cutter with this R [mm] clears on this path of its center. Moves without a length do not count.
+    The area that a cutter with this R [mm] clears on this path of its center. Moves without a length do not count.
 
     Raises TooHardError for too many chords, and where the time is over.
     """
@@ -74,7 +78,7 @@ def _distinct(path: Curves) -> Mask:
 
 
 def _without_slits(area: Any) -> Any:
-    """The polygons of an area without the holes that are none."""
+    """The polygons of an area without holes narrower than _SLIT."""
     kept = []
     for polygon in shapely.get_parts(area):
         holes = shapely.get_rings(polygon)[1:]
@@ -129,7 +133,7 @@ def _nearest(chords: Segments, points: Points) -> Rows:
 
 
 def _part_on_left(area: Any) -> Any:
-    """The polygons of an area, each with what is not of it on the left of its edges."""
+    """The polygons of an area, oriented with the outside on the left of their edges."""
     polygons = shapely.get_parts(shapely.normalize(area))
     exterior = shapely.get_exterior_ring(polygons)
     # Normalized polygons have holes that run against their exteriors.
@@ -187,14 +191,14 @@ class _Beside(NamedTuple):
     beyond: Mask
 
     def nearest(self, at: Points, of: Rows) -> Points:
-        """The points of these curves that are nearest to these."""
+        """The point of each curve that is nearest to the given point."""
         foot = self.point[of] + ((at - self.point[of]) * self.along[of].conj()).real * self.along[of]
         spoke = at - self.center[of]
         far = np.fmax(np.abs(spoke), ROUNDING)
         return np.where(np.isnan(self.radius[of]), foot, at + spoke * (self.radius[of] / far - 1))
 
     def touched(self, one: Rows, other: Rows) -> Points:
-        """Where the curve beside a move goes over into the circle round an end of that move; NaN where it does not."""
+        """The point where the curve beside a move meets the circle round an end of that move; NaN where it does not."""
         corner = self.corner[other]
         at = self.nearest(corner, one)
         at = np.where(self.beyond[one], 2 * self.center[one] - at, at)
@@ -248,7 +252,7 @@ def _exact_ends(found: Outline, beside: _Beside) -> Outline:
 
 
 def _beside_in_chain(found: Outline) -> tuple[Rows, Rows]:
-    """The element before each of a closed chain, and the one behind it."""
+    """The previous and the next element of each element in its closed chain."""
     number = np.arange(len(found))
     first = np.searchsorted(found.chain, found.chain, side="left")
     last = np.searchsorted(found.chain, found.chain, side="right") - 1

@@ -1,9 +1,9 @@
 """
-The faces into which walls cut the plane, and which of them are left standing.
+The faces into which walls cut the plane, and the selection of the faces that are left standing.
 
-A wall has a tool side and a back. A face stands if every wall round it shows it the back, and no other does. A wall
-with the same face on both sides bounds nothing and is not asked: the end of a lead that another one crosses, and one
-that ends in the middle of the part.
+A wall has a tool side and a back. A face stands if every wall round it turns its back to it. A wall with the same face
+on both sides bounds nothing and is ignored: the end of a lead that another one crosses, or a wall that ends inside the
+part.
 """
 
 from __future__ import annotations
@@ -31,11 +31,12 @@ GRID = ROUNDING
 
 class Walls(Table, frozen=True):
     """
-    Straight walls, n of them, those of one group together and in the order in which they run.
+    Straight walls, n of them, group after group, in the order in which they run.
 
-    start, end: complex128[n] [mm]. left, right: bool[n], the tool is on that side; neither for a line that only bounds
-    faces. joins: bool[n], a line that bounds nothing and only holds its group together. group: int[n], from 0, rising.
-    Each group must be in one piece, and away from all others.
+    start, end: complex128[n] [mm].
+    left, right: bool[n], the tool is on that side; neither for a line that only bounds faces.
+    joins: bool[n], a line that bounds nothing and only connects its group.
+    group: int[n], from 0, rising. Each group must be connected, and away from all others.
     """
 
     start: Points
@@ -48,10 +49,12 @@ class Walls(Table, frozen=True):
 
 class Standing(msgspec.Struct, frozen=True):
     """
-    What the walls of each group leave standing.
+    The standing faces of each group.
 
-    polygon: shapely geometry[groups] [mm], empty where nothing is. start, end: complex128[k] [mm], what bounds it, with
-    it on the left; wall: int[k], the wall that each is part of. tangled: bool[groups], walls that cross too often.
+    polygon: shapely geometry[groups] [mm], empty where no face stands.
+    start, end: complex128[k] [mm], the edges of the polygons, with the polygon on the left.
+    wall: int[k], the wall that each edge is part of.
+    tangled: bool[groups], the walls cross too often.
     """
 
     polygon: Geometries
@@ -62,7 +65,7 @@ class Standing(msgspec.Struct, frozen=True):
 
 
 def standing(walls: Walls, groups: int, thinnest: float) -> Standing:
-    """What the walls of each group leave standing; a face thinner than the thinnest [mm] on the average is none."""
+    """The standing faces of each group; faces with a mean thickness below `thinnest` [mm] are left out."""
     keep_time()
     edges = noded(walls.start, walls.end, walls.group)
     keep_time()
@@ -86,7 +89,7 @@ def standing(walls: Walls, groups: int, thinnest: float) -> Standing:
 
 
 class _Sides(msgspec.Struct, frozen=True):
-    """For each edge: the tool is left of it, right of it; it only joins."""
+    """Masks of edges: the tool is left of the edge, right of it; the edge only connects its group."""
 
     left: Mask
     right: Mask
@@ -119,7 +122,7 @@ class _Lines(Table, frozen=True):
 
 
 def _distinct(edges: Edges, walls: Walls) -> tuple[Edges, _Sides]:
-    """Each edge once, with all that its walls show to either side."""
+    """Each distinct edge, with the tool sides of all its walls."""
     low, high = np.minimum(edges.start, edges.end), np.maximum(edges.start, edges.end)
     _, first, which = np.unique(low * len(edges.nodes) + high, return_index=True, return_inverse=True)
     turned = edges.start > edges.end
@@ -169,7 +172,7 @@ def _lines(edges: Edges, sides: _Sides, walls: Walls) -> _Lines:
 
 
 def _next(lines: _Lines) -> Rows:
-    """The half line that goes on along the same face, for each half line."""
+    """The next half line along the same face, for each half line."""
     origin = np.stack([lines.start, lines.end], axis=1).ravel()
     angle = np.angle(np.stack([lines.out, lines.back], axis=1).ravel())
     order = np.lexsort((angle, origin))
@@ -182,7 +185,7 @@ def _next(lines: _Lines) -> Rows:
 
 
 def _cycles(following: Rows) -> tuple[Rows, Rows]:
-    """Of each half line the least one of its cycle, and how many steps it is from there."""
+    """The least half line of the cycle of each half line, and the number of steps to it."""
     least, jump = np.arange(len(following)), following
     reach = 1
     while reach < len(following):
@@ -210,7 +213,7 @@ def _faces(lines: _Lines) -> Rows:
 
 
 def _stands(lines: _Lines, face: Rows, thinnest: float) -> Mask:
-    """Which faces stand."""
+    """True for faces that stand."""
     count = int(face.max()) + 1
     bounds = face[0] != face[1]
     tool = np.zeros(count, bool)
@@ -249,7 +252,7 @@ def _along(lines: _Lines, line: Rows, forward: Mask) -> tuple[Rows, Mask, Rows]:
 
 
 def _polygons(start: Points, end: Points, ring: Rows, group: Rows, groups: int) -> Geometries:
-    """For each group what its rings enclose: those that run counterclockwise, the others less."""
+    """The polygon of each group: the counterclockwise rings less the clockwise ones."""
     result = np.full(groups, shapely.Polygon(), dtype=object)
     if not len(ring):
         return result
@@ -310,12 +313,12 @@ def _nested(solid: Geometries, hole: Mask) -> Any:
 
 
 def coordinates(points: Points) -> Floats:
-    """Plane points as shapely takes them: float64[..., 2]."""
+    """Plane points as coordinates for shapely: float64[..., 2]."""
     return np.ascontiguousarray(points).view(np.float64).reshape(*points.shape, 2)
 
 
 def lines_of(start: Points, end: Points) -> Geometries:
-    """Straight lines of shapely; a point where one has no length, since near that as a line there is nothing."""
+    """Straight lines of shapely; a point for a line without a length, since GEOS finds nothing near such a line."""
     found = np.asarray(shapely.linestrings(coordinates(np.stack([start, end], axis=-1))))
     still = start == end
     if still.any():
@@ -349,7 +352,7 @@ def lines_through(start: Points, end: Points, joined: Mask) -> tuple[Geometries,
 
 
 def gathered(lines: Geometries, group: Rows, count: int) -> Geometries:
-    """The lines of each of so many groups as one; an empty one where it has none. group: int[lines]."""
+    """The lines of each group as one geometry, empty for a group without lines. group: int[lines]."""
     found = np.full(count, shapely.MultiLineString(), dtype=object)
     has, number = np.unique(group, return_inverse=True)
     if len(has):

@@ -168,7 +168,7 @@ def _pairs(walls: _Walls, tangled: Mask) -> Iterator[tuple[Rows, Rows]]:
 
 
 def _boxes(walls: _Walls, first: Rows) -> tuple[Floats, Floats, Floats, Floats]:
-    """Of runs of walls: least x and c, greatest x and c, with what is taken for a touch [mm]."""
+    """Boxes of runs of walls, widened by TOUCH: least x and c, greatest x and c [mm]."""
     a, b = walls.nodes[walls.a], walls.nodes[walls.b]
     return (
         np.minimum.reduceat(np.minimum(a.real, b.real), first) - TOUCH,
@@ -179,7 +179,7 @@ def _boxes(walls: _Walls, first: Rows) -> tuple[Floats, Floats, Floats, Floats]:
 
 
 def _shares(count: Rows) -> list[Rows]:
-    """The pairs of runs in shares of about as many pairs of walls as are worked on at a time."""
+    """The pairs of runs in batches with about _PAIRS_AT_A_TIME pairs of walls each."""
     share = np.cumsum(count) // _PAIRS_AT_A_TIME
     return np.split(np.arange(len(count)), np.flatnonzero(np.diff(share)) + 1)
 
@@ -199,7 +199,7 @@ def _each_wall(walls: _Walls, runs: _Runs, one: Rows, other: Rows) -> tuple[Rows
 
 
 def _beside(walls: _Walls, i: Rows, j: Rows) -> Mask:
-    """Whether walls j lie wholly on one side of the lines through walls i."""
+    """True where wall j lies completely on one side of the line through wall i."""
     begin, c, d = walls.nodes[walls.a[i]], walls.nodes[walls.a[j]], walls.nodes[walls.b[j]]
     way = walls.nodes[walls.b[i]] - begin
     far = TOUCH * np.abs(way)
@@ -258,7 +258,7 @@ def _nothing_in_common() -> _Meetings:
 
 
 def _meetings(walls: _Walls, i: Rows, j: Rows) -> _Meetings:
-    """What walls i have in common with walls j."""
+    """The points that walls i and walls j have in common."""
     nodes, ends = walls.nodes, (walls.a[i], walls.b[i], walls.a[j], walls.b[j])
     a, b, c, d = (nodes[end] for end in ends)
     way, other = b - a, d - c
@@ -321,7 +321,7 @@ def _cut(walls: _Walls, meetings: list[_Meetings], tangled: Mask) -> Edges:
 
 
 def merged(count: int, one: Rows, other: Rows) -> Rows:
-    """Which of so many things each is, where those of each pair are one and the same: the least of them."""
+    """The least equal number for each number below count, if the two numbers of each pair are equal."""
     least = np.arange(count)
     while (least[one] != least[other]).any():
         lower = np.minimum(least[one], least[other])
