@@ -1,4 +1,4 @@
-"""From bytes to findings: the one way that every command and every report goes."""
+"""From the bytes of a file to its findings: every command and every report uses these functions."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from polarcheck.reading.words import Text
 from polarcheck.silence.suppression import UNUSED, Used, divided, mentions_allow
 
 _SKIP = re.compile(r"\s*(?:N\s*\d+\s*)?/", re.IGNORECASE)
-#: At what is looked in any program.
+#: Areas checked in every program.
 LOOKED_AT = ("text", "flow", "position")
 
 
@@ -38,12 +38,12 @@ def read(
     data: bytes, machine: Machine, job: Job, path: str = "-", encoding: str | None = None
 ) -> list[tuple[str, Tables]]:
     """
-    The tables of each run of a file, with the state of block skip ("" where that makes no difference).
+    Return the state of block skip and the tables for each run of a file; the state is "" if it makes no difference.
 
-    The runs of a channel stand together; `text.source.channel` names it, where the file has several.
+    The runs of a channel are adjacent; `text.source.channel` names it if the file has several.
     """
-    found = runs(source.read(data, path, encoding), machine, job)
-    return [(state, Tables(run, machine, job)) for state, run in found]
+    states = runs(source.read(data, path, encoding), machine, job)
+    return [(state, Tables(run, machine, job)) for state, run in states]
 
 
 def check_file(
@@ -57,9 +57,9 @@ def check_file(
     inline: bool = True,
 ) -> FileReport:
     """
-    All findings of the rules in one file, in the order of its lines; severities override those of the rules.
+    Check one file with these rules. Findings are in the order of its lines; `severities` override those of the rules.
 
-    inline: whether the allow comments of the program are heeded.
+    inline: False to ignore the allow comments of the program.
     """
     return check_runs(read(data, machine, job, path, encoding), rules, severities, inline)
 
@@ -70,10 +70,10 @@ def check_runs(
     severities: Mapping[str, str] | None = None,
     inline: bool = True,
 ) -> FileReport:
-    """All findings of the rules in the runs of one file, of each of its channels."""
-    channels = [list(runs_of_one) for _, runs_of_one in groupby(found, lambda run: _source(run[1]).channel)]
-    checked = [_check_channel(one, rules, severities, inline) for one in channels]
-    # What no run of any channel has needed is known only now.
+    """Check the runs of all channels of one file with these rules."""
+    channels = [list(channel) for _, channel in groupby(found, lambda run: _source(run[1]).channel)]
+    checked = [_check_channel(channel, rules, severities, inline) for channel in channels]
+    # An allow comment is unused only if no run of any channel used it.
     used = set[Used]().union(*(engine.used for _, engines in checked for engine in engines))
     reports = [(_source(engine.tables), _with_unused(report, engine, rules, used)) for report, (engine, *_) in checked]
     if len(reports) == 1:
@@ -84,13 +84,14 @@ def check_runs(
 
 
 def _with_unused(report: FileReport, engine: Engine, rules: Sequence[Rule], used: Collection[Used]) -> FileReport:
-    """The report with what is said of allow comments without effect. used: those that have one in any run."""
-    asked = [rule for rule in rules if UNUSED in rule.parameters and rule.level(engine.severities) != "off"]
-    if engine.allows is None or not asked:
+    """Add the findings on unused allow comments to the report. used: the allow comments that some run used."""
+    unused_rules = [rule for rule in rules if UNUSED in rule.parameters and rule.level(engine.severities) != "off"]
+    if engine.allows is None or not unused_rules:
         return report
     tables = engine.tables
     tables.give(UNUSED, engine.allows.unused(used, _could_silence(engine, report)))
-    findings, silenced = divided(Engine(tables, engine.severities, asked, allows=engine.allows).findings())
+    engine_of_unused = Engine(tables, engine.severities, unused_rules, allows=engine.allows)
+    findings, silenced = divided(engine_of_unused.findings())
     findings = in_order([*report.findings, *findings])
     return msgspec.structs.replace(
         report,
@@ -102,19 +103,19 @@ def _with_unused(report: FileReport, engine: Engine, rules: Sequence[Rule], used
 
 def _could_silence(engine: Engine, report: FileReport) -> set[str]:
     """
-    The rules of which something would have been found: an allow comment for another one has no effect for now.
+    Return the rules that were fully evaluated: only their allow comments can be called unused.
 
-    Those that the machine has off are no reason to keep silent about the others of a group. A program that returns,
-    and has no section of its own, is judged where it is called.
+    Rules that the machine turns off count as evaluated, so that they do not excuse the others of a group. A program
+    that returns and has no section is judged where it is called.
     """
     tables = engine.tables
     machine: Machine = tables["machine"]
     words = tables["words"]
-    missing = {one.rule for one in report.not_evaluated if one.matters}
+    missing = {entry.rule for entry in report.not_evaluated if entry.matters}
     returns = (
         is_code(words, machine.macro.program_returns).any() and not is_code(words, machine.m_codes.program_end).any()
     )
-    if {found.rule for found in report.findings} & {*READ_OTHERWISE}:
+    if {finding.rule for finding in report.findings} & {*READ_OTHERWISE}:
         return set()
     if "all" in missing or engine.trace.run.broken_off is not None or (returns and not len(tables["sections"])):
         return set()
@@ -123,26 +124,26 @@ def _could_silence(engine: Engine, report: FileReport) -> set[str]:
 
 
 def _source(tables: Tables) -> source.Source:
-    """The file of a run, or the view of its channel."""
+    """Return the file of a run, or the view of its channel."""
     text: Text = tables["text"]
     return text.source
 
 
 def _check_channel(
-    found: Sequence[tuple[str, Tables]], rules: Sequence[Rule], severities: Mapping[str, str] | None, inline: bool
+    channel: Sequence[tuple[str, Tables]], rules: Sequence[Rule], severities: Mapping[str, str] | None, inline: bool
 ) -> tuple[FileReport, list[Engine]]:
-    """The findings in the runs of one channel, and what found them; what hangs on its text alone is looked for once."""
-    (state, tables), *more = found
+    """Check the runs of one channel; returns the report and the engines. Rules of the text alone run once."""
+    (state, tables), *more = channel
     engine = engine_of(tables, rules, severities, inline=inline)
     first = report_of(engine)
     if not more:
         return first, [engine]
     ((other, others),) = more
     of_text = {rule.name: engine.hits(rule) for rule in engine.rules.values() if rule.of_text}
-    # A program that one run alone calls stands in the text of that run alone.
+    # The texts differ if one run calls a program that the other does not.
     known = of_text if others["text"] is tables["text"] else None
-    again = engine_of(others, rules, severities, known, inline)
-    return _merged((state, first), (other, report_of(again)), of_text), [engine, again]
+    second = engine_of(others, rules, severities, known, inline)
+    return _merged((state, first), (other, report_of(second)), of_text), [engine, second]
 
 
 def engine_of(
@@ -153,39 +154,39 @@ def engine_of(
     inline: bool = True,
 ) -> Engine:
     """
-    The rules that are not off, over the tables of one run.
+    Build the engine for one run, with the rules that are not off.
 
-    known: what is known already of some of them. inline: whether allow comments are heeded; without any there is
-    nothing to ask the rules about them.
+    known: hits that are known already, by rule name.
+    inline: False to ignore allow comments. Without allow comments the rules on them are left out.
     """
     machine: Machine = tables["machine"]
     levels = {**machine.severities, **(severities or {})}
     tables.give("other_machine", OtherMachine(tables))
-    asked = [rule for rule in rules if rule.level(levels) != "off" and UNUSED not in rule.parameters]
-    of_dialect = [rule for rule in asked if "dialect" in rule.parameters]
+    active = [rule for rule in rules if rule.level(levels) != "off" and UNUSED not in rule.parameters]
+    of_dialect = [rule for rule in active if "dialect" in rule.parameters]
     if of_dialect and tables["dialect"].recognised is not None:
-        # Where that is told, nothing that the words of another language seem to say is worth telling.
-        asked = of_dialect
+        # The file is in another language: what its words seem to say is not worth reporting.
+        active = of_dialect
     if inline and mentions_allow(tables["text"].source):
-        from polarcheck.silence.allow_comments import Allows  # most files have none
+        from polarcheck.silence.allow_comments import Allows  # imported late: most files have no allow comment
 
         allows = Allows(tables["text"], {rule.name: rule.group for rule in load_all().values()})
         tables.give("allows", allows)
-        return Engine(tables, levels, asked, known, allows)
-    return Engine(tables, levels, [rule for rule in asked if "allows" not in rule.parameters], known)
+        return Engine(tables, levels, active, known, allows)
+    return Engine(tables, levels, [rule for rule in active if "allows" not in rule.parameters], known)
 
 
 def report_of(engine: Engine) -> FileReport:
-    """All that is found in one run, and what of it could not be evaluated."""
+    """Report the findings of one run, and what could not be evaluated."""
     tables, trace = engine.tables, engine.trace
     findings, silenced = divided(in_order(in_the_file(engine.findings(), trace, engine.answered)))
     unevaluated = (*bounds_not_reported(tables, _all(findings)), *all_unevaluated(tables, engine.rules.values()))
     not_evaluated = list(dict.fromkeys((*unevaluated, *engine.unlisted)))
     text = trace.text
-    own = [name for block, name in engine.heads if not text.source.part_of(int(text.blocks.line[block]))]
+    programs = [name for block, name in engine.heads if not text.source.part_of(int(text.blocks.line[block]))]
     return FileReport(
         path=text.source.path,
-        programs=own,
+        programs=programs,
         blocks=len(trace),
         sections=len(trace.mode.sections),
         verdict=verdict(findings, not_evaluated),
@@ -198,56 +199,58 @@ def report_of(engine: Engine) -> FileReport:
 
 
 def looked_at(tables: Tables) -> list[str]:
-    """At what of a run is looked."""
+    """Return the areas that are checked in a run."""
     if tables["dialect"].recognised is not None:
         return []
     return ["polar sections", *LOOKED_AT] if len(tables["sections"]) else [*LOOKED_AT]
 
 
-#: What tells a finding from others of the same file.
+#: Identifies a finding within a file: rule, line, column.
 _Place = tuple[str, int, int]
 Found = TypeVar("Found", bound=Finding)
 
 
 def _merged(first: tuple[str, FileReport], second: tuple[str, FileReport], of_text: Collection[str]) -> FileReport:
     """
-    One report of the runs with block skip off and on; what only one of them shows says which.
+    Merge the reports with block skip off and on; a finding of only one of them names its state in the message.
 
-    of_text: the rules that hang on the text alone, so that both runs show the same of them.
+    of_text: the rules that depend on the text only, and therefore report the same in both runs.
     """
     (skip_off, off), (skip_on, on) = first, second
     shown_off, shown_on = (
-        {_place(found) for found in _all([*report.findings, *report.silenced])} for report in (off, on)
+        {_place(finding) for finding in _all([*report.findings, *report.silenced])} for report in (off, on)
     )
 
     fixes_off, fixes_on = (
-        {_place(found): found.fix for found in _all([*report.findings, *report.silenced])} for report in (off, on)
+        {_place(finding): finding.fix for finding in _all([*report.findings, *report.silenced])} for report in (off, on)
     )
 
-    def told(found: Found, others: set[_Place], state: str) -> Found:
-        place = _place(found)
-        # What mends the one run must not change the other.
-        agrees = fixes_off[place] == fixes_on[place] if place in fixes_off.keys() & fixes_on.keys() else _skips(found)
-        if found.fix is not None and found.rule not in of_text and not agrees:
-            found = msgspec.structs.replace(found, fix=None)
-        # What stands by itself in the first run is no second time listed under what only the other one shows.
-        own = (one for one in found.follows if others is shown_on or _place(one) not in others)
-        follows = [told(one, others, state) for one in own]
-        if found.rule in of_text or _place(found) in others:
-            return msgspec.structs.replace(found, follows=follows)
-        return msgspec.structs.replace(found, message=f"{found.message} (with block skip {state})", follows=follows)
+    def labelled(finding: Found, others: set[_Place], state: str) -> Found:
+        place = _place(finding)
+        # A fix for one run must not change the other.
+        agrees = fixes_off[place] == fixes_on[place] if place in fixes_off.keys() & fixes_on.keys() else _skips(finding)
+        if finding.fix is not None and finding.rule not in of_text and not agrees:
+            finding = msgspec.structs.replace(finding, fix=None)
+        # A finding of the first run is not listed again under one that only the second run has.
+        followers = (follower for follower in finding.follows if others is shown_on or _place(follower) not in others)
+        follows = [labelled(follower, others, state) for follower in followers]
+        if finding.rule in of_text or _place(finding) in others:
+            return msgspec.structs.replace(finding, follows=follows)
+        return msgspec.structs.replace(finding, message=f"{finding.message} (with block skip {state})", follows=follows)
 
-    following = {_place(found): found.follows for found in on.findings}
+    following = {_place(finding): finding.follows for finding in on.findings}
     findings = []
-    for found in off.findings:
+    for finding in off.findings:
         more = [
-            told(one, shown_off, skip_on) for one in following.get(_place(found), ()) if _place(one) not in shown_off
+            labelled(follower, shown_off, skip_on)
+            for follower in following.get(_place(finding), ())
+            if _place(follower) not in shown_off
         ]
-        shown = told(found, shown_on, skip_off)
+        shown = labelled(finding, shown_on, skip_off)
         findings.append(with_following(shown, [*shown.follows, *more]))
-    findings += [told(found, shown_off, skip_on) for found in on.findings if _place(found) not in shown_off]
-    silenced = [told(found, shown_on, skip_off) for found in off.silenced]
-    silenced += [told(found, shown_off, skip_on) for found in on.silenced if _place(found) not in shown_off]
+    findings += [labelled(finding, shown_off, skip_on) for finding in on.findings if _place(finding) not in shown_off]
+    silenced = [labelled(finding, shown_on, skip_off) for finding in off.silenced]
+    silenced += [labelled(finding, shown_off, skip_on) for finding in on.silenced if _place(finding) not in shown_off]
     not_evaluated = list(dict.fromkeys((*off.not_evaluated, *on.not_evaluated)))
     findings = in_order(findings)
     return msgspec.structs.replace(
@@ -264,12 +267,15 @@ def _merged(first: tuple[str, FileReport], second: tuple[str, FileReport], of_te
 
 
 def _worst(off: Sequence[PolarSection], on: Sequence[PolarSection]) -> list[PolarSection]:
-    """The sections of both runs, those of the same G12.1 as one with the worst of each."""
+    """Merge the sections of both runs; a section of both runs takes the worse values."""
     of_run: dict[tuple[int, int], PolarSection] = {}
     for sections in (off, on):
         begun = Counter[int]()
         for section in sections:
-            key = section.line, begun[section.line]  # a program that is called twice begins a section each time
+            key = (
+                section.line,
+                begun[section.line],
+            )  # each call of a program begins a section of its own at the same line
             begun[section.line] += 1
             of_run[key] = _worse(of_run[key], section) if key in of_run else section
     return [of_run[key] for key in sorted(of_run)]
@@ -286,35 +292,38 @@ def _worse(one: PolarSection, other: PolarSection) -> PolarSection:
 
 
 def _fold(worst: Callable[..., float], one: float | None, other: float | None) -> float | None:
-    """What one run does not know is not known."""
+    """Return the worst value; None if one run does not know it."""
     return None if one is None or other is None else worst(one, other)
 
 
-def _place(found: Finding) -> _Place:
-    return found.rule, found.line, found.column
+def _place(finding: Finding) -> _Place:
+    return finding.rule, finding.line, finding.column
 
 
-def _skips(found: Finding) -> bool:
-    """The block has block skip at its head, so that one run alone executes it."""
-    return _SKIP.match(found.block) is not None
+def _skips(finding: Finding) -> bool:
+    """True if the block begins with block skip, so that only one run executes it."""
+    return _SKIP.match(finding.block) is not None
 
 
 def _all(findings: Sequence[Finding]) -> Iterator[Finding]:
-    """The findings and what follows from them."""
-    for found in findings:
-        yield found
-        yield from found.follows
+    """Yield the findings and those that follow from them."""
+    for finding in findings:
+        yield finding
+        yield from finding.follows
 
 
 def verdict(findings: Sequence[Finding], not_evaluated: Sequence[NotEvaluated], fail_on: str = "warning") -> str:
     """
-    pass, fail, or unverified where something that matters was not evaluated, or nobody can say what it is.
+    Return pass, fail or unverified.
 
-    fail_on has no say in the latter: a program that was not executed to its end is not verified, whoever asks.
+    A file is unverified if something that matters was not evaluated, or if a finding may be intended. fail_on does not
+    change that: a program that was not executed to its end is never verified.
     """
     if any(reaches(finding, fail_on) and not isinstance(finding, Undecided) for finding in findings):
         return "fail"
-    is_open = any(isinstance(finding, Undecided) for finding in findings) or any(one.matters for one in not_evaluated)
+    is_open = any(isinstance(finding, Undecided) for finding in findings) or any(
+        entry.matters for entry in not_evaluated
+    )
     return "unverified" if is_open else "pass"
 
 

@@ -1,4 +1,4 @@
-"""The rule engine: what rules find becomes findings, each at its place, with its numbers."""
+"""The rule engine: turns the hits of rules into findings, each with its place and its values."""
 
 from __future__ import annotations
 
@@ -30,22 +30,26 @@ from polarcheck.time_limit import keep_going
 if TYPE_CHECKING:
     from polarcheck.silence.allow_comments import Allows
 
-#: More findings of one rule in one file are counted, not listed: nobody reads them, and hostile files stay bounded.
+#: Findings listed per rule and file. Further ones are only counted: nobody reads them, and memory stays bounded.
 LISTED = 1000
-#: Of the name of a program [characters].
+#: Longest program name in a finding [characters].
 _NAME_LENGTH = 40
-#: Programs with more rows share constant columns; below, that saves less memory than it takes time.
+#: Longer programs share constant columns [rows]. In shorter ones the memory saved is not worth the time.
 _MANY_ROWS = 10_000
 Found = TypeVar("Found", bound=Finding)
-#: A finding of a run: its rule, and its number among those of the rule.
+#: Identifies a finding of a run: the name of its rule, and its index in _Listed.findings of that rule.
 _Number = tuple[str, int]
 
 
 class _Listed(msgspec.Struct, frozen=True):
     """
-    The findings of one rule. index: the elements hit, sorted. finding: for each of them the finding that stands for it.
-    silent: for each of them whether an allow comment silences that. cause: for each finding the rule and the element
-    that it follows from; None where it stands alone.
+    The findings of one rule.
+
+    index: the elements hit, sorted (hits).
+    finding: the index in `findings` of the finding that covers each hit (hits).
+    silent: True where an allow comment silences the hit (hits).
+    findings: the findings of the rule.
+    cause: the rule name and the element that each finding follows from, None for a root finding (findings).
     """
 
     index: Rows
@@ -57,11 +61,16 @@ class _Listed(msgspec.Struct, frozen=True):
 
 class Engine:
     """
-    The hits of one run, each rule run once.
+    Runs each rule once over the tables of one run and caches its hits.
 
-    severities: by rule, where it is not the rule's own. rules: those that are asked; none that is off. known: the hits
-    of some of them. allows: the allow comments that are heeded. used: the names of allow comments that have
-    silenced something, each with the position of its comment. heads: the block and the name of each program.
+    tables: the tables of the run.
+    severities: severity by rule name, where it differs from the default of the rule.
+    rules: the rules to run, by name, without those that are off.
+    known: hits that are known already, by rule name.
+    allows: the allow comments in effect; None if they are ignored.
+    used: the names of allow comments that silenced a hit, each with the position of its comment.
+    unlisted: rules that were given up, and findings beyond LISTED.
+    heads: the block and the name of each program.
     """
 
     def __init__(
@@ -80,37 +89,37 @@ class Engine:
         self.allows = allows
         self.used: set[Used] = set()
         self._hits: dict[str, Hits] = dict(known or {})
-        self._nothing: dict[int, Hits] = {}
+        self._empty_hits: dict[int, Hits] = {}
         self._columns_seen: dict[str, int] = {}
         self._constant_masks: dict[tuple[int, bool], Mask] = {}
-        self._found: dict[str, _Listed | None] = {}
-        self._asking: set[str] = set()
+        self._listed_by_rule: dict[str, _Listed | None] = {}
+        self._in_progress: set[str] = set()
         self.heads = program_heads(self.trace)
 
     def hits(self, rule: Rule) -> Hits:
-        """What the rule finds; nothing where one of its tables would take more than its bounds."""
+        """Run the rule and cache its hits; empty if one of its tables exceeds its bounds."""
         if rule.name not in self._hits:
             keep_going()
             try:
-                self._hits[rule.name] = self._kept(rule.hits(self.tables))
+                self._hits[rule.name] = self._shared_if_empty(rule.hits(self.tables))
                 if len(self.trace) > _MANY_ROWS:
                     self._share_constant_columns()
             except TooHardError as error:
                 self._give_up(rule, error)
         return self._hits[rule.name]
 
-    def _kept(self, hits: Hits) -> Hits:
-        """The hits as they are kept: most rules find nothing, and what they would have said of it is not needed."""
+    def _shared_if_empty(self, hits: Hits) -> Hits:
+        """Replace hits that are all False by a shared empty object: their values are not needed."""
         if hits.mask.any():
             return hits
         count = len(hits.mask)
-        if count not in self._nothing:
-            self._nothing[count] = Hits(np.zeros(count, np.bool_))
-        return self._nothing[count]
+        if count not in self._empty_hits:
+            self._empty_hits[count] = Hits(np.zeros(count, np.bool_))
+        return self._empty_hits[count]
 
     def _share_constant_columns(self) -> None:
         """
-        Free the columns computed since the last call that hold a single value: a fifth of the memory of a large check.
+        Share the constant columns computed since the last call: this saves a fifth of the memory of a large check.
 
         Most masks of a program are all False or all True; those of one length and value become one array.
         """
@@ -122,7 +131,7 @@ class Engine:
                 columns[key] = self._shared(columns[key])
 
     def _shared(self, column: Any) -> Any:
-        """A column without memory of its own if it holds a single value, else the column itself."""
+        """Return a shared or zero-stride copy of a constant column, and any other column unchanged."""
         if not isinstance(column, np.ndarray) or column.ndim != 1 or not column.size or column.dtype.hasobject:
             return column
         if not is_uniform(column):
@@ -136,7 +145,7 @@ class Engine:
         self.unlisted.append(too_hard(rule, error, self.trace))
 
     def findings(self) -> list[Finding]:
-        """One finding per cause; what follows from it is listed in it, and raises its severity."""
+        """Return one finding per root cause; it lists those that follow from it and has their highest severity."""
         listed = None
         while listed is None:
             listed = self._all_listed()
@@ -152,22 +161,22 @@ class Engine:
         ]
 
     def _all_listed(self) -> dict[str, _Listed] | None:
-        """The findings by rule; None where one was given up only now, so that nothing follows from it any more."""
-        self._found.clear()
-        self._asking.clear()
+        """List the findings of each rule; None if a rule was given up, since findings may have followed from it."""
+        self._listed_by_rule.clear()
+        self._in_progress.clear()
         listed = {}
         for rule in self.rules.values():
             try:
-                found = self._listed(rule)
+                of_rule = self._listed(rule)
             except TooHardError as error:
                 self._give_up(rule, error)
                 return None
-            if found is not None:
-                listed[rule.name] = found
+            if of_rule is not None:
+                listed[rule.name] = of_rule
         return listed
 
     def answered(self, finding: Finding, block: int) -> Finding:
-        """A finding that is shown at a block; silenced where that allows it."""
+        """Return the finding as shown at a block: silenced if an allow comment of that block names its rule."""
         if self.allows is None or isinstance(finding, Silenced):
             return finding
         at = np.array([block])
@@ -177,20 +186,20 @@ class Engine:
         return allowed(finding, self.allows.reason(finding.rule, block))
 
     def _listed(self, rule: Rule) -> _Listed | None:
-        if rule.name not in self._found:
-            self._found[rule.name] = self._looked_for(rule)
-        return self._found[rule.name]
+        if rule.name not in self._listed_by_rule:
+            self._listed_by_rule[rule.name] = self._list_findings(rule)
+        return self._listed_by_rule[rule.name]
 
-    def _looked_for(self, rule: Rule) -> _Listed | None:
+    def _list_findings(self, rule: Rule) -> _Listed | None:
         hits = self.hits(rule)
-        if hits is self._nothing.get(len(hits.mask)):
+        if hits is self._empty_hits.get(len(hits.mask)):
             return None
         index = np.flatnonzero(hits.mask)
         if not len(index):
             return None
-        self._asking.add(rule.name)
+        self._in_progress.add(rule.name)
         cause, element = self._causes(rule, index)
-        self._asking.remove(rule.name)
+        self._in_progress.remove(rule.name)
         finding = np.zeros(len(index), np.int64)
         silent = np.zeros(len(index), bool)
         findings: list[Finding] = []
@@ -203,43 +212,43 @@ class Engine:
             is_silent = self._silenced(rule, index[at[chosen]])
             silent[at] = is_silent[group]
             for quiet in (False, True) if is_silent.any() else (False,):
-                # Each for itself: what is allowed must not take the place of what is told in a list that is cut.
-                own = np.flatnonzero(is_silent == quiet)
+                # Cut each list separately: silenced findings must not displace reported ones.
+                groups = np.flatnonzero(is_silent == quiet)
                 number_of = np.full(len(chosen), -1)
-                number_of[own] = np.minimum(np.arange(len(own)), LISTED - 1) + len(findings)
+                number_of[groups] = np.minimum(np.arange(len(groups)), LISTED - 1) + len(findings)
                 finding[at[is_silent[group] == quiet]] = number_of[group[is_silent[group] == quiet]]
-                for number, runs in zip(chosen[own][:LISTED].tolist(), count[own].tolist(), strict=False):
+                for number, runs in zip(chosen[groups][:LISTED].tolist(), count[groups].tolist(), strict=False):
                     first = at[number]
                     place = PLACES[rule.over](self.tables, int(index[first]))
-                    found = self._finding(rule, place, hits, runs)
-                    findings.append(self._allowed(found, place) if quiet else found)
-                    is_one_more = follows and not quiet
-                    causes.append((self._names[cause[first]], int(element[first])) if is_one_more else None)
-                if len(own) > LISTED:
-                    self.unlisted.append(_unlisted(rule, len(own)))
+                    one_finding = self._finding(rule, place, hits, runs)
+                    findings.append(self._allowed(one_finding, place) if quiet else one_finding)
+                    has_cause = follows and not quiet
+                    causes.append((self._names[cause[first]], int(element[first])) if has_cause else None)
+                if len(groups) > LISTED:
+                    self.unlisted.append(_unlisted(rule, len(groups)))
         return _Listed(index, finding, silent, findings, causes)
 
     def _silenced(self, rule: Rule, index: Rows) -> Mask:
-        """Which of these elements an allow comment silences, where they stand."""
+        """True for the elements that an allow comment silences."""
         if self.allows is None or not self.allows.names(rule.name):
             return np.zeros(len(index), bool)
         blocks = places.blocks(rule.over, self.tables)[index]
-        found = self.allows.silenced(rule.name, blocks)
+        silenced = self.allows.silenced(rule.name, blocks)
         self.used |= self.allows.used(rule.name, blocks)
-        return found
+        return silenced
 
     def _allowed(self, finding: Finding, place: Place) -> Finding:
         return finding if self.allows is None else allowed(finding, self.allows.reason(finding.rule, place.block))
 
-    def _told(self, rule: Rule, index: Rows) -> Rows:
-        """Those of the elements of a rule that are told: none that an allow comment silences."""
+    def _reported(self, rule: Rule, index: Rows) -> Rows:
+        """Hits that are reported: those that no allow comment silences."""
         if self.allows is None or not len(index) or not self.allows.names(rule.name):
             return index
-        if rule.name not in self._asking:
-            with contextlib.suppress(TooHardError):  # it is given up when it is its turn
-                found = self._listed(rule)
-                return index if found is None else found.index[~found.silent]
-        # What its own findings follow from hangs on the one that asks: each element counts for itself.
+        if rule.name not in self._in_progress:
+            with contextlib.suppress(TooHardError):  # _all_listed gives the rule up later
+                listed = self._listed(rule)
+                return index if listed is None else listed.index[~listed.silent]
+        # The causes of this rule are being looked up already (a cycle), so judge each element without merging.
         return index[~self.allows.silenced(rule.name, places.blocks(rule.over, self.tables)[index])]
 
     @cached_property
@@ -248,9 +257,13 @@ class Engine:
 
     def _causes(self, rule: Rule, index: Rows) -> tuple[Rows, Rows]:
         """
-        For each of these elements the number of the rule that it follows from, -1 for none, and the element of that.
+        Find the cause of each of these elements.
 
-        Only a cause that is itself reported counts: that of a rule which is not asked explains nothing to the reader.
+        Returns two arrays of the length of `index`:
+        cause: the index of the causing rule in `_names`, -1 for none.
+        element: the element that the causing rule hit, -1 for none.
+
+        Only a reported hit is a cause: a rule that is not run explains nothing to the reader.
         """
         cause, element = np.full(len(index), -1), np.full(len(index), -1)
         may_follow = self.hits(rule).follows
@@ -259,43 +272,48 @@ class Engine:
                 if name not in self.rules:
                     continue
                 other = self.rules[name]
-                hit = self._told(other, np.flatnonzero(self.hits(other).mask))
-                if not len(hit):
+                other_hits = self._reported(other, np.flatnonzero(self.hits(other).mask))
+                if not len(other_hits):
                     continue
                 try:
-                    theirs = places.span_of(OF_CAUSE.get(span, span), other.over, self.tables)[hit]
-                    own = places.span_of(span, rule.over, self.tables)[index]
+                    other_spans = places.span_of(OF_CAUSE.get(span, span), other.over, self.tables)[other_hits]
+                    spans = places.span_of(span, rule.over, self.tables)[index]
                 except TooHardError:
-                    continue  # how far the cause reaches is not known: the finding stands alone
-                order = np.argsort(theirs, kind="stable")
-                at = order[np.minimum(np.searchsorted(theirs[order], own), len(hit) - 1)]
-                found = (theirs[at] == own) & (own >= 0) & (cause < 0)
+                    continue  # the reach of the cause is not known: the finding stays a root finding
+                order = np.argsort(other_spans, kind="stable")
+                at = order[np.minimum(np.searchsorted(other_spans[order], spans), len(other_hits) - 1)]
+                is_caused = (other_spans[at] == spans) & (spans >= 0) & (cause < 0)
                 if span in OF_CAUSE:
-                    rows_of_cause = places.rows(other.over, self.tables)[hit[at]]
-                    found &= rows_of_cause < places.rows(rule.over, self.tables)[index]
+                    rows_of_cause = places.rows(other.over, self.tables)[other_hits[at]]
+                    is_caused &= rows_of_cause < places.rows(rule.over, self.tables)[index]
                 if span in may_follow:
-                    found &= may_follow[span][index]
-                cause[found], element[found] = self._names.index(name), hit[at[found]]
+                    is_caused &= may_follow[span][index]
+                cause[is_caused], element[is_caused] = self._names.index(name), other_hits[at[is_caused]]
         return cause, element
 
     def _merged(self, rule: Rule, index: Rows) -> tuple[Rows, Rows, Rows]:
         """
-        Which of the elements are reported, by their number in `index`, for each element the one that stands for it, by
-        its number among those, and for each of those how many it stands for.
+        Group the elements: one finding is reported per group.
 
-        It is one for each block, which counts its runs, or for each section, program or the like, which counts blocks.
+        Returns three arrays:
+        chosen: the positions in `index` of the reported elements (groups).
+        group: the position in `chosen` of the element that represents each element (elements).
+        count: the number of runs or blocks in each group (groups).
+
+        A rule without `once` has a group per block and counts its runs. A rule with `once` has a group per section,
+        program or other span, and counts blocks.
         """
         if rule.over not in ("rows", "sections") and not rule.once:
-            every = np.arange(len(index))
-            return every, every, np.ones(len(index), np.int64)
+            all_positions = np.arange(len(index))
+            return all_positions, all_positions, np.ones(len(index), np.int64)
         block = places.blocks(rule.over, self.tables)[index]
         group = block
         if rule.once:
             key = places.span_of(rule.once, rule.over, self.tables)[index]
-            key = np.where(key < 0, -1 - np.arange(len(index)), key)  # outside of all, each is by itself
+            key = np.where(key < 0, -1 - np.arange(len(index)), key)  # elements outside every span are not grouped
             _, first, group = np.unique(key, return_index=True, return_inverse=True)
             if rule.over in ("rows", "sections"):
-                # What begins in the same block runs again, as in a program that is called twice.
+                # Spans that begin in the same block are repeats of it, as in a program that is called twice.
                 group = block[first][group]
         _, first, group, count = np.unique(group, return_index=True, return_inverse=True, return_counts=True)
         if rule.worst and len(first) < len(index):
@@ -319,15 +337,15 @@ class Engine:
         start, end = places.span(self.tables, place, at)
         source = trace.text.source
         line, end_line = source.line_of(start), source.line_of(max(end - 1, start))
-        own = _severity(rule, hits, place).name.lower()
-        is_note = trace.machine.severities.get(rule.name, own) == NOTE.name.lower()
+        severity = _severity(rule, hits, place).name.lower()
+        is_note = trace.machine.severities.get(rule.name, severity) == NOTE.name.lower()
         text, values = fill(rule, hits, self.tables, place, at, count)
         block = places.block_text(trace.text, place.block)
         section = int(trace.mode.section[place.row]) if place.row >= 0 else -1
         kind = Undecided if hits.undecided is not None and hits.undecided[place.index] else Finding
         return kind(
             rule=rule.name,
-            severity=self.severities.get(rule.name, own),
+            severity=self.severities.get(rule.name, severity),
             message=text,
             line=line,
             column=start - int(source.line_starts[line - 1]) + 1,
@@ -345,7 +363,7 @@ class Engine:
         )
 
     def _alarm(self, rule: Rule, at: list[int]) -> str | None:
-        """What the control shows; not where the text of the alarm names codes, and those at fault are others."""
+        """Return the alarm of the control; None if the alarm names G codes and the words at fault are others."""
         machine, table = self.trace.machine, self.trace.run.words
         alarm = machine.alarms.get(rule.name) or None
         if alarm not in machine.alarm_codes:
@@ -359,7 +377,7 @@ class Engine:
 
 
 def too_hard(rule: Rule, error: TooHardError, trace: Trace) -> NotEvaluated:
-    """A rule that was given up; what takes long is the geometry of the polar sections."""
+    """Report a rule that was given up. It counts the polar blocks, whose geometry takes the time."""
     return NotEvaluated(
         rule=rule.name, reason=str(error), blocks=int(np.count_nonzero(trace.mode.in_polar)) or len(trace)
     )
@@ -371,7 +389,7 @@ def _unlisted(rule: Rule, count: int) -> NotEvaluated:
 
 
 def program_heads(trace: Trace) -> list[tuple[int, str]]:
-    """The block and the name of each program that has an O number or <name>, in order."""
+    """Return the block and the name of each program that has an O number or <name>, in file order."""
     text, table = trace.text, trace.text.words
     is_head = begins_program(table)
     numbered = is_head & ~np.isnan(table.value)
@@ -388,9 +406,9 @@ def program_heads(trace: Trace) -> list[tuple[int, str]]:
 
 def _roots(listed: Mapping[str, _Listed]) -> dict[_Number, _Number]:
     """
-    The finding at the end of each chain of causes, for all findings in order; one that stands alone is its own.
+    Map each finding to the root of its chain of causes; a finding without a cause is its own root.
 
-    Where a chain leads back to itself, the finding that stands first in the program is its cause.
+    The root of a cycle is its first finding in the program.
     """
     roots: dict[_Number, _Number] = {}
     for name, of_rule in listed.items():
@@ -409,8 +427,8 @@ def _roots(listed: Mapping[str, _Listed]) -> dict[_Number, _Number]:
             last = cause[0], int(of_rule.finding[np.searchsorted(of_rule.index, cause[1])])
         root = roots[last]
         if last in chain and listed[last[0]].cause[last[1]] is not None:
-            circle = list(chain)[list(chain).index(last) :]
-            root = min(circle, key=lambda number: _order(_finding_of(listed, number)))
+            cycle = list(chain)[list(chain).index(last) :]
+            root = min(cycle, key=lambda number: _order(_finding_of(listed, number)))
         roots.update(dict.fromkeys(chain, root))
         done.update(chain)
     return roots
@@ -421,15 +439,15 @@ def _finding_of(listed: Mapping[str, _Listed], number: _Number) -> Finding:
 
 
 def with_following(finding: Finding, following: list[Finding]) -> Finding:
-    """The finding with what follows from it, as severe as the worst of that."""
+    """Attach the findings that follow, and raise the severity to their highest."""
     if not following:
         return finding
-    severity = max((finding.severity, *(found.severity for found in following)), key=SEVERITIES.__getitem__)
+    severity = max((finding.severity, *(follower.severity for follower in following)), key=SEVERITIES.__getitem__)
     return msgspec.structs.replace(finding, severity=severity, follows=in_order(following))
 
 
 def in_order(findings: Iterable[Found]) -> list[Found]:
-    """In the order of the lines; at one place the worst first."""
+    """Sort by line and column; at one place the most severe first."""
     return sorted(findings, key=_order)
 
 
@@ -438,5 +456,5 @@ def _order(finding: Finding) -> tuple[int, int, int, str]:
 
 
 def _severity(rule: Rule, hits: Hits, place: Place) -> Severity:
-    given = rule.severity if hits.severity is None else hits.severity
-    return Severity(int(given[place.index])) if isinstance(given, np.ndarray) else Severity(given)
+    severity = rule.severity if hits.severity is None else hits.severity
+    return Severity(int(severity[place.index])) if isinstance(severity, np.ndarray) else Severity(severity)

@@ -1,4 +1,4 @@
-"""What was not evaluated, why, and what to give."""
+"""Reports what was not evaluated: the reason, and the input that would change it."""
 
 from __future__ import annotations
 
@@ -38,23 +38,27 @@ from polarcheck.machines.machine import Machine, OwnMachine
 from polarcheck.table.skipped_loops import SkipReason
 
 #: Extra reasons that a rule could not be evaluated.
-_Said: TypeAlias = Callable[[Tables, Rule], Iterator["Missing"]]
-#: Behind the columns that a rule needs.
+_ExtraReasons: TypeAlias = Callable[[Tables, Rule], Iterator["Missing"]]
+#: Missing.kind of an extra reason; it sorts after the columns that the rule needs.
 SAID = 1000
 
-#: Columns without which a finding may be missing, but hardly is: lists of offsets have T for turning tools alone.
+#: Columns that hardly ever hide a finding if unknown: offset lists give T for turning tools only.
 _WITHOUT_WEIGHT = ("offsets.nose",)
-#: Contours that are named one by one; a hostile file has any number of them.
+#: Contours listed individually; the bound keeps the report of a hostile file short.
 NAMED = 20
 
 
 class Missing(NamedTuple):
     """
-    Where a rule could not look, for one cause.
+    The blocks in which a rule could not be evaluated, for one cause.
 
-    kind: which of the columns that the rule needs is not known, by number; behind these what else is said of the rule.
-    cause: the same for all of which the first one tells. rate: of C [deg/min], of which nobody knows whether it is
-    allowed, the highest tells; NaN where it is not about that.
+    rule: the name of the rule.
+    kind: the index in Rule.needs of the column that is not known, or SAID for an extra reason.
+    cause: identifies the cause; entries with the same kind and cause are merged.
+    reason: the text of the report.
+    blocks: the number of blocks.
+    matters: False if a finding is hardly ever missed.
+    rate: a rate of the C axis with no limit to compare it with [deg/min]; NaN for other reasons.
     """
 
     rule: str
@@ -67,27 +71,27 @@ class Missing(NamedTuple):
 
 
 def all_unevaluated(tables: Tables, rules: Iterable[Rule]) -> Iterator[NotEvaluated]:
-    """Blocks that were not executed, and what the rules could not look at."""
+    """Report the blocks that were not executed, and the blocks that each rule could not evaluate."""
     yield from unexecuted(tables)
     for rule in rules:
         yield from told(unevaluated(tables, rule), tables["machine"])
 
 
 def bounds_not_reported(tables: Tables, findings: Iterable[Finding]) -> Iterator[NotEvaluated]:
-    """The bounds at which programs were broken off, where no finding says so: the rule was not asked, or silenced."""
+    """Report the bounds that stopped a program, unless a finding does: its rule may be off or silenced."""
     faults: Faults = tables["faults"]
     if not faults.is_bound.any() or any(_is_of_bound(finding) for finding in findings):
         return
     trace: Trace = tables["trace"]
     for index in np.flatnonzero(faults.is_bound).tolist():
         line = int(trace.text.blocks.line[trace.run.faults[index].block])
-        # At which block the time is over is a matter of luck, and two runs should say the same.
+        # The block at which time runs out differs between runs; the report must not.
         at = "a block" if faults.kind[index] == "runs-too-long" else f"the block of line {line}"
         yield NotEvaluated(rule="all", reason=f"{at} {faults.reason(index)}", blocks=1)
 
 
 def bound_silenced(finding: Finding) -> NotEvaluated | None:
-    """What stays not evaluated where a baseline holds the finding that says so."""
+    """Report a bound as not evaluated if a baseline suppresses its finding."""
     if not _is_of_bound(finding):
         return None
     return NotEvaluated(rule="all", reason=f"line {finding.line}: {finding.message}", blocks=1)
@@ -98,24 +102,24 @@ def _is_of_bound(finding: Finding) -> bool:
 
 
 def told(missing: Iterable[Missing], machine: Machine) -> Iterator[NotEvaluated]:
-    """What is said where one rule could not look: one entry for each reason, in the words of the first of its cause."""
+    """Merge the entries of one rule: one report per reason, with the text of the first entry of each cause."""
     causes: dict[tuple[int, int | str, bool], list[Missing]] = {}
-    for one in sorted(missing, key=lambda one: one.kind):
-        causes.setdefault((one.kind, one.cause, one.matters), []).append(one)
+    for entry in sorted(missing, key=lambda entry: entry.kind):
+        causes.setdefault((entry.kind, entry.cause, entry.matters), []).append(entry)
     blocks: dict[tuple[str, int | str, str, bool], int] = {}
-    for (kind, cause, matters), alike in causes.items():
-        is_rate = not math.isnan(alike[0].rate)
-        first = max(alike, key=lambda one: one.rate) if is_rate else alike[0]
+    for (kind, cause, matters), entries in causes.items():
+        is_rate = not math.isnan(entries[0].rate)
+        first = max(entries, key=lambda entry: entry.rate) if is_rate else entries[0]
         if is_rate and not machine.limits.c_feed_harmless < first.rate <= machine.limits.c_feed_suspicious:
             continue
         key = first.rule, cause if kind == SAID else kind, first.reason, matters
-        blocks[key] = blocks.get(key, 0) + sum(one.blocks for one in alike)
+        blocks[key] = blocks.get(key, 0) + sum(entry.blocks for entry in entries)
     for (rule, _, reason, matters), count in blocks.items():
         yield NotEvaluated(rule=rule, reason=reason, blocks=count, matters=matters)
 
 
 def unexecuted(tables: Tables) -> Iterator[NotEvaluated]:
-    """Blocks that were not executed."""
+    """Report the blocks that were not executed, and those that were executed without full knowledge."""
     trace: Trace = tables["trace"]
     language = tables["dialect"].recognised
     if language is not None:
@@ -144,70 +148,74 @@ def unexecuted(tables: Tables) -> Iterator[NotEvaluated]:
 
 
 def frames_not_simulated(trace: Trace, tables: Tables) -> Iterator[tuple[str, int]]:
-    """The blocks that begin a frame which is not simulated, where the mode uses it, or an allowance changes in it."""
+    """Yield a reason and a block count for frames, work offsets and allowances that are not simulated in the mode."""
     frames = trace.path.frames
     if frames is not None:
         in_force = ~frames.is_known & (trace.mode.in_polar | trace.mode.enters)
         for row in np.flatnonzero(in_force & ~before(in_force, trace.blocks.starts, False))[:NAMED].tolist():
             begins = np.flatnonzero(frames.is_known[: row + 1])
             first = int(begins[-1]) + 1 if len(begins) else 0
-            what = f"{block_and_line(trace.blocks, trace.run, first)} is not simulated"
-            yield f"{what}: where the tool goes in that frame is not known", int(np.count_nonzero(in_force))
+            frame = f"{block_and_line(trace.blocks, trace.run, first)} is not simulated"
+            yield f"{frame}: where the tool goes in that frame is not known", int(np.count_nonzero(in_force))
     selects = tables["mode_words"].selects_other_work_offset
     if selects.any():
         block = block_and_line(trace.blocks, trace.run, int(np.flatnonzero(selects)[0]))
-        what = f"{block} selects another work offset in the mode"
-        yield f"{what}: it is taken to lie where the one before did", int(np.count_nonzero(selects))
+        selection = f"{block} selects another work offset in the mode"
+        yield f"{selection}: it is taken to lie where the one before did", int(np.count_nonzero(selects))
     changed = np.flatnonzero(trace.compensation.changes_allowance_in_offset_mode)
     if len(changed):
-        what = f"{block_and_line(trace.blocks, trace.run, int(changed[0]))} changes what is added to R in offset mode"
-        yield f"{what}: the way from one to the other is not simulated; change it where G40 is in force", len(changed)
+        change = f"{block_and_line(trace.blocks, trace.run, int(changed[0]))} changes what is added to R in offset mode"
+        yield f"{change}: the way from one to the other is not simulated; change it where G40 is in force", len(changed)
 
 
 def offsets_not_known(trace: Trace) -> tuple[str, int]:
-    """The blocks that set an offset, or a variable that may be one, nobody knows which."""
+    """Return a reason and a block count for blocks that set an offset, or possibly one, of unknown number."""
     rows = np.flatnonzero(trace.offsets.sets_unknown_offset)
     if not len(rows):
         return "", 0
-    what = f"which offset {block_and_line(trace.blocks, trace.run, int(rows[0]))} sets is not known"
-    return f"{what}, those in force are taken as given: {OF_VARIABLES}", len(rows)
+    setting = f"which offset {block_and_line(trace.blocks, trace.run, int(rows[0]))} sets is not known"
+    return f"{setting}, those in force are taken as given: {OF_VARIABLES}", len(rows)
 
 
 def unevaluated(tables: Tables, rule: Rule) -> Iterator[Missing]:
-    """The rows where a rule would have looked but could not."""
+    """Yield the rows that a rule could not evaluate."""
     try:
-        yield from _not_known(tables, rule)
-        said = _SAID_OF.get(rule.name)
-        if said is not None:
-            yield from said(tables, rule)
+        yield from _unknown_columns(tables, rule)
+        extra_reasons = _EXTRA_REASONS.get(rule.name)
+        if extra_reasons is not None:
+            yield from extra_reasons(tables, rule)
     except TooHardError as error:
-        # What takes long is the geometry of the polar sections.
+        # The geometry of the polar sections takes the time, so their blocks are counted.
         trace: Trace = tables["trace"]
         blocks = int(np.count_nonzero(trace.mode.in_polar)) or len(trace)
         yield Missing(rule.name, SAID, str(error), str(error), blocks)
 
 
-def _not_known(tables: Tables, rule: Rule) -> Iterator[Missing]:
-    """The rows in which a column is not known that the rule needs."""
+def _unknown_columns(tables: Tables, rule: Rule) -> Iterator[Missing]:
+    """Yield the rows in which a column that the rule needs is not known."""
     trace: Trace = tables["trace"]
     for kind, name in enumerate(rule.needs):
         where: Mask = tables.column(rule.where)
         if not where.any():
             continue
-        # Of sections that are not followed one entry speaks for all.
+        # Sections that are not followed have an entry of their own.
         rows = np.flatnonzero(
             np.isnan(tables.column(name)) & where & trace.mode.is_followed & ~trace.compensation.sides_are_open
         )
         if name in OF_MOVES:
-            rows = rows[~(tables["feeds"].missing | tables["feeds"].lost)[rows]]  # a finding says so
+            rows = rows[~(tables["feeds"].missing | tables["feeds"].lost)[rows]]  # these have a finding already
         cause = cause_of(trace, name, rows)
         first, counts = _groups(cause)
-        for row, of, count in sorted(zip(rows[first].tolist(), cause[first].tolist(), counts.tolist(), strict=True)):
-            yield Missing(rule.name, kind, of, why(name, tables, row), count, matters=name not in _WITHOUT_WEIGHT)
+        for row, first_cause, count in sorted(
+            zip(rows[first].tolist(), cause[first].tolist(), counts.tolist(), strict=True)
+        ):
+            yield Missing(
+                rule.name, kind, first_cause, why(name, tables, row), count, matters=name not in _WITHOUT_WEIGHT
+            )
 
 
 def _groups(values: Rows) -> tuple[Rows, Rows]:
-    """Where each value stands first, and how often; NumPy's unique would load its masked arrays."""
+    """Return the first index and the count of each value. np.unique would import numpy.ma, which is slow."""
     order = np.argsort(values, kind="stable")
     begins = np.flatnonzero(np.append(True, np.diff(values[order]) != 0)) if len(order) else order
     return order[begins], np.diff(np.append(begins, len(order)))
@@ -215,8 +223,9 @@ def _groups(values: Rows) -> tuple[Rows, Rows]:
 
 def _c_axis_without_limit(tables: Tables, rule: Rule) -> Iterator[Missing]:
     """
-    The highest rate of C, for the setter to compare, where the profile has nothing to compare it with; not where every
-    C axis manages it, nor where none does, which is a finding.
+    Report the highest C rate if the profile has no limit, so that the setter can compare it.
+
+    told() drops a rate that every C axis reaches, and one that none does, which is a finding.
     """
     trace: Trace = tables["trace"]
     c_feed: Floats = tables["tool_center"].c_feed
@@ -232,13 +241,14 @@ def _c_axis_without_limit(tables: Tables, rule: Rule) -> Iterator[Missing]:
     yield Missing(rule.name, SAID, "rate", f"{reason}: {remedy}", len(rows), rate=rate)
 
 
-def _codes_not_named(key: str, what: str) -> _Said:
+def _codes_not_named(key: str, what: str) -> _ExtraReasons:
     """
-    On a lathe of the user's own whose file names no code of a list, though the program has some that may be one: where
-    to add it. Of our own machines nobody expects to know the codes of each builder.
+    Report an empty list of M codes in the user's machine file, if an unlisted code of the program may belong to it.
+
+    Built-in profiles are exempt: they cannot know the codes of each builder.
     """
 
-    def found(tables: Tables, rule: Rule) -> Iterator[Missing]:
+    def missing_code(tables: Tables, rule: Rule) -> Iterator[Missing]:
         trace: Trace = tables["trace"]
         if not isinstance(trace.machine, OwnMachine) or getattr(trace.machine.m_codes, key):
             return
@@ -251,11 +261,11 @@ def _codes_not_named(key: str, what: str) -> _Said:
             reason = f"{file} names no code that {what}: {remedy}"
             yield Missing(rule.name, SAID, key, reason, count, matters=False)
 
-    return found
+    return missing_code
 
 
 def _ramps_of_center(tables: Tables, rule: Rule) -> Iterator[Missing]:
-    """The ramps of sections that are taken for paths of the tool center since they are all too short for a comment."""
+    """Report ramps of sections read as tool center paths because all are shorter than the radius in the comment."""
     trace: Trace = tables["trace"]
     ramps = np.flatnonzero(
         (trace.compensation.starts_up | trace.compensation.cancels) & trace.compensation.is_path_of_center
@@ -270,30 +280,29 @@ def _ramps_of_center(tables: Tables, rule: Rule) -> Iterator[Missing]:
 
 
 def _contours_skipped(tables: Tables, rule: Rule) -> Iterator[Missing]:
-    """Loops that the table of the rule skips; but those that cross themselves are reported for overcuts alone."""
+    """Report the loops that the table of the rule skips; self-crossing loops are reported for overcuts only."""
     overcuts, table = tables["overcuts"], tables[_TABLE_OF[rule.name]]
     for reason, sentence in _SENTENCES[rule.name].items():
         rows = table.skipped.rows(overcuts.loop, reason)
         if table is not overcuts:
             rows &= ~overcuts.skipped.rows(overcuts.loop, SkipReason.CROSSES)
-        matters = reason != SkipReason.PATHS_TOO_LONG  # hardly ever is anything amiss beside these
-        yield from _of_contours(tables, rule, rows, sentence, matters)
+        matters = reason != SkipReason.PATHS_TOO_LONG  # long paths hardly ever hide a finding
+        yield from _skipped_loops(tables, rule, rows, sentence, matters)
 
 
 def _parts_not_compared(tables: Tables, rule: Rule) -> Iterator[Missing]:
-    """What the job asks for and no contour was compared with; contours of which no part can be told."""
+    """Report drawings that no contour was compared with, and contours that give no part polygon."""
     deviations = tables["deviations"]
     if not deviations.parts:
         return
     crosses = f"crosses itself or others more than {CROSSINGS} times a block: no part can be told from it"
-    yield from _of_contours(tables, rule, deviations.asked & deviations.crosses, crosses)
-    for one in deviations.comparisons:
-        if one.is_partial and one.agrees:
-            of_block = (
-                f"the contour of line {int(tables['trace'].blocks.line[one.row])} does not come back to where it begins"
-            )
-            compared = f"was compared with {compared_with(deviations, one.number)} along its walls alone"
-            reason = f"{of_block}, and {compared}: end it where it began, or beyond"
+    yield from _skipped_loops(tables, rule, deviations.asked & deviations.crosses, crosses)
+    for comparison in deviations.comparisons:
+        if comparison.is_partial and comparison.agrees:
+            line = int(tables["trace"].blocks.line[comparison.row])
+            contour = f"the contour of line {line} does not come back to where it begins"
+            compared = f"was compared with {compared_with(deviations, comparison.number)} along its walls alone"
+            reason = f"{contour}, and {compared}: end it where it began, or beyond"
             yield Missing(rule.name, SAID, reason, reason, 1)
     for number, cause in deviations.missing():
         reason = f"{compared_with(deviations, number)} was compared with nothing: {cause}"
@@ -301,8 +310,8 @@ def _parts_not_compared(tables: Tables, rule: Rule) -> Iterator[Missing]:
         yield Missing(rule.name, SAID, reason, reason, int(np.count_nonzero(rows)))
 
 
-def _of_contours(tables: Tables, rule: Rule, rows: Mask, reason: str, matters: bool = True) -> Iterator[Missing]:
-    """One entry for each loop of these rows, and one for all beyond the first NAMED."""
+def _skipped_loops(tables: Tables, rule: Rule, rows: Mask, reason: str, matters: bool = True) -> Iterator[Missing]:
+    """Yield an entry for each of the first NAMED loops in these rows, and one for all further loops."""
     trace: Trace = tables["trace"]
     at = np.flatnonzero(rows & tables["ramps"].compensated)
     if not len(at):
@@ -310,11 +319,11 @@ def _of_contours(tables: Tables, rule: Rule, rows: Mask, reason: str, matters: b
     first, counts = _groups(tables["ramps"].loop[at])
     order = np.argsort(first)
     for number, count in zip(at[first[order]][:NAMED].tolist(), counts[order].tolist(), strict=False):
-        said = f"the contour at line {int(trace.blocks.line[number])} {reason}"
-        yield Missing(rule.name, SAID, f"{said} {number}", said, count, matters)
+        sentence = f"the contour at line {int(trace.blocks.line[number])} {reason}"
+        yield Missing(rule.name, SAID, f"{sentence} {number}", sentence, count, matters)
     if len(first) > NAMED:
-        said = f"each of {len(first) - NAMED} more contours {reason}"
-        yield Missing(rule.name, SAID, said, said, int(counts[order[NAMED:]].sum()), matters)
+        sentence = f"each of {len(first) - NAMED} more contours {reason}"
+        yield Missing(rule.name, SAID, sentence, sentence, int(counts[order[NAMED:]].sum()), matters)
 
 
 _CROSS_BESIDE = {
@@ -323,7 +332,7 @@ _CROSS_BESIDE = {
         "program fewer contours in a section"
     )
 }
-#: By rule and reason, what is said of a contour that is skipped.
+#: The sentence about a skipped contour, by rule and reason.
 _SENTENCES: dict[str, dict[SkipReason, str]] = {
     "overcut": {
         SkipReason.CROSSES: (
@@ -354,7 +363,7 @@ _TABLE_OF = {
     "material-left": "coverage",
 }
 
-_SAID_OF: dict[str, _Said] = {
+_EXTRA_REASONS: dict[str, _ExtraReasons] = {
     "c-feed-above-limit": _c_axis_without_limit,
     "c-axis-not-engaged": _codes_not_named("c_axis_on", "engages the C axis"),
     "live-tool-stopped-in-cut": _codes_not_named("live_tool_on", "starts the live tool"),

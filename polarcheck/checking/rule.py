@@ -1,4 +1,4 @@
-"""What a rule is, what it returns, and how rules are found. Nothing is registered: a file under rules/ is a rule."""
+"""The type of a rule, its result, and how rules are loaded. Rules are not registered: each file in rules/ is one."""
 
 from __future__ import annotations
 
@@ -78,17 +78,17 @@ if TYPE_CHECKING:
 else:
 
     def __getattr__(name: str) -> Any:
-        """Rules name the types of their tables for readers; at run time they need none of them, and load none."""
+        """Return Any for table types: rules use them in annotations only, so they are not imported at run time."""
         if not name[:1].isupper():
             raise AttributeError(name)
         return Any
 
 
 FOLDER = Path(__file__).parent.parent / "rules"
-#: A module of this ending repairs what the rule of the same name reports.
+#: Suffix of the module that fixes the findings of the rule with the same name.
 REPAIR = "_repair"
 
-#: What the elements of a mask can stand for (places.PLACES finds where each stands).
+#: Kinds of elements that a mask can have (places.PLACES locates each).
 OVER = (
     "rows",
     "words",
@@ -108,13 +108,14 @@ OVER = (
 
 class Hits(msgspec.Struct, frozen=True):
     """
-    What a rule has found, where a mask alone does not say it all.
+    The result of a rule that returns more than a mask.
 
-    mask: bool per element of what the rule is `over`. severity: one for all of them, or one per element, where it is
-    not the rule's own. at: bool per executed word, the words at fault, where the rule's own `at` cannot name them.
-    values: for the message, by name: a column with a value per element, or one value for all. follows: by
-    span of the rule's own `follows`, bool per element, those to which it applies, where it does not to all.
-    undecided: bool per element, those of which nobody can say that something is wrong: they leave the file unverified.
+    mask: True where the rule fires; an element is what the rule is `over` (elements).
+    severity: one value, or a column (elements); None for the default severity of the rule.
+    at: the words at fault, where `at` of the rule cannot name them (executed words).
+    values: values for the message, by name: a column (elements), or one value for all.
+    follows: by span, the elements to which `follows` of the rule applies (elements); without an entry, all of them.
+    undecided: hits that may be intended: they make the file unverified, not failed (elements).
     """
 
     mask: Mask
@@ -135,7 +136,7 @@ def graded(
     follows: Mapping[str, Mask] | None = None,
     undecided: Mask | None = None,
 ) -> Hits:
-    """Hits of several severities: of an element that stands in more than one mask the highest counts."""
+    """Combine masks of several severities into Hits; an element in more than one mask gets the highest severity."""
     import numpy as np
 
     given = [(level, mask) for level, mask in ((NOTE, note), (WARNING, warning), (ERROR, error)) if mask is not None]
@@ -147,19 +148,24 @@ def graded(
 
 class Rule(Documented, frozen=True):
     """
-    One rule: its function and what is said about it.
+    One rule: its function and its attributes.
 
-    parameters: the tables that the function compares, by name. over: what the elements of the mask stand for.
-    at: of the words at fault the addresses, or the lists of the machine that their codes stand in (rapid, line), "on"
-    and "off" for the codes of the mode; the whole block if empty or if the block has none of them.
-    needs: columns, as in `compensation.radius`, without which the rule cannot say anything where the column `where`
-    holds.
-    once: what is one cause, so that one finding stands for all of it (SPANS): a section, a program, an F word.
-    subject: what it judges (causes.RESTS_ON); "" for words and states, which no finding makes doubtful.
-    doubts: what its finding makes doubtful, and within which span; what rests on that is listed under it.
-    follows: by span the rules that say the same thing first, so that this finding is listed under theirs.
-    worst: of those that one finding stands for, the one with the highest value of this column is reported.
-    is_advice: off where neither the machine nor the user names a severity for it.
+    group: the folder in rules/ that the rule is in.
+    severity: the default severity.
+    message: the template of the message (checking/message.py).
+    over: the kind of element in the mask: rows, words, sections, ... (OVER).
+    at: the words at fault: their addresses, the machine's lists of their codes (rapid, line), or "on" and "off" for the
+    codes of the mode. The whole block is at fault if `at` is empty or the block has none of them.
+    needs: columns, as in `compensation.radius`. The rule is not evaluated in rows where one of them is not known.
+    where: the mask column of the rows in which `needs` is required.
+    once: the span with one finding for all its hits (SPANS): a section, a program, an F word.
+    subject: the quantity that the rule judges (causes.RESTS_ON); "" for words and states, which never become doubtful.
+    doubts: the quantities that a finding makes doubtful, each with its span. Findings that rest on them are listed
+    under this one.
+    follows: by span, the rules that report the same fault first. This finding is then listed under theirs.
+    worst: the column whose highest value selects the hit to report, where one finding covers several.
+    is_advice: the rule is off unless the machine or the user names a severity for it.
+    parameters: the names of the tables that the function compares.
     """
 
     group: str
@@ -178,35 +184,35 @@ class Rule(Documented, frozen=True):
     parameters: tuple[str, ...]
 
     def __reduce__(self) -> tuple[Callable[[str], Rule], tuple[str]]:
-        """Another process finds it by its name: its function cannot be sent, whose name means the rule itself."""
-        return _named, (self.name,)
+        """Pickle by name: the function cannot be pickled, since its name in the module refers to the rule."""
+        return _rule_by_name, (self.name,)
 
     @property
     def of_text(self) -> bool:
-        """Whether it hangs on the text alone, and not on how the program runs."""
+        """True if the rule depends on the text only, not on how the program runs."""
         return OF_TEXT.issuperset(self.parameters)
 
     def level(self, severities: Mapping[str, str]) -> str:
-        """error, warning, note or off, where a machine and a job name these severities by rule."""
+        """Return error, warning, note or off, by the severities that the machine and the job set per rule."""
         return severities.get(self.name, "off" if self.is_advice else self.severity.name.lower())
 
     def hits(self, tables: Mapping[str, Any]) -> Hits:
-        """What the rule finds in some tables."""
-        found = self.function(*(tables[name] for name in self.parameters))
-        return found if isinstance(found, Hits) else Hits(found)
+        """Run the rule on these tables."""
+        result = self.function(*(tables[name] for name in self.parameters))
+        return result if isinstance(result, Hits) else Hits(result)
 
     def causes(self, rules: Mapping[str, Rule]) -> dict[str, list[str]]:
         """
-        By span the names of those of `rules` from which its findings follow, the narrowest spans first.
+        Return by span the names of the rules from which findings of this rule follow, the narrowest span first.
 
-        An infeed cycle runs the contour of its section as a whole, so that a doubt anywhere in the section counts.
+        An infeed cycle runs the whole contour of its section, so a doubt anywhere in the section counts.
         """
         causes = {span: [*names] for span, names in self.follows.items()}
         rests_on = RESTS_ON.get(self.subject, ())
         for other in rules.values():
             for what, span in other.doubts:
                 is_peer = other.subject == self.subject and span not in OF_CAUSE
-                is_named = any(self.name in names for names in other.follows.values())  # it follows this one
+                is_named = any(self.name in names for names in other.follows.values())  # that rule follows this one
                 if what in rests_on and not is_peer and not is_named:
                     reach = UNIT_OF[self.subject] if span == UNIT or self.subject == "infeed" else span
                     causes.setdefault(reach, []).append(other.name)
@@ -214,9 +220,9 @@ class Rule(Documented, frozen=True):
 
     @property
     def source(self) -> str:
-        """What the page names as its source."""
-        found = re.search(r"^Source: (.*?)(?:\n\n|\Z)", self.page, re.MULTILINE | re.DOTALL)
-        return " ".join(found[1].split()) if found else ""
+        """Return the source that the documentation of the rule cites."""
+        match = re.search(r"^Source: (.*?)(?:\n\n|\Z)", self.page, re.MULTILINE | re.DOTALL)
+        return " ".join(match[1].split()) if match else ""
 
 
 def rule(
@@ -234,7 +240,7 @@ def rule(
     worst: str = "",
     is_advice: bool = False,
 ) -> Callable[[Callable[..., Any]], Rule]:
-    """Make a rule of a function; see Rule. Its parameters name the tables that it compares."""
+    """Decorate a function as a rule; see Rule. Its parameters name the tables that it compares."""
 
     def make(function: Callable[..., Any]) -> Rule:
         group = function.__module__.split(".")[-2]
@@ -273,30 +279,30 @@ def rule(
 
 
 def rule_files() -> list[str]:
-    """The files that hold a rule, sorted; as texts, because sorting 135 Path objects takes 3 ms."""
-    others = "__init__.py", f"{REPAIR}.py"
-    return sorted(path for path in map(str, FOLDER.glob("*/*.py")) if not path.endswith(others))
+    """Return the paths of all rule files, sorted. They are strings, because sorting 135 Path objects takes 3 ms."""
+    other_files = "__init__.py", f"{REPAIR}.py"
+    return sorted(path for path in map(str, FOLDER.glob("*/*.py")) if not path.endswith(other_files))
 
 
 @functools.cache
 def load_all() -> dict[str, Rule]:
     """
-    All rules by name, in order of group and name.
+    Load all rules; returns them by name, in order of group and name.
 
-    Raises RuleError for a file under rules/ that holds no rule of its own name.
+    Raises RuleError for a file in rules/ that defines no rule with the name of the file.
     """
     rules = {}
     for path in rule_files():
         group, stem = path.removesuffix(".py").split(os.sep)[-2:]  # noqa: PTH206
-        found = getattr(_module(f"polarcheck.rules.{group}.{stem}", path), stem, None)
-        if not isinstance(found, Rule):
+        loaded = getattr(_module(f"polarcheck.rules.{group}.{stem}", path), stem, None)
+        if not isinstance(loaded, Rule):
             raise RuleError(f"rules/{group}/{stem}.py: no rule named {stem}")
-        rules[found.name] = found
+        rules[loaded.name] = loaded
     return rules
 
 
 def _module(name: str, path: str) -> ModuleType:
-    """The module in a file. That is known already: to look for each of so many takes as long as to load it."""
+    """Load the module in this file, without searching for it: the search takes as long as the loading."""
     if name in sys.modules:
         return sys.modules[name]
     spec = spec_from_file_location(name, path)
@@ -307,22 +313,22 @@ def _module(name: str, path: str) -> ModuleType:
     return module
 
 
-def _named(name: str) -> Rule:
+def _rule_by_name(name: str) -> Rule:
     return load_all()[name]
 
 
 def find(name: str, rules: dict[str, Rule]) -> list[Rule]:
     """
-    The rules of a name or of a group (polar, feed, ...), in any case, with - or _.
+    Return the rules of this name or group (polar, feed, ...). Case is ignored, and _ is read as -.
 
-    Raises UsageError with the nearest name for an unknown one.
+    Raises UsageError for an unknown name; the message suggests the nearest one.
     """
     wanted = name.strip().lower().replace("_", "-").rstrip("/")
     if wanted == "all":
         return list(rules.values())
-    found = [rule for rule in rules.values() if wanted in (rule.name, rule.group)]
-    if not found:
+    matches = [rule for rule in rules.values() if wanted in (rule.name, rule.group)]
+    if not matches:
         known = [*rules, *{rule.group for rule in rules.values()}]
         near = suggestion(wanted, known) or "; `polarcheck rules` lists them"
         raise UsageError(f"unknown rule {name!r}{near}")
-    return found
+    return matches
