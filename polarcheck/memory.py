@@ -1,4 +1,4 @@
-"""Memory: a file that needs more than the machine has is one that cannot be checked, and takes no other with it."""
+"""Limits memory, so that a file that needs more than there is fails alone, and the process goes on."""
 
 from __future__ import annotations
 
@@ -9,30 +9,30 @@ import sys
 from pathlib import Path
 from typing import Any
 
-#: Of what the machine or the container has this is ours at most; the system wants the rest.
+#: The largest share of the memory of the machine or the container; the rest is for the system.
 _SHARE = 0.9
-#: Less than this is no bound to keep: the libraries alone take half of it [bytes].
+#: The least limit: the libraries alone take half of it [bytes].
 _LEAST = 1_000_000_000
-#: Where containers say what they may take, in the newer and the older form.
+#: The files with the limit of a container, for cgroup 2 and 1.
 _OF_CONTAINER = (Path("/sys/fs/cgroup/memory.max"), Path("/sys/fs/cgroup/memory/memory.limit_in_bytes"))
-#: What NumPy with OpenBLAS and a small check take: memory of their own, and address space for libraries [bytes].
+#: What NumPy with OpenBLAS and a small check need: private memory, and address space for libraries [bytes].
 _DATA, _LIBRARIES = 64 * 2**20, 36 * 2**20
 
 
 class _BeforeNumpy:
     """
-    Raises MemoryError where NumPy is about to be imported and too little memory is left (`ulimit -v`, `ulimit -d`).
+    Raises MemoryError if NumPy is to be imported and too little memory is left (`ulimit -v`, `ulimit -d`).
 
-    OpenBLAS ends the whole process there, with the exit code 1, which means findings.
+    Otherwise OpenBLAS would end the process with exit code 1, which means findings.
     """
 
     def find_spec(self, fullname: str, path: Any, target: Any = None) -> None:
-        """Finds nothing: the finders behind this one do."""
+        """Find nothing: the next finders import the module."""
         if fullname == "numpy":
             import mmap
 
             try:
-                # What is shared counts for `ulimit -v` only. No page of either is ever used.
+                # Shared memory counts for `ulimit -v` only. No page of either is ever touched.
                 with mmap.mmap(-1, _DATA, flags=mmap.MAP_PRIVATE | mmap.MAP_ANONYMOUS), mmap.mmap(-1, _LIBRARIES):
                     pass
             except OSError as error:
@@ -41,17 +41,17 @@ class _BeforeNumpy:
 
 
 def keep_room_for_numpy() -> None:
-    """Have an import of NumPy that there is no memory for be an exception."""
+    """Turn lack of memory during the import of NumPy into an exception."""
     if os.name == "posix" and "numpy" not in sys.modules:
         sys.meta_path.insert(0, _BeforeNumpy())
 
 
 def keep_within_memory(sharing: int = 1) -> None:
     """
-    Have more memory than there is refused, where the system would give it and end the whole process later.
+    Limit the memory of the process to what there is; the system would grant more, and kill the process later.
 
-    sharing: how many processes share it. A bound that is lower already stays as it is; on systems without such bounds
-    nothing is done.
+    sharing: the number of processes that share it. A lower limit that is set already stays; without support of the
+    system nothing is done.
     """
     try:
         import resource
@@ -72,7 +72,7 @@ def _installed() -> float:
 
 
 def _of_container(path: Path) -> float:
-    """The memory of the container [bytes]; infinite where it has no bound of its own."""
+    """Return the memory of the container [bytes]; infinite if it has no limit."""
     try:
         return float(path.read_text("ascii"))
     except (OSError, ValueError):  # "max"

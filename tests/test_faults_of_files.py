@@ -364,8 +364,8 @@ def test_a_job_file_is_looked_for_once_in_each_folder(monkeypatch: pytest.Monkey
     depth = 30
     make(*("d/" * count + "a.nc" for count in range(depth + 1)))
     make("d/" * 20 + "polarcheck.toml", text="machine = 'fanuc-16i'\n")
-    own, looked = job_files.own, list[Path]()
-    monkeypatch.setattr(job_files, "own", lambda folder: looked.append(folder) or own(folder))
+    own, looked = job_files.in_folder, list[Path]()
+    monkeypatch.setattr(job_files, "in_folder", lambda folder: looked.append(folder) or own(folder))
     tasks, told = planned(".")
     machines = [task.settings.name for task in sorted(tasks, key=lambda task: len(task.path))]
     assert (machines, told) == (["fanuc"] * 20 + ["fanuc-16i"] * (depth - 19), [])

@@ -23,8 +23,8 @@ from polarcheck.commands.output import (
     COLUMNS,
     ON_WINDOWS,
     abandon_output,
+    bug_lines,
     is_of_echo,
-    said_of_bug,
     say,
     say_lines,
 )
@@ -49,12 +49,12 @@ NAMES = (
 )
 
 
-#: click writes the choices that an argument has below each other.
+#: click lists the choices of an argument on lines of their own; they are joined into one line.
 _LIST = re.compile(r"([:,])\n\t")
 
 
 class Modules(Mapping[str, click.Command]):
-    """The commands by name: each is the function of that name in the module of that name, loaded when asked for."""
+    """The commands by name: each is the function of that name in the module of that name, imported on first use."""
 
     def __getitem__(self, name: str) -> click.Command:
         if name not in NAMES:
@@ -70,7 +70,7 @@ class Modules(Mapping[str, click.Command]):
 
 
 class Commands(click.Group):
-    """Commands whose errors are one line on stderr and an exit code that tells findings from faults."""
+    """A group of commands whose errors are one line on stderr, with different exit codes for findings and failures."""
 
     def main(  # type: ignore[override]  # one signature for click's two
         self,
@@ -79,7 +79,7 @@ class Commands(click.Group):
         standalone_mode: bool = True,
         **extra: Any,
     ) -> int:
-        """Run a command; its exit code is returned, or ends the process in standalone mode."""
+        """Run a command; return its exit code, or end the process with it in standalone mode."""
         status = COULD_NOT_RUN
         is_completion = "_POLARCHECK_COMPLETE" in os.environ
         if is_completion:
@@ -91,7 +91,7 @@ class Commands(click.Group):
                 from polarcheck.commands import wildcards
 
                 args = wildcards.expanded(sys.argv[1:])
-            # What click makes of a glob loses a file whose own name has brackets.
+            # click would expand globs itself, and lose files with brackets in their names.
             extra["windows_expand_args"] = False
             status = super().main(args, prog_name, standalone_mode=False, **extra) or CLEAN
         except click.ClickException as error:
@@ -99,10 +99,10 @@ class Commands(click.Group):
         except PolarcheckError as error:
             say(str(error))
         except (click.Abort, KeyboardInterrupt) as stop:
-            status, how = signals.told(stop)
+            status, how = signals.exit_status(stop)
             say(how)
         except SystemExit:
-            # Outside of standalone mode click exits for completion, and where nobody has read the help to its end.
+            # Outside of standalone mode click exits for completion, and if the reader of the help has gone.
             if is_completion:
                 raise
             status = CLEAN
@@ -116,14 +116,14 @@ class Commands(click.Group):
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
-        """The command that is named; where a program stands in its place `check` was left out."""
+        """Return the named command; suggest `check` if a program is named in its place."""
         name = args[0]
         if name not in NAMES and (any(mark in name for mark in "./\\") or name == "-" or os.path.exists(name)):  # noqa: PTH110  Path.exists raises for some names
             ctx.fail(f"{name} is no command; did you mean `polarcheck check {' '.join(args)}`?")
         return super().resolve_command(ctx, args)
 
     def invoke(self, ctx: click.Context) -> Any:
-        """Run a command; what it did not expect is a bug of ours, never a finding."""
+        """Run a command; an unexpected exception is a bug of polarcheck, never a finding."""
         try:
             return super().invoke(ctx)
         except (click.ClickException, click.Abort, click.exceptions.Exit):
@@ -139,16 +139,16 @@ class Commands(click.Group):
             if ending.is_of_memory(error):
                 say("there is not enough memory")
                 ctx.exit(COULD_NOT_RUN)
-            say_lines(said_of_bug(error, options.DEBUG in ctx.meta))
+            say_lines(bug_lines(error, options.DEBUG in ctx.meta))
             ctx.exit(BUG)
 
 
 def run() -> None:
     """Run the command line, and end the process with its exit code."""
-    # Imports make thousands of objects that stay; looking among them for circles costs a tenth of a small check.
+    # Imports create thousands of permanent objects; collecting cycles among them costs a tenth of a small check.
     # Between files it is asked for (batch.forget).
     gc.disable()
-    # There is no linear algebra here, and starting its threads is a fifth of the import of NumPy.
+    # Linear algebra is not used, and starting its threads takes a fifth of the import of NumPy.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
@@ -159,7 +159,7 @@ def run() -> None:
         main(prog_name="polarcheck")
     finally:
         ending.end_on_signals()
-        # The process gives everything back; to look for circles in it first is a tenth of a small check.
+        # The memory is freed with the process; a last collection would cost a tenth of a small check.
         gc.freeze()
 
 

@@ -1,4 +1,4 @@
-"""`polarcheck baseline`: write down what is known, so that only new findings are told."""
+"""`polarcheck baseline`: records the known findings, so that only new ones are reported."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from polarcheck.batch.baseline_file import Entry
     from polarcheck.batch.tasks import Checked, Task
 
-#: What of `check` decides what is found: its argument and options by name.
+#: The argument and options of `check` that decide what is found.
 DECIDING = (
     *("paths", "machine", "changes", "tools", "offsets", "units", "select", "ignore", "severities", "inline"),
     *("config", "no_config", "drawing", "block_skip", "subprograms", "max_blocks", "max_statements", "max_seconds"),
@@ -26,8 +26,8 @@ DECIDING = (
 )
 _FILE = "polarcheck-baseline.json"
 
-#: What a command makes of the entries of its file and of what was checked: the new entries, and what to say of them.
-_Made = tuple[list["Entry"], str]
+#: The new entries of a baseline, and one line on them.
+_Result = tuple[list["Entry"], str]
 
 
 @click.group(invoke_without_command=True, short_help="Write down what is known, so that new findings alone are told.")
@@ -60,9 +60,8 @@ _reason = options.option("--reason", default="", metavar="TEXT", help="Why new f
 
 
 def _deciding(command: click.Command) -> click.Command:
-    """The command with what decides what is found, as in check."""
-    own = command.params
-    command.params = [parameter for parameter in check.params if parameter.name in DECIDING] + own
+    """Add the parameters of `check` that decide what is found."""
+    command.params = [parameter for parameter in check.params if parameter.name in DECIDING] + command.params
     return command
 
 
@@ -72,7 +71,7 @@ def _deciding(command: click.Command) -> click.Command:
 @_reason
 @options.debug
 @click.pass_context
-def create(ctx: click.Context, /, paths: tuple[str, ...], output: Path, **asked: Any) -> None:
+def create(ctx: click.Context, /, paths: tuple[str, ...], output: Path, **arguments: Any) -> None:
     """
     Write down all findings of the programs.
 
@@ -84,7 +83,7 @@ def create(ctx: click.Context, /, paths: tuple[str, ...], output: Path, **asked:
     if output.exists() or output.is_symlink():
         name = files.shown(str(output))
         raise BaselineError(f"-o {name}: is there already; `polarcheck baseline update` rewrites it, or name another")
-    ctx.exit(_run(paths, output, options.DEBUG in ctx.meta, [], _updated, **asked))
+    ctx.exit(_run(paths, output, options.DEBUG in ctx.meta, [], _updated, **arguments))
 
 
 @_deciding
@@ -93,13 +92,13 @@ def create(ctx: click.Context, /, paths: tuple[str, ...], output: Path, **asked:
 @_reason
 @options.debug
 @click.pass_context
-def update(ctx: click.Context, /, paths: tuple[str, ...], output: Path, **asked: Any) -> None:
+def update(ctx: click.Context, /, paths: tuple[str, ...], output: Path, **arguments: Any) -> None:
     """
     Take what is found now: new findings come in, those that no longer occur go, reasons stay.
 
     Programs that are not among the paths keep what is known of them.
     """
-    ctx.exit(_run(paths, output, options.DEBUG in ctx.meta, _known(output), _updated, **asked))
+    ctx.exit(_run(paths, output, options.DEBUG in ctx.meta, _known(output), _updated, **arguments))
 
 
 @_deciding
@@ -107,13 +106,13 @@ def update(ctx: click.Context, /, paths: tuple[str, ...], output: Path, **asked:
 @_output("To rewrite.")
 @options.debug
 @click.pass_context
-def prune(ctx: click.Context, /, paths: tuple[str, ...], output: Path, **asked: Any) -> None:
+def prune(ctx: click.Context, /, paths: tuple[str, ...], output: Path, **arguments: Any) -> None:
     """
     Drop what no longer occurs; nothing new comes in.
 
     Kept is what could not be evaluated now, and what is known of programs that are not among the paths.
     """
-    ctx.exit(_run(paths, output, options.DEBUG in ctx.meta, _known(output), _pruned, **asked))
+    ctx.exit(_run(paths, output, options.DEBUG in ctx.meta, _known(output), _pruned, **arguments))
 
 
 def _known(path: Path) -> list[Entry]:
@@ -131,7 +130,7 @@ def _run(
     output: Path,
     debug: bool,
     entries: list[Entry],
-    make: Callable[[Baseline, list[Entry], Checked, list[Task], str], _Made],
+    make: Callable[[Baseline, list[Entry], Checked, list[Task], str], _Result],
     *,
     no_config: bool,
     extensions: tuple[str, ...],
@@ -139,7 +138,7 @@ def _run(
     workers: int,
     cluster: str | None,
     reason: str = "",
-    **asked: Any,
+    **arguments: Any,
 ) -> int:
     from polarcheck.batch import baseline_file
     from polarcheck.batch.baseline import Baseline
@@ -150,35 +149,35 @@ def _run(
 
     keep_within_memory()
     faults = running.Faults(debug)
-    applies = settings.Options(use_config=not no_config, **asked)
+    applies = settings.Options(use_config=not no_config, **arguments)
     tasks = running.planned(paths, settings.OfPrograms(applies), extensions, faults)
     overwriting.refuse([output], tasks)
     checked = running.Runner(max_size, workers, cluster).check(tasks, Bar(len(tasks), True), faults)
-    could = faults.told()
+    status = faults.report()
     if checked.stopped is not None:
-        status, how = signals.told(checked.stopped)
+        interrupted, how = signals.exit_status(checked.stopped)
         say(f"{how}; nothing is written")
-        return status
+        return interrupted
     known = Baseline(entries, output.parent, (task.place for task in tasks), paths)
-    made, told = make(known, entries, checked, tasks, reason)
-    files.write(output, baseline_file.text_of(made))
-    show(f"{files.shown(str(output))}: {told}\n")
-    return could
+    updated, summary = make(known, entries, checked, tasks, reason)
+    files.write(output, baseline_file.text_of(updated))
+    show(f"{files.shown(str(output))}: {summary}\n")
+    return status
 
 
-def _updated(known: Baseline, entries: list[Entry], checked: Checked, tasks: list[Task], reason: str) -> _Made:
+def _updated(known: Baseline, entries: list[Entry], checked: Checked, tasks: list[Task], reason: str) -> _Result:
     from polarcheck.commands.silencing import evaluated, settings_of
     from polarcheck.reports import counted
 
     settings = settings_of(tasks)
-    made = known.updated(((report, evaluated(report, settings[report.path])) for report in checked.files), reason)
-    before, now = known.total(entries), known.total(made.entries)
-    files = len({entry.file for entry in made.entries})
-    changed = f"; {made.new} new, {before + made.new - now} gone" if before else ""
-    return made.entries, f"{counted(now, 'finding')} of {counted(files, 'file')} known{changed}"
+    updated = known.updated(((report, evaluated(report, settings[report.path])) for report in checked.files), reason)
+    before, now = known.total(entries), known.total(updated.entries)
+    files = len({entry.file for entry in updated.entries})
+    changed = f"; {updated.new} new, {before + updated.new - now} gone" if before else ""
+    return updated.entries, f"{counted(now, 'finding')} of {counted(files, 'file')} known{changed}"
 
 
-def _pruned(known: Baseline, entries: list[Entry], checked: Checked, tasks: list[Task], reason: str) -> _Made:
+def _pruned(known: Baseline, entries: list[Entry], checked: Checked, tasks: list[Task], reason: str) -> _Result:
     from polarcheck.commands.silencing import evaluated, settings_of
     from polarcheck.reports import counted
 

@@ -1,4 +1,4 @@
-"""`polarcheck check`: programs to reports and the exit code."""
+"""`polarcheck check`: checks programs, writes the reports and decides the exit code."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ from polarcheck.commands.options import option
 from polarcheck.commands.output import COLUMNS, columns, draws_dots, in_color, say, warn
 from polarcheck.reports import formats
 
-#: Of more files than this the report is short, if no format is asked for.
+#: With more files than this the default format is short.
 _LONG = 3
-#: Options that change how a report looks or where it goes, who makes it or which files it is of, but not what it says.
+#: Options that change the look or the destination of a report, the workers or the set of files, but no finding.
 _OF_OUTPUT = (
     *("stdin_filename", "form", "outputs", "color", "quiet", "following", "silenced", "statistics", "shown_too"),
     *("diff_base", "workers", "cluster", "watch", *fixing.NAMES),
@@ -86,7 +86,7 @@ def _outputs(ctx: click.Context, parameter: click.Parameter, values: tuple[str, 
 @fixing.wanted
 @options.debug
 @click.pass_context
-def check(ctx: click.Context, /, paths: tuple[str, ...], watch: bool, **asked: Any) -> None:
+def check(ctx: click.Context, /, paths: tuple[str, ...], watch: bool, **arguments: Any) -> None:
     """
     Check NC programs: files, folders, or - for standard input.
 
@@ -102,19 +102,24 @@ def check(ctx: click.Context, /, paths: tuple[str, ...], watch: bool, **asked: A
     understood or written, 3 for a bug; 130 or 143 where it was interrupted or terminated: what was finished until then
     is reported.
     """
-    own = {name: asked.pop(name) for name in _Asked._fields if name in asked}
-    known = _Asked(**own, paths=paths, command=_command(ctx), debug=options.DEBUG in ctx.meta, more=asked)
-    run = partial(_check, known)
+    fields = {name: arguments.pop(name) for name in _Arguments._fields if name in arguments}
+    chosen = _Arguments(**fields, paths=paths, command=_command(ctx), debug=options.DEBUG in ctx.meta, more=arguments)
+    run = partial(_check, chosen)
     if watch:
-        watching.refuse(paths, {"--fix": known.fixes.fix, "--diff": known.fixes.diff, "--diff-base": known.diff_base})
-    ctx.exit(watching.repeatedly(run, paths, known.outputs) if watch else run(None))
+        watching.refuse(
+            paths, {"--fix": chosen.fixes.fix, "--diff": chosen.fixes.diff, "--diff-base": chosen.diff_base}
+        )
+    ctx.exit(watching.repeatedly(run, paths, chosen.outputs) if watch else run(None))
 
 
-class _Asked(NamedTuple):
+class _Arguments(NamedTuple):
     """
-    What the command line asks for.
+    The arguments of the command line.
 
-    command: what checks one of the files likewise. more: what applies to programs, as settings.Options takes it.
+    command: the command line that checks one of the files with the same options.
+    more: the options that apply to programs, for settings.Options.
+
+    All other fields are the parameters of the command, by their names.
     """
 
     paths: tuple[str, ...]
@@ -142,7 +147,7 @@ class _Asked(NamedTuple):
 
 
 def _command(ctx: click.Context) -> str:
-    """The command line without its paths and what is said of the output: what checks one of the files likewise."""
+    """Return the command line without its paths and without options of the output."""
     words = ["polarcheck check"]
     for parameter in ctx.command.params:
         name = parameter.name or ""
@@ -150,7 +155,9 @@ def _command(ctx: click.Context) -> str:
             value = ctx.params[name]
             values = value if parameter.multiple else [value]
             written = parameter.secondary_opts if parameter.is_flag and not value else parameter.opts
-            words += [max(written, key=len) + ("" if parameter.is_flag else f" {_quoted(one)}") for one in values]
+            words += [
+                max(written, key=len) + ("" if parameter.is_flag else f" {_quoted(element)}") for element in values
+            ]
     return " ".join(words)
 
 
@@ -164,7 +171,7 @@ def _quoted(value: object) -> str:
     return shlex.quote(str(value))
 
 
-def _check(asked: _Asked, seen: watching.Seen | None) -> int:
+def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
     from polarcheck import reports
     from polarcheck.batch import tasks as batch
     from polarcheck.checking import rule
@@ -173,74 +180,76 @@ def _check(asked: _Asked, seen: watching.Seen | None) -> int:
     from polarcheck.memory import keep_within_memory
 
     keep_within_memory()
-    reporting.refuse(asked.form, asked.statistics)
-    wants_pictures = picturing.FORMAT in (asked.form, *(form for form, _ in asked.outputs))
-    extras = reporting.extras(asked.shown_too, asked.form, asked.outputs)
+    reporting.refuse(arguments.form, arguments.statistics)
+    wants_pictures = picturing.FORMAT in (arguments.form, *(form for form, _ in arguments.outputs))
+    extras = reporting.extras(arguments.shown_too, arguments.form, arguments.outputs)
     extras += picturing.extras() if wants_pictures else ()
-    if asked.part:
+    if arguments.part:
         from polarcheck.parts.comparison import compared_in
         from polarcheck.parts.part_report import part_of
 
         extras = (*extras, part_of, compared_in)
-    applies = settings.Options(use_config=not asked.no_config, extras=extras, **asked.more)
-    faults = running.Faults(asked.debug)
+    applies = settings.Options(use_config=not arguments.no_config, extras=extras, **arguments.more)
+    faults = running.Faults(arguments.debug)
     tasks = running.planned(
-        asked.paths,
+        arguments.paths,
         settings.OfPrograms(applies),
-        asked.extensions,
+        arguments.extensions,
         faults,
-        force_exclude=asked.force_exclude,
-        named=standard_input.judged_as(asked.paths, asked.stdin_filename),
+        force_exclude=arguments.force_exclude,
+        named=standard_input.judged_as(arguments.paths, arguments.stdin_filename),
     )
-    pictures, outputs, written = picturing.of_outputs(asked.outputs, asked.form == picturing.FORMAT, tasks, "-o html:")
+    pictures, outputs, written = picturing.of_outputs(
+        arguments.outputs, arguments.form == picturing.FORMAT, tasks, "-o html:"
+    )
     overwriting.refuse(written, tasks)
-    tasks = narrowed(tasks, asked.diff_base, asked.max_size, not asked.quiet)
-    is_colored = in_color(asked.color)
-    shown_in = fixing.Shown(asked.quiet, is_colored, asked.debug, bool(asked.outputs))
-    known = None if applies.baseline is None else silencing.Known(applies.baseline, asked.paths)
-    made = fixing.make(asked.fixes, tasks, asked.max_size, shown_in, silencing.answers(tasks, known))
-    if made.ends:
-        return max(faults.told(), made.status)
-    form = asked.form or ("text" if len(tasks) <= _LONG or asked.shown_too else "short")
-    went_wrong: list[str] = []
+    tasks = narrowed(tasks, arguments.diff_base, arguments.max_size, not arguments.quiet)
+    is_colored = in_color(arguments.color)
+    shown_in = fixing.Shown(arguments.quiet, is_colored, arguments.debug, bool(arguments.outputs))
+    baseline = None if applies.baseline is None else silencing.Known(applies.baseline, arguments.paths)
+    fixed = fixing.run(arguments.fixes, tasks, arguments.max_size, shown_in, silencing.suppressor(tasks, baseline))
+    if fixed.ends:
+        return max(faults.report(), fixed.status)
+    form = arguments.form or ("text" if len(tasks) <= _LONG or arguments.shown_too else "short")
+    failures: list[str] = []
     plain = reporting.background(
         reports.Background(
             rules=rule.load_all(),
             columns=COLUMNS,
-            quiet=asked.quiet,
-            command=asked.command,
-            following=asked.following,
-            silenced=asked.silenced,
-            fixed=made.fixed,
+            quiet=arguments.quiet,
+            command=arguments.command,
+            following=arguments.following,
+            silenced=arguments.silenced,
+            fixed=fixed.fixed,
             dots=draws_dots(),
             has_baseline=applies.baseline is not None,
             drawn=pictures.drawn,
         ),
         tasks,
-        went_wrong,
+        failures,
     )
-    bar = progress.Bar(len(tasks), not asked.quiet)
+    bar = progress.Bar(len(tasks), not arguments.quiet)
     shown = plain._replace(columns=columns(), color=is_colored)
-    shower = live.Live(
-        form, shown, len(tasks), bar.hide, in_place_of_findings=asked.statistics, to_error=made.has_output
+    live_report = live.Live(
+        form, shown, len(tasks), bar.hide, in_place_of_findings=arguments.statistics, to_error=fixed.has_output
     )
-    runner = running.Runner(asked.max_size, asked.workers, asked.cluster, seen)
+    runner = running.Runner(arguments.max_size, arguments.workers, arguments.cluster, seen)
     pictures.begin(plain)
-    checked = runner.check(tasks, bar, faults, known, shower.file, pictures.taken)
+    checked = runner.check(tasks, bar, faults, baseline, live_report.file, pictures.split)
     pictures.end()
     report = batch.report(checked.files, applies.machine or (tasks[0].settings.name if tasks else profiles.DEFAULT))
-    status = max(int(checked.failed), made.status, faults.told())
-    went_wrong += [*faults.failures, *faults.bugs]
+    status = max(int(checked.failed), fixed.status, faults.report())
+    failures += [*faults.failures, *faults.bugs]
     if checked.stopped is not None:
-        status, how = signals.told(checked.stopped)
-        went_wrong.append(f"{how} after {len(checked.files)} of {len(tasks)} files; these are reported")
-        say(went_wrong[-1])
-    elif asked.diff_base is None:
-        running.tell_unused(applies.tools, checked.called)
+        status, how = signals.exit_status(checked.stopped)
+        failures.append(f"{how} after {len(checked.files)} of {len(tasks)} files; these are reported")
+        say(failures[-1])
+    elif arguments.diff_base is None:
+        running.warn_unused(applies.tools, checked.called)
     for error in reporting.written(outputs, form, report, plain._replace(lines=checked.lines)):
         say(str(error))
         status = max(status, COULD_NOT_RUN)
-    shower.end(report, checked.lines)
-    if form == "concise" and not asked.quiet and any(file.verdict == "unverified" for file in report.files):
+    live_report.end(report, checked.lines)
+    if form == "concise" and not arguments.quiet and any(file.verdict == "unverified" for file in report.files):
         warn("some rules could not be evaluated; --format text says which, and what to give")
     return status

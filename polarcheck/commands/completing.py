@@ -1,16 +1,16 @@
 """
-What a shell is told where it asks how a word goes on: commands and options by click, values by their metavar.
+Shell completion: click completes commands and options, this module completes values by their metavar.
 
-The scripts under completions/ ask, by the variables of the environment that click has for it; a line of the answer has
-up to three fields with US (0x1f) between them:
+The scripts under completions/ send requests by click's environment variables. A line of the answer has up to three
+fields, separated by US (0x1f):
 
-    head, TEXT                what stands before all values in the word that is typed, as `--machine=`
-    word, VALUE, HELP         a value, behind which a blank follows
-    part, VALUE, HELP         a value that goes on, as `json:`
-    files, BEGUN, ENDING      names of files that begin so, and end so where an ending is given
-    folders, BEGUN            names of folders
+    head, TEXT                the part of the typed word before all values, such as `--machine=`
+    word, VALUE, HELP         a complete value; a blank follows
+    part, VALUE, HELP         a value that goes on, such as `json:`
+    files, BEGUN, ENDING      files with this beginning and, if given, this ending
+    folders, BEGUN            folders with this beginning
 
-The shell itself looks for files and folders: it knows how names with blanks, `~` and variables are written.
+The shell itself looks for files and folders: it knows how to write names with blanks, `~` and variables.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ else:
 
 
 def _item(value: str, about: str = "", kind: str = "plain", head: str = "") -> Item:
-    """head: what of the word stands before the value and stays."""
+    """Return an item; head: the part of the typed word before the value."""
     return CompletionItem(value, kind, about, head=head)
 
 
@@ -57,7 +57,7 @@ def _profiles(begun: str) -> Iterator[Item]:
 
 
 def _machines(begun: str) -> Iterator[Item]:
-    """The built-in machines, and files of the user's own."""
+    """Yield the built-in machines, and machine files."""
     from polarcheck import machines
 
     titles = {path.stem: _title_of_machine(path) for path in Path(machines.__file__).parent.glob("*.toml")}
@@ -77,7 +77,7 @@ def _machines_and_verbs(begun: str) -> Iterator[Item]:
 
 
 def _rules(begun: str) -> Iterator[Item]:
-    """Rules and groups, behind those that stand there with commas between."""
+    """Yield rules and groups, for the last name of a list with commas."""
     before, comma, last = begun.rpartition(",")
     yield from (_item(name, about, head=before + comma) for name, about in _names_of_rules() if name.startswith(last))
 
@@ -108,24 +108,24 @@ def _levels(begun: str) -> Iterator[Item]:
 
     name, equals, level = begun.partition("=")
     if equals:
-        yield from (_item(one, head=f"{name}=") for one in LEVELS if one.startswith(level))
+        yield from (_item(level_name, head=f"{name}=") for level_name in LEVELS if level_name.startswith(level))
     else:
-        yield from (_item(f"{one.value}=", one.help or "", "part") for one in _rules(name))
+        yield from (_item(f"{item.value}=", item.help or "", "part") for item in _rules(name))
 
 
 def _outputs(begun: str) -> Iterator[Item]:
-    """FORMAT: and then a file; a drive letter behind it belongs to the file."""
+    """Yield formats, then files; a drive letter after the format belongs to the file."""
     from polarcheck.reports import formats
 
     form, colon, path = begun.partition(":")
     if colon:
         yield _item(path, kind="file", head=f"{form}:")
     else:
-        yield from (_item(f"{one}:", "a report in a file", "part") for one in formats() if one.startswith(form))
+        yield from (_item(f"{name}:", "a report in a file", "part") for name in formats() if name.startswith(form))
 
 
 def _keys(begun: str) -> Iterator[Item]:
-    """TABLE.KEY= of a machine."""
+    """Yield TABLE.KEY= of a machine."""
     import msgspec
 
     from polarcheck.machines.machine import Machine, meanings
@@ -138,12 +138,12 @@ def _keys(begun: str) -> Iterator[Item]:
 
 
 def _tool(begun: str) -> Iterator[Item]:
-    """N:KEY=, behind the number of an offset and what is said of it already."""
+    """Yield N:KEY= after the number of an offset and other keys."""
     number, colon, values = begun.rpartition(":")
     before, comma, key = values.rpartition(",")
     if colon and "=" not in key:
         head = f"{number}:{before}{comma}"
-        yield from (_item(f"{one}=", "", "part", head) for one in ("radius", "nose") if one.startswith(key))
+        yield from (_item(f"{name}=", "", "part", head) for name in ("radius", "nose") if name.startswith(key))
 
 
 def _encodings(begun: str) -> Iterator[Item]:
@@ -166,7 +166,7 @@ def _nothing(begun: str) -> Iterator[Item]:
 
 Values = Callable[[str], Iterator[Item]]
 
-#: What the values of options are, as the help names them; an option of a type of click's that knows better needs none.
+#: The completion of the values of options, by their metavar; options of click's own types need none.
 OPTIONS: dict[str, Values] = {
     "EXT": _nothing,
     "FILE": _files,
@@ -197,13 +197,13 @@ ARGUMENTS: dict[str, Values] = {
 
 
 def metavar(parameter: click.Parameter) -> str:
-    """How the help names a value: without the marks of what may be left out or repeated."""
+    """Return the name of a value in the help, without the marks for optional and repeated values."""
     written = parameter.metavar or (parameter.name or "").upper()
     return written.strip("[]").removesuffix("...").strip("[]")
 
 
 class _Named(click.types.StringParamType):
-    """The type of a value whose metavar says what it is; it only completes."""
+    """The type of a value with a known metavar; it only completes."""
 
     name = "named"
 
@@ -215,7 +215,7 @@ class _Named(click.types.StringParamType):
 
 
 def _named(command: click.Command) -> click.Command:
-    """A copy of a command in which each value has the type that its metavar names."""
+    """Return a copy of a command in which each value has the type of its metavar."""
     copied = copy(command)
     copied.params = [_named_value(parameter) for parameter in command.params]
     if isinstance(command, click.Group) and isinstance(copied, click.Group):
@@ -233,7 +233,7 @@ def _named_value(parameter: click.Parameter) -> click.Parameter:
 
 
 class _NamedCommands(Mapping[str, click.Command]):
-    """The commands of a group likewise, each loaded when it is asked for."""
+    """The same for the commands of a group, each imported on first use."""
 
     def __init__(self, commands: Mapping[str, click.Command]) -> None:
         self._commands = commands
@@ -248,28 +248,32 @@ class _NamedCommands(Mapping[str, click.Command]):
         return len(self._commands)
 
 
-# ---- what the shells ask and are told ----
+# ---- requests and answers of the shells ----
 
 
 class _Shell(ShellComplete):
-    """One of the shells; the variables hold the words before the one that is completed, a line each, and that one."""
+    """
+    A shell.
+
+    COMP_WORDS holds the words before the one that is completed, a line each; POLARCHECK_WORD holds that one.
+    """
 
     source_template = ""
 
     def get_completion_args(self) -> tuple[list[str], str]:
-        """The words behind the command that are complete, and the one that is not."""
+        """Return the complete words after the command, and the word that is completed."""
         return os.environ.get("COMP_WORDS", "").split("\n")[1:], self.word()
 
     def word(self) -> str:
-        """The word that is completed, as far as it is typed, without the shell's quotes."""
+        """Return the typed part of the word that is completed, without the quotes of the shell."""
         return os.environ.get("POLARCHECK_WORD", "")
 
     def stays(self, head: str) -> str:
-        """What of the beginning of the word the values are to begin with, for this shell."""
+        """Return the part of the head that values must begin with in this shell."""
         return head
 
     def complete(self) -> str:
-        """The answer."""
+        """Return the answer."""
         arguments, word = self.get_completion_args()
         self.cli = _named(self.cli)
         lead = word[: word.index("=") + 1] if word.startswith("--") and "=" in word else ""
@@ -290,19 +294,19 @@ def _fields(item: Item) -> tuple[str, ...]:
 
 
 class _Bash(_Shell):
-    """bash, which parts words at = and :, too, and completes what stands behind the last of these."""
+    """bash, which also splits words at = and :, and completes the part after the last of these."""
 
     name = "bash"
 
     def get_completion_args(self) -> tuple[list[str], str]:
-        """The words behind the command that are complete, and the one that is not, from the line up to the cursor."""
+        """Return the complete words after the command, and the word at the cursor."""
         line = os.environ.get("COMP_WORDS", "")
         words = split_arg_string(line)
         is_new = line != line.rstrip() and not _ends_inside_a_word(line)
         return (words[1:], "") if is_new else (words[1:-1], words[-1] if len(words) > 1 else "")
 
     def stays(self, head: str) -> str:
-        """Return the text behind the last character at which bash splits the word."""
+        """Return the part of the head after the last character at which bash splits words."""
         line, breaks = os.environ.get("COMP_WORDS", ""), os.environ.get("POLARCHECK_BREAKS", "")
         if _open_quote(line):
             return head
@@ -310,7 +314,7 @@ class _Bash(_Shell):
 
 
 def _open_quote(line: str) -> str:
-    """The quote that is open at the end of a line, or empty."""
+    """Return the quote that is open at the end of a line; empty if none is."""
     quote, escaped = "", False
     for character in line:
         if escaped:
@@ -325,17 +329,17 @@ def _open_quote(line: str) -> str:
 
 
 def _ends_inside_a_word(line: str) -> bool:
-    """Return True if a quote or a backslash makes the blank at the end of a line part of a word."""
+    """Return True if the blank at the end of a line belongs to a word, by a quote or a backslash before it."""
     return bool(_open_quote(line) or _open_quote(line[:-1]) == "\\")
 
 
 class _Fish(_Shell):
-    """fish, which hands over the word as it is typed, with its quotes."""
+    """fish, which passes the word as typed, with its quotes."""
 
     name = "fish"
 
     def word(self) -> str:
-        """The word that is completed, without quotes."""
+        """Return the word that is completed, without quotes."""
         words = split_arg_string(super().word())
         return words[0] if words else ""
 
@@ -349,7 +353,7 @@ class _PowerShell(_Shell):
 
 
 def register() -> None:
-    """Let click answer by these, where the environment asks it to complete."""
+    """Register these shells with click."""
     for shell in (_Bash, _Zsh, _Fish, _PowerShell):
         assert shell.name in SHELLS
         add_completion_class(shell)

@@ -1,4 +1,4 @@
-"""`polarcheck completion`: the script that lets a shell complete what is typed behind `polarcheck`."""
+"""`polarcheck completion`: shows the script for completion in a shell."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import click
 from polarcheck.commands import options
 from polarcheck.commands.output import show
 
-#: The scripts, by the name of the shell that their ending is.
+#: The folder of the scripts; the extension of each is the name of its shell.
 FOLDER = Path(__file__).parent / "completions"
 SHELLS = ("bash", "zsh", "fish", "powershell")
 
@@ -27,5 +27,5 @@ def completion(shell: str) -> None:
     fish          once:   polarcheck completion fish > ~/.config/fish/completions/polarcheck.fish
     powershell    in $PROFILE:  polarcheck completion powershell | Out-String | Invoke-Expression
     """
-    # As bytes: a shell on Windows that is none of Windows takes no CR.
+    # As bytes, without CR, which ported shells such as bash on Windows do not accept.
     show((FOLDER / f"polarcheck.{shell}").read_bytes())

@@ -1,4 +1,4 @@
-"""`polarcheck config show`: what applies to a program, and where each value comes from."""
+"""`polarcheck config show`: the settings of a program, and where each value comes from."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def config(ctx: click.Context) -> None:
 @narrower("--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True)
 @options.debug
 @click.pass_context
-def show(ctx: click.Context, /, path: str, **asked: Any) -> None:
+def show(ctx: click.Context, /, path: str, **arguments: Any) -> None:
     """
     Show every value that applies to FILE, a program, and where it comes from: a line of a job file or of one of its
     entries, the machine, the command line, the environment, or the built-in default.
@@ -41,22 +41,22 @@ def show(ctx: click.Context, /, path: str, **asked: Any) -> None:
     polarcheck config show O1234.NC
     polarcheck config show O1234.NC --tool 8:radius=4
     """
-    print_out(_shown(ctx, path, **asked).encode())
+    print_out(_shown(ctx, path, **arguments).encode())
 
 
 def _shown(
-    ctx: click.Context, path: str, *, form: str, no_config: bool, extensions: tuple[str, ...], **asked: Any
+    ctx: click.Context, path: str, *, form: str, no_config: bool, extensions: tuple[str, ...], **arguments: Any
 ) -> str:
     from polarcheck.commands import origins, settings
     from polarcheck.reading import files
     from polarcheck.reports.pages import applied as page
 
-    settings_of = settings.OfPrograms(settings.Options(use_config=not no_config, **asked))
-    found = settings_of.applied(path)
+    settings_of = settings.OfPrograms(settings.Options(use_config=not no_config, **arguments))
+    applied = settings_of.applied(path)
     if path != files.STANDARD_INPUT and not os.path.lexists(path):
         warn(f"{files.shown(path)}: there is no such file; this is what would apply to it")
-    of_command = dict(pair.split("=", 1) for pair in asked["severities"])
-    rows = [page.Row(*value) for value in origins.values(found, _given(ctx), of_command)]
+    of_command = dict(pair.split("=", 1) for pair in arguments["severities"])
+    rows = [page.Row(*value) for value in origins.values(applied, _sources(ctx), of_command)]
     if extensions:
         rows = [
             row._replace(value=list(extensions), kind="command line", origin="command line --extensions")
@@ -64,9 +64,11 @@ def _shown(
             else row
             for row in rows
         ]
-    names = [str(name) for name in found.file.read]
+    names = [str(name) for name in applied.file.paths]
     entries = [
-        f"{layer.at('files')}: {', '.join(found.file.patterns(layer))}" for layer in found.merged.layers if layer.entry
+        f"{layer.at('files')}: {', '.join(applied.file.patterns(layer))}"
+        for layer in applied.merged.layers
+        if layer.entry
     ]
     excluded = settings_of.is_within_excluded(path)
     if form == "json":
@@ -74,12 +76,12 @@ def _shown(
     heads = [f"job file: {' extends '.join(names) or 'none'}", *(f"[[programs]]: {entry}" for entry in entries)]
     if excluded:
         heads.append("excluded: no walk through a folder finds it")
-    heads.append(f"the other values of the machine: polarcheck machines {found.settings.name}")
+    heads.append(f"the other values of the machine: polarcheck machines {applied.settings.name}")
     return page.text(files.shown(path), heads, rows)
 
 
-def _given(ctx: click.Context) -> dict[str, str]:
-    """Which options were given, and whether by the command line or the environment."""
+def _sources(ctx: click.Context) -> dict[str, str]:
+    """Return where each option comes from, `command line` or `environment`; options that were not set are left out."""
     kinds = {
         click.core.ParameterSource.COMMANDLINE: "command line",
         click.core.ParameterSource.ENVIRONMENT: "environment",

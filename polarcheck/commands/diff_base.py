@@ -1,4 +1,4 @@
-"""`--diff-base`: of the programs that are named only those that a change concerns."""
+"""`--diff-base`: restricts the check to programs that a change in git concerns."""
 
 from __future__ import annotations
 
@@ -17,19 +17,19 @@ diff_base = option(
 )  # fmt: skip
 
 
-def narrowed(tasks: list[Task], ref: str | None, most: int, is_told: bool) -> list[Task]:
-    """The tasks that are left, and on standard error how many of how many those are."""
+def narrowed(tasks: list[Task], ref: str | None, max_size: int, is_reported: bool) -> list[Task]:
+    """Return the tasks of concerned programs; is_reported: write their number to standard error."""
     if ref is None:
         return tasks
     from polarcheck.batch import changes
 
-    found = changes.since(ref, tasks, most)
-    if is_told:
-        say(f"--diff-base {ref}: {_how_many(tasks, found)}")
-    return found
+    concerned = changes.since(ref, tasks, max_size)
+    if is_reported:
+        say(f"--diff-base {ref}: {_how_many(tasks, concerned)}")
+    return concerned
 
 
-def _how_many(tasks: Sequence[Task], found: Sequence[Task]) -> str:
-    if not found:
+def _how_many(tasks: Sequence[Task], concerned: Sequence[Task]) -> str:
+    if not concerned:
         return f"nothing to check: none of {len(tasks)} programs has changed, nor calls or is judged by what has"
-    return f"{len(found)} of {len(tasks)} programs to check: changed, or calling or judged by what has"
+    return f"{len(concerned)} of {len(tasks)} programs to check: changed, or calling or judged by what has"

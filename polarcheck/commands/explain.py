@@ -28,5 +28,5 @@ def explain(rule: str, machine: str | None) -> None:
     from polarcheck.commands import selection, settings
     from polarcheck.reports.pages import manual
 
-    _, profile = settings.here(machine)
+    _, profile = settings.default_machine(machine)
     show(manual.pages(selection.select([rule], load_all(), profile).values(), profile))

@@ -1,4 +1,4 @@
-"""`polarcheck feeds`: the highest F of each block, what limits it, and what that costs."""
+"""`polarcheck feeds`: the highest F of each block, what limits it, and the time that it costs."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 @option("--diff", is_flag=True, help="Show the program with the F of the table, as a diff, and no table.")
 @options.max_size
 @options.debug
-def feeds(path: str, form: str, diff: bool, no_config: bool, max_size: int, **asked: Any) -> int:
+def feeds(path: str, form: str, diff: bool, no_config: bool, max_size: int, **arguments: Any) -> int:
     """
     Show for each cutting block of the polar sections of FILE the highest F, up to the programmed one, that keeps C and
     X within their limits; what limits it; what F the limits would allow; and the time that this costs.
@@ -48,20 +48,20 @@ def feeds(path: str, form: str, diff: bool, no_config: bool, max_size: int, **as
     keep_within_memory()
     if diff and form != "text":
         raise UsageError(f"--diff shows a diff: leave out --format {form}")
-    found = settings.OfPrograms(settings.Options(use_config=not no_config, **asked))(path)
+    applied = settings.OfPrograms(settings.Options(use_config=not no_config, **arguments))(path)
     data, title = files.read(path, max_size), files.shown(path)
-    with time_limit(seconds_for(len(data), found.job.run.max_seconds)):
-        read = check.read(data, found.machine, found.job, title, found.encoding)
+    with time_limit(seconds_for(len(data), applied.job.run.max_seconds)):
+        named_runs = check.read(data, applied.machine, applied.job, title, applied.encoding)
         rules = [rule for name, rule in load_all().items() if name in READ_OTHERWISE]
-        for doubt in check.check_runs(read, rules, found.severities).findings:
+        for doubt in check.check_runs(named_runs, rules, applied.severities).findings:
             warn(f"{title}:{doubt.line}: {doubt.full_message} [{doubt.rule}]")
-        runs = [tables for _, tables in read]
+        runs = [tables for _, tables in named_runs]
         for tables in runs:
             unknown = executed.without_radius(tables["trace"], tables["tool_center"])
             if unknown:
                 warn(unknown)
         if diff:
-            return _show_diff(title, data, runs, found.encoding)
+            return _show_diff(title, data, runs, applied.encoding)
         _show_table(title, runs, form)
     return CLEAN
 
@@ -86,13 +86,13 @@ def _show_table(title: str, runs: list[Tables], form: str) -> None:
 def _show_diff(title: str, data: bytes, runs: list[Tables], encoding: str | None) -> int:
     from polarcheck.fixes.feeds import with_feeds
 
-    made = with_feeds(title, data, runs, encoding)
-    if made is None:
+    edited = with_feeds(title, data, runs, encoding)
+    if edited is None:
         say(f"{title}: its encoding does not give all characters back as they are")
         return COULD_NOT_RUN
-    show("".join(f"{line}\n" for line in made.difference).encode())
-    for line in made.lowest:
+    show("".join(f"{line}\n" for line in edited.difference).encode())
+    for line in edited.lowest:
         warn(f"{title}:{line}: its runs need different F, and it has the lowest of them")
-    for line in made.left:
+    for line in edited.left:
         warn(f"{title}:{line}: F cannot be written there: an expression, or a block of another language or file")
     return CLEAN

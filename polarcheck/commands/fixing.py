@@ -14,7 +14,7 @@ import click
 
 from polarcheck.commands.exit_codes import BUG, CLEAN, COULD_NOT_RUN, FINDINGS
 from polarcheck.commands.options import option
-from polarcheck.commands.output import said_of_bug, say, say_lines, show, warn
+from polarcheck.commands.output import bug_lines, say, say_lines, show, warn
 from polarcheck.errors import OutputError, PolarcheckError, SourceError, TooHardError, UsageError
 
 if TYPE_CHECKING:
@@ -22,15 +22,22 @@ if TYPE_CHECKING:
     from polarcheck.finding import FileReport
     from polarcheck.fixes.fixing import Outcome
 
-#: Of the fixes of a file so many are told one by one.
-_TOLD = 20
+#: The most fixes of a file that are listed.
+_LISTED = 20
 _COLORS = {"-": "31", "+": "32", "@": "36"}
-#: The options, which belong in no command that shows a report again.
+#: The options of fixes, which are left out of a command that repeats a report.
 NAMES = ("fix", "unsafe_fixes", "diff", "backup")
 
 
 class Wanted(NamedTuple):
-    """The options of --fix and --diff."""
+    """
+    The options of fixes.
+
+    fix: write the fixes.
+    unsafe_fixes: apply unsafe fixes, too.
+    diff: show the fixes, and write nothing.
+    backup: keep the original file.
+    """
 
     fix: bool
     unsafe_fixes: bool
@@ -39,7 +46,14 @@ class Wanted(NamedTuple):
 
 
 class Shown(NamedTuple):
-    """The output options of the command line. outputs: reports are written to files."""
+    """
+    The options of the output.
+
+    quiet: show findings only.
+    color: write in color.
+    debug: show tracebacks.
+    outputs: reports are written to files.
+    """
 
     quiet: bool
     color: bool
@@ -47,10 +61,14 @@ class Shown(NamedTuple):
     outputs: bool
 
 
-class Made(NamedTuple):
+class Result(NamedTuple):
     """
-    What became of it: the exit code so far, how many fixes were written, whether it ends there, without a report, and
-    whether standard output holds a program, so that the report goes to standard error.
+    The result of the fixes.
+
+    status: the exit code so far.
+    fixed: the number of fixes that were written.
+    ends: the command ends without a report.
+    has_output: standard output holds a program, so that the report goes to standard error.
     """
 
     status: int = CLEAN
@@ -61,39 +79,40 @@ class Made(NamedTuple):
 
 def wanted(function: Any) -> Any:
     """
-    The options of fixes, which the command gets as one, `fixes`.
+    Add the options of fixes to a command, which takes them as one argument, `fixes`.
 
-    The environment asks neither for --fix nor for --unsafe-fixes: it moves metal, and is asked for each time.
+    The environment cannot set --fix or --unsafe-fixes: they change what the lathe cuts.
     """
 
     def collected(*arguments: Any, **options: Any) -> Any:
         return function(*arguments, fixes=Wanted(*(options.pop(name) for name in NAMES)), **options)
 
     functools.update_wrapper(collected, function)
-    found: Any = collected
+    decorated: Any = collected
     for decorate in (
         option("--backup", is_flag=True, help="With --fix, keep the old program as FILE.orig."),
         option("--diff", is_flag=True, help="Show what --fix would change, and no report."),
         click.option("--unsafe-fixes", is_flag=True, help="With --fix or --diff: those that move otherwise, too."),
         click.option("--fix", is_flag=True, help="Write the safe fixes into the programs, then check them."),
     ):
-        found = decorate(found)
-    return found
+        decorated = decorate(decorated)
+    return decorated
 
 
-def make(
+def run(
     wanted: Wanted,
     tasks: Sequence[Task],
-    most: int,
+    max_size: int,
     shown: Shown,
     suppress: Callable[[FileReport], FileReport] | None = None,
-) -> Made:
+) -> Result:
     """
-    Show or write the fixes of the programs, where that is asked for.
+    Show or write the fixes of the programs, if requested.
 
-    most: bytes of a program, as for its check. answered: takes findings out of a report that somebody has
-    answered for. Raises UsageError for options that exclude each other, SourceError where standard input cannot be
-    read.
+    max_size: the largest size of a program [bytes].
+    suppress: removes findings that must not be fixed from a report.
+
+    Raises UsageError for options that exclude each other, SourceError if standard input cannot be read.
     """
     if wanted.diff and (wanted.fix or shown.outputs):
         raise UsageError(f"--diff shows what --fix would change, and writes nothing: leave out {_other(wanted)}")
@@ -101,18 +120,18 @@ def make(
         if getattr(wanted, name) and not (wanted.fix or (wanted.diff and name == "unsafe_fixes")):
             warn(f"--{name.replace('_', '-')} does nothing without --fix")
     if not (wanted.fix or wanted.diff):
-        return Made()
+        return Result()
     from polarcheck.commands.progress import Bar
 
-    work = _Work(wanted, most, shown, suppress)
+    work = _Work(wanted, max_size, shown, suppress)
     with contextlib.closing(Bar(len(tasks), not shown.quiet).watched(tasks)) as awaited:
         for task in awaited:
             work.do(task)
             gc.collect(0)
     if not shown.quiet:
-        work.tell()
-    found_some = FINDINGS if wanted.diff and work.count else CLEAN
-    return Made(max(work.status, found_some), work.count, wanted.diff, work.has_output)
+        work.summarize()
+    findings = FINDINGS if wanted.diff and work.count else CLEAN
+    return Result(max(work.status, findings), work.count, wanted.diff, work.has_output)
 
 
 def _other(wanted: Wanted) -> str:
@@ -120,7 +139,15 @@ def _other(wanted: Wanted) -> str:
 
 
 class _Work:
-    """The pass over the programs. count: of the fixes. left: of those that only --unsafe-fixes would make."""
+    """
+    The pass over the programs.
+
+    status: the exit code so far.
+    count: the number of fixes.
+    files: the number of files with fixes.
+    left: the number of fixes that only --unsafe-fixes would apply.
+    has_output: standard output holds a program.
+    """
 
     def __init__(
         self,
@@ -136,7 +163,7 @@ class _Work:
         self.has_output = False
 
     def do(self, task: Task) -> None:
-        """Fix one program; what is wrong with one costs that one only, and where a report follows it tells most."""
+        """Fix one program; an error concerns this program only, and the report that follows says more."""
         from polarcheck.reading import files
 
         is_input = files.is_standard_input(task.path)
@@ -154,7 +181,7 @@ class _Work:
         elif is_input:
             show(new)
             self.has_output = True
-            # It can be read once only, and is to be checked as it is now.
+            # Standard input can be read only once; the check that follows reads the fixed program.
             sys.stdin = io.TextIOWrapper(io.BytesIO(new))
         elif new != data and not self._written(task.path, data, new):
             return
@@ -179,12 +206,12 @@ class _Work:
             self._fail(SourceError(f"{path}: there is not enough memory to fix it"))
         except Exception as error:
             error.add_note(f"while fixing {path}")
-            say_lines(said_of_bug(error, self.shown.debug))
+            say_lines(bug_lines(error, self.shown.debug))
             self.status = BUG
         return None
 
     def _fail(self, error: PolarcheckError) -> None:
-        """The check that follows says it, too; a diff is followed by none."""
+        """Report an error of a diff; otherwise the check that follows reports it."""
         if self.wanted.diff:
             say(str(error))
             self.status = max(self.status, COULD_NOT_RUN)
@@ -212,7 +239,7 @@ class _Work:
             show("".join(f"{line}\n" for line in lines).encode(), self.shown.color or None)
 
     def _count(self, outcome: Outcome, path: str) -> None:
-        """Count and report the applied and the refused fixes, a line each; line numbers are those of the old file."""
+        """List the applied and the refused fixes, with lines of the original file."""
         self.count += len(outcome.fixed)
         self.files += bool(outcome.fixed)
         self.left += outcome.left
@@ -220,17 +247,17 @@ class _Work:
             warn(f"{path}: it takes too long to try all of its fixes; run it once more for those that are left")
         if self.shown.quiet:
             return
-        for one in outcome.fixed[:_TOLD] if not self.wanted.diff else ():
-            say(f"{path}:{one.line}: fixed: {one.title} [{one.rule}]")
-        if len(outcome.fixed) > _TOLD and not self.wanted.diff:
-            say(f"{path}: {len(outcome.fixed) - _TOLD} more fixed")
-        for refused in outcome.refused[:_TOLD]:
+        for fixed in outcome.fixed[:_LISTED] if not self.wanted.diff else ():
+            say(f"{path}:{fixed.line}: fixed: {fixed.title} [{fixed.rule}]")
+        if len(outcome.fixed) > _LISTED and not self.wanted.diff:
+            say(f"{path}: {len(outcome.fixed) - _LISTED} more fixed")
+        for refused in outcome.refused[:_LISTED]:
             say(f"{path}:{refused.line}: not fixed: {refused.title} [{refused.rule}]: {refused.reason}")
-        if len(outcome.refused) > _TOLD:
-            say(f"{path}: {len(outcome.refused) - _TOLD} more not fixed")
+        if len(outcome.refused) > _LISTED:
+            say(f"{path}: {len(outcome.refused) - _LISTED} more not fixed")
 
-    def tell(self) -> None:
-        """One line on the whole, where no report says it."""
+    def summarize(self) -> None:
+        """Write one line on all fixes, if no report says it."""
         from polarcheck.reports import counted
 
         more = f"{self.left} more with --unsafe-fixes" if self.left else ""

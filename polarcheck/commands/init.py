@@ -1,4 +1,4 @@
-"""`polarcheck init`: a commented polarcheck.toml for a folder, with what its programs tell."""
+"""`polarcheck init`: writes a commented polarcheck.toml for a folder, with values from its programs."""
 
 from __future__ import annotations
 
@@ -44,10 +44,10 @@ def _init(folder: str, machine: str | None, extensions: tuple[str, ...], schema:
     from polarcheck.reports.pages import schema as schemas
 
     path = Path(folder, FILE_NAME)
-    there = job_files.own(Path(folder))
-    if there is not None or os.path.lexists(path):
-        raise UsageError(f"{there or path} is there already; `polarcheck config show` tells what it says")
-    asked = settings.profile_of(machine) if machine else None
+    existing = job_files.in_folder(Path(folder))
+    if existing is not None or os.path.lexists(path):
+        raise UsageError(f"{existing or path} is there already; `polarcheck config show` tells what it says")
+    profile = settings.profile_of(machine) if machine else None
     nearest = job_files.Nearest().of(Path(folder))
     outer = Path(os.path.relpath(nearest, folder)).as_posix() if nearest else None
     wanted = files.extensions(extensions) or files.EXTENSIONS
@@ -55,27 +55,27 @@ def _init(folder: str, machine: str | None, extensions: tuple[str, ...], schema:
     if not programs:
         warn(f"{files.shown(folder)}: no NC programs in this folder; --extensions names other endings")
     named = [os.path.relpath(program, folder) for program in programs]
-    found = survey.survey(programs, asked, Bar(len(programs), not quiet).watched(programs))
-    found = new_job.relative(found, dict(zip(programs, named, strict=True)))
+    results = survey.survey(programs, profile, Bar(len(programs), not quiet).watched(programs))
+    results = new_job.relative(results, dict(zip(programs, named, strict=True)))
     written = _name(machine, Path(folder)) if machine else None
     schema_path = Path(folder, new_job.SCHEMA_FILE)
     is_new = schema and not os.path.lexists(schema_path)
-    files.write(path, new_job.text(found, written, outer, schema, extensions))
+    files.write(path, new_job.text(results, written, outer, schema, extensions))
     if is_new:
         files.write(schema_path, schemas.text("job"))
-    told = [f"{files.shown(str(path))} written: {new_job.summary(found)}"]
+    lines = [f"{files.shown(str(path))} written: {new_job.summary(results)}"]
     if schema:
         lies = "beside it, for editors" if is_new else "is there already, and stays as it is"
-        told.append(f"{files.shown(str(schema_path))} {lies}")
+        lines.append(f"{files.shown(str(schema_path))} {lies}")
     if outer:
-        told.append(f"{outer} has applied here so far: `extend` in the new file lets it apply still")
-    told += ["still to fill in:", *(f"  {line}" for line in new_job.left_open(found, written))]
-    told.append(f"then: polarcheck check {files.shown(folder)}")
-    return [visible(line) for line in told]
+        lines.append(f"{outer} has applied here so far: `extend` in the new file lets it apply still")
+    lines += ["still to fill in:", *(f"  {line}" for line in new_job.left_open(results, written))]
+    lines.append(f"then: polarcheck check {files.shown(folder)}")
+    return [visible(line) for line in lines]
 
 
 def _name(machine: str, folder: Path) -> str:
-    """A machine as a file in this folder names it."""
+    """Return a machine as a file in this folder must name it."""
     from polarcheck.machines import profiles
 
     return machine if machine in profiles.names() else Path(os.path.relpath(machine, folder)).as_posix()

@@ -1,4 +1,4 @@
-"""Job files: the polarcheck.toml, or pyproject.toml with [tool.polarcheck], that is nearest to a program."""
+"""Job files: finds and reads the polarcheck.toml, or pyproject.toml with [tool.polarcheck], nearest to a program."""
 
 from __future__ import annotations
 
@@ -22,18 +22,23 @@ from polarcheck.reading.files import RealPaths
 if TYPE_CHECKING:
     from polarcheck.reading.globs import Globs
 
-#: Files that may extend each other.
+#: The longest chain of files that extend each other.
 _LONGEST_CHAIN = 10
 
 
 class _Part(NamedTuple):
     """
-    One file of a chain: what it says of all programs, its entries, the patterns of these, with the entry and the text
-    of each, and what it excludes; None of these where it does not say. parts: its [[part]] entries, with the patterns
-    of each, None for all programs.
+    One file of a chain.
+
+    values: the values for all programs.
+    entries: its [[programs]] entries.
+    parts: its [[part]] entries, each with its patterns; None for all programs.
+    files: the patterns of all entries; None without any.
+    patterns: the entry and the text of each pattern.
+    exclude: the patterns that it excludes; None without any.
     """
 
-    own: Layer
+    values: Layer
     entries: tuple[Layer, ...]
     parts: tuple[tuple[PartLayer, Globs | None], ...]
     files: Globs | None
@@ -42,65 +47,72 @@ class _Part(NamedTuple):
 
 
 class JobFile(msgspec.Struct, frozen=True):
-    """A job file with those that it extends, the farthest first; nothing of a job that nobody wrote."""
+    """
+    A job file with those that it extends.
+
+    path: the file; None if there is none.
+    parts: the chain of files, the farthest first.
+    """
 
     path: Path | None = None
     parts: tuple[_Part, ...] = ()
 
     @property
-    def read(self) -> list[Path]:
-        """The files themselves."""
-        return [part.own.written.path for part in reversed(self.parts)]
+    def paths(self) -> list[Path]:
+        """Return the paths of the files, the nearest first."""
+        return [part.values.written.path for part in reversed(self.parts)]
 
     @property
     def has_entries(self) -> bool:
-        """True if the settings depend on the name of the program."""
+        """Return True if the settings depend on the name of the program."""
         return any(part.patterns or any(files for _, files in part.parts) for part in self.parts)
 
     def layers(self, folder: str, name: str) -> tuple[tuple[int, int], ...]:
         """
-        Which layers apply to a program, by file and entry (0 for the file itself, -1 for its first [[part]]), the
-        nearest last.
+        Return the layers that apply to a program, the nearest last.
 
-        folder: its real path. name: empty for what applies to the folder itself.
+        A layer is a file and an entry: 0 is the file itself, 1 its first [[programs]], -1 its first [[part]].
+
+        folder: the real path of its folder.
+        name: the name of the program; empty for the layers of the folder itself.
         """
-        found: list[tuple[int, int]] = []
+        applying: list[tuple[int, int]] = []
         for number, part in enumerate(self.parts):
-            found.append((number, 0))
+            applying.append((number, 0))
             for entry, (_, files) in enumerate(part.parts, 1):
                 if files is None or (name and files.of_file(folder, name)):
-                    found.append((number, -entry))
+                    applying.append((number, -entry))
             if part.files is not None and name:
                 matched = {part.patterns[index][0].entry for index in part.files.of_file(folder, name)}
-                found += [(number, entry) for entry in sorted(matched)]
-        return tuple(found)
+                applying += [(number, entry) for entry in sorted(matched)]
+        return tuple(applying)
 
     def merged(self, layers: Sequence[tuple[int, int]]) -> Merged:
-        """The job of some layers. Raises JobError, which names file, line and key."""
+        """Return the merged job of layers. Raises JobError, which names file, line and key."""
         return job_layers.merged([self._layer(number, entry) for number, entry in layers])
 
     @property
     def excluding(self) -> Layer | None:
-        """The layer that says what walks pass over."""
-        return next((part.own for part in reversed(self.parts) if part.exclude is not None), None)
+        """Return the layer that sets `exclude`."""
+        return next((part.values for part in reversed(self.parts) if part.exclude is not None), None)
 
     def patterns(self, layer: Layer) -> list[str]:
-        """The patterns of an entry."""
-        return [pattern for part in self.parts for own, pattern in part.patterns if own is layer]
+        """Return the patterns of an entry."""
+        return [pattern for part in self.parts for entry, pattern in part.patterns if entry is layer]
 
     def _layer(self, number: int, entry: int) -> Layer:
         part = self.parts[number]
         if entry < 0:
             return part.parts[-entry - 1][0]
-        return part.entries[entry - 1] if entry else part.own
+        return part.entries[entry - 1] if entry else part.values
 
     @property
     def exclude(self) -> Globs | None:
-        """The excluded patterns of the nearest file."""
+        """Return the patterns that the nearest file excludes."""
         return next((part.exclude for part in reversed(self.parts) if part.exclude is not None), None)
 
     def unmatched(self, names: Iterable[tuple[str, str]]) -> list[str]:
-        """Return a message for each pattern of the nearest file that matches none of these programs (folder, name)."""
+        """Return a line for each pattern of the nearest file that matches none of these programs (folder, name)."""
         part = self.parts[-1] if self.parts else None
         if part is None or part.files is None:
             return []
@@ -115,49 +127,53 @@ class JobFile(msgspec.Struct, frozen=True):
 
 class Nearest:
     """
-    The job files of many programs and folders, the nearest from there upward; from the working folder where it lies
-    below it. Each folder is looked into once, however deep it lies.
+    Finds the nearest job file of programs and folders, in the folder itself or above it; each folder is read once.
+
+    real: the cached real paths of folders.
     """
 
     def __init__(self) -> None:
-        #: Of folders, which are asked for by thousands of programs.
         self.real = RealPaths()
-        self._known: dict[str, Path | None] = {}
+        self._cached: dict[str, Path | None] = {}
 
     def of(self, path: Path) -> Path | None:
-        """The job file of a program or folder. Raises JobError for a pyproject.toml that cannot be read."""
+        """
+        Return the job file of a program or folder, relative to the working folder if it is below it.
+
+        Raises JobError for a pyproject.toml that cannot be read.
+        """
         try:
-            found = self._from(self.real.folder(str(path if path.is_dir() else path.parent)))
+            nearest = self._from(self.real.folder(str(path if path.is_dir() else path.parent)))
         except (OSError, RuntimeError, ValueError):
-            return None  # the folder itself cannot be entered; reading the program will say so
-        return _from_here(found) if found is not None else None
+            return None  # the folder cannot be entered; reading the program reports that
+        return _relative(nearest) if nearest is not None else None
 
     def _from(self, folder: str) -> Path | None:
         passed: list[str] = []
-        while folder not in self._known:
+        while folder not in self._cached:
             passed.append(folder)
-            found, outer = own(Path(folder)), os.path.dirname(folder)  # noqa: PTH120  long paths of pathlib are slow
-            if found is not None or outer == folder:
-                self._known[folder] = found
+            nearest, outer = in_folder(Path(folder)), os.path.dirname(folder)  # noqa: PTH120  pathlib is slow
+            if nearest is not None or outer == folder:
+                self._cached[folder] = nearest
             else:
                 folder = outer
-        self._known.update(dict.fromkeys(passed, self._known[folder]))
-        return self._known[folder]
+        self._cached.update(dict.fromkeys(passed, self._cached[folder]))
+        return self._cached[folder]
 
 
-def _from_here(path: Path) -> Path:
-    """From the working folder where it lies below it."""
+def _relative(path: Path) -> Path:
+    """Return a path relative to the working folder if it is below it."""
     with contextlib.suppress(OSError):  # the working folder may be gone
         if path.is_relative_to(Path.cwd()):
             return path.relative_to(Path.cwd())
     return path
 
 
-def own(folder: Path) -> Path | None:
-    """The job file that lies in a folder."""
+def in_folder(folder: Path) -> Path | None:
+    """Return the job file in a folder, or None."""
     if not bounded.may_read(folder):
         return None
-    # A link that leads nowhere, a folder or a pipe of this name is told when it is read, and not passed over.
+    # A broken link, a folder or a pipe of this name is not skipped: reading it reports the error.
     if os.path.lexists(folder / FILE_NAME):
         return folder / FILE_NAME
     return folder / PROJECT if _is_job_file(folder / PROJECT) else None
@@ -169,43 +185,43 @@ def _is_job_file(project: Path) -> bool:
     try:
         text = bounded.read_file(project, toml_text.LARGEST, "no job file is")
     except OSError as error:
-        raise JobError(f"{_from_here(project)}: {error.strerror}") from None
+        raise JobError(f"{_relative(project)}: {error.strerror}") from None
     if b"polarcheck" not in text.replace(b"\0", b""):  # every other byte of UTF-16
         return False
     try:
         tools = toml_text.parsed(bounded.decoded(text).replace("\r\n", "\n")).get("tool")
-    except ValueError:  # somebody else's fault, unless it is meant for us: reading it will say so
+    except ValueError:  # an error in a table of another tool is ignored; in ours, reading reports it
         return b"[tool.polarcheck" in text
     return isinstance(tools, dict) and "polarcheck" in tools
 
 
 def load(path: Path, *, pipes: bool = False) -> JobFile:
     """
-    The job file of a path, a polarcheck.toml or pyproject.toml, and those that it extends.
+    Read a job file, a polarcheck.toml or pyproject.toml, and those that it extends.
 
-    pipes: whether it may be a pipe, as a shell hands over `<(...)`. Raises JobError with file, line and key.
+    pipes: the path may be a pipe, such as `<(...)` of a shell. Raises JobError with file, line and key.
     """
     parts: list[_Part] = []
     real: set[str] = set()
-    asked_by = ""
+    named_by = ""
     while True:
         identity = os.path.realpath(path)
         if identity in real:
-            raise JobError(f"{asked_by}: extend: {path} extends itself")
+            raise JobError(f"{named_by}: extend: {path} extends itself")
         if len(real) == _LONGEST_CHAIN:
-            raise JobError(f"{asked_by}: extend: more than {_LONGEST_CHAIN} job files, one behind the other")
+            raise JobError(f"{named_by}: extend: more than {_LONGEST_CHAIN} job files, one behind the other")
         real.add(identity)
-        part, extended = _part(path, asked_by, pipes=pipes and not parts)
+        part, extended = _part(path, named_by, pipes=pipes and not parts)
         parts.append(part)
         if extended is None:
-            return JobFile(parts[0].own.written.path, tuple(reversed(parts)))
-        asked_by = part.own.at("extend")
-        path = _from_here(Path(os.path.normpath(job_layers.beside(path.parent, extended))))
+            return JobFile(parts[0].values.written.path, tuple(reversed(parts)))
+        named_by = part.values.at("extend")
+        path = _relative(Path(os.path.normpath(job_layers.beside(path.parent, extended))))
 
 
-def _part(path: Path, asked_by: str, *, pipes: bool) -> tuple[_Part, str | None]:
-    """Return the part that a file gives, and the path of the file that it extends. asked_by: what names it."""
-    before = f"{asked_by}: extend: " if asked_by else ""
+def _part(path: Path, named_by: str, *, pipes: bool) -> tuple[_Part, str | None]:
+    """Read one file; return it and the name of the file that it extends. named_by: the place that names this file."""
+    before = f"{named_by}: extend: " if named_by else ""
     try:
         text = toml_text.text_of(path, "job file", pipes=pipes)
         table: Any = toml_text.parsed(text)
@@ -225,12 +241,16 @@ def _part(path: Path, asked_by: str, *, pipes: bool) -> tuple[_Part, str | None]
         job = fitted(table, Job)
     except MisfitError as misfit:
         raise JobError(f"{before}{written.at(misfit.key)}: {misfit}") from None
-    own = Layer(written, table)
+    values = Layer(written, table)
     entries = [Layer(written, entry, number) for number, entry in enumerate(table.get("programs", ()), 1)]
-    for layer, said in ((own, job), *zip(entries, job.programs, strict=True)):
-        _check_encoding(layer, said.encoding)
+    for layer, part_of_job in ((values, job), *zip(entries, job.programs, strict=True)):
+        _check_encoding(layer, part_of_job.encoding)
     base = os.path.realpath(path.parent)
-    owners = [(layer, pattern) for layer, said in zip(entries, job.programs, strict=True) for pattern in said.files]
+    owners = [
+        (layer, pattern)
+        for layer, part_of_job in zip(entries, job.programs, strict=True)
+        for pattern in part_of_job.files
+    ]
     files = exclude = None
     if owners:
         files = _globs(base, [pattern for _, pattern in owners], lambda number: owners[number][0].at("files"), "files")
@@ -240,8 +260,8 @@ def _part(path: Path, asked_by: str, *, pipes: bool) -> tuple[_Part, str | None]
         of_part = _globs(base, part.files, _place_of(layer), f"part.{number}.files") if part.files else None
         parts.append((layer, of_part))
     if "exclude" in table:
-        exclude = _globs(base, job.exclude, lambda _: own.at("exclude"), "exclude")
-    return _Part(own, tuple(entries), tuple(parts), files, tuple(owners), exclude), job.extend
+        exclude = _globs(base, job.exclude, lambda _: values.at("exclude"), "exclude")
+    return _Part(values, tuple(entries), tuple(parts), files, tuple(owners), exclude), job.extend
 
 
 def _place_of(layer: PartLayer) -> Callable[[int], str]:

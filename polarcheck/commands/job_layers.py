@@ -1,7 +1,7 @@
 """
-What job files say, laid over each other: a file over the one that it extends, its entries for some programs over it.
+Layers of job files: a file overrides the one that it extends, and its entries for certain programs override the file.
 
-Tables are merged key by key; of everything else the nearest counts.
+Tables are merged key by key; all other values are replaced by the nearest.
 """
 
 from __future__ import annotations
@@ -21,16 +21,21 @@ from polarcheck.machines.modal import MM_PER_INCH
 from polarcheck.machines.offset_keys import canonical
 from polarcheck.machines.part import LENGTHS, Part
 
-#: Keys that say which files are meant, and nothing of a program.
+#: Keys that select files, and are no settings of a program.
 _OF_FILES = ("extend", "exclude", "programs", "files", "part")
-#: Of a length that was converted: more are noise of the arithmetic.
+#: Decimals of a converted length; further ones are rounding errors.
 _DECIMALS = 9
 #: Keys of lengths, which are in the units of their file, by table.
 _LENGTHS = {"tools": ("radius", "x_wear", "diameter"), "stock": ("diameter", "clearance"), "work_offsets": ("x",)}
 
 
 class Written:
-    """The text of a job file, to tell in which line a key of it stands. prefix: of its keys, within pyproject.toml."""
+    """
+    The text of a job file, to find the line of a key.
+
+    path: the file.
+    prefix: the prefix of its keys in pyproject.toml.
+    """
 
     def __init__(self, path: Path, text: str, prefix: str = "") -> None:
         self.path, self._text, self._prefix = path, text, prefix
@@ -42,7 +47,7 @@ class Written:
         return toml_lines.of_keys(self._text)
 
     def at(self, key: str) -> str:
-        """`polarcheck.toml:12`: where a key stands, or the nearest table around it; the file where that is all."""
+        """Return the place of a key or of the nearest table around it, `polarcheck.toml:12`; else the file alone."""
         from polarcheck.machines import toml_lines
 
         line = toml_lines.line_of(f"{self._prefix}{key}", self._lines)
@@ -51,9 +56,11 @@ class Written:
 
 class Layer:
     """
-    The values of a job file (entry 0), or those of its n-th [[programs]] entry.
+    The values of a job file, or of one of its [[programs]] entries.
 
-    table: as they are written. Files and folders in it begin where the job file lies.
+    written: the text of the file.
+    entry: 0 for the file itself, n for its n-th entry.
+    table: the values as written; paths are relative to the folder of the job file.
     """
 
     def __init__(self, written: Written, table: Mapping[str, Any], entry: int = 0) -> None:
@@ -61,55 +68,55 @@ class Layer:
 
     @property
     def title(self) -> str:
-        """What tells this layer from others, where its lines are not asked for."""
+        """Return a name for this layer, without a line."""
         return f"{self.written.path}: [[programs]] {self.entry}" if self.entry else str(self.written.path)
 
     @property
     def excluded(self) -> list[str]:
-        """The patterns of what walks pass over."""
+        """Return the patterns of `exclude`."""
         return list(self._table.get("exclude", ()))
 
     def at(self, key: str) -> str:
-        """`polarcheck.toml:12`: where a key of this layer stands."""
+        """Return the place of a key of this layer: `polarcheck.toml:12`."""
         return self.written.at(f"programs.{self.entry}.{key}" if self.entry else key)
 
     def spelling(self, key: str) -> str:
-        """A key of the merged job as it is written here: offsets and work offsets have several spellings."""
+        """Return a key of the merged job as it is written in this layer: offsets have several spellings."""
         group, _, rest = key.partition(".")
         if group not in ("tools", "work_offsets"):
             return key
         for name in self._table.get(group, {}):
-            own = canonical(name) if group == "tools" else name.upper()
-            if rest == own or rest.startswith(f"{own}."):
-                return f"{group}.{name}{rest[len(own) :]}"
+            spelled = canonical(name) if group == "tools" else name.upper()
+            if rest == spelled or rest.startswith(f"{spelled}."):
+                return f"{group}.{name}{rest[len(spelled) :]}"
         return key
 
     @property
     def says_units(self) -> bool:
-        """True if the lengths of this layer have units of their own."""
+        """Return True if this layer sets the units of its lengths."""
         return "units" in self._table
 
     @cached_property
     def table(self) -> dict[str, Any]:
         """
-        The values, with the keys of offsets as they are compared and with paths from the working folder.
+        Return the values, with canonical keys of offsets, and with paths relative to the working folder.
 
-        Raises JobError for a folder that there is not.
+        Raises JobError for a folder that does not exist.
         """
-        found = {key: value for key, value in self._table.items() if key not in _OF_FILES}
+        values = {key: value for key, value in self._table.items() if key not in _OF_FILES}
         folder = self.written.path.parent
-        if "tools" in found:
-            found["tools"] = {canonical(name): tool for name, tool in found["tools"].items()}
-        if "work_offsets" in found:
-            found["work_offsets"] = {name.upper(): value for name, value in found["work_offsets"].items()}
-        if "machine" in found:
-            found["machine"] = _machine(found["machine"], folder)
-        if "offsets" in found:
-            found["offsets"] = str(beside(folder, found["offsets"]))
-        if "subprograms" in found.get("run", {}):
-            folders = [self._folder(folder, written) for written in found["run"]["subprograms"]]
-            found["run"] = {**found["run"], "subprograms": folders}
-        return found
+        if "tools" in values:
+            values["tools"] = {canonical(name): tool for name, tool in values["tools"].items()}
+        if "work_offsets" in values:
+            values["work_offsets"] = {name.upper(): value for name, value in values["work_offsets"].items()}
+        if "machine" in values:
+            values["machine"] = _machine(values["machine"], folder)
+        if "offsets" in values:
+            values["offsets"] = str(beside(folder, values["offsets"]))
+        if "subprograms" in values.get("run", {}):
+            folders = [self._folder(folder, written) for written in values["run"]["subprograms"]]
+            values["run"] = {**values["run"], "subprograms": folders}
+        return values
 
     def _folder(self, folder: Path, written: str) -> str:
         import os
@@ -118,16 +125,16 @@ class Layer:
         try:
             os.scandir(path).close()
         except (FileNotFoundError, NotADirectoryError, ValueError):
-            told = f"there is no folder {shown(written)}"
+            reason = f"there is no folder {shown(written)}"
         except OSError as error:
-            told = f"{shown(written)}: {error.strerror}"
+            reason = f"{shown(written)}: {error.strerror}"
         else:
             return path
-        raise JobError(f"{self.at('run.subprograms')}: run.subprograms: {told}")
+        raise JobError(f"{self.at('run.subprograms')}: run.subprograms: {reason}")
 
 
 def beside(folder: Path, written: str) -> Path:
-    """A file or folder that a file in this folder names; with backslashes it is found wherever there are slashes."""
+    """Return the path of a file or folder that a file in this folder names; backslashes count as slashes, too."""
     path = folder / written
     if "\\" in written and not path.exists():
         return folder / written.replace("\\", "/")
@@ -135,7 +142,7 @@ def beside(folder: Path, written: str) -> Path:
 
 
 def _machine(name: str, folder: Path) -> str:
-    """A built-in machine, or the path of a file beside the job file."""
+    """Return the name of a built-in machine, or the path of a machine file named in a job file."""
     path = beside(folder, name)
     if name not in profiles.names() and profiles.is_meant(path, name):
         return str(path)
@@ -143,7 +150,11 @@ def _machine(name: str, folder: Path) -> str:
 
 
 class PartLayer(Layer):
-    """One [[part]] entry of a job file, the n-th."""
+    """
+    A [[part]] entry of a job file.
+
+    number: its number, from 1.
+    """
 
     def __init__(self, written: Written, table: Mapping[str, Any], number: int) -> None:
         super().__init__(written, {})
@@ -151,31 +162,37 @@ class PartLayer(Layer):
 
     @cached_property
     def table(self) -> dict[str, Any]:
-        """The entry, in a list of its own."""
+        """Return a table with the entry as its only part."""
         entry = dict(self._part)
         if "drawing" in entry:
             entry["drawing"] = str(beside(self.written.path.parent, entry["drawing"]))
         return {"part": [entry]}
 
     def at(self, key: str) -> str:
-        """Where a key of the entry stands, or the entry itself."""
+        """Return the place of a key of the entry, or of the entry itself."""
         return self.written.at(f"part.{self.number}{key.removeprefix('part')}")
 
 
 class Merged(msgspec.Struct, frozen=True):
-    """The job of some layers; layers: the nearest last. origins: which of them said the value of a key."""
+    """
+    The merged job of layers.
+
+    job: the job.
+    layers: the layers, the nearest last.
+    origins: the layer that sets each key.
+    """
 
     job: Job
     layers: tuple[Layer, ...] = ()
     origins: Mapping[str, Layer] = {}
 
     def at(self, key: str) -> str:
-        """Where a value stands that is told as wrong."""
+        """Return the place of a value, for an error message."""
         layer = self.origin(key)
         return layer.at(layer.spelling(key)) if layer else str(self.layers[-1].written.path) if self.layers else ""
 
     def origin(self, key: str) -> Layer | None:
-        """The layer that said a value, or the nearest one that said something of a table."""
+        """Return the layer that sets a value, or the nearest one that sets a value of a table."""
         if key in self.origins:
             return self.origins[key]
         inside = [layer for name, layer in self.origins.items() if name.startswith(f"{key}.")]
@@ -183,7 +200,7 @@ class Merged(msgspec.Struct, frozen=True):
 
 
 def merged(layers: Sequence[Layer]) -> Merged:
-    """The job of some layers, the nearest last. Raises JobError, which names file, line and key."""
+    """Return the merged job of layers, the nearest last. Raises JobError, which names file, line and key."""
     table: dict[str, Any] = {}
     origins: dict[str, Layer] = {}
     listed: dict[str, Tool] = {}
@@ -196,7 +213,7 @@ def merged(layers: Sequence[Layer]) -> Merged:
         if layer.says_units:
             listed = _in_units(values["units"], table, listed, layer, origins)
         if "offsets" in values:
-            # A table of this lathe takes the place of that of another one, and is nearer than what is said of all.
+            # A nearer offset table replaces the former one, and overrides tools set by farther layers.
             listed = _listed(layer, values.get("units", table.get("units")))
             for key in listed:
                 table.get("tools", {}).pop(key, None)
@@ -215,7 +232,7 @@ def merged(layers: Sequence[Layer]) -> Merged:
 
 
 def _drawn(part: Part, layer: Layer) -> Part:
-    """A part with its drawing, where it has one."""
+    """Return a part with its drawing, if it has one."""
     if part.drawing is None:
         return part
     from polarcheck.machines import drawing
@@ -224,7 +241,7 @@ def _drawn(part: Part, layer: Layer) -> Part:
 
 
 def _leaves(table: Mapping[str, Any]) -> Iterator[tuple[tuple[str, ...], Any]]:
-    """The values of a table and of those in it, with their keys."""
+    """Yield keys and value of each value of a table, those of nested tables included."""
     for key, value in table.items():
         if isinstance(value, Mapping):
             yield from (((key, *parts), inner) for parts, inner in _leaves(value))
@@ -236,13 +253,13 @@ def _put(table: dict[str, Any], parts: tuple[str, ...], value: Any) -> None:
     *outer, last = parts
     for part in outer:
         table = table.setdefault(part, {})
-    # The last that names a rule counts: what is nearer stands behind what it takes the place of.
+    # The last entry of a rule counts, so the key moves to the end.
     table.pop(last, None)
     table[last] = value
 
 
 def _listed(layer: Layer, units: Any) -> dict[str, Tool]:
-    """The offset table that a layer names."""
+    """Read the offset table that a layer names."""
     from polarcheck.machines import offset_table
 
     path = layer.table["offsets"]
@@ -253,9 +270,9 @@ def _in_units(
     units: str, table: dict[str, Any], listed: dict[str, Tool], layer: Layer, origins: Mapping[str, Layer]
 ) -> dict[str, Tool]:
     """
-    Have the lengths so far in the units in which a nearer layer gives its own; the offset table, likewise.
+    Convert the lengths so far to the units of a nearer layer; return the converted offset table.
 
-    Raises JobError where nobody knows what they are.
+    Raises JobError if their units are unknown.
     """
     before = table.get("units")
     parts_of_job = table.get("part", ())
@@ -285,13 +302,13 @@ def _in_units(
 
 
 def _converted(part: Mapping[str, Any], factor: float) -> dict[str, Any]:
-    """A [[part]] entry with its lengths in other units."""
-    found = dict(part)
-    for key in found.keys() & LENGTHS:
-        value = found[key]
-        found[key] = (
-            [round(one * factor, _DECIMALS) for one in value]
+    """Return a [[part]] entry with converted lengths."""
+    converted = dict(part)
+    for key in converted.keys() & LENGTHS:
+        value = converted[key]
+        converted[key] = (
+            [round(length * factor, _DECIMALS) for length in value]
             if isinstance(value, list)
             else round(value * factor, _DECIMALS)
         )
-    return found
+    return converted

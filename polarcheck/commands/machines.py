@@ -1,4 +1,4 @@
-"""`polarcheck machines`: the lathes that are known, the values of one, and a file for one more."""
+"""`polarcheck machines`: lists the known lathes, shows one, and writes or checks a machine file."""
 
 from __future__ import annotations
 
@@ -64,14 +64,14 @@ def _checked(name: str) -> str:
 
 
 def _loaded(name: str) -> Profile:
-    """Raises MachineError for what cannot be used, names of rules included."""
+    """Load a profile. Raises MachineError if it cannot be used, or names unknown rules."""
     from polarcheck.commands import settings
 
     return settings.profile_of(name)
 
 
 def _write(name: str, inherits: str) -> Path:
-    """Write NAME.toml into the working folder; nothing that is there already is overwritten."""
+    """Write NAME.toml into the working folder; an existing file is not overwritten."""
     from polarcheck.reading import files
     from polarcheck.reports.pages import new_machine
 

@@ -1,4 +1,4 @@
-"""Options that several commands have, and how an option is made: the environment can give each of them, too."""
+"""Options of several commands; the environment can set each of them, too."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import click
 
 Decorator = Callable[[Any], Any]
 
-#: Stands in the meta of the context, which a group shares with its commands, where tracebacks are asked for.
+#: The key of --debug in the meta of the context, which a group shares with its commands.
 DEBUG = "polarcheck.debug"
 
 
@@ -22,27 +22,27 @@ _PREFIXES = " KMGT"
 
 
 class _Narrower(click.Option):
-    """A choice with fewer values than that of `check` of the same name: from the environment it takes its own only."""
+    """A choice whose values differ from those in `check`; values of the environment that it lacks are ignored."""
 
     def resolve_envvar_value(self, ctx: click.Context) -> str | None:
-        """The value of the environment, unless only `check` has it."""
+        """Return the value of the environment, unless only `check` has this value."""
         value = super().resolve_envvar_value(ctx)
         return value if isinstance(self.type, click.Choice) and value in self.type.choices else None
 
 
 def option(*names: str, **attributes: Any) -> Decorator:
-    """An option of click that the environment can give, too: POLARCHECK_FAIL_ON for --fail-on."""
+    """Return an option of click that the environment can set, too: POLARCHECK_FAIL_ON for --fail-on."""
     written = max((name.partition("/")[0] for name in names if name.startswith("--")), key=len)
     return click.option(*names, envvar="POLARCHECK_" + written[2:].upper().replace("-", "_"), **attributes)
 
 
 def narrower(*names: str, **attributes: Any) -> Decorator:
-    """The same for a choice whose values are not those that the option of this name has in `check`."""
+    """Return such an option for a choice whose values differ from those of this option in `check`."""
     return option(*names, cls=_Narrower, **attributes)
 
 
 def many(*names: str, **attributes: Any) -> Decorator:
-    """An option that may be repeated, and may hold several names with commas between."""
+    """Return an option that may be repeated, and may hold several names with commas between."""
     return option(*names, multiple=True, callback=_listed, **attributes)
 
 
@@ -51,7 +51,7 @@ def _listed(ctx: click.Context, parameter: click.Parameter, values: tuple[str, .
 
 
 def encoding(what: str) -> Decorator:
-    """--encoding of what is read."""
+    """Return the option --encoding of the files that a command reads."""
     return option("--encoding", callback=_known_encoding, metavar="NAME", help=f"Of the {what}: cp1252, shift_jis, ...")
 
 
@@ -75,7 +75,7 @@ def _in_bytes(ctx: click.Context, parameter: click.Parameter, value: str) -> int
     return size
 
 
-#: More processes than this are a typing error.
+#: The most processes; a higher number is a typing error.
 _MOST_PROCESSES = 1024
 
 
@@ -153,22 +153,22 @@ inline = option("--inline/--no-inline", default=None, help="Whether the allow co
 
 
 class _Seconds(click.FloatRange):
-    """A time; float() knows nan and inf, which are none."""
+    """A time; nan and inf, which float() accepts, are refused."""
 
     name = "seconds"
 
     def convert(self, value: Any, parameter: click.Parameter | None, ctx: click.Context | None) -> float:
-        """The number of seconds of an option."""
-        found = float(super().convert(value, parameter, ctx))
-        if not math.isfinite(found):
+        """Return the number of seconds."""
+        seconds = float(super().convert(value, parameter, ctx))
+        if not math.isfinite(seconds):
             self.fail(f"expected a number above 0, found {value}", parameter, ctx)
-        return found
+        return seconds
 
 
 _block_skip = option(
     "--block-skip", type=click.Choice(["off", "on", "both"]), help="Of blocks with /; both is the default."
 )
-_one_block_skip = narrower(
+_single_block_skip = narrower(
     "--block-skip", type=click.Choice(["off", "on"]), default="off", show_default=True, help="Of blocks with /."
 )
 _max_blocks = option(
@@ -185,7 +185,7 @@ _max_seconds = option(
 
 
 def _all(*decorators: Decorator) -> Decorator:
-    """One decorator for several, in the order in which the help shows them."""
+    """Combine decorators, in the order in which the help shows them."""
 
     def decorated(command: Any) -> Any:
         for decorator in reversed(decorators):
@@ -197,16 +197,17 @@ def _all(*decorators: Decorator) -> Decorator:
 
 def executing(what: str, *, both: bool = True) -> Decorator:
     """
-    What decides how a program is read and executed, the same of every command that reads programs.
+    Return the options that decide how a program is read and executed, for every command that reads programs.
 
-    what: `programs`, for the help. both: whether a program may be run with block skip on and off.
+    what: `program` or `programs`, for the help.
+    both: a program may be run with block skip both on and off.
     """
-    each = (machine, changes, tools, offsets, units, config, no_config, _block_skip if both else _one_block_skip)
+    each = (machine, changes, tools, offsets, units, config, no_config, _block_skip if both else _single_block_skip)
     more = (subprograms, _max_blocks, _max_statements, _max_seconds, radius_from_comments, encoding(what))
     return _all(*each, *more)
 
 
-#: What decides which rules run, and what of their findings fails.
+#: The options that decide which rules run, and which findings fail.
 judging = _all(
     many("--select", metavar="RULE", help="Only these rules, groups or alarms (PS0146)."),
     many("--ignore", metavar="RULE", help="All but these."),

@@ -1,4 +1,4 @@
-"""Where each value that applies to a program comes from, for `polarcheck config show`."""
+"""The origin of each setting of a program, for `polarcheck config show`."""
 
 from __future__ import annotations
 
@@ -17,10 +17,12 @@ from polarcheck.machines.part import Part
 
 class Value(NamedTuple):
     """
-    A value that applies; None is not known.
+    A setting.
 
-    kind: default, machine, file, programs (an entry of a job file), environment or command line. origin: the same as a
-    text that names the file, line and option.
+    key: its key in a job file.
+    value: None if unknown.
+    kind: default, machine, file, programs (an entry of a job file), environment or command line.
+    origin: the same as a text that names the file, line and option.
     """
 
     key: str
@@ -29,10 +31,10 @@ class Value(NamedTuple):
     origin: str
 
 
-#: Keys of a job that say which files are meant.
+#: Keys of a job that are not shown as settings.
 _OF_FILES = ("programs", "extend", "exclude", "extensions", "limits")
 _DEFAULT = ("default", "built-in default")
-#: Options by the key of the job that each gives; others give several, or have the name of theirs.
+#: The option that sets each key of a job; other options set several keys, or have the name of their key.
 _OPTIONS = {
     "program_units": ("units", "--units"),
     "run.block_skip": ("block_skip", "--block-skip"),
@@ -51,24 +53,25 @@ _OPTIONS = {
     "radius_from_comments": ("radius_from_comments", "--radius-from-comments"),
 }
 
-#: `command line` or `environment` by the name of an option; nothing for one that was not given.
-Given = Mapping[str, str]
+#: `command line` or `environment` by the name of an option; options that were not set are left out.
+Sources = Mapping[str, str]
 
 
-def values(applied: Applied, given: Given, severities: Mapping[str, str]) -> Iterator[Value]:
+def values(applied: Applied, sources: Sources, severities: Mapping[str, str]) -> Iterator[Value]:
     """
-    All that applies to a program, in the order of the keys of a job file, and the limits of its lathe.
+    Yield the settings of a program, in the order of the keys of a job file, and the limits of its lathe.
 
-    given: the options that were given. severities: those of the command line, as they are written.
+    sources: where each option comes from.
+    severities: those of the command line, as written.
     """
     job, merged = applied.settings.job, applied.merged
     table = {"machine": applied.settings.name, **_flat(job)}
     for key, value in table.items():
-        yield Value(key, value, *_origin(key, job, merged, given))
+        yield Value(key, value, *_origin(key, job, merged, sources))
     for name, level in severities.items():
-        yield Value(f"severities.{name}", level, *_of_option("severities", "--severity", given))
-    yield from _of_machine(applied, given)
-    yield Value("extensions", job.extensions, *_origin("extensions", job, merged, given))
+        yield Value(f"severities.{name}", level, *_of_option("severities", "--severity", sources))
+    yield from _of_machine(applied, sources)
+    yield Value("extensions", job.extensions, *_origin("extensions", job, merged, sources))
     excluding = applied.file.excluding
     excluded = _of_layer(excluding, "exclude") if excluding else _DEFAULT
     yield Value("exclude", excluding.excluded if excluding else [], *excluded)
@@ -108,33 +111,33 @@ def _differing(key: str, table: msgspec.Struct) -> dict[str, Any]:
     }
 
 
-def _origin(key: str, job: Job, merged: Merged, given: Given) -> tuple[str, str]:
+def _origin(key: str, job: Job, merged: Merged, sources: Sources) -> tuple[str, str]:
     name, option = _OPTIONS.get(key, ("", ""))
-    if name in given:
-        return _of_option(name, option, given)
+    if name in sources:
+        return _of_option(name, option, sources)
     if key.startswith("tools."):
-        return _of_tool(key, job, merged, given)
+        return _of_tool(key, job, merged, sources)
     if key.startswith("part."):
-        return _of_part(key, merged, given)
+        return _of_part(key, merged, sources)
     layer = merged.origins.get(key)
     return _of_layer(layer, key) if layer else _DEFAULT
 
 
-def _of_part(key: str, merged: Merged, given: Given) -> tuple[str, str]:
-    if "drawing" in given:
-        return _of_option("drawing", "--drawing", given)
+def _of_part(key: str, merged: Merged, sources: Sources) -> tuple[str, str]:
+    if "drawing" in sources:
+        return _of_option("drawing", "--drawing", sources)
     _, number, last = key.split(".")
     layer = [layer for layer in merged.layers if isinstance(layer, PartLayer)][int(number) - 1]
     return "file", layer.at(f"part.{last}")
 
 
-def _of_tool(key: str, job: Job, merged: Merged, given: Given) -> tuple[str, str]:
+def _of_tool(key: str, job: Job, merged: Merged, sources: Sources) -> tuple[str, str]:
     name, _, last = key.removeprefix("tools.").rpartition(".")
     tool, written = job.tools[name], merged.job.tools.get(name)
     if written is None or getattr(written, last) != getattr(tool, last):
         if isinstance(tool, PunchedTool):
-            return _of_option("offsets", "--offsets", given)
-        return _of_option("tools", "--tool", given)
+            return _of_option("offsets", "--offsets", sources)
+        return _of_option("tools", "--tool", sources)
     if isinstance(written, PunchedTool) and key not in merged.origins:
         layer = merged.origin("offsets")
         kind, origin = _of_layer(layer, "offsets") if layer else _DEFAULT
@@ -143,8 +146,8 @@ def _of_tool(key: str, job: Job, merged: Merged, given: Given) -> tuple[str, str
     return _of_layer(layer, key) if layer else _DEFAULT
 
 
-def _of_option(name: str, option: str, given: Given) -> tuple[str, str]:
-    kind = given.get(name, "command line")
+def _of_option(name: str, option: str, sources: Sources) -> tuple[str, str]:
+    kind = sources.get(name, "command line")
     return kind, f"{kind} {_of_environment(option) if kind == 'environment' else option}"
 
 
@@ -157,8 +160,8 @@ def _of_layer(layer: Layer, key: str) -> tuple[str, str]:
     return ("programs", f"{where}, [[programs]] {layer.entry}") if layer.entry else ("file", where)
 
 
-def _of_machine(applied: Applied, given: Given) -> Iterator[Value]:
-    """The limits of the lathe, and what else does not come from a built-in machine."""
+def _of_machine(applied: Applied, sources: Sources) -> Iterator[Value]:
+    """Yield the limits of the lathe, and other values that do not come from a built-in machine."""
     profile, built_in = applied.profile, profiles.names()
     ours = {key: origin for key, origin in profile.origins.items() if origin.profile not in built_in}
     limits = msgspec.structs.asdict(profile.written.limits)
@@ -169,14 +172,16 @@ def _of_machine(applied: Applied, given: Given) -> Iterator[Value]:
         for part in [last] if last else []:
             value = value.get(part) if isinstance(value, dict) else getattr(value, part, None)
         origin = profile.origins.get(key)
-        yield Value(key, value, *_of_profile(key, origin, applied.merged, given, built_in))
+        yield Value(key, value, *_of_profile(key, origin, applied.merged, sources, built_in))
 
 
-def _of_profile(key: str, origin: Origin | None, merged: Merged, given: Given, built_in: list[str]) -> tuple[str, str]:
+def _of_profile(
+    key: str, origin: Origin | None, merged: Merged, sources: Sources, built_in: list[str]
+) -> tuple[str, str]:
     if origin is None:
         return _DEFAULT
     if origin.profile == "--set":
-        return _of_option("changes", "--set", given)
+        return _of_option("changes", "--set", sources)
     layer = merged.origins.get(key)
     if layer is not None and layer.title == origin.profile:
         return _of_layer(layer, key)

@@ -1,4 +1,4 @@
-"""Printing: results go to standard output, all else to standard error; and what the terminal takes."""
+"""Printing: results go to standard output, all else to standard error; and the abilities of the terminal."""
 
 from __future__ import annotations
 
@@ -14,21 +14,22 @@ import click
 from polarcheck.errors import OutputError
 
 ON_WINDOWS = os.name == "nt"
-#: Width of reports that go anywhere but to a terminal, and the widest that is good to read [characters].
+#: The width of reports outside a terminal, and the largest width on one [characters].
 COLUMNS = 100
-#: Of what an exception says [characters].
-_MOST_SAID = 200
-#: A longer line on standard error is cut in its middle: what is wrong stands at its end [characters].
+#: The longest text of an exception that is shown [characters].
+_LONGEST_ERROR = 200
+#: A longer line on standard error is cut in the middle, since its end says what is wrong [characters].
 _LONGEST, _HEAD, _TAIL = 1000, 300, 500
 
 
 def show(text: str | bytes, color: bool | None = None, to_error: bool = False) -> bool:
     """
-    Write to standard output; whether anybody still reads. If nobody does, the exit code is all that is left to say.
+    Write to standard output; return False once the reader has gone, and writing more is useless.
 
-    color: whether escapes for color stay in the text; None where only a terminal shows them. to_error: to standard
-    error, where standard output holds something else. Raises OutputError where
-    it cannot be written: a full disk, a closed output.
+    color: keep the escapes for color; None keeps them on a terminal only.
+    to_error: write to standard error, since standard output holds something else.
+
+    Raises OutputError if it cannot be written: a full disk, a closed output.
     """
     if to_error:
         with contextlib.suppress(OSError, ValueError):
@@ -37,7 +38,7 @@ def show(text: str | bytes, color: bool | None = None, to_error: bool = False) -
     if sys.stdout is None:
         raise OutputError("standard output is closed")
     if ON_WINDOWS and isinstance(text, bytes) and is_terminal(sys.stdout):
-        # The console takes characters in any code page, and bytes in its own only.
+        # The console accepts any characters, but bytes in its own code page only.
         text = text.decode("utf-8", "replace")
     try:
         click.echo(text, nl=False, color=color)
@@ -51,12 +52,12 @@ def show(text: str | bytes, color: bool | None = None, to_error: bool = False) -
 
 
 def nobody_reads(error: OSError) -> bool:
-    """Return True if the reader of the output is gone; Windows reports an invalid argument."""
+    """Return True if the reader of the output has gone, which Windows reports as an invalid argument."""
     return isinstance(error, BrokenPipeError) or (ON_WINDOWS and error.errno == errno.EINVAL)
 
 
 def is_of_echo(error: BaseException) -> bool:
-    """Tells whether an error came while click was writing, so that standard output is at fault."""
+    """Return True if click raised an error while writing, so that standard output is at fault."""
     entry = error.__traceback__
     while entry is not None and entry.tb_frame.f_code is not click.echo.__code__:
         entry = entry.tb_next
@@ -64,23 +65,23 @@ def is_of_echo(error: BaseException) -> bool:
 
 
 def abandon_output() -> None:
-    """Discard the rest of standard output: at its end Python would try to write it once more, and fail."""
+    """Discard pending output, which Python would otherwise try to write again at its end, and fail."""
     with contextlib.suppress(OSError, ValueError, AttributeError):
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def say(message: str) -> None:
-    """One line on standard error, whatever the message holds."""
-    _tell(f"polarcheck: {message}")
+    """Write one line to standard error, whatever the message holds."""
+    _write_error(f"polarcheck: {message}")
 
 
 def warn(message: str) -> None:
-    """The same for what does not change the exit code."""
+    """Write a warning to standard error; it does not change the exit code."""
     say(f"warning: {message}")
 
 
-def said_of_bug(error: Exception, with_traceback: bool) -> list[str]:
-    """Return the lines of an internal error for `say_lines`, with the traceback if requested."""
+def bug_lines(error: Exception, with_traceback: bool) -> list[str]:
+    """Return the lines on an internal error, for `say_lines`."""
     if with_traceback:
         import traceback
 
@@ -88,25 +89,25 @@ def said_of_bug(error: Exception, with_traceback: bool) -> list[str]:
     from polarcheck.reading.excerpt import shortened
 
     where = "".join(f", {note}" for note in getattr(error, "__notes__", ()))
-    said = f"{type(error).__name__}: {shortened(str(error), _MOST_SAID)}{where}"
-    return [f"polarcheck: internal error: {said}; run with --debug for the traceback"]
+    summary = f"{type(error).__name__}: {shortened(str(error), _LONGEST_ERROR)}{where}"
+    return [f"polarcheck: internal error: {summary}; run with --debug for the traceback"]
 
 
 def say_lines(lines: Iterable[str]) -> None:
-    """Lines on standard error, without a name before them."""
+    """Write lines to standard error, without a name before them."""
     for line in lines:
-        _tell(line)
+        _write_error(line)
 
 
-def _tell(line: str) -> None:
-    """Write a line in which nothing acts on a terminal, or in the log of a CI job."""
-    # Its tables of characters are a library that most runs do not need.
+def _write_error(line: str) -> None:
+    """Write a line to standard error without characters that control a terminal or the log of a CI job."""
+    # Imported late: most runs do not need its tables of characters.
     from polarcheck.reading.excerpt import visible, without_commands
 
     shown = without_commands(visible(line))
     if len(shown) > _LONGEST:
         shown = f"{shown[:_HEAD]} ... {shown[-_TAIL:]}"
-    # Where nobody can be told, the exit code is left.
+    # If standard error is closed, only the exit code reports the error.
     with contextlib.suppress(OSError, ValueError):
         click.echo(shown, err=True)
 
@@ -117,7 +118,7 @@ def is_terminal(stream: TextIO | None) -> bool:
 
 
 def in_color(choice: str) -> bool:
-    """--color, else NO_COLOR, else FORCE_COLOR, else whether it is a terminal."""
+    """Decide on color: --color, else NO_COLOR, else FORCE_COLOR, else color on a terminal only."""
     if choice != "auto":
         return choice == "always"
     if os.environ.get("NO_COLOR"):
@@ -126,7 +127,7 @@ def in_color(choice: str) -> bool:
 
 
 def columns() -> int:
-    """The width of a report on standard output [characters]."""
+    """Return the width of a report on standard output [characters]."""
     if not is_terminal(sys.stdout):
         return COLUMNS
     import shutil
@@ -135,7 +136,7 @@ def columns() -> int:
 
 
 def draws_dots() -> bool:
-    """Return True if standard output can encode block and Braille characters."""
+    """Return True if standard output can show Braille and block characters, not only ASCII."""
     import codecs
 
     encoding = getattr(sys.stdout, "encoding", None) or "ascii"

@@ -1,4 +1,4 @@
-"""A report never takes the place of a program, nor of anything else that was read for it."""
+"""Refuses reports that would overwrite a program, or any other file that the run reads."""
 
 from __future__ import annotations
 
@@ -14,27 +14,27 @@ from polarcheck.reading import files
 
 def refuse(outputs: Sequence[Path], tasks: Sequence[Task]) -> None:
     """
-    Raises OutputError, before anything is checked or written, for a report that would take the place of a file of this
-    run, of a called program or of another report, or that has the name of a program.
+    Raise OutputError, before anything is checked or written, for a report that would overwrite a file of this run, a
+    called program or another report, or that has the name of a program.
     """
     if not outputs:
         return
-    read: dict[str, str] = {}
+    inputs: dict[str, str] = {}
     folders: dict[str, str] = {}
     for task in tasks:
         path = task.place
         if path != files.STANDARD_INPUT:
-            read[_real(path)] = path
-        read |= {_real(path): str(path) for path in task.settings.read}
+            inputs[_real(path)] = path
+        inputs |= {_real(path): str(path) for path in task.settings.read}
         folders |= {_real(folder): folder for folder in task.settings.job.run.subprograms}
-    same = {_identity(path): path for path in read.values()}
+    same = {_identity(path): path for path in inputs.values()}
     written: set[str] = set()
     for output in outputs:
         target, shown = _real(output), files.shown(str(output))
         identity = _identity(output)
-        found = read.get(target) or (same.get(identity) if identity else None)
-        if found is not None:
-            raise OutputError(f"-o {shown}: {_beside(found, shown)}is read by this run; name another file")
+        source = inputs.get(target) or (same.get(identity) if identity else None)
+        if source is not None:
+            raise OutputError(f"-o {shown}: {_beside(source, shown)}is read by this run; name another file")
         folder = folders.get(str(Path(target).parent))
         if folder is not None and Path(target).exists():
             raise OutputError(f"-o {shown}: a file in {files.shown(folder)}, a folder of subprograms; name another one")
@@ -45,21 +45,21 @@ def refuse(outputs: Sequence[Path], tasks: Sequence[Task]) -> None:
         written.add(target)
 
 
-def _beside(found: str, shown: str) -> str:
-    other = files.shown(found)
+def _beside(source: str, shown: str) -> str:
+    other = files.shown(source)
     return "it " if other == shown else f"it is {other}, which "
 
 
 def _real(path: str | Path) -> str:
-    """One path for all that lead to a file, in any case where case tells no files apart."""
+    """Return the same path for all paths to a file; case is ignored on systems that ignore it."""
     return os.path.normcase(os.path.realpath(path))
 
 
 def _identity(path: str | Path) -> tuple[int, int] | None:
-    """Return device and inode of a file; None if it does not exist, or is a device, which cannot be overwritten."""
+    """Return the identity of a regular file, the same for all its names; None for other files or none."""
     try:
         status = Path(path).stat()
     except (OSError, ValueError):
         return None
-    # Some network drives of Windows number nothing.
+    # Some network drives of Windows give no file numbers.
     return (status.st_dev, status.st_ino) if stat.S_ISREG(status.st_mode) and status.st_ino else None

@@ -1,4 +1,4 @@
-"""`polarcheck part`: what programs make, in the words and numbers of a drawing."""
+"""`polarcheck part`: the parts that programs make, in the words and numbers of a drawing."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import click
 from polarcheck.commands import options
 from polarcheck.commands.options import narrower
 
-#: The rule that compares a part with its drawing; beside it those are asked that leave nothing of it to believe.
+#: The rule that compares a part with its drawing. Rules whose findings make the part doubtful run beside it.
 _RULE = "part-differs-from-drawing"
 
 
@@ -23,7 +23,7 @@ _RULE = "part-differs-from-drawing"
 @options.jobs
 @options.debug
 @click.pass_context
-def part(ctx: click.Context, /, paths: tuple[str, ...], **asked: Any) -> None:
+def part(ctx: click.Context, /, paths: tuple[str, ...], **arguments: Any) -> None:
     """
     Tell what programs make: files, folders, or - for standard input.
 
@@ -35,7 +35,7 @@ def part(ctx: click.Context, /, paths: tuple[str, ...], **asked: Any) -> None:
     Ends with 0; with 1 where a part differs from its drawing, or a program is for another control, so that nothing that
     is told can be believed; 2 if something could not be read, 3 for a bug.
     """
-    ctx.exit(_part(paths, debug=options.DEBUG in ctx.meta, **asked))
+    ctx.exit(_part(paths, debug=options.DEBUG in ctx.meta, **arguments))
 
 
 def _part(
@@ -47,7 +47,7 @@ def _part(
     max_size: int,
     workers: int,
     no_config: bool,
-    **asked: Any,
+    **arguments: Any,
 ) -> int:
     from polarcheck.checking.causes import READ_OTHERWISE
     from polarcheck.commands import progress, running, settings, signals
@@ -59,17 +59,17 @@ def _part(
 
     keep_within_memory()
     applies = settings.Options(
-        use_config=not no_config, select=(_RULE, *READ_OTHERWISE), extras=(part_of, compared_in), **asked
+        use_config=not no_config, select=(_RULE, *READ_OTHERWISE), extras=(part_of, compared_in), **arguments
     )
     faults = running.Faults(debug)
     tasks = running.planned(paths, settings.OfPrograms(applies), extensions, faults)
     checked = running.Runner(max_size, workers, None).check(tasks, progress.Bar(len(tasks), True), faults)
-    status = max(int(checked.failed), faults.told())
+    status = max(int(checked.failed), faults.report())
     if checked.stopped is not None:
-        status, how = signals.told(checked.stopped)
+        status, how = signals.exit_status(checked.stopped)
         say(f"{how} after {len(checked.files)} of {len(tasks)} files; these are reported")
     else:
-        running.tell_unused(applies.tools, checked.called)
+        running.warn_unused(applies.tools, checked.called)
     show(
         (
             part_lines.json(list(checked.files)) if form == "json" else part_lines.text(list(checked.files), columns())

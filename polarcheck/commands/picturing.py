@@ -1,4 +1,4 @@
-"""Pictures on their way from those who check to a page, or to a folder with a page for each program."""
+"""Takes pictures from the checked reports, and writes them to a page or a folder with a page for each program."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ FORMAT = "html"
 
 
 def extras() -> tuple[Extra, ...]:
-    """Return the functions that add pictures to reports. Raises UsageError if plotly is missing, before any check."""
+    """Return the function that adds pictures to reports. Raises UsageError if plotly is missing."""
     from polarcheck.pictures.drawing import drawn
     from polarcheck.pictures.library import require
 
@@ -31,7 +31,7 @@ def extras() -> tuple[Extra, ...]:
 
 
 def refuse(tasks: Sequence[Task], to_terminal: bool, example: str) -> None:
-    """Raises UsageError for several programs in one page, and for a page on a terminal."""
+    """Raise UsageError for several programs in one page, and for a page on a terminal."""
     if len(tasks) > 1:
         raise UsageError(f"a page is of one program, and these are {len(tasks)}: {example}FOLDER takes a page for each")
     if to_terminal:
@@ -39,18 +39,22 @@ def refuse(tasks: Sequence[Task], to_terminal: bool, example: str) -> None:
 
 
 def is_folder(path: Path) -> bool:
-    """Return True if an output is a folder: an existing one, or a new name without an extension."""
+    """Return True if an output is a folder: an existing one, or a new one, whose name has no extension."""
     return path.is_dir() or not (path.suffix or path.exists())
 
 
-class Apart:
-    """Takes pictures off reports, and keeps them by the path of the program."""
+class Pictures:
+    """
+    Separates pictures from reports.
+
+    drawn: the drawings, by the path of the program.
+    """
 
     def __init__(self) -> None:
         self.drawn: dict[str, Drawn] = {}
 
-    def taken(self, outcomes: Iterable[Outcome]) -> Iterator[Outcome]:
-        """The outcomes as they are told."""
+    def split(self, outcomes: Iterable[Outcome]) -> Iterator[Outcome]:
+        """Yield the outcomes without their pictures, which are stored."""
         from polarcheck.finding import FileReport
 
         for outcome in outcomes:
@@ -59,30 +63,31 @@ class Apart:
                 continue
             import msgspec
 
-            from polarcheck.pictures.drawing import split  # a check without pictures does without
+            from polarcheck.pictures.drawing import split  # not needed without pictures
 
             report, drawn = split(outcome.report)
-            told = msgspec.structs.replace(outcome, report=report)
+            plain = msgspec.structs.replace(outcome, report=report)
             if drawn is not None:
-                self.keep(told, drawn)
-            yield told
+                self.store(plain, drawn)
+            yield plain
 
-    def keep(self, outcome: Outcome, drawn: Drawn) -> None:
-        """Write the pictures of a program."""
+    def store(self, outcome: Outcome, drawn: Drawn) -> None:
+        """Store the drawing of a program."""
         assert outcome.report is not None
         self.drawn[outcome.report.path] = drawn
 
     def begin(self, background: Background) -> None:
-        """Prepare the output before the first program."""
+        """Prepare for the first program."""
 
     def end(self) -> None:
-        """Finish the output after the last program."""
+        """Finish after the last program."""
 
 
-class Folder(Apart):
+class Folder(Pictures):
     """
-    Writes a page for each program as soon as it is checked, so that many take no more memory than one; behind them the
-    page that leads to them, and plotly once. Raises OutputError where one cannot be written.
+    Writes a page for each program as soon as it is checked, so that memory does not grow; at last the index page.
+
+    plotly is written once. Raises OutputError if a file cannot be written.
     """
 
     def __init__(self, folder: Path, tasks: Sequence[Task]) -> None:
@@ -96,14 +101,14 @@ class Folder(Apart):
 
     @property
     def outputs(self) -> list[Path]:
-        """All that will be written."""
+        """Return all files that will be written."""
         from polarcheck.pictures.library import FILE_NAME
         from polarcheck.reports.pages.picture_index import INDEX
 
         return [self._folder / name for name in (INDEX, FILE_NAME, *self._names.values())]
 
     def begin(self, background: Background) -> None:
-        """Make the folder, and write into it what all pages share."""
+        """Create the folder, and write the library that all pages share."""
         from polarcheck.pictures.library import FILE_NAME, library
 
         self._background = background
@@ -114,7 +119,7 @@ class Folder(Apart):
             raise OutputError(f"{shown(str(self._folder))}: {said}") from None
         write(self._folder / FILE_NAME, library())
 
-    def keep(self, outcome: Outcome, drawn: Drawn) -> None:
+    def store(self, outcome: Outcome, drawn: Drawn) -> None:
         """Write the page of a program."""
         from polarcheck.pictures.library import FILE_NAME
         from polarcheck.pictures.page import page
@@ -123,15 +128,15 @@ class Folder(Apart):
 
         report = outcome.report
         assert report is not None
-        if len(self._names) == 1:  # for a page beside the folder
-            super().keep(outcome, drawn)
+        if len(self._names) == 1:  # for a single page beside the folder
+            super().store(outcome, drawn)
         name = self._names[report.path]
         pictured = picture(report, self._background._replace(drawn={report.path: drawn}))
         write(self._folder / name, page([pictured], beside=FILE_NAME))
         self._entries.append(entry(report, name))
 
     def end(self) -> None:
-        """Write the page that leads to all others."""
+        """Write the index page."""
         from polarcheck.reports.pages.picture_index import INDEX, index
 
         write(self._folder / INDEX, index(self._entries))
@@ -139,12 +144,14 @@ class Folder(Apart):
 
 def of_outputs(
     outputs: Sequence[tuple[str, Path]], to_output: bool, tasks: Sequence[Task], example: str
-) -> tuple[Apart, list[tuple[str, Path]], list[Path]]:
+) -> tuple[Pictures, list[tuple[str, Path]], list[Path]]:
     """
-    Where the pictures of a run go, the outputs that are files, and all files that are written.
+    Return the object that takes the pictures of a run, the outputs that are files, and all files that are written.
 
-    to_output: whether a page goes to standard output, too. example: how a file or folder is named. Raises UsageError
-    where there is no way to write one.
+    to_output: a page goes to standard output, too.
+    example: the option before the name of a file or folder, for messages.
+
+    Raises UsageError if a page cannot be written like that.
     """
     files = [(form, path) for form, path in outputs if form != FORMAT or not is_folder(path)]
     folders = [path for form, path in outputs if form == FORMAT and is_folder(path)]
@@ -153,6 +160,6 @@ def of_outputs(
     if len(folders) > 1:
         raise UsageError(f"{example}{shown(str(folders[1]))}: pages are written to one folder only")
     if not folders:
-        return Apart(), files, [path for _, path in files]
+        return Pictures(), files, [path for _, path in files]
     folder = Folder(folders[0], tasks)
     return folder, files, [*(path for _, path in files), *folder.outputs]

@@ -1,4 +1,4 @@
-"""`polarcheck plot`: what programs make and how the tool runs, as pages."""
+"""`polarcheck plot`: pages with pictures of the part and of the tool path."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def plot(
     max_size: int,
     workers: int,
     no_config: bool,
-    **asked: Any,
+    **arguments: Any,
 ) -> None:
     """
     Draw what programs make and how the tool runs: files, folders, or - for standard input.
@@ -57,7 +57,7 @@ def plot(
     from polarcheck.reading import files
 
     keep_within_memory()
-    applies = settings.Options(use_config=not no_config, extras=picturing.extras(), **asked)
+    applies = settings.Options(use_config=not no_config, extras=picturing.extras(), **arguments)
     faults = running.Faults(options.DEBUG in ctx.meta)
     tasks = running.planned(paths, settings.OfPrograms(applies), extensions, faults)
     outputs = [] if output is None else [(picturing.FORMAT, Path(output))]
@@ -67,10 +67,10 @@ def plot(
     background = reporting.background(plain, tasks, [])
     pictures.begin(background)
     bar = progress.Bar(len(tasks), True)
-    checked = running.Runner(max_size, workers, None).check(tasks, bar, faults, taken=pictures.taken)
-    status = faults.told()
+    checked = running.Runner(max_size, workers, None).check(tasks, bar, faults, take=pictures.split)
+    status = faults.report()
     if checked.stopped is not None:
-        status, how = signals.told(checked.stopped)
+        status, how = signals.exit_status(checked.stopped)
         say(f"{how} after {len(checked.files)} of {len(tasks)} files")
     pictures.end()
     if len(checked.files) and (pages or output is None):
@@ -81,5 +81,5 @@ def plot(
         if output is None:
             show(page.encode())
     if checked.stopped is None:
-        running.tell_unused(applies.tools, checked.called)
+        running.warn_unused(applies.tools, checked.called)
     ctx.exit(status)

@@ -1,4 +1,4 @@
-"""A bar on a terminal, when there is something to wait for."""
+"""A progress bar on a terminal."""
 
 from __future__ import annotations
 
@@ -10,18 +10,18 @@ from typing import TypeVar
 
 from polarcheck.commands.output import is_terminal
 
-#: Nobody needs a bar for less than this [s].
+#: The bar appears after this time [s].
 _PATIENCE = 1.0
-#: It is drawn no more often than this [s].
+#: The least time between two updates [s].
 _STEP = 0.1
-#: Characters of the bar itself.
+#: The length of the bar [characters].
 _LENGTH = 24
 
 Element = TypeVar("Element")
 
 
 class Bar:
-    """How many of so many files are done, how fast, and how long the rest will take: one line on stderr."""
+    """One line on stderr with the number of finished files, their rate, and the time left."""
 
     def __init__(self, total: int, is_shown: bool) -> None:
         self._total = total
@@ -29,7 +29,7 @@ class Bar:
         self._length = 0
 
     def watched(self, elements: Iterable[Element]) -> Generator[Element, None, None]:
-        """The elements one after the other; where stderr is a terminal the bar appears after the first second."""
+        """Yield the elements; if stderr is a terminal, the bar appears after the first second."""
         if not self._is_shown:
             yield from elements
             return
@@ -46,7 +46,7 @@ class Bar:
             self.hide()
 
     def hide(self) -> None:
-        """Take the bar away before something else is written; it comes back by itself."""
+        """Remove the bar before something else is written; the next update shows it again."""
         if self._length:
             self._write(f"\r{' ' * self._length}\r")
             self._length = 0
@@ -54,7 +54,7 @@ class Bar:
     def _draw(self, text: str) -> None:
         import shutil
 
-        # A line that reached the edge would be two.
+        # A line that reaches the edge of the terminal would wrap.
         text = text[: shutil.get_terminal_size().columns - 1]
         self._write(f"\r{text}{' ' * (self._length - len(text))}")
         self._length = len(text)
@@ -67,7 +67,7 @@ class Bar:
 
 
 def line(done: int, total: int, seconds: float) -> str:
-    """`[####----] 120 of 400 files, 85 files/s, 0:03 left`."""
+    """Return a line such as `[####----] 120 of 400 files, 85 files/s, 0:03 left`."""
     rate = done / max(seconds, 1e-3)
     filled = _LENGTH * done // total
     fast = f"{rate:.0f}" if rate >= 10 else f"{rate:.1f}"

@@ -1,4 +1,4 @@
-"""The context of the reports of a run, and the files that they are written to."""
+"""Prepares the background of the reports of a run, and writes the reports that go to files."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from polarcheck.finding import Report
     from polarcheck.reports import Background
 
-#: Where GitHub Actions takes the summary of a step from, and the report that is for GitHub Actions.
+#: The variable with the file of a step's summary in GitHub Actions, and the format for GitHub Actions.
 STEP_SUMMARY, _OF_GITHUB = "GITHUB_STEP_SUMMARY", "github"
 #: Formats that can hold counts in place of findings.
 _WITH_COUNTS = ("text", "short", "concise", "json", "jsonl")
@@ -29,7 +29,7 @@ statistics = option("--statistics", is_flag=True, help="How often each rule spea
 
 
 def refuse(form: str | None, wants_statistics: bool) -> None:
-    """Raises UsageError where counts are asked for in a format that has no place for them."""
+    """Raise UsageError if counts are requested in a format that cannot hold them."""
     if wants_statistics and form not in (None, *_WITH_COUNTS):
         raise UsageError(f"--statistics: expected --format {', '.join(_WITH_COUNTS)}, found {form}")
 
@@ -40,7 +40,7 @@ paths = option("--show", "shown_too", type=click.Choice(["path"]), help="In text
 
 
 def extras(shown_too: str | None, form: str | None, outputs: Iterable[tuple[str, Path]]) -> tuple[Extra, ...]:
-    """Return the function that adds paths to reports. Raises UsageError for a format that cannot show them."""
+    """Return the functions that add paths to reports. Raises UsageError for a format that cannot show paths."""
     if shown_too is None:
         return ()
     for other in (form or _WITH_PATHS, *(form for form, _ in outputs)):
@@ -52,7 +52,7 @@ def extras(shown_too: str | None, form: str | None, outputs: Iterable[tuple[str,
 
 
 def background(plain: Background, tasks: Iterable[Task], failures: Sequence[str]) -> Background:
-    """Return the context of a report: the settings of each file, the root of paths, and the failures."""
+    """Add the settings of each file, the folders that paths are relative to, and the failures to a background."""
     folder = ""
     with contextlib.suppress(OSError):  # the working folder may be gone
         folder = os.getcwd()  # noqa: PTH109
@@ -65,7 +65,7 @@ def background(plain: Background, tasks: Iterable[Task], failures: Sequence[str]
 
 
 def _root(folder: str) -> str:
-    """The folder of the repository, else the one that is checked."""
+    """Return the folder of the repository, else the working folder."""
     from polarcheck.reading.files import RealPaths
     from polarcheck.reading.git import Repositories
 
@@ -73,7 +73,7 @@ def _root(folder: str) -> str:
 
 
 def written(outputs: Iterable[tuple[str, Path]], form: str, report: Report, plain: Background) -> Iterator[OutputError]:
-    """Write the reports that go into files, and the summary of GitHub Actions; what could not be written."""
+    """Write the reports that go to files, and the summary of GitHub Actions; yield the errors."""
     from polarcheck import reports
     from polarcheck.reading import files
 
@@ -94,7 +94,7 @@ def written(outputs: Iterable[tuple[str, Path]], form: str, report: Report, plai
 
 
 def _append(path: str, report: Report, plain: Background) -> None:
-    """To what other commands of the step have written there; the runner takes away the file of each step."""
+    """Append the summary to the file of the step, which other commands may have written to."""
     from polarcheck.reports.ci.step_summary import LARGEST, step_summary
 
     with Path(path).open("ab") as file:

@@ -1,4 +1,4 @@
-"""A run over programs, from the paths to what came of each; what goes wrong with one costs that one only."""
+"""A run over programs, from the paths to an outcome for each; an error in one program does not stop the others."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from polarcheck.commands import silencing
 from polarcheck.commands.exit_codes import BUG, CLEAN, COULD_NOT_RUN
-from polarcheck.commands.output import said_of_bug, say, say_lines, warn
+from polarcheck.commands.output import bug_lines, say, say_lines, warn
 
 if TYPE_CHECKING:
     from polarcheck.batch.tasks import Checked, Outcome, Task
@@ -20,28 +20,33 @@ if TYPE_CHECKING:
     from polarcheck.commands.watching import Seen
     from polarcheck.finding import FileReport
 
-#: Processes are started when they save more than they cost [s]. To fork, as on Linux, costs hardly anything; a spawned
-#: process loads the libraries anew.
+#: Processes are started once they save more time than this [s]. A fork, as on Linux, costs little; a spawned process
+#: loads the libraries again.
 _COST = 0.1 if sys.platform == "linux" else 1.5
-#: A next file of this size starts them at once [bytes].
+#: If the next file has this size, they are started at once [bytes].
 _WORTH_PROCESSES = 200_000
 
 
 class Faults:
-    """The failures and internal errors of a run, as lines for standard error."""
+    """
+    The failures of a run, for standard error.
+
+    failures: a line for each file that could not be read or checked.
+    bugs: lines on internal errors of polarcheck.
+    """
 
     def __init__(self, debug: bool) -> None:
-        """debug: whether bugs are told with their tracebacks."""
+        """debug: show tracebacks of bugs."""
         self._debug = debug
         self.failures: list[str] = []
         self.bugs: list[str] = []
 
     def bug(self, error: Exception) -> None:
         """Add an internal error."""
-        self.bugs += said_of_bug(error, self._debug)
+        self.bugs += bug_lines(error, self._debug)
 
-    def told(self) -> int:
-        """Tell all of it; the exit code for it."""
+    def report(self) -> int:
+        """Write all failures to standard error; return their exit code."""
         for failure in self.failures:
             say(failure)
         say_lines(self.bugs)
@@ -58,10 +63,10 @@ def planned(
     named: Mapping[str, Any] | None = None,
 ) -> list[Task]:
     """
-    The programs of some paths, with what applies to each.
+    Return the programs of paths, with the settings of each.
 
-    force_exclude: whether what is excluded is passed over where it is named, too. named: what standard input is judged
-    as (standard_input.judged_as).
+    force_exclude: skip excluded files even if they are named.
+    named: the file that standard input is judged as (standard_input.judged_as).
     """
     from polarcheck.batch import tasks as batch
 
@@ -100,13 +105,16 @@ class Runner:
         faults: Faults,
         baseline: silencing.Known | None = None,
         show: Callable[[FileReport, Mapping[int, str]], None] | None = None,
-        taken: Callable[[Iterable[Outcome]], Iterator[Outcome]] | None = None,
+        take: Callable[[Iterable[Outcome]], Iterator[Outcome]] | None = None,
     ) -> Checked:
         """
-        The outcomes of the programs, up to an interrupt.
+        Return the outcomes of the programs, up to an interrupt.
 
-        baseline: the file of known findings, which are silenced. show: gets each report when it is its turn.
-        taken: removes from the reports what is not shown. Raises ClusterError where the cluster cannot be used.
+        baseline: the file of known findings, which are silenced.
+        show: takes each report in its turn.
+        take: removes data from the reports that is not shown, such as pictures.
+
+        Raises ClusterError if the cluster cannot be used.
         """
         from polarcheck.batch import tasks as batch
 
@@ -114,13 +122,13 @@ class Runner:
             self._outcomes(tasks) if self._seen is None else self._seen.outcomes(tasks, self._outcomes) as outcomes,
             contextlib.closing(bar.watched(outcomes)) as watched,
         ):
-            answered = silencing.answered(watched, tasks, baseline)
-            reported = answered if taken is None else taken(answered)
+            suppressed = silencing.without_known(watched, tasks, baseline)
+            reported = suppressed if take is None else take(suppressed)
             return batch.gather(reported, faults.failures.append, faults.bug, show)
 
     @contextlib.contextmanager
     def _outcomes(self, tasks: Sequence[Task]) -> Iterator[Generator[Outcome, None, None]]:
-        """The outcome of each task, in order; at the end of the block no worker is left."""
+        """Yield a generator of the outcomes, in order of the tasks; no worker is left at the end of the block."""
         from polarcheck.batch.tasks import one_by_one
 
         with contextlib.ExitStack() as stack:
@@ -139,14 +147,14 @@ class Runner:
 
 
 def cores() -> int:
-    """The number of processors that this process may use."""
+    """Return the number of processors that this process may use."""
     if hasattr(os, "sched_getaffinity"):
         return max(1, len(os.sched_getaffinity(0)))
     return os.cpu_count() or 1
 
 
 def _as_it_pays(tasks: Sequence[Task], most: int, count: int) -> Generator[Outcome, None, None]:
-    """The outcomes by this process, and by so many others as soon as these save more than they cost."""
+    """Yield outcomes from this process, then from `count` worker processes once they save more than they cost."""
     from polarcheck.batch.tasks import forget, outcome
 
     begun = time.monotonic()
@@ -160,12 +168,12 @@ def _as_it_pays(tasks: Sequence[Task], most: int, count: int) -> Generator[Outco
 
 
 def _pays(left: Sequence[Task], done: int, seconds: float, count: int) -> bool:
-    """Tells whether processes should be started; seconds: time that the finished files took."""
+    """Return True if processes should be started; seconds: the time of the finished files."""
     if len(left) == 1:
         return False
     from polarcheck.reading import files
 
-    # The first file counts twice: forked processes have what it loads and compiles.
+    # The first file counts twice, since forked processes inherit what it has loaded.
     saved = seconds / (done + 1) * len(left) * (1 - 1 / min(count, len(left)))
     return saved > _COST or files.size(left[0].path) >= _WORTH_PROCESSES
 
@@ -176,7 +184,7 @@ def _by_processes(tasks: Sequence[Task], most: int, count: int) -> Generator[Out
     return executors.by_processes(tasks, most, count)
 
 
-def tell_unused(tools: Iterable[str], called: set[str]) -> None:
+def warn_unused(tools: Iterable[str], called: set[str]) -> None:
     """Warn of each --tool that no program of the run calls."""
     from polarcheck.machines.job import key_of_option
 

@@ -1,4 +1,4 @@
-"""`polarcheck schema`: the JSON Schemas of what is read and written."""
+"""`polarcheck schema`: the JSON Schemas of reports, job files and machine files."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which rules run and with which severities: names, groups and alarms, of the command line and of the job."""
+"""Selects rules and severities by names, groups and alarms, from the command line and from the job."""
 
 from __future__ import annotations
 
@@ -18,46 +18,47 @@ LEVELS = ("error", "warning", "note", "off")
 _ALARM = re.compile(r"([A-Za-z]{0,3})\s?0*(\d{1,9})")
 
 Rules = dict[str, Rule]
-#: Where a key of a job stands: `polarcheck.toml:12`.
+#: Returns the place of a key of a job: `polarcheck.toml:12`.
 Place = Callable[[str], str]
 
 
 def select(names: Iterable[str], known: Rules, machine: Machine) -> Rules:
     """
-    The rules of names, groups and alarms (PS0146, 146) of a machine.
+    Return the rules with these names, groups or alarms (PS0146, 146) of a machine.
 
-    Raises UsageError for a name that is none of these.
+    Raises UsageError for an unknown name.
     """
-    found: set[str] = set()
+    selected: set[str] = set()
     for name in names:
         alarm = _ALARM.fullmatch(name.strip())
         rules = _of_alarm(alarm, known, machine) if alarm else all_rules.find(name, known)
         if not rules:
             raise UsageError(f"no rule is known to give alarm {name.strip()} on {machine.title}")
-        found.update(rule.name for rule in rules)
-    return {name: rule for name, rule in known.items() if name in found}
+        selected.update(rule.name for rule in rules)
+    return {name: rule for name, rule in known.items() if name in selected}
 
 
 def _of_alarm(alarm: re.Match[str], known: Rules, machine: Machine) -> list[Rule]:
-    """The rules for what this machine answers with an alarm; its letters and leading zeros may be left out."""
+    """Return the rules with an alarm on this machine; its letters and leading zeros may be left out."""
     letters, number = alarm[1].upper(), int(alarm[2])
-    found = []
+    rules = []
     for name, text in machine.alarms.items():
-        match = _ALARM.fullmatch(text)
-        if match and name in known and int(match[2]) == number and letters in ("", match[1].upper()):
-            found.append(known[name])
-    return found
+        of_rule = _ALARM.fullmatch(text)
+        if of_rule and name in known and int(of_rule[2]) == number and letters in ("", of_rule[1].upper()):
+            rules.append(known[name])
+    return rules
 
 
 def chosen(
     selected: Sequence[str], ignored: Sequence[str], job: Job, at: Place, known: Rules, machine: Machine
 ) -> list[Rule]:
     """
-    The rules to run; --select sets aside what the job selects and ignores.
+    Return the rules to run; --select overrides what the job selects and ignores.
 
-    selected, ignored: names as the command line gives them. at: where a key of the job stands.
-    Raises UsageError, which names the option or the key of
-    the file, for an unknown name, and where no rule is left.
+    selected, ignored: the names of the command line.
+    at: returns the place of a key of the job.
+
+    Raises UsageError, with the option or the key of the file, for an unknown name, and if no rule is left.
     """
     rules, without = known, {}
     if selected:
@@ -77,25 +78,28 @@ def severities(
     levels: Iterable[str], selected: Iterable[str], job: Job, at: Place, known: Rules, machine: Machine
 ) -> dict[str, str]:
     """
-    Severities by rule where they differ from the profile; a rule selected by its own name is never off.
+    Return the severities that differ from the profile, by rule; a rule that is selected by its name is never off.
 
-    levels: RULE=LEVEL as the command line gives them; selected: names of --select. at: where a key of the job stands.
-    Raises UsageError, which names the option or the key of the file.
+    levels: RULE=LEVEL of the command line.
+    selected: the names of --select.
+    at: returns the place of a key of the job.
+
+    Raises UsageError, with the option or the key of the file.
     """
     of_job: dict[str, str] = {}
     for name, level in job.severities.items():
         of_job |= _named(partial(_of_severity, at, name), _levels, [(name, level)], known, machine)
-    asked = _named("--severity", _levels, [_pair(option) for option in levels], known, machine)
-    changed = of_job | asked
+    of_command = _named("--severity", _levels, [_pair(option) for option in levels], known, machine)
+    changed = of_job | of_command
     for name in selected:
         rule = known.get(name.strip().lower().replace("_", "-"))
-        if rule and rule.name not in asked and rule.level({**machine.severities, **changed}) == "off":
+        if rule and rule.name not in of_command and rule.level({**machine.severities, **changed}) == "off":
             changed[rule.name] = rule.severity.name.lower()
     return changed
 
 
 def check_names(profile: Profile, known: Rules) -> None:
-    """Raises MachineError, which names the file and the key, where a machine names a rule that there is not."""
+    """Raise MachineError, with the file and the key, if a machine names an unknown rule."""
     for table, names in (("alarms", profile.machine.alarms), ("severities", profile.machine.severities)):
         for name in names:
             if name not in known:
@@ -105,7 +109,7 @@ def check_names(profile: Profile, known: Rules) -> None:
 
 
 def _levels(pairs: Iterable[tuple[str, str]], known: Rules, machine: Machine) -> dict[str, str]:
-    """Severity by rule, from severities of rules, groups or alarms; the last that names a rule counts."""
+    """Return severities by rule, from those of rules, groups or alarms; the last one for a rule counts."""
     return {name: level for named, level in pairs for name in select([named], known, machine)}
 
 
@@ -121,7 +125,7 @@ def _of_severity(at: Place, name: str) -> str:
 
 
 def _named(title: str | Callable[[], str], function: Callable[..., dict[str, Any]], *arguments: Any) -> dict[str, Any]:
-    """What the function returns; its errors begin with the option or the key of the file, which is asked for then."""
+    """Call a function; its errors begin with the option or the key of the file, which is computed only then."""
     try:
         return function(*arguments)
     except UsageError as error:

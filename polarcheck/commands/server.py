@@ -1,4 +1,4 @@
-"""`polarcheck server`: what a check finds, in an editor."""
+"""`polarcheck server`: the language server for editors."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _NEEDED = ("pygls", "lsprotocol")
 @option("--stdio", is_flag=True, help="Speak over standard input and output, as always.")
 @options.debug
 @click.pass_context
-def server(ctx: click.Context, /, no_config: bool, trust: tuple[Path, ...], stdio: bool, **asked: Any) -> None:
+def server(ctx: click.Context, /, no_config: bool, trust: tuple[Path, ...], stdio: bool, **arguments: Any) -> None:
     """
     Show findings in an editor while a program is written: a language server on standard input and output.
 
@@ -37,10 +37,10 @@ def server(ctx: click.Context, /, no_config: bool, trust: tuple[Path, ...], stdi
     Files are opened in the folders that are open in the editor, and nowhere else: but for what these options name, and
     the folders of subprograms that a polarcheck.toml names.
     """
-    ctx.exit(_serve(no_config, trust, asked))
+    ctx.exit(_serve(no_config, trust, arguments))
 
 
-def _serve(no_config: bool, trust: tuple[Path, ...], asked: dict[str, Any]) -> int:
+def _serve(no_config: bool, trust: tuple[Path, ...], arguments: dict[str, Any]) -> int:
     if not all(map(importlib.util.find_spec, _NEEDED)):
         raise UsageError("the server needs pygls, of the extra [server]: pip install pygls")
     import gc
@@ -56,33 +56,33 @@ def _serve(no_config: bool, trust: tuple[Path, ...], asked: dict[str, Any]) -> i
         say("an editor starts the server, and speaks to it over standard input; Ctrl-C ends it")
     from polarcheck.server.session import Server
 
-    # It runs for hours: what the command line leaves to the end of the process is collected here.
+    # The server runs for hours, so garbage is collected, which other commands leave to the end of the process.
     gc.enable()
     keep_within_memory()
-    session = Server(_Settings(no_config, asked), _trusted(trust, asked))
+    session = Server(_Settings(no_config, arguments), _trusted(trust, arguments))
     return process.serve(session, streams)
 
 
 class _Settings:
     """
-    What applies to a program, read anew each time: it costs some milliseconds, and is never what it has been.
+    Returns the settings of a program, read again each time: that takes milliseconds, and they are never stale.
 
-    Made when it is first asked for: an editor waits for the answer to its first message, which needs no rules.
+    The modules are imported on the first call: an editor waits for the answer to its first message, which needs none.
     """
 
-    def __init__(self, no_config: bool, asked: dict[str, Any]) -> None:
-        self._use_config, self._asked = not no_config, asked
+    def __init__(self, no_config: bool, arguments: dict[str, Any]) -> None:
+        self._use_config, self._arguments = not no_config, arguments
 
     def __call__(self, path: Path) -> Any:
         from polarcheck.commands import settings
 
-        return settings.OfPrograms(settings.Options(use_config=self._use_config, **self._asked))(str(path))
+        return settings.OfPrograms(settings.Options(use_config=self._use_config, **self._arguments))(str(path))
 
 
-def _trusted(trust: tuple[Path, ...], asked: dict[str, Any]) -> list[Path]:
-    """The folders that the command line names, and those of the files that it names."""
-    files = [asked["config"], asked["offsets"]]
-    if asked["machine"] and os.path.isfile(asked["machine"]):  # noqa: PTH113  Path.is_file raises for some names
-        files.append(Path(asked["machine"]))
+def _trusted(trust: tuple[Path, ...], arguments: dict[str, Any]) -> list[Path]:
+    """Return the folders that the command line names, and those of the files that it names."""
+    files = [arguments["config"], arguments["offsets"]]
+    if arguments["machine"] and os.path.isfile(arguments["machine"]):  # noqa: PTH113  Path.is_file raises for some names
+        files.append(Path(arguments["machine"]))
     beside = [Path(os.path.realpath(file)).parent for file in files if file is not None]
-    return [*trust, *beside, *map(Path, asked["subprograms"])]
+    return [*trust, *beside, *map(Path, arguments["subprograms"])]

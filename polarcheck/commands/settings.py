@@ -25,7 +25,11 @@ from polarcheck.reading.files import STANDARD_INPUT
 
 
 class Options(msgspec.Struct, frozen=True):
-    """The options of the command line as written; empty if absent."""
+    """
+    The options of the command line, as written; empty or None if not set.
+
+    extras: functions that add data to the reports of files.
+    """
 
     machine: str | None = None
     changes: Sequence[str] = ()
@@ -49,16 +53,15 @@ class Options(msgspec.Struct, frozen=True):
     inline: bool | None = None
     baseline: Path | None = None
     drawing: Path | None = None
-    #: What the command itself adds to the reports of files.
     extras: Sequence[Extra] = ()
 
 
 class OfPrograms:
     """
-    The settings of programs by their paths; of a path that ends in a separator they are those of the folder.
+    Returns the settings of a program by its path; for a path that ends in a separator, those of the folder.
 
-    Each job file is read once, and makes settings once for all programs to which the same of its entries apply. Raises
-    a PolarcheckError that names the option, or file, line and key, at fault.
+    Each job file is read once, and programs with the same entries share their settings. Raises a PolarcheckError that
+    names the option, or the file, line and key at fault.
     """
 
     def __init__(self, options: Options) -> None:
@@ -66,53 +69,53 @@ class OfPrograms:
         self._nearest = job_files.Nearest()
         self._loaded: dict[Path | None, JobFile] = {}
         self._of_folder: dict[str, tuple[JobFile, str]] = {}
-        #: Of folders whose programs all have the same.
+        # The settings of folders whose programs all have the same settings.
         self._plain: dict[str, Settings] = {}
         self._settings: dict[tuple[Path | None, Layers], Settings] = {}
-        self._asked: dict[Path, list[tuple[str, str]]] = {}
-        self._making = _Making(options)
+        self._matched: dict[Path, list[tuple[str, str]]] = {}
+        self._maker = _SettingsMaker(options)
 
     def __call__(self, path: str) -> Settings:
         folder, name = os.path.split(path)
         plain = self._plain.get(folder)
         if plain is not None:
             return plain
-        found, real = self._job_file(folder)
-        layers = found.layers(real, name)
-        key = found.path, layers
+        file, real = self._job_file(folder)
+        layers = file.layers(real, name)
+        key = file.path, layers
         if key not in self._settings:
-            self._settings[key] = self._making.settings(found, layers)
-        if not found.has_entries:
+            self._settings[key] = self._maker.settings(file, layers)
+        if not file.has_entries:
             self._plain[folder] = self._settings[key]
-        elif name and found.path is not None:
-            self._asked.setdefault(found.path, []).append((real, name))
+        elif name and file.path is not None:
+            self._matched.setdefault(file.path, []).append((real, name))
         return self._settings[key]
 
     def applied(self, path: str) -> Applied:
-        """The same with the origin of each value."""
+        """Return the settings with the origin of each value."""
         folder, name = os.path.split(path)
-        found, real = self._job_file(folder)
-        return self._making.applied(found, found.layers(real, name))
+        file, real = self._job_file(folder)
+        return self._maker.applied(file, file.layers(real, name))
 
     def excluded_in(self, folder: str) -> Callable[[str, bool], bool] | None:
-        """Return the test for entries that the nearest job file excludes, if it excludes any; see files.walk."""
-        found, real = self._job_file(folder)
-        exclude = found.exclude
+        """Return the function that says which files of a folder are excluded, for files.walk; None without any."""
+        file, real = self._job_file(folder)
+        exclude = file.exclude
         return (lambda name, is_folder: bool(exclude.itself(real, name, is_folder=is_folder))) if exclude else None
 
     def is_within_excluded(self, path: str) -> bool:
-        """Return True if a walk from above would skip a named file or folder, or a folder around it."""
+        """Return True if a walk from above would skip a file or folder, or a folder around it."""
         folder, name = os.path.split(path.rstrip(os.sep) or path)
-        found, real = self._job_file(folder)
-        if not found.exclude or path == STANDARD_INPUT:
+        file, real = self._job_file(folder)
+        if not file.exclude or path == STANDARD_INPUT:
             return False
         is_folder = os.path.isdir(path)  # noqa: PTH112  Path.is_dir raises for some names
         if name in ("", os.curdir, os.pardir):
-            return bool(found.exclude.of_folder(os.path.realpath(path)))
-        return bool(found.exclude.of_folder(real) or found.exclude.itself(real, name, is_folder=is_folder))
+            return bool(file.exclude.of_folder(os.path.realpath(path)))
+        return bool(file.exclude.of_folder(real) or file.exclude.itself(real, name, is_folder=is_folder))
 
     def left(self, paths: Sequence[str], warn: Callable[[str], None]) -> tuple[str, ...]:
-        """Return the paths that are not excluded; calls warn if none is left."""
+        """Return the paths that are not excluded; call `warn` if none is left."""
         left = tuple(path for path in paths if not self.is_within_excluded(path))
         if not left:
             warn("all that is named is excluded: nothing is checked")
@@ -120,30 +123,31 @@ class OfPrograms:
 
     def unmatched(self, paths: Iterable[str]) -> list[str]:
         """
-        What is to be said of patterns in job files that match none of the programs asked for so far, where all in the
-        folder of the job file have been.
+        Return a line for each pattern in a job file that has matched no program so far.
 
-        paths: files and folders, which have been walked.
+        Only job files whose whole folder was walked count.
+
+        paths: the files and folders that were walked.
         """
-        if not self._asked:
+        if not self._matched:
             return []
         walked = [self._nearest.real.folder(path) for path in paths if os.path.isdir(path)]  # noqa: PTH112
         return [
-            told
-            for path, asked in self._asked.items()
+            line
+            for path, names in self._matched.items()
             if any(Path(os.path.realpath(path.parent)).is_relative_to(folder) for folder in walked)
-            for told in self._loaded[path].unmatched(asked)
+            for line in self._loaded[path].unmatched(names)
         ]
 
     def _job_file(self, folder: str) -> tuple[JobFile, str]:
-        """The job file for a folder, and the real path of the folder."""
+        """Return the job file for a folder, and the real path of the folder."""
         if folder not in self._of_folder:
             options = self._options
             nearest = None if not options.use_config else options.config or self._nearest.of(Path(folder))
             if nearest not in self._loaded:
                 pipes = nearest == options.config
                 self._loaded[nearest] = job_files.load(nearest, pipes=pipes) if nearest else JobFile()
-            with contextlib.suppress(OSError, RuntimeError, ValueError):  # reading the program will say so
+            with contextlib.suppress(OSError, RuntimeError, ValueError):  # reading the program reports the error
                 self._of_folder[folder] = self._loaded[nearest], self._nearest.real.folder(folder or os.curdir)
                 return self._of_folder[folder]
             return self._loaded[nearest], folder
@@ -154,7 +158,14 @@ Layers = tuple[tuple[int, int], ...]
 
 
 class Applied(msgspec.Struct, frozen=True):
-    """The settings of a program and their origin: the job as files give it, and its machine."""
+    """
+    The settings of a program, with their origins.
+
+    settings: the settings.
+    merged: the job of the job files, before the command line.
+    profile: the machine.
+    file: the job file.
+    """
 
     settings: Settings
     merged: Merged
@@ -162,8 +173,8 @@ class Applied(msgspec.Struct, frozen=True):
     file: JobFile
 
 
-class _Making:
-    """Makes settings; those of the same machine and rules share what is made of these."""
+class _SettingsMaker:
+    """Makes settings; settings with the same machine and rules share these."""
 
     def __init__(self, options: Options) -> None:
         self._options = options
@@ -172,13 +183,13 @@ class _Making:
         self._profiles: dict[str, profiles.Profile] = {}
         self._rules: dict[str, tuple[list[Rule], dict[str, str]]] = {}
 
-    def settings(self, found: JobFile, layers: Layers) -> Settings:
-        return self.applied(found, layers).settings
+    def settings(self, file: JobFile, layers: Layers) -> Settings:
+        return self.applied(file, layers).settings
 
-    def applied(self, found: JobFile, layers: Layers) -> Applied:
-        """The settings of some layers of a job file."""
+    def applied(self, file: JobFile, layers: Layers) -> Applied:
+        """Return the settings of layers of a job file."""
         options = self._options
-        merged = found.merged(layers)
+        merged = file.merged(layers)
         job = _changed(merged.job, options)
         name = options.machine or job.machine or profiles.DEFAULT
         profile = self._profile(name, merged)
@@ -192,14 +203,14 @@ class _Making:
             job=job,
             rules=rules,
             severities=levels,
-            read=_read(options, job, profile, found),
+            read=_files_read(options, job, profile, file),
             fail_on=job.fail_on,
             strict=job.strict,
             encoding=job.encoding,
             inline=job.inline,
             extras=options.extras,
         )
-        return Applied(settings, merged, profile, found)
+        return Applied(settings, merged, profile, file)
 
     def _profile(self, name: str, merged: Merged) -> profiles.Profile:
         over: list[profiles.Change] = [("--set", self._changes)]
@@ -219,7 +230,7 @@ class _Making:
         return self._profiles[key]
 
     def _chosen(self, job: Job, merged: Merged, profile: profiles.Profile) -> tuple[list[Rule], dict[str, str]]:
-        """The rules to run, and their severities where they differ from the machine's."""
+        """Return the rules to run, and the severities that differ from the machine's."""
         options, machine = self._options, profile.machine
         key = repr((id(profile), job.select, job.ignore, list(job.severities.items())))
         if key not in self._rules:
@@ -229,13 +240,13 @@ class _Making:
         return self._rules[key]
 
 
-def _with_line(said: str, merged: Merged) -> str:
-    """Return the message about [limits], with the line of the key."""
-    key = re.search(r"limits\.\w+", said)
+def _with_line(message: str, merged: Merged) -> str:
+    """Add the line of the key to an error in [limits] of a job file."""
+    key = re.search(r"limits\.\w+", message)
     for layer in merged.layers if key else ():
-        if key and said.startswith((f"{layer.title}: {key[0]}", f"{layer.title}: unknown key")):
-            return f"{layer.at(key[0])}: {said.removeprefix(f'{layer.title}: ')}"
-    return said
+        if key and message.startswith((f"{layer.title}: {key[0]}", f"{layer.title}: unknown key")):
+            return f"{layer.at(key[0])}: {message.removeprefix(f'{layer.title}: ')}"
+    return message
 
 
 def _changed(job: Job, options: Options) -> Job:
@@ -243,51 +254,51 @@ def _changed(job: Job, options: Options) -> Job:
         from polarcheck.machines import offset_table
 
         listed = offset_table.read(options.offsets, str(options.offsets), pipes=True, units=job.units)
-        own = {key: tool for key, tool in job.tools.items() if not isinstance(tool, PunchedTool)}
-        job = msgspec.structs.replace(job, tools={**own, **listed})
+        written = {key: tool for key, tool in job.tools.items() if not isinstance(tool, PunchedTool)}
+        job = msgspec.structs.replace(job, tools={**written, **listed})
     for tool in options.tools:
         job = with_tool(job, tool)
     if options.drawing is not None:
         from polarcheck.machines import drawing
 
         job = msgspec.structs.replace(job, part=[drawing.part_of(options.drawing, str(options.drawing))])
-    asked = {key: value for key in _OVER_JOB if (value := getattr(options, key)) is not None}
+    changes_of_job = {key: value for key in _OVER_JOB if (value := getattr(options, key)) is not None}
     if options.units:
-        asked["program_units"] = options.units
+        changes_of_job["program_units"] = options.units
     of_run = {name: getattr(options, name) for name in Running.__struct_fields__ if getattr(options, name, None)}
     if "subprograms" in of_run:
         of_run["subprograms"] = [*of_run["subprograms"], *job.run.subprograms]
     if of_run:
-        asked["run"] = msgspec.structs.replace(job.run, **of_run)
-    return msgspec.structs.replace(job, **asked) if asked else job
+        changes_of_job["run"] = msgspec.structs.replace(job.run, **of_run)
+    return msgspec.structs.replace(job, **changes_of_job) if changes_of_job else job
 
 
-#: Options that a job has a key of the same name for.
+#: Options with the name of the key of a job that they set.
 _OVER_JOB = ("radius_from_comments", "fail_on", "strict", "encoding", "inline")
 
 
-def _read(options: Options, job: Job, profile: profiles.Profile, found: JobFile) -> list[Path]:
-    """The job files, the offset tables, the baseline and the machine files of the user's own."""
-    own = [Path(title) for title in profile.chain if title not in profiles.names()]
+def _files_read(options: Options, job: Job, profile: profiles.Profile, file: JobFile) -> list[Path]:
+    """Return the job files, offset tables, drawings, the baseline and the user's machine files."""
+    machines = [Path(title) for title in profile.chain if title not in profiles.names()]
     tables = [path for path in (options.offsets, options.baseline, options.drawing) if path]
     tables += [Path(part.drawing) for part in job.part if part.drawing is not None and options.drawing is None]
-    return [*own, *tables, *found.read, *([Path(job.offsets)] if job.offsets else [])]
+    return [*machines, *tables, *file.paths, *([Path(job.offsets)] if job.offsets else [])]
 
 
 def changes(options: Iterable[str]) -> dict[str, Any]:
     """
-    What to change in a profile: `--set limits.c_feed=3600`.
+    Return the changes of a profile, from options such as `--set limits.c_feed=3600`.
 
     Raises UsageError for an option that is not TABLE.KEY=VALUE.
     """
-    found: dict[str, Any] = {}
+    tables: dict[str, Any] = {}
     for option in options:
         key, equals, text = (part.strip() for part in option.partition("="))
         table, _, name = key.partition(".")
         if not equals or not table or not name:
             raise UsageError(f"--set {option}: expected TABLE.KEY=VALUE as in limits.c_feed=3600")
-        found.setdefault(table, {})[name] = toml_value(text)
-    return found
+        tables.setdefault(table, {})[name] = toml_value(text)
+    return tables
 
 
 def _profile(name: str, over: Sequence[profiles.Change], known: Rules) -> profiles.Profile:
@@ -304,7 +315,7 @@ def _profile(name: str, over: Sequence[profiles.Change], known: Rules) -> profil
 
 
 def toml_value(text: str) -> Any:
-    """A number, true or false, or a list as TOML writes it, or else the text itself: quotes may be left out."""
+    """Return the TOML value of a text; else the text itself, so that quotes may be left out."""
     try:
         table = toml_text.parsed(f"value = {text}")
     except ValueError:
@@ -313,14 +324,14 @@ def toml_value(text: str) -> Any:
     return value if len(table) == 1 and isinstance(value, bool | int | float | str | list) else text
 
 
-def here(machine: str | None) -> tuple[str, Machine]:
-    """The machine for a command without programs: the one asked for, else that of the job of the working folder."""
+def default_machine(machine: str | None) -> tuple[str, Machine]:
+    """Return the machine of a command without programs: the named one, else that of the working folder's job."""
     if machine:
         return machine, profile_of(machine).machine
-    found = OfPrograms(Options())("")
-    return found.name, found.machine
+    settings = OfPrograms(Options())("")
+    return settings.name, settings.machine
 
 
 def profile_of(machine: str) -> profiles.Profile:
-    """The profile of a name or file as it is. Raises MachineError for one that cannot be used."""
+    """Return the profile of a name or file, unchanged. Raises MachineError if it cannot be used."""
     return _profile(machine, (), load_all())

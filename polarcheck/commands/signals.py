@@ -1,4 +1,4 @@
-"""Ctrl-C, and the signal with which a system ends a process: both let what is finished be reported."""
+"""Handles Ctrl-C and SIGTERM: both raise an exception, so that finished files are still reported."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from typing import Any
 
 from polarcheck.ending import INTERRUPTED, TERMINATED, Terminated
 
-#: By then the destructor or callback has come to its end [s].
+#: After this time the destructor or callback has returned [s].
 _UNTIL_AGAIN = 0.01
 
 
 def listen() -> None:
-    """Make Ctrl-C, SIGTERM and Ctrl-Break of Windows exceptions, unless whoever started the process ignores them."""
+    """Turn Ctrl-C, SIGTERM and Ctrl-Break of Windows into exceptions, unless the parent process ignores them."""
     for name, handler in (
         ("SIGINT", signal.default_int_handler),
         ("SIGTERM", _terminated),
@@ -55,15 +55,15 @@ def _send(number: int) -> None:
 
 
 def interrupt_behind(error: BaseException) -> KeyboardInterrupt | None:
-    """The interrupt that caused another exception: Python 3.11 raises RuntimeError for one in `__set_name__`."""
+    """Return the interrupt that caused an exception: Python 3.11 raises RuntimeError for one in `__set_name__`."""
     cause = error.__cause__
     while cause is not None and not isinstance(cause, KeyboardInterrupt):
         cause = cause.__cause__
     return cause
 
 
-def told(stop: BaseException) -> tuple[int, str]:
-    """The exit code of an interrupt, and the word for it."""
-    # click has made another exception of it, where it came while a command ran.
+def exit_status(stop: BaseException) -> tuple[int, str]:
+    """Return the exit code of an interrupt, and the word for it."""
+    # During a command, click replaces the exception, which becomes the cause.
     is_terminated = isinstance(stop, Terminated) or isinstance(stop.__cause__, Terminated)
     return (TERMINATED, "terminated") if is_terminated else (INTERRUPTED, "interrupted")

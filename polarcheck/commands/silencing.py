@@ -1,4 +1,4 @@
-"""Options for suppressed findings: allow comments of programs, findings of a baseline."""
+"""Silences the findings of a baseline, and the options for silenced findings."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ if TYPE_CHECKING:
     from polarcheck.checking.settings import Settings
     from polarcheck.finding import FileReport
 
-#: Of what no longer occurs, or was moved, so much is named in one line.
+#: The most entries in a line on findings that no longer occur, or on moved files.
 _NAMED = 5
 
 
 def _readable(ctx: click.Context, parameter: click.Parameter, value: Path | None) -> Path | None:
-    """Read it before anything is checked: an archive takes minutes."""
+    """Read the file before anything is checked, since a check of many files takes minutes."""
     if value is not None:
         from polarcheck.batch import baseline_file
 
@@ -42,14 +42,19 @@ show_silenced = option(
 
 
 class Known(NamedTuple):
-    """A file of known findings, and the paths of the run: of what lies elsewhere nobody knows if it still occurs."""
+    """
+    The baseline of a run.
+
+    path: the file of known findings.
+    walked: the paths of the run; known findings of other files are left alone.
+    """
 
     path: Path
     walked: Sequence[str]
 
 
-def answered(outcomes: Iterable[Outcome], tasks: Sequence[Task], baseline: Known | None) -> Iterator[Outcome]:
-    """Yield each outcome with known findings suppressed; at the end warn of entries that no longer occur."""
+def without_known(outcomes: Iterable[Outcome], tasks: Sequence[Task], baseline: Known | None) -> Iterator[Outcome]:
+    """Silence the findings of a baseline in outcomes; at the end warn of known findings that no longer occur."""
     if baseline is None:
         yield from outcomes
         return
@@ -58,27 +63,27 @@ def answered(outcomes: Iterable[Outcome], tasks: Sequence[Task], baseline: Known
     from polarcheck.batch.tasks import fails
 
     known, settings = _baseline(tasks, baseline), settings_of(tasks)
-    answer = _answering(known, settings)
+    suppress = _suppressor(known, settings)
     for outcome in outcomes:
         if outcome.report is None:
             yield outcome
         else:
-            report = answer(outcome.report)
+            report = suppress(outcome.report)
             yield msgspec.structs.replace(outcome, report=report, failed=fails(report, settings[report.path]))
-    _tell(known, baseline.path)
+    _warn_leftovers(known, baseline.path)
 
 
-def answers(tasks: Sequence[Task], baseline: Known | None) -> Callable[[FileReport], FileReport] | None:
-    """Return the function that suppresses the findings of a baseline in a report; None without a baseline."""
-    return None if baseline is None else _answering(_baseline(tasks, baseline), settings_of(tasks))
+def suppressor(tasks: Sequence[Task], baseline: Known | None) -> Callable[[FileReport], FileReport] | None:
+    """Return a function that silences the findings of a baseline in a report; None without a baseline."""
+    return None if baseline is None else _suppressor(_baseline(tasks, baseline), settings_of(tasks))
 
 
-def _answering(known: Baseline, settings: Mapping[str, Settings]) -> Callable[[FileReport], FileReport]:
-    def answer(report: FileReport) -> FileReport:
-        own = settings[report.path]
-        return known.without_known(report, evaluated(report, own), own.fail_on)
+def _suppressor(known: Baseline, settings: Mapping[str, Settings]) -> Callable[[FileReport], FileReport]:
+    def suppress(report: FileReport) -> FileReport:
+        of_file = settings[report.path]
+        return known.without_known(report, evaluated(report, of_file), of_file.fail_on)
 
-    return answer
+    return suppress
 
 
 def _baseline(tasks: Iterable[Task], known: Known) -> Baseline:
@@ -90,21 +95,21 @@ def _baseline(tasks: Iterable[Task], known: Known) -> Baseline:
 
 
 def settings_of(tasks: Iterable[Task]) -> dict[str, Settings]:
-    """Return the settings of each file, by its path as reports have it."""
+    """Return the settings of each file, by its path in reports."""
     return {task.title: task.settings for task in tasks}
 
 
 def evaluated(report: FileReport, settings: Settings) -> Collection[str]:
-    """The rules that were asked of a file and could be evaluated: only of these it is known what no longer occurs."""
-    missing = {one.rule for one in report.not_evaluated if one.matters}
+    """Return the rules that were evaluated for a file: only their known findings may have disappeared."""
+    missing = {gap.rule for gap in report.not_evaluated if gap.matters}
     if "all" in missing:
         return ()
     levels = {**settings.machine.severities, **settings.severities}
     return {rule.name for rule in settings.rules if rule.level(levels) != "off"} - missing
 
 
-def _tell(known: Baseline, path: Path) -> None:
-    """Warn of known findings that no longer occur, and of moved files, a line each."""
+def _warn_leftovers(known: Baseline, path: Path) -> None:
+    """Warn of known findings that no longer occur, and of moved files, in a line each."""
     from polarcheck.reading import files
     from polarcheck.reports import counted
 
@@ -131,15 +136,17 @@ def _were(count: int, noun: str) -> str:
 
 
 def _places(leftovers: Iterable[Leftover]) -> list[str]:
-    """`rapid-in-polar in a.nc (2)`, and the files that are gone with all that was known of them."""
-    found: Counter[str] = Counter()
-    for one in leftovers:
-        entry = one.entry
-        found[f"{entry.file}, which is gone" if one.is_gone else f"{entry.rule} in {entry.file}"] += one.missing
-    return [f"{place} ({count})" if count > 1 else place for place, count in found.items()]
+    """Return entries such as `rapid-in-polar in a.nc (2)`, and the files that no longer exist."""
+    counts: Counter[str] = Counter()
+    for leftover in leftovers:
+        entry = leftover.entry
+        counts[f"{entry.file}, which is gone" if leftover.is_gone else f"{entry.rule} in {entry.file}"] += (
+            leftover.missing
+        )
+    return [f"{place} ({count})" if count > 1 else place for place, count in counts.items()]
 
 
 def _listed(texts: Iterable[str]) -> str:
-    every = list(texts)
-    more = len(every) - _NAMED
-    return ", ".join(every[:_NAMED]) + (f" and {more} more" if more > 0 else "")
+    entries = list(texts)
+    more = len(entries) - _NAMED
+    return ", ".join(entries[:_NAMED]) + (f" and {more} more" if more > 0 else "")

@@ -1,4 +1,4 @@
-"""Standard input that stands for a file: the text that an editor holds, and has not written yet."""
+"""`--stdin-filename`: checks standard input as if it were a file, such as the unsaved text of an editor."""
 
 from __future__ import annotations
 
@@ -29,9 +29,9 @@ filename = option(
 
 def judged_as(paths: Sequence[str], filename: str | None) -> dict[str, Any]:
     """
-    What tasks.plan is told of standard input.
+    Return the arguments of tasks.plan for standard input.
 
-    Raises UsageError where a name is given, and nothing is read from there.
+    Raises UsageError if a name is given, but standard input is not read.
     """
     if filename is None:
         return {}

@@ -1,4 +1,4 @@
-"""`polarcheck trace`: the executed table, or the moves of a path, as a table, CSV or JSON lines."""
+"""`polarcheck trace`: shows the executed table, or the moves of a path, as a table, CSV or JSON lines."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def trace(
     color: str,
     no_config: bool,
     max_size: int,
-    **asked: Any,
+    **arguments: Any,
 ) -> None:
     """
     Show what FILE does, block by block or, with --path, move by move inside polar sections.
@@ -65,11 +65,11 @@ def trace(
     keep_within_memory()
     if shown_too and form not in (None, "table"):
         raise UsageError(f"--show {shown_too}: expected --format table, found {form}")
-    found = settings.OfPrograms(settings.Options(use_config=not no_config, **asked))(path)
+    applied = settings.OfPrograms(settings.Options(use_config=not no_config, **arguments))(path)
     data = files.read(path, max_size)
-    with time_limit(seconds_for(len(data), found.job.run.max_seconds)):
-        # One run for each channel: --block-skip asks for one state.
-        runs = check.read(data, found.machine, found.job, files.shown(path), found.encoding)
+    with time_limit(seconds_for(len(data), applied.job.run.max_seconds)):
+        # One run for each channel, since --block-skip has a single state in this command.
+        runs = check.read(data, applied.machine, applied.job, files.shown(path), applied.encoding)
         paths = [(tables["trace"], tables["tool_center"]) for _, tables in runs]
         for of_path in paths if which == "tool" or shown_too else ():
             unknown = executed.without_radius(*of_path)
@@ -84,14 +84,16 @@ def trace(
                 if not show(text):
                     break
             return
-        items = chain.from_iterable(executed.moves(*one, which) if which else executed.rows(*one) for one in paths)
+        items = chain.from_iterable(
+            executed.moves(*of_run, which) if which else executed.rows(*of_run) for of_run in paths
+        )
         for line in (executed.as_jsonl if form == "jsonl" else executed.as_csv)(items):
             if not show(line.encode()):
                 break
 
 
 def _show_paths(channels: Sequence[Tables], is_colored: bool) -> None:
-    """Show the picture of each section, as wide as the terminal."""
+    """Show each section, as wide as the terminal."""
     from polarcheck.pictures.painting import plain
     from polarcheck.pictures.section_view import views_of
     from polarcheck.reports import painted
@@ -107,7 +109,7 @@ def _show_paths(channels: Sequence[Tables], is_colored: bool) -> None:
 
 
 def _table(paths: Sequence[tuple[Trace, ToolCenter]], which: str | None, on_terminal: bool) -> Iterator[str]:
-    """Each channel as a table, as wide as the terminal and its head on every page of it; elsewhere all columns."""
+    """Yield a table for each channel: on a terminal as wide as it is, with a head on every page; else all columns."""
     from polarcheck.reports.pages.trace_columns import moves_table, rows_table
 
     size = shutil.get_terminal_size()

@@ -1,7 +1,7 @@
 """
-`--watch`: check, and again whenever something changes that the result hangs on.
+`--watch`: checks again whenever a file changes that the result depends on.
 
-It looks at times and sizes of files: drives of a network tell nobody that something has changed there.
+It polls times and sizes of files, since network drives send no events.
 """
 
 from __future__ import annotations
@@ -28,51 +28,51 @@ if TYPE_CHECKING:
 
 watch = option("--watch", is_flag=True, help="Check again whenever a file changes, until Ctrl-C.")
 
-#: From one look to the next at least this [s], and so many times as long as a look takes.
+#: The pause between two looks: at least this [s], and this multiple of the time that a look takes.
 _PAUSE, _TIMES = 0.5, 10
-#: A file that is being written changes at each of two looks so far apart [s]; nobody waits for it longer than this [s].
+#: A changed file must be stable between two looks this far apart [s]; the longest wait for that [s].
 _SETTLING, _LONGEST = 0.1, 5.0
-#: Of the files that have changed so many are named.
+#: The most changed files that are named.
 _NAMED = 3
 
 Look = dict[str, State]
-#: The outcomes of some tasks.
+#: Yields the outcomes of tasks.
 Check = Callable[[Sequence["Task"]], contextlib.AbstractContextManager[Generator["Outcome", None, None]]]
 
 
 class Seen:
-    """The files that the last result depends on, and the outcome of each program."""
+    """The state of all files that the last result depends on, and the outcome of each program."""
 
     def __init__(self, paths: Sequence[str], written: Iterable[Path] = ()) -> None:
-        """written: what the runs themselves write, which is no change."""
-        self._asked = paths
+        """written: files that the runs themselves write, whose changes do not count."""
+        self._paths = paths
         self._written = frozenset(os.path.realpath(path) for path in written)
         self._of_programs: dict[str, tuple[Look, Outcome]] = {}
         self._look: Look = {}
 
     @contextlib.contextmanager
     def outcomes(self, tasks: Sequence[Task], check: Check) -> Iterator[Generator[Outcome, None, None]]:
-        """Yield the outcome of each task, in order; only changed programs are checked again."""
+        """Yield a generator of the outcomes, in order; only tasks with changed files are checked."""
         looks = [self._of(task) for task in tasks]
-        self._look = {path: self._state(path) for path in _surroundings(self._asked)}
+        self._look = {path: self._state(path) for path in _surroundings(self._paths)}
         for look in looks:
             self._look |= look
         keys = [f"{number}\n{task.path}" for number, task in _numbered(tasks)]
         known = [self._of_programs.get(key) for key in keys]
         are_new = [old is None or old[0] != look for old, look in zip(known, looks, strict=True)]
         self._of_programs = {key: old for key, old in zip(keys, known, strict=True) if old is not None}
-        with check([task for task, is_new in zip(tasks, are_new, strict=True) if is_new]) as found:
+        with check([task for task, is_new in zip(tasks, are_new, strict=True) if is_new]) as fresh:
 
             def merged() -> Generator[Outcome, None, None]:
                 for key, look, is_new, old in zip(keys, looks, are_new, known, strict=True):
-                    outcome = next(found) if is_new or old is None else old[1]
+                    outcome = next(fresh) if is_new or old is None else old[1]
                     self._of_programs[key] = look, outcome
                     yield outcome
 
             yield merged()
 
     def _of(self, task: Task) -> Look:
-        """All that the result of a program hangs on: itself, its settings, and what it may call."""
+        """Return the state of all files that a result depends on: the program, its settings, called programs."""
         settings = task.settings
         files = {task.path, *(str(path) for path in settings.read)}
         for folder in settings.job.run.subprograms:
@@ -80,46 +80,46 @@ class Seen:
         return {path: self._state(path) for path in sorted(files)}
 
     def changed(self) -> list[str]:
-        """Return the paths that have changed since the last result began."""
+        """Return the files that have changed since the last run began."""
         return [path for path, state in self._look.items() if self._state(path) != state]
 
     def states(self, paths: Iterable[str]) -> Look:
-        """How some files are now."""
+        """Return the present state of files."""
         return {path: self._state(path) for path in paths}
 
-    def keep_looking(self) -> None:
-        """Take the present state as seen: it could not be checked."""
+    def accept(self) -> None:
+        """Take the present state as seen, after a run that failed."""
         self._look = {path: self._state(path) for path in self._look}
 
     def _state(self, path: str) -> State:
         return state(path, self._of_folder)
 
     def _of_folder(self, path: str, number: int) -> State:
-        """For a folder its entries count: its time changes with each report that is written there."""
+        """Return the state of a folder by the names in it: its time changes with each report that is written there."""
         with os.scandir(path) as entries:
-            names = sorted(one.name for one in entries if not one.name.startswith("."))
+            names = sorted(entry.name for entry in entries if not entry.name.startswith("."))
         written = [name for name in names if os.path.realpath(os.path.join(path, name)) not in self._written]  # noqa: PTH118
         return hash(tuple(written)), 0, number
 
 
 def _numbered(tasks: Sequence[Task]) -> Iterator[tuple[int, Task]]:
-    """Tasks of one path have different settings: they count from 0."""
-    met: dict[str, int] = {}
+    """Number the tasks of each path from 0: a path can have several tasks with different settings."""
+    counts: dict[str, int] = {}
     for task in tasks:
-        met[task.path] = met.get(task.path, -1) + 1
-        yield met[task.path], task
+        counts[task.path] = counts.get(task.path, -1) + 1
+        yield counts[task.path], task
 
 
 def _inside(folder: str) -> set[str]:
-    """A folder and what lies in it."""
-    found = {folder}
+    """Return a folder and the paths in it."""
+    paths = {folder}
     with contextlib.suppress(OSError), os.scandir(folder) as entries:
-        found.update(entry.path for entry in entries)
-    return found
+        paths.update(entry.path for entry in entries)
+    return paths
 
 
 def _surroundings(paths: Iterable[str]) -> Iterator[str]:
-    """Where programs and job files may come to lie: the folders, and the names that count in those above them."""
+    """Yield the paths where programs and job files can appear: the folders, and job files in the folders above."""
     from polarcheck.machines.job import FILE_NAME, PROJECT
 
     for path in paths:
@@ -137,7 +137,7 @@ def _surroundings(paths: Iterable[str]) -> Iterator[str]:
 
 
 def refuse(paths: Sequence[str], others: Mapping[str, object]) -> None:
-    """Raises UsageError for what cannot be looked at again, and for other options, by name, that are given."""
+    """Raise UsageError for standard input, and for options that exclude --watch."""
     if "-" in paths:
         raise UsageError("--watch: standard input comes once; name a file or folder")
     for name, value in others.items():
@@ -147,9 +147,9 @@ def refuse(paths: Sequence[str], others: Mapping[str, object]) -> None:
 
 def repeatedly(run: Callable[[Seen], int], paths: Sequence[str], outputs: Iterable[tuple[str, Path]] = ()) -> int:
     """
-    Run a check again and again; Ctrl-C, with which it is meant to end, ends it with 0.
+    Run a check again after each change; Ctrl-C is the normal end, with exit code 0.
 
-    outputs: the reports that it writes, format and file. Raises what the first run raises.
+    outputs: format and file of the reports that it writes. Raises what the first run raises.
     """
     seen = Seen(paths, [path for _, path in outputs])
     try:
@@ -159,14 +159,14 @@ def repeatedly(run: Callable[[Seen], int], paths: Sequence[str], outputs: Iterab
             changed = _next_change(seen)
             try:
                 status = _run(run, seen, changed)
-            except PolarcheckError as error:  # a job file half written, say
+            except PolarcheckError as error:  # such as a half-written job file
                 say(str(error))
-                seen.keep_looking()
+                seen.accept()
                 status = COULD_NOT_RUN
     except KeyboardInterrupt as stop:
-        from polarcheck.commands.signals import told
+        from polarcheck.commands.signals import exit_status
 
-        status, _ = told(stop)
+        status, _ = exit_status(stop)
     return CLEAN if status == INTERRUPTED else status
 
 
@@ -174,7 +174,7 @@ def _run(run: Callable[[Seen], int], seen: Seen, changed: Sequence[str]) -> int:
     if is_terminal(sys.stdout):
         click.clear()
     if changed:
-        # A job file beside the programs is looked at under two names: as it was found, and as one of the folder.
+        # A job file beside the programs is seen under two paths: its own, and that of the folder.
         names = list({os.path.realpath(path): path for path in sorted(changed, key=len, reverse=True)}.values())
         names.sort()
         named = ", ".join(names[:_NAMED])
@@ -184,7 +184,7 @@ def _run(run: Callable[[Seen], int], seen: Seen, changed: Sequence[str]) -> int:
 
 
 def _next_change(seen: Seen) -> list[str]:
-    """Wait for something to change, and until it is at rest."""
+    """Wait for a change, and until the changed files are stable; return them."""
     while True:
         begun = time.monotonic()
         if changed := seen.changed():

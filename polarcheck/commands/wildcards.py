@@ -1,4 +1,4 @@
-"""Wildcards and ~ on the command line of Windows, whose shells hand them over as they are typed."""
+"""Expands wildcards and ~ on Windows, whose shells pass them unexpanded."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ _MARKS = "*?["
 
 def expanded(arguments: Iterable[str]) -> list[str]:
     """
-    The arguments with the files that they name by `*`, `?`, `[...]` and `**`, in order of their names.
+    Return the arguments with `*`, `?`, `[...]` and `**` expanded, sorted by name.
 
-    A file that has just this name, as `part[1].nc`, is itself, and so is what no file matches; an option is no file.
+    An existing file, such as `part[1].nc`, is not expanded; nor is an option, or a pattern without a match.
     """
-    found: list[str] = []
+    names: list[str] = []
     for argument in arguments:
-        own = os.path.expanduser(argument) if argument.startswith("~") else argument  # noqa: PTH111
-        is_pattern = any(mark in own for mark in _MARKS) and not own.startswith("-")
-        if is_pattern and not os.path.lexists(own):
-            found += sorted(glob.glob(own, recursive=True)) or [own]  # noqa: PTH207  Path.glob takes no drive
+        pattern = os.path.expanduser(argument) if argument.startswith("~") else argument  # noqa: PTH111
+        is_pattern = any(mark in pattern for mark in _MARKS) and not pattern.startswith("-")
+        if is_pattern and not os.path.lexists(pattern):
+            names += sorted(glob.glob(pattern, recursive=True)) or [pattern]  # noqa: PTH207  Path.glob takes no drive
         else:
-            found.append(own)
-    return found
+            names.append(pattern)
+    return names
