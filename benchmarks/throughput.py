@@ -41,7 +41,7 @@ def stages(data: bytes) -> dict[str, Callable[[], Any]]:
     with_cutter = Job(tools={str(number): Tool(radius=2) for number in CUTTERS})
 
     def read() -> Any:
-        return read_words(source.read(data))
+        return read_words(source.read_source(data))
 
     def trace(job: Job) -> Trace:
         table: Trace = Tables(straight(read(), lathe.m_codes.program_end), lathe, job)["trace"]

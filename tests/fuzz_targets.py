@@ -110,7 +110,7 @@ def _expect(holds: bool, kind: str, more: object = "") -> None:
 
 def reader(data: bytes, setup: int) -> Iterable[str]:
     """Bytes to words: nothing raises, all places lie in the text, every byte survives."""
-    read = source.read(data)
+    read = source.read_source(data)
     _expect(read.encode(read.text) == data, "bytes lost")
     _expect(len(read.code) == len(read.text), "characters lost")
     text = read_text(read, machine_of(SETUPS[setup].machine))
@@ -148,7 +148,7 @@ def whole(data: bytes, setup: int) -> Iterable[str]:
     """The whole check, with machine, cutter and job."""
     report, lines = _report(data, setup)
     (file,) = report.files
-    text = source.read(data).text
+    text = source.read_source(data).text
     every = list(_every(file.findings))
     for found in every:
         _place_is_in_file(found, lines)
@@ -221,7 +221,7 @@ def offsets(data: bytes, setup: int) -> Iterable[str]:
         path = Path(folder, "a.txt")
         path.write_bytes(data)
         try:
-            return [str(len(offset_table.read(path, "a.txt")))]
+            return [str(len(offset_table.read_offset_table(path, "a.txt")))]
         except PolarcheckError as error:
             _expect("\n" not in str(error), "error of several lines", error)
             return [re.sub(r"[^a-z ]+", "", str(error))[:60]]
@@ -288,7 +288,7 @@ def _report(data: bytes, setup: int) -> tuple[Report, list[str]]:
     found = check.read(data, machine, _job(setup), "a.nc")
     file = check.check_runs(found, list(load_all().values()))
     text = found[0][1]["trace"].text.source
-    count = int(np.searchsorted(text.line_starts, len(source.read(data).code), side="left")) or 1
+    count = int(np.searchsorted(text.line_starts, len(source.read_source(data).code), side="left")) or 1
     lines = [text.line_text(line) for line in range(1, count + 1)]
     return batch.report([msgspec.structs.replace(file, machine=chosen.machine)], chosen.machine), lines
 

@@ -224,7 +224,7 @@ def test_not_more_than_a_hundred_files_are_looked_for(folder: Path, counts: Coun
 def test_joined_texts_are_those_that_were_read(encoding: str) -> None:
     sample = (ROOT / "sample_programs" / "macro_polygon.nc").read_bytes()
     files = [
-        read_words(source.read(text, name))
+        read_words(source.read_source(text, name))
         for name, text in [
             ("main", "%\nO1 (\u00c4NDERUNG 3/4)\nG0 X#1 ?\n\n<NAME> Z-5.,C2.\n%".encode(encoding)),
             ("first", sample),

@@ -18,7 +18,7 @@ from polarcheck.commands import main
 from polarcheck.finding import FileReport, Finding
 from polarcheck.machines import profiles
 from polarcheck.reading.channels import channels
-from polarcheck.reading.source import read
+from polarcheck.reading.source import read_source
 
 FIRST = """G98 G40 G97
 T0101
@@ -332,12 +332,12 @@ def test_what_is_no_mark_is_a_stray_character(machine: str, block: str, rule: st
 
 @pytest.mark.parametrize("comment", ["($2)", "(WAIT !2L1)", "(A\n", "G0 X60. ($1 AND $2)", "($1\n$)"])
 def test_what_stands_in_a_comment_is_no_mark(comment: str) -> None:
-    source = read(f"O1\n{comment}\nG0 X60.\nM30\n".encode())
+    source = read_source(f"O1\n{comment}\nG0 X60.\nM30\n".encode())
     assert channels(source, "$") == [source]
 
 
 def test_marks_behind_the_end_of_the_file_are_none() -> None:
-    source = read(b"O1\n$1\nM30\n\x1a$2\nM30\n")
+    source = read_source(b"O1\n$1\nM30\n\x1a$2\nM30\n")
     assert channels(source, "$") == [source]
 
 

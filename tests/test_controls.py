@@ -326,7 +326,7 @@ def test_override_and_true_feed() -> None:
 def test_native_words_keep_every_position() -> None:
     words = {"TRANSMIT": "G12.1", "CR=": "R", "TRAFOOF": "G13.1", "AB": ""}
     text = "N10 transmit\nG3X5CR=2.5 XTRANSMIT TRANSMITX\nTRAFOOF(1) AB CAB AB1\n"
-    found = translation.translated(source.read(text.encode()), words)
+    found = translation.translated(source.read_source(text.encode()), words)
     assert found.code.tobytes() == b"N10 G00012.1\nG3X5  R2.5 XTRANSMIT TRANSMITX\nG0013.1(1)    CAB AB1\n"
     assert found.excerpt(4, 12) == "transmit"
     assert translation.translated(found, {}) is found

@@ -259,10 +259,10 @@ def test_a_program_that_cannot_be_read_is_left_to_its_check() -> None:
 
 def test_channels_and_texts_without_calls() -> None:
     machine = machine_of("fanuc-30i")
-    text = source.read(b"O0001\nM98 P9000\nM30\n", "a.nc")
+    text = source.read_source(b"O0001\nM98 P9000\nM30\n", "a.nc")
     assert calls_one_of(text, machine, ["."], ["O9000.nc"])
     assert not calls_one_of(text, machine, ["."], [])
-    assert not calls_one_of(source.read(GOOD.encode(), "a.nc"), machine, ["."], ["O9000.nc"])
+    assert not calls_one_of(source.read_source(GOOD.encode(), "a.nc"), machine, ["."], ["O9000.nc"])
 
 
 @pytest.mark.parametrize("path", ["polarcheck.toml", "lathe.toml", "base.toml", "table.tbl"])

@@ -258,8 +258,8 @@ def test_a_file_that_is_replaced_is_the_old_one(monkeypatch: pytest.MonkeyPatch)
     make("a.nc")
     make("new", text=RAPID.lower())
     in_pieces(monkeypatch, lambda: Path("new").replace("a.nc"))
-    assert files.read("a.nc") == RAPID.encode()
-    assert files.read("a.nc") == RAPID.lower().encode()
+    assert files.read_program("a.nc") == RAPID.encode()
+    assert files.read_program("a.nc") == RAPID.lower().encode()
 
 
 @pytest.mark.parametrize("mode", ["a", "w", "r+"])
@@ -443,7 +443,7 @@ def test_no_two_paths_are_shown_as_one() -> None:
 @pytest.mark.parametrize("name", ["a\0b.nc", "f\0/b.nc", "\0", "a\ud800.nc" if sys.platform != "win32" else "\0"])
 def test_names_that_no_file_can_have(name: str) -> None:
     with pytest.raises(SourceError, match="no file can have this name"):
-        files.read(name)
+        files.read_program(name)
     make("a.nc")
     tasks, told = planned(name, "a.nc", name)
     assert [

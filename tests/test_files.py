@@ -102,7 +102,7 @@ def test_links_in_a_circle_end_and_broken_links_are_kept_to_be_reported(tmp_path
     (tmp_path / "self").symlink_to(tmp_path / "self")
     assert walked(tmp_path) == ["a/x.nc", "gone.nc"]
     with pytest.raises(SourceError, match=r"gone\.nc: No such file"):
-        files.read(str(tmp_path / "gone.nc"))
+        files.read_program(str(tmp_path / "gone.nc"))
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no pipes with names there")

@@ -369,7 +369,10 @@ def test_a_machine_of_its_own_that_asks_for_what_there_is_not() -> None:
 
 def table(text: str) -> dict[str, float]:
     Path("offsets.txt").write_bytes(text.encode())
-    return {number: tool.radius for number, tool in offset_table.read(Path("offsets.txt"), "offsets.txt").items()}
+    return {
+        number: tool.radius
+        for number, tool in offset_table.read_offset_table(Path("offsets.txt"), "offsets.txt").items()
+    }
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,7 @@ import pytest
 from programs import machine_of, report_of, said
 
 from polarcheck.reading.languages import recognised
-from polarcheck.reading.source import read
+from polarcheck.reading.source import read_source
 from polarcheck.reading.words import Text, read_words
 from polarcheck.table.dialect import Dialect
 
@@ -77,9 +77,9 @@ def test_the_first_sign_is_shown() -> None:
 
 
 def test_a_sound_program_is_not_searched() -> None:
-    text: Text = read_words(read(b"O1\nG0 X60. (o<a> call)\nM30\n"))
+    text: Text = read_words(read_source(b"O1\nG0 X60. (o<a> call)\nM30\n"))
     assert Dialect(text, machine_of()).recognised is None
-    assert Dialect(read_words(read(b"")), machine_of()).recognised is None
+    assert Dialect(read_words(read_source(b"")), machine_of()).recognised is None
 
 
 @pytest.mark.parametrize("part", [b"#<a", b"O<", b"N1 ", b"L X1", b"G1 E ", b"0", b";", b"X", b"J2,", b"(", b"(\n"])

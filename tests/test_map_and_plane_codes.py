@@ -89,7 +89,7 @@ def test_a_map_that_is_never_left_is_told_with_the_code_that_ends_it() -> None:
 
 
 def test_a_blank_in_a_native_word_stands_for_any_number_of_them() -> None:
-    found = source.read(b"G17 XC G17XC G17 \t XC G117XC G17XCA\n", "-")
+    found = source.read_source(b"G17 XC G17XC G17 \t XC G117XC G17XCA\n", "-")
     assert [len(ends) for ends in spans(found, "G17 XC")] == [3, 3]
     read = translated(found, {"G17 XC": "G12.1"}).code.tobytes()
     assert read == b"G012.1 G12.1 G00000012.1 G117XC G17XCA\n".replace(b"G00000012.1", b"G" + b"12.1".rjust(7, b"0"))

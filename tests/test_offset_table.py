@@ -20,7 +20,10 @@ NAME = "TOOLOFST.TXT"
 def table(text: str | bytes, **more: Any) -> dict[str, tuple[float, int | None]]:
     """R and T by number."""
     Path(NAME).write_bytes(text if isinstance(text, bytes) else text.encode())
-    return {number: (tool.radius, tool.nose) for number, tool in offset_table.read(Path(NAME), NAME, **more).items()}
+    return {
+        number: (tool.radius, tool.nose)
+        for number, tool in offset_table.read_offset_table(Path(NAME), NAME, **more).items()
+    }
 
 
 def refusal(text: str, **more: Any) -> str:
@@ -116,7 +119,7 @@ def test_a_page_of_the_control_is_taken_as_it_stands() -> None:
     assert table(PAGE + WEAR) == {"1": (0.8, 3), "2": (0.0, 0), "8": (3.95, 0)}
     assert table((PAGE + WEAR).replace("G 0", "0").replace("W 0", "0")) == table(PAGE + WEAR)
     Path(NAME).write_text(PAGE + WEAR)
-    assert offset_table.read(Path(NAME), NAME)["1"].x_wear == 0.1
+    assert offset_table.read_offset_table(Path(NAME), NAME)["1"].x_wear == 0.1
 
 
 @pytest.mark.parametrize(

@@ -67,7 +67,7 @@ def test_places_are_lines_and_units(text: str, units: str) -> None:
 @given(texts)
 def test_lines_of_reports_are_those_of_the_reader(text: str) -> None:
     opened = OpenText(text)
-    read = source.read(opened.data)
+    read = source.read_source(opened.data)
     assert len(read.text) == len(opened.text) - opened.text.startswith("\ufeff")
     for line in range(1, len(read.line_starts) + 1):
         written = read.line_text(line)

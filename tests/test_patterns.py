@@ -26,7 +26,7 @@ from polarcheck.machines.job import Job, with_tool
 from polarcheck.machines.machine import Machine
 from polarcheck.reading import language_blocks, languages, surroundings, translation
 from polarcheck.reading.globs import Globs
-from polarcheck.reading.source import read
+from polarcheck.reading.source import read_source
 
 pytestmark = pytest.mark.slow
 
@@ -48,16 +48,16 @@ def build_every_pattern() -> None:
         if words := tuple(machine.control.native_words.items()):
             translation._translation.__wrapped__(words, True)
             translation._translation.__wrapped__(words, False)
-            translation.spans(read(codes.tobytes()), words[0][0])
+            translation.spans(read_source(codes.tobytes()), words[0][0])
         if listed := tuple(machine.macro.statements.items()):
             spoken_block._patterns.__wrapped__(listed)
     spoken_block._patterns.__wrapped__(STATEMENTS)
-    translation.spans(read(b""), " G17  X C ")
+    translation.spans(read_source(b""), " G17  X C ")
     for language in languages.LANGUAGES:
         for pattern in (*(sign.pattern for sign in language.signs), language.never):
             languages._compiled.__wrapped__(pattern)
     for name in ("high-level", "user-task"):
-        language_blocks.take_out(codes.copy(), name)
+        language_blocks.extract_statements(codes.copy(), name)
     surroundings._marks_of_channels(codes.copy(), "$", "!")
     survey._begins(None)
     library.names_of(ProgramName(1234, None))

@@ -10,7 +10,7 @@ from programs import SHARED, report_of, said, trace_of
 from polarcheck.finding import FileReport
 from polarcheck.machines import profiles
 from polarcheck.reading.joining import joined
-from polarcheck.reading.source import read
+from polarcheck.reading.source import read_source
 from polarcheck.reading.words import Text, read_words
 
 RULE = "text-without-parentheses"
@@ -153,7 +153,7 @@ G0 X50.ÿÿÿÿ
 
 
 def text_of(program: str | bytes) -> Text:
-    return read_words(read(program if isinstance(program, bytes) else program.encode()))
+    return read_words(read_source(program if isinstance(program, bytes) else program.encode()))
 
 
 def texts(program: str | bytes) -> list[str]:

@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from polarcheck.errors import SourceError, UsageError
-from polarcheck.reading.source import DASH, OTHER, read
+from polarcheck.reading.source import DASH, OTHER, read_source
 from polarcheck.reading.words import read_words
 
 PROGRAM = "O0001 (D\u00fcse \u2013 \u00d860)\nG0 X60.\nM30\n"
@@ -24,7 +24,7 @@ ENCODED = [
 
 @pytest.mark.parametrize(("data", "encoding", "bom"), ENCODED, ids=["utf-8", "bom", "utf-16-le", "utf-16-be"])
 def test_encodings_are_recognised(data: bytes, encoding: str, bom: bytes) -> None:
-    source = read(data)
+    source = read_source(data)
     assert (source.encoding, source.bom) == (encoding, bom)
     assert source.text == PROGRAM
     assert len(source.code) == len(PROGRAM)
@@ -34,7 +34,7 @@ def test_encodings_are_recognised(data: bytes, encoding: str, bom: bytes) -> Non
 
 @pytest.mark.parametrize("data", [item[0] for item in ENCODED], ids=["utf-8", "bom", "utf-16-le", "utf-16-be"])
 def test_places_are_the_same_in_every_encoding(data: bytes) -> None:
-    found = read_words(read(data))
+    found = read_words(read_source(data))
     assert (
         found.source.excerpt(int(found.comments.start[0]), int(found.comments.end[0])) == "(D\u00fcse \u2013 \u00d860)"
     )
@@ -45,42 +45,42 @@ def test_places_are_the_same_in_every_encoding(data: bytes) -> None:
 
 
 def test_plain_text_is_ascii_and_other_bytes_are_latin_1() -> None:
-    assert read(b"G0 X1.").encoding == "ascii"
-    source = read("G0 X1. (D\u00fcse)".encode("latin-1"))
+    assert read_source(b"G0 X1.").encoding == "ascii"
+    source = read_source("G0 X1. (D\u00fcse)".encode("latin-1"))
     assert source.encoding == "latin-1"
     assert source.text == "G0 X1. (D\u00fcse)"
 
 
 def test_a_mark_that_does_not_fit_is_no_mark() -> None:
     """Three bytes that only look like the beginning of UTF-16."""
-    source = read(codecs.BOM_UTF16_LE + b"G")
+    source = read_source(codecs.BOM_UTF16_LE + b"G")
     assert (source.encoding, source.bom) == ("latin-1", b"")
 
 
 def test_the_encoding_asked_for_is_taken() -> None:
     data = "G0 X1. (\u0414\u0420)".encode("cp1251")
-    assert read(data, encoding="cp1251").text == "G0 X1. (\u0414\u0420)"
-    assert read(data).encoding == "latin-1"
+    assert read_source(data, encoding="cp1251").text == "G0 X1. (\u0414\u0420)"
+    assert read_source(data).encoding == "latin-1"
 
 
 def test_a_wrong_encoding_names_the_byte() -> None:
     with pytest.raises(SourceError, match=r"^x\.nc: byte 3 is not utf-8$"):
-        read(b"G0 \xff", "x.nc", "utf-8")
+        read_source(b"G0 \xff", "x.nc", "utf-8")
     with pytest.raises(UsageError, match="unknown encoding 'utf-9'"):
-        read(b"G0", "x.nc", "utf-9")
+        read_source(b"G0", "x.nc", "utf-9")
 
 
 def test_codes_of_characters() -> None:
     """Dashes that look like a minus sign share one code, and what has no code of its own another."""
-    source = read("\u2013\u2014\u2212-\u00d8\u0414".encode())
+    source = read_source("\u2013\u2014\u2212-\u00d8\u0414".encode())
     assert source.code.tolist() == [DASH, DASH, DASH, ord("-"), 0xD8, OTHER]
-    assert read(b"X\x96\x97\xff").code.tolist() == [ord("X"), DASH, DASH, 0xFF]
+    assert read_source(b"X\x96\x97\xff").code.tolist() == [ord("X"), DASH, DASH, 0xFF]
 
 
 @given(st.binary(max_size=200))
 @settings(deadline=None)
 def test_every_byte_survives(data: bytes) -> None:
-    source = read(data)
+    source = read_source(data)
     assert source.encode(source.text) == data
     assert len(source.code) == len(source.text)
     assert source.excerpt(0, len(source.code)) == source.text
@@ -93,7 +93,7 @@ LINE_ENDS = ["\n", "\r\n", "\n\r\r", "\r\r\n", "\r"]
 def test_line_numbers_do_not_depend_on_the_line_end(line_end: str) -> None:
     """Source: B-63524EN/01 p. 649 (LF CR CR); Windows; broken transfers."""
     lines = ["%", "O0001", "", "G0 X60. (A)", "M30", "%"]
-    source = read((line_end.join(lines) + line_end).encode())
+    source = read_source((line_end.join(lines) + line_end).encode())
     found = read_words(source)
     assert found.blocks.line[found.words.block].tolist() == [2, 4, 4, 5]
     assert [source.line_text(number).strip("\r") for number in range(1, 7)] == lines
@@ -103,7 +103,7 @@ def test_line_numbers_do_not_depend_on_the_line_end(line_end: str) -> None:
 @given(st.lists(st.sampled_from(["G1", "X1.", "", "(A)", ";"]), max_size=12), st.sampled_from(LINE_ENDS))
 @settings(deadline=None)
 def test_a_position_lies_on_its_line(lines: list[str], line_end: str) -> None:
-    source = read(line_end.join(lines).encode())
+    source = read_source(line_end.join(lines).encode())
     assert source.line_starts[0] == 0
     for number, start in enumerate(source.line_starts.tolist(), 1):
         assert source.line_of(start) == number
@@ -112,6 +112,6 @@ def test_a_position_lies_on_its_line(lines: list[str], line_end: str) -> None:
 
 
 def test_an_empty_file_has_one_line() -> None:
-    source = read(b"")
+    source = read_source(b"")
     assert source.line_starts.tolist() == [0]
     assert source.line_text(1) == ""

@@ -12,12 +12,12 @@ from hypothesis import strategies as st
 
 from polarcheck.checking.phrases.text import number_fault
 from polarcheck.reading import words as reader
-from polarcheck.reading.source import read
+from polarcheck.reading.source import read_source
 from polarcheck.reading.words import NumberFault, Spans, Text, read_words
 
 
 def text_of(program: str | bytes, line_comments: str = "") -> Text:
-    return read_words(read(program if isinstance(program, bytes) else program.encode()), line_comments)
+    return read_words(read_source(program if isinstance(program, bytes) else program.encode()), line_comments)
 
 
 def written(text: Text) -> list[str]:

@@ -77,9 +77,9 @@ class Changes:
         if not names:
             return False
         try:
-            data = files.read(task.path, most)
+            data = files.read_program(task.path, most)
             with time_limit(seconds_for(len(data), settings.job.run.max_seconds)):
-                text = source.read(data, task.path, settings.encoding)
+                text = source.read_source(data, task.path, settings.encoding)
                 return calls_one_of(text, settings.machine, folders, names)
         except (SourceError, TooHardError, MemoryError):
             return True

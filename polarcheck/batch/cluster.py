@@ -214,7 +214,7 @@ class Cluster:
         for number in numbers:
             task = self._tasks[number]
             try:
-                data = files.read(task.path, self._most)
+                data = files.read_program(task.path, self._most)
             except SourceError as error:
                 self._unreadable[number] = Outcome(failure=str(error))
                 continue

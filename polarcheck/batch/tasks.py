@@ -190,7 +190,7 @@ def gather(
 def outcome(task: Task, most: int = files.LARGEST, data: bytes | None = None) -> Outcome:
     """Return the outcome of the check of a file, or of its bytes if they were read before; raises nothing."""
     try:
-        found, source, called = _check(task, files.read(task.path, most) if data is None else data)
+        found, source, called = _check(task, files.read_program(task.path, most) if data is None else data)
     except (SourceError, TooHardError) as error:
         return Outcome(failure=str(error))
     except MemoryError:

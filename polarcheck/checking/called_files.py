@@ -81,7 +81,7 @@ def _call_of(trace: Trace, line: int) -> tuple[int, int, str] | None:
     rows = (trace.blocks.line == line).nonzero()[0]
     if not len(rows):
         return None
-    first_part = trace.text.source.parts[0][0]
+    first_part = trace.text.source.parts[0].first_line
     own = (trace.blocks.line[: rows[0]] < first_part).nonzero()[0]
     if not len(own):
         return None

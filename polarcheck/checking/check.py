@@ -42,7 +42,7 @@ def read(
 
     The runs of a channel are adjacent; `text.source.channel` names it if the file has several.
     """
-    states = runs(source.read(data, path, encoding), machine, job)
+    states = runs(source.read_source(data, path, encoding), machine, job)
     return [(state, Tables(run, machine, job)) for state, run in states]
 
 

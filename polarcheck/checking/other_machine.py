@@ -140,7 +140,7 @@ def _read_by(tables: Tables, machine: Machine) -> Tables:
     ours, theirs = trace.machine.control, machine.control
     if _language(trace.machine) == _language(machine):
         return Tables(trace.run, machine, trace.job)
-    found = source.read(trace.text.source.data, trace.text.source.path)
+    found = source.read_source(trace.text.source.data, trace.text.source.path)
     found = channel_like(found, trace.text.source, ours.channel_mark, ours.line_comments)
     found = translated(found, theirs.native_words, machine.macro.language)
     text = read_words(found, theirs.line_comments, ours.channel_mark, ours.wait_mark, machine.macro.language)

@@ -94,7 +94,7 @@ def _chosen(asked: Profile | None, fitting: Sequence[Profile]) -> Profile:
 
 def _data(path: str) -> bytes | None:
     try:
-        return files.read(path)
+        return files.read_program(path)
     except PolarcheckError:
         return None
 

@@ -49,7 +49,7 @@ def feeds(path: str, form: str, diff: bool, no_config: bool, max_size: int, **ar
     if diff and form != "text":
         raise UsageError(f"--diff shows a diff: leave out --format {form}")
     applied = settings.OfPrograms(settings.Options(use_config=not no_config, **arguments))(path)
-    data, title = files.read(path, max_size), files.shown(path)
+    data, title = files.read_program(path, max_size), files.shown(path)
     with time_limit(seconds_for(len(data), applied.job.run.max_seconds)):
         named_runs = check.read(data, applied.machine, applied.job, title, applied.encoding)
         rules = [rule for name, rule in load_all().items() if name in READ_OTHERWISE]

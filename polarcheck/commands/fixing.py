@@ -168,7 +168,7 @@ class _Work:
 
         is_input = files.is_standard_input(task.path)
         try:
-            data = files.read(task.path, self.most)
+            data = files.read_program(task.path, self.most)
         except SourceError as error:
             if is_input:
                 raise

@@ -263,7 +263,7 @@ def _listed(layer: Layer, units: Any) -> dict[str, Tool]:
     from polarcheck.machines import offset_table
 
     path = layer.table["offsets"]
-    return offset_table.read(Path(path), f"{layer.at('offsets')}: offsets: {path}", units=units)
+    return offset_table.read_offset_table(Path(path), f"{layer.at('offsets')}: offsets: {path}", units=units)
 
 
 def _in_units(

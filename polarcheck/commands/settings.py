@@ -253,7 +253,7 @@ def _changed(job: Job, options: Options) -> Job:
     if options.offsets is not None:
         from polarcheck.machines import offset_table
 
-        listed = offset_table.read(options.offsets, str(options.offsets), pipes=True, units=job.units)
+        listed = offset_table.read_offset_table(options.offsets, str(options.offsets), pipes=True, units=job.units)
         written = {key: tool for key, tool in job.tools.items() if not isinstance(tool, PunchedTool)}
         job = msgspec.structs.replace(job, tools={**written, **listed})
     for tool in options.tools:

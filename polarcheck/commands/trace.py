@@ -66,7 +66,7 @@ def trace(
     if shown_too and form not in (None, "table"):
         raise UsageError(f"--show {shown_too}: expected --format table, found {form}")
     applied = settings.OfPrograms(settings.Options(use_config=not no_config, **arguments))(path)
-    data = files.read(path, max_size)
+    data = files.read_program(path, max_size)
     with time_limit(seconds_for(len(data), applied.job.run.max_seconds)):
         # One run for each channel, since --block-skip has a single state in this command.
         runs = check.read(data, applied.machine, applied.job, files.shown(path), applied.encoding)

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from typing import Final
 
 from polarcheck.execution.expression import Expression, constant
 from polarcheck.execution.high_level_tokens import Token
 from polarcheck.execution.keywords import KEYWORDS, call_by_name
 from polarcheck.execution.names import Names
-from polarcheck.execution.rewriting import Read
 from polarcheck.execution.spoken_block import SpokenBlock
 from polarcheck.execution.statement import Number, Statement, Word, whole
 from polarcheck.machines.machine import Machine
@@ -23,22 +23,21 @@ _STRING: Final = re.compile('"[^"]*+"?')
 _FUNCTIONS: Final = "DFHMST"
 
 
-def read(block: str, machine: Machine, names: Names, read: Read) -> Statement:
+def read_high_level(block: str, machine: Machine, names: Names, read_macro: Callable[[str], Statement]) -> Statement:
     """
-    A block with its statements.
+    Read a block and its statements.
 
-    machine: whose codes and axes it names. names: of variables and tools, as they are met. read: reads custom macro.
+    machine: has the codes and axes. names: the names of variables and tools so far. read_macro: reads custom macro.
     """
     if ("#" in block or "[" in block or "=" not in block) and _CUSTOM_MACRO.search(_STRING.sub("", block)):
-        return read(block)
-    return _Reader(block, machine, names).read()
+        return read_macro(block)
+    return _Reader(block, machine, names).read_block()
 
 
 class _Reader(SpokenBlock):
     """Reads one block from its head to its end."""
 
-    def read(self) -> Statement:
-        """The statement of the block."""
+    def read_block(self) -> Statement:
         self.head()
         self.first = self.token
         while self.token.kind != "end":

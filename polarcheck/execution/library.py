@@ -19,7 +19,7 @@ from polarcheck.execution.listing import Listing
 from polarcheck.execution.programs import ProgramName, Programs, find_programs, read_text
 from polarcheck.execution.run import Beside
 from polarcheck.machines.machine import Machine
-from polarcheck.reading.source import Source, read
+from polarcheck.reading.source import Source, read_source
 from polarcheck.reading.words import Text
 
 #: A called program is a program, not an archive [bytes].
@@ -127,7 +127,7 @@ def _read_inside(folder: Path, path: Path) -> bytes | None:
 
 def _with_head(data: bytes, file: str, called: ProgramName) -> Source:
     number, name = called
-    source = read(data, file)
+    source = read_source(data, file)
     text = source.text
     match = _OWN_NAME.search(text)
     if match is not None:
@@ -142,7 +142,7 @@ def _with_head(data: bytes, file: str, called: ProgramName) -> Source:
     mark = _TAPE_MARK.match(text)
     at = mark.end() if mark else 0
     headed = source.encode(f"{text[:at]}{head}\n{text[at:]}")
-    return msgspec.structs.replace(read(headed, file), added_lines=1)
+    return msgspec.structs.replace(read_source(headed, file), added_lines=1)
 
 
 class Shelf:

@@ -71,12 +71,12 @@ class Listing:
     def statement(self, block: int) -> Statement:
         """The statement of a block."""
         if block not in self._statements:
-            self._statements[block] = self._read(block)
+            self._statements[block] = self._read_statement(block)
         return self._statements[block]
 
-    def _read(self, block: int) -> Statement:
+    def _read_statement(self, block: int) -> Statement:
         text, macro = block_text(self.text, block), self.macro
-        read = functools.partial(
+        read_macro = functools.partial(
             read_statement,
             calls=self._flow_codes,
             loops=macro.loop_numbers,
@@ -85,10 +85,14 @@ class Listing:
             names=self.machine.control.named_axes,
         )
         if macro.language == "custom-macro" or not self.text.blocks.is_macro[block]:
-            return read(text)
-        from polarcheck.execution import languages  # few files need it
+            return read_macro(text)
+        if macro.language == "high-level":
+            from polarcheck.execution.high_level import read_high_level  # few files need it
 
-        return languages.READERS[macro.language](text, self.machine, self.names, read)
+            return read_high_level(text, self.machine, self.names, read_macro)
+        from polarcheck.execution.user_task import read_user_task  # few files need it
+
+        return read_user_task(text, self.machine, self.names, read_macro)
 
     def turns_at(self, block: int) -> bool:
         """Return True if the flow can turn at a block."""

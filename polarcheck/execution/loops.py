@@ -1,21 +1,22 @@
-"""Which END belongs to which DO."""
+"""The loops of custom macro: pairs of DO and END."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
-from typing import NamedTuple
+
+import msgspec
 
 from polarcheck.execution.kinds import FaultKind
 from polarcheck.execution.statement import Kind, Statement
 
 
-class LoopFault(NamedTuple):
+class LoopFault(msgspec.Struct, frozen=True):
     """
     A loop that does not close, or crosses another.
 
-    number: of its DO or END; other: of the loop that it lies in or crosses, 0 where there is none. levels: how many
-    loops the control takes inside each other.
+    number: of its DO or END.
+    other: number of the loop that it lies in or crosses; 0 for none.
+    levels: how deep the control can nest loops.
     """
 
     kind: FaultKind
@@ -25,13 +26,17 @@ class LoopFault(NamedTuple):
     levels: int
 
 
-@dataclass(slots=True)
-class Loops:
-    """The loops of one program. end: block of the END of each WHILE or DO; head: the reverse."""
+class Loops(msgspec.Struct):
+    """
+    The loops of one program, by their blocks.
 
-    end: dict[int, int] = field(default_factory=dict)
-    head: dict[int, int] = field(default_factory=dict)
-    faults: list[LoopFault] = field(default_factory=list)
+    end: block of WHILE or DO -> block of its END.
+    head: block of END -> block of its WHILE or DO.
+    """
+
+    end: dict[int, int] = {}
+    head: dict[int, int] = {}
+    faults: list[LoopFault] = []
 
 
 def find_loops(statements: Sequence[tuple[int, Statement]], levels: int) -> Loops:

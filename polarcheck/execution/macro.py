@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import enum
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from typing import Final
 
+import msgspec
 from msgspec.structs import replace
 
 from polarcheck.execution.arithmetic import UNKNOWN, Arithmetic, Value, round_to
@@ -23,11 +23,15 @@ from polarcheck.execution.statement import Statement, Word
 from polarcheck.machines.macro_keys import Macro
 
 
-@dataclass(slots=True)
-class _Locals:
-    """The local variables of one macro, and what those hold that were not assigned."""
+class _Locals(msgspec.Struct):
+    """
+    The local variables of one macro.
 
-    values: dict[int, Value] = field(default_factory=dict)
+    values: by number.
+    unassigned: value of the others.
+    """
+
+    values: dict[int, Value] = {}
     unassigned: Value = None
 
 
@@ -216,9 +220,8 @@ ARGUMENTS: Final = dict(zip("ABCIJKDEFHMQRSTUVWXYZ", [*range(1, 10), 11, 13, *ra
 _SETS: Final = 10
 
 
-@dataclass(frozen=True, slots=True)
-class Arguments:
-    """The arguments of a call: local variables by number, the number of I J K sets, the first fault."""
+class Arguments(msgspec.Struct, frozen=True):
+    """What a call hands over: the local variables by number; sets: how many sets of I J K; the first fault."""
 
     values: dict[int, Value]
     sets: int
@@ -274,9 +277,14 @@ def _after_call(statement: Statement) -> tuple[Word, ...]:
     return statement.words[at + 1 :]
 
 
-@dataclass(frozen=True, slots=True)
-class ProgramCall:
-    """Which program a call names, how often (None: unknown), the fault."""
+class ProgramCall(msgspec.Struct, frozen=True):
+    """
+    The program that a call names.
+
+    program: its number or name.
+    repeats: how often it runs; None where that is unknown.
+    fault: the first one, if any.
+    """
 
     program: ProgramName
     repeats: int | None

@@ -1,9 +1,9 @@
-"""A statement of one block, with the place of each of its parts, the same for all languages."""
+"""The statement of one block with the place of each of its parts, in any of the languages."""
 
 from __future__ import annotations
 
 import enum
-from typing import NamedTuple, TypeAlias
+from typing import TypeAlias
 
 import msgspec
 
@@ -16,9 +16,14 @@ Place: TypeAlias = tuple[int, int]
 
 class Kind(enum.Enum):
     """
-    What a block does. OUTPUT is DPRNT and its like; NC is a block of NC words, CALL one that calls or returns.
-    STRUCTURE is IF, ELSE, LOOP and their like; REPEAT runs again what stands between labels; PROCEDURE begins a program
-    of a name.
+    What a block does.
+
+    OUTPUT: DPRNT and the like.
+    NC: NC words without a call.
+    CALL: a call or a return.
+    STRUCTURE: IF, ELSE, LOOP and the like.
+    REPEAT: the blocks between two labels are executed again.
+    PROCEDURE: the head of a program with a name.
     """
 
     ASSIGN = enum.auto()
@@ -36,20 +41,25 @@ class Kind(enum.Enum):
     PROCEDURE = enum.auto()
 
 
-class Number(NamedTuple):
-    """A whole number with its letters: of N, DO, END, or of a block skip (a bare / is 1)."""
+class Number(msgspec.Struct, frozen=True):
+    """
+    The number of N, DO, END, or of a block skip (a bare / is 1).
+
+    value: the number.
+    start, end: its characters with the letters before it, end exclusive.
+    """
 
     value: int
     start: int
     end: int
 
 
-#: Digits of a number that no control has, so that all longer ones are as good as one.
+#: More digits than a number has on any control: longer numbers count as the largest one.
 _DIGITS = 18
 
 
 def whole(digits: str) -> int:
-    """The value of some digits, of which a hostile program may write any number."""
+    """The value of digits, of which a hostile program may write any number."""
     return int(digits) if len(digits) <= _DIGITS else 10**_DIGITS
 
 
@@ -57,9 +67,11 @@ class Word(msgspec.Struct, frozen=True):
     """
     An address and its value.
 
-    address: a letter, ",C" with its comma, "O" also for ":", "<" for a program's name, "C2" before an =. written: the
-    number as it stands in the program, sign and point included, or the name; None where the value is a variable or an
-    expression. distance: whether the value is a coordinate or a distance, where the word itself says it: X=AC(10).
+    address: a letter, ",C" with its comma, "O" also for ":", "<" for the name of a program, "C2" before an =.
+    value: expression of the value.
+    written: the number as it is written, sign and point included, or the name; None for a variable or an expression.
+    start, end: its characters within the block, end exclusive.
+    distance: coordinate or distance, where the word says so: X=AC(10); else None.
     """
 
     address: str
@@ -71,7 +83,7 @@ class Word(msgspec.Struct, frozen=True):
 
     @property
     def code(self) -> str:
-        """The word in the one spelling of a code: M098 is M98, G066.1 is G66.1; "" where the value is calculated."""
+        """The word as a code in its standard spelling: M098 is M98, G066.1 is G66.1; "" for a calculated value."""
         return (
             ""
             if self.written is None or self.is_named
@@ -80,32 +92,35 @@ class Word(msgspec.Struct, frozen=True):
 
     @property
     def is_named(self) -> bool:
-        """True if the address is the name of an axis, as in C2=10."""
+        """True for the name of an axis as address: C2=10."""
         return len(self.address) > 1 and self.address[0] != ","
 
     @property
     def has_point(self) -> bool:
-        """True if the value is not in least increments: a number with a decimal point, or a calculated value."""
+        """True for a value that is not in least increments: a number with a point, or a calculated value."""
         return self.written is None or "." in self.written
 
 
-class Parameter(NamedTuple):
+class Parameter(msgspec.Struct, frozen=True):
     """
-    What a call by name hands over, or a program takes.
+    An argument of a call by name, or a parameter of a program.
 
-    variable: the number of the variable that takes it, 0 in a call. value: what is given, or what is taken where
-    nothing is; None where that is nothing.
+    variable: number of the variable that takes the value; 0 in a call.
+    value: the argument, or the default of the parameter; None for none.
     """
 
     variable: int
     value: Expression | None
 
 
-class Unread(NamedTuple):
+class Unread(msgspec.Struct, frozen=True):
     """
-    What a block says and this check does not simulate, by the name that a message gives it, and its characters.
+    A part of a block that is not simulated.
 
-    moves: nobody knows where the axes stand after it. matters: a finding may be missing for it.
+    name: as a message names it.
+    start, end: its characters within the block, end exclusive.
+    moves: the positions of the axes are unknown after it.
+    matters: a finding may be missing because of it.
     """
 
     name: str
@@ -117,16 +132,26 @@ class Unread(NamedTuple):
 
 class Statement(msgspec.Struct, frozen=True):
     """
-    What one block says. All places are indices of characters within the block, end exclusive.
+    The statement of one block. All places are indices of characters within the block, end exclusive.
 
-    start, end: the statement, without block skip and sequence number. skips: one within the block skips what follows.
-    target: the number of the variable to assign, None for a variable by name. jump: the N to go to. then: what IF ..
-    THEN does. call: the code that makes the block a call, "" in others. fault: the first one; what could not be read
-    is None or not among the words, and with "bracket-levels" nothing is lost. label: the name to go to, where it is no
-    number; search: where it is looked for. until: the label up to which REPEAT goes. structure: the keyword of a
-    STRUCTURE. parameters: what a call by name hands over, or a program takes; None for other calls. more: what the
-    block says beside it, in order. unread: what is not simulated. assigned: the variables that a call sets for its
-    program, which have no value behind its return.
+    start, end: the statement, without block skip and sequence number.
+    skips: the block skips; one within the block skips what follows it.
+    target: the number of the variable to assign; None for a variable by name.
+    value: the assigned value, the repeats of REPEAT, or the first value of FOR.
+    jump: the N number to go to.
+    loop: the number of DO or END.
+    then: the statement after IF .. THEN.
+    words: NC words that could be read.
+    call: the code that calls or returns; "" in other blocks.
+    fault: the first one; what could not be read is None, but with "bracket-levels" everything could.
+    label: the name to go to, if it is not a number.
+    search: where the target of the jump is searched.
+    until: the last label of REPEAT.
+    structure: the keyword of a STRUCTURE.
+    parameters: arguments of a call by name, or parameters of a program; None for other calls.
+    more: further statements of the block, in order.
+    unread: parts that are not simulated.
+    assigned: variables that a call sets for its program; they have no value after the return.
     """
 
     kind: Kind

@@ -28,8 +28,9 @@ def add_static_faults(state: State) -> None:
             state.add(statement.fault, block)
             _mixed_logic(state, block, statement)
             _target_twice(state, program, block, statement)
-        for kind, block, number, other, levels in listing.loops(program).faults:
-            state.add_fault(kind, block, listing.statement(block), number=number, other=other, levels=levels)
+        for loop in listing.loops(program).faults:
+            place = listing.statement(loop.block)
+            state.add_fault(loop.kind, loop.block, place, number=loop.number, other=loop.other, levels=loop.levels)
         for structure in listing.structures(program.first).faults:
             place = listing.statement(structure.block)
             names = {"keyword": structure.keyword, "missing": structure.missing}

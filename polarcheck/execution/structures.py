@@ -1,11 +1,12 @@
-"""IF .. ELSE .. ENDIF, WHILE, FOR, LOOP, REPEAT .. UNTIL: which statements belong together, by their nesting."""
+"""The structures IF .. ELSE .. ENDIF, WHILE, FOR, LOOP, REPEAT .. UNTIL: their heads and ends, by nesting."""
 
 from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass, field
-from typing import Final, NamedTuple
+from typing import Final
+
+import msgspec
 
 from polarcheck.execution.kinds import FaultKind
 from polarcheck.execution.statement import Kind, Statement
@@ -15,8 +16,13 @@ CLOSES: Final = {"ENDIF": "IF", "ENDWHILE": "WHILE", "ENDFOR": "FOR", "ENDLOOP":
 _ENDS: Final = {head: end for end, head in CLOSES.items()}
 
 
-class StructureFault(NamedTuple):
-    """A structure that does not close, or an end without its head; missing: the keyword that it lacks."""
+class StructureFault(msgspec.Struct, frozen=True):
+    """
+    A structure that does not close, or an end without its head.
+
+    keyword: the keyword at the block.
+    missing: the keyword that should match it.
+    """
 
     kind: FaultKind
     block: int
@@ -24,23 +30,23 @@ class StructureFault(NamedTuple):
     missing: str
 
 
-@dataclass(slots=True)
-class Structures:
+class Structures(msgspec.Struct):
     """
     The structures of one program, by their blocks.
 
-    end: of the last statement of each head, and of each ELSE. head: the reverse, without ELSE. other: of the ELSE of
-    each IF.
+    end: head or ELSE -> last statement of the structure.
+    head: last statement -> head.
+    other: IF -> its ELSE.
     """
 
-    end: dict[int, int] = field(default_factory=dict)
-    head: dict[int, int] = field(default_factory=dict)
-    other: dict[int, int] = field(default_factory=dict)
-    faults: list[StructureFault] = field(default_factory=list)
+    end: dict[int, int] = {}
+    head: dict[int, int] = {}
+    other: dict[int, int] = {}
+    faults: list[StructureFault] = []
 
 
 def find_structures(statements: Sequence[tuple[int, Statement]]) -> Structures:
-    """Pair the heads and ends of a program, given with their blocks in order; where an end is missing, that is all."""
+    """Pair the heads and ends among the statements of a program, which come with their blocks, in order."""
     structures = Structures()
     open_heads: list[tuple[str, int]] = []
     open_of: Counter[str] = Counter()
@@ -53,11 +59,11 @@ def find_structures(statements: Sequence[tuple[int, Statement]]) -> Structures:
                 open_heads.append((keyword, block))
                 open_of[keyword] += 1
                 continue
-            wanted = "IF" if keyword == "ELSE" else CLOSES[keyword]
-            if not open_of[wanted]:
-                structures.faults.append(StructureFault("end-without-structure", block, keyword, wanted))
+            opening = "IF" if keyword == "ELSE" else CLOSES[keyword]
+            if not open_of[opening]:
+                structures.faults.append(StructureFault("end-without-structure", block, keyword, opening))
                 continue
-            while open_heads[-1][0] != wanted:
+            while open_heads[-1][0] != opening:
                 head, at = open_heads.pop()
                 open_of[head] -= 1
                 structures.faults.append(StructureFault("structure-without-end", at, head, _ENDS[head]))
@@ -66,7 +72,7 @@ def find_structures(statements: Sequence[tuple[int, Statement]]) -> Structures:
                 structures.other[at] = block
                 continue
             open_heads.pop()
-            open_of[wanted] -= 1
+            open_of[opening] -= 1
             structures.end[at], structures.head[block] = block, at
             if at in structures.other:
                 structures.end[structures.other[at]] = block

@@ -9,7 +9,9 @@ from __future__ import annotations
 
 import itertools
 import re
-from typing import Final, NamedTuple, TypeAlias
+from typing import Final, TypeAlias
+
+import msgspec
 
 from polarcheck.execution.macro_tokens import in_capitals
 from polarcheck.execution.names import Names
@@ -45,8 +47,14 @@ _NO_VALUES: Final = _COMPARISONS | {*_JOINS, "MOD", "IF", "GOTO", "CALL", "MODIN
 SYSTEM: Final = re.compile(r"V(?!C[0-9])[A-Z][A-Z0-9]*+")
 
 
-class Token(NamedTuple):
-    """A number, a name, a letter alone, a sign, or another character: its kind, the characters, and their places."""
+class Token(msgspec.Struct, frozen=True):
+    """
+    A token and its characters within the block.
+
+    kind: number, name, letter (alone), sign, other; "" behind the last token.
+    text: in capitals.
+    start, end: its characters within the block, end exclusive.
+    """
 
     kind: str
     text: str

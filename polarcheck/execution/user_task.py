@@ -9,13 +9,13 @@ with a sequence name or number, CALL with variables, RTS, MODIN; VC1 from the OS
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Final
 
 from msgspec.structs import replace
 
+from polarcheck.execution.macro_tokens import Characters
 from polarcheck.execution.names import Names
-from polarcheck.execution.rewriting import Read, Rewriting
 from polarcheck.execution.statement import Kind, Statement
 from polarcheck.execution.task_values import MOST, SYSTEM, UNKNOWN, Piece, Token, Values
 from polarcheck.machines.machine import Machine
@@ -27,21 +27,43 @@ _SEQUENCE_NAME: Final = re.compile(r"N[A-Z][A-Z0-9]{0,3}")
 _NO_MOVE: Final = frozenset(("GET", "PUT", "READ", "WRITE", "PSELECT", "LPRINT"))
 
 
-def read(block: str, machine: Machine, names: Names, read: Read) -> Statement:
+def read_user_task(
+    block: str, machine: Machine, names: Names, read_macro: Callable[[Characters], Statement]
+) -> Statement:
     """
-    A block with its statements.
+    Read a block and its statements.
 
-    machine: whose codes and axes it names. names: of variables and tools, as they are met. read: reads custom macro.
+    machine: has the codes and axes. names: the names of variables and tools so far. read_macro: reads custom macro.
     """
-    return _Block(block, machine, names, read).statement()
+    return _Block(block, machine, names, read_macro).statement()
+
+
+class Rewriting:
+    """The characters of a block rewritten as custom macro, each with the index of the one that it stands for."""
+
+    def __init__(self) -> None:
+        self._text: list[str] = []
+        self._places: list[int] = []
+
+    def put(self, text: str, start: int, end: int) -> None:
+        """Add text that stands for the characters from start to end of the block."""
+        visible = [index for index in range(len(text)) if not text[index].isspace()]
+        self._text += [text[index].upper() for index in visible]
+        self._places += [min(start + index, max(end - 1, start)) for index in visible]
+
+    def before(self, other: Rewriting) -> Characters:
+        """These characters, and those of the other rewriting behind them."""
+        return Characters("".join((*self._text, *other._text)), [*self._places, *other._places])
 
 
 class _Block(Values):
     """One block while it is read."""
 
-    def __init__(self, block: str, machine: Machine, names: Names, read: Read) -> None:
+    def __init__(
+        self, block: str, machine: Machine, names: Names, read_macro: Callable[[Characters], Statement]
+    ) -> None:
         super().__init__(block, names)
-        self.macro, self.read = machine.macro, read
+        self.macro, self.read_macro = machine.macro, read_macro
         self.head = Rewriting()
         self.assignments: list[Statement] = []
         self.words = Rewriting()
@@ -70,8 +92,8 @@ class _Block(Values):
         return replace(parts[0], more=tuple(parts[1:]), unread=tuple(self.unread))
 
     def read_as(self, rewriting: Rewriting) -> Statement:
-        """Read a rewritten block by the custom macro reader, with block skip and sequence number before it."""
-        return self.read(self.head.before(rewriting))
+        """What custom macro reads, with block skip and sequence number before it."""
+        return self.read_macro(self.head.before(rewriting))
 
     def heads(self) -> None:
         """Block skip, and a sequence number or name; NOEX only keeps the block from being stopped at."""
@@ -82,7 +104,7 @@ class _Block(Values):
                 self.head.put("/", token.start, token.end)
                 if following.kind == "number" and following.start == token.end and len(following.text) == 1:
                     self.put_token(self.head, self.take())
-            elif token == ("letter", "N", *token[2:]) and following.kind == "number":
+            elif token.kind == "letter" and token.text == "N" and following.kind == "number":
                 self.at += 2
                 self.head.put("N" + following.text, token.start, following.end)
             elif token.text == "NOEX" or (token.kind == "name" and _SEQUENCE_NAME.fullmatch(token.text)):
@@ -270,7 +292,7 @@ class _Block(Values):
             self.at = len(self.tokens)
             self.leave(first, moves=True)
             return
-        if self.peek() == ("letter", "Q", *self.peek()[2:]) and self.peek(1).kind == "number":
+        if self.peek().kind == "letter" and self.peek().text == "Q" and self.peek(1).kind == "number":
             letter, number = self.take(), self.take()
             rewriting.put("L" + number.text, letter.start, number.end)
         before = len(self.assignments)

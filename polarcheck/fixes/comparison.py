@@ -56,7 +56,7 @@ def state_of(data: bytes, settings: Settings, path: str, encoding: str | None) -
         is_chosen = len(settings.rules) < len(all_rules)
         selected = check_runs(runs, settings.rules, settings.severities, settings.inline) if is_chosen else report
     # Each channel has its own view of the text; the edits are made in the file.
-    return State(source.read(data, path, encoding), runs, report, selected)
+    return State(source.read_source(data, path, encoding), runs, report, selected)
 
 
 def objection(

@@ -88,5 +88,5 @@ def _span(before: int, count: int) -> str:
 
 
 def _lines(data: bytes, path: str, encoding: str | None) -> list[str]:
-    text = source.read(data, path, encoding)
+    text = source.read_source(data, path, encoding)
     return [text.line_text(line).lstrip("\r") for line in range(1, len(text.line_starts) + 1)]

@@ -36,13 +36,13 @@ def with_feeds(title: str, data: bytes, runs: Sequence[Tables], encoding: str | 
     None if its encoding does not reproduce the bytes. Raises SourceError for bytes that are not of the encoding,
     TooHardError.
     """
-    text = source.read(data, title, encoding)
+    text = source.read_source(data, title, encoding)
     words = [feed_words(tables) for tables in runs]
     # A program that several channels call has the edits of the first channel that needs any.
     edits = {edit[:2]: edit for table in reversed(words) for edit in table.edits}
     new = applied(text, edits.values())
     if new is None:
         return None
-    origin = origins(text, source.read(new, title, encoding), edits.values()).tolist()
+    origin = origins(text, source.read_source(new, title, encoding), edits.values()).tolist()
     lowest, left = (sorted({line for table in words for line in getattr(table, name)}) for name in ("lowest", "left"))
     return WithFeeds(new, difference(title, data, new, origin, encoding), lowest, left)

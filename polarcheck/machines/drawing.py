@@ -1,7 +1,7 @@
 """
-A drawing (DXF) as the curves that it shows, for a part to be compared with; ezdxf reads it, and is loaded late.
+Reads the curves of a drawing (DXF), with which a part is compared. ezdxf reads the file, and is imported late.
 
-The origin is the spindle axis, x runs towards C0 and is a radius.
+The origin is the spindle axis; x points to C0 and is a radius.
 """
 
 from __future__ import annotations
@@ -11,7 +11,9 @@ import math
 from collections import Counter
 from collections.abc import Iterable, Iterator
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
+
+import msgspec
 
 from polarcheck import bounded
 from polarcheck.errors import JobError
@@ -21,23 +23,25 @@ from polarcheck.machines.part import DrawnPart, Part
 
 #: A drawing of one part has some kB [bytes].
 _LARGEST = 16_000_000
-#: Lines and arcs, points of the curves, places at which a block stands, blocks in each other: more has no drawing.
+#: Limits: lines and arcs, points of the curves, places of blocks, blocks inside each other. No drawing has more.
 _MOST_ENTITIES, _MOST_POINTS, _MOST_BLOCKS, _DEEPEST = 50_000, 400_000, 2000, 16
-#: By how much chords may leave their curves, and ends may be apart that are one point [mm].
+#: How far chords may deviate from their curves, and how far apart two ends at one point may be [mm].
 _SAGITTA, _GAP = 2e-4, 0.01
-#: Farther from the axis [mm] reaches no lathe, nor the frame of any sheet.
+#: No lathe and no sheet reaches farther from the axis [mm].
 _FARTHEST = 1e5
 _BINARY = b"AutoCAD Binary DXF\r\n\x1a\0"
-#: mm per unit by $INSUNITS; others are none, or none that anybody draws a part in.
+#: mm per unit, by $INSUNITS; nobody draws a part in the others.
 _UNITS = {1: MM_PER_INCH, 2: 12 * MM_PER_INCH, 4: 1.0, 5: 10.0, 6: 1000.0, 9: MM_PER_INCH / 1000, 13: 1e-3, 14: 100.0}
 _LISTED = 4
 _HINT = 'pip install "polarcheck[drawing]"'
 
 
-class Drawing(NamedTuple):
+class Drawing(msgspec.Struct, frozen=True):
     """
-    What a drawing shows. curves: the points of each, x + 1j*c in its units; one that ends where it begins is closed.
-    scale: mm per unit, NaN where the drawing does not say.
+    The curves of a drawing.
+
+    curves: the points of each, x + 1j*c in units of the drawing; one that ends where it begins is closed.
+    scale: mm per unit; NaN where the drawing does not say.
     """
 
     curves: tuple[tuple[complex, ...], ...]
@@ -45,19 +49,19 @@ class Drawing(NamedTuple):
 
 
 def part_of(path: Path, title: str, part: Part | None = None) -> DrawnPart:
-    """The part of a drawing, with what else is said of it. Raises JobError as read does."""
-    drawing = read(path, title)
-    said = {} if part is None else {name: getattr(part, name) for name in Part.__struct_fields__}
-    return DrawnPart(**{**said, "drawing": str(path)}, curves=drawing.curves, scale=drawing.scale)
+    """The part of a drawing, with the other values of its entry. Raises JobError as read_drawing does."""
+    drawing = read_drawing(path, title)
+    values = {} if part is None else {name: getattr(part, name) for name in Part.__struct_fields__}
+    return DrawnPart(**{**values, "drawing": str(path)}, curves=drawing.curves, scale=drawing.scale)
 
 
-def read(path: Path, title: str) -> Drawing:
+def read_drawing(path: Path, title: str) -> Drawing:
     """
     The lines and curves of the model space of a DXF file, of R12 or later, as text or binary.
 
-    Blocks are resolved. Text, dimensions, points and hatches are none of the part, nor what stands on a layer that is
-    off or frozen, on DEFPOINTS, or has a broken line as centers have. Raises JobError, one line that begins with the
-    title, for a file that cannot be read or shows no curve.
+    Blocks are resolved. Ignored are text, dimensions, points, hatches, layers that are off or frozen, DEFPOINTS, and
+    broken lines such as center lines. Raises JobError, one line that begins with the title, for a file that cannot be
+    read or shows no curve.
     """
     try:
         data = bounded.read_file(path, _LARGEST, "no drawing of a part is")
@@ -68,18 +72,18 @@ def read(path: Path, title: str) -> Drawing:
     except ImportError:
         raise JobError(f"{title}: reading a drawing needs ezdxf, which is not installed: {_HINT}") from None
     try:
-        # The reader takes meters where a file does not say.
+        # ezdxf assumes meters where a file does not say.
         return _drawing(_document(data), says_units=b"$INSUNITS" in data)
     except _NoDrawingError as error:
         raise JobError(f"{title}: {error}") from None
     except Exception as error:
-        # A file that nobody vouches for can make the reader raise anything.
+        # A broken file can make ezdxf raise anything.
         said = " ".join(str(error).split())[:80]
         raise JobError(f"{title}: is no DXF file that can be read{f': {said}' if said else ''}") from None
 
 
 class _NoDrawingError(Exception):
-    """Why a file shows no part, in plain words."""
+    """The reason why a file shows no part."""
 
 
 _TOO_FAR = _NoDrawingError(f"shows what is farther than {_FARTHEST:g} mm from its origin, the spindle axis")
@@ -87,8 +91,7 @@ _TOO_FAR = _NoDrawingError(f"shows what is farther than {_FARTHEST:g} mm from it
 
 def _load_reader() -> None:
     """
-    Import ezdxf, which would look through all fonts of the computer and write down, in the home folder, what it found:
-    of a drawing only the lines are asked for.
+    Import ezdxf without its search of all fonts, which would write a cache into the home folder; only lines are needed.
     """
     import os
     import sys
@@ -109,9 +112,9 @@ def _load_reader() -> None:
                 os.environ[_CACHE] = before
 
 
-#: Names the folder in which ezdxf looks for what it has written down.
+#: The environment variable with the folder of the cache of ezdxf.
 _CACHE = "XDG_CACHE_HOME"
-#: Whatever the version is; where it is another one, it has no fonts either.
+#: A cache without fonts, for any version.
 _NO_FONTS = '{"version": 2, "font-faces": []}'
 
 
@@ -123,7 +126,7 @@ def _document(data: bytes) -> Any:
     from ezdxf.filemanagement import dxf_stream_info
     from ezdxf.lldxf.tagger import binary_tags_loader
 
-    logging.getLogger("ezdxf").setLevel(logging.CRITICAL)  # what it would say of a doubtful file is no report of ours
+    logging.getLogger("ezdxf").setLevel(logging.CRITICAL)  # its warnings are not part of the report
     if data.startswith(_BINARY):
         return Document.load(binary_tags_loader(data))
     text = data.decode("utf-8", "ignore")
@@ -136,7 +139,7 @@ def _document(data: bytes) -> Any:
 def _drawing(document: Any, *, says_units: bool) -> Drawing:
     scale = _UNITS.get(int(document.header.get("$INSUNITS", 0)), math.nan) if says_units else math.nan
     unit = 1.0 if math.isnan(scale) else scale
-    # Of a drawing without units chords are as short as inches ask for.
+    # Without units the chords are short enough for inches.
     sagitta = _SAGITTA / (MM_PER_INCH if math.isnan(scale) else scale)
     ignored = Counter[str]()
     curves, points = [], 0
@@ -148,23 +151,23 @@ def _drawing(document: Any, *, says_units: bool) -> Drawing:
         if len(curve) > 1:
             curves.append(curve)
     if not curves:
-        raise _NoDrawingError(f"shows no line, arc or curve of a part{_told(ignored)}")
+        raise _NoDrawingError(f"shows no line, arc or curve of a part{_ignored(ignored)}")
     return Drawing(joined(curves, _GAP / unit), scale)
 
 
-def _told(ignored: Counter[str]) -> str:
+def _ignored(ignored: Counter[str]) -> str:
     if not ignored:
         return ": its model space is empty"
     return f"; ignored: {', '.join(f'{count} {what}' for what, count in ignored.most_common(_LISTED))}"
 
 
-#: What is a curve, and what is resolved to some.
+#: Entities that are curves, and those that are resolved into curves.
 _CURVES = ("LINE", "ARC", "CIRCLE", "ELLIPSE", "SPLINE")
 _POLYLINES = ("LWPOLYLINE", "POLYLINE")
 
 
 def _shown(document: Any, ignored: Counter[str]) -> Iterator[Any]:
-    """The curves of the model space, blocks and polylines resolved, one after the other."""
+    """The curves of the model space, with blocks and polylines resolved."""
     hidden = {layer.dxf.name.lower() for layer in document.layers if layer.is_off() or layer.is_frozen()}
     hidden.add("defpoints")
     broken = {
@@ -201,22 +204,22 @@ def _shown(document: Any, ignored: Counter[str]) -> Iterator[Any]:
             waiting.append(entity.multi_insert() if entity.mcount > 1 else iter(entity.virtual_entities()))
 
 
-#: Of the name of a kind of entity that is told [characters].
+#: How much of the name of a kind of entity a message shows [characters].
 _LONGEST = 20
 
 
 def _is_broken(linetype: str) -> bool:
-    """Centers and hidden edges are drawn so; a contour is not."""
+    """True for the line type of centers and hidden edges."""
     return linetype.upper() not in ("CONTINUOUS", "BYLAYER", "BYBLOCK")
 
 
 def _points(entity: Any, sagitta: float, farthest: float) -> Iterator[complex]:
-    """The points of a curve with chords that leave it by no more than the sagitta; lengths in units of the drawing."""
+    """The points of a curve, with chords that deviate by the sagitta at most; lengths in units of the drawing."""
     for point in _vertices(entity, sagitta, farthest):
-        found = complex(point[0], point[1])
-        if not abs(found) <= farthest:
+        position = complex(point[0], point[1])
+        if not abs(position) <= farthest:
             raise _TOO_FAR
-        yield found
+        yield position
 
 
 def _vertices(entity: Any, sagitta: float, farthest: float) -> Iterable[Any]:

@@ -1,6 +1,6 @@
 """
-Values of TOML files and options as the types that hold them. What does not fit is told in plain words, with the key
-as the user writes it: types of Python and paths with `[...]` mean nothing to a setter.
+Converts values of TOML files and options to their types. A message about a value that does not fit uses plain words and
+the key as the user writes it: Python types and paths with `[...]` mean nothing to a setter.
 """
 
 from __future__ import annotations
@@ -9,20 +9,20 @@ import math
 import re
 import types
 from collections.abc import Iterable, Iterator, Mapping
-from typing import Annotated, Any, Literal, NamedTuple, TypeVar, Union, get_args, get_origin
+from typing import Annotated, Any, Literal, TypeVar, Union, get_args, get_origin
 
 import msgspec
 
 from polarcheck.errors import suggestion
 
-#: Key of `extra` in msgspec.Meta: what is expected, where the type and its bounds do not say it well.
+#: Key of `extra` in msgspec.Meta: the expected value in words, where the type and its bounds do not say it well.
 EXPECTED = "expected"
-#: Between these lies every number of a lathe, and what is computed from some of them is a number, too.
+#: Every number of a lathe lies between these, and results computed from them stay finite.
 SMALLEST, LARGEST = 1e-50, 1e50
-#: The most that is counted: columns hold 32 bits.
+#: Limit of counts: columns have 32 bits.
 MOST = 10**9
 _BEYOND = (LARGEST, MOST)
-#: Characters of a value that are shown.
+#: How much of a value a message shows [characters].
 _LONGEST = 40
 
 Kind = TypeVar("Kind")
@@ -32,7 +32,7 @@ class MisfitError(Exception):
     """
     A value that does not fit its key; the text is one line that begins with the key.
 
-    key: where it stands, with points between (`tools.8.radius`); empty for the file as a whole.
+    key: with points between (`tools.8.radius`); empty for the whole file.
     """
 
     def __init__(self, key: str, text: str) -> None:
@@ -42,8 +42,9 @@ class MisfitError(Exception):
 
 class KeyedError(ValueError):
     """
-    What a type objects to when all its values fit by themselves; key: that of the table which is at fault, empty for
-    the table as a whole.
+    Values that each fit their key, but not each other.
+
+    key: the one at fault; empty for the whole table.
     """
 
     def __init__(self, key: str, text: str) -> None:
@@ -51,8 +52,14 @@ class KeyedError(ValueError):
         self.key = key
 
 
-class _Part(NamedTuple):
-    """A value within a table, its key, and the type that it should fit."""
+class _Part(msgspec.Struct, frozen=True):
+    """
+    A value within a table.
+
+    key: with points between.
+    value: the value.
+    kind: the type that it should fit.
+    """
 
     key: str
     value: Any
@@ -61,18 +68,18 @@ class _Part(NamedTuple):
 
 def fitted(table: Any, kind: type[Kind], key: str = "") -> Kind:
     """
-    The table as a value of a type; no number of it is infinite or NaN. key: where the table itself stands.
+    Convert a table to a type; no number is infinite or NaN. key: the key of the table.
 
     Raises MisfitError for the first value that does not fit.
     """
     try:
-        found = msgspec.convert(table, kind, str_keys=True)
+        value = msgspec.convert(table, kind, str_keys=True)
     except msgspec.ValidationError as error:
         misfit = next(_misfits(_Part(key, table, kind)), None)
         raise misfit or MisfitError(key, _plain(error)) from None
     if not _is_finite(table):
         raise next(_misfits(_Part(key, table, kind)))
-    return found
+    return value
 
 
 def _is_finite(value: Any) -> bool:
@@ -84,7 +91,7 @@ def _is_finite(value: Any) -> bool:
 
 
 def _misfits(part: _Part) -> Iterator[MisfitError]:
-    """Yield the values that do not fit, innermost first: a table fits only if its values do."""
+    """The values that do not fit, the innermost first: a table fits only if its values do."""
     kind = _bare(part.kind)
     if isinstance(part.value, Mapping):
         if isinstance(kind, type) and issubclass(kind, msgspec.Struct):
@@ -130,9 +137,9 @@ def _of_dict(part: _Part, kind: Any) -> Iterator[MisfitError]:
 
 def _misfit(part: _Part, error: Exception | None = None) -> MisfitError:
     if isinstance(part.value, Mapping) and error is not None and isinstance(error.__cause__, ValueError):
-        text = _plain(error)  # what the type itself objects to
+        text = _plain(error)  # the message of the type
         if isinstance(error.__cause__, KeyedError) and error.__cause__.key:
-            part = part._replace(key=_below(part.key, error.__cause__.key))
+            part = msgspec.structs.replace(part, key=_below(part.key, error.__cause__.key))
     else:
         text = f"expected {_expected(part.kind)}{_beyond(part)}, found {shown(part.value)}{_with_point(part)}"
     return MisfitError(part.key, f"{part.key}: {text}" if part.key else text)
@@ -148,11 +155,11 @@ def _below(key: str, name: object) -> str:
 
 
 def _bare(kind: Any) -> Any:
-    """A type without its bounds, and without the None of a value that may be left out."""
+    """A type without its bounds, and without the None of an optional value."""
     while get_origin(kind) is Annotated:
         kind = get_args(kind)[0]
     if get_origin(kind) in (Union, types.UnionType):
-        left = [one for one in get_args(kind) if one is not type(None)]
+        left = [member for member in get_args(kind) if member is not type(None)]
         return _bare(left[0]) if len(left) == 1 else kind
     return kind
 
@@ -162,24 +169,26 @@ _PLURAL = {float: "numbers", int: "whole numbers", str: "texts"}
 
 
 def _expected(kind: Any) -> str:
-    """Return the description of a type."""
-    given = get_args(kind)
+    """The expected value of a type, in words."""
+    arguments = get_args(kind)
     if get_origin(kind) in (Union, types.UnionType):
-        return " or ".join(_expected(one) for one in given if one is not type(None))
+        return " or ".join(_expected(member) for member in arguments if member is not type(None))
     if get_origin(kind) is Annotated:
-        metas = [meta for meta in given[1:] if isinstance(meta, msgspec.Meta)]
-        said = [meta.extra[EXPECTED] for meta in metas if meta.extra and EXPECTED in meta.extra]
-        return str(said[0]) if said else _expected(given[0]) + "".join(map(_bounds, metas))
+        metas = [meta for meta in arguments[1:] if isinstance(meta, msgspec.Meta)]
+        texts = [meta.extra[EXPECTED] for meta in metas if meta.extra and EXPECTED in meta.extra]
+        return str(texts[0]) if texts else _expected(arguments[0]) + "".join(map(_bounds, metas))
     if get_origin(kind) is Literal:
-        return listed(map(str, given))
+        return listed(map(str, arguments))
     if get_origin(kind) in (list, tuple):
-        of_what = _PLURAL.get(_bare(given[0]), "values")
-        return f"a list of {of_what}, of length {len(given)}" if get_origin(kind) is tuple else f"a list of {of_what}"
+        of_what = _PLURAL.get(_bare(arguments[0]), "values")
+        return (
+            f"a list of {of_what}, of length {len(arguments)}" if get_origin(kind) is tuple else f"a list of {of_what}"
+        )
     return _PLAIN.get(kind, "a table")
 
 
 def _bounds(meta: msgspec.Meta) -> str:
-    """Return the expected range of a number, without bounds that no value comes near."""
+    """The expected range, in words; limits that are out of reach are left out."""
     if meta.min_length:
         return ", at least one"
     most = meta.le if meta.le not in _BEYOND else None
@@ -191,14 +200,14 @@ def _bounds(meta: msgspec.Meta) -> str:
 
 
 def _beyond(part: _Part) -> str:
-    """Such a bound, for a value that lies beyond it."""
+    """The limit that is out of reach, for a value beyond it."""
     limits = [meta.le for meta in get_args(part.kind)[1:] if isinstance(meta, msgspec.Meta) and meta.le in _BEYOND]
     is_number = isinstance(part.value, int | float) and math.isfinite(part.value)
     return f", up to {limits[0]:g}" if limits and is_number and abs(part.value) > limits[0] else ""
 
 
 def _named(limit: float) -> str:
-    """0 for what is as good as that."""
+    """The limit as text; SMALLEST is 0."""
     return f"{limit:g}" if limit != SMALLEST else "0"
 
 
@@ -209,7 +218,7 @@ def listed(names: Iterable[str]) -> str:
 
 
 def shown(value: Any) -> str:
-    """A value as TOML writes it, not too long."""
+    """A value as TOML writes it, shortened."""
     if isinstance(value, Mapping):
         return "a table"
     if isinstance(value, bool):
@@ -219,7 +228,7 @@ def shown(value: Any) -> str:
 
 
 def _with_point(part: _Part) -> str:
-    """Return the hint for a number with a decimal comma."""
+    """The advice for a number with a decimal comma."""
     text = part.value
     if _bare(part.kind) is float and isinstance(text, str) and re.fullmatch(r"[-+]?\d*,\d+", text.strip()):
         return f"; write {text.strip().replace(',', '.')}, with a decimal point"

@@ -13,7 +13,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from typing import NamedTuple
+
+import msgspec
 
 #: X of no wear, whatever its unit.
 LARGEST_WEAR = 100.0
@@ -37,7 +38,7 @@ _END = ("ACTUAL POSITION", "RELATIVE", "ABSOLUTE")
 _LONGEST = 1000
 
 
-class Entry(NamedTuple):
+class Entry(msgspec.Struct, frozen=True):
     """A value of an offset: radius, nose or x, of the geometry or of the wear, and the line in which it stands."""
 
     line: int

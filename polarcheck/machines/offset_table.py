@@ -37,7 +37,7 @@ _EXPECTED = "expected a block such as G10 P10008 R0.375 Q0"
 Units = Literal["mm", "inch"]
 
 
-def read(path: Path, title: str, *, pipes: bool = False, units: Units | None = None) -> dict[str, Tool]:
+def read_offset_table(path: Path, title: str, *, pipes: bool = False, units: Units | None = None) -> dict[str, Tool]:
     """
     The offsets of a table by offset number; R of geometry and wear are added, X of the wear is kept by itself.
 

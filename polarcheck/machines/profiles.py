@@ -105,7 +105,7 @@ def load(name: str, changes: Mapping[str, Any] | Sequence[Change] | None = None)
             table = dict(_built_in(path))
             ours.add(title)
         else:
-            table = _read(path, title)
+            table = _read_file(path, title)
         tables.append((title, table))
         folder = path.parent
         own |= folder != FOLDER
@@ -184,9 +184,9 @@ def _built_in(path: Path) -> dict[str, Any]:
     return tomllib.loads(path.read_text("utf-8"))
 
 
-def _read(path: Path, title: str) -> dict[str, Any]:
+def _read_file(path: Path, title: str) -> dict[str, Any]:
     try:
-        return toml_text.read(path, "machine file")
+        return toml_text.read_toml(path, "machine file")
     except ValueError as error:
         from polarcheck.machines import toml_lines
 

@@ -34,7 +34,7 @@ _BIT = r"^[ \t]*+(\w{1,20}#\w{1,20})[ \t]*+="
 _BARE = re.compile(r"[ \t]*+([\w.-]{1,40}+)[ \t]*+=[ \t]*+(?:#.*)?$")
 
 
-def read(path: str | PathLike[str], what: str, *, pipes: bool = False) -> dict[str, Any]:
+def read_toml(path: str | PathLike[str], what: str, *, pipes: bool = False) -> dict[str, Any]:
     """
     The table of a file. what: `job file`, for the message. pipes: whether it may be a pipe.
 
@@ -45,7 +45,7 @@ def read(path: str | PathLike[str], what: str, *, pipes: bool = False) -> dict[s
 
 def text_of(path: str | PathLike[str], what: str, *, pipes: bool = False) -> str:
     """
-    The text of a file, in any encoding in which editors save it; lines end with LF. Arguments and errors as of read.
+    The text of a file in any encoding of an editor; lines end with LF. Arguments and errors as of read_toml.
     """
     try:
         data = bounded.read_file(path, LARGEST, f"no {what} is", pipes=pipes)

@@ -1,7 +1,7 @@
 """
-A file that holds the programs of several channels: of a lathe whose turrets or slides run programs of their own.
+Splits a file with the programs of several channels, as of a lathe with several turrets or slides.
 
-Each channel is a view of the file in which the others are blank, so that every position and line stays.
+Each channel is a view of the file in which the others are blank, so that positions and lines do not change.
 """
 
 from __future__ import annotations
@@ -16,16 +16,16 @@ from polarcheck.reading.source import CR, CTRL_Z, LF, Bytes, Source
 from polarcheck.reading.surroundings import find_channel_marks, without_comments
 
 _SPACE = 32
-#: What stays in a channel of the others: where lines and the file end.
+#: Characters of other channels that are not blanked: the ends of lines and of the file.
 _STAYS = (LF, CR, CTRL_Z)
 
 
 def channels(source: Source, mark: str, line_comments: str = "") -> list[Source]:
     """
-    The channels of a file, by their numbers; a file without marks of channels is one, and stays as it is.
+    The channels of a file in the order of their numbers; a file without marks of channels is one channel.
 
-    mark: the character before the number of a channel; empty where there are none. What stands before the first mark is
-    in all of them.
+    mark: the character before the number of a channel; empty for none. Text before the first mark is part of all
+    channels.
     """
     data = source.code.tobytes()
     if not mark or mark.encode("latin-1") not in data:
@@ -42,22 +42,22 @@ def channels(source: Source, mark: str, line_comments: str = "") -> list[Source]
 
 
 def channel_like(source: Source, other: Source, mark: str, line_comments: str) -> Source:
-    """Return the channel of a re-read file that corresponds to another source, or the file itself."""
-    found = channels(source, mark, line_comments) if other.channel else []
-    return next((one for one in found if one.channel == other.channel), source)
+    """The channel of a new reading of a file that corresponds to `other`; the file itself where there is none."""
+    every = channels(source, mark, line_comments) if other.channel else []
+    return next((channel for channel in every if channel.channel == other.channel), source)
 
 
 def stands_in(channel: Source, line: int) -> bool:
-    """Return True if any part of a line, from 1, belongs to a channel."""
+    """True where a line, from 1, contains anything of a channel."""
     start, *end = channel.line_starts[line - 1 : line + 1].tolist()
     return bool(channel.code[start : end[0] if end else None].tobytes().strip())
 
 
 def _owners(marks: Sequence[tuple[int, int]], size: int) -> Bytes:
-    """Per character the number of its channel, 0 before the first mark."""
+    """The channel of each character; 0 before the first mark."""
     begins = [0, *(start for start, _ in marks), size]
     return np.repeat(np.array([0, *(number for _, number in marks)], np.uint8), np.diff(begins))
 
 
-def _only(code: Bytes, kept: Mask) -> Bytes:
-    return np.where(kept, code, np.uint8(_SPACE))
+def _only(code: Bytes, mask: Mask) -> Bytes:
+    return np.where(mask, code, np.uint8(_SPACE))

@@ -1,4 +1,4 @@
-"""The class of each character of a text, for the reader of words."""
+"""The kinds of characters that the reader of words distinguishes."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from polarcheck.reading.surroundings import BLANKS
 
 
 class Character(enum.IntEnum):
-    """The class of a character; those above COMMA are no part of a word."""
+    """The kind of a character; those above COMMA are not part of a word."""
 
     BLANK = 0
     LETTER = 1

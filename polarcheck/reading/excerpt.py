@@ -1,23 +1,30 @@
-"""Lines of a program as a terminal can show them. What comes from a program or a path is data: nothing in it acts."""
+"""Text for terminals and logs. Text from programs and paths is data: no escape sequence or log command gets through."""
 
 from __future__ import annotations
 
 import re
 import unicodedata
-from typing import NamedTuple
+
+import msgspec
 
 from polarcheck.reading.names import code, with_characters
 
 _TAB = 4
 _CUT = "..."
-#: What the log of a CI job takes for a command: `::` at the head of a line, behind blanks as well, and `##[` anywhere.
+#: Commands in the log of a CI job: `::` at the head of a line, also behind blanks, and `##[` anywhere.
 _COMMAND = re.compile(r"^([^\S\n]*+):(?=:)|##\[", re.MULTILINE)
-#: Before the fault this many characters are kept of a line that is too long.
+#: How many characters before the fault are shown of a line that is too long.
 _BEFORE = 24
 
 
-class Excerpt(NamedTuple):
-    """The part of a line to show, and where to underline it: cells from the left, number of cells."""
+class Excerpt(msgspec.Struct, frozen=True):
+    """
+    A line cut to the width of a terminal.
+
+    text: the text to show.
+    first: the first underlined cell, from 0.
+    marked: number of underlined cells.
+    """
 
     text: str
     first: int
@@ -25,27 +32,27 @@ class Excerpt(NamedTuple):
 
 
 def visible(text: str) -> str:
-    """The text with every control, invisible or direction-changing character spelled out, as in `\\x1b`."""
+    """Spell out every control, invisible or direction-changing character, as in `\\x1b`."""
     return text if text.isprintable() else "".join(map(_shown, with_characters(text)))
 
 
 def without_commands(text: str) -> str:
-    """Visible lines, in which the log of a CI job finds no command: `::` at a head is `\\x3a:`, `##[` is `##\\x5b`."""
+    """Visible lines without commands for the log of a CI job: `::` at a head is `\\x3a:`, `##[` is `##\\x5b`."""
     return _COMMAND.sub(_spelled_command, text) if "::" in text or "##[" in text else text
 
 
 def shortened(text: str, length: int) -> str:
-    """The text, or so many characters of it and dots: what stands in a program may be of any length."""
+    """The text, cut to this length with dots behind it."""
     return text if len(text) <= length else f"{text[:length]} {_CUT}"
 
 
 def cells(text: str) -> int:
-    """The width of visible text in the cells of a terminal."""
+    """The width of visible text [cells of a terminal]."""
     return len(text) if text.isascii() else sum(map(_cells, text))
 
 
 def excerpt(line: str, start: int, end: int, room: int) -> Excerpt:
-    """A line cut to `room` cells around the characters from start (0 is the first) to end, which are underlined."""
+    """Cut a line to `room` cells around the characters from start (from 0) to end, which are underlined."""
     begin = _first_shown(line, start, room)
     lead = _CUT if begin else ""
     pieces: list[str] = []
@@ -65,7 +72,7 @@ def excerpt(line: str, start: int, end: int, room: int) -> Excerpt:
 
 
 def _first_shown(line: str, start: int, room: int) -> int:
-    """The character to begin with: in a line that is too long some way before the fault, half the room at most."""
+    """The first character to show: in a line that is too long a little before the fault, by half the room at most."""
     if len(line) <= room and cells(visible(line)) <= room:
         return 0
     begin = max(start - _BEFORE, 0)
@@ -75,7 +82,7 @@ def _first_shown(line: str, start: int, room: int) -> int:
 
 
 def _expanded(character: str, width: int) -> str:
-    """A tab as blanks to the next stop; CR, which belongs to the line end wherever a transfer put it, as nothing."""
+    """Expand a tab to the next stop, and drop CR, which is part of the line end."""
     if character == "\t":
         return " " * (_TAB - width % _TAB)
     return "" if character == "\r" else _shown(character)

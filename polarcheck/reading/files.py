@@ -149,7 +149,7 @@ def _not_waiting(path: str, flags: int) -> int:
     return os.open(path, flags | getattr(os, "O_NONBLOCK", 0))
 
 
-def read(path: str, most: int = LARGEST) -> bytes:
+def read_program(path: str, most: int = LARGEST) -> bytes:
     """
     All bytes of a program, at most so many: of a file, of a pipe that somebody writes to, of standard input for `-`.
 

@@ -1,4 +1,4 @@
-"""The text of a file with the programs that it calls behind it: each file is read once, and stays as it was read."""
+"""Joins the texts of a file and of the programs that it calls; each file is read once."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from polarcheck.reading.words import Blocks, Spans, Text, Words
 
 def joined(files: Sequence[Text]) -> Text:
     """
-    One text of several: the tables of the first file, then those of each called one, their places moved behind it.
+    Join texts: the tables of the first file, then those of each called file with their positions moved behind it.
 
-    `source.parts` says where each called file begins.
+    `source.parts` contains where each called file begins.
     """
     if len(files) == 1:
         return files[0]
@@ -62,7 +62,7 @@ def joined(files: Sequence[Text]) -> Text:
 
 
 def _joined_sources(sources: Sequence[Source]) -> tuple[Source, list[int]]:
-    """The characters of all files, a line end behind each that has none; and where each file begins."""
+    """The characters of all files, each with a line end behind it; and the positions at which they begin."""
     texts, codes, starts, parts = [], [], [], []
     offsets, lines = [0], 0
     for source in sources:

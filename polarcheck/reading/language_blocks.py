@@ -1,32 +1,33 @@
 """
-Blocks that hold statements of a control's own language (`X=R1`, `STOPRE`, `IF [VC1 EQ 1] NEND`): found, and taken out
-of the text that the reader of words sees. What they say is read when they are executed.
+Finds blocks with statements of a high-level or user-task language (`X=R1`, `STOPRE`, `IF [VC1 EQ 1] NEND`), and removes
+them from the text that the reader of words sees. The statements are read when they are executed.
 
-Works on one code per character with every line end as LF, before comments are looked for: a string may hold what
-elsewhere begins a comment, and behind a name parentheses hold arguments.
+Works on one code per character with every line end as LF, before comments are found: a string may contain the
+characters that begin a comment elsewhere, and parentheses behind a name contain arguments.
 """
 
 from __future__ import annotations
 
 import bisect
 import re
-from typing import NamedTuple
 
+import msgspec
 import numpy as np
 
 from polarcheck.reading.source import LF, Bytes, Positions
 from polarcheck.reading.surroundings import Ranges
 
 
-class _Signs(NamedTuple):
+class _Signs(msgspec.Struct, frozen=True):
     """
-    How blocks of a language are told from blocks of words.
+    The marks by which statements of a language differ from blocks of words.
 
-    alone: characters that no block of words has. has_arguments: parentheses behind a name or a sign hold arguments,
-    else they are comments everywhere. line_comment: begins a comment, as a pattern that matches it whole. lines: what
-    makes a line one of the language though it has none of these, as a pattern: L100 P3 calls, G290 changes languages.
-    has_heads: programs begin with lines such as %_N_SHAFT_MPF. has_names: N and O take names; $ heads a file or goes on
-    with the block of the line above.
+    alone: characters that no block of words contains.
+    has_arguments: parentheses behind a name or a sign contain arguments; else all are comments.
+    line_comment: pattern of a whole comment up to the end of the line.
+    lines: pattern of further lines of the language: L100 P3 calls, G290 changes languages.
+    has_heads: programs begin with lines such as %_N_SHAFT_MPF.
+    has_names: N and O take names; $ is the head of a file or continues the block of the line above.
     """
 
     alone: bytes
@@ -37,14 +38,15 @@ class _Signs(NamedTuple):
     has_names: bool = False
 
 
-class Taken(NamedTuple):
+class Extracted(msgspec.Struct, frozen=True):
     """
-    What was taken out of a text.
+    What was removed from a text.
 
-    statements: the place of the first sign of each line with statements. labels: sequence names (NLAP1) at the heads of
-    blocks that are words otherwise. programs: the names of programs (OFACE) in blocks of their own. heads: those in
-    lines such as %_N_SHAFT_MPF, with a character on either side. is_joined: lines go on with the block of the line
-    above.
+    statements: position of the first mark of each line with statements.
+    labels: sequence names (NLAP1) at the heads of blocks of words.
+    programs: names of programs (OFACE) alone in a block.
+    heads: names in lines such as %_N_SHAFT_MPF, with one character on either side.
+    is_joined: some line continues the block of the line above.
     """
 
     statements: Positions
@@ -66,49 +68,49 @@ _SIGNS = {
     "user-task": _Signs(b"=[$", False, rb"(?!)", has_names=True),
 }
 _NAME_CHARACTERS = np.isin(np.arange(256), list(b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz_"))
-#: A name has two letters at least; the letters O and I behind an address, up to 20, are digits that somebody mistyped.
+#: A name has two letters at least; up to 20 letters O and I behind an address are mistyped digits.
 _NAME = rb"(?![A-Z][OI]{1,20}+(?![A-Z0-9_]))[A-Z_$][A-Z_][A-Z0-9_$]*+"
-#: No control has longer labels. Without a limit the rest of a long run would be read again from each of its letters.
+#: No control has longer labels. Without a limit a long run would be scanned again from each of its letters.
 _LABEL = rb"[A-Z_][A-Z0-9_]{1,60}+[ \t]*+:"
 _BLANK = b" \t\r\0"
 _HEAD_OF_FILE = re.compile(rb"[ \t\r\0]*+\$[^%\n]*+%[ \t\r\0]*+")
-_GOES_ON = re.compile(rb"\n[ \t\r\0]*+\$(?![^%\n]*+%)")
+_CONTINUATION = re.compile(rb"\n[ \t\r\0]*+\$(?![^%\n]*+%)")
 _PROGRAM = re.compile(rb"[ \t\r\0]*+(O[A-Z][A-Z0-9]{0,15}+)[ \t\r\0]*+")
 #: A sequence name: N and up to four letters and digits. NOEX runs a block without stopping at it.
 _SEQUENCE_NAME = re.compile(rb"(?<![A-Z0-9_$])N(?!OEX(?![A-Z0-9]))[A-Z][A-Z0-9]{0,3}+(?![A-Z0-9_.=\[])")
 _BEFORE_LABEL = re.compile(rb"[ \t\r\0]*+(?:/[ \t]*+\d?+[ \t\r\0]*+)?+")
-#: A parenthesis that belongs to what stands before it: a name, a sign; so much before it is looked at [characters].
+#: An opening parenthesis of arguments: behind a name or a sign. _NEAR: how far before it is looked [characters].
 _BEFORE_ARGUMENTS = re.compile(rb"(?:[=+\-*/,<>]|(?<![A-Z0-9_$])(?>[A-Z0-9_$]*?[A-Z_$][A-Z_])[A-Z0-9_$]*+)[ \t]*+\(\Z")
 _NEAR = 64
 _FLAGS = re.IGNORECASE | re.MULTILINE
-#: The line before a program of an archive: %_N_SHAFT_MPF. In front of its name stands _ or %.
+#: The line before a program of an archive: %_N_SHAFT_MPF. The character before the name is _ or %.
 _HEAD = re.compile(rb"[ \t\0]*+%[ \t]*+(?:_N_)?([A-Z0-9_]{1,32}?)_(?:MPF|SPF)[ \t\r\0]*+\Z")
 
 
-def take_out(code: Bytes, language: str) -> Taken:
+def extract_statements(code: Bytes, language: str) -> Extracted:
     """
-    Find the lines with statements of a language, and its names; all of them but their comments is blanked.
+    Find the lines with statements of a language and its names, and blank them in `code`, except for their comments.
 
-    Lines that begin with % or O<NAME> hold none. A line is looked at only where two letters adjoin or such a sign
-    stands.
+    Lines that begin with % or O<NAME> contain none. Only lines with two adjacent letters or one of the marks are
+    examined.
     """
     signs = _SIGNS.get(language)
     none = np.zeros(0, np.int64)
     if signs is None or not len(code):
         nothing = Ranges(none, none)
-        return Taken(none, nothing, nothing, nothing, False)
+        return Extracted(none, nothing, nothing, nothing, False)
     is_joined = signs.has_names and _join(code)
     is_name = _NAME_CHARACTERS[code]
     alone = b":" + signs.alone
     suspects = np.isin(code, list(alone))
     suspects[1:] |= is_name[1:] & is_name[:-1]
-    told = [match.end() - 1 for match in re.finditer(signs.lines, code.tobytes(), _FLAGS)] if signs.lines else []
-    at = np.union1d(np.flatnonzero(suspects), np.array(told, np.int64))
+    marks = [match.end() - 1 for match in re.finditer(signs.lines, code.tobytes(), _FLAGS)] if signs.lines else []
+    at = np.union1d(np.flatnonzero(suspects), np.array(marks, np.int64))
     breaks = np.append(np.flatnonzero(code == LF), len(code))
     index = np.unique(np.searchsorted(breaks, at))
     starts = np.append(0, breaks + 1)[index]
     pattern = _pattern(signs)
-    found: list[int] = []
+    statements: list[int] = []
     labels: list[tuple[int, int]] = []
     programs: list[tuple[int, int]] = []
     heads: list[tuple[int, int]] = []
@@ -126,7 +128,7 @@ def take_out(code: Bytes, language: str) -> Taken:
             continue
         comments, first = _parts(line, pattern, signs)
         if first < 0:
-            first = _told_in(line, start, told, comments)
+            first = _first_outside(line, start, marks, comments)
         if first < 0:
             continue
         if signs.has_names:
@@ -142,12 +144,12 @@ def take_out(code: Bytes, language: str) -> Taken:
                 for first, end in names:
                     code[start + first : start + end] = _BLANK[0]
                 continue
-        found.append(start + first)
+        statements.append(start + first)
         begin = 0
         for comment, after in [*comments, (len(line), len(line))]:
             code[start + begin : start + comment] = _BLANK[0]
             begin = after
-    return Taken(np.array(found, np.int64), _ranges(labels), _ranges(programs), _ranges(heads), is_joined)
+    return Extracted(np.array(statements, np.int64), _ranges(labels), _ranges(programs), _ranges(heads), is_joined)
 
 
 def _ranges(places: list[tuple[int, int]]) -> Ranges:
@@ -156,26 +158,26 @@ def _ranges(places: list[tuple[int, int]]) -> Ranges:
 
 
 def _join(code: Bytes) -> bool:
-    """Blank the line end before each $ with which a line goes on with the block above, and the $; whether any does."""
+    """Blank each $ that continues the block of the line above, and the line end before it; True if there is one."""
     data = code.tobytes()
-    found = [match.span() for match in _GOES_ON.finditer(data)] if b"$" in data else []
-    for start, end in found:
+    spans = [match.span() for match in _CONTINUATION.finditer(data)] if b"$" in data else []
+    for start, end in spans:
         code[start] = code[end - 1] = _BLANK[0]
-    return bool(found)
+    return bool(spans)
 
 
 def _without(line: bytes, places: list[tuple[int, int]]) -> bytes:
-    """A line with these places of it blanked."""
+    """A line with these spans blanked."""
     bare = bytearray(line)
     for start, end in places:
         bare[start:end] = b" " * (end - start)
     return bytes(bare)
 
 
-def _told_in(line: bytes, start: int, told: list[int], comments: list[tuple[int, int]]) -> int:
-    """The first of some places in a text that lies in a line and in none of its comments; -1 where none does."""
+def _first_outside(line: bytes, start: int, marks: list[int], comments: list[tuple[int, int]]) -> int:
+    """The first mark in a line outside its comments, as an index of the line; -1 for none. start: of the line."""
     begins = [begin for begin, _ in comments]
-    for place in told[bisect.bisect_left(told, start) : bisect.bisect_left(told, start + len(line))]:
+    for place in marks[bisect.bisect_left(marks, start) : bisect.bisect_left(marks, start + len(line))]:
         before = bisect.bisect_right(begins, place - start) - 1
         if before < 0 or place - start >= comments[before][1]:
             return place - start
@@ -190,13 +192,13 @@ def _pattern(signs: _Signs) -> re.Pattern[bytes]:
 
 
 def _parts(line: bytes, pattern: re.Pattern[bytes], signs: _Signs) -> tuple[list[tuple[int, int]], int]:
-    """The comments of a line, and the place of its first sign of the language; -1 where it has none."""
+    """The comments of a line, and the index of its first mark of the language; -1 for none."""
     comments: list[tuple[int, int]] = []
     first, depth, at = -1, 0, 0
     while match := pattern.search(line, at):
         at = match.end()
-        remark, opens, closes, sign = match.groups()
-        if remark is not None:
+        comment, opens, closes, sign = match.groups()
+        if comment is not None:
             comments.append(match.span())
         elif opens:
             if signs.has_arguments and (depth > 0 or _BEFORE_ARGUMENTS.search(line[max(at - _NEAR, 0) : at])):

@@ -1,8 +1,8 @@
 """
-Languages in which other machines are programmed, and the signs by which a file of theirs is told from a program.
+The languages of other machines, and the signs by which a file in one of them is recognized.
 
-A sign is something that no lathe program in ISO code has, outside its comments. One alone may be a slip or a title that
-lacks its parentheses; a language is named where signs of several kinds agree.
+No lathe program in ISO code contains such a sign outside of its comments. One sign may be a slip or a title without
+parentheses; a language is recognized by several signs.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import re
 
 import msgspec
 
-#: A file of another world shows it near its head; pictures that slicers put there are shorter.
+#: How much of a file is examined: other languages show near the head; preview pictures of slicers are shorter.
 _LOOKED_AT = 100_000
 _COMMENT = re.compile(rb"\([^)\n]*+\)?")
 _REMARK = re.compile(rb";[^\n]*+")
@@ -21,9 +21,10 @@ _LINE = rb"^[ \t]*+(?:/?[ \t]*+N?\d++[ \t]++)?"
 
 class Sign(msgspec.Struct, frozen=True):
     """
-    Something that stands in files of one language: a regular expression.
+    A sign of a language.
 
-    weight: 2 for what is unmistakable where it stands once.
+    pattern: regular expression.
+    weight: 2 for a sign that is enough alone.
     """
 
     pattern: bytes
@@ -32,10 +33,13 @@ class Sign(msgspec.Struct, frozen=True):
 
 class Language(msgspec.Struct, frozen=True):
     """
-    One language: what is said of a file in it, and its signs.
+    A language.
 
-    needed: the sum of weights of signs that name it. never: what stands in no file of it, outside its comments.
-    reads_as_macros: all that is odd in a file of it may be what reads as macro statements.
+    title: as a message names it.
+    signs: its signs.
+    needed: sum of the weights of signs by which it is recognized.
+    never: pattern of what no file in it contains outside of comments.
+    reads_as_macros: a file in it may look like one with macro statements.
     """
 
     title: str
@@ -46,7 +50,13 @@ class Language(msgspec.Struct, frozen=True):
 
 
 class Recognised(msgspec.Struct, frozen=True):
-    """The language of a file, and the first of its signs as it is written."""
+    """
+    The language of a file.
+
+    title: of the language.
+    sign: the line with its first sign.
+    line: its number, from 1.
+    """
 
     title: str
     sign: str
@@ -155,9 +165,9 @@ LANGUAGES = (
 
 def recognised(text: bytes, only_macros_are_odd: bool = False) -> Recognised | None:
     """
-    The language of a text that is no program in ISO code, and its first sign; None where nothing says so.
+    Recognize the language of a text that is not a program in ISO code; None where there are not enough signs.
 
-    only_macros_are_odd: languages of which more would be odd are not looked for.
+    only_macros_are_odd: test only languages that read as macro statements.
     """
     head = text[:_LOOKED_AT]
     head = head.replace(b"\r\n", b" \n") if b"\n" in text else head.replace(b"\r", b"\n")
@@ -165,10 +175,10 @@ def recognised(text: bytes, only_macros_are_odd: bool = False) -> Recognised | N
     for language in LANGUAGES:
         if only_macros_are_odd and not language.reads_as_macros:
             continue
-        found = _signs(language, text)
-        if not found or (language.never and _compiled(language.never).search(_REMARK.sub(b"", text))):
+        matches = _signs(language, text)
+        if not matches or (language.never and _compiled(language.never).search(_REMARK.sub(b"", text))):
             continue
-        first = min(found, key=lambda match: match.start())
+        first = min(matches, key=lambda match: match.start())
         begin = text.rfind(b"\n", 0, first.start()) + 1
         line = text[begin:].partition(b"\n")[0]
         return Recognised(language.title, line.decode("latin-1").strip(), text.count(b"\n", 0, begin) + 1)
@@ -176,18 +186,18 @@ def recognised(text: bytes, only_macros_are_odd: bool = False) -> Recognised | N
 
 
 def _signs(language: Language, text: bytes) -> list[re.Match[bytes]]:
-    """The first place of each of its signs; nothing once those that are left cannot name the language."""
-    found = []
+    """The first match of each sign; empty as soon as the remaining signs are not enough."""
+    matches = []
     possible = sum(sign.weight for sign in language.signs)
     for sign in language.signs:
         match = _compiled(sign.pattern).search(text)
         if match:
-            found.append(match)
+            matches.append(match)
             continue
         possible -= sign.weight
         if possible < language.needed:
             return []
-    return found
+    return matches
 
 
 @functools.cache

@@ -1,8 +1,8 @@
 """
-Letters that stand where a digit is meant, O for 0 and I for 1: found, and read as the digits.
+Finds letters that were typed for digits, O for 0 and I for 1, and replaces them.
 
-Works on one code per character with comments, names and remarks blanked. What is text and no block, and what belongs to
-macro statements (GOTO 10, DO1), is left as it is.
+Works on one code per character with comments, names and remarks blanked. Prose and macro statements (GOTO 10, DO1) do
+not change.
 """
 
 from __future__ import annotations
@@ -18,16 +18,16 @@ _SEMICOLON, _SMALL = ord(";"), 0x20
 _O, _I = b"oi"
 _POINT = ord(".")
 _TWO_BREAKS = np.full(2, LF, np.uint8)
-#: Behind these an O is part of what stands there; behind anything else, as a blank, it begins a word.
+#: Behind these characters an O is part of a word or number; behind others, as a blank, it begins a word.
 _JOINS = np.isin(
     np.arange(256), list(bytes([*b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789.+-", DASH]))
 )
 _IS_LETTER = np.isin(np.arange(256), list(b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz"))
 _BEGINS_WORD = _IS_LETTER | np.isin(np.arange(256), [*b"+-", DASH])
-#: Before these, or a point and these, an I has a number of its own.
+#: Before these characters, or a point and these, an I is an address with a number.
 _BEGINS_NUMBER = np.isin(np.arange(256), list(bytes([*b"0123456789+-#[=", DASH])))
 
-#: A longer block is none that somebody typed.
+#: A longer block was not typed by hand [characters].
 _LONGEST = 1000
 _SIGN = rb"[-+\x96]"
 _NUMBER = rb"[-+\x96.\s]*+\d[-+\x96.\d\s]*+"
@@ -55,25 +55,25 @@ _OF_TEN = b"XYZCUVW"
 
 
 def read_as_digits(code: Bytes) -> Positions:
-    """Put the digits that are meant in the place of letters O and I, and give their positions."""
+    """Replace letters O and I that were typed for digits; return their positions."""
     suspects = _suspects(code)
     if not len(suspects):
         return suspects
     breaks = np.append(np.flatnonzero((code == LF) | (code == _SEMICOLON)), len(code))
     index = different(np.searchsorted(breaks, suspects))
     starts = np.append(0, breaks + 1)[index]
-    found = [
+    places = [
         start + place
         for start, end in zip(starts.tolist(), breaks[index].tolist(), strict=True)
         for place in _in_block(code[start:end].tobytes())
     ]
-    at = np.array(found, np.int64)
+    at = np.array(places, np.int64)
     code[at] = np.where(code[at] | _SMALL == _O, ord("0"), ord("1"))
     return at
 
 
 def _suspects(code: Bytes) -> Positions:
-    """Letters O that a word or number goes on with, and letters I behind an address, or without a number."""
+    """Letters O inside a word or number, and letters I behind an address, or without a number."""
     small = code | np.uint8(_SMALL)
     at = np.flatnonzero((small == _O) | (small == _I))
     at = at[at > 0]
@@ -86,7 +86,7 @@ def _suspects(code: Bytes) -> Positions:
 
 
 def _in_block(block: bytes) -> list[int]:
-    """The places of such letters in a block; none where it would be no sound block with the digits, either."""
+    """The indices of such letters in a block; none if the block would be faulty with the digits, too."""
     if len(block) > _LONGEST or _OTHER.match(block) or _PROGRAM_AFTER_NUMBER.fullmatch(block):
         return []
     meant = bytearray(block)
@@ -109,7 +109,7 @@ def _in_block(block: bytes) -> list[int]:
 
 
 def _may_be_number(block: bytes, word: re.Match[bytes], first_numbered: int) -> bool:
-    """Return True if the letters in the number of a word can be digits, and are not prose."""
+    """True where letters in the number of a word can be digits, and not a word of prose."""
     address, number = word[1].upper(), word[2].upper().lstrip(b"+-\x96")
     if number.count(b".") > 1 or _OTHER_O.fullmatch(word[0]):
         return False

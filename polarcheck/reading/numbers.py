@@ -1,4 +1,4 @@
-"""The numbers of words, from text without blanks. What is wrong with one is marked, never raised."""
+"""Reads the numbers of words from text without blanks. Faults are marked, never raised."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Masks = NDArray[np.uint64]
 
 
 class NumberFault(enum.IntEnum):
-    """The fault of the number of a word."""
+    """The fault of a word."""
 
     NONE = 0
     NO_DIGITS = 1
@@ -27,10 +27,13 @@ class NumberFault(enum.IntEnum):
 
 class Numbers(Table, frozen=True):
     """
-    What the numbers of words say, one element each.
+    The numbers of words, one element each.
 
-    value: float64, NaN where there are no digits. decimals, digits: how many were written. has_point: C20. and C20 are
-    not the same to a control. fault: uint8, NumberFault.
+    value: float64, NaN where there are no digits.
+    decimals: number of digits behind the point.
+    digits: number of all digits.
+    has_point: C20. and C20 differ on a control.
+    fault: uint8, NumberFault.
     """
 
     value: Floats
@@ -44,7 +47,7 @@ _POINT, _PLUS, _MINUS, _ZERO = b".+-0"
 _IS_SIGN = np.isin(np.arange(256), (_PLUS, _MINUS, DASH))
 _POWERS = 10.0 ** np.arange(23)
 
-#: A number is read as the eight characters that end with its last; a longer one digit by digit.
+#: A number is read from its last eight characters at once; a longer one digit by digit.
 _EIGHT = 8
 
 
@@ -65,9 +68,9 @@ _DIVISOR = np.array([1.0, *_POWERS[8:0:-1], *[1.0] * 7])
 
 def read_numbers(code: Bytes, start: Positions, end: Positions) -> Numbers:
     """
-    The numbers that stand from start to end in a text, without an address.
+    Read the numbers at the positions from start to end of a text, without an address.
 
-    code: signs, digits and points in those places, and something else behind them.
+    code: signs, digits and points there, and another character behind each number.
     """
     first = code[start]
     signed = (first == _MINUS) | (first == _PLUS) | (first == DASH)
@@ -116,30 +119,30 @@ def _eight_digits(eight: Masks) -> Floats:
 
 
 def _read_odd(numbers: Numbers, code: Bytes, start: Positions, end: Positions, index: Positions) -> None:
-    """Digit by digit: long numbers, and those in which signs, points and digits do not stand where they belong."""
+    """Read numbers digit by digit: long ones, and those with misplaced signs or points."""
     length = end[index] - start[index]
     first = np.cumsum(length) - length
     count = len(index)
     word = np.repeat(np.arange(count, dtype=np.int32), length)
-    here = code[np.arange(length.sum()) + (start[index] - first)[word]]
-    is_point, is_sign = here == _POINT, _IS_SIGN[here]
+    characters = code[np.arange(length.sum()) + (start[index] - first)[word]]
+    is_point, is_sign = characters == _POINT, _IS_SIGN[characters]
     is_digit = ~(is_point | is_sign)
 
     digit_word = word[is_digit]
     digits = np.bincount(digit_word, minlength=count)
     last_digit = np.cumsum(digits)
     place = np.minimum(last_digit[digit_word] - 1 - np.arange(len(digit_word)), len(_POWERS) - 1)
-    mantissa = np.bincount(digit_word, (here[is_digit] - float(_ZERO)) * _POWERS[place], minlength=count)
+    mantissa = np.bincount(digit_word, (characters[is_digit] - float(_ZERO)) * _POWERS[place], minlength=count)
     digits_before = np.cumsum(is_digit)
     points = np.bincount(word[is_point], minlength=count)
     signs = np.bincount(word[is_sign], minlength=count)
     decimals = np.zeros(count, np.int64)
     decimals[word[is_point]] = last_digit[word[is_point]] - digits_before[is_point]
     value = mantissa / _POWERS[np.minimum(decimals, len(_POWERS) - 1)]
-    negative = np.bincount(word[is_sign & (here != _PLUS)], minlength=count) > 0
+    negative = np.bincount(word[is_sign & (characters != _PLUS)], minlength=count) > 0
     started = (digits_before > (last_digit - digits)[word]) | (np.cumsum(is_point) > (np.cumsum(points) - points)[word])
     late = np.bincount(word[is_sign & started], minlength=count) > 0
-    dashes = np.bincount(word[here == DASH], minlength=count) > 0
+    dashes = np.bincount(word[characters == DASH], minlength=count) > 0
 
     fault = np.where(dashes, NumberFault.WRONG_DASH, NumberFault.NONE)
     fault = np.where(late, NumberFault.SIGN_AFTER_DIGITS, fault)

@@ -1,4 +1,4 @@
-"""Text for people in no parentheses: whether there can be any, which is cheap; prose_in_blocks.py finds it."""
+"""A cheap test for prose outside of parentheses; prose_in_blocks.py finds it."""
 
 from __future__ import annotations
 
@@ -8,17 +8,17 @@ from polarcheck.reading.source import Bytes, Source
 from polarcheck.reading.surroundings import Ranges
 
 _BAR = ord("|")
-#: Letters of any language, bytes of an encoding that nobody named among them; and the lines of tables.
+#: Letters of any language, including bytes of an unknown encoding; and the bars of tables.
 _LETTERS = bytes([*b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz", *range(0xA1, 0xFF)])
 _KINDS = bytes(1 if code in _LETTERS else 2 if code == _BAR else 0 for code in range(256))
 
 
 def find_prose(source: Source, code: Bytes) -> Ranges:
     """
-    The text in no parentheses, in order, blanked in `code`, a copy of the codes of the source or of their beginning.
+    Find the prose outside of parentheses, in order, and blank it in `code`, a copy of the codes of the source.
 
-    code: one code per character with comments, names and remarks blanked. Only a block with a bar or with two letters
-    that adjoin is looked at; most programs have none.
+    code: one code per character with comments, names and remarks blanked. Only blocks with a bar or with two adjacent
+    letters are examined; most programs have none.
     """
     kinds = code.tobytes().translate(_KINDS)
     if b"\1\1" not in kinds and b"\2" not in kinds:

@@ -1,9 +1,9 @@
 """
-Text for people that stands beside or between the blocks and in no parentheses: found, and blanked as a comment is.
+Finds prose outside of parentheses, beside or between the blocks, and blanks it like comments.
 
-A description column copied with a program, a remark, a title. Works on one code per character with comments, names and
-remarks blanked. Words that some control reads (macro statements, names of Siemens and Okuma) are no such text, nor are
-addresses whose numbers are missing.
+Examples are a description column copied with a program, a remark, a title. Works on one code per character with
+comments, names and remarks blanked. Words of a control (macro statements, names of Siemens and Okuma) are not prose,
+nor are addresses without numbers.
 """
 
 from __future__ import annotations
@@ -12,8 +12,9 @@ import itertools
 import re
 from array import array
 from collections.abc import Sequence
-from typing import NamedTuple, TypeAlias
+from typing import TypeAlias
 
+import msgspec
 import numpy as np
 
 from polarcheck.arrays import Mask, Rows
@@ -25,10 +26,10 @@ Match: TypeAlias = re.Match[bytes]
 _TAB = b"\t"
 _SEMICOLON, _OPEN = b";("
 _BLANKS = bytes([*range(10), *range(11, 33), 0x7F, 0xA0])
-#: So much of a block is looked at [characters], and so many of its words: enough to tell what it is.
-_LOOKED_AT = 4000
-_WORDS_LOOKED_AT = 40
-#: A file with more of blocks in which letters adjoin is a text, or computes all: what is wrong with it is told anyway.
+#: How much of a block is examined [characters], and how many of its words: enough to classify it.
+_EXAMINED = 4000
+_WORDS_EXAMINED = 40
+#: Most blocks with adjacent letters that are examined; a file with more is a text, or one of macro statements.
 _BLOCK_LIMIT = 200_000
 
 _B = rb"[\0-\x09\x0b-\x20\x7f\xa0]*+"
@@ -84,19 +85,21 @@ _LINEAR, _ROTARY = frozenset(b"XYZUVW"), frozenset(b"CH")
 #: Short for words, without a vowel.
 _OF_THE_SHOP = frozenset(b"RPM CW CCW".split())
 _VOWELS = frozenset(b"AEIOU")
-#: From so many blocks with text on, their layout says where the text of each begins, and doubtful words are text, too.
+#: From this number of blocks with prose on, their layout says where the prose of each begins, and doubtful words count.
 _MANY = 3
-#: Words of which a sentence may begin with a word of a control's language.
+#: From this number of words on, a sentence may begin with a word of a control.
 _SENTENCE = 4
-#: Of an encoding that nobody named.
+#: Bytes above 127 from which on a text counts as prose, where the encoding is not known.
 _FEW_BYTES = 4
 
 
-class _Found(NamedTuple):
+class _Prose(msgspec.Struct, frozen=True):
     """
-    Text in a block: from start to end, places in the block. code_end: where the words of the block before it end.
+    Prose in a block, by indices of its characters.
 
-    is_certain: text even where nothing else in the file is.
+    start, end: the prose, end exclusive.
+    code_end: end of the words before it.
+    is_certain: it is prose even if nothing else in the file is.
     """
 
     start: int
@@ -107,35 +110,35 @@ class _Found(NamedTuple):
 
 def prose_in_blocks(source: Source, code: Bytes, is_suspect: Mask) -> Ranges:
     """
-    The text in no parentheses, in order, blanked in `code`, a copy of the codes of the source or of their beginning.
+    Find the prose outside of parentheses, in order, and blank it in `code`, a copy of the codes of the source.
 
-    is_suspect: for each character whether its block is looked at; one more for a last block without any.
+    is_suspect: per character, True where its block is to be examined; one more for an empty block at the end.
     """
     data = code.tobytes()
     breaks = np.append(np.flatnonzero((code == LF) | (code == _SEMICOLON)), len(code))
     starts = np.append(0, breaks[:-1] + 1)
     index = np.flatnonzero(np.logical_or.reduceat(is_suspect, starts))[:_BLOCK_LIMIT]
     places = zip(starts[index].tolist(), breaks[index].tolist(), strict=True)
-    found = array("q")
+    rows = array("q")
     for begin, end in places:
-        block = data[begin : min(end, begin + _LOOKED_AT)]
-        for one in _in_block(block, source.code[begin : begin + len(block)]):
-            if _has_letters(source, block[one.start : one.end], begin + one.start):
-                behind = end if one.end == len(block) else begin + one.end
+        block = data[begin : min(end, begin + _EXAMINED)]
+        for prose in _in_block(block, source.code[begin : begin + len(block)]):
+            if _has_letters(source, block[prose.start : prose.end], begin + prose.start):
+                behind = end if prose.end == len(block) else begin + prose.end
                 stop = begin + _end_of(source.code[begin:behind])
-                found.extend((begin, begin + one.start, stop, begin + one.code_end, one.is_certain))
-    ranges = _of_the_file(data, np.frombuffer(found, np.int64).reshape(-1, 5))
+                rows.extend((begin, begin + prose.start, stop, begin + prose.code_end, prose.is_certain))
+    ranges = _of_the_file(data, np.frombuffer(rows, np.int64).reshape(-1, 5))
     blank(code, ranges)
     return ranges
 
 
 def _end_of(written: Bytes) -> int:
-    """Behind the last character of a block that is no blank; comments behind a text belong to it."""
+    """The end of a block without trailing blanks; comments behind prose belong to it."""
     return len(written.tobytes().rstrip(_BLANKS))
 
 
 def _has_letters(source: Source, text: bytes, at: int) -> bool:
-    """Return True if text without ASCII letters holds letters of another script, but no full-width ones."""
+    """True for text with letters of ASCII or of another script; full-width letters and stray bytes do not count."""
     if _ASCII.search(text) or text[:1] == b"|":
         return True
     others = sum(character >= 0x80 for character in text)
@@ -143,19 +146,21 @@ def _has_letters(source: Source, text: bytes, at: int) -> bool:
     return _OTHER_SCRIPT.search(written) is not None and (source.encoding != "latin-1" or others >= _FEW_BYTES)
 
 
-def _of_the_file(data: bytes, found: Rows) -> Ranges:
+def _of_the_file(data: bytes, rows: Rows) -> Ranges:
     """
-    What of it is text, judged together.
+    The prose of a file, judged by all its blocks.
 
-    Where much of it is, the doubtful is, too; and in a table behind tabs, words behind the tab that read like a block
-    belong to the description, as in `X2.15<TAB>X50 is the start`, and so do those that a wrapped line begins with.
+    If enough of it is certain, the doubtful counts as well. In a table with tabs, words behind the tab that read like a
+    block belong to the description, as in `X2.15<TAB>X50 is the start`; so do the words that begin a wrapped line.
+
+    rows: per prose its block, start, end, end of the words before it, and 1 if it is certain.
     """
-    certain = found[:, 4] > 0
+    certain = rows[:, 4] > 0
     if np.count_nonzero(certain) < _MANY:
-        return Ranges(found[certain, 1], found[certain, 2])
-    block, start, end, code_end, _ = found.T
+        return Ranges(rows[certain, 1], rows[certain, 2])
+    block, start, end, code_end, _ = rows.T
     with_code = np.flatnonzero(code_end > block)
-    tabbed = np.array([_TAB in data[at:first] for at, first in found[with_code][:, [3, 1]].tolist()], bool)
+    tabbed = np.array([_TAB in data[at:first] for at, first in rows[with_code][:, [3, 1]].tolist()], bool)
     if np.count_nonzero(tabbed) >= max(_MANY, len(tabbed) / 2):
         start = start.copy()
         for row in with_code[~tabbed].tolist():
@@ -168,18 +173,18 @@ def _of_the_file(data: bytes, found: Rows) -> Ranges:
     return Ranges(start, end)
 
 
-def _in_block(block: bytes, written: Bytes) -> list[_Found]:
+def _in_block(block: bytes, written: Bytes) -> list[_Prose]:
     """
-    The text in a block; written: the same before comments were blanked.
+    The prose in a block. written: the block before comments were blanked.
 
-    It begins where the words of the block end. Of two words and more one must be a word that can be spoken; one by
-    itself may be a name, and is looked at more closely.
+    It begins behind the words of the block. Of two or more words one must be pronounceable; a single word may be a name
+    and is examined more closely.
     """
     if block.lstrip(_BLANKS)[:1] == b"|" and block.count(b"|") > 1:
         return _in_table_row(block)
     match = _CODE.match(block)
     code_end = match.end() if match else 0
-    runs = list(itertools.islice(_RUN.finditer(block, code_end), _WORDS_LOOKED_AT))
+    runs = list(itertools.islice(_RUN.finditer(block, code_end), _WORDS_EXAMINED))
     words = [run for run in runs if _is_word(run[0])]
     if not runs:
         return []
@@ -187,35 +192,35 @@ def _in_block(block: bytes, written: Bytes) -> list[_Found]:
     end = len(block)
     if _MACRO.search(block):
         start = _beside_macro(block, runs, words, begin)
-        return [] if start is None else [_Found(start, end, code_end, True)]
+        return [] if start is None else [_Prose(start, end, code_end, True)]
     if len(words) < 2 and (len(runs) < _SENTENCE - 1 or not words or runs[0][0].upper() in _CALLS):
-        return _single(block, written, runs, words, _Found(begin, end, code_end, False))
+        return _single(block, written, runs, words, _Prose(begin, end, code_end, False))
     if _is_statement(runs[0]) and len(words) < _SENTENCE:
         return []
     if _NUMBERING.fullmatch(block, 0, code_end):
         column = _COLUMN.search(block, runs[-1].end())
         if column and _SOUND.fullmatch(block, column.end()):
             end = column.end()
-    return [_Found(begin, end, code_end, any(_is_long(word) for word in words))]
+    return [_Prose(begin, end, code_end, any(_is_long(word) for word in words))]
 
 
-def _in_table_row(block: bytes) -> list[_Found]:
-    """A line of a table, | M5 | Stop the spindle |: all of it but the first cell that reads as a block."""
-    found, begin, edge = [], 0, 0
+def _in_table_row(block: bytes) -> list[_Prose]:
+    """The prose in a line of a table, | M5 | Stop the spindle |: all but the first cell that reads as a block."""
+    before, begin, edge = [], 0, 0
     for cell in block.split(b"|"):
         code = cell.strip(_BLANKS + b"`*")
         if _SOUND.fullmatch(code):
             start = edge + cell.index(code)
-            found = [_Found(begin, start, begin, True)]
+            before = [_Prose(begin, start, begin, True)]
             begin = start + len(code)
             break
         edge += len(cell) + 1
-    return [*found, _Found(begin, len(block), begin, True)]
+    return [*before, _Prose(begin, len(block), begin, True)]
 
 
-def _single(block: bytes, written: Bytes, runs: Sequence[Match], words: Sequence[Match], found: _Found) -> list[_Found]:
-    """One word that is no statement of any control: a title, a remark; not a name that some control would call."""
-    is_alone = _NUMBERING.fullmatch(block, 0, found.code_end) is not None
+def _single(block: bytes, written: Bytes, runs: Sequence[Match], words: Sequence[Match], prose: _Prose) -> list[_Prose]:
+    """The prose of a single word: a title or remark, not a statement or a name that a control would call."""
+    is_alone = _NUMBERING.fullmatch(block, 0, prose.code_end) is not None
     if any(map(_is_statement, runs)) or not (words or len(runs) == 1):
         return []
     if is_alone and _is_known(runs[0]) and (not words or runs[0][0].upper() in _CALLS):
@@ -228,13 +233,13 @@ def _single(block: bytes, written: Bytes, runs: Sequence[Match], words: Sequence
         return []
     is_certain = bool(words) and _is_long(word) and not (is_alone and _is_known(runs[0]))
     is_certain &= not is_name or _PROGRAM.match(block) is not None
-    if _SWITCHES_ALONE.fullmatch(block, 0, found.code_end) and _SOUND.fullmatch(block, word.end()):
-        return [_Found(found.start, word.end(), found.code_end, is_certain)]
-    return [_Found(*found[:3], is_certain)]
+    if _SWITCHES_ALONE.fullmatch(block, 0, prose.code_end) and _SOUND.fullmatch(block, word.end()):
+        return [_Prose(prose.start, word.end(), prose.code_end, is_certain)]
+    return [_Prose(prose.start, prose.end, prose.code_end, is_certain)]
 
 
 def _beside_macro(block: bytes, runs: Sequence[Match], words: Sequence[Match], begin: int) -> int | None:
-    """Where text begins in a block with signs of macro: before them, where they are part of it, or behind them."""
+    """Where prose begins in a block with signs of macro: before them, if they are part of it, or behind them."""
     signs = [sign.span() for sign in _MACRO.finditer(block)]
     before = [word for word in words if word.end() <= signs[0][0]]
     needed = _SENTENCE if _is_statement(runs[0]) else 3 if _is_known(runs[0]) else 2
@@ -256,7 +261,7 @@ def _beside_macro(block: bytes, runs: Sequence[Match], words: Sequence[Match], b
 
 
 def _is_word(run: bytes) -> bool:
-    """Letters that are a word of some language, and neither a name nor addresses without numbers."""
+    """True for letters that are a word, not a name or addresses without numbers."""
     run = run.upper()
     if b"_" in run or run in _STATEMENTS or run in _AMBIGUOUS:
         return False
@@ -264,7 +269,7 @@ def _is_word(run: bytes) -> bool:
     if not run.isascii() or run in _OF_THE_SHOP:
         return True
     if len(letters) == 1:
-        return False  # XX stands in manuals for any number
+        return False  # in manuals XX means any number
     if len(letters) < len(run) or not letters <= _ADDRESSES:
         return True
     return len(letters & _LINEAR) < 2 and not (letters & set(b"XZ") and letters & _ROTARY)

@@ -1,4 +1,4 @@
-"""A program that takes the place of the one that was read, in the same file: the old one or the new one, never both."""
+"""Replaces a program in its file, whole or not at all."""
 
 from __future__ import annotations
 
@@ -10,18 +10,18 @@ from pathlib import Path
 from polarcheck.errors import OutputError, SourceError
 from polarcheck.reading import files
 
-#: Behind the name of a file that is kept as it was.
+#: Suffix of the copy of the old program.
 ORIGINAL = ".orig"
 
 
 def rewrite(path: str, old: bytes, new: bytes, *, keep: bool = False) -> None:
     """
-    Write a program in the place of the one that was read.
+    Replace the old program of a file by a new one.
 
-    A link stays, and what it leads to is written; owner, group and mode of the file stay. keep: the old one stays as
-    FILE.orig. Raises OutputError for a file that must not be written (read-only, with a second name that would keep
-    the old program, changed since it was read, of an owner that the new one cannot have) or cannot, and where
-    FILE.orig holds something else.
+    A link stays a link, and its target is written; owner, group and mode of the file do not change. keep: a copy of the
+    old program is written to FILE.orig. Raises OutputError for a file that cannot or must not be written (read-only,
+    with a second name that would have the old program, changed since it was read, of another owner), or where FILE.orig
+    contains something else.
     """
     name = files.shown(path)
     try:
@@ -49,7 +49,7 @@ def _refuse(target: Path, name: str, old: bytes) -> None:
     if status.st_nlink > 1:
         raise OutputError(f"{name}: not fixed: it has another name (hard link), which would keep the old program")
     try:
-        is_same = files.read(str(target), len(old) + 1) == old
+        is_same = files.read_program(str(target), len(old) + 1) == old
     except SourceError:
         is_same = False
     if not is_same:
@@ -57,19 +57,19 @@ def _refuse(target: Path, name: str, old: bytes) -> None:
 
 
 def _keep(path: Path, name: str, old: bytes, status: os.stat_result) -> None:
-    """The old program beside the new one, under a name that nothing else has."""
-    kept = path.with_name(path.name + ORIGINAL)
-    if kept.exists() and kept.is_file() and kept.read_bytes() == old:
+    """Write a copy of the old program, unless another file has its name."""
+    copy = path.with_name(path.name + ORIGINAL)
+    if copy.exists() and copy.is_file() and copy.read_bytes() == old:
         return
-    if os.path.lexists(kept):
-        raise OutputError(f"{name}: not fixed: {files.shown(str(kept))} is there already, and differs; move it away")
-    files.write(kept, old, lambda written: _hand_over(written, status, name))
+    if os.path.lexists(copy):
+        raise OutputError(f"{name}: not fixed: {files.shown(str(copy))} is there already, and differs; move it away")
+    files.write(copy, old, lambda written: _hand_over(written, status, name))
 
 
 def _hand_over(written: Path, status: os.stat_result, name: str) -> None:
     """Give a new file the owner, the group and the mode of the program."""
-    belongs = written.stat()
-    if (belongs.st_uid, belongs.st_gid) != (status.st_uid, status.st_gid) and sys.platform != "win32":
+    present = written.stat()
+    if (present.st_uid, present.st_gid) != (status.st_uid, status.st_gid) and sys.platform != "win32":
         try:
             os.chown(written, status.st_uid, status.st_gid)
         except OSError:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import codecs
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any
 
 import msgspec
 import numpy as np
@@ -26,8 +26,14 @@ LF, CR, CTRL_Z = 10, 13, 26
 _BOMS = ((codecs.BOM_UTF8, "utf-8"), (codecs.BOM_UTF16_LE, "utf-16-le"), (codecs.BOM_UTF16_BE, "utf-16-be"))
 
 
-class Part(NamedTuple):
-    """A called program behind the file: its first line there, its name, and how many lines it was given at its head."""
+class Part(msgspec.Struct, frozen=True):
+    """
+    A called program whose text follows that of the file.
+
+    first_line: its first line in the joined text.
+    name: of its file.
+    added_lines: lines that were added at its head.
+    """
 
     first_line: int
     name: str
@@ -38,9 +44,15 @@ class Source(msgspec.Struct, frozen=True, dict=True):
     """
     One file: its bytes, its encoding, and one code per character.
 
-    code: uint8[n], Latin-1 where the character has one. line_starts: int64[lines], character positions.
-    parts: the called programs that were read behind the file. added_lines: at the head, that the file does not have.
-    channel: the one whose programs alone are in `code`, as `$2`; empty where a file has no more than one.
+    path: of the file.
+    data: its bytes.
+    encoding: its name.
+    bom: the byte order mark, or empty.
+    code: uint8[n], Latin-1 where the character has one.
+    line_starts: int64[lines], character positions.
+    parts: called programs behind the text of the file.
+    added_lines: lines at the head that the file does not have.
+    channel: the channel whose programs `code` contains, as `$2`; empty where a file has one channel.
     """
 
     path: str
@@ -73,12 +85,12 @@ class Source(msgspec.Struct, frozen=True, dict=True):
         return int(np.searchsorted(self.line_starts, position, side="right"))
 
     def part_of(self, line: int) -> tuple[str, int] | None:
-        """The called program that a line belongs to, and its line there; None for lines of the file itself."""
-        found = [part for part in self.parts if line >= part.first_line]
-        return (found[-1].name, max(line - found[-1].first_line + 1 - found[-1].added_lines, 1)) if found else None
+        """The called program that contains a line, and the line there; None for lines of the file itself."""
+        part = next((part for part in reversed(self.parts) if line >= part.first_line), None)
+        return None if part is None else (part.name, max(line - part.first_line + 1 - part.added_lines, 1))
 
     def is_own(self, part: tuple[str, int]) -> bool:
-        """Return True for a line of the file itself that belongs to another of its channels."""
+        """True where the result of part_of is a line of the file itself, in another channel."""
         return bool(self.channel) and part[0] == self.path
 
     def line_text(self, line: int) -> str:
@@ -88,11 +100,11 @@ class Source(msgspec.Struct, frozen=True, dict=True):
         return self.excerpt(start, end).rstrip("\r\n")
 
 
-def read(data: bytes, path: str = "-", encoding: str | None = None) -> Source:
+def read_source(data: bytes, path: str = "-", encoding: str | None = None) -> Source:
     """
-    Any bytes to a Source: UTF-8, UTF-16 with BOM, the encoding asked for, else Latin-1, and never a guess.
+    Decode any bytes: as UTF-8, UTF-16 with BOM, or the encoding if one is set, else as Latin-1; it never guesses.
 
-    Raises UsageError for an unknown encoding, SourceError where the encoding asked for does not fit the bytes.
+    Raises UsageError for an unknown encoding, SourceError where the encoding does not fit the bytes.
     """
     bom, name = _recognised(data, path, encoding)
     code = _codes(data, bom, name)
@@ -100,7 +112,7 @@ def read(data: bytes, path: str = "-", encoding: str | None = None) -> Source:
 
 
 def is_encoding(name: str) -> bool:
-    """Return True for the name of a text encoding; Python's codecs rot13 and base64 are none."""
+    """True for the name of a text encoding; rot13 and base64 are codecs of Python, but no text encodings."""
     try:
         "O".encode(name)
     except (LookupError, ValueError):

@@ -1,5 +1,5 @@
 """
-What of a text is program: tape marks, comments, remarks and names are found, and blanked.
+Finds everything around the words of a program (tape marks, comments, remarks, names) and blanks it.
 
 Works on one code per character (source.Source.code) with every line end as LF.
 """
@@ -19,12 +19,12 @@ from polarcheck.reading.source import CR, LF, Bytes, Positions
 
 BLANKS = bytes(character for character in (*range(33), 0x7F, 0xA0) if character != LF)
 _SPACE, _OPEN, _CLOSE, _PERCENT, _SEMICOLON, _LESS, _GREATER = b" ()%;<>"
-#: What is not in the ISO set of controls: NUL and other control characters, above 125.
+#: Characters outside the ISO set of controls: NUL and other control characters, and those above 125.
 _IS_FOREIGN = bytes((code < 32 and code not in (9, LF, CR)) or code >= 126 for code in range(256))
 _IS_BLANK = np.isin(np.arange(256), [*BLANKS, LF])
 #: The longest name of a program (30i family).
 _NAME_LENGTH = 32
-#: A file with more tape marks holds no programs that a control could store, and is read as one.
+#: A file with more tape marks is read as one program: no control could store so many.
 _MARK_LIMIT = 10_000
 
 _BLANK = rb"[\0-\x09\x0b-\x20\x7f]*+"
@@ -37,28 +37,28 @@ _READS_AS_BLOCKS = re.compile(
 )
 
 
-#: Marks of HTML, as they come with a page that was copied; behind O or P such a name is that of a program.
+#: Tags of HTML from a copied page; behind O or P such a name is the name of a program.
 _TAG = (
     rb"(?i)(?<![OP])(?<![OP] )</?(?:b|i|p|u|a|em|strong|td|tr|th|br|hr|table|thead|tbody|span|div|code|pre|html|head"
     rb"|title|body|li|ul|ol|sup|sub|h\d)(?:[ \t][^<>\n]{0,200})?/?>"
 )
 
 
-#: The number of a channel; no lathe has more.
+#: The number of a channel; no lathe has more than nine.
 _CHANNEL = rb"[ \t]*+[1-9](?![\d.])"
 #: What may stand before the mark of a channel in its block: the head of a program, a sequence number.
 _HEAD = rb"(?:(?:[O:]" + _BLANK + rb"\d++|O?<[^<>\n]{1,%d}>|N" % _NAME_LENGTH + _BLANK + rb"\d++)" + _BLANK + rb")?+"
-#: A wait for other channels: them, and the number of the wait, or one of both.
+#: A wait for other channels: their numbers, the number of the wait, or both.
 _WAIT = rb"[ \t]*+(?:\d++[ \t]*+(?:L[ \t]*+\d++)?+|L[ \t]*+\d++)"
 
 
-#: Before a % that is no tape mark but says how much, in a text: FEED AT 20%; so much of it is looked at [characters].
+#: Text before a % that means a percentage: FEED AT 20%. _SHARE_LENGTH: how much of it is examined [characters].
 _SHARE = rb"(?i)(?<![A-Z])[A-Z]{2,}+[ \t]++\d++\Z"
 _SHARE_LENGTH = 100
 
 
 class Ranges(Table, frozen=True):
-    """Places in a text, from start to end (exclusive), in order."""
+    """Spans of a text from start to end (exclusive), in order."""
 
     start: Positions
     end: Positions
@@ -66,10 +66,14 @@ class Ranges(Table, frozen=True):
 
 class Surroundings(msgspec.Struct, frozen=True):
     """
-    What stands around the words of a file.
+    Everything around the words of a file.
 
-    tape_marks: positions of % at the head or the end of a line. outside: what a control does not store. comments, with
-    unclosed and nested per comment. names: of programs, <...>. strays: positions of % inside a block.
+    tape_marks: positions of % at the head or the end of a line.
+    outside: text that a control does not store.
+    comments: in parentheses, or up to the end of the line.
+    unclosed, nested: per comment, True where it lacks its end or contains another opening parenthesis.
+    names: of programs, <...>.
+    strays: positions of % inside a block.
     tags: of HTML.
     """
 
@@ -84,7 +88,7 @@ class Surroundings(msgspec.Struct, frozen=True):
 
 
 def narrow(size: int) -> type[np.signedinteger[Any]]:
-    """The smaller of the integers that can hold every position of a file: half the memory is half the time."""
+    """The integer type for every position of a file: half the memory takes half the time."""
     return np.int32 if size < 2**31 - 8 else np.int64
 
 
@@ -92,10 +96,10 @@ def read_surroundings(
     code: Bytes, line_comments: str = "", channel_mark: str = "", wait_mark: str = ""
 ) -> Surroundings:
     """
-    Find all that is not words and blank it in `code`.
+    Find everything that is not a word, and blank it in `code`.
 
-    line_comments: characters that begin a comment. channel_mark, wait_mark: those before the number of a channel and
-    before a wait for another one, which are no words either.
+    line_comments: characters that begin a comment up to the end of the line. channel_mark, wait_mark: characters before
+    the number of a channel, and before a wait for another channel.
     """
     lines = np.append(np.flatnonzero(code == LF), len(code))
     remarks = _line_comments(code, lines, line_comments)
@@ -106,17 +110,17 @@ def read_surroundings(
     outside = _outside(code, marks)
     names = _names(code)
     remarks += [_semicolon_remarks(code, lines)]
-    kept = ~_within(comments, outside)
-    found = [comments[kept], *(remark[~_within(remark, outside)] for remark in remarks if len(remark))]
-    every = Ranges.concatenated(found)
-    no = np.zeros(len(every) - len(found[0]), bool)
+    is_stored = ~_within(comments, outside)
+    tables = [comments[is_stored], *(remark[~_within(remark, outside)] for remark in remarks if len(remark))]
+    every = Ranges.concatenated(tables)
+    no = np.zeros(len(every) - len(tables[0]), bool)
     order = np.argsort(every.start, kind="stable")
     return Surroundings(
         tape_marks=marks,
         outside=outside,
         comments=every[order],
-        unclosed=np.append(unclosed[kept], no)[order],
-        nested=np.append(nested[kept], no)[order],
+        unclosed=np.append(unclosed[is_stored], no)[order],
+        nested=np.append(nested[is_stored], no)[order],
         names=names,
         strays=strays,
         tags=tags[~_within(tags, outside)],
@@ -124,7 +128,7 @@ def read_surroundings(
 
 
 def without_comments(code: Bytes, line_comments: str = "") -> Bytes:
-    """A copy of the codes of a text with its comments blanked; every line end is LF."""
+    """A copy of the codes of a text with its comments blanked; all line ends are LF."""
     blanked = code.copy()
     _line_comments(blanked, np.append(np.flatnonzero(code == LF), len(code)), line_comments)
     _comments(blanked)
@@ -133,11 +137,11 @@ def without_comments(code: Bytes, line_comments: str = "") -> Bytes:
 
 def find_channel_marks(code: Bytes, mark: str) -> list[tuple[int, int]]:
     """
-    The marks of channels in a text without comments: where the block of each begins, and the number of its channel.
+    The marks of channels in a text without comments: the start of the block, and the number of the channel.
 
-    A mark stands at the head of a line, or behind the number of a program there, or in a block of its own behind `;`.
+    A mark stands at the head of a line, or behind the number of a program there, or alone in a block behind `;`.
     """
-    return [(found.start(), int(found[found.lastgroup or 0][-1:])) for found in _find_channel_marks(code, mark)]
+    return [(match.start(), int(match[match.lastgroup or 0][-1:])) for match in _find_channel_marks(code, mark)]
 
 
 def _find_channel_marks(code: Bytes, mark: str) -> Iterator[re.Match[bytes]]:
@@ -148,26 +152,26 @@ def _find_channel_marks(code: Bytes, mark: str) -> Iterator[re.Match[bytes]]:
 
 
 def _marks_of_channels(code: Bytes, channel_mark: str, wait_mark: str) -> list[Ranges]:
-    """The marks of channels and the waits, blanked; none where the characters do not occur."""
+    """Find and blank the marks of channels and the waits; none where the characters do not occur."""
     spans: list[tuple[int, int]] = []
     if channel_mark and np.any(code == ord(channel_mark)):
-        spans += [found.span(found.lastgroup or 0) for found in _find_channel_marks(code, channel_mark)]
+        spans += [match.span(match.lastgroup or 0) for match in _find_channel_marks(code, channel_mark)]
     if wait_mark and np.any(code == ord(wait_mark)):
         wait = re.compile(re.escape(wait_mark.encode("latin-1")) + _WAIT, re.IGNORECASE)
-        spans += [found.span() for found in wait.finditer(code.tobytes())]
+        spans += [match.span() for match in wait.finditer(code.tobytes())]
     if not spans:
         return []
     start, end = np.array(sorted(spans), np.int64).T
-    found = Ranges(start, end)
-    blank(code, found)
-    return [found]
+    marks = Ranges(start, end)
+    blank(code, marks)
+    return [marks]
 
 
-def united(one: Ranges, other: Ranges) -> Ranges:
-    """The ranges of both, each of which has none that overlap, by where they begin; those that touch are one."""
-    if not len(other):
-        return one
-    both = Ranges.concatenated([one, other])
+def united(first: Ranges, second: Ranges) -> Ranges:
+    """The union of two tables, each without overlaps, in order; ranges that overlap or touch are merged."""
+    if not len(second):
+        return first
+    both = Ranges.concatenated([first, second])
     order = np.argsort(both.start, kind="stable")
     start, end = both.start[order], np.maximum.accumulate(both.end[order])
     begins = np.append(True, start[1:] > end[:-1])
@@ -175,7 +179,7 @@ def united(one: Ranges, other: Ranges) -> Ranges:
 
 
 def _characters(ranges: Ranges, size: int) -> tuple[Positions, Positions]:
-    """Every position in the ranges, and to which of them it belongs."""
+    """Every position in the ranges, and the index of its range."""
     length = (ranges.end - ranges.start).astype(narrow(size))
     before = np.cumsum(length, dtype=length.dtype) - length
     owner = np.repeat(np.arange(len(length), dtype=length.dtype), length)
@@ -185,20 +189,20 @@ def _characters(ranges: Ranges, size: int) -> tuple[Positions, Positions]:
 
 
 def blank(code: Bytes, ranges: Ranges) -> None:
-    """Blank the ranges, none of which holds a line end."""
+    """Blank the ranges, which contain no line end."""
     code[_characters(ranges, len(code))[0]] = _SPACE
 
 
 def _has_text(code: Bytes, start: Positions, end: Positions) -> Mask:
-    """Return a mask of the spans that hold more than blanks."""
+    """True where there is anything but blanks between the positions."""
     at, owner = _characters(Ranges(start, end), len(code))
-    mask = np.zeros(len(start), bool)
-    mask[owner[~_IS_BLANK[code[at]]]] = True
-    return mask
+    has_text = np.zeros(len(start), bool)
+    has_text[owner[~_IS_BLANK[code[at]]]] = True
+    return has_text
 
 
 def _within(inner: Ranges, outer: Ranges) -> Mask:
-    """Which of the inner ranges begin inside one of the outer ones."""
+    """True for inner ranges that begin inside one of the outer ranges."""
     if not len(outer):
         return np.zeros(len(inner), bool)
     owner = np.searchsorted(outer.start, inner.start, side="right") - 1
@@ -206,7 +210,7 @@ def _within(inner: Ranges, outer: Ranges) -> Mask:
 
 
 def _first_of_line(at: Positions, lines: Positions) -> Ranges:
-    """From the first of the positions on each line to the end of that line."""
+    """From the first position on each line to the end of the line."""
     line = np.searchsorted(lines, at)
     first = np.ones(len(at), bool)
     first[1:] = line[1:] != line[:-1]
@@ -214,7 +218,7 @@ def _first_of_line(at: Positions, lines: Positions) -> Ranges:
 
 
 def _line_comments(code: Bytes, lines: Positions, characters: str) -> list[Ranges]:
-    """Comments of other dialects, from a character to the end of its line; not inside parentheses."""
+    """Find and blank comments from a character to the end of its line; not inside parentheses."""
     if not characters:
         return []
     at = np.flatnonzero(is_among(code, list(characters.encode("latin-1"))))
@@ -226,7 +230,7 @@ def _line_comments(code: Bytes, lines: Positions, characters: str) -> list[Range
 
 
 def _comments(code: Bytes) -> tuple[Ranges, Mask, Mask]:
-    """Comments open at ( outside a comment and close at the first ) or, faulty, at the line end."""
+    """Find and blank comments: from ( outside of a comment to the first ) or, faulty, to the line end."""
     is_open = code == _OPEN
     if not is_open.any():
         none = np.zeros(0, np.int64)
@@ -247,7 +251,7 @@ def _comments(code: Bytes) -> tuple[Ranges, Mask, Mask]:
 
 def _percents(code: Bytes, lines: Positions) -> tuple[Positions, Positions]:
     """
-    Tape marks, and % signs inside a block. What follows either on its line is not read.
+    Find tape marks, and % signs inside a block; both are blanked up to the end of the line, which is not read.
 
     Source: B-63524EN/01 p. 649 (text from % to the first LF is skipped); alarm 5010 for a % inside a block.
     """
@@ -266,7 +270,7 @@ def _percents(code: Bytes, lines: Positions) -> tuple[Positions, Positions]:
 
 def _outside(code: Bytes, marks: Positions) -> Ranges:
     """
-    What a control does not store, blanked: what stands before the first % or O number and after the last %.
+    Find and blank text that a control does not store: before the first % or O number, and after the last %.
 
     Source: B-63524EN/01 p. 649; M700V programming manual p. 7.
     """
@@ -298,17 +302,17 @@ def _outside(code: Bytes, marks: Positions) -> Ranges:
 
 
 def _tags(code: Bytes) -> Ranges:
-    """Marks of HTML in a file that has closing ones: `<b>` alone would be the name of a program."""
+    """Find and blank tags of HTML, in a file with closing tags: `<b>` alone would be the name of a program."""
     data = code.tobytes()
     spans = [tag.span() for tag in re.finditer(_TAG, data)] if b"</" in data else []
     start, end = np.array(spans, np.int64).reshape(-1, 2).T
-    found = Ranges(start, end)
-    blank(code, found)
-    return found
+    tags = Ranges(start, end)
+    blank(code, tags)
+    return tags
 
 
 def _names(code: Bytes) -> Ranges:
-    """Program names <...> of the 30i family, as in O<HEX> or M98 <HEX>."""
+    """Find and blank program names <...> of the 30i family, as in O<HEX> or M98 <HEX>."""
     at = np.flatnonzero(code == _LESS)
     if len(at):
         at = np.flatnonzero((code == _LESS) | (code == _GREATER) | (code == LF))
@@ -322,9 +326,9 @@ def _names(code: Bytes) -> Ranges:
 
 def _semicolon_remarks(code: Bytes, lines: Positions) -> Ranges:
     """
-    What follows `;` on its line is the next block if it reads as one, else a remark.
+    Find and blank remarks: text behind `;` up to the end of the line, unless it reads as a block.
 
-    Manuals print `;` for the end of block, other dialects and notes copied from manuals use it to begin a remark.
+    Manuals print `;` for the end of block; other dialects and copied notes begin a remark with it.
     """
     tails = _first_of_line(np.flatnonzero(code == _SEMICOLON), lines)
     if not len(tails):
@@ -340,9 +344,9 @@ def _semicolon_remarks(code: Bytes, lines: Positions) -> Ranges:
 
 def foreign(text: bytes) -> Ranges:
     """Runs of characters that are not in the ISO set of controls."""
-    found = text.translate(_IS_FOREIGN)
+    flags = text.translate(_IS_FOREIGN)
     none = np.zeros(0, np.int64)
-    if found.find(1) < 0:
+    if flags.find(1) < 0:
         return Ranges(none, none)
-    edges = np.flatnonzero(np.diff(np.frombuffer(b"\0" + found + b"\0", np.int8)))
+    edges = np.flatnonzero(np.diff(np.frombuffer(b"\0" + flags + b"\0", np.int8)))
     return Ranges(edges[::2], edges[1::2])

@@ -1,4 +1,4 @@
-"""Words of a control's own language, read as the codes that they stand for; every position stays."""
+"""Replaces native words of a control by the codes that they stand for; positions do not change."""
 
 from __future__ import annotations
 
@@ -17,11 +17,10 @@ _BLANKS = re.compile(rb"[ \t]+")
 
 def translated(source: Source, native_words: Mapping[str, str], language: str = "custom-macro") -> Source:
     """
-    The source with its own words (TRANSMIT) read as others (G12.1); what is shown stays as it is written.
+    The source with its native words (TRANSMIT) as codes (G12.1); its text, which reports quote, does not change.
 
-    A blank in such a word stands for any number of them, or none: `G17 XC` is `G17XC`, too.
-    language: of its statements. What a high-level language writes with arguments, or with more than a number behind =,
-    is left to who reads its statements.
+    A blank in such a word matches any number of blanks, also none: `G17 XC` is `G17XC`. language: of its statements.
+    Words of a high-level language with arguments, or with more than a number behind =, are not replaced.
     """
     if not native_words:
         return source
@@ -34,28 +33,28 @@ def translated(source: Source, native_words: Mapping[str, str], language: str = 
 def _translation(
     words: tuple[tuple[str, str], ...], has_more: bool
 ) -> tuple[re.Pattern[bytes], Callable[[re.Match[bytes]], bytes]]:
-    """Longer words are looked for first; a word ends where its last letter is not followed by another one."""
-    own = {word.upper().encode("latin-1"): text.encode("latin-1") for word, text in words}
-    meant = {_BLANKS.sub(b"", word): text for word, text in own.items()}
-    found = [_pattern(word) + _end(word) * has_more for word in sorted(own, key=len, reverse=True)]
+    """The pattern and its replacement. Longer words match first; a word ends where no further letter follows."""
+    native = {word.upper().encode("latin-1"): text.encode("latin-1") for word, text in words}
+    meant = {_BLANKS.sub(b"", word): text for word, text in native.items()}
+    patterns = [_pattern(word) + _end(word) * has_more for word in sorted(native, key=len, reverse=True)]
 
     def put(match: re.Match[bytes]) -> bytes:
         return _filled(meant[_BLANKS.sub(b"", match[0].upper())], len(match[0]))
 
-    return re.compile(_beginning(meant) + b"(?:" + b"|".join(found) + b")", re.IGNORECASE), put
+    return re.compile(_beginning(meant) + b"(?:" + b"|".join(patterns) + b")", re.IGNORECASE), put
 
 
 def _beginning(words: Collection[bytes]) -> bytes:
-    """Return the first two characters that match: they alone rule out nearly every place of a program."""
+    """A pattern of the first two characters, which alone rules out nearly every place of a program."""
     first, second = (b"".join({re.escape(word[at : at + 1]) for word in words}) for at in (0, 1))
     return b"(?=[" + first + b"][" + second + b"])" if all(len(word) > 1 for word in words) else b""
 
 
 def spans(source: Source, word: str) -> tuple[Positions, Positions]:
-    """Where a word of a control's own language stands in a source, from each place to the one behind it."""
+    """The starts and ends (exclusive) of a native word in a source."""
     pattern = re.compile(_pattern(word.upper().encode("latin-1")), re.IGNORECASE)
-    found = [match.span() for match in pattern.finditer(source.code.tobytes())]
-    begins, ends = np.array(found, np.int64).reshape(-1, 2).T
+    places = [match.span() for match in pattern.finditer(source.code.tobytes())]
+    begins, ends = np.array(places, np.int64).reshape(-1, 2).T
     return begins, ends
 
 
@@ -67,12 +66,12 @@ def _pattern(word: bytes) -> bytes:
 
 
 def _end(word: bytes) -> bytes:
-    """Return the pattern that must follow a word with arguments or a calculated value."""
+    """A pattern of what must follow a word that may have arguments or a calculated value."""
     if word[-1:] == b"=":
         return rb"(?=[ \t]*+[-+]?+[0-9.]++[ \t]*+(?:[A-Z;\r\n]|\Z))"
     return rb"(?![ \t]*+[(=])"
 
 
 def _filled(text: bytes, length: int) -> bytes:
-    """A code with zeros before its number, which mean nothing; other text at the end, where its number follows."""
+    """Pad a code with leading zeros, and other text with blanks on the left, since its number follows."""
     return text[:1] + text[1:].rjust(length - 1, b"0") if is_code(text.decode("latin-1")) else text.rjust(length)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from polarcheck.arrays import Floats, Mask, Table, is_among
 from polarcheck.reading.characters import KINDS, Character
-from polarcheck.reading.language_blocks import take_out
+from polarcheck.reading.language_blocks import extract_statements
 from polarcheck.reading.letters import read_as_digits
 from polarcheck.reading.numbers import NumberFault, Numbers, read_numbers
 from polarcheck.reading.prose import find_prose
@@ -38,8 +38,9 @@ class Words(Table, frozen=True, dict=True):
     The words of a file in order, one element each.
 
     address: uint8, the upper case letter; lower case where a comma stands before it (,R); 0 for a number without one.
-    value, decimals, digits, has_point, fault: see numbers.Numbers. block: index into Blocks. start, end: character
-    positions.
+    value, decimals, digits, has_point, fault: see numbers.Numbers.
+    block: index into Blocks.
+    start, end: character positions, end exclusive.
     """
 
     address: NDArray[np.uint8]
@@ -54,7 +55,7 @@ class Words(Table, frozen=True, dict=True):
 
     @cached_property
     def is_unreadable(self) -> Mask:
-        """The control cannot read the number; of a run of words without digits, as in prose, only the first."""
+        """The control cannot read the number; of adjacent words without digits, as in prose, only the first counts."""
         bad = (self.fault != NumberFault.NONE) & (self.fault != NumberFault.WRONG_DASH)
         empty = self.fault == NumberFault.NO_DIGITS
         follows = np.zeros(len(self), bool)
@@ -63,7 +64,7 @@ class Words(Table, frozen=True, dict=True):
 
     @property
     def has_wrong_dash(self) -> Mask:
-        """A dash of print stands where a minus sign is meant."""
+        """A typographic dash is written for a minus sign."""
         return np.asarray(self.fault == NumberFault.WRONG_DASH)
 
 
@@ -71,8 +72,9 @@ class Blocks(Table, frozen=True):
     """
     The blocks of a file in order, empty ones included; a block ends at a line end or `;`.
 
-    start, end: character positions. line: from 1. is_macro: has macro statements or expressions, so that its words are
-    not in the table.
+    start, end: character positions, end exclusive.
+    line: from 1.
+    is_macro: it has macro statements or expressions, so that its words are not in the table.
     """
 
     start: Positions
@@ -82,7 +84,12 @@ class Blocks(Table, frozen=True):
 
 
 class Spans(Table, frozen=True):
-    """Places in the text, from start to end (exclusive), each at a block."""
+    """
+    Spans of text.
+
+    start, end: character positions, end exclusive.
+    block: index into Blocks of each.
+    """
 
     start: Positions
     end: Positions
@@ -91,13 +98,22 @@ class Spans(Table, frozen=True):
 
 class Text(msgspec.Struct, frozen=True):
     """
-    All that the reader knows of one file.
+    The result of reading one file.
 
-    unclosed, nested: per comment. names: of programs, <...>. strays: characters that are no part of any word. foreign:
-    runs of characters outside the ISO set, in comments too. prose: text in no parentheses, read as a comment. dots:
-    lines of points, for blocks left out. outside: text before and after the programs. tape_marks: positions of % at a
-    line's head or end. letters: positions of letters O and I that are read as the digits 0 and 1. labels: names at
-    the heads of blocks, for jumps (NEND).
+    source: the file.
+    words: the words of blocks without macro.
+    blocks: all blocks.
+    comments: in parentheses, or up to the end of the line.
+    unclosed, nested: per comment, True where it lacks its end or contains another opening parenthesis.
+    names: of programs, <...>.
+    strays: characters that are part of no word.
+    foreign: runs of characters outside the ISO set, also in comments.
+    prose: text outside of parentheses, read as a comment.
+    dots: lines of points, which stand for omitted blocks.
+    outside: text before and after the programs.
+    tape_marks: positions of % at the head or end of a line.
+    letters: positions of letters O and I that are read as the digits 0 and 1.
+    labels: names at the heads of blocks, for jumps (NEND).
     """
 
     source: Source
@@ -121,9 +137,9 @@ def read_words(
     source: Source, line_comments: str = "", channel_mark: str = "", wait_mark: str = "", language: str = "custom-macro"
 ) -> Text:
     """
-    The table of words of a file, or of a channel of it.
+    Read a file, or a channel of it.
 
-    What the marks of a control are: read_surroundings. language: of its statements (language_blocks).
+    line_comments, channel_mark, wait_mark: as in read_surroundings. language: of its statements, see language_blocks.
     """
     data = source.code.tobytes()
     end_of_data = data.find(CTRL_Z)  # ends a file of old DOS transfers
@@ -132,7 +148,7 @@ def read_words(
     stored = data[:end_of_data]
     lines_end_at_cr = data.find(b"\n") < 0
     code = np.frombuffer(bytearray(stored.replace(b"\r", b"\n") if lines_end_at_cr else stored), np.uint8)
-    taken = take_out(code, language)
+    extracted = extract_statements(code, language)
     around = read_surroundings(code, line_comments, channel_mark, wait_mark)
     letters = read_as_digits(code)
     prose = find_prose(source, code)
@@ -145,11 +161,11 @@ def read_words(
     starts = np.append(breaks[:0], 0)
     starts = np.append(starts, breaks + 1).astype(breaks.dtype)
     line = np.cumsum(np.append(True, code[breaks] == LF), dtype=breaks.dtype)
-    if taken.is_joined:
+    if extracted.is_joined:
         line = np.searchsorted(source.line_starts, starts, side="right").astype(breaks.dtype)
     is_macro = np.zeros(len(starts), bool)
     is_macro[_block_of(table.macro, starts)] = True
-    is_macro[_block_of(taken.statements, starts)] = True
+    is_macro[_block_of(extracted.statements, starts)] = True
     is_macro[table.words.block[_begins_statement(table.words)]] = True
     words = _only(table.words, ~is_macro[table.words.block])
     blocks = Blocks(
@@ -159,10 +175,10 @@ def read_words(
     def spans(ranges: Ranges) -> Spans:
         return Spans(ranges.start, ranges.end, _block_of(ranges.start, starts))
 
-    told = table.strays[_is_told(table, code, is_macro, starts)]
-    strays = np.sort(np.append(told, _before(around.strays, prose, starts)))
+    strays = table.strays[_is_reported(table, code, is_macro, starts)]
+    strays = np.sort(np.append(strays, _outside_prose(around.strays, prose, starts)))
     outside = around.outside
-    names = united(united(around.names, taken.heads), taken.programs)
+    names = united(united(around.names, extracted.heads), extracted.programs)
     if data[end_of_data + 1 :].translate(None, BLANKS + b"\n"):
         outside = Ranges(np.append(outside.start, end_of_data), np.append(outside.end, len(data)))
     return Text(
@@ -180,7 +196,7 @@ def read_words(
         outside=spans(outside),
         tape_marks=around.tape_marks,
         letters=letters,
-        labels=spans(taken.labels),
+        labels=spans(extracted.labels),
     )
 
 
@@ -189,28 +205,33 @@ def _block_of(at: Positions, starts: Positions) -> Positions:
     return np.searchsorted(starts, at, side="right") - 1
 
 
-def _before(strays: Positions, prose: Ranges, starts: Positions) -> Positions:
-    """Signs of % but those in the text of a block, as in 50% OF THE SPEED."""
+def _outside_prose(strays: Positions, prose: Ranges, starts: Positions) -> Positions:
+    """The % signs outside of blocks with prose, as 50% OF THE SPEED."""
     return strays[~np.isin(_block_of(strays, starts), _block_of(prose.start, starts))]
 
 
-def _is_told(table: _Piece, code: Bytes, is_macro: Mask, starts: Positions) -> Mask:
-    """Those outside macro statements and at the end of any; a * there means times, unless other blocks end with it."""
+def _is_reported(table: _Piece, code: Bytes, is_macro: Mask, starts: Positions) -> Mask:
+    """True for stray characters outside of macro statements, or at the end of one, where * may be an operator."""
     in_statement, is_star = is_macro[_block_of(table.strays, starts)], code[table.strays] == _STAR
     return np.asarray(~in_statement | (table.is_last_stray & (~is_star | np.any(is_star & ~in_statement))))
 
 
-#: A text is read in pieces of about so many characters: faster, since they fit into the cache, and in less memory.
+#: Size of the pieces of a text that are read at once [characters]: they fit into the cache, which is faster.
 _PIECE = 1 << 18
-#: Where a line may be cut that is longer: before a word, and not before one that may be a corner word (,C ,R ,A).
+#: Where a longer line may be cut: before a word, but not before a corner word (,C ,R ,A).
 _CUT = re.compile(rb"[\nBD-QS-Zbd-qs-z]")
 
 
 class _Piece(msgspec.Struct, frozen=True):
     """
-    What is read of a text or of a piece of it; breaks: the ends of its blocks; macro: signs of macro statements.
+    The result of reading a text, or a piece of it.
 
-    strays, is_last_stray: characters of no word, and whether they stand at the end of a block.
+    words: its words.
+    breaks: positions of the ends of its blocks.
+    dots: lines of points.
+    strays: positions of characters that are part of no word.
+    is_last_stray: per stray, True at the end of a block.
+    macro: positions of signs of macro statements.
     """
 
     words: Words
@@ -247,7 +268,7 @@ def _read_pieces(text: bytes) -> _Piece:
 
 
 def _read_piece(text: bytes, offset: np.signedinteger[Any], blocks: np.signedinteger[Any]) -> _Piece:
-    """One piece; blanks mean nothing to a control and are left out first. A break more at its head saves many ifs."""
+    """Read one piece. Blanks are removed first; an additional break at its head saves many special cases."""
     text = b"\n" + text + b"\n"
     at = np.flatnonzero(np.frombuffer(text.translate(KINDS), np.uint8) != Character.BLANK).astype(type(offset))
     at += offset - type(offset)(1)
@@ -265,10 +286,12 @@ def _read_piece(text: bytes, offset: np.signedinteger[Any], blocks: np.signedint
 
 class _Marks(msgspec.Struct, frozen=True):
     """
-    The characters of words and the ends of blocks, without anything between.
+    The characters of words and the ends of blocks, without blanks.
 
-    code, kind: of each. at: position in the text. start: the same, at the comma before the letter of a corner word.
-    corners: the marks that are such letters.
+    code, kind: of each character.
+    at: its position in the text.
+    start: as `at`, but for the letter of a corner word the position of the comma before it.
+    corners: indices of these letters.
     """
 
     code: Bytes
@@ -279,7 +302,7 @@ class _Marks(msgspec.Struct, frozen=True):
 
 
 def _without_others(marks: _Marks) -> tuple[_Marks, Positions, Mask, Positions]:
-    """The marks without those that are no part of a word: strays, and signs of macro statements."""
+    """Remove characters that are part of no word: strays, and signs of macro statements."""
     code, kind, start = marks.code, marks.kind.copy(), marks.start.copy()
     others = np.flatnonzero(kind > Character.COMMA)
     before, follower = kind[others - 1], code[others + 1]
@@ -289,10 +312,10 @@ def _without_others(marks: _Marks) -> tuple[_Marks, Positions, Mask, Positions]:
     kind[commas] = Character.COMMA
     start[commas + 1] = marks.at[commas]
     strays = np.flatnonzero(kind == Character.STRAY)
-    kept = kind < Character.COMMA
-    corners = np.cumsum(kept)[commas + 1] - 1
+    in_words = kind < Character.COMMA
+    corners = np.cumsum(in_words)[commas + 1] - 1
     return (
-        _Marks(code[kept], kind[kept], marks.at[kept], start[kept], corners),
+        _Marks(code[in_words], kind[in_words], marks.at[in_words], start[in_words], corners),
         marks.at[strays],
         kind[strays + 1] == Character.BREAK,
         marks.at[kind == Character.MACRO],
@@ -300,7 +323,7 @@ def _without_others(marks: _Marks) -> tuple[_Marks, Positions, Mask, Positions]:
 
 
 def _words(marks: _Marks, breaks: Positions) -> tuple[Words, Ranges]:
-    """The table of words, and the lines of points. A word is a letter and the number behind it."""
+    """The words and the lines of points. A word is a letter and the number behind it."""
     kind = marks.kind
     in_number = (kind >= Character.DIGIT) & (kind <= Character.SIGN)
     edges = np.flatnonzero(in_number[1:] != in_number[:-1]) + 1
@@ -328,9 +351,9 @@ def _with_loose(
     words: Words, marks: _Marks, breaks: Positions, begins: Positions, ends: Positions
 ) -> tuple[Words, Ranges]:
     """
-    Numbers at the head of a block join the table as faulty words of address 0.
+    Insert numbers at the head of a block as faulty words with address 0.
 
-    Lines of three points or more are none: they stand in manuals for blocks left out.
+    Lines of three points or more are no numbers: in manuals they stand for omitted blocks.
     """
     points = np.append(0, np.cumsum(marks.kind == Character.POINT))
     length = ends - begins
@@ -361,8 +384,8 @@ def _only(words: Words, chosen: Mask) -> Words:
 
 
 def _begins_statement(words: Words) -> Mask:
-    """Letters that begin a macro statement such as GOTO 10."""
-    mask = np.zeros(len(words), bool)
+    """True for letters that begin a macro statement such as GOTO 10."""
+    begins = np.zeros(len(words), bool)
     bare = np.flatnonzero((words.fault == NumberFault.NO_DIGITS) & _BEGINS_STATEMENT[words.address])
     if len(bare):
         is_head = np.append(True, words.block[1:] != words.block[:-1])
@@ -375,12 +398,12 @@ def _begins_statement(words: Words) -> Mask:
         for place, letter in enumerate(letters):
             at = first + place
             spelled &= (words.address[at] == letter) & ((words.fault[at] == NumberFault.NO_DIGITS) | (at == last))
-        mask[first[spelled]] = True
-    return mask
+        begins[first[spelled]] = True
+    return begins
 
 
 def _mark_alignment(words: Words, code: Bytes) -> None:
-    """`:` with other words behind it is no program number but an alignment block, a sequence number (ISO 6983)."""
+    """Make `:` with other words behind it a sequence number: it marks an alignment block (ISO 6983)."""
     heads = np.flatnonzero(words.address == ord("O"))
     heads = heads[code[words.start[heads]] == _COLON]
     heads = heads[heads + 1 < len(words)]
@@ -388,7 +411,7 @@ def _mark_alignment(words: Words, code: Bytes) -> None:
 
 
 def _with_names(words: Words, names: Positions) -> Words:
-    """An O before a program name <...> has no number and is none the worse."""
+    """Clear the fault of an O before a program name <...>, which needs no number."""
     if len(names):
         bare = np.flatnonzero((words.fault == NumberFault.NO_DIGITS) & (words.address == ord("O")))
         words.fault[bare[np.isin(words.end[bare], names)]] = NumberFault.NONE

@@ -67,7 +67,7 @@ def _of_program(called: ProgramName, listing: Listing, judged: Judged, uri: str)
 
 def _in_file(path: Path, data: bytes, called: ProgramName, machine: Machine, units: str) -> types.Location:
     """Return the place of a program in a file; the first line if the file does not name it."""
-    decoded = source.read(data, path.name)
+    decoded = source.read_source(data, path.name)
     text = OpenText("\ufeff" * bool(decoded.bom) + decoded.text, units)
     programs = find_programs(read_text(decoded, machine))
     named = programs.named(called)
