@@ -90,7 +90,7 @@ def _bytes_and_words() -> Iterator[str]:
     start, end = int(text.blocks.start[block]), int(text.blocks.end[block])
     yield from _heading("Bytes to words", "reading/")
     yield from _wrapped(
-        "`source.read` finds the encoding and the lines. `words.read_words` finds all words of the file "
+        "`source.read_source` finds the encoding and the lines. `words.read_words` finds all words of the file "
         "at once, as a table with one element per word; nothing is raised, a word that cannot be read is "
         "marked."
     )
@@ -120,7 +120,7 @@ def source_text() -> Any:
     """The text of the program, as the reader has it."""
     from polarcheck.reading.words import read_words
 
-    return read_words(source.read(PROGRAM, "flat.nc"))
+    return read_words(source.read_source(PROGRAM, "flat.nc"))
 
 
 def _row(trace: Trace, row: int) -> Iterator[str]:
