@@ -87,7 +87,8 @@ def rule_that(acts: Any, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
         return trace.mode.in_polar & False
 
     known = load_all()
-    monkeypatch.setitem(known, "rapid-in-polar", msgspec.structs.replace(known["rapid-in-polar"], function=rapid))
+    rule = msgspec.structs.replace(known["rapid-in-polar"], function=rapid, parameters=("trace",))
+    monkeypatch.setitem(known, "rapid-in-polar", rule)
     yield
 
 
@@ -223,6 +224,24 @@ def test_a_file_that_has_too_little_memory_with_others_gets_all_of_it(monkeypatc
     assert [outcome.failure for outcome in found if outcome.failure] == [
         "f/007.nc: there is not enough memory to check it"
     ]
+
+
+@linux
+def test_a_result_that_there_is_no_memory_to_send_costs_its_file_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    make(6)
+
+    def packed(outcome: batch.Outcome) -> executors.Sent:
+        if outcome.report and outcome.report.path == "f/003.nc":
+            raise MemoryError
+        return executors.Sent(outcome)
+
+    monkeypatch.setattr(executors, "packed", packed)
+    tasks = planned("f")
+    found = by_processes(tasks)
+    assert [outcome.failure for outcome in found if outcome.failure] == [
+        "f/003.nc: could not be checked: its process ended"
+    ]
+    assert len(paths_of(found)) == 5
 
 
 @linux

@@ -52,7 +52,7 @@ class Workers(Protocol):
     most_files, most_bytes: what one submission holds at most.
     large: size above which files are checked one at a time [bytes].
     patience: seconds without an outcome after which `verify` is called.
-    death: exceptions of a future whose worker has died.
+    death: exceptions of a future whose worker has died, or has no memory left to send its result.
     """
 
     count: int
@@ -316,7 +316,7 @@ class Processes:
 
     most_files, most_bytes, patience = 1, 1, 0.5
     large: float = _LARGE
-    death: tuple[type[Exception], ...] = (BrokenProcessPool,)
+    death: tuple[type[Exception], ...] = (BrokenProcessPool, MemoryError)
 
     def __init__(self, tasks: Sequence[Task], count: int, most: int = files.LARGEST, method: str = "") -> None:
         """count: processes. most: bytes of a file. method: how processes are started."""
