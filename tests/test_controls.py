@@ -284,7 +284,9 @@ def test_an_open_contour_is_one_pass() -> None:
     program = GSK_CYCLE.replace("G1 C0\nG40 X300.", "G1 C-10.\nG40 X340.")
     moves = moves_of(program, "gsk-988", "2:radius=10")
     assert len(moves) < 15
-    assert (4, "contour-open-with-infeed") in said(report_of(program, "gsk-988", "2:radius=10"))
+    (finding,) = report_of(program, "gsk-988", "2:radius=10").findings
+    assert (finding.rule, finding.severity) == ("contour-not-closed", "error")
+    assert [(one.line, one.rule) for one in finding.follows] == [(4, "contour-open-with-infeed")]
 
 
 def test_infeed_is_a_word_of_one_control() -> None:
