@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 from polarcheck.batch import tasks as batch
 from polarcheck.checking.rule import load_all
 from polarcheck.finding import Edit, FileReport, Finding, Fix, NotEvaluated, Report
-from polarcheck.reading.excerpt import cells, excerpt, visible
+from polarcheck.reading.excerpt import Excerpt, cells, excerpt, visible
 from polarcheck.reports import Background, formats, render
 from polarcheck.reports.pages import schema
 from polarcheck.reports.text import first_sentence
@@ -254,8 +254,8 @@ def test_marks_stand_under_the_words_at_fault(line: str, fault: str, marked: str
 
 
 def test_a_fault_at_the_end_of_a_line_is_marked_behind_it() -> None:
-    assert excerpt("G0 X1.", 6, 7, 80) == ("G0 X1.", 6, 1)
-    assert excerpt("", 0, 1, 80) == ("", 0, 1)
+    assert excerpt("G0 X1.", 6, 7, 80) == Excerpt("G0 X1.", 6, 1)
+    assert excerpt("", 0, 1, 80) == Excerpt("", 0, 1)
 
 
 def test_a_long_line_is_cut_around_the_fault() -> None:
@@ -267,7 +267,7 @@ def test_a_long_line_is_cut_around_the_fault() -> None:
     assert cells(shown.text) == 60
     assert underlined(line, start, start + 5, 60) == "X500."
     assert excerpt("X" * 60, 0, 1, 60).text == "X" * 60
-    assert excerpt("X" * 60, 55, 60, 60) == ("X" * 60, 55, 5)
+    assert excerpt("X" * 60, 55, 60, 60) == Excerpt("X" * 60, 55, 5)
 
 
 @given(st.text(max_size=80), st.integers(0, 90), st.integers(1, 20), st.integers(20, 60))

@@ -212,7 +212,8 @@ class Rule(Documented, frozen=True):
         for other in rules.values():
             for what, span in other.doubts:
                 is_peer = other.subject == self.subject and span not in OF_CAUSE
-                is_named = any(self.name in names for names in other.follows.values())  # that rule follows this one
+                # The other rule follows this one, and not only one in a row above.
+                is_named = any(self.name in names for at, names in other.follows.items() if at not in OF_CAUSE)
                 if what in rests_on and not is_peer and not is_named:
                     reach = UNIT_OF[self.subject] if span == UNIT or self.subject == "infeed" else span
                     causes.setdefault(reach, []).append(other.name)
