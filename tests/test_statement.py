@@ -12,7 +12,7 @@ from macro_values import assign_arguments, called_program, read_statement, varia
 
 from polarcheck.execution.expression import Fault, decide
 from polarcheck.execution.macro import assign, word_value
-from polarcheck.execution.statement import Kind, Statement
+from polarcheck.execution.statement import Kind, Number, Statement
 
 
 def parts(block: str, statement: Statement) -> dict[str, Any]:
@@ -86,8 +86,8 @@ def test_statement(block: str, kind: Kind, expected: dict[str, Any]) -> None:
     headed = f"/ /3 N0120 {block}"
     statement = read_statement(headed)
     assert (statement.fault, statement.kind, parts(headed, statement)) == (None, kind, expected)
-    assert statement.skips == ((1, 0, 1), (3, 2, 4))
-    assert statement.sequence_number == (120, 5, 10)
+    assert statement.skips == (Number(1, 0, 1), Number(3, 2, 4))
+    assert statement.sequence_number == Number(120, 5, 10)
 
 
 def test_words_of_a_block() -> None:
@@ -102,14 +102,14 @@ def test_words_of_a_block() -> None:
         ("Z", None, True),
         ("F", "10.", True),
     ]
-    assert statement.skips == ((2, 24, 26),), "what follows it is skipped, what stands before is not"
+    assert statement.skips == (Number(2, 24, 26),), "what follows it is skipped, what stands before is not"
     assert [word_value(word, variables(v1=1.23456), 0.001)[0] for word in statement.words[2:]] == [-5, 0.5, 1.235, 10]
 
 
 def test_numbers_at_the_head_of_a_block() -> None:
     statement = read_statement(":100 N10 N20 X#1")
     assert [(word.address, word.written) for word in statement.words] == [("O", "100"), ("N", "20"), ("X", None)]
-    assert statement.sequence_number == (10, 5, 8)
+    assert statement.sequence_number == Number(10, 5, 8)
     assert read_statement(f"N{'1' * 5000}").sequence_number is not None
 
 

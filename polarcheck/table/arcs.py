@@ -163,7 +163,6 @@ class Arcs(Columns, frozen=True):
             self._step_otherwise(arc),
         )
         moves_x, moves_c = np.abs(step.real) > tolerance, np.abs(step.imag) > tolerance
-        moves_c |= trace.path.start[arc].real * trace.path.end[arc].real < 0  # as a quarter of a circle does not
         center, radius = (self.start_radius > ROUNDING)[arc], self.by_radius[arc]
         miss = np.abs(np.abs(to_center) - np.abs(step - to_center))
         miss_otherwise = np.abs(np.abs(to_center) - np.abs(other - to_center))

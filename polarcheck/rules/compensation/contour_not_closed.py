@@ -10,7 +10,7 @@ from polarcheck.checking.rule import WARNING, Coverage, Mask, rule
     worst="coverage.gap",
     subject="compensation",
     doubts=(("metal", "loop"),),
-    follows={"loop": ("number-without-point",), "section": ("polar-switch-not-alone",)},
+    follows={"loop": ("number-without-point",), "section": ("polar-switch-not-alone", "contour-open-with-infeed")},
 )
 def contour_not_closed(coverage: Coverage) -> Mask:
     """
