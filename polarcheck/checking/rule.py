@@ -50,8 +50,10 @@ if TYPE_CHECKING:
     from polarcheck.reading.words import Words as Words
     from polarcheck.silence.allow_comments import Allows as Allows
     from polarcheck.silence.allow_comments import UnusedAllows as UnusedAllows
+    from polarcheck.table.air_cuts import AirCuts as AirCuts
     from polarcheck.table.angles import Angles as Angles
     from polarcheck.table.arcs import Arcs as Arcs
+    from polarcheck.table.bar import Bar as Bar
     from polarcheck.table.center import Center as Center
     from polarcheck.table.coverage import Coverage as Coverage
     from polarcheck.table.deviations import Deviations as Deviations
@@ -64,6 +66,7 @@ if TYPE_CHECKING:
     from polarcheck.table.mode_words import ModeWords as ModeWords
     from polarcheck.table.other_mode import OtherMode as OtherMode
     from polarcheck.table.overcuts import Overcuts as Overcuts
+    from polarcheck.table.pass_depths import PassDepths as PassDepths
     from polarcheck.table.procedure import Procedure as Procedure
     from polarcheck.table.ramps import Ramps as Ramps
     from polarcheck.table.senses import Senses as Senses
@@ -74,6 +77,7 @@ if TYPE_CHECKING:
     from polarcheck.table.travel import Travel as Travel
     from polarcheck.table.uncompensated_cuts import UncompensatedCuts as UncompensatedCuts
     from polarcheck.table.unpointed import Unpointed as Unpointed
+    from polarcheck.table.workpiece import Workpiece as Workpiece
     from polarcheck.table.written import Written as Written
 else:
 

@@ -61,10 +61,34 @@ class PunchedTool(Tool, frozen=True):
 
 
 class Stock(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The bar or blank."""
+    """The bar or blank. unknown: nothing is taken from the turning or the comments of the program either."""
 
-    diameter: Annotated[float, msgspec.Meta(gt=0, le=_LARGEST_LATHE)] = math.nan
-    clearance: Annotated[float, msgspec.Meta(ge=0, le=_LARGEST_LATHE)] = 0.0
+    diameter: Annotated[float, msgspec.Meta(gt=0, le=_LARGEST_LATHE, description="of a round bar")] = math.nan
+    hexagon: Annotated[float, msgspec.Meta(gt=0, le=_LARGEST_LATHE, description="across flats of a hexagon bar")] = (
+        math.nan
+    )
+    bore: Annotated[float, msgspec.Meta(ge=0, le=_LARGEST_LATHE, description="inside diameter of a tube")] = 0.0
+    face: Annotated[
+        float, msgspec.Meta(ge=-_LARGEST_LATHE, le=_LARGEST_LATHE, description="Z of its face before milling")
+    ] = math.nan
+    length: Annotated[
+        float, msgspec.Meta(gt=0, le=_LARGEST_LATHE, description="from its face to its back, where that ends it")
+    ] = math.nan
+    clearance: Annotated[
+        float, msgspec.Meta(ge=0, le=_LARGEST_LATHE, description="between bar and cutter at the approach")
+    ] = 0.0
+    unknown: Annotated[bool, msgspec.Meta(description="take no bar from the turning or the comments of programs")] = (
+        False
+    )
+
+    def __post_init__(self) -> None:
+        if not math.isnan(self.diameter) and not math.isnan(self.hexagon):
+            raise ValueError("stock: give diameter or hexagon, not both")
+        if self.unknown and not (math.isnan(self.diameter) and math.isnan(self.hexagon)):
+            raise ValueError("stock: unknown = true and a size contradict each other")
+        outside = self.hexagon if math.isnan(self.diameter) else self.diameter
+        if self.bore >= outside:
+            raise ValueError(f"stock: bore {self.bore:g} leaves nothing of {outside:g}")
 
 
 class WorkOffset(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

@@ -1,0 +1,74 @@
+"""Phrases of the rules about the metal."""
+
+from __future__ import annotations
+
+from polarcheck.checking.places import block_in_line
+from polarcheck.checking.quantity import in_row
+from polarcheck.columns.lengths import Lengths
+from polarcheck.columns.path import ProgrammedPath
+from polarcheck.columns.trace import Trace
+from polarcheck.execution.run import Run
+from polarcheck.table.air_cuts import AirCuts, Reason
+from polarcheck.table.bar import Bar
+from polarcheck.table.pass_depths import PassDepths
+from polarcheck.table.workpiece import Workpiece
+
+_LONGEST = 40
+
+
+def way(run: Run, row: int) -> str:
+    """The block as it is written: `G0 C120.`"""
+    return block_in_line(run, row, _LONGEST)
+
+
+def cutter(workpiece: Workpiece, lengths: Lengths, row: int) -> str:
+    """R of the cutter."""
+    return f"{in_row(float(workpiece.radius[row]), lengths, row):length}"
+
+
+def depth(path: ProgrammedPath, lengths: Lengths, row: int) -> str:
+    """Z behind the block, as it would be written."""
+    return f"{in_row(float(path.z[row]), lengths, row):length}".partition(" ")[0]
+
+
+def bar(bar: Bar, lengths: Lengths, row: int) -> str:
+    """The bar and where it is known from: `40 mm, [stock]`, `27.7 mm turned in lines 8 to 11`."""
+    known = bar.known
+    size = f"{in_row(known.smallest, lengths, row):length}"
+    if known.source == "turning":
+        first, last = known.lines
+        return f"{size} turned in {f'line {first}' if first == last else f'lines {first} to {last}'}"
+    return f"{size}, [stock]" if known.source == "job" else f"{size}, comment in line {known.lines[0]}"
+
+
+def in_step(pass_depths: PassDepths, lengths: Lengths, row: int) -> str:
+    """Z of a pass in step with the others, as it would be written."""
+    return f"{in_row(float(pass_depths.expected[row]), lengths, row):length}".partition(" ")[0]
+
+
+def in_air(air_cuts: AirCuts, bar: Bar, trace: Trace, row: int) -> str:
+    """What is cut in air, and the witness."""
+    z = f"Z{depth(trace.path, trace.lengths, row)}"
+    entry = int(trace.mode.sections.enter[trace.mode.section[row]])
+    match air_cuts.reason[row]:
+        case Reason.DEPTH_MISSING:
+            why = "and the retract moves nowhere: a Z word for the depth is missing"
+            return f"cuts at {z}, where the section begins, {why}"
+        case Reason.SIGN_WRONG:
+            above = f"above Z{depth(trace.path, trace.lengths, entry)} of the approach"
+            return f"cuts at {z}, {above}, and retracts towards the part: check the sign of Z"
+        case Reason.ABOVE_FACE:
+            face = f"{in_row(bar.known.face, trace.lengths, row):length}".partition(" ")[0]
+            first, last = bar.known.face_lines
+            lines = f"line {first}" if first == last else f"lines {first} to {last}"
+            source = f"turned in {lines}" if first else "[stock]"
+            return f"cuts at {z}, above the face at Z{face} ({source}): the section takes nothing off"
+        case Reason.OTHERS_BELOW:
+            why = "and the program cuts below Z0 elsewhere: a Z word for the depth is missing"
+            return f"cuts at {z}, where the section begins, {why}"
+        case Reason.OUTSIDE_BAR:
+            largest = f"{in_row(bar.known.largest, trace.lengths, row):length}"
+            return f"runs outside the bar of {largest} all the way: check the units and X"
+        case _:
+            angle = float(trace.path.c_angle[entry])
+            return f"this section was cut before at the same angle of C ({angle:g} deg): it takes nothing off; index C"

@@ -1,0 +1,193 @@
+"""
+What a cutter touches on its way to a place: parts that must stand, and what still stands of the bar.
+
+All is on the plane that turns with the part, x + 1j*c [mm]. A cutter whose tip is at Z touches what stands at any
+height from there up, and less stands the higher one looks: its tip is the height that counts. Import late.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import shapely  # type: ignore[import-untyped]
+
+from polarcheck.arrays import Floats, Mask, Points, Rows, Table
+from polarcheck.errors import TooHardError
+from polarcheck.geometry.polygons import areas
+from polarcheck.geometry.polygons.faces import coordinates
+from polarcheck.geometry.polygons.widened import widened
+from polarcheck.geometry.segments import Curves, segments
+from polarcheck.geometry.tolerances import ROUNDING, ZERO
+from polarcheck.time_limit import keep_time
+
+#: What the rounding of the words and of chords may leave between two passes [mm].
+_TOLERANCE = 0.05
+#: A cutter that overlaps less than this is taken as beside the metal [mm2].
+_LEAST_AREA = 0.05
+#: Corners of the circle of the bar, in a quarter.
+_BAR_CORNERS = 128
+#: More chords than these are not followed.
+_MOST_CHORDS = 20_000
+
+
+class Sweeps(Table, frozen=True):
+    """
+    Moves of cutters on the plane of the part, n of them in the order of the program.
+
+    curves: their paths; one of no length is a place. radius: float64[n], R [mm]. tip: float64[n], Z of the tip [mm].
+    """
+
+    curves: Curves
+    radius: Floats
+    tip: Floats
+
+
+def area_of(sweeps: Sweeps, less: float = 0.0) -> Any:
+    """The area that cutters sweep, each with a radius that is smaller by `less` [mm]."""
+    covered: list[Any] = []
+    curves = sweeps.curves
+    is_place = (np.abs(curves.end - curves.start) <= ZERO) & np.isnan(curves.center)
+    for radius in np.unique(sweeps.radius).tolist():
+        size = radius - less
+        if size <= ROUNDING:
+            continue
+        same = sweeps.radius == radius
+        places = np.unique(curves.end[same & is_place])
+        covered.extend(shapely.buffer(shapely.points(coordinates(places)), size, quad_segs=24))
+        path = curves[same & ~is_place]
+        if not len(path):
+            continue
+        path = as_one_loop(path)
+        chords = segments(path, _TOLERANCE)
+        if len(chords) > _MOST_CHORDS:
+            raise TooHardError(f"{len(chords)} chords of paths are too many to follow the metal")
+        if len(chords):
+            covered.append(widened(path, chords, size, _TOLERANCE))
+    return areas.union_all(np.array(covered, object)) if covered else shapely.from_wkt("POLYGON EMPTY")
+
+
+def as_one_loop(path: Curves) -> Curves:
+    """The same curves as one loop."""
+    return Curves(path.start, path.end, path.center, path.kind, np.zeros(len(path), np.int64), path.row)
+
+
+def disc(diameter: float, bore: float = 0.0) -> Any:
+    """The cross section of a bar: a shapely polygon."""
+    outside = shapely.buffer(shapely.points(0.0, 0.0), diameter / 2, quad_segs=_BAR_CORNERS)
+    return shapely.difference(outside, shapely.buffer(shapely.points(0.0, 0.0), bore / 2)) if bore else outside
+
+
+def turned(area: Any, angle: float) -> Any:
+    """An area turned about the center of C; angle [rad]."""
+    turn = np.exp(1j * angle)
+
+    def rotate(points: Any) -> Any:
+        place = (points[:, 0] + 1j * points[:, 1]) * turn
+        return np.column_stack([place.real, place.imag])
+
+    return shapely.transform(area, rotate) if angle else area
+
+
+def touched(way: Sweeps, standing: Any) -> Any:
+    """What of the standing area a cutter overlaps; None where it is too little to count."""
+    hit = areas.intersection(area_of(way, _TOLERANCE), standing)
+    return hit if shapely.area(hit) > _LEAST_AREA else None
+
+
+def place_of(area: Any) -> complex:
+    """A point within an area, in its largest part."""
+    parts = shapely.get_parts(area)
+    point = shapely.point_on_surface(parts[np.argmax(shapely.area(parts))])
+    return complex(shapely.get_x(point), shapely.get_y(point))
+
+
+class Removed:
+    """
+    What moves take off, looked at move by move in their order: the area at each height, joined as it grows.
+
+    sweeps: the moves that cut.
+    """
+
+    def __init__(self, sweeps: Sweeps) -> None:
+        self.sweeps = sweeps
+        self._areas: dict[float, tuple[int, Any]] = {}
+
+    def until(self, row: int, height: float) -> Any:
+        """The area that moves before a row have cleared at a height [mm]; rows must not fall."""
+        keep_time()
+        key = round(height, 4)
+        done, area = self._areas.get(key, (0, None))
+        until = int(np.searchsorted(self.sweeps.curves.row, row))
+        new = np.arange(done, until)
+        new = new[self.sweeps.tip[new] <= height + _TOLERANCE]
+        if len(new):
+            added = area_of(self.sweeps[new])
+            area = added if area is None else areas.union(area, added)
+        self._areas[key] = until, area
+        return area
+
+
+def hits_on_bar(ways: Sweeps, bar: Any, cleared: Sweeps, holes: Points) -> tuple[Mask, Points]:
+    """
+    Which of these ways lead through what stands of a bar, and where; a way clears what it runs through.
+
+    ways: rising in rows, moves of one row side by side. cleared: all moves that cut, rising in rows.
+    holes: places where something is drilled, of any size.
+    """
+    removed = Removed(cleared)
+    hit, place = np.zeros(len(ways), bool), np.full(len(ways), np.nan + 0j)
+    for number in range(len(ways)):
+        way = ways[np.array([number])]
+        if _is_at_hole(way, holes):
+            continue
+        before = removed.until(int(way.curves.row[0]), float(way.tip[0]))
+        standing = bar if before is None else areas.difference(bar, before)
+        found = touched(way, standing)
+        if found is not None:
+            hit[number], place[number] = True, place_of(found)
+    return hit, place
+
+
+def _is_at_hole(way: Sweeps, holes: Points) -> bool:
+    """A place that lies where something was drilled."""
+    near = np.abs(holes - way.curves.end[0]) <= way.radius[0]
+    return bool(near.any())
+
+
+def hits_on_part(
+    ways: Sweeps, part: Any, walls: Any, cutter: float, top: float, level: float, cleared: Sweeps
+) -> tuple[Mask, Points]:
+    """
+    Which of these ways lead through a part that must stand, within 2 R of its walls, and where.
+
+    part: the area that stands; walls: its programmed walls, as lines. cutter: R of the cutter that mills them [mm].
+    top, level: the heights between which it stands for certain [mm]. cleared: all moves of the program that cut: what
+    they take off is no part.
+    """
+    hit, place = np.zeros(len(ways), bool), np.full(len(ways), np.nan + 0j)
+    solid = areas.intersection(part, areas.buffer(walls, 2 * cutter, quad_segs=8))
+    removed = Removed(cleared)
+    last = int(cleared.curves.row[-1]) + 1 if len(cleared) else 0
+    for number in range(len(ways)):
+        tip = float(ways.tip[number])
+        if tip > top + _TOLERANCE:
+            continue
+        taken = removed.until(last, max(tip, level))
+        standing = solid if taken is None else areas.difference(solid, taken)
+        found = touched(ways[np.array([number])], standing)
+        if found is not None:
+            hit[number], place[number] = True, place_of(found)
+    return hit, place
+
+
+def lines_along(curves: Curves) -> Any:
+    """The walls as one set of lines."""
+    chords = segments(as_one_loop(curves), _TOLERANCE)
+    ends = np.stack([coordinates(chords.start), coordinates(chords.end)], axis=1)
+    return shapely.multilinestrings(shapely.linestrings(ends))
+
+
+def rows_of(ways: Sweeps, hit: Mask) -> Rows:
+    """The rows of the ways that hit."""
+    return np.unique(ways.curves.row[hit])

@@ -1,0 +1,79 @@
+from __future__ import annotations
+
+from polarcheck.checking.rule import WARNING, AirCuts, Mask, rule
+
+
+@rule(WARNING, "{in_air}", once="section")
+def cut_in_air(air_cuts: AirCuts) -> Mask:
+    """
+    Section that cuts only air.
+
+    The part comes off the machine without its shape, and the next tool meets the metal. The depth word is missing, so
+    that the retract moves nowhere; its sign is wrong, so that the tool goes away from the part to cut and towards it to
+    retract; the cut stands above the face that the program has turned or `[stock]` names, or above all others; it runs
+    outside the bar, as in a program in inch that the control reads in mm; or the same section is cut again at the same
+    angle of C, since an index is missing or written twice. Programs with their origin at the back, which cut above Z0
+    alone, are not meant, nor are spring passes.
+
+    Source: builder's guide to G12.1, order of a section.
+
+    Bad, tool 1:radius=4:
+
+        T0101
+        G98 G0 X60. Z2. C0
+        G12.1
+        G1 X60. F1500
+        G42 X30. C0 F200
+        C8.66             (expect: cut-in-air)
+        X0 C17.321
+        X-30. C8.66
+        C-8.66
+        X0 C-17.321
+        X30. C-8.66
+        C0
+        G40 X60. F1500
+        Z2.
+        G13.1
+        G0 X100. Z50.
+
+    Bad, tool 1:radius=4:
+
+        T0101
+        G98 G0 X60. Z2. C0
+        G12.1
+        G1 X60. F1500
+        Z5.
+        G42 X30. C0 F200
+        C8.66             (expect: cut-in-air)
+        X0 C17.321
+        X-30. C8.66
+        C-8.66
+        X0 C-17.321
+        X30. C-8.66
+        C0
+        G40 X60. F1500
+        Z2.
+        G13.1
+        G0 X100. Z50.
+
+    Good, tool 1:radius=4:
+
+        T0101
+        G98 G0 X60. Z2. C0
+        G12.1
+        G1 X60. F1500
+        Z-5.
+        G42 X30. C0 F200
+        C8.66
+        X0 C17.321
+        X-30. C8.66
+        C-8.66
+        X0 C-17.321
+        X30. C-8.66
+        C0
+        G40 X60. F1500
+        Z2.
+        G13.1
+        G0 X100. Z50.
+    """
+    return air_cuts.reason > 0

@@ -1,0 +1,65 @@
+from __future__ import annotations
+
+import numpy as np
+
+from polarcheck.checking.rule import WARNING, Mask, PassDepths, rule
+
+
+@rule(WARNING, "this pass is cut at Z{depth}, out of step with the others of its contour: Z{in_step} would fit")
+def pass_depth_differs(pass_depths: PassDepths) -> Mask:
+    """
+    One pass of a contour far off the steps of the others.
+
+    A contour is milled in several passes, each as much deeper as the last, and one of them is several times as deep or
+    out of order: a digit or the point of its Z is wrong. The cutter takes the whole depth at once, or the passes behind
+    it take nothing. At least three passes of the same contour must show the step.
+
+    Source: builder's guide to G12.1, order of a section.
+
+    Bad, tool 1:radius=4:
+
+        T0101
+        G98 G0 X60. Z2. C0
+        G12.1
+        G1 X60. F1500
+        Z-2.
+        G42 X20. C0 F200
+        G3 I-10.
+        G1 G40 X60.
+        Z-40.
+        G42 X20. C0
+        G3 I-10.          (expect: pass-depth-differs)
+        G1 G40 X60.
+        Z-6.
+        G42 X20. C0
+        G3 I-10.
+        G1 G40 X60.
+        Z-8.
+        G42 X20. C0
+        G3 I-10.
+        G1 G40 X60.
+        Z2.
+        G13.1
+
+    Good, tool 1:radius=4:
+
+        T0101
+        G98 G0 X60. Z2. C0
+        G12.1
+        G1 X60. F1500
+        Z-2.
+        G42 X20. C0 F200
+        G3 I-10.
+        G1 G40 X60.
+        Z-4.
+        G42 X20. C0
+        G3 I-10.
+        G1 G40 X60.
+        Z-5.5
+        G42 X20. C0
+        G3 I-10.
+        G1 G40 X60.
+        Z2.
+        G13.1
+    """
+    return ~np.isnan(pass_depths.expected)

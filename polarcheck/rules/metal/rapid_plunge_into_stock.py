@@ -1,0 +1,48 @@
+from __future__ import annotations
+
+from polarcheck.checking.rule import ERROR, Hits, Workpiece, graded, rule
+
+
+@rule(
+    ERROR,
+    "{way} takes the cutter, R {cutter}, in rapid traverse into the bar ({bar}) down to Z{depth}; write G1 with a feed",
+    where="workpiece.is_mill",
+    once="tool call",
+    follows={"block": ("uncompensated-cut-into-part", "rapid-through-part", "rapid-in-polar")},
+)
+def rapid_plunge_into_stock(workpiece: Workpiece) -> Hits:
+    """
+    Rapid traverse down into the bar.
+
+    The mill goes down in rapid traverse where metal of the bar still stands: G1 is missing, or X or C is that of
+    another place. The bar is that of `[stock]`, or what the program itself turns before its first section, or what a
+    comment says; then it is a warning.
+
+    Source: builder's guide to G12.1, programming the tool approach point.
+
+    Bad, tool 1:radius=2.5, set job.stock.diameter=40:
+
+        T0101
+        G98 G0 X24. Z2. C0
+        Z-3.              (expect: rapid-plunge-into-stock)
+        G12.1
+        G1 X20. F200
+        C3.
+        X24.
+        Z2. F1000
+        G13.1
+
+    Good, tool 1:radius=2.5, set job.stock.diameter=40:
+
+        T0101
+        G98 G0 X24. Z2. C0
+        G1 Z-3. F60
+        G12.1
+        G1 X20. F200
+        C3.
+        X24.
+        Z2. F1000
+        G13.1
+    """
+    hits = workpiece.hits_bar & workpiece.plunges
+    return graded(error=hits & workpiece.bar_is_certain, warning=hits)

@@ -1,0 +1,52 @@
+from __future__ import annotations
+
+from polarcheck.checking.rule import ERROR, Hits, Workpiece, graded, rule
+
+
+@rule(
+    ERROR,
+    "{way} takes the cutter, R {cutter}, at Z{depth} through the finished part; retract Z above the part first",
+    where="workpiece.is_mill",
+    once="tool call",
+    follows={"block": ("uncompensated-cut-into-part",)},
+)
+def rapid_through_part(workpiece: Workpiece) -> Hits:
+    """
+    Positioning through the finished part.
+
+    Behind a section, or on the way to it, the mill moves in rapid traverse with its tip below the top of a contour, and
+    a part that the contour leaves standing is in its way: the retract is missing, and the next G0 or the index of C
+    tears the cutter through the part. No bar needs to be known for that: the metal beside a programmed wall, up to 2R
+    behind it, must stand whatever the bar is, unless the program mills it off as well. Only mills along Z are looked
+    at, whose R is known. At feed it is a warning, since a slot may be milled by C alone.
+
+    Source: FANUC B-62764EN/01, p. 51 (positions outside the mode are X and the angle of C).
+
+    Bad, tool 1:radius=2.5:
+
+        T0101
+        G98 G0 X26. Z2. C0
+        G12.1
+        G1 X26. F500
+        Z-4. F40
+        G41 X34. F80
+        G3 I-4.
+        G1 G40 X26.
+        G13.1
+        G0 C120.          (expect: rapid-through-part)
+
+    Good, tool 1:radius=2.5:
+
+        T0101
+        G98 G0 X26. Z2. C0
+        G12.1
+        G1 X26. F500
+        Z-4. F40
+        G41 X34. F80
+        G3 I-4.
+        G1 G40 X26.
+        Z2.
+        G13.1
+        G0 C120.
+    """
+    return graded(error=workpiece.hits_part & workpiece.is_rapid, warning=workpiece.hits_part)

@@ -1,0 +1,52 @@
+from __future__ import annotations
+
+from polarcheck.checking.rule import ERROR, Hits, Workpiece, graded, rule
+
+
+@rule(
+    ERROR,
+    "{way} takes the cutter, R {cutter}, at Z{depth} through what stands of the bar ({bar}); retract Z first",
+    where="workpiece.is_mill",
+    once="tool call",
+    follows={"block": ("uncompensated-cut-into-part", "rapid-through-part", "rapid-in-polar")},
+)
+def rapid_through_stock(workpiece: Workpiece) -> Hits:
+    """
+    Rapid traverse through the bar.
+
+    The mill moves in rapid traverse below the face, and metal of the bar stands in its way that nothing has taken off
+    yet: the retract before an index of C is missing, or X comes too near at depth. The bar is that of `[stock]`, or
+    what the program itself turns before its first section, or what a comment says; then it is a warning. What mills
+    have taken off up to there is no longer in the way. Tools that are not followed, as drills, are taken to have made
+    their holes as large as needed.
+
+    Source: builder's guide to G12.1, programming the tool approach point.
+
+    Bad, tool 1:radius=4, set job.stock.diameter=40:
+
+        T0101
+        G98 G0 X60. Z2. C0
+        Z-3.
+        X30.              (expect: rapid-through-stock)
+        G12.1
+        G1 X20. F200
+        C8.
+        X60. F1000
+        Z2.
+        G13.1
+
+    Good, tool 1:radius=4, set job.stock.diameter=40:
+
+        T0101
+        G98 G0 X60. Z2. C0
+        Z-3.
+        X48.5
+        G12.1
+        G1 X20. F200
+        C8.
+        X60. F1000
+        Z2.
+        G13.1
+    """
+    hits = workpiece.hits_bar & ~workpiece.plunges
+    return graded(error=hits & workpiece.bar_is_certain, warning=hits)

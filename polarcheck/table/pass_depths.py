@@ -1,0 +1,101 @@
+"""The depths of the passes of a contour: one pass that is far off the steps of the others."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import cached_property
+
+import numpy as np
+
+from polarcheck.arrays import Columns, Floats, Rows, Table
+from polarcheck.columns.trace import Trace
+from polarcheck.geometry.tolerances import ROUNDING
+from polarcheck.table.air_cuts import AirCuts
+
+#: A step is far off the others if it is as many times as large.
+_FAR = 3.0
+#: Passes of a contour that show its step.
+_LEAST = 3
+#: Points that are nearer than this are one [mm].
+_SAME = 2e-3
+
+
+class Passes(Table, frozen=True):
+    """
+    Passes, n of them in order: cuts at one Z of one section.
+
+    row: int[n], the first cut. z: float64[n] [mm]. contour: int[n], equal for the same contour of one section.
+    """
+
+    row: Rows
+    z: Floats
+    contour: Rows
+
+
+class PassDepths(Columns, frozen=True):
+    """Columns of one trace, one value per row."""
+
+    trace: Trace
+    air_cuts: AirCuts
+
+    @cached_property
+    def passes(self) -> Passes:
+        """All passes."""
+        trace, rows = self.trace, np.flatnonzero(self.air_cuts.walls)
+        if not len(rows):
+            return Passes(rows, np.zeros(0), rows)
+        z, section = trace.path.z[rows], trace.mode.section[rows]
+        first = np.flatnonzero((np.diff(section, prepend=-1) != 0) | (np.abs(np.diff(z, prepend=np.inf)) > ROUNDING))
+        count = np.diff(np.append(first, len(rows)))
+        ends = trace.path.end[rows]
+        sums = [np.add.reduceat(part, first) for part in (ends.real, ends.imag, np.abs(ends))]
+        keys = np.stack([section[first], count, *(np.rint(column / _SAME / 4) for column in sums)], axis=1)
+        _, contour = np.unique(keys, axis=0, return_inverse=True)
+        return Passes(rows[first], z[first], contour.ravel())
+
+    @cached_property
+    def expected(self) -> Floats:
+        """Per row: Z that would be in step with the other passes, at a pass that is off; NaN elsewhere [mm]."""
+        expected = np.full(len(self.trace), np.nan)
+        for row, z in self._off():
+            expected[row] = z
+        return expected
+
+    def _off(self) -> Iterator[tuple[int, float]]:
+        passes = self.passes
+        if len(passes) < _LEAST:
+            return
+        order = np.argsort(passes.contour, kind="stable")
+        passes = passes[order]
+        first = np.flatnonzero(np.diff(passes.contour, prepend=-1))
+        for group in np.split(np.arange(len(passes)), first[1:]):
+            z = passes.z[group]
+            if len(z) < _LEAST:
+                continue
+            steps = -np.diff(z)
+            if steps.min() > 0 and steps.max() <= _FAR * np.median(steps):
+                continue
+            off = _outlier(z)
+            if off is not None:
+                number, value = off
+                yield int(passes.row[group[number]]), value
+
+
+def _outlier(z: Floats) -> tuple[int, float] | None:
+    """The pass without which all go down in like steps, and the Z that it would have; None where there is not one."""
+    off = []
+    for number in range(len(z)):
+        others = np.delete(z, number)
+        steps = -np.diff(others)
+        if steps.min() <= ROUNDING or len(others) < _LEAST - 1:
+            continue
+        typical = float(np.min(steps))
+        if number == 0:
+            if z[0] <= z[1] + ROUNDING:
+                off.append((number, float(z[1] + typical)))
+        elif number == len(z) - 1:
+            if steps.max() <= _FAR * typical and not ROUNDING < z[-2] - z[-1] <= _FAR * steps.max():
+                off.append((number, float(z[-2] - typical)))
+        elif not z[number + 1] + ROUNDING < z[number] < z[number - 1] - ROUNDING and steps.max() <= _FAR * typical:
+            off.append((number, float((z[number - 1] + z[number + 1]) / 2)))
+    return off[0] if len(off) == 1 else None

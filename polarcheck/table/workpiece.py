@@ -1,0 +1,386 @@
+"""
+The workpiece through a program: what the mills have taken off the bar, and what they touch on their way to a place.
+
+Followed are mills along Z whose R is known. Other tools are not: a turning tool or a drill may go where metal seems to
+stand. All places are on the plane that turns with the part: X as a radius, at the angle of C.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from polarcheck.arrays import Columns, Floats, Mask, Points, Rows, States, Table
+from polarcheck.columns.filling import before
+from polarcheck.columns.trace import Trace
+from polarcheck.errors import TooHardError
+from polarcheck.geometry import polar
+from polarcheck.geometry.plane import arc_sweep
+from polarcheck.geometry.tolerances import ADJUSTMENT, ROUNDING
+from polarcheck.machines.modal import Motion
+from polarcheck.table.bar import Bar
+from polarcheck.table.finished import Finished, Level
+from polarcheck.table.moves import z_along
+from polarcheck.table.overcuts import Overcuts
+from polarcheck.table.tool_center import ToolCenter
+
+if TYPE_CHECKING:
+    from polarcheck.geometry.polygons.standing_metal import Sweeps
+
+#: A tip less far below the face than this touches nothing [mm].
+_CLEARANCE = 0.01
+#: More ways to a place within the bar than these are not followed, nor more moves that cut.
+_MOST_WAYS, _MOST_MOVES = 200, 20_000
+
+
+class Ways(Table, frozen=True):
+    """
+    Moves that take a mill to a place, n of them in the order of the program.
+
+    row: int[n]. start, end, center: complex128[n] [mm], the part of the move that is known whatever the order of the
+    axes: the whole way of X or of C alone, else its end. kind: int16[n], Motion. tip: float64[n], Z of the tip [mm].
+    radius: float64[n], R [mm]. is_rapid: bool[n]. plunges: bool[n], ends lower than it began.
+    """
+
+    row: Rows
+    start: Points
+    end: Points
+    center: Points
+    kind: States
+    tip: Floats
+    radius: Floats
+    is_rapid: Mask
+    plunges: Mask
+
+    @property
+    def nearest(self) -> Floats:
+        """Smallest distance of the center of the cutter from X0 [mm]."""
+        return polar.nearest(self.start, self.end, self.center, self.kind)
+
+    @property
+    def farthest(self) -> Floats:
+        """Largest distance of the center of the cutter from X0 [mm]."""
+        return polar.farthest(self.start, self.end, self.center, self.kind)
+
+
+class Hits(Table, frozen=True):
+    """
+    What ways lead through, by rows: int[n], and the places: complex128[n] [mm], on the plane of the part.
+    """
+
+    row: Rows
+    place: Points
+
+    @classmethod
+    def none(cls) -> Hits:
+        return cls(np.zeros(0, np.int64), np.zeros(0, np.complex128))
+
+
+class Workpiece(Columns, frozen=True):
+    """What the ways of mills to a place lead through, by rows of one trace."""
+
+    trace: Trace
+    tool_center: ToolCenter
+    overcuts: Overcuts
+    finished: Finished
+    bar: Bar
+
+    # ---- the tools ----
+
+    @cached_property
+    def _tool_call(self) -> Rows:
+        return np.cumsum(self.trace.tools.changes_tool | self.trace.blocks.starts)
+
+    @cached_property
+    def is_mill(self) -> Mask:
+        """Rows of tool calls that enter the mode, along Z of the main spindle."""
+        trace = self.trace
+        call = self._tool_call
+        has_section = np.zeros(int(call.max(initial=0)) + 1, bool)
+        has_section[call[trace.mode.sections.enter]] = True
+        radial = [number for number, tool in trace.tools.of_job.items() if tool.mount == "radial"]
+        followed = ~trace.modal.on_sub_spindle & trace.mode.is_followed & ~trace.mode.on_cylinder
+        return np.asarray(has_section[call] & followed & ~np.isin(trace.tools.offset_number, radial))
+
+    @cached_property
+    def radius(self) -> Floats:
+        """R of the cutter in force [mm], NaN where it is not known or only adjusts a path."""
+        trace = self.trace
+        radius = np.fmax(np.abs(trace.offsets.radius_of_offset), trace.offsets.cutter_diameter / 2)
+        return np.where(self.is_mill & (radius > ADJUSTMENT + ROUNDING), radius, np.nan)
+
+    # ---- where they go ----
+
+    @cached_property
+    def _z_before(self) -> Floats:
+        return before(self.trace.path.z, self.trace.blocks.starts, np.nan)
+
+    @cached_property
+    def _outside(self) -> Ways:
+        """All moves of mills outside of sections of which the end or the way is known."""
+        trace = self.trace
+        path, axes = trace.path, trace.axes
+        moves = axes.moves & (trace.mode.section < 0) & ~np.isnan(self.radius) & ~trace.modal.in_cycle
+        moves &= np.isin(axes.motion, (Motion.RAPID, Motion.LINE))
+        row = np.flatnonzero(moves)
+        x_from, x_to = path.x_before[row], path.x[row]
+        c_from, c_to = before(path.c_angle, trace.blocks.starts, np.nan)[row], path.c_angle[row]
+        z_from, z_to = self._z_before[row], path.z[row]
+        with np.errstate(invalid="ignore"):
+            begin, end = (x * np.exp(1j * np.radians(c)) for x, c in ((x_from, c_from), (x_to, c_to)))
+        moves_x, moves_c, moves_z = (
+            ~(np.abs(to - start) <= ROUNDING) for start, to in ((x_from, x_to), (c_from, c_to), (z_from, z_to))
+        )
+        arc, line = moves_c & ~moves_x & ~moves_z, moves_x & ~moves_c & ~moves_z
+        arc &= ~np.isnan(begin) & (x_to > ROUNDING)
+        line &= ~np.isnan(begin)
+        whole = arc | line
+        turn = c_to - c_from
+        full = arc & (np.abs(turn) >= 360)
+        kind = np.where(arc, np.where(turn > 0, Motion.CCW, Motion.CW), Motion.LINE).astype(np.int16)
+        ways = Ways(
+            row=row,
+            start=np.where(whole, begin, end),
+            end=np.where(full, begin, end),
+            center=np.where(arc, 0j, np.nan + 0j),
+            kind=kind,
+            tip=z_to,
+            radius=self.radius[row],
+            is_rapid=axes.motion[row] == Motion.RAPID,
+            plunges=moves_z & ~(z_to > z_from),
+        )
+        return ways[~np.isnan(ways.end + ways.tip) & (moves_x | moves_c | moves_z)]
+
+    @cached_property
+    def _inside(self) -> Ways:
+        """All moves of the tool center in sections, those of Z alone as places."""
+        trace, moves = self.trace, self.tool_center.moves
+        low = np.minimum(*z_along(trace, moves))
+        turn = np.exp(1j * np.radians(trace.path.section_entry))
+        known = moves.is_of_tool & ~np.isnan(self.radius[moves.row] + low) & ~np.isnan(moves.start + moves.end)
+        moves, low = moves[known], low[known]
+        of_move = turn[moves.section]
+        z_alone = trace.mode.in_polar & trace.axes.moves_z & ~trace.path.travels & ~np.isnan(self.radius)
+        row = np.flatnonzero(z_alone & ~trace.modal.in_cycle & ~np.isnan(trace.path.end + trace.path.z))
+        # With compensation in force the tool stands beside the programmed point.
+        last = np.searchsorted(moves.row, row) - 1
+        same = (
+            (last >= 0) & (moves.section[last] == trace.mode.section[row]) if len(moves) else np.zeros(len(row), bool)
+        )
+        place = np.where(same, moves.end[last], trace.path.end[row]) if len(moves) else trace.path.end[row]
+        place = place * turn[trace.mode.section[row]]
+        is_rapid = trace.axes.motion == Motion.RAPID
+        rows = np.concatenate([moves.row, row])
+        order = np.argsort(rows, kind="stable")
+        ways = Ways(
+            row=rows,
+            start=np.concatenate([moves.start * of_move, place]),
+            end=np.concatenate([moves.end * of_move, place]),
+            center=np.concatenate([moves.center * of_move, np.full(len(row), np.nan + 0j)]),
+            kind=np.concatenate([moves.kind, np.full(len(row), Motion.LINE)]).astype(np.int16),
+            tip=np.concatenate([low, np.minimum(trace.path.z[row], self._z_before[row])]),
+            radius=self.radius[rows],
+            is_rapid=is_rapid[rows],
+            plunges=np.concatenate([np.zeros(len(moves), bool), ~(trace.path.z[row] >= self._z_before[row])]),
+        )
+        return ways[order]
+
+    @cached_property
+    def _all(self) -> Ways:
+        """Both, in the order of the program."""
+        ways = Ways.concatenated([self._outside, self._inside])
+        return ways[np.argsort(ways.row, kind="stable")]
+
+    def _sweeps(self, ways: Ways) -> Sweeps:
+        from polarcheck.geometry.polygons.standing_metal import Sweeps
+        from polarcheck.geometry.segments import Curves
+
+        loop = np.zeros(len(ways), np.int64)
+        return Sweeps(Curves(ways.start, ways.end, ways.center, ways.kind, loop, ways.row), ways.radius, ways.tip)
+
+    # ---- the bar ----
+
+    @cached_property
+    def top(self) -> float:
+        """Z of the face of the bar [mm]; at Z0, as is usual on lathes, where nothing says another."""
+        face = self.bar.known.face
+        return 0.0 if np.isnan(face) else face
+
+    @cached_property
+    def _into_bar(self) -> Ways:
+        """Moves in rapid traverse with the tip below the face and the cutter within the circle of the bar."""
+        bar, ways = self.bar.known, self._all
+        low = ways.is_rapid & (ways.tip < self.top - _CLEARANCE)
+        if not low.any():
+            return ways[low]
+        within = (ways.nearest - ways.radius < bar.smallest / 2 - ROUNDING) & (
+            ways.farthest + ways.radius > bar.bore / 2 + ROUNDING
+        )
+        return ways[low & within]
+
+    @cached_property
+    def through_bar(self) -> Hits:
+        """Ways in rapid traverse through what stands of the bar."""
+        bar = self.bar.known
+        if np.isnan(bar.smallest + bar.bore) or self.bar_is_changed_otherwise:
+            return Hits.none()
+        ways = self._into_bar
+        if not len(ways):
+            return Hits.none()
+        self._bound(ways)
+        from polarcheck.geometry.polygons.standing_metal import disc, hits_on_bar
+
+        stands = disc(bar.smallest, bar.bore)
+        lower = self._all[self._all.tip < self.top]
+        hit, place = hits_on_bar(self._sweeps(ways), stands, self._sweeps(lower), self._holes)
+        return Hits(ways.row[hit], place[hit])
+
+    def _bound(self, ways: Ways) -> None:
+        if len(ways) > _MOST_WAYS or len(self._all) > _MOST_MOVES:
+            raise TooHardError(
+                f"{len(ways)} ways of mills at depth and {len(self._all)} moves are too many to follow the metal: "
+                "check its sections in separate files"
+            )
+
+    @cached_property
+    def _drills(self) -> Mask:
+        """Moves of other tools that drill along Z at a place of C."""
+        trace = self.trace
+        down = (trace.axes.motion == Motion.LINE) & trace.axes.moves_z & (trace.path.z < self._z_before - ROUNDING)
+        drilled = (trace.modal.drilling != 0) & trace.axes.moves
+        return np.asarray((down | drilled) & (trace.mode.section < 0) & ~self.is_mill)
+
+    @cached_property
+    def _holes(self) -> Points:
+        """Places where something is drilled [mm]; those that are not known are left out."""
+        trace = self.trace
+        place = trace.path.x * np.exp(1j * np.radians(trace.path.c_angle))
+        return np.asarray(place[self._drills & ~np.isnan(place)])
+
+    @cached_property
+    def bar_is_changed_otherwise(self) -> bool:
+        """A mill of unknown R, a drill at an unknown place or a tool across cuts the bar before or between."""
+        trace = self.trace
+        mills = trace.mode.in_polar & trace.path.cuts
+        unknown = mills & np.isnan(self.radius) & ~np.isnan(trace.path.z)
+        cycle = (trace.modal.drilling != 0) & trace.axes.moves & np.isnan(trace.path.x + trace.path.c_angle)
+        return bool((unknown | cycle | trace.mode.on_cylinder).any())
+
+    # ---- the finished part ----
+
+    @cached_property
+    def _over_contour(self) -> Ways:
+        """
+        Moves outside of sections to a place within the reach of a contour and no higher than it.
+
+        Rapid traverse, and the first move behind a section at feed: a retract is missing there.
+        """
+        trace, ways, walls = self.trace, self._outside, self.overcuts.walls[0]
+        if not len(walls) or not len(ways):
+            return ways[np.zeros(len(ways), bool)]
+        top = self._highest_wall
+        first = np.zeros(len(trace), bool)
+        moving = np.flatnonzero(trace.axes.moves | trace.mode.enters)
+        after = np.searchsorted(moving, np.flatnonzero(trace.mode.leaves), side="right")
+        first[moving[after[after < len(moving)]]] = True
+        low = (ways.is_rapid | first[ways.row]) & (ways.tip <= top + _CLEARANCE)
+        if not low.any():
+            return ways[low]
+        farthest = polar.farthest(walls.start, walls.end, walls.center, walls.kind)
+        reach = float(np.max(farthest + np.where(self._walls_of_pockets, 2 * self.overcuts.radius[walls.row], 0)))
+        return ways[low & (ways.nearest - ways.radius < reach)]
+
+    @property
+    def _highest_wall(self) -> float:
+        """The highest Z at which a contour is milled, or the face if it is known [mm]."""
+        walls, _ = self.overcuts.walls
+        highest = float(np.nanmax(np.append(self.trace.path.z[walls.row], -np.inf)))
+        face = self.bar.known.face
+        return highest if np.isnan(face) else max(face - 2 * _CLEARANCE, highest)
+
+    @property
+    def _walls_of_pockets(self) -> Mask:
+        """Walls of loops that close with the tool inside."""
+        walls, left = self.overcuts.walls
+        first = np.flatnonzero(np.diff(walls.loop, prepend=-1))
+        last = np.append(first[1:], len(walls)) - 1
+        twice = (np.conj(walls.start) * walls.end).imag
+        arc = ~np.isnan(walls.center)
+        spoke = np.abs(walls.start - walls.center) ** 2
+        sweep = arc_sweep(walls.start[arc], walls.end[arc], walls.center[arc], walls.kind[arc])
+        twice[arc] += spoke[arc] * (sweep - np.sin(sweep))
+        area = np.add.reduceat(twice, first)
+        closed = np.abs(walls.end[last] - walls.start[first]) <= 2 * np.abs(self.overcuts.radius[walls.row[first]])
+        inside = closed & ((area > 0) == left[first])
+        return np.asarray(np.repeat(inside, last - first + 1))
+
+    @cached_property
+    def through_part(self) -> Hits:
+        """Ways to a place through the finished part."""
+        ways = self._over_contour
+        if not len(ways):
+            return Hits.none()
+        self._bound(ways)
+        from polarcheck.geometry.polygons.standing_metal import hits_on_part, lines_along, turned
+
+        moves = self._inside
+        cleared = self._sweeps(moves[~moves.is_rapid])
+        hit, place = np.zeros(len(ways), bool), np.full(len(ways), np.nan + 0j)
+        sweeps = self._sweeps(ways)
+        for level, top in self._levels:
+            angle = float(np.radians(self.trace.path.section_entry[level.section]))
+            part, walls = turned(level.polygon, angle), turned(lines_along(level.walls), angle)
+            more, where = hits_on_part(sweeps, part, walls, level.radius, top, level.z, cleared)
+            place[more & ~hit] = where[more & ~hit]
+            hit |= more
+        return Hits(ways.row[hit], place[hit])
+
+    @property
+    def _levels(self) -> list[tuple[Level, float]]:
+        """Levels of known Z, of mills that are followed, and the highest Z at which their part stands for certain."""
+        face = self.bar.known.face
+        levels = [
+            level
+            for level in self.finished.levels
+            if not level.tangled and not np.isnan(level.z) and self.is_mill[level.walls.row[0]]
+        ]
+        tops: dict[int, float] = {}
+        for level in levels:
+            tops[level.section] = max(tops.get(level.section, -np.inf), level.z)
+        return [
+            (level, tops[level.section] if np.isnan(face) else max(face - 2 * _CLEARANCE, level.z)) for level in levels
+        ]
+
+    # ---- columns ----
+
+    def _mask(self, hits: Hits) -> Mask:
+        mask = np.zeros(len(self.trace), bool)
+        mask[hits.row] = True
+        return mask
+
+    @cached_property
+    def hits_part(self) -> Mask:
+        """Rows whose way leads through the finished part."""
+        return self._mask(self.through_part)
+
+    @cached_property
+    def hits_bar(self) -> Mask:
+        """Rows whose way in rapid traverse leads through what stands of the bar."""
+        return self._mask(self.through_bar)
+
+    @property
+    def bar_is_certain(self) -> bool:
+        """The bar is that of the job, or the program turns it; what a comment says may be another one."""
+        return self.bar.known.source in ("job", "turning")
+
+    @cached_property
+    def plunges(self) -> Mask:
+        """Rows that go down to their place."""
+        return self._mask(Hits(self._all.row[self._all.plunges], self._all.end[self._all.plunges]))
+
+    @cached_property
+    def is_rapid(self) -> Mask:
+        """Rows in rapid traverse."""
+        return np.asarray(self.trace.axes.motion == Motion.RAPID)
