@@ -283,6 +283,7 @@ USES = {
     "polar.virtual_axis_programming": Use("diameter", FLAT),
     "polar.zero_angle": Use("at-c0", FLAT.replace("C0", "C30.")),
     "polar.other_axes": Use("forbidden", inside("X50. Z1.")),
+    "polar.repeated_z": Use("forbidden", inside("G1 Z1.\nX50. Z1.")),
     "polar.center_words": Use({"X": ["J", "K"], "Y": ["J", "K"], "Z": ["K", "I"]}, ARC.format("I-10. J0")),
     "polar.linear_address": Use("Y", FLAT),
     "polar.linear_axis": Use(2, FLAT, "gsk-988"),

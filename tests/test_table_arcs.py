@@ -36,7 +36,7 @@ def last(program: str, column: str, **changes: Any) -> Any:
         ("G3 X20. C20. I-10. K0", False, True, True, False),  # K0 moves nothing
         ("G3 Z-5. R10.", False, False, False, False),
         ("G3 Z-5. I5. K5.", False, False, False, True),
-        ("G3 Z-5. I5.", False, False, True, False),
+        ("G3 Z-5. I5.", False, True, True, False),
         ("G1 X20. R10.", False, False, True, False),
     ],
 )

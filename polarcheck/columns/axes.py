@@ -392,20 +392,21 @@ class PlaneAxes(Columns, frozen=True):
     def moves_plane(self) -> Mask:
         """Programs the linear or the virtual axis, an arc by its center alone included."""
         is_arc = is_among(self.modal.state("motion"), (Motion.CW, Motion.CCW))
-        by_center_alone = is_arc & self.blocks.has("I", "J", "K") & ~self.programs_z
+        of_plane = self.has_center & ~self.blocks.with_words(self.other_center_words)
+        by_center_alone = is_arc & self.blocks.has("I", "J", "K") & (~self.programs_z | of_plane)
         moves = self.programs_linear_axis | self.programs_virtual_axis | by_center_alone
         return self.modal.uses_axes & moves & ~self.switches_on
 
     @cached_property
-    def moves_z(self) -> Mask:
-        """Programs Z, where that is not the linear axis."""
+    def commands_z(self) -> Mask:
+        """Programs Z, where that is not the linear axis, be it the Z at which the tool stands."""
         return self.modal.uses_axes & self.programs_z
 
     @cached_property
     def motion(self) -> States:
         """What the row does with its axis words (Motion); NONE without axis words."""
         moves_others = self.modal.uses_axes & self.blocks.has(*self.machine.polar.rotary_words, "Y", "V")
-        moving = self.moves_plane | self.moves_z | moves_others
+        moving = self.moves_plane | self.commands_z | moves_others
         motion = np.where(self.modal.in_cycle, Motion.CYCLE, self.modal.state("motion"))
         return np.where(moving, motion, Motion.NONE).astype(np.int16)
 

@@ -6,6 +6,7 @@ Inside everything is mm, deg and X as radius; points of the polar plane are comp
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cached_property
 
 import numpy as np
@@ -303,6 +304,54 @@ class ProgrammedPath(Columns, frozen=True):
         return np.asarray(self.mode.in_polar & self.axes.moves_plane & (~still | is_full))
 
     @cached_property
+    def z_before(self) -> Floats:
+        """Z before the row [mm]; NaN while unknown."""
+        return before(self.z, self.blocks.starts, np.nan)
+
+    @cached_property
+    def c_angle_before(self) -> Floats:
+        """C angle of the machine before the row [deg]; NaN while unknown."""
+        return before(self.c_angle, self.blocks.starts, np.nan)
+
+    @cached_property
+    def moves_x(self) -> Mask:
+        """
+        The linear axis moves: a word of it names another place than the present one, or one of the two is not known.
+
+        With moves_z and moves_c, and with travels on the polar plane, the test of all rules for a word that is a move.
+        """
+        return _differs(self.modal.uses_axes & self.axes.programs_linear_axis, lambda: (self.x_before, self.x))
+
+    @cached_property
+    def moves_z(self) -> Mask:
+        """Z moves likewise, where that is not the linear axis; posts repeat the present Z in each block."""
+        return _differs(self.axes.commands_z, lambda: (self.z_before, self.z))
+
+    @cached_property
+    def moves_c(self) -> Mask:
+        """The rotary axis moves likewise outside the mode."""
+        commands = self.modal.uses_axes & self.blocks.has(*self.machine.polar.rotary_words) & (self.mode.section < 0)
+        return _differs(commands, lambda: (self.c_angle_before, self.c_angle))
+
+    @cached_property
+    def judged_z(self) -> Mask:
+        """Z words that count beside a line of the plane: those that move Z, or all, where the block is forbidden."""
+        return self.axes.commands_z if self.machine.polar.repeated_z == "forbidden" else self.moves_z
+
+    @cached_property
+    def judged_z_of_arc(self) -> Mask:
+        """The same beside an arc."""
+        return self.moves_z if self.machine.polar.repeated_z == "allowed" else self.axes.commands_z
+
+    @cached_property
+    def moves(self) -> Mask:
+        """Moves any axis, or one that is not followed; words that name the present place of each are no move."""
+        outside, rotary = self.mode.section < 0, self.blocks.has(*self.machine.polar.rotary_words)
+        followed = self.travels | self.moves_z | self.moves_c | (self.moves_x & outside)
+        others = (self.blocks.has("Y", "V") & outside) | (rotary & ~outside & ~self.axes.moves_plane)
+        return np.asarray(self.axes.moves & (followed | others | self.modal.in_cycle))
+
+    @cached_property
     def length(self) -> Floats:
         """Way of the row on the polar plane [mm]; 0 where it does not move there, NaN where unknown."""
         moving = self.mode.in_polar & self.axes.moves_plane
@@ -355,9 +404,17 @@ class ProgrammedPath(Columns, frozen=True):
     def cuts(self) -> Mask:
         """A move on the polar plane at feed."""
         at_feed = is_among(self.axes.motion, (Motion.LINE, Motion.CW, Motion.CCW))
-        return self.mode.in_polar & self.axes.moves_plane & at_feed
+        return self.travels & at_feed
 
     @cached_property
     def moves_at_feed(self) -> Mask:
         """A move in the polar mode at feed, that of Z alone included."""
-        return self.mode.in_polar & self.axes.moves & is_among(self.axes.motion, (Motion.LINE, Motion.CW, Motion.CCW))
+        return self.mode.in_polar & self.moves & is_among(self.axes.motion, (Motion.LINE, Motion.CW, Motion.CCW))
+
+
+def _differs(commands: Mask, places: Callable[[], tuple[Floats, Floats]]) -> Mask:
+    """Rows that command an axis and in which it moves; places: where it stands before and after each row."""
+    if not commands.any():
+        return commands
+    before_row, after_row = places()
+    return np.asarray(commands & ~(np.abs(after_row - before_row) <= ZERO))

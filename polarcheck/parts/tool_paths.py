@@ -45,7 +45,7 @@ def depths_of_paths(tables: Tables) -> Iterator[_Depth]:
 def _changes_depth(trace: Trace) -> Mask:
     """A ramp clears its way at the Z of its end at that end alone, where what follows begins."""
     return np.asarray(
-        trace.axes.moves_z & (np.abs(trace.path.z - before(trace.path.z, trace.blocks.starts, np.nan)) > ZERO)
+        trace.path.moves_z & (np.abs(trace.path.z - before(trace.path.z, trace.blocks.starts, np.nan)) > ZERO)
     )
 
 

@@ -146,7 +146,7 @@ def _with_standing(trace: Trace, dynamics: Dynamics) -> tuple[Moves, Rows]:
     An inserted move ends at the point where it starts; its number is -1.
     """
     moves = dynamics.moves
-    standing = trace.mode.in_polar & ((trace.axes.moves_z & ~trace.path.travels) | dynamics.dwells)
+    standing = trace.mode.in_polar & ((trace.path.moves_z & ~trace.path.travels) | dynamics.dwells)
     row = np.setdiff1d(np.flatnonzero(standing), moves.row)
     if not len(row):
         return moves, np.arange(len(moves))

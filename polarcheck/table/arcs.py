@@ -106,13 +106,16 @@ class Arcs(Columns, frozen=True):
         """
         Arcs along Z: with no word of the plane, or with one axis of it where no arc of the plane fits.
 
-        Where one fits, the axis that stays where it is was left out, and Z makes a helix of it.
+        Where one fits, the axis that stays where it is was left out, and Z makes a helix of it. Z alone where it stands
+        is no arc, unless the word of a center or radius stands beside it.
         """
         trace = self.trace
         one_axis = trace.axes.programs_linear_axis ^ trace.axes.has_virtual_word
         to_start = self.by_radius & self.ends_at_start
         fits_none = ~self.has_word_of_plane | (one_axis & (self._misses_circle | to_start))
-        return np.asarray(self.in_force & trace.axes.moves_z & fits_none)
+        has_center = trace.blocks.has("I", "J", "K", trace.machine.arcs.radius_word)
+        moves = trace.path.moves_z | (trace.axes.commands_z & (self.has_word_of_plane | has_center))
+        return np.asarray(self.in_force & moves & fits_none)
 
     @cached_property
     def is_no_circle(self) -> Mask:

@@ -193,7 +193,7 @@ class Dynamics:
         x = np.where(trace.mode.in_polar[rows], x, trace.path.x[rows] - trace.path.x_before[rows])
         x = np.where(on_plane | trace.axes.programs_linear_axis[rows], x, 0.0)
         z = np.where(
-            trace.axes.moves_z[rows], (trace.path.z - before(trace.path.z, trace.blocks.starts, np.nan))[rows], 0.0
+            trace.path.moves_z[rows], (trace.path.z - before(trace.path.z, trace.blocks.starts, np.nan))[rows], 0.0
         )
         c = (trace.path.c_angle - before(trace.path.c_angle, trace.blocks.starts, np.nan))[rows]
         c = np.where(on_plane | trace.blocks.has(*trace.machine.polar.rotary_words)[rows], c, 0.0)

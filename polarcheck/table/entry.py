@@ -119,7 +119,7 @@ class Entry(Columns, frozen=True):
         selects = trace.mode.first_in_section((trace.blocks.codes(*wanted) | trace.run.unknown) & trace.mode.in_polar)
         if selects.any():
             first = np.full(len(trace.mode.sections), len(trace))
-            moves = trace.mode.first_in_section(trace.axes.moves & trace.mode.in_polar)
+            moves = trace.mode.first_in_section(trace.path.moves & trace.mode.in_polar)
             first[trace.mode.section[moves]] = np.flatnonzero(moves)
             rows = np.flatnonzero(selects)
             right[trace.mode.sections.enter[trace.mode.section[rows[rows <= first[trace.mode.section[rows]]]]]] = True

@@ -37,7 +37,7 @@ class HighestFeeds(Columns, frozen=True):
         """Rows of sections that move at F: on the plane, or Z alone."""
         trace = self.trace
         return np.asarray(
-            trace.path.moves_at_feed & (self.dynamics.on_path | (trace.axes.moves_z & ~trace.axes.moves_plane))
+            trace.path.moves_at_feed & (self.dynamics.on_path | (trace.path.moves_z & ~trace.axes.moves_plane))
         )
 
     @cached_property

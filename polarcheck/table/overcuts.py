@@ -29,7 +29,7 @@ def loop_of_row(trace: Trace) -> Rows:
     A loop lasts from a start-up to its offset cancel. A Z move within it begins a new loop: the same contour at
     another depth is another loop.
     """
-    begins = trace.compensation.starts_up | (trace.axes.moves_z & ~trace.path.travels)
+    begins = trace.compensation.starts_up | (trace.path.moves_z & ~trace.path.travels)
     return np.where(trace.compensation.compensates, np.cumsum(begins), -1)
 
 
@@ -39,7 +39,7 @@ def level_of(trace: Trace, walls: Curves) -> Rows:
     row = walls.row[first]
     z = np.round(trace.path.z[row] / ROUNDING)
     # Where Z is not known, all loops between two Z moves are at one level.
-    moved = np.where(np.isnan(z), np.cumsum(trace.axes.moves_z & ~trace.path.travels)[row], 0)
+    moved = np.where(np.isnan(z), np.cumsum(trace.path.moves_z & ~trace.path.travels)[row], 0)
     keys = np.stack([trace.mode.section[row], np.nan_to_num(z), moved], axis=1)
     _, number = np.unique(keys, axis=0, return_inverse=True)
     return np.asarray(number[np.cumsum(np.diff(walls.loop, prepend=-1) != 0) - 1])
@@ -295,7 +295,7 @@ class Overcuts:
         ramp = np.flatnonzero(wall >= 0)
         z_of_ramp = np.fmax(trace.path.z[ramp], before(trace.path.z, trace.blocks.starts, np.nan)[ramp])
         z_of_wall = trace.path.z[wall[ramp]]
-        moves_z = np.cumsum(trace.axes.moves_z & ~trace.path.travels)
+        moves_z = np.cumsum(trace.path.moves_z & ~trace.path.travels)
         deep = np.where(
             np.isnan(z_of_ramp - z_of_wall),
             moves_z[ramp] == moves_z[wall[ramp]],

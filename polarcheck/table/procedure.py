@@ -54,6 +54,7 @@ class Procedure(Columns, frozen=True):
         """Moves of the virtual axis at feed outside sections."""
         trace, mode = self.trace, self.trace.machine.polar
         turns = trace.blocks.has(mode.virtual_axis, mode.virtual_axis_incremental) & (trace.mode.section < 0)
+        turns &= trace.path.moves_c if self._is_rotary else True
         return np.asarray(turns & is_among(trace.axes.motion, _AT_FEED))
 
     @property
@@ -94,7 +95,7 @@ class Procedure(Columns, frozen=True):
         if not self._is_rotary:
             return repeated(np.int64(-1), len(trace))
         plane = turns & ~self._is_arc
-        along_x = is_among(trace.axes.motion, _AT_FEED) & trace.blocks.has("X", "U")
+        along_x = is_among(trace.axes.motion, _AT_FEED) & trace.path.moves_x
         turning, moving = (before(_count(mask, stops), trace.blocks.starts, 0) for mask in (plane, along_x))
         first = _first(plane, stops, trace.blocks.starts)
         is_contour = (turning >= _MOVES_OF_CONTOUR) & (moving > 0) & ~self._is_angle(plane, stops)
@@ -202,7 +203,7 @@ class Procedure(Columns, frozen=True):
         trace = self.trace
         leads = trace.blocks.listed("thread_cutting", "threading_cycle", "feed_is_lead")
         threads = happened(leads, trace.modal.sets("motion") | trace.blocks.starts)
-        at_feed = is_among(trace.axes.motion, _AT_FEED) & (trace.axes.moves_plane | trace.axes.moves_z) & ~self._turns
+        at_feed = is_among(trace.axes.motion, _AT_FEED) & (trace.path.moves_x | trace.path.moves_z) & ~self._turns
         cycle = (trace.axes.motion == Motion.CYCLE) | (trace.blocks.listed("repetitive_cycle") & trace.blocks.has("F"))
         return np.asarray((trace.mode.section < 0) & (at_feed | cycle) & ~threads)
 

@@ -30,7 +30,7 @@ class Senses(Columns, frozen=True):
         """Number of the loop of each block of a contour in offset mode, -1 elsewhere; another depth is another one."""
         trace = self.trace
         in_contour = trace.compensation.compensates & trace.path.on_plane & ~trace.compensation.starts_up
-        begins = trace.compensation.starts_up | trace.mode.enters | (trace.axes.moves_z & ~trace.path.travels)
+        begins = trace.compensation.starts_up | trace.mode.enters | (trace.path.moves_z & ~trace.path.travels)
         return np.where(in_contour, np.cumsum(begins), -1)
 
     @cached_property

@@ -66,7 +66,7 @@ class Slots(Columns, frozen=True):
             return level, several
         z = np.rint(trace.path.z[rows] / ROUNDING)
         low, high = np.minimum.reduceat(z, first), np.maximum.reduceat(z, first)
-        parted = np.cumsum(trace.axes.moves_z)[rows][first]
+        parted = np.cumsum(trace.path.moves_z)[rows][first]
         unknown, slopes = np.isnan(low), low != high
         depth = np.where(unknown, parted, np.where(slopes, np.arange(len(first)), low))
         kind = np.where(unknown, 0, np.where(slopes, 1, 2))

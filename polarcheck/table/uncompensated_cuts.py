@@ -117,7 +117,7 @@ class UncompensatedCuts(Columns, frozen=True):
         trace = self.trace
         down = (
             trace.mode.in_polar
-            & trace.axes.moves_z
+            & trace.path.moves_z
             & ~trace.path.travels
             & ~trace.compensation.compensates
             & ~trace.compensation.offset_mode
@@ -141,12 +141,12 @@ class UncompensatedCuts(Columns, frozen=True):
         trace = self.trace
         last = np.flatnonzero(trace.mode.leaves) - 1
         moves = np.flatnonzero(
-            trace.axes.moves | trace.mode.enters | trace.blocks.starts | trace.blocks.listed("reference_return")
+            trace.path.moves | trace.mode.enters | trace.blocks.starts | trace.blocks.listed("reference_return")
         )
         row = np.append(moves, -1)[np.searchsorted(moves, last, side="right")]
         last, row = last[row >= 0], row[row >= 0]
-        others = ("Z", "W", "Y", "V", "B", *trace.machine.polar.rotary_words)
-        alone = (trace.axes.motion == Motion.RAPID) & trace.blocks.has("X", "U") & ~trace.blocks.has(*others)
+        others = trace.path.moves_z | trace.path.moves_c | trace.blocks.has("Y", "V", "B")
+        alone = (trace.axes.motion == Motion.RAPID) & trace.path.moves_x & ~others
         alone &= (
             self._has_contour & (trace.mode.section < 0) & (trace.compensation.side == trace.compensation.side_before)
         )

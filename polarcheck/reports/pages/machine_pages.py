@@ -30,6 +30,7 @@ _FIRST = {
         "polar.x",
         "polar.zero_angle",
         "polar.other_axes",
+        "polar.repeated_z",
         "polar.plane_before",
         "polar.main_spindle_must_stop",
         "polar.infeed_word",

@@ -68,7 +68,9 @@ _QUESTIONS: dict[str, dict[str, Any]] = {
     "polar": {
         **dict.fromkeys(("on", "off", "virtual_axis", "virtual_axis_incremental", "x", "virtual_axis_programming")),
         "allowed_codes": ["+G93", "-G80"],
-        **dict.fromkeys(("words_beside_switch", "plane_before", "other_axes", "linear_axis", "rotary_axis")),
+        **dict.fromkeys(
+            ("words_beside_switch", "plane_before", "other_axes", "repeated_z", "linear_axis", "rotary_axis")
+        ),
         "main_spindle_must_stop": None,
     },
     "control": {

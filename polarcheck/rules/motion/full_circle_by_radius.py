@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Arcs, ExecutedBlocks, Machine, Mask, PlaneAxes, rule
+from polarcheck.checking.rule import WARNING, Arcs, ExecutedBlocks, Machine, Mask, PlaneAxes, ProgrammedPath, rule
 
 
 @rule(
@@ -9,7 +9,9 @@ from polarcheck.checking.rule import WARNING, Arcs, ExecutedBlocks, Machine, Mas
     at=("X", "C", "R"),
     subject="",
 )
-def full_circle_by_radius(blocks: ExecutedBlocks, axes: PlaneAxes, arcs: Arcs, machine: Machine) -> Mask:
+def full_circle_by_radius(
+    blocks: ExecutedBlocks, axes: PlaneAxes, path: ProgrammedPath, arcs: Arcs, machine: Machine
+) -> Mask:
     """
     Full circle with R.
 
@@ -46,4 +48,4 @@ def full_circle_by_radius(blocks: ExecutedBlocks, axes: PlaneAxes, arcs: Arcs, m
         G13.1
     """
     has_radius = arcs.in_force & blocks.has(machine.arcs.radius_word)
-    return has_radius & ~axes.moves_z & (~axes.moves_plane | arcs.ends_at_start)
+    return has_radius & ~path.moves_z & (~axes.moves_plane | arcs.ends_at_start)

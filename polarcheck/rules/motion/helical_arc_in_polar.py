@@ -1,15 +1,17 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Arcs, Mask, PlaneAxes, rule
+from polarcheck.checking.rule import WARNING, Arcs, Mask, ProgrammedPath, rule
 
 
 @rule(WARNING, "arc that moves Z, too: only with the helical option, else an alarm", at=("Z", "W"), subject="")
-def helical_arc_in_polar(axes: PlaneAxes, arcs: Arcs) -> Mask:
+def helical_arc_in_polar(path: ProgrammedPath, arcs: Arcs) -> Mask:
     """
     Arc in the polar mode that moves Z.
 
     Z moves along with an arc only where the control has helical interpolation; else it stops with an alarm for the
-    wrong plane. Posts break such arcs up into short lines. Move Z in a block of its own, or along lines.
+    wrong plane. Posts break such arcs up into short lines. Move Z in a block of its own, or along lines. A word that
+    repeats the Z at which the tool stands moves nothing; where the control alarms at the word itself, or a document
+    forbids it, the machine's profile says so (polar.repeated_z).
 
     Source: FANUC alarm 021; Autodesk turn-mill posts, which avoid helical arcs in the mode.
 
@@ -31,6 +33,16 @@ def helical_arc_in_polar(axes: PlaneAxes, arcs: Arcs) -> Mask:
         G1 X60.
         G13.1
 
+    Bad, set polar.repeated_z="forbidden-in-arcs":
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. C10. F200
+        Z-2.
+        G3 X20. C20. R10. Z-2.  (expect: helical-arc-in-polar)
+        G1 X60. Z-2.
+        G13.1
+
     Good:
 
         G98 G0 X60. C0
@@ -40,5 +52,15 @@ def helical_arc_in_polar(axes: PlaneAxes, arcs: Arcs) -> Mask:
         G3 X20. C20. R10.
         G1 X60.
         G13.1
+
+    Good:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. C10. F200
+        Z-2.
+        G3 X20. C20. Z-2. I-10. J0
+        G1 X60. C20. Z-2.
+        G13.1
     """
-    return arcs.in_force & axes.moves_z & ~arcs.is_off_plane
+    return arcs.in_force & path.judged_z_of_arc & ~arcs.is_off_plane

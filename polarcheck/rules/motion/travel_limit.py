@@ -1,11 +1,11 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Machine, Mask, PlaneAxes, Travel, rule
+from polarcheck.checking.rule import ERROR, Machine, Mask, ProgrammedPath, Travel, rule
 from polarcheck.geometry.tolerances import ROUNDING
 
 
 @rule(ERROR, "{travel}", at=("X", "U", "C", "H", "Z", "W"), needs=("travel.most_x",), where="travel.is_limited_in_x")
-def travel_limit(axes: PlaneAxes, travel: Travel, machine: Machine) -> Mask:
+def travel_limit(path: ProgrammedPath, travel: Travel, machine: Machine) -> Mask:
     """
     Move beyond the travel of X or Z.
 
@@ -48,4 +48,4 @@ def travel_limit(axes: PlaneAxes, travel: Travel, machine: Machine) -> Mask:
     limits = machine.limits
     x_beyond = (travel.most_x > limits.x_maximum + ROUNDING) | (travel.least_x < limits.x_minimum - ROUNDING)
     z_beyond = (travel.z > limits.z_maximum + ROUNDING) | (travel.z < limits.z_minimum - ROUNDING)
-    return travel.first_beyond(x_beyond, travel.moves_x) | travel.first_beyond(z_beyond, axes.moves_z)
+    return travel.first_beyond(x_beyond, travel.moves_x) | travel.first_beyond(z_beyond, path.moves_z)

@@ -27,7 +27,8 @@ def z_with_plane_axis(axes: PlaneAxes, mode: PolarMode, path: ProgrammedPath, ma
     do, or after them, and the tool does not follow the line in space from start to end. Some lathes cannot move them
     together at all. Where it works as posts write it, compensation may still take the block for one more corner. Move Z
     in a block of its own: in the plane first and then in on approach, out first and then in the plane on retract. A
-    block that repeats X and C as they are moves Z only. The machine's profile says what Z does (polar.other_axes):
+    block that repeats X and C as they are moves Z only, and one that repeats Z as it is moves X and C only, unless a
+    document forbids the words themselves (polar.repeated_z). The machine's profile says what Z does (polar.other_axes):
     where that is forbidden this is an error, where Z moves along with the others a note.
 
     Source: FANUC B-62764EN/01, p. 51, axes that are not in the plane; builder's guide to G12.1, linear interpolation.
@@ -51,6 +52,17 @@ def z_with_plane_axis(axes: PlaneAxes, mode: PolarMode, path: ProgrammedPath, ma
         G40 X2.4
         G13.1
 
+    Bad, machine turning-center:
+
+        G98 G0 X2.4 Z.1 C0
+        G12.1
+        G1 C.4 F40.
+        Z-.2
+        G1 G41 X.8 Z-.2 F5. (expect: z-with-plane-axis)
+        C-.4
+        G40 X2.4
+        G13.1
+
     Bad, set polar.other_axes="together":
 
         G98 G0 X60. Z2. C0
@@ -64,12 +76,22 @@ def z_with_plane_axis(axes: PlaneAxes, mode: PolarMode, path: ProgrammedPath, ma
 
         G98 G0 X60. Z2. C0
         G12.1
+        G1 X60. C0. Z-5. F200
+        G1 X40. C0. Z-5.
+        G1 X40. C10. Z-5.
+        G1 X60. C10. Z-5.
+        G13.1
+
+    Good:
+
+        G98 G0 X60. Z2. C0
+        G12.1
         G1 X40. F200
         X40. Z-5.
         C10.
         X60.
         G13.1
     """
-    moves_both = mode.in_polar & axes.moves_plane & axes.moves_z
+    moves_both = mode.in_polar & axes.moves_plane & path.judged_z
     severity = {"forbidden": ERROR, "independent": WARNING, "together": NOTE}[machine.polar.other_axes]
     return Hits(moves_both & (axes.motion == Motion.LINE) & (path.length > 0), severity)
