@@ -72,6 +72,7 @@ if TYPE_CHECKING:
     from polarcheck.table.senses import Senses as Senses
     from polarcheck.table.slots import Slots as Slots
     from polarcheck.table.spindles import Spindles as Spindles
+    from polarcheck.table.stock_comments import StockComments as StockComments
     from polarcheck.table.switch_words import SwitchWords as SwitchWords
     from polarcheck.table.tool_center import ToolCenter as ToolCenter
     from polarcheck.table.travel import Travel as Travel

@@ -60,6 +60,7 @@ MAKERS = {
     "feeds": "polarcheck.table.feeds:Feeds",
     "feed_ranges": "polarcheck.table.feed_ranges:FeedRanges",
     "unpointed": "polarcheck.table.unpointed:Unpointed",
+    "stock_comments": "polarcheck.table.stock_comments:StockComments",
     "written": "polarcheck.table.written:Written",
     "dialect": "polarcheck.table.dialect:Dialect",
     "faults": "polarcheck.checking.macro_faults:Faults",
