@@ -108,7 +108,7 @@ class AirCuts(Columns, frozen=True):
         rows = np.arange(len(trace), dtype=np.float64)
         first = self._of_section(rows, self.walls, np.minimum, np.inf)
         last = self._of_section(rows, self.walls, np.maximum, -np.inf)
-        writes_z = inside & trace.axes.moves_z
+        writes_z = inside & trace.axes.commands_z
         alone = writes_z & ~trace.axes.moves_plane & (rows > last)
         earlier = trace.mode.anywhere_in_section(writes_z & (rows < first))
         return np.asarray(still & (self._entry > _ABOVE) & trace.mode.anywhere_in_section(alone) & ~earlier)

@@ -1,7 +1,8 @@
 """
 The bar before milling: its outside diameter, its face and its bore, and where they are known from.
 
-The job says it, or what the program turns before its first polar section leaves it. Lengths in mm, diameters as such.
+The job says it, or what the program turns before its first polar section leaves it, or a comment. Lengths in mm,
+diameters as such.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from polarcheck.columns.trace import Trace
 from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.machines.axes import INCREMENTS
 from polarcheck.machines.modal import Motion
+from polarcheck.table.stock_comments import StockComments
 
 #: Across corners of a hexagon, by its width across flats.
 _CORNERS = 2 / np.sqrt(3)
@@ -52,6 +54,7 @@ class Bar(Columns, frozen=True):
     """The bar of one run, at its first polar section."""
 
     trace: Trace
+    stock_comments: StockComments
 
     @cached_property
     def known(self) -> Known:
@@ -75,7 +78,22 @@ class Bar(Columns, frozen=True):
             flats = stock.hexagon * scale
             smallest = np.fmin(flats, turned.smallest)
             return Known(float(smallest), flats * _CORNERS, bore, face, "job", (0, 0), face_lines)
+        if turned.source == "none" and not stock.unknown:
+            turned = self._stated or turned
         return turned._replace(bore=bore, face=face, face_lines=face_lines)
+
+    @property
+    def _stated(self) -> Known | None:
+        """The bar that a comment states for the program of the first section."""
+        row = int(self.trace.mode.sections.enter[0])
+        diameter = float(self.stock_comments.diameter[row])
+        flats = float(self.stock_comments.across_flats[row])
+        if np.isnan(diameter) and np.isnan(flats):
+            return None
+        comment = int(self.stock_comments.comment[row])
+        line = int(self.trace.text.blocks.line[self.trace.text.comments.block[comment]])
+        smallest, largest = (diameter, diameter) if np.isnan(flats) else (flats, flats * _CORNERS)
+        return Known(smallest, float(largest), 0.0, np.nan, "comment", (line, line))
 
     @cached_property
     def deepest_turned(self) -> float:
@@ -218,7 +236,7 @@ class Bar(Columns, frozen=True):
         trace = self.trace
         first = int(trace.mode.sections.enter[0])
         on_center = np.abs(before(trace.path.x, trace.blocks.starts, np.nan)) <= _CENTER
-        down = trace.axes.moves_z & (np.abs(trace.path.x) <= _CENTER) & on_center
+        down = trace.path.moves_z & (np.abs(trace.path.x) <= _CENTER) & on_center
         down &= trace.path.z < before(trace.path.z, trace.blocks.starts, np.nan) - 1
         cycle = (trace.modal.drilling != 0) | trace.blocks.listed("repetitive_cycle")
         cycle &= on_center | (np.abs(trace.lengths.length_of("X")) <= _CENTER)

@@ -162,7 +162,7 @@ class Workpiece(Columns, frozen=True):
         known = moves.is_of_tool & ~np.isnan(self.radius[moves.row] + low) & ~np.isnan(moves.start + moves.end)
         moves, low = moves[known], low[known]
         of_move = turn[moves.section]
-        z_alone = trace.mode.in_polar & trace.axes.moves_z & ~trace.path.travels & ~np.isnan(self.radius)
+        z_alone = trace.mode.in_polar & trace.path.moves_z & ~trace.path.travels & ~np.isnan(self.radius)
         row = np.flatnonzero(z_alone & ~trace.modal.in_cycle & ~np.isnan(trace.path.end + trace.path.z))
         # With compensation in force the tool stands beside the programmed point.
         last = np.searchsorted(moves.row, row) - 1
@@ -248,7 +248,7 @@ class Workpiece(Columns, frozen=True):
     def _drills(self) -> Mask:
         """Moves of other tools that drill along Z at a place of C."""
         trace = self.trace
-        down = (trace.axes.motion == Motion.LINE) & trace.axes.moves_z & (trace.path.z < self._z_before - ROUNDING)
+        down = (trace.axes.motion == Motion.LINE) & trace.path.moves_z & (trace.path.z < self._z_before - ROUNDING)
         drilled = (trace.modal.drilling != 0) & trace.axes.moves
         return np.asarray((down | drilled) & (trace.mode.section < 0) & ~self.is_mill)
 

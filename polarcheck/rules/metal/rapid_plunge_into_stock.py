@@ -32,6 +32,19 @@ def rapid_plunge_into_stock(workpiece: Workpiece) -> Hits:
         Z2. F1000
         G13.1
 
+    Bad, tool 1:radius=2.5:
+
+        (BAR DIA 40)
+        T0101
+        G98 G0 X24. Z2. C0
+        Z-3.              (expect: rapid-plunge-into-stock)
+        G12.1
+        G1 X20. F200
+        C3.
+        X24.
+        Z2. F1000
+        G13.1
+
     Good, tool 1:radius=2.5, set job.stock.diameter=40:
 
         T0101

@@ -35,6 +35,20 @@ def rapid_through_stock(workpiece: Workpiece) -> Hits:
         Z2.
         G13.1
 
+    Bad, tool 1:radius=4:
+
+        (BAR DIA 40)
+        T0101
+        G98 G0 X60. Z2. C0
+        Z-3.
+        X30.              (expect: rapid-through-stock)
+        G12.1
+        G1 X20. F200
+        C8.
+        X60. F1000
+        Z2.
+        G13.1
+
     Good, tool 1:radius=4, set job.stock.diameter=40:
 
         T0101
