@@ -252,6 +252,30 @@ class PartComparison(msgspec.Struct, frozen=True, kw_only=True):
     text: str
 
 
+class KnownStock(msgspec.Struct, frozen=True, kw_only=True):
+    """
+    The bar that rules about the metal rest on; null is unknown.
+
+    diameter: within which there is material for certain [mm]; across flats of a hexagon.
+    largest: diameter outside which there is none for certain [mm].
+    bore: inside diameter, 0 for none [mm].
+    face: Z of the face [mm].
+    source: job, turning, comment or none, of the diameter.
+    line, end_line: of the blocks that turn it, or of the comment.
+    face_line, face_end_line: of the blocks that face it.
+    """
+
+    diameter: float | None
+    largest: float | None
+    bore: float | None
+    face: float | None
+    source: str
+    line: int | None
+    end_line: int | None
+    face_line: int | None
+    face_end_line: int | None
+
+
 class FileReport(msgspec.Struct, frozen=True, kw_only=True):
     """
     The report of one file.
@@ -265,6 +289,7 @@ class FileReport(msgspec.Struct, frozen=True, kw_only=True):
     not_evaluated: rules without a result.
     looked_at: aspects that were checked; outside polar sections these are text, flow and position.
     silenced: suppressed findings.
+    stock: the bar before milling, if anything is known of it.
     part: what the program makes, if requested.
     compared: its contours compared with those asked for, if requested.
     """
@@ -280,6 +305,7 @@ class FileReport(msgspec.Struct, frozen=True, kw_only=True):
     not_evaluated: list[NotEvaluated]
     looked_at: list[str] = []
     silenced: list[Silenced] = []
+    stock: KnownStock | None = None
     part: list[MadeShape] | UnsetType = UNSET
     compared: list[PartComparison] | UnsetType = UNSET
 

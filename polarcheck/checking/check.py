@@ -17,7 +17,7 @@ from polarcheck.checking.channels import united
 from polarcheck.checking.engine import Engine, in_order, with_following
 from polarcheck.checking.not_evaluated import all_unevaluated, bounds_not_reported
 from polarcheck.checking.other_machine import OtherMachine
-from polarcheck.checking.polar_sections import polar_sections
+from polarcheck.checking.polar_sections import known_stock, polar_sections
 from polarcheck.checking.rule import Hits, Rule, load_all
 from polarcheck.checking.tables import Tables
 from polarcheck.execution.run import is_code
@@ -195,6 +195,7 @@ def report_of(engine: Engine) -> FileReport:
         not_evaluated=not_evaluated,
         looked_at=looked_at(tables),
         silenced=silenced,
+        stock=known_stock(tables),
     )
 
 

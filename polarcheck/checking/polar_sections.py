@@ -11,8 +11,9 @@ from polarcheck.checking.tables import Tables
 from polarcheck.columns.sections import Sections
 from polarcheck.columns.trace import Trace
 from polarcheck.errors import TooHardError
-from polarcheck.finding import PolarSection
+from polarcheck.finding import KnownStock, PolarSection
 from polarcheck.machines.modal import Units
+from polarcheck.table.bar import Bar
 from polarcheck.table.center import Center
 from polarcheck.table.dynamics import Dynamics
 from polarcheck.table.ramps import Ramps
@@ -27,6 +28,28 @@ def polar_sections(tables: Tables) -> list[PolarSection]:
         return _polar_sections(trace, tables["dynamics"], tables["center"], tables["ramps"])
     except TooHardError:
         return []  # what the verdict does not rest on; what was given up stands under "not evaluated"
+
+
+def known_stock(tables: Tables) -> KnownStock | None:
+    """The bar that rules about the metal rest on; None where nothing is known of it."""
+    if not len(tables["sections"]):
+        return None
+    bar: Bar = tables["bar"]
+    known = bar.known
+    if known.source == "none" and np.isnan(known.face):
+        return None
+    (line, end_line), (face_line, face_end_line) = known.lines, known.face_lines
+    return KnownStock(
+        diameter=rounded(known.smallest),
+        largest=rounded(known.largest),
+        bore=rounded(known.bore),
+        face=rounded(known.face),
+        source=known.source,
+        line=line or None,
+        end_line=end_line or None,
+        face_line=face_line or None,
+        face_end_line=face_end_line or None,
+    )
 
 
 def _polar_sections(trace: Trace, dynamics: Dynamics, center: Center, ramps: Ramps) -> list[PolarSection]:

@@ -13,6 +13,7 @@ from polarcheck.columns.trace import Trace
 from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.machines.modal import STATES
 from polarcheck.table.origin import Origin
+from polarcheck.table.tool_center import ToolCenter
 
 #: What may stand beside a D that is meant for the cutter: words, and modal groups of G codes.
 _WORDS_BESIDE_D = ("T", "S", "M", "G", "F", "X", "U", "Z", "W")
@@ -23,6 +24,7 @@ class Entry(Columns, frozen=True):
     """Columns of one trace, one value per row."""
 
     trace: Trace
+    tool_center: ToolCenter
 
     # ---- what is known of the program ----
 
@@ -197,12 +199,16 @@ class Entry(Columns, frozen=True):
 
     @cached_property
     def approaches_stock(self) -> Mask:
-        """A G12.1 from which the tool goes to the rim of the stock; a section within, as a pocket, is plunged into."""
+        """
+        A G12.1 from which the cutter goes to the rim of the stock; a section within, as a pocket, is plunged into.
+
+        What counts is the tool center: the wall of a pocket lies R farther out.
+        """
         trace = self.trace
         if np.isnan(trace.job.stock.diameter):
             return np.zeros(len(trace), bool)
         farthest = np.full(len(trace.mode.sections) + 1, -np.inf)
-        np.fmax.at(farthest, trace.mode.section, np.fmax(np.abs(trace.path.start), np.abs(trace.path.end)))
+        np.fmax.at(farthest, trace.mode.section, self.tool_center.farthest)
         reach = 2 * farthest[trace.mode.section] + np.nan_to_num(trace.offsets.cutter_diameter)
         return np.asarray(trace.mode.enters & (reach > self.stock_diameter + ROUNDING))
 

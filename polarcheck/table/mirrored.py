@@ -52,7 +52,22 @@ class Mirrored(Columns, frozen=True):
         fails = tool.inside_arc_too_small | tool.interferes | tool.no_intersection
         fails[overcuts.cuts.row] = True
         fails[overcuts.sweeps.row] = True
-        return fails
+        return fails | self._fails_beyond_bar
+
+    @property
+    def _fails_beyond_bar(self) -> Mask:
+        """
+        Rows that would cut into the contour where the bar were larger, of sections with one G41 or G42.
+
+        A ramp that comes to the far side of the only wall comes through the part, though the bar ends before it.
+        """
+        trace = self.trace
+        alone = np.zeros(len(trace), bool)
+        if np.isnan(self.overcuts.bar):
+            return alone
+        count = trace.mode.count_in_section(trace.compensation.writes_side)
+        alone = np.append(count == 1, False)[trace.mode.section]
+        return self._trial(alone, 1).faulty if alone.any() else alone
 
     @cached_property
     def is_mirrored(self) -> Mask:

@@ -29,6 +29,11 @@ class Trial(Overcuts):
         super().__init__(trace, ToolCenter(trace, Infeed(trace), other_radius=other))
         self.tried = other.rows
 
+    @property
+    def bar(self) -> float:
+        """A ramp through the part comes through it wherever the bar ends."""
+        return np.nan
+
     @cached_property
     def faulty(self) -> Mask:
         """Rows to which the control would object, or that would cut into the part; and those of which nobody knows."""

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from polarcheck.checking.quantity import Quantity
 from polarcheck.reports import counted
 
 if TYPE_CHECKING:
-    from polarcheck.finding import FileReport, PolarSection
+    from polarcheck.finding import FileReport, KnownStock, PolarSection
 
 #: At most this many sections are listed; the others are counted. The JSON report has them all.
 _LISTED = 5
@@ -29,6 +29,8 @@ def resting(file: FileReport) -> Iterator[str]:
     more = len(file.polar_sections) - _LISTED
     if more > 0:
         yield f"and {counted(more, 'more section')}: --format json lists them"
+    if file.stock is not None:
+        yield _stock(file.stock, file.polar_sections)
     light = dict.fromkeys(missing.reason for missing in file.not_evaluated if not missing.matters)
     for reason in light:
         yield f"not judged, but without weight: {reason}"
@@ -45,6 +47,31 @@ def _section(section: PolarSection) -> str:
         facts.append(f"{section.time:.0f} s")
     channel = f" in channel {section.channel}" if section.channel else ""
     return f"section of line {section.line}{channel}: {', '.join(fact for fact in facts if fact)}"
+
+
+def _stock(stock: KnownStock, sections: Sequence[PolarSection]) -> str:
+    """`bar 27.7 mm turned in lines 8 to 11, face at Z0 turned in line 6`, in the units of the first section."""
+    inch = any(section.units == "inch" for section in sections[:1])
+    facts = []
+    if stock.diameter is not None:
+        facts.append(f"bar {_stock_length(stock.diameter, inch)} {_known_by(stock.source, stock.line, stock.end_line)}")
+    if stock.bore:
+        facts.append(f"bore {_stock_length(stock.bore, inch)}")
+    if stock.face is not None:
+        source = "turning" if stock.face_line else "job"
+        face = _stock_length(stock.face, inch).partition(" ")[0]
+        facts.append(f"face at Z{face} {_known_by(source, stock.face_line, stock.face_end_line)}")
+    return ", ".join(facts)
+
+
+def _known_by(source: str, line: int | None, end_line: int | None) -> str:
+    if source == "turning":
+        return f"turned in {f'line {line}' if line == end_line else f'lines {line} to {end_line}'}"
+    return "of [stock]" if source == "job" else f"by the comment of line {line}"
+
+
+def _stock_length(value: float, inch: bool) -> str:
+    return f"{Quantity(value, inch, diameter=False):length}"
 
 
 def _radius(section: PolarSection) -> str:

@@ -15,15 +15,17 @@ was found at or above --fail-on: no error and no warning, unless you said otherw
 in the report; they work, but are good to know.
 
 A pass is as good as what you gave. It rests on the lathe, the units, the cutter radius of each
-section and where that came from, the nearest distance to the center, and the highest rate of C with
-its limit. The report says them: read them once. With the wrong lathe or the wrong radius a bad
-program can pass.
+section and where that came from, the nearest distance to the center, the highest rate of C with its
+limit, and the bar: that of [stock], else what the program itself turns before it mills, else what a
+comment states (BAR DIA 28), else none. The report says them: read them once. With the wrong lathe,
+the wrong radius or the wrong bar a bad program can pass. `[stock]` with unknown = true takes no bar
+from the program.
 
     polarcheck check --machine lathe3.toml --tool 1:radius=4 --set limits.c_feed=3600 O1234.NC
 
 Outside the polar sections the text of the program, its flow (calls, jumps, loops) and positions are
-looked at, and nothing else. Not looked at anywhere: holder, chuck, tool length, spindle speed, the
-depth of a cut.
+looked at, and where mills along Z go: through a part that must stand, or through what stands of the
+bar. Not looked at anywhere: holder, chuck, tool length, spindle speed, the load of a cut.
 
 pass (no polar section): the program never enters the polar mode, so that there was nothing to judge
 in it. If it is meant to, its code for the mode is that of another control: `polarcheck machines`
