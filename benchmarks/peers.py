@@ -226,6 +226,22 @@ def both_stages(asked: argparse.Namespace, folder: Path) -> str:
     return "\n".join(f"{what}:\n\n{stages(path, *CHECK[4:], *tools)}" for what, tools in kinds.items())
 
 
+ONE_SLIP = """\
+## One slip in a sound program
+
+    python benchmarks/one_slip.py --slips 3000
+    python benchmarks/one_slip.py --sound 1000
+
+The first draws sound programs as setters and CAM posts write them (`tests/setter_programs.py`), makes one slip in each
+(`tests/single_slips.py`), and prints for each kind of slip how many are spoken about, by a finding or as unverified,
+how many pass, and how many give more than one finding. A simulation that shares no code with polarcheck
+(`tests/metal_simulation.py`) runs both programs: a slip counts where the part comes out otherwise, the control stops or
+metal is met by rapid, and where a check without a drawing could know. `--show-passing FOLDER` writes those that pass.
+The second checks programs without a slip, without a bar and with five, and prints those that do not pass.
+`benchmarks/two_slips.py` does the same with pairs of slips.
+"""
+
+
 def page(asked: argparse.Namespace, parts: dict[str, str]) -> str:
     """The page of Markdown."""
     machine = f"{os.cpu_count()} cores, CPython {platform.python_version()}, NumPy {version('numpy')}"
@@ -259,7 +275,8 @@ Made by one command:
 on {machine}; medians of {asked.rounds} rounds, in each of which every command runs once.
 Ratios carry over to another machine, seconds do not.
 
-{text}"""
+{text}
+{ONE_SLIP}"""
 
 
 def main() -> None:
