@@ -1,0 +1,1 @@
+"""The metal, and what is almost right."""
