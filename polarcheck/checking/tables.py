@@ -55,6 +55,7 @@ MAKERS = {
     "coverage": "polarcheck.table.coverage:Coverage",
     "arcs": "polarcheck.table.arcs:Arcs",
     "senses": "polarcheck.table.senses:Senses",
+    "regularity": "polarcheck.table.regularity:Regularity",
     "travel": "polarcheck.table.travel:Travel",
     "center": "polarcheck.table.center:Center",
     "feeds": "polarcheck.table.feeds:Feeds",

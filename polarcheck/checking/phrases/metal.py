@@ -2,6 +2,13 @@
 
 from __future__ import annotations
 
+from polarcheck.checking.phrases.passes import forgotten_arc as forgotten_arc
+from polarcheck.checking.phrases.passes import needed_arc as needed_arc
+from polarcheck.checking.phrases.passes import words_of_arc as words_of_arc
+from polarcheck.checking.phrases.passes import written_arc as written_arc
+from polarcheck.checking.phrases.regularity import as_meant as as_meant
+from polarcheck.checking.phrases.regularity import misfit as misfit
+from polarcheck.checking.phrases.regularity import remedy as remedy
 from polarcheck.checking.places import block_in_line
 from polarcheck.checking.quantity import in_row
 from polarcheck.columns.lengths import Lengths

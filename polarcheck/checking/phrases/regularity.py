@@ -1,0 +1,33 @@
+"""Phrases of the rules about contours that are almost right."""
+
+from __future__ import annotations
+
+from polarcheck.checking.phrases.common import executed_word
+from polarcheck.execution.run import Run
+from polarcheck.geometry.shapes.shape import polygon_name
+from polarcheck.table.regularity import Regularity
+
+
+def misfit(regularity: Regularity, run: Run, row: int) -> str:
+    """What is wrong with the block: `X-13.524 does not fit the rest of the contour (two digits are swapped)`."""
+    correction = regularity.corrections[row]
+    what = executed_word(run, correction.word) if correction.word >= 0 else "the point before this block"
+    if correction.word < 0 and "block" not in correction.why:
+        what = "this block"
+    return f"{what} does not fit the rest of the contour, {correction.why}"
+
+
+def remedy(regularity: Regularity, row: int) -> str:
+    """What would be right there: `X-13.254`."""
+    correction = regularity.corrections[row]
+    return f"a block {correction.text} before it" if "block is missing" in correction.why else correction.text
+
+
+def as_meant(regularity: Regularity, row: int) -> str:
+    """What the contour would be: `a regular hexagon`."""
+    shape = regularity.corrections[row].becomes
+    if shape.is_regular:
+        return f"a regular {polygon_name(shape.corners)}"
+    if shape.is_turned:
+        return f"the same after each {360 / shape.order:g} deg"
+    return "its own mirror image"

@@ -1,0 +1,125 @@
+"""
+Closed rings of corners in a path: leads, overlap and points within a side are left out.
+
+Plane points complex, x + 1j*c [mm]. The bulge of an edge is the tangent of a quarter of its sweep: 0 for a line, above
+0 counterclockwise.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from polarcheck.arrays import Floats, Mask, Points
+
+#: Ends that are nearer to each other are one point, and points so near to the line of a side lie on it [mm].
+_SAME = 0.004
+#: Blocks at either end of a path that may be leads, and rings that are tried.
+_LEADS, _MOST_RINGS = 8, 3
+#: The least number of edges of a ring.
+_FEWEST = 3
+
+
+class Ring(NamedTuple):
+    """
+    A closed contour of n corners.
+
+    corner: complex128[n] [mm]. bulge: float64[n], of the edge from each corner to the next.
+    """
+
+    corner: Points
+    bulge: Floats
+
+    def __len__(self) -> int:
+        return len(self.corner)
+
+
+def rings_in(point: Points, bulge: Floats) -> Iterator[Ring]:
+    """
+    The closed rings of a path, the first ones alone.
+
+    point: complex128[n + 1] [mm], where the edges begin and end. bulge: float64[n].
+    """
+    moves = np.abs(np.diff(point)) > _SAME
+    point, bulge = point[np.append(True, moves)], bulge[moves]
+    count = 0
+    for first in range(min(_LEADS, len(bulge) - _FEWEST + 1)):
+        again = np.flatnonzero(np.abs(point[first + _FEWEST :] - point[first]) <= _SAME)
+        if len(again):
+            last = first + _FEWEST + int(again[0])
+            yield _simplified(point[first:last], bulge[first:last])
+            count += 1
+        if count == _MOST_RINGS:
+            return
+    if not count:
+        yield from _overlapping(point, bulge)
+
+
+def _overlapping(point: Points, bulge: Floats) -> Iterator[Ring]:
+    """Rings of paths that begin within a side and end beyond that point of it."""
+    for first in range(min(_LEADS, len(bulge) - _FEWEST)):
+        start, end = point[first + 2 : -1], point[first + 3 :]
+        way = end - start
+        along = ((point[first] - start) * way.conj()).real / np.abs(way) ** 2
+        aside = np.abs(((point[first] - start) * way.conj()).imag) / np.abs(way)
+        onward = (way * (point[first + 1] - point[first]).conjugate()).real > 0
+        passes = (
+            (aside <= _SAME) & (along > 0) & (along <= 1) & onward & (bulge[first + 2 :] == 0) & (bulge[first] == 0)
+        )
+        if passes.any():
+            last = first + 3 + int(np.argmax(passes))
+            yield _simplified(point[first:last], np.append(bulge[first : last - 1], 0.0))
+            return
+
+
+def _simplified(corner: Points, bulge: Floats) -> Ring:
+    """The ring with each line and each arc as one edge, and without ways out and back."""
+    for _ in range(len(corner)):
+        if len(corner) < _FEWEST:
+            break
+        before, behind = np.roll(corner, 1), np.roll(corner, -1)
+        into, out = np.roll(bulge, 1), bulge
+        is_tip = (np.abs(behind - before) <= _SAME) & (into == 0) & (out == 0)
+        if is_tip.any():
+            tip = int(np.argmax(is_tip))
+            gone = np.array([tip, (tip + 1) % len(corner)])
+        else:
+            gone = np.flatnonzero(_is_within(before, corner, behind, into, out))
+            if not len(gone):
+                break
+            gone = gone[np.append(True, np.diff(gone) > 1)]
+            if len(gone) > 1 and gone[0] == 0 and gone[-1] == len(corner) - 1:
+                gone = gone[:-1]
+            joined = _joined(before[gone], behind[gone], into[gone], out[gone])
+            bulge = bulge.copy()
+            bulge[gone - 1] = joined
+        stays = np.ones(len(corner), bool)
+        stays[gone] = False
+        corner, bulge = corner[stays], bulge[stays]
+    return Ring(corner, bulge)
+
+
+def _is_within(before: Points, corner: Points, behind: Points, into: Floats, out: Floats) -> Mask:
+    """Corners within one straight line, or one arc."""
+    chord = behind - before
+    length = np.maximum(np.abs(chord), 1e-9)
+    aside = np.abs(((corner - before) * chord.conj()).imag) / length
+    onward = ((corner - before) * (behind - corner).conj()).real > 0
+    on_line = (into == 0) & (out == 0) & (aside <= _SAME) & onward
+    if not (into * out > 0).any():
+        return np.asarray(on_line)
+    center = [_center(before, corner, into), _center(corner, behind, out)]
+    sweep = np.abs(np.arctan(into)) + np.abs(np.arctan(out))
+    return np.asarray(on_line | ((into * out > 0) & (np.abs(center[0] - center[1]) <= 2 * _SAME) & (sweep < 1.5)))
+
+
+def _joined(before: Points, behind: Points, into: Floats, out: Floats) -> Floats:
+    """The bulge of two edges of one line or circle together."""
+    return np.asarray(np.tan(np.arctan(into) + np.arctan(out)))
+
+
+def _center(start: Points, end: Points, bulge: Floats) -> Points:
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.asarray((start + end) / 2 + 1j * (end - start) * (1 - bulge**2) / (4 * bulge))

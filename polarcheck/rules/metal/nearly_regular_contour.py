@@ -1,0 +1,71 @@
+from __future__ import annotations
+
+from polarcheck.checking.rule import WARNING, Hits, Regularity, rule
+
+
+@rule(
+    WARNING,
+    "{misfit}: with {remedy} it would be {as_meant}",
+    subject="side",
+    doubts=(("position", "loop"),),
+)
+def nearly_regular_contour(regularity: Regularity) -> Hits:
+    """
+    One word or block that spoils a regular or symmetric contour.
+
+    All corners of the contour but those of one word fit a regular polygon, or come again after a part of a turn or in a
+    mirror, and with this word written otherwise all of them do: two of its digits are swapped, one is missing, its sign
+    or its point is wrong, it is that of another block. Or a block is missing. Nothing else objects to such a contour,
+    and the part is scrap. Shapes with fewer than five corners are not looked at, nor is a side that lies elsewhere on
+    purpose, since no slip of the pen explains where it lies.
+
+    Source: the geometry of the contour alone.
+
+    Bad, tool 1:radius=4:
+
+        T0101
+        G98 G0 X60. C0
+        G12.1
+        G1 G42 X30. F200
+        C8.66
+        X0 C17.321
+        X-30. C8.66
+        C-8.66
+        X0 C-13.721      (expect: nearly-regular-contour)
+        X30. C-8.66
+        C0
+        G40 X60.
+        G13.1
+
+    Bad, tool 1:radius=4:
+
+        T0101
+        G98 G0 X60. C0
+        G12.1
+        G1 G42 X30. F200
+        C8.66
+        X0 C17.321
+        X-30. C8.66
+        X0 C-17.321      (expect: nearly-regular-contour)
+        X30. C-8.66
+        C0
+        G40 X60.
+        G13.1
+
+    Good, tool 1:radius=4:
+
+        T0101
+        G98 G0 X60. C0
+        G12.1
+        G1 G42 X30. F200
+        C8.66
+        X0 C17.321
+        X-30. C8.66
+        C-8.66
+        X0 C-17.321
+        X30. C-8.66
+        C0
+        G40 X60.
+        G13.1
+    """
+    return Hits(regularity.is_wrong, at=regularity.wrong_words)
