@@ -51,6 +51,7 @@ if TYPE_CHECKING:
     from polarcheck.silence.allow_comments import Allows as Allows
     from polarcheck.silence.allow_comments import UnusedAllows as UnusedAllows
     from polarcheck.table.angles import Angles as Angles
+    from polarcheck.table.arc_words import ArcWords as ArcWords
     from polarcheck.table.arcs import Arcs as Arcs
     from polarcheck.table.center import Center as Center
     from polarcheck.table.coverage import Coverage as Coverage
@@ -64,12 +65,14 @@ if TYPE_CHECKING:
     from polarcheck.table.mode_words import ModeWords as ModeWords
     from polarcheck.table.other_mode import OtherMode as OtherMode
     from polarcheck.table.overcuts import Overcuts as Overcuts
+    from polarcheck.table.passes import Passes as Passes
     from polarcheck.table.procedure import Procedure as Procedure
     from polarcheck.table.ramps import Ramps as Ramps
     from polarcheck.table.senses import Senses as Senses
     from polarcheck.table.slots import Slots as Slots
     from polarcheck.table.spindles import Spindles as Spindles
     from polarcheck.table.switch_words import SwitchWords as SwitchWords
+    from polarcheck.table.tangency import Tangency as Tangency
     from polarcheck.table.tool_center import ToolCenter as ToolCenter
     from polarcheck.table.travel import Travel as Travel
     from polarcheck.table.uncompensated_cuts import UncompensatedCuts as UncompensatedCuts
