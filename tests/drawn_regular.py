@@ -1,5 +1,5 @@
 """
-Contours that repeat themselves, drawn at random, with one slip of the pen in each; and contours that are meant to differ.
+Contours that repeat themselves, drawn at random, with one slip of the pen in each; and contours meant to differ.
 
     contour = regular_contour(random.Random(3))
     text = program(contour.points, machine, draw)

@@ -294,6 +294,7 @@ USES = {
     "polar.main_spindle_must_stop": Use(True, before("M3")),
     "arcs.tolerance": Use(1, ARC.format("I-10.1 J0")),
     "arcs.radius_word": Use("L", ARC.format("R10.")),
+    "arcs.corner_words": Use(["R"], CORNERS.format(20, "G40 X60. R1.\nX50. R1.\nC30.\nG13.1"), tools=CUTTER),
     "arcs.sweep_limit": Use(45, ARC.format("I-10. J0")),
     "compensation.start_up": Use("B", OUTSIDE, tools=CUTTER),
     "compensation.start_up_with_move": Use("B", OUTSIDE, tools=CUTTER, also={"compensation": {"start_up": "C"}}),

@@ -176,9 +176,9 @@ MISTAKES = [
     Mistake("R too small", BY_RADIUS, {"R10.": "R5."}, "G3 X20. C20. R5.", "arc-radius-too-small"),
     Mistake("no R", BY_RADIUS, {" R10.": ""}, "G3 X20. C20.", "arc-without-center"),
     Mistake("G1 forgotten after an arc", ROUND, {"G1 X-20.": "X-20."}, "X-20.", "arc-without-center"),
-    Mistake(
-        "negative R", BY_RADIUS, {"R10.": "R-10."}, "G3 X20. C20. R-10.", "negative-arc-radius", others=("fanuc-16i",)
-    ),
+    Mistake("negative R", BY_RADIUS, {"R10.": "R-10."}, "G3 X20. C20. R-10.", "arc-not-tangent", others=("fanuc-30i",)),
+    Mistake("larger R", BY_RADIUS, {"R10.": "R100."}, "G3 X20. C20. R100.", "arc-not-tangent", others=("fanuc-16i",)),
+    Mistake("no G3", BY_RADIUS, {"G3 X20.": "X20."}, "X20. C20. R10.", "arc-word-without-arc", others=("fanuc-16i",)),
     Mistake(
         "arc along Z",
         SQUARE,

@@ -32,6 +32,7 @@ SUBJECT_OF_TABLE: Final = {
     "ramps": "compensation",
     "arcs": "arc",
     "senses": "side",
+    "tangency": "side",
 }
 #: What each subject rests on. A move is judged by itself: rates of its axes, travel, a ramp on an arc.
 RESTS_ON: Final = {

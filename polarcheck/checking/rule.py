@@ -52,6 +52,7 @@ if TYPE_CHECKING:
     from polarcheck.silence.allow_comments import UnusedAllows as UnusedAllows
     from polarcheck.table.air_cuts import AirCuts as AirCuts
     from polarcheck.table.angles import Angles as Angles
+    from polarcheck.table.arc_words import ArcWords as ArcWords
     from polarcheck.table.arcs import Arcs as Arcs
     from polarcheck.table.bar import Bar as Bar
     from polarcheck.table.center import Center as Center
@@ -67,6 +68,7 @@ if TYPE_CHECKING:
     from polarcheck.table.other_mode import OtherMode as OtherMode
     from polarcheck.table.overcuts import Overcuts as Overcuts
     from polarcheck.table.pass_depths import PassDepths as PassDepths
+    from polarcheck.table.passes import Passes as Passes
     from polarcheck.table.procedure import Procedure as Procedure
     from polarcheck.table.ramps import Ramps as Ramps
     from polarcheck.table.regularity import Regularity as Regularity
@@ -75,6 +77,7 @@ if TYPE_CHECKING:
     from polarcheck.table.spindles import Spindles as Spindles
     from polarcheck.table.stock_comments import StockComments as StockComments
     from polarcheck.table.switch_words import SwitchWords as SwitchWords
+    from polarcheck.table.tangency import Tangency as Tangency
     from polarcheck.table.tool_center import ToolCenter as ToolCenter
     from polarcheck.table.travel import Travel as Travel
     from polarcheck.table.uncompensated_cuts import UncompensatedCuts as UncompensatedCuts

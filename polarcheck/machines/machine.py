@@ -117,10 +117,12 @@ class CircularInterpolation(msgspec.Struct, frozen=True, kw_only=True, forbid_un
     tolerance: how much the radius at the end of an arc may differ from that at its start [mm]
     radius_word: address of the radius of an arc
     sweep_limit: largest angle of one arc [deg]
+    corner_words: words of arcs that in a straight move are the corner at its end
     """
 
     tolerance: NotNegative
     radius_word: Address
+    corner_words: list[Address]
     sweep_limit: Annotated[float, msgspec.Meta(gt=0, le=360)]
 
 

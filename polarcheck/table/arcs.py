@@ -102,6 +102,12 @@ class Arcs(Columns, frozen=True):
         return self._of_arcs(rows, self.trace.lengths.length_of(self.trace.machine.arcs.radius_word)[rows])
 
     @cached_property
+    def negative_stops(self) -> Mask:
+        """Arcs with a negative R where the control stops at it."""
+        stops = self.trace.machine.severities.get("negative-arc-radius") == "error"
+        return np.asarray((self.radius < 0) & stops)
+
+    @cached_property
     def is_off_plane(self) -> Mask:
         """
         Arcs along Z: with no word of the plane, or with one axis of it where no arc of the plane fits.

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Arcs, Mask, rule
+from polarcheck.checking.rule import WARNING, Arcs, Mask, Tangency, rule
 
 
 @rule(
@@ -10,12 +10,13 @@ from polarcheck.checking.rule import WARNING, Arcs, Mask, rule
     subject="",
     follows={"block": ("full-circle-by-radius", "arc-off-polar-plane", "arc-sweep-above-limit")},
 )
-def negative_arc_radius(arcs: Arcs) -> Mask:
+def negative_arc_radius(arcs: Arcs, tangency: Tangency) -> Mask:
     """
     Arc with a negative R.
 
     Where the control takes it, a negative R means the longer of the two arcs, of more than 180 degrees. Older lathe
-    controls stop with an alarm. Two arcs of less than 180 degrees, or I and J, are understood by all.
+    controls stop with an alarm. Two arcs of less than 180 degrees, or I and J, are understood by all. Where the control
+    takes it and the arc is tangent to the blocks on both sides, the longer one is meant, and nothing is reported.
 
     Source: FANUC alarm 023; B-62754EN/01, p. 67.
 
@@ -46,4 +47,4 @@ def negative_arc_radius(arcs: Arcs) -> Mask:
         G1 X60.
         G13.1
     """
-    return arcs.radius < 0
+    return arcs.negative_stops | ((arcs.radius < 0) & ~tangency.is_tangent & ~tangency.misfits)
