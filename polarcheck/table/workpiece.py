@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from polarcheck.arrays import Columns, Floats, Mask, Points, Rows, States, Table
-from polarcheck.columns.filling import before
 from polarcheck.columns.trace import Trace
 from polarcheck.errors import TooHardError
 from polarcheck.geometry import polar
@@ -31,6 +30,13 @@ if TYPE_CHECKING:
 
 #: A tip less far below the face than this touches nothing [mm].
 _CLEARANCE = 0.01
+#: How far away a reference point is, at least [mm]. The slowest X beside Z in rapid traverse, as a share of Z: where
+#: both go at once, X does so by this share of Z, or on the straight line.
+_FAR, _SLOWEST_X = 200.0, 0.4
+#: The share of the way up to the face at which such a move is looked at.
+_SHARE = 0.75
+#: What rounding moves an axis by [mm, deg].
+_STILL = 1e-4
 #: More ways to a place within the bar than these are not followed, nor more moves that cut.
 _MOST_WAYS, _MOST_MOVES = 200, 20_000
 
@@ -40,8 +46,8 @@ class Ways(Table, frozen=True):
     Moves that take a mill to a place, n of them in the order of the program.
 
     row: int[n]. start, end, center: complex128[n] [mm], the part of the move that is known whatever the order of the
-    axes: the whole way of X or of C alone, else its end. kind: int16[n], Motion. tip: float64[n], Z of the tip [mm].
-    radius: float64[n], R [mm]. is_rapid: bool[n]. plunges: bool[n], ends lower than it began.
+    axes: the whole way of X or of C alone, a place on a way up and aside, else its end. kind: int16[n], Motion. tip:
+    float64[n], Z of the tip [mm]. radius: float64[n], R [mm]. is_rapid: bool[n]. plunges: bool[n], it goes down.
     """
 
     row: Rows
@@ -114,41 +120,51 @@ class Workpiece(Columns, frozen=True):
     # ---- where they go ----
 
     @cached_property
-    def _z_before(self) -> Floats:
-        return before(self.trace.path.z, self.trace.blocks.starts, np.nan)
-
-    @cached_property
     def _outside(self) -> Ways:
         """All moves of mills outside of sections of which the end or the way is known."""
         trace = self.trace
         path, axes = trace.path, trace.axes
-        moves = axes.moves & (trace.mode.section < 0) & ~np.isnan(self.radius) & ~trace.modal.in_cycle
-        moves &= np.isin(axes.motion, (Motion.RAPID, Motion.LINE))
-        row = np.flatnonzero(moves)
-        x_from, x_to = path.x_before[row], path.x[row]
-        c_from, c_to = before(path.c_angle, trace.blocks.starts, np.nan)[row], path.c_angle[row]
-        z_from, z_to = self._z_before[row], path.z[row]
+        returns = trace.blocks.listed("reference_return") & trace.blocks.has("X", "U") & (trace.mode.section < 0)
+        moves = axes.moves & np.isin(axes.motion, (Motion.RAPID, Motion.LINE)) & (trace.mode.section < 0)
+        moves &= ~trace.modal.in_cycle
+        row = np.flatnonzero((moves | returns) & ~np.isnan(self.radius))
+        returns = returns[row]
+        x_from, c_from, z_from = path.x_before[row], path.c_angle_before[row], path.z_before[row]
+        x_to = np.where(returns, x_from + _FAR, path.x[row])
+        z_to = np.where(returns & trace.blocks.has("Z", "W")[row], z_from + _FAR, path.z[row])
+        z_to = np.where(returns & ~trace.blocks.has("Z", "W")[row], z_from, z_to)
+        # Controls show the angle of C from 0 to 360 deg, however far a section has turned it.
+        c_from = np.where((c_from < 0) | (c_from > 360), np.mod(c_from, 360), c_from)
+        c_to = np.where(returns | ~path.moves_c[row], c_from, path.c_angle[row])
         with np.errstate(invalid="ignore"):
             begin, end = (x * np.exp(1j * np.radians(c)) for x, c in ((x_from, c_from), (x_to, c_to)))
         moves_x, moves_c, moves_z = (
-            ~(np.abs(to - start) <= ROUNDING) for start, to in ((x_from, x_to), (c_from, c_to), (z_from, z_to))
+            ~(np.abs(to - start) <= _STILL) for start, to in ((x_from, x_to), (c_from, c_to), (z_from, z_to))
         )
         arc, line = moves_c & ~moves_x & ~moves_z, moves_x & ~moves_c & ~moves_z
         arc &= ~np.isnan(begin) & (x_to > ROUNDING)
         line &= ~np.isnan(begin)
-        whole = arc | line
+        # Up from below the face and along X at once: a place on the way to the face.
+        rise = (self.top - z_from) * _SHARE
+        slope = moves_x & ~moves_c & (rise > 0) & (z_to > self.top) & ~np.isnan(begin + x_to)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            linear = (x_to - x_from) * rise / (z_to - z_from)
+        aside = np.sign(linear) * np.minimum(np.abs(linear), _SLOWEST_X * np.abs(rise))
         turn = c_to - c_from
         full = arc & (np.abs(turn) >= 360)
         kind = np.where(arc, np.where(turn > 0, Motion.CCW, Motion.CW), Motion.LINE).astype(np.int16)
+        with np.errstate(invalid="ignore"):
+            on_slope = (x_from + aside) * np.exp(1j * np.radians(c_from))
+        end = np.where(slope, on_slope, np.where(full, begin, end))
         ways = Ways(
             row=row,
-            start=np.where(whole, begin, end),
-            end=np.where(full, begin, end),
+            start=np.asarray(np.where(arc | line, begin, end), np.complex128),
+            end=np.asarray(end, np.complex128),
             center=np.where(arc, 0j, np.nan + 0j),
             kind=kind,
-            tip=z_to,
+            tip=np.where(slope, z_from + rise, z_to),
             radius=self.radius[row],
-            is_rapid=axes.motion[row] == Motion.RAPID,
+            is_rapid=(axes.motion[row] == Motion.RAPID) | returns,
             plunges=moves_z & ~(z_to > z_from),
         )
         return ways[~np.isnan(ways.end + ways.tip) & (moves_x | moves_c | moves_z)]
@@ -180,10 +196,10 @@ class Workpiece(Columns, frozen=True):
             end=np.concatenate([moves.end * of_move, place]),
             center=np.concatenate([moves.center * of_move, np.full(len(row), np.nan + 0j)]),
             kind=np.concatenate([moves.kind, np.full(len(row), Motion.LINE)]).astype(np.int16),
-            tip=np.concatenate([low, np.minimum(trace.path.z[row], self._z_before[row])]),
+            tip=np.concatenate([low, np.minimum(trace.path.z[row], trace.path.z_before[row])]),
             radius=self.radius[rows],
             is_rapid=is_rapid[rows],
-            plunges=np.concatenate([np.zeros(len(moves), bool), ~(trace.path.z[row] >= self._z_before[row])]),
+            plunges=np.concatenate([np.zeros(len(moves), bool), ~(trace.path.z[row] >= trace.path.z_before[row])]),
         )
         return ways[order]
 
@@ -248,7 +264,7 @@ class Workpiece(Columns, frozen=True):
     def _drills(self) -> Mask:
         """Moves of other tools that drill along Z at a place of C."""
         trace = self.trace
-        down = (trace.axes.motion == Motion.LINE) & trace.path.moves_z & (trace.path.z < self._z_before - ROUNDING)
+        down = (trace.axes.motion == Motion.LINE) & trace.path.moves_z & (trace.path.z < trace.path.z_before - ROUNDING)
         drilled = (trace.modal.drilling != 0) & trace.axes.moves
         return np.asarray((down | drilled) & (trace.mode.section < 0) & ~self.is_mill)
 
@@ -297,6 +313,8 @@ class Workpiece(Columns, frozen=True):
         """The highest Z at which a contour is milled, or the face if it is known [mm]."""
         walls, _ = self.overcuts.walls
         highest = float(np.nanmax(np.append(self.trace.path.z[walls.row], -np.inf)))
+        if (self.trace.path.z[self.trace.mode.sections.enter] > 0).any():
+            highest = max(highest, 0.0)
         face = self.bar.known.face
         return highest if np.isnan(face) else max(face - 2 * _CLEARANCE, highest)
 
@@ -349,9 +367,11 @@ class Workpiece(Columns, frozen=True):
         tops: dict[int, float] = {}
         for level in levels:
             tops[level.section] = max(tops.get(level.section, -np.inf), level.z)
-        return [
-            (level, tops[level.section] if np.isnan(face) else max(face - 2 * _CLEARANCE, level.z)) for level in levels
-        ]
+        if not np.isnan(face):
+            return [(level, max(face - 2 * _CLEARANCE, level.z)) for level in levels]
+        # The tool comes from above Z0: there is the face, as is usual on lathes.
+        enters = self.trace.path.z[self.trace.mode.sections.enter]
+        return [(level, 0.0 if enters[level.section] > 0 > level.z else tops[level.section]) for level in levels]
 
     # ---- columns ----
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from polarcheck.checking.phrases.passes import forgotten_arc as forgotten_arc
 from polarcheck.checking.phrases.passes import needed_arc as needed_arc
 from polarcheck.checking.phrases.passes import words_of_arc as words_of_arc
@@ -36,6 +38,13 @@ def cutter(workpiece: Workpiece, lengths: Lengths, row: int) -> str:
 def depth(path: ProgrammedPath, lengths: Lengths, row: int) -> str:
     """Z behind the block, as it would be written."""
     return f"{in_row(float(path.z[row]), lengths, row):length}".partition(" ")[0]
+
+
+def height(path: ProgrammedPath, lengths: Lengths, row: int) -> str:
+    """Z at which the cutter is in the way: `at Z-4.`, and on a way up `up from Z-4.`."""
+    rises = path.z[row] > path.z_before[row]
+    z = f"{in_row(float(path.z_before[row] if rises or np.isnan(path.z[row]) else path.z[row]), lengths, row):length}"
+    return f"{'up from' if rises else 'at'} Z{z.partition(' ')[0]}"
 
 
 def bar(bar: Bar, lengths: Lengths, row: int) -> str:

@@ -5,7 +5,7 @@ from polarcheck.checking.rule import ERROR, Hits, Workpiece, graded, rule
 
 @rule(
     ERROR,
-    "{way} takes the cutter, R {cutter}, at Z{depth} through the finished part; retract Z above the part first",
+    "{way} takes the cutter, R {cutter}, {height} through the finished part; retract Z above the part first",
     where="workpiece.is_mill",
     once="tool call",
     follows={"block": ("uncompensated-cut-into-part",)},
