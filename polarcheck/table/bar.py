@@ -126,13 +126,26 @@ class Bar(Columns, frozen=True):
         return np.asarray(result & ~trace.modal.on_sub_spindle)
 
     @cached_property
+    def _place(self) -> tuple[Floats, Floats, Floats, Floats]:
+        """
+        X before and after each row, Z before and after each row of turning tools.
+
+        A cycle ends where it began (B-63944EN, canned cycles): X and Z are those before it.
+        """
+        trace, call = self.trace, self._tool_call
+        begins = np.diff(call, prepend=-1) != 0
+        cycle = trace.modal.in_cycle | trace.blocks.listed("repetitive_cycle")
+        places: list[Floats] = []
+        for value in (np.where(cycle, np.nan, axis) for axis in (trace.path.x, trace.path.z)):
+            after = fill_down(value, ~np.isnan(value) | begins, np.nan)
+            places += [before(after, begins, np.nan), after]
+        return places[0], places[1], places[2], places[3]
+
+    @cached_property
     def _turning_rows(self) -> Rows:
         """Feed moves of X or Z by turning tools, known at both ends."""
-        trace = self.trace
-        at_feed = np.isin(trace.axes.motion, (Motion.LINE, Motion.CW, Motion.CCW))
-        x_before, z_before = trace.path.x_before, before(trace.path.z, trace.blocks.starts, np.nan)
-        known = ~np.isnan(trace.path.x + trace.path.z + x_before + z_before)
-        return np.flatnonzero(self._turns & at_feed & known)
+        at_feed = np.isin(self.trace.axes.motion, (Motion.LINE, Motion.CW, Motion.CCW))
+        return np.flatnonzero(self._turns & at_feed & ~np.isnan(sum(self._place)))
 
     @cached_property
     def _turned(self) -> Known:
@@ -192,9 +205,8 @@ class Bar(Columns, frozen=True):
 
     @property
     def _of_moves(self) -> _Segments:
-        trace, rows = self.trace, self._turning_rows
-        x_from, z_from = trace.path.x_before[rows], before(trace.path.z, trace.blocks.starts, np.nan)[rows]
-        x_to, z_to = trace.path.x[rows], trace.path.z[rows]
+        rows = self._turning_rows
+        x_from, x_to, z_from, z_to = (column[rows] for column in self._place)
         faces = (np.abs(z_to - z_from) <= ROUNDING) & (np.abs(x_to) <= _CENTER) & (x_from > x_to + _CENTER)
         return _Segments(rows, x_from, x_to, z_from, z_to, faces)
 
@@ -212,8 +224,7 @@ class Bar(Columns, frozen=True):
         x = fill_down(trace.lengths.length_of("X") * trace.lengths.x_factor, trace.blocks.has("X") | begins, np.nan)
         z = fill_down(trace.lengths.length_of("Z"), trace.blocks.has("Z") | begins, np.nan)
         first = in_cycle & begins
-        x_start = fill_down(trace.path.x_before, first | ended, np.nan)
-        z_start = fill_down(before(trace.path.z, trace.blocks.starts, np.nan), first | ended, np.nan)
+        x_start, z_start = (fill_down(self._place[at], first | ended, np.nan) for at in (0, 2))
         steps = trace.blocks.has(INCREMENTS["X"], INCREMENTS["Z"], "R")
         rows = np.flatnonzero(in_cycle & trace.blocks.has("X", "Z") & ~np.isnan(x + z + x_start + z_start) & ~steps)
         faces = kind[rows] == 2
@@ -235,12 +246,11 @@ class Bar(Columns, frozen=True):
         """A tool drills on X0 before the first section, by a cycle or in Z at feed."""
         trace = self.trace
         first = int(trace.mode.sections.enter[0])
-        on_center = np.abs(before(trace.path.x, trace.blocks.starts, np.nan)) <= _CENTER
+        on_center = np.abs(self._place[0]) <= _CENTER
         down = trace.path.moves_z & (np.abs(trace.path.x) <= _CENTER) & on_center
         down &= trace.path.z < before(trace.path.z, trace.blocks.starts, np.nan) - 1
         cycle = (trace.modal.drilling != 0) | trace.blocks.listed("repetitive_cycle")
-        cycle &= on_center | (np.abs(trace.lengths.length_of("X")) <= _CENTER)
-        return bool((down | cycle)[:first].any())
+        return bool((down | (cycle & on_center))[:first].any())
 
     def _is_boring(self, segments: _Segments) -> Mask:
         """
@@ -249,16 +259,21 @@ class Bar(Columns, frozen=True):
         A tool that turns outside moves away from the center there, but for one that comes down to face.
         """
         trace = self.trace
-        along = np.flatnonzero((segments.z_to < min(-ROUNDING, float(segments.z_from.max()) - 1)) & ~segments.faces)
+        in_cycle = trace.modal.in_cycle[segments.row]
+        along = np.flatnonzero(
+            ~in_cycle & (segments.z_to < min(-ROUNDING, float(segments.z_from.max()) - 1)) & ~segments.faces
+        )
         along = along[segments.z_to[along] < segments.z_from[along] - ROUNDING]
         call = self._tool_call
         inside = np.zeros(int(call.max()) + 1, bool)
-        moves_x = np.flatnonzero(trace.axes.moves & (np.abs(trace.path.x - trace.path.x_before) > ROUNDING))
+        inside[call[segments.row[in_cycle & (segments.x_to > self._place[0][segments.row])]]] = True
+        x_before, x_after = self._place[:2]
+        moves_x = np.flatnonzero(trace.axes.moves & (np.abs(x_after - x_before) > ROUNDING))
         for index in along.tolist():
             row = int(segments.row[index])
             following = moves_x[np.searchsorted(moves_x, row, side="right") :][:1]
             if len(following) and call[following[0]] == call[row]:
-                x = float(trace.path.x[following[0]])
+                x = float(x_after[following[0]])
                 inside[call[row]] |= _CENTER < x < segments.x_to[index]
         return np.asarray(inside[call[segments.row]])
 

@@ -16,6 +16,8 @@ from polarcheck.table.air_cuts import AirCuts
 _FAR = 3.0
 #: Passes of a contour that show its step.
 _LEAST = 3
+#: A step that is as many times as large as the least has left out a pass.
+_SKIPPED = 1.5
 #: Points that are nearer than this are one [mm].
 _SAME = 2e-3
 
@@ -72,9 +74,6 @@ class PassDepths(Columns, frozen=True):
             z = passes.z[group]
             if len(z) < _LEAST:
                 continue
-            steps = -np.diff(z)
-            if steps.min() > 0 and steps.max() <= _FAR * np.median(steps):
-                continue
             off = _outlier(z)
             if off is not None:
                 number, value = off
@@ -82,20 +81,30 @@ class PassDepths(Columns, frozen=True):
 
 
 def _outlier(z: Floats) -> tuple[int, float] | None:
-    """The pass without which all go down in like steps, and the Z that it would have; None where there is not one."""
-    off = []
-    for number in range(len(z)):
-        others = np.delete(z, number)
-        steps = -np.diff(others)
-        if steps.min() <= ROUNDING or len(others) < _LEAST - 1:
+    """
+    The pass without which all go down from Z0 in like steps, and the Z that it would have; None where there is not one.
+
+    Of two passes at one Z it is the later one, if the next step is as large as two.
+    """
+    levels = np.append(0.0, z) if z.max() < 0 else z
+    ahead = len(levels) - len(z)
+    off: dict[float, tuple[int, float]] = {}
+    for number in range(ahead, len(levels)):
+        steps = -np.diff(np.delete(levels, number))
+        step = float(steps.min())
+        if step <= ROUNDING or steps.max() > _FAR * step:
             continue
-        typical = float(np.min(steps))
-        if number == 0:
-            if z[0] <= z[1] + ROUNDING:
-                off.append((number, float(z[1] + typical)))
-        elif number == len(z) - 1:
-            if steps.max() <= _FAR * typical and not ROUNDING < z[-2] - z[-1] <= _FAR * steps.max():
-                off.append((number, float(z[-2] - typical)))
-        elif not z[number + 1] + ROUNDING < z[number] < z[number - 1] - ROUNDING and steps.max() <= _FAR * typical:
-            off.append((number, float((z[number - 1] + z[number + 1]) / 2)))
-    return off[0] if len(off) == 1 else None
+        before = levels[number - 1] if number else np.inf
+        behind = levels[number + 1] if number + 1 < len(levels) else -np.inf
+        if behind + ROUNDING < levels[number] < before - ROUNDING and (
+            behind > -np.inf or before - levels[number] <= _FAR * steps.max()
+        ):
+            return None
+        is_again = abs(levels[number] - before) <= ROUNDING
+        if abs(levels[number] - behind) <= ROUNDING:
+            continue  # the later one counts
+        if is_again and (number + 1 == len(levels) or before - behind < _SKIPPED * step):
+            continue  # a spring pass
+        fits = (before + behind) / 2 if np.isfinite(before + behind) else before - step if number else behind + step
+        off[float(levels[number])] = number - ahead, float(fits)
+    return next(iter(off.values())) if len(off) == 1 else None

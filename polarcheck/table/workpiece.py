@@ -10,6 +10,7 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+import msgspec
 import numpy as np
 
 from polarcheck.arrays import Columns, Floats, Mask, Points, Rows, States, Table
@@ -48,6 +49,7 @@ class Ways(Table, frozen=True):
     row: int[n]. start, end, center: complex128[n] [mm], the part of the move that is known whatever the order of the
     axes: the whole way of X or of C alone, a place on a way up and aside, else its end. kind: int16[n], Motion. tip:
     float64[n], Z of the tip [mm]. radius: float64[n], R [mm]. is_rapid: bool[n]. plunges: bool[n], it goes down.
+    is_sure: bool[n], False for a way that is taken if the axes move in one order, and not in the other.
     """
 
     row: Rows
@@ -59,6 +61,7 @@ class Ways(Table, frozen=True):
     radius: Floats
     is_rapid: Mask
     plunges: Mask
+    is_sure: Mask
 
     @property
     def nearest(self) -> Floats:
@@ -73,15 +76,18 @@ class Ways(Table, frozen=True):
 
 class Hits(Table, frozen=True):
     """
-    What ways lead through, by rows: int[n], and the places: complex128[n] [mm], on the plane of the part.
+    What ways lead through, n of them.
+
+    row: int[n]. place: complex128[n] [mm], on the plane of the part. is_sure: bool[n], as in Ways.
     """
 
     row: Rows
     place: Points
+    is_sure: Mask
 
     @classmethod
     def none(cls) -> Hits:
-        return cls(np.zeros(0, np.int64), np.zeros(0, np.complex128))
+        return cls(np.zeros(0, np.int64), np.zeros(0, np.complex128), np.zeros(0, bool))
 
 
 class Workpiece(Columns, frozen=True):
@@ -166,8 +172,28 @@ class Workpiece(Columns, frozen=True):
             radius=self.radius[row],
             is_rapid=(axes.motion[row] == Motion.RAPID) | returns,
             plunges=moves_z & ~(z_to > z_from),
+            is_sure=np.ones(len(row), bool),
         )
-        return ways[~np.isnan(ways.end + ways.tip) & (moves_x | moves_c | moves_z)]
+        several = [ways[~np.isnan(ways.end + ways.tip) & (moves_x | moves_c | moves_z)]]
+        # X and Z, or X and C, below the face at once: in which order nobody knows.
+        with np.errstate(invalid="ignore"):
+            one = x_to * np.exp(1j * np.radians(c_from))
+        low = moves_x & (z_from < self.top - _CLEARANCE) & ~np.isnan(begin + one)
+        upward, sideways = low & moves_z & (z_to > z_from), low & moves_c & ~moves_z & ~np.isnan(end)
+        for chosen in (upward, sideways):
+            several.append(
+                msgspec.structs.replace(
+                    ways,
+                    start=begin,
+                    end=one,
+                    center=np.full(len(row), np.nan + 0j),
+                    kind=np.full(len(row), Motion.LINE, np.int16),
+                    tip=z_from,
+                    is_sure=np.zeros(len(row), bool),
+                )[chosen]
+            )
+        ways = Ways.concatenated(several)
+        return ways[np.argsort(ways.row, kind="stable")]
 
     @cached_property
     def _inside(self) -> Ways:
@@ -200,6 +226,7 @@ class Workpiece(Columns, frozen=True):
             radius=self.radius[rows],
             is_rapid=is_rapid[rows],
             plunges=np.concatenate([np.zeros(len(moves), bool), ~(trace.path.z[row] >= trace.path.z_before[row])]),
+            is_sure=np.ones(len(rows), bool),
         )
         return ways[order]
 
@@ -249,9 +276,9 @@ class Workpiece(Columns, frozen=True):
         from polarcheck.geometry.polygons.standing_metal import disc, hits_on_bar
 
         stands = disc(bar.smallest, bar.bore)
-        lower = self._all[self._all.tip < self.top]
+        lower = self._all[(self._all.tip < self.top) & self._all.is_sure]
         hit, place = hits_on_bar(self._sweeps(ways), stands, self._sweeps(lower), self._holes)
-        return Hits(ways.row[hit], place[hit])
+        return Hits(ways.row[hit], place[hit], ways.is_sure[hit])
 
     def _bound(self, ways: Ways) -> None:
         if len(ways) > _MOST_WAYS or len(self._all) > _MOST_MOVES:
@@ -353,7 +380,7 @@ class Workpiece(Columns, frozen=True):
             more, where = hits_on_part(sweeps, part, walls, level.radius, top, level.z, cleared)
             place[more & ~hit] = where[more & ~hit]
             hit |= more
-        return Hits(ways.row[hit], place[hit])
+        return Hits(ways.row[hit], place[hit], ways.is_sure[hit])
 
     @property
     def _levels(self) -> list[tuple[Level, float]]:
@@ -375,20 +402,32 @@ class Workpiece(Columns, frozen=True):
 
     # ---- columns ----
 
-    def _mask(self, hits: Hits) -> Mask:
+    def _mask(self, rows: Rows) -> Mask:
         mask = np.zeros(len(self.trace), bool)
-        mask[hits.row] = True
+        mask[rows] = True
         return mask
 
     @cached_property
     def hits_part(self) -> Mask:
-        """Rows whose way leads through the finished part."""
-        return self._mask(self.through_part)
+        """Rows whose way leads through the finished part, or may, if the axes move in that order."""
+        return self._mask(self.through_part.row)
 
     @cached_property
     def hits_bar(self) -> Mask:
-        """Rows whose way in rapid traverse leads through what stands of the bar."""
-        return self._mask(self.through_bar)
+        """Rows whose way in rapid traverse leads through what stands of the bar, or may."""
+        return self._mask(self.through_bar.row)
+
+    @cached_property
+    def may_miss_part(self) -> Mask:
+        """Of those, the rows that may not."""
+        hits = self.through_part
+        return self.hits_part & ~self._mask(hits.row[hits.is_sure])
+
+    @cached_property
+    def may_miss_bar(self) -> Mask:
+        """Of those, the rows that may not."""
+        hits = self.through_bar
+        return self.hits_bar & ~self._mask(hits.row[hits.is_sure])
 
     @property
     def bar_is_certain(self) -> bool:
@@ -398,7 +437,7 @@ class Workpiece(Columns, frozen=True):
     @cached_property
     def plunges(self) -> Mask:
         """Rows that go down to their place."""
-        return self._mask(Hits(self._all.row[self._all.plunges], self._all.end[self._all.plunges]))
+        return self._mask(self._all.row[self._all.plunges])
 
     @cached_property
     def is_rapid(self) -> Mask:

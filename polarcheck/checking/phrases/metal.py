@@ -47,6 +47,12 @@ def height(path: ProgrammedPath, lengths: Lengths, row: int) -> str:
     return f"{'up from' if rises else 'at'} Z{z.partition(' ')[0]}"
 
 
+def through(workpiece: Workpiece, row: int) -> str:
+    """`through`, or `if X moves first, through`, of a move of several axes at once."""
+    may_miss = workpiece.may_miss_part[row] if workpiece.hits_part[row] else workpiece.may_miss_bar[row]
+    return "(if X is faster than Z or C) through" if may_miss else "through"
+
+
 def bar(bar: Bar, lengths: Lengths, row: int) -> str:
     """The bar and where it is known from: `40 mm, [stock]`, `27.7 mm turned in lines 8 to 11`."""
     known = bar.known

@@ -58,4 +58,5 @@ def rapid_plunge_into_stock(workpiece: Workpiece) -> Hits:
         G13.1
     """
     hits = workpiece.hits_bar & workpiece.plunges
-    return graded(error=hits & workpiece.bar_is_certain, warning=hits)
+    may_miss = workpiece.may_miss_bar
+    return graded(error=hits & workpiece.bar_is_certain & ~may_miss, warning=hits, undecided=may_miss)

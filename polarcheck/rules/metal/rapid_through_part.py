@@ -5,7 +5,7 @@ from polarcheck.checking.rule import ERROR, Hits, Workpiece, graded, rule
 
 @rule(
     ERROR,
-    "{way} takes the cutter, R {cutter}, {height} through the finished part; retract Z above the part first",
+    "{way} takes the cutter, R {cutter}, {height} {through} the finished part; retract Z above the part first",
     where="workpiece.is_mill",
     once="tool call",
     follows={"block": ("uncompensated-cut-into-part",)},
@@ -49,4 +49,5 @@ def rapid_through_part(workpiece: Workpiece) -> Hits:
         G13.1
         G0 C120.
     """
-    return graded(error=workpiece.hits_part & workpiece.is_rapid, warning=workpiece.hits_part)
+    error = workpiece.hits_part & workpiece.is_rapid & ~workpiece.may_miss_part
+    return graded(error=error, warning=workpiece.hits_part, undecided=workpiece.may_miss_part)

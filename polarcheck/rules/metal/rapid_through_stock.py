@@ -5,7 +5,7 @@ from polarcheck.checking.rule import ERROR, Hits, Workpiece, graded, rule
 
 @rule(
     ERROR,
-    "{way} takes the cutter, R {cutter}, {height} through what stands of the bar ({bar}); retract Z first",
+    "{way} takes the cutter, R {cutter}, {height} {through} what stands of the bar ({bar}); retract Z first",
     where="workpiece.is_mill",
     once="tool call",
     follows={"block": ("uncompensated-cut-into-part", "rapid-through-part", "rapid-in-polar")},
@@ -63,4 +63,5 @@ def rapid_through_stock(workpiece: Workpiece) -> Hits:
         G13.1
     """
     hits = workpiece.hits_bar & ~workpiece.plunges
-    return graded(error=hits & workpiece.bar_is_certain, warning=hits)
+    may_miss = workpiece.may_miss_bar
+    return graded(error=hits & workpiece.bar_is_certain & ~may_miss, warning=hits, undecided=may_miss)
