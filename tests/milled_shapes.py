@@ -253,16 +253,14 @@ def one_flat(draw: Draw, grid: Grid) -> Contour:
     bar = grid(20, 44)
     flat = round(bar / 2 * draw.uniform(0.6, 0.85), 1)
     half = math.ceil(math.sqrt(bar * bar / 4 - flat * flat)) + draw.choice((6.0, 8.0, 10.0))
-    return Contour(
-        "one flat", complex(flat, -half), (Piece(complex(flat, half)),), "right", False, frozenset({"bar"}), bar
-    )
+    return Contour("one flat", complex(flat, -half), (Piece(complex(flat, half)),), "right", False, frozenset(), bar)
 
 
 def slot(draw: Draw, grid: Grid) -> Contour:
     bar, half = grid(24, 44), grid(5, 8)
     far = math.ceil(bar / 2) + 8.0
     pieces = (Piece(complex(-far, half)), Piece(complex(-far, -half)), Piece(complex(far, -half)))
-    return Contour("slot", complex(far, half), pieces, "left", False, frozenset({"bar"}), bar)
+    return Contour("slot", complex(far, half), pieces, "left", False, frozenset(), bar)
 
 
 def keyway(draw: Draw, grid: Grid) -> Contour:
@@ -274,7 +272,7 @@ def keyway(draw: Draw, grid: Grid) -> Contour:
     else:
         turn = [Piece(complex(bottom, half)), Piece(complex(bottom, -half))]
     pieces = (*turn, Piece(complex(far, -half)))
-    evidence = TANGENT if len(turn) == 3 else frozenset({"bar"})
+    evidence = TANGENT if len(turn) == 3 else frozenset[str]()
     return Contour("keyway", complex(far, half), pieces, "left", False, evidence, bar)
 
 

@@ -43,7 +43,8 @@ class Program(NamedTuple):
 
     radii: of the cutters by offset number [mm]. bar: the diameter that the cutters meet [mm]. stock: what `[stock]`
     says, or None. evidence: see milled_shapes, and "repeated" where a contour is written twice, "steps"
-    where three depths are equally far apart. size: across the flats of a hexagon or square [mm].
+    where three depths are equally far apart, "bar" where the program or the job says the bar. size: across the flats
+    of a hexagon or square [mm].
     """
 
     seed: int
@@ -391,6 +392,8 @@ class _Maker:
         depths = [depth for cut in cuts for depth in cut.depths]
         if len(depths) > 2 and self.layout not in ("macro depths", "rough and finish"):
             evidence.add("steps")
+        if self.turned or source:
+            evidence.add("bar")
         lines = self.pen.lines + self.subprogram
         if self.style.numbers:
             lines = _numbered(lines, draw)
