@@ -220,7 +220,13 @@ class _Run:
             if self.in_mode:
                 self.events.add("the mode is never left")
                 self.leave()
-            self.c = 0.0
+            self.c = 0.0 if "U" not in values else self.c
+            if "U" in values:
+                turn = cmath.exp(1j * math.radians(self.c))
+                self.take([self.x * turn, 200.0 * turn], self.z, 100.0, True, "outside", index)
+                self.x, self.z = 200.0, 100.0
+            return
+        if "G10" in codes:
             return
         for code, name in (
             ("G0", "rapid"),

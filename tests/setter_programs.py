@@ -238,6 +238,7 @@ class Cut(NamedTuple):
     approach: complex | None = None
 
 
+FANUC = ("fanuc", "fanuc-16i", "fanuc-30i", "doosan", "colchester")
 OPEN_SHAPES = ("one_flat", "two_flats", "slot", "keyway")
 BOSSES = (
     "hexagon",
@@ -347,6 +348,11 @@ class _Maker:
         self.safe = 2.0 if not inch else 2.54
         self.radii: dict[int, float] = {}
         self.subprogram: list[Line] = []
+        is_fanuc = dialect.machine in FANUC
+        self.goes_home = is_fanuc and draw.random() < 0.2
+        self.sets_offsets = is_fanuc and layout != "macro polygon" and draw.random() < 0.1
+        self.is_safe = draw.random() < 0.25
+        self.coolant = draw.random() < 0.2
 
     def program(self) -> Program:
         draw, contour = self.draw, self.contour
@@ -509,6 +515,8 @@ class _Maker:
                 "bar",
             )
         pen.write("head", dialect.inch if self.inch else dialect.metric, *dialect.head)
+        if self.is_safe and dialect.off == "G13.1":
+            pen.write("head", "G13.1")
 
     def plain(self, value: float) -> str:
         return f"{value / self.pen.scale:.4g}"
@@ -584,12 +592,19 @@ class _Maker:
             pen.write("start", dialect.engage)
         if dialect.reference:
             pen.write("start", dialect.reference)
+        if self.sets_offsets:
+            pen.write("offset", "G10", f"P{tool}", "R" + pen.number(radius))
         pen.lines.append(Line(dialect.spindle, "start", -1))
+        if self.coolant:
+            pen.write("start", "M8")
 
     def away(self, role: str) -> None:
         if self.dialect.spindle_off:
             self.pen.write("start", self.dialect.spindle_off)
-        self.pen.rapid(role, self.bar / 2 + 50, 80.0)
+        if self.goes_home:
+            self.pen.write(role, "G28", "U0", "W0")
+        else:
+            self.pen.rapid(role, self.bar / 2 + 50, 80.0)
 
     def end(self) -> None:
         if self.dialect.release and self.dialect.release != self.dialect.spindle_off:
@@ -642,6 +657,8 @@ class _Maker:
             self.passes(cut, start, finish, normal, radius, from_above)
         if from_above and not (style.leaves_at_depth and not inside and cut.approach is None):
             pen.depth(self.safe, self.fast, "retract")
+            if self.is_safe and cut.how in ("center path", "subprogram"):
+                pen.write("safe", "G40")
             pen.leave()
         else:
             pen.leave()
