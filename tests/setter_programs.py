@@ -255,6 +255,10 @@ BOSSES = (
     "cam",
     "free_contour",
     "cross",
+    "keyed_hexagon",
+    "keyed_rectangle",
+    "free_polygon",
+    "lobes",
 )
 POCKETS = ("pocket", "round_pocket", "pocket_aside")
 LAYOUTS = {
@@ -271,6 +275,8 @@ LAYOUTS = {
     "center path": (*BOSSES, "slot", "keyway", *POCKETS),
     "boss and pocket": ("hexagon", "square", "octagon", "double_d", "round_boss"),
     "island": ("round_pocket",),
+    "spring pass": (*BOSSES, "pocket", "round_pocket"),
+    "zigzag": ("zigzag",),
 }
 FAMILIES = [f"{shape}, {layout}" for layout, shapes in LAYOUTS.items() for shape in shapes]
 MM_RADII = (2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0)
@@ -300,7 +306,7 @@ def drawn(seed: int, machine: str = "", family: str = "") -> Program:
         draw.random() < 0.2,
         draw.random() < 0.15,
         draw.choice(("normal", "normal", "aside", "arc"))
-        if is_closed_boss and layout not in ("center path", "macro polygon")
+        if is_closed_boss and layout not in ("center path", "macro polygon", "zigzag")
         else "normal",
         contour.side == "left" or draw.random() < 0.75,
         draw.random() < 0.2,
@@ -308,6 +314,11 @@ def drawn(seed: int, machine: str = "", family: str = "") -> Program:
     if dialect.machine == "siemens-transmit":
         style = style._replace(packed=False)
     return _Maker(seed, family, layout, dialect, style, inch, contour, draw, grid).program()
+
+
+def dialect_drills(dialect: Dialect) -> bool:
+    """Whether holes are drilled beside: where C is positioned by itself."""
+    return dialect.index
 
 
 def _can(dialect: Dialect, layout: str) -> bool:
@@ -356,12 +367,12 @@ class _Maker:
 
     def program(self) -> Program:
         draw, contour = self.draw, self.contour
-        if draw.random() < 0.4 and self.layout not in ("macro polygon",):
+        if draw.random() < 0.4 and self.layout not in ("macro polygon", "zigzag"):
             contour = mirrored(contour)
         step = 25.4 / 16 if self.inch else 1.0
         self.bar = (
             contour.bar
-            if contour.name in ("D", "round with two flats", "one flat", "two flats", "slot", "keyway")
+            if contour.name in ("D", "round with two flats", "one flat", "two flats", "slot", "keyway", "zigzag")
             else math.ceil((contour.bar + draw.uniform(0.2, 2)) / step) * step
         )
         cuts = self.cuts(contour)
@@ -384,6 +395,9 @@ class _Maker:
             self.pen.section = number
             self.cut(cut, cuts[number - 1] if number else None)
             self.pen.section = -1
+        if draw.random() < 0.12 and dialect_drills(self.dialect):
+            self.away("away")
+            self.holes()
         self.end()
         written = [
             tuple(line.text for line in self.pen.lines if line.section == number and line.role == "contour")
@@ -467,6 +481,11 @@ class _Maker:
             return [Cut(contour, first, (-deep,), 360.0 / count * number, how) for number in range(count)]
         if layout == "center path":
             return [Cut(shifted(contour, radius), first, (-deep,), how="center path")]
+        if layout == "spring pass":
+            return [Cut(contour, first, (-deep, -deep), how=draw.choice(("ramps", "one ramp")))]
+        if layout == "zigzag":
+            self.cutter(contour, first, 2.6)
+            return [Cut(contour, first, draw.choice(((-step,), steps)), how="center path")]
         if layout == "macro polygon":
             return [Cut(contour, first, (-deep,), how="macro polygon")]
         if layout == "boss and pocket":
@@ -605,6 +624,21 @@ class _Maker:
             self.pen.write(role, "G28", "U0", "W0")
         else:
             self.pen.rapid(role, self.bar / 2 + 50, 80.0)
+
+    def holes(self) -> None:
+        """Holes along Z on a circle, drilled outside of the mode by another live tool."""
+        pen, dialect, draw = self.pen, self.dialect, self.draw
+        pen.write("drill", self.tool_word(12), pen.comment("DRILL D4.2" if not self.inch else "DRILL D.166"))
+        pen.lines.append(Line(dialect.spindle, "start", -1))
+        count = draw.choice((2, 3, 4))
+        pen.motion = ""
+        for number in range(count):
+            pen.rapid("drill", c=360.0 / count * number)
+            if not number:
+                pen.rapid("drill", self.bar * 0.3, self.safe)
+            pen.write("drill", "G1", "Z" + pen.number(-12.0), "F50." if not self.inch else "F2.")
+            pen.write("drill", "G0", "Z" + pen.number(self.safe))
+        self.pen.feed = ""
 
     def end(self) -> None:
         if self.dialect.release and self.dialect.release != self.dialect.spindle_off:

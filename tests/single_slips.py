@@ -683,9 +683,7 @@ def planted(slip: Slip, program: Program, draw: Draw) -> Planted | None:
             return None
     except (ValueError, SyntaxError, ZeroDivisionError, OverflowError):
         return None
-    pairs = zip(program.lines, changed.lines, strict=False)
-    line = next((number for number, (one, two) in enumerate(pairs, 1) if one.text != two.text), len(changed.lines))
-    return Planted(slip.name, changed, line)
+    return Planted(slip.name, changed, _first_change(program, changed) + 1)
 
 
 def is_real(slip: Slip, program: Program, changed: Program) -> bool:
@@ -700,8 +698,16 @@ def is_real(slip: Slip, program: Program, changed: Program) -> bool:
         return True
     if not differs(sound, other):
         return False
-    is_known = "always" in slip.needs or bool(slip.needs & program.evidence)
-    return is_known or cuts_the_part(program, sound, changed, other)
+    if "always" in slip.needs or slip.needs & program.evidence:
+        return True
+    index = _first_change(program, changed)
+    is_beside = index < len(program.lines) and program.lines[index].role != "contour"
+    return is_beside and cuts_the_part(program, sound, changed, other)
+
+
+def _first_change(program: Program, changed: Program) -> int:
+    pairs = zip(program.lines, changed.lines, strict=False)
+    return next((index for index, (one, two) in enumerate(pairs) if one.text != two.text), len(changed.lines))
 
 
 def drawn_slip(
