@@ -313,6 +313,8 @@ def drawn(seed: int, machine: str = "", family: str = "") -> Program:
     )
     if dialect.machine == "siemens-transmit":
         style = style._replace(packed=False)
+    if dialect.machine == "turning-center" or layout.startswith(("macro", "subprogram")):
+        style = style._replace(repeats_z=False)
     return _Maker(seed, family, layout, dialect, style, inch, contour, draw, grid).program()
 
 
@@ -473,6 +475,13 @@ class _Maker:
                 if piece.center is not None and piece.ccw == (contour.side == "left")
             ]
             apart = min([apart, *(round(arc - radius * 1.05, 2) for arc in arcs)])
+            if not contour.is_pocket:
+                deepest = self.bar / 2 - min(abs(point) for point in shifted(contour, 0.0).points())
+                if contour.bar < self.bar:
+                    unit = 25.4 / 16 if self.inch else 1.0
+                    self.bar += 2 * math.ceil(apart / unit) * unit
+                else:
+                    apart = min(apart, round(0.6 * deepest, 1))
             apart = min(apart, 0.3 * min(abs(point) for point in contour.points())) if contour.is_pocket else apart
             return [Cut(shifted(contour, apart), first, (-deep,)), Cut(contour, first, (-deep,))]
         if layout in ("indexed", "subprogram indexed"):
