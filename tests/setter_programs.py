@@ -10,7 +10,6 @@ its role, so that a slip can be made in it.
 
 from __future__ import annotations
 
-import cmath
 import math
 import random
 from typing import NamedTuple
@@ -27,14 +26,7 @@ from milled_shapes import (
     shifted,
 )
 from setter_dialects import DIALECTS, Dialect
-
-
-class Line(NamedTuple):
-    """A block, what it is for, and the number of its section (-1 outside)."""
-
-    text: str
-    role: str
-    section: int = -1
+from setter_pen import Line, Pen, Style
 
 
 class Program(NamedTuple):
@@ -79,152 +71,6 @@ class Program(NamedTuple):
         line = self.lines[index]
         blocks = (*self.lines[:index], *(line._replace(text=text) for text in texts), *self.lines[index + 1 :])
         return self._replace(lines=blocks)
-
-
-class Style(NamedTuple):
-    """
-    How somebody writes.
-
-    repeats: all words in each block, as CAM posts do. repeats_z: Z, too. packed: without spaces. centers: I and J.
-    steps: incremental words in contours. zeros: numbers with all their decimals. numbers: N words. lead: how a contour
-    is approached, "normal", "aside" or "arc". from_above: Z goes down in the mode. leaves_at_depth: G13.1 before Z.
-    """
-
-    repeats: bool
-    repeats_z: bool
-    packed: bool
-    centers: bool
-    steps: bool
-    zeros: bool
-    numbers: bool
-    lead: str
-    from_above: bool
-    leaves_at_depth: bool
-
-
-class Pen:
-    """Writes the blocks of a program."""
-
-    def __init__(self, dialect: Dialect, style: Style, inch: bool, names: bool) -> None:
-        self.dialect, self.style, self.scale, self.names = dialect, style, 25.4 if inch else 1.0, names
-        self.digits = 4 if inch else 3
-        self.lines: list[Line] = []
-        self.section = -1
-        self.motion, self.feed = "", ""
-        self.x, self.c, self.z = "", "", ""
-        self.at = 0j
-        self.steps = False
-
-    def number(self, value: float) -> str:
-        text = f"{value / self.scale:.{self.digits}f}"
-        if self.style.zeros:
-            return text.removeprefix("-") if not float(text) else text
-        text = text.rstrip("0")
-        return (
-            "0" if not float(text) else text.replace("0.", ".", 1) if self.scale > 1 and abs(float(text)) < 1 else text
-        )
-
-    def write(self, role: str, *words: str) -> None:
-        text = ("" if self.style.packed else " ").join(word for word in words if word)
-        if text:
-            self.lines.append(Line(text, role, self.section))
-
-    def remark(self, text: str, role: str = "remark") -> None:
-        self.lines.append(Line(self.comment(text), role, self.section))
-
-    def comment(self, text: str) -> str:
-        return text.join(self.dialect.remark)
-
-    def rapid(self, role: str, x: float | None = None, z: float | None = None, c: float | None = None) -> None:
-        """A move by G0 outside of the mode; x: a radius [mm], c: [deg]."""
-        words = ["G0"]
-        if x is not None:
-            words.append("X" + self.number(x * (2 if self.dialect.diameter_outside else 1)))
-        if z is not None:
-            words.append("Z" + self.number(z))
-            self.z = self.number(z)
-        if c is not None:
-            words.append("C" + (f"{c:g}." if c else "0"))
-        self.motion = "G0"
-        self.write(role, *words)
-
-    def enter(self, x: float) -> None:
-        for block in self.dialect.before:
-            self.write("before", block)
-        self.lines.append(Line(self.dialect.on, "on", self.section))
-        for block in self.dialect.behind:
-            self.write("behind", block)
-        self.at = complex(x, 0)
-        self.x, self.c = self._x(x), self.number(0.0)
-
-    def leave(self) -> None:
-        self.lines.append(Line(self.dialect.off, "off", self.section))
-        if self.dialect.machine == "siemens-transmit":
-            self.write("behind", "DIAMON")
-        self.motion = ""
-
-    def _x(self, x: float) -> str:
-        return self.number(x * (2 if self.dialect.diameter_inside else 1))
-
-    def depth(self, z: float, feed: float, role: str = "plunge") -> None:
-        self.z = self.number(z)
-        self.write(role, self._code(self.dialect.line), "Z" + self.z, self._feed(feed))
-
-    def move(self, role: str, piece: Piece, feed: float, *codes: str) -> None:
-        """A move in the mode."""
-        kind = self.dialect.line if piece.center is None else self.dialect.ccw if piece.ccw else self.dialect.cw
-        x, c = self._x(piece.end.real), self.number(piece.end.imag)
-        everything = self.style.repeats or piece.center is not None
-        words: list[str] = []
-        steps = self.style.steps and role == "contour" and (self.steps or self.dialect.system == "A")
-        if role in ("ramp", "cancel") and self.style.steps and self.dialect.system == "B":
-            codes = (*codes, "G90") if role == "cancel" else codes
-            self.steps = role == "ramp"
-        elif role == "contour" and self.style.steps and self.dialect.system == "B" and self.steps is True:
-            codes = ("G91",) if not any("G91" in line.text for line in self.lines[-1:]) and self._fresh() else ()
-        if steps:
-            dx, dc = float(x) - float(self.x), float(c) - float(self.c)
-            letters = ("U", self.dialect.virtual_step) if self.dialect.system == "A" else ("X", self.dialect.virtual)
-            if abs(dx) > 1e-9 or everything:
-                words.append(letters[0] + self.number(dx * self.scale))
-            if abs(dc) > 1e-9 or everything:
-                words.append(letters[1] + self.number(dc * self.scale))
-        else:
-            if x != self.x or everything or role in ("ramp", "cancel"):
-                words.append("X" + x)
-            if c != self.c or everything:
-                words.append(self.dialect.virtual + c)
-        if self.style.repeats_z:
-            words.append("Z" + self.z)
-        if piece.center is not None:
-            words += self._arc(piece)
-        self.write(role, *codes, self._code(kind), *words, self._feed(feed))
-        self.x, self.c = x, c
-        self.at = piece.end
-
-    def _fresh(self) -> bool:
-        return bool(self.lines) and self.lines[-1].role == "ramp"
-
-    def _arc(self, piece: Piece) -> list[str]:
-        assert piece.center is not None
-        start = complex(float(self.x) / (2 if self.dialect.diameter_inside else 1), float(self.c)) * self.scale
-        spoke = piece.center - start
-        sweep = cmath.phase((piece.end - piece.center) / (start - piece.center)) % math.tau
-        sweep = sweep if piece.ccw else math.tau - sweep
-        if self.dialect.centers and (self.style.centers or sweep > math.pi + 0.01 or abs(piece.end - start) < 1e-3):
-            return ["I" + self.number(spoke.real), "J" + self.number(spoke.imag)]
-        return [self.dialect.radius_word + self.number(abs(spoke))]
-
-    def _code(self, code: str) -> str:
-        written = "" if code == self.motion and not self.style.repeats else code
-        self.motion = code
-        return written
-
-    def _feed(self, feed: float) -> str:
-        text = "F" + (f"{feed / self.scale:.1f}".removesuffix("0") if self.scale > 1 else f"{feed:g}.")
-        written = "" if text == self.feed else text
-        self.feed = text
-        return written
 
 
 class Cut(NamedTuple):
@@ -318,11 +164,6 @@ def drawn(seed: int, machine: str = "", family: str = "") -> Program:
     return _Maker(seed, family, layout, dialect, style, inch, contour, draw, grid).program()
 
 
-def dialect_drills(dialect: Dialect) -> bool:
-    """Whether holes are drilled beside: where C is positioned by itself."""
-    return dialect.index
-
-
 def _can(dialect: Dialect, layout: str) -> bool:
     if layout.startswith(("macro", "subprogram")):
         return dialect.calls and (dialect.index or "indexed" not in layout)
@@ -355,7 +196,7 @@ class _Maker:
     ) -> None:
         self.seed, self.family, self.layout, self.dialect, self.style = seed, family, layout, dialect, style
         self.inch, self.contour, self.draw, self.grid = inch, contour, draw, grid
-        self.pen = Pen(dialect, style, inch, names=True)
+        self.pen = Pen(dialect, style, inch)
         self.feed = draw.choice((80.0, 100.0, 120.0, 150.0, 200.0)) if not inch else 25.4 * draw.choice((3, 4, 5, 6, 8))
         self.fast = draw.choice((800.0, 1000.0, 1500.0)) if not inch else 25.4 * draw.choice((30, 40, 60))
         self.safe = 2.0 if not inch else 2.54
@@ -397,7 +238,7 @@ class _Maker:
             self.pen.section = number
             self.cut(cut, cuts[number - 1] if number else None)
             self.pen.section = -1
-        if draw.random() < 0.12 and dialect_drills(self.dialect):
+        if draw.random() < 0.12 and self.dialect.index:
             self.away("away")
             self.holes()
         self.end()
@@ -809,43 +650,31 @@ class _Maker:
         down = feed / 2 if cut.contour.is_pocket else self.fast
 
         def contour() -> None:
-            pen.x = pen.c = "none" if not self.style.steps else pen.x
+            pen.feed = ""
+            pen.x, pen.c = (pen.x_word(start.real), pen.number(start.imag)) if self.style.steps else ("", "")
             pen.move("ramp", Piece(first), feed, code)
             for piece in [*([lead] if lead else []), *cut.contour.pieces, *([last] if last else [])]:
                 pen.move("contour", piece, feed)
             pen.move("cancel", Piece(finish), self.fast, "G40")
 
         if cut.how == "macro depths":
-            step = -steps[0]
             pen.write("macro", "#1=0")
             pen.write("macro", f"WHILE[#1 LT {len(steps)}]DO1")
             pen.write("macro", "#1=#1+1")
-            pen.write("plunge", pen.dialect.line, f"Z[-{pen.number(step)}*#1]", pen._feed(down))
-            pen.motion, pen.c = pen.dialect.line, pen.number(start.imag)
-            at_first = pen.c
-            pen.x = "none"
-            if self.style.steps:
-                pen.x = pen._x(start.real)
-            pen.feed = ""
+            pen.write("plunge", pen.dialect.line, f"Z[-{pen.number(-steps[0])}*#1]", pen.feed_word(down))
+            pen.motion = pen.dialect.line
             contour()
-            del at_first
             pen.write("macro", "END1")
             return
-        one = cut.angle is None
-        called = (len(steps) > 1) if one else True
-        assert called
         for depth in steps:
             pen.depth(depth, down)
             pen.write("call subprogram", "M98 P100")
         if not self.subprogram:
-            lines, pen.lines = pen.lines, []
-            section, pen.section = pen.section, 0
+            lines, pen.lines, section, pen.section = pen.lines, [], pen.section, 0
             pen.lines.append(Line("O100", "head"))
-            pen.motion, pen.feed = "", ""
-            pen.x, pen.c = (pen._x(start.real), pen.number(start.imag)) if self.style.steps else ("none", "none")
+            pen.motion = ""
             contour()
-            pen.lines.append(Line("M99", "end"))
-            pen.lines.append(Line("%", "end"))
+            pen.lines += [Line("M99", "end"), Line("%", "end")]
             self.subprogram, pen.lines, pen.section = pen.lines, lines, section
         pen.motion, pen.feed = "", ""
         pen.at = finish
@@ -860,7 +689,7 @@ class _Maker:
             pen.write("macro", text)
         pen.depth(deep, self.fast)
         one = "#2" if scale == 2 else "[#2/2]"
-        pen.write("ramp", "G42", f"X{one}", f"{c}0", pen._feed(feed))
+        pen.write("ramp", "G42", f"X{one}", f"{c}0", pen.feed_word(feed))
         pen.write("macro", "WHILE[#4 LT #1]DO1")
         pen.write("macro", "#5=#4*360/#1")
         pen.write(
@@ -869,7 +698,7 @@ class _Maker:
         pen.write("macro", "#4=#4+1")
         pen.write("macro", "END1")
         pen.write("contour", f"X{one}", f"{c}0")
-        pen.write("cancel", "G40", "X" + pen._x(far), f"{c}0", pen._feed(self.fast))
+        pen.write("cancel", "G40", "X" + pen.x_word(far), f"{c}0", pen.feed_word(self.fast))
 
 
 def _numbered(lines: list[Line], draw: Draw) -> list[Line]:
