@@ -23,6 +23,8 @@ from compensation_oracle import simulate as compensated
 from part_reference import along
 from setter_programs import Program
 
+RAPID = "a rapid through metal"
+_NO_RAPIDS = ("fanuc", "fanuc-16i", "fanuc-30i", "gsk-988", "doosan", "takisawa", "colchester", "turning-center")
 C_LIMIT = 12000.0  # [deg/min]
 _CLEAR = 0.02  # [mm] thinner differences are rounding
 _WORD = re.compile(r"([A-Z][A-Z0-9]*=|[A-Z])([-+]?(?:\d*\.?\d+|\d+\.)|\[[^A-Z]*?(?:\[[^\]]*\][^\[\]]*)*\]|[-+]?#\d+)?")
@@ -74,13 +76,21 @@ def levels(*outcomes: Outcome) -> list[float]:
     return [(low + high) / 2 for low, high in pairwise(depths) if high - low > _CLEAR]
 
 
-def cuts_the_part(sound: Outcome, other: Outcome) -> bool:
-    """Whether the cutter meets the finished part of a sound program on ramps or beside contours."""
-    meant = {sweep.line: sweep for sweep in sound.sweeps if sweep.phase == "OFFSET"}
+def must_stand(program: Program, sound: Outcome, z: float) -> Any:
+    """What a sound program leaves at a Z, without what happens to be left in the middle of a pocket."""
+    stands = metal_at(sound, z)
+    if "pocket" in program.family and "island" not in program.family and stands.geom_type == "MultiPolygon":
+        return max(stands.geoms, key=lambda area: shapely.Polygon(area.exterior).area)
+    return stands
+
+
+def cuts_the_part(program: Program, sound: Outcome, changed: Program, other: Outcome, rapids: bool = False) -> bool:
+    """Whether the cutter meets what must stand beside contours: on ramps and ways (or by rapid only)."""
     for sweep in other.sweeps:
-        if sweep.phase != "OFFSET" and sweep.line not in meant:
-            stands = metal_at(sound, sweep.z + 0.01).intersection(sweep.area)
-            if not stands.buffer(-0.75 * _CLEAR).is_empty:
+        is_way = sweep.is_rapid if rapids else sweep.phase != "OFFSET" and changed.lines[sweep.line].role != "contour"
+        if is_way:
+            stands = must_stand(program, sound, sweep.z + 0.01).intersection(sweep.area)
+            if not stands.buffer(-2 * _CLEAR).is_empty:
                 return True
     return False
 
@@ -210,7 +220,13 @@ class _Run:
             if self.in_mode:
                 self.events.add("the mode is never left")
                 self.leave()
-            self.c = 0.0
+            self.c = 0.0 if "U" not in values else self.c
+            if "U" in values:
+                turn = cmath.exp(1j * math.radians(self.c))
+                self.take([self.x * turn, 200.0 * turn], self.z, 100.0, True, "outside", index)
+                self.x, self.z = 200.0, 100.0
+            return
+        if "G10" in codes:
             return
         for code, name in (
             ("G0", "rapid"),
@@ -282,8 +298,10 @@ class _Run:
         block = Block(
             kind if moves else "none", end if moves else self.place, center if moves else None, side, self.radius
         )
+        if self.motion == "rapid" and dialect.machine in _NO_RAPIDS and moves:
+            self.events.add("G0 in the mode")
         feed = self.feed if self.per_minute else 0.0
-        if not feed and (moves or "Z" in values):
+        if not feed and self.motion != "rapid" and (moves or "Z" in values):
             self.events.add("no feed per minute")
         self.pending.append((block, z, self.motion == "rapid", feed, index, self.place))
         self.place, self.z = (end if moves else self.place), z
@@ -381,7 +399,7 @@ class _Run:
             shape = shapely.Point(pairs[0]) if len(pairs) == 1 else shapely.LineString(pairs)
             area = shape.buffer(radius, quad_segs=32)
             if is_rapid and self.stands(area, z):
-                self.events.add("a rapid through metal")
+                self.events.add(RAPID)
             self.sweeps.append(Sweep(area, z, is_rapid, phase, line))
 
     def stands(self, area: Any, z: float) -> bool:

@@ -253,16 +253,14 @@ def one_flat(draw: Draw, grid: Grid) -> Contour:
     bar = grid(20, 44)
     flat = round(bar / 2 * draw.uniform(0.6, 0.85), 1)
     half = math.ceil(math.sqrt(bar * bar / 4 - flat * flat)) + draw.choice((6.0, 8.0, 10.0))
-    return Contour(
-        "one flat", complex(flat, -half), (Piece(complex(flat, half)),), "right", False, frozenset({"bar"}), bar
-    )
+    return Contour("one flat", complex(flat, -half), (Piece(complex(flat, half)),), "right", False, frozenset(), bar)
 
 
 def slot(draw: Draw, grid: Grid) -> Contour:
     bar, half = grid(24, 44), grid(5, 8)
     far = math.ceil(bar / 2) + 8.0
     pieces = (Piece(complex(-far, half)), Piece(complex(-far, -half)), Piece(complex(far, -half)))
-    return Contour("slot", complex(far, half), pieces, "left", False, frozenset({"bar"}), bar)
+    return Contour("slot", complex(far, half), pieces, "left", False, frozenset(), bar)
 
 
 def keyway(draw: Draw, grid: Grid) -> Contour:
@@ -274,7 +272,7 @@ def keyway(draw: Draw, grid: Grid) -> Contour:
     else:
         turn = [Piece(complex(bottom, half)), Piece(complex(bottom, -half))]
     pieces = (*turn, Piece(complex(far, -half)))
-    evidence = TANGENT if len(turn) == 3 else frozenset({"bar"})
+    evidence = TANGENT if len(turn) == 3 else frozenset[str]()
     return Contour("keyway", complex(far, half), pieces, "left", False, evidence, bar)
 
 
@@ -307,11 +305,89 @@ def pocket_aside(draw: Draw, grid: Grid) -> Contour:
     return Contour("pocket aside", center + radius, pieces, "left", True, TANGENT, 2 * (aside + radius + half) + 8)
 
 
+def keyed_hexagon(draw: Draw, grid: Grid) -> Contour:
+    """A hexagon of which one flat lies farther in, as it is meant."""
+    across = grid(24, 46)
+    corners = polygon(6, across)
+    keyed = across / 2 - grid(1.5, 2.5)
+    flat = -keyed if draw.random() < 0.5 else None
+    if flat is None:
+        return _keyed_across(across, keyed, corners)
+    slope = math.tan(math.pi / 6)
+    corners[2] = complex(flat, across / 2 / math.cos(math.pi / 6) + flat * slope)
+    corners[3] = corners[2].conjugate()
+    start, pieces = ring(corners)
+    return Contour("keyed hexagon", start, tuple(pieces), "right", True, frozenset(), 2 * abs(corners[0]))
+
+
+def _keyed_across(across: float, keyed: float, corners: list[complex]) -> Contour:
+    """The flat with the start is the one."""
+    slope = math.tan(math.pi / 6)
+    corners[5] = complex(keyed, -(across / 2 / math.cos(math.pi / 6) - keyed * slope))
+    corners[0] = corners[5].conjugate()
+    start, pieces = ring(corners)
+    return Contour("keyed hexagon", start, tuple(pieces), "right", True, frozenset(), 2 * max(abs(c) for c in corners))
+
+
+def keyed_rectangle(draw: Draw, grid: Grid) -> Contour:
+    """A rectangle with rounded corners, one of them larger."""
+    width, height = grid(10, 18), grid(10, 18)
+    corners = [complex(width, height), complex(-width, height), complex(-width, -height), complex(width, -height)]
+    small = grid(1.5, 3)
+    start, pieces = ring(corners, (small, small, small * draw.choice((1.5, 2.0)), small))
+    widest = max(abs(piece.end) for piece in pieces)
+    return Contour("keyed rectangle", start, tuple(pieces), "right", True, TANGENT, 2 * widest)
+
+
+def free_polygon(draw: Draw, grid: Grid) -> Contour:
+    """An irregular convex polygon."""
+    while True:
+        count = draw.choice((5, 6, 7))
+        angles = [(2 * index + 1) * math.pi / count + draw.uniform(-0.2, 0.2) for index in range(count)]
+        corners = [cmath.rect(grid(14, 24), angle) for angle in angles]
+        corners = [complex(round(corner.real, 2), round(corner.imag, 2)) for corner in corners]
+        turns = [((corners[(i + 1) % count] - corners[i]) / (corners[i] - corners[i - 1])) for i in range(count)]
+        if all(0.25 < cmath.phase(turn) < 2 for turn in turns):
+            break
+    start, pieces = ring(corners)
+    return Contour("free polygon", start, tuple(pieces), "right", True, frozenset(), 2 * max(abs(c) for c in corners))
+
+
+def lobes(draw: Draw, grid: Grid) -> Contour:
+    """Three or four arcs that meet in corners."""
+    count, radius = draw.choice((3, 4)), grid(18, 30)
+    aside = radius * draw.uniform(0.2, 0.35)
+    turn = math.pi / count
+    size = math.sqrt(radius**2 - (aside * math.sin(turn)) ** 2) - aside * math.cos(turn)
+    ends = [cmath.rect(size, turn * (2 * index + 1)) for index in range(count)]
+    centers = [cmath.rect(-aside, turn * 2 * index) for index in range(count)]
+    first = complex(radius - aside, 0)
+    pieces = [Piece(ends[0], centers[0])]
+    pieces += [Piece(ends[index], centers[index]) for index in range(1, count)]
+    pieces.append(Piece(first, centers[0]))
+    return Contour("lobes", first, tuple(pieces), "right", True, frozenset({"concentric"}), 2 * size)
+
+
+def zigzag(draw: Draw, grid: Grid) -> Contour:
+    """Lines to and fro across the face."""
+    bar, step = grid(20, 36), 5.0
+    far = math.ceil(bar / 2) + 9.0
+    count = 2 * math.ceil(bar / 2 / step)
+    rows = [step * (count / 2 - 0.5 - index) for index in range(count)]
+    pieces: list[Piece] = []
+    for index, row in enumerate(rows):
+        side = -1 if index % 2 == 0 else 1
+        pieces += [Piece(complex(side * far, row))]
+        pieces += [Piece(complex(side * far, rows[index + 1]))] if index + 1 < count else []
+    return Contour("zigzag", complex(far, rows[0]), tuple(pieces), "right", False, frozenset(), bar)
+
+
 SHAPES: dict[str, Callable[[Draw, Grid], Contour]] = {
     shape.__name__: shape
     for shape in (
         hexagon, square, octagon, many_sides, hexagon_turned, one_flat, two_flats, d_shape, double_d, round_boss,
         eccentric, rectangle, obround, cam, free_contour, cross, slot, keyway, pocket, round_pocket, pocket_aside,
+        keyed_hexagon, keyed_rectangle, free_polygon, lobes, zigzag,
     )
 }  # fmt: skip
 

@@ -10,7 +10,6 @@ its role, so that a slip can be made in it.
 
 from __future__ import annotations
 
-import cmath
 import math
 import random
 from typing import NamedTuple
@@ -27,14 +26,7 @@ from milled_shapes import (
     shifted,
 )
 from setter_dialects import DIALECTS, Dialect
-
-
-class Line(NamedTuple):
-    """A block, what it is for, and the number of its section (-1 outside)."""
-
-    text: str
-    role: str
-    section: int = -1
+from setter_pen import Line, Pen, Style
 
 
 class Program(NamedTuple):
@@ -43,7 +35,8 @@ class Program(NamedTuple):
 
     radii: of the cutters by offset number [mm]. bar: the diameter that the cutters meet [mm]. stock: what `[stock]`
     says, or None. evidence: see milled_shapes, and "repeated" where a contour is written twice, "steps"
-    where three depths are equally far apart. size: across the flats of a hexagon or square [mm].
+    where three depths are equally far apart, "bar" where the program or the job says the bar. size: across the flats
+    of a hexagon or square [mm].
     """
 
     seed: int
@@ -80,152 +73,6 @@ class Program(NamedTuple):
         return self._replace(lines=blocks)
 
 
-class Style(NamedTuple):
-    """
-    How somebody writes.
-
-    repeats: all words in each block, as CAM posts do. repeats_z: Z, too. packed: without spaces. centers: I and J.
-    steps: incremental words in contours. zeros: numbers with all their decimals. numbers: N words. lead: how a contour
-    is approached, "normal", "aside" or "arc". from_above: Z goes down in the mode. leaves_at_depth: G13.1 before Z.
-    """
-
-    repeats: bool
-    repeats_z: bool
-    packed: bool
-    centers: bool
-    steps: bool
-    zeros: bool
-    numbers: bool
-    lead: str
-    from_above: bool
-    leaves_at_depth: bool
-
-
-class Pen:
-    """Writes the blocks of a program."""
-
-    def __init__(self, dialect: Dialect, style: Style, inch: bool, names: bool) -> None:
-        self.dialect, self.style, self.scale, self.names = dialect, style, 25.4 if inch else 1.0, names
-        self.digits = 4 if inch else 3
-        self.lines: list[Line] = []
-        self.section = -1
-        self.motion, self.feed = "", ""
-        self.x, self.c, self.z = "", "", ""
-        self.at = 0j
-        self.steps = False
-
-    def number(self, value: float) -> str:
-        text = f"{value / self.scale:.{self.digits}f}"
-        if self.style.zeros:
-            return text.removeprefix("-") if not float(text) else text
-        text = text.rstrip("0")
-        return (
-            "0" if not float(text) else text.replace("0.", ".", 1) if self.scale > 1 and abs(float(text)) < 1 else text
-        )
-
-    def write(self, role: str, *words: str) -> None:
-        text = ("" if self.style.packed else " ").join(word for word in words if word)
-        if text:
-            self.lines.append(Line(text, role, self.section))
-
-    def remark(self, text: str, role: str = "remark") -> None:
-        self.lines.append(Line(self.comment(text), role, self.section))
-
-    def comment(self, text: str) -> str:
-        return text.join(self.dialect.remark)
-
-    def rapid(self, role: str, x: float | None = None, z: float | None = None, c: float | None = None) -> None:
-        """A move by G0 outside of the mode; x: a radius [mm], c: [deg]."""
-        words = ["G0"]
-        if x is not None:
-            words.append("X" + self.number(x * (2 if self.dialect.diameter_outside else 1)))
-        if z is not None:
-            words.append("Z" + self.number(z))
-            self.z = self.number(z)
-        if c is not None:
-            words.append("C" + (f"{c:g}." if c else "0"))
-        self.motion = "G0"
-        self.write(role, *words)
-
-    def enter(self, x: float) -> None:
-        for block in self.dialect.before:
-            self.write("before", block)
-        self.lines.append(Line(self.dialect.on, "on", self.section))
-        for block in self.dialect.behind:
-            self.write("behind", block)
-        self.at = complex(x, 0)
-        self.x, self.c = self._x(x), self.number(0.0)
-
-    def leave(self) -> None:
-        self.lines.append(Line(self.dialect.off, "off", self.section))
-        if self.dialect.machine == "siemens-transmit":
-            self.write("behind", "DIAMON")
-        self.motion = ""
-
-    def _x(self, x: float) -> str:
-        return self.number(x * (2 if self.dialect.diameter_inside else 1))
-
-    def depth(self, z: float, feed: float, role: str = "plunge") -> None:
-        self.z = self.number(z)
-        self.write(role, self._code(self.dialect.line), "Z" + self.z, self._feed(feed))
-
-    def move(self, role: str, piece: Piece, feed: float, *codes: str) -> None:
-        """A move in the mode."""
-        kind = self.dialect.line if piece.center is None else self.dialect.ccw if piece.ccw else self.dialect.cw
-        x, c = self._x(piece.end.real), self.number(piece.end.imag)
-        everything = self.style.repeats or piece.center is not None
-        words: list[str] = []
-        steps = self.style.steps and role == "contour" and (self.steps or self.dialect.system == "A")
-        if role in ("ramp", "cancel") and self.style.steps and self.dialect.system == "B":
-            codes = (*codes, "G90") if role == "cancel" else codes
-            self.steps = role == "ramp"
-        elif role == "contour" and self.style.steps and self.dialect.system == "B" and self.steps is True:
-            codes = ("G91",) if not any("G91" in line.text for line in self.lines[-1:]) and self._fresh() else ()
-        if steps:
-            dx, dc = float(x) - float(self.x), float(c) - float(self.c)
-            letters = ("U", self.dialect.virtual_step) if self.dialect.system == "A" else ("X", self.dialect.virtual)
-            if abs(dx) > 1e-9 or everything:
-                words.append(letters[0] + self.number(dx * self.scale))
-            if abs(dc) > 1e-9 or everything:
-                words.append(letters[1] + self.number(dc * self.scale))
-        else:
-            if x != self.x or everything or role in ("ramp", "cancel"):
-                words.append("X" + x)
-            if c != self.c or everything:
-                words.append(self.dialect.virtual + c)
-        if self.style.repeats_z:
-            words.append("Z" + self.z)
-        if piece.center is not None:
-            words += self._arc(piece)
-        self.write(role, *codes, self._code(kind), *words, self._feed(feed))
-        self.x, self.c = x, c
-        self.at = piece.end
-
-    def _fresh(self) -> bool:
-        return bool(self.lines) and self.lines[-1].role == "ramp"
-
-    def _arc(self, piece: Piece) -> list[str]:
-        assert piece.center is not None
-        start = complex(float(self.x) / (2 if self.dialect.diameter_inside else 1), float(self.c)) * self.scale
-        spoke = piece.center - start
-        sweep = cmath.phase((piece.end - piece.center) / (start - piece.center)) % math.tau
-        sweep = sweep if piece.ccw else math.tau - sweep
-        if self.dialect.centers and (self.style.centers or sweep > math.pi + 0.01 or abs(piece.end - start) < 1e-3):
-            return ["I" + self.number(spoke.real), "J" + self.number(spoke.imag)]
-        return [self.dialect.radius_word + self.number(abs(spoke))]
-
-    def _code(self, code: str) -> str:
-        written = "" if code == self.motion and not self.style.repeats else code
-        self.motion = code
-        return written
-
-    def _feed(self, feed: float) -> str:
-        text = "F" + (f"{feed / self.scale:.1f}".removesuffix("0") if self.scale > 1 else f"{feed:g}.")
-        written = "" if text == self.feed else text
-        self.feed = text
-        return written
-
-
 class Cut(NamedTuple):
     """A contour to be milled: by which tool, to which depths [mm, below 0], at which angle of C [deg], and how."""
 
@@ -237,6 +84,7 @@ class Cut(NamedTuple):
     approach: complex | None = None
 
 
+FANUC = ("fanuc", "fanuc-16i", "fanuc-30i", "doosan", "colchester")
 OPEN_SHAPES = ("one_flat", "two_flats", "slot", "keyway")
 BOSSES = (
     "hexagon",
@@ -253,6 +101,10 @@ BOSSES = (
     "cam",
     "free_contour",
     "cross",
+    "keyed_hexagon",
+    "keyed_rectangle",
+    "free_polygon",
+    "lobes",
 )
 POCKETS = ("pocket", "round_pocket", "pocket_aside")
 LAYOUTS = {
@@ -269,6 +121,8 @@ LAYOUTS = {
     "center path": (*BOSSES, "slot", "keyway", *POCKETS),
     "boss and pocket": ("hexagon", "square", "octagon", "double_d", "round_boss"),
     "island": ("round_pocket",),
+    "spring pass": (*BOSSES, "pocket", "round_pocket"),
+    "zigzag": ("zigzag",),
 }
 FAMILIES = [f"{shape}, {layout}" for layout, shapes in LAYOUTS.items() for shape in shapes]
 MM_RADII = (2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0)
@@ -298,13 +152,15 @@ def drawn(seed: int, machine: str = "", family: str = "") -> Program:
         draw.random() < 0.2,
         draw.random() < 0.15,
         draw.choice(("normal", "normal", "aside", "arc"))
-        if is_closed_boss and layout not in ("center path", "macro polygon")
+        if is_closed_boss and layout not in ("center path", "macro polygon", "zigzag")
         else "normal",
         contour.side == "left" or draw.random() < 0.75,
         draw.random() < 0.2,
     )
     if dialect.machine == "siemens-transmit":
         style = style._replace(packed=False)
+    if dialect.machine == "turning-center" or layout.startswith(("macro", "subprogram")):
+        style = style._replace(repeats_z=False)
     return _Maker(seed, family, layout, dialect, style, inch, contour, draw, grid).program()
 
 
@@ -340,21 +196,26 @@ class _Maker:
     ) -> None:
         self.seed, self.family, self.layout, self.dialect, self.style = seed, family, layout, dialect, style
         self.inch, self.contour, self.draw, self.grid = inch, contour, draw, grid
-        self.pen = Pen(dialect, style, inch, names=True)
+        self.pen = Pen(dialect, style, inch)
         self.feed = draw.choice((80.0, 100.0, 120.0, 150.0, 200.0)) if not inch else 25.4 * draw.choice((3, 4, 5, 6, 8))
         self.fast = draw.choice((800.0, 1000.0, 1500.0)) if not inch else 25.4 * draw.choice((30, 40, 60))
         self.safe = 2.0 if not inch else 2.54
         self.radii: dict[int, float] = {}
         self.subprogram: list[Line] = []
+        is_fanuc = dialect.machine in FANUC
+        self.goes_home = is_fanuc and draw.random() < 0.2
+        self.sets_offsets = is_fanuc and layout != "macro polygon" and draw.random() < 0.1
+        self.is_safe = draw.random() < 0.25
+        self.coolant = draw.random() < 0.2
 
     def program(self) -> Program:
         draw, contour = self.draw, self.contour
-        if draw.random() < 0.4 and self.layout not in ("macro polygon",):
+        if draw.random() < 0.4 and self.layout not in ("macro polygon", "zigzag"):
             contour = mirrored(contour)
         step = 25.4 / 16 if self.inch else 1.0
         self.bar = (
             contour.bar
-            if contour.name in ("D", "round with two flats", "one flat", "two flats", "slot", "keyway")
+            if contour.name in ("D", "round with two flats", "one flat", "two flats", "slot", "keyway", "zigzag")
             else math.ceil((contour.bar + draw.uniform(0.2, 2)) / step) * step
         )
         cuts = self.cuts(contour)
@@ -377,6 +238,9 @@ class _Maker:
             self.pen.section = number
             self.cut(cut, cuts[number - 1] if number else None)
             self.pen.section = -1
+        if draw.random() < 0.12 and self.dialect.index:
+            self.away("away")
+            self.holes()
         self.end()
         written = [
             tuple(line.text for line in self.pen.lines if line.section == number and line.role == "contour")
@@ -391,6 +255,8 @@ class _Maker:
         depths = [depth for cut in cuts for depth in cut.depths]
         if len(depths) > 2 and self.layout not in ("macro depths", "rough and finish"):
             evidence.add("steps")
+        if self.turned or source:
+            evidence.add("bar")
         lines = self.pen.lines + self.subprogram
         if self.style.numbers:
             lines = _numbered(lines, draw)
@@ -450,6 +316,13 @@ class _Maker:
                 if piece.center is not None and piece.ccw == (contour.side == "left")
             ]
             apart = min([apart, *(round(arc - radius * 1.05, 2) for arc in arcs)])
+            if not contour.is_pocket:
+                deepest = self.bar / 2 - min(abs(point) for point in shifted(contour, 0.0).points())
+                if contour.bar < self.bar:
+                    unit = 25.4 / 16 if self.inch else 1.0
+                    self.bar += 2 * math.ceil(apart / unit) * unit
+                else:
+                    apart = min(apart, round(0.6 * deepest, 1))
             apart = min(apart, 0.3 * min(abs(point) for point in contour.points())) if contour.is_pocket else apart
             return [Cut(shifted(contour, apart), first, (-deep,)), Cut(contour, first, (-deep,))]
         if layout in ("indexed", "subprogram indexed"):
@@ -458,6 +331,11 @@ class _Maker:
             return [Cut(contour, first, (-deep,), 360.0 / count * number, how) for number in range(count)]
         if layout == "center path":
             return [Cut(shifted(contour, radius), first, (-deep,), how="center path")]
+        if layout == "spring pass":
+            return [Cut(contour, first, (-deep, -deep), how=draw.choice(("ramps", "one ramp")))]
+        if layout == "zigzag":
+            self.cutter(contour, first, 2.6)
+            return [Cut(contour, first, draw.choice(((-step,), steps)), how="center path")]
         if layout == "macro polygon":
             return [Cut(contour, first, (-deep,), how="macro polygon")]
         if layout == "boss and pocket":
@@ -506,6 +384,8 @@ class _Maker:
                 "bar",
             )
         pen.write("head", dialect.inch if self.inch else dialect.metric, *dialect.head)
+        if self.is_safe and dialect.off == "G13.1":
+            pen.write("head", "G13.1")
 
     def plain(self, value: float) -> str:
         return f"{value / self.pen.scale:.4g}"
@@ -581,12 +461,34 @@ class _Maker:
             pen.write("start", dialect.engage)
         if dialect.reference:
             pen.write("start", dialect.reference)
+        if self.sets_offsets:
+            pen.write("offset", "G10", f"P{tool}", "R" + pen.number(radius))
         pen.lines.append(Line(dialect.spindle, "start", -1))
+        if self.coolant:
+            pen.write("start", "M8")
 
     def away(self, role: str) -> None:
         if self.dialect.spindle_off:
             self.pen.write("start", self.dialect.spindle_off)
-        self.pen.rapid(role, self.bar / 2 + 50, 80.0)
+        if self.goes_home:
+            self.pen.write(role, "G28", "U0", "W0")
+        else:
+            self.pen.rapid(role, self.bar / 2 + 50, 80.0)
+
+    def holes(self) -> None:
+        """Holes along Z on a circle, drilled outside of the mode by another live tool."""
+        pen, dialect, draw = self.pen, self.dialect, self.draw
+        pen.write("drill", self.tool_word(12), pen.comment("DRILL D4.2" if not self.inch else "DRILL D.166"))
+        pen.lines.append(Line(dialect.spindle, "start", -1))
+        count = draw.choice((2, 3, 4))
+        pen.motion = ""
+        for number in range(count):
+            pen.rapid("drill", c=360.0 / count * number)
+            if not number:
+                pen.rapid("drill", self.bar * 0.3, self.safe)
+            pen.write("drill", "G1", "Z" + pen.number(-12.0), "F50." if not self.inch else "F2.")
+            pen.write("drill", "G0", "Z" + pen.number(self.safe))
+        self.pen.feed = ""
 
     def end(self) -> None:
         if self.dialect.release and self.dialect.release != self.dialect.spindle_off:
@@ -639,6 +541,8 @@ class _Maker:
             self.passes(cut, start, finish, normal, radius, from_above)
         if from_above and not (style.leaves_at_depth and not inside and cut.approach is None):
             pen.depth(self.safe, self.fast, "retract")
+            if self.is_safe and cut.how in ("center path", "subprogram"):
+                pen.write("safe", "G40")
             pen.leave()
         else:
             pen.leave()
@@ -746,43 +650,31 @@ class _Maker:
         down = feed / 2 if cut.contour.is_pocket else self.fast
 
         def contour() -> None:
-            pen.x = pen.c = "none" if not self.style.steps else pen.x
+            pen.feed = ""
+            pen.x, pen.c = (pen.x_word(start.real), pen.number(start.imag)) if self.style.steps else ("", "")
             pen.move("ramp", Piece(first), feed, code)
             for piece in [*([lead] if lead else []), *cut.contour.pieces, *([last] if last else [])]:
                 pen.move("contour", piece, feed)
             pen.move("cancel", Piece(finish), self.fast, "G40")
 
         if cut.how == "macro depths":
-            step = -steps[0]
             pen.write("macro", "#1=0")
             pen.write("macro", f"WHILE[#1 LT {len(steps)}]DO1")
             pen.write("macro", "#1=#1+1")
-            pen.write("plunge", pen.dialect.line, f"Z[-{pen.number(step)}*#1]", pen._feed(down))
-            pen.motion, pen.c = pen.dialect.line, pen.number(start.imag)
-            at_first = pen.c
-            pen.x = "none"
-            if self.style.steps:
-                pen.x = pen._x(start.real)
-            pen.feed = ""
+            pen.write("plunge", pen.dialect.line, f"Z[-{pen.number(-steps[0])}*#1]", pen.feed_word(down))
+            pen.motion = pen.dialect.line
             contour()
-            del at_first
             pen.write("macro", "END1")
             return
-        one = cut.angle is None
-        called = (len(steps) > 1) if one else True
-        assert called
         for depth in steps:
             pen.depth(depth, down)
             pen.write("call subprogram", "M98 P100")
         if not self.subprogram:
-            lines, pen.lines = pen.lines, []
-            section, pen.section = pen.section, 0
+            lines, pen.lines, section, pen.section = pen.lines, [], pen.section, 0
             pen.lines.append(Line("O100", "head"))
-            pen.motion, pen.feed = "", ""
-            pen.x, pen.c = (pen._x(start.real), pen.number(start.imag)) if self.style.steps else ("none", "none")
+            pen.motion = ""
             contour()
-            pen.lines.append(Line("M99", "end"))
-            pen.lines.append(Line("%", "end"))
+            pen.lines += [Line("M99", "end"), Line("%", "end")]
             self.subprogram, pen.lines, pen.section = pen.lines, lines, section
         pen.motion, pen.feed = "", ""
         pen.at = finish
@@ -797,7 +689,7 @@ class _Maker:
             pen.write("macro", text)
         pen.depth(deep, self.fast)
         one = "#2" if scale == 2 else "[#2/2]"
-        pen.write("ramp", "G42", f"X{one}", f"{c}0", pen._feed(feed))
+        pen.write("ramp", "G42", f"X{one}", f"{c}0", pen.feed_word(feed))
         pen.write("macro", "WHILE[#4 LT #1]DO1")
         pen.write("macro", "#5=#4*360/#1")
         pen.write(
@@ -806,7 +698,7 @@ class _Maker:
         pen.write("macro", "#4=#4+1")
         pen.write("macro", "END1")
         pen.write("contour", f"X{one}", f"{c}0")
-        pen.write("cancel", "G40", "X" + pen._x(far), f"{c}0", pen._feed(self.fast))
+        pen.write("cancel", "G40", "X" + pen.x_word(far), f"{c}0", pen.feed_word(self.fast))
 
 
 def _numbered(lines: list[Line], draw: Draw) -> list[Line]:

@@ -13,7 +13,7 @@ import re
 from collections.abc import Callable
 from typing import NamedTuple
 
-from metal_simulation import Outcome, cuts_the_part, differs, simulate
+from metal_simulation import RAPID, cuts_the_part, differs, simulate
 from setter_programs import Program, drawn
 
 Draw = random.Random
@@ -653,7 +653,7 @@ SLIPS = (
     Slip("degrees", degrees, ALWAYS, "rise to 360"),
     Slip("C elsewhere at the second section", position_angle_missing, ALWAYS, "nobody positioned it"),
     Slip("contour at two depths", contour_at_two_depths, ALWAYS, "Z in the middle of a contour"),
-    Slip("pass ends inside the bar", ends_inside, ALWAYS, "material left"),
+    Slip("pass ends inside the bar", ends_inside, frozenset({"bar"}), "material left"),
     Slip("wrong cutter in the comment", tool_comment, ALWAYS, "the comment", is_real=True),
     Slip("wrong size in the comment", size_comment, ALWAYS, "the comment", is_real=True),
     Slip("wrong bar in the comment", bar_comment, ALWAYS, "the part is larger", is_real=True),
@@ -683,9 +683,7 @@ def planted(slip: Slip, program: Program, draw: Draw) -> Planted | None:
             return None
     except (ValueError, SyntaxError, ZeroDivisionError, OverflowError):
         return None
-    pairs = zip(program.lines, changed.lines, strict=False)
-    line = next((number for number, (one, two) in enumerate(pairs, 1) if one.text != two.text), len(changed.lines))
-    return Planted(slip.name, changed, line)
+    return Planted(slip.name, changed, _first_change(program, changed) + 1)
 
 
 def is_real(slip: Slip, program: Program, changed: Program) -> bool:
@@ -693,15 +691,23 @@ def is_real(slip: Slip, program: Program, changed: Program) -> bool:
     if slip.is_real:
         return True
     sound, other = simulate(program), simulate(changed)
-    if other.events - sound.events:
+    events = other.events - sound.events
+    if RAPID in events and "bar" not in program.evidence:
+        events -= set() if cuts_the_part(program, sound, changed, other, rapids=True) else {RAPID}
+    if events:
         return True
     if not differs(sound, other):
         return False
-    return "always" in slip.needs or bool(slip.needs & program.evidence) or _ramp_cuts(sound, other)
+    if "always" in slip.needs or slip.needs & program.evidence:
+        return True
+    index = _first_change(program, changed)
+    is_beside = index < len(program.lines) and program.lines[index].role != "contour"
+    return is_beside and cuts_the_part(program, sound, changed, other)
 
 
-def _ramp_cuts(sound: Outcome, other: Outcome) -> bool:
-    return cuts_the_part(sound, other)
+def _first_change(program: Program, changed: Program) -> int:
+    pairs = zip(program.lines, changed.lines, strict=False)
+    return next((index for index, (one, two) in enumerate(pairs) if one.text != two.text), len(changed.lines))
 
 
 def drawn_slip(
