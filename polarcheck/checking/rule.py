@@ -72,6 +72,7 @@ if TYPE_CHECKING:
     from polarcheck.table.stock_comments import StockComments as StockComments
     from polarcheck.table.switch_words import SwitchWords as SwitchWords
     from polarcheck.table.tool_center import ToolCenter as ToolCenter
+    from polarcheck.table.tool_comments import ToolComments as ToolComments
     from polarcheck.table.travel import Travel as Travel
     from polarcheck.table.uncompensated_cuts import UncompensatedCuts as UncompensatedCuts
     from polarcheck.table.unpointed import Unpointed as Unpointed

@@ -57,6 +57,7 @@ MAKERS = {
     "feed_ranges": "polarcheck.table.feed_ranges:FeedRanges",
     "unpointed": "polarcheck.table.unpointed:Unpointed",
     "stock_comments": "polarcheck.table.stock_comments:StockComments",
+    "tool_comments": "polarcheck.table.tool_comments:ToolComments",
     "written": "polarcheck.table.written:Written",
     "dialect": "polarcheck.table.dialect:Dialect",
     "faults": "polarcheck.checking.macro_faults:Faults",
