@@ -64,6 +64,7 @@ if TYPE_CHECKING:
     from polarcheck.table.mode_words import ModeWords as ModeWords
     from polarcheck.table.other_mode import OtherMode as OtherMode
     from polarcheck.table.overcuts import Overcuts as Overcuts
+    from polarcheck.table.part_comments import PartComments as PartComments
     from polarcheck.table.procedure import Procedure as Procedure
     from polarcheck.table.ramps import Ramps as Ramps
     from polarcheck.table.senses import Senses as Senses

@@ -51,6 +51,7 @@ MAKERS = {
     "coverage": "polarcheck.table.coverage:Coverage",
     "arcs": "polarcheck.table.arcs:Arcs",
     "senses": "polarcheck.table.senses:Senses",
+    "part_comments": "polarcheck.table.part_comments:PartComments",
     "travel": "polarcheck.table.travel:Travel",
     "center": "polarcheck.table.center:Center",
     "feeds": "polarcheck.table.feeds:Feeds",

@@ -15,7 +15,7 @@ from polarcheck.reading.words import Text
 #: A number as a group: whole and fraction, fraction, decimals with a point or a comma.
 NUMBER = (
     r"((?<![\d.])\d++(?:\s++|\s*+-\s*+)\d++/\d++(?![\d/.])|(?<![\d/.])\d++\s*+/\s*+\d++(?![\d/])"
-    r"|(?<!\d)(?<!\d[.,])\d++(?:[.,]\d++(?![\d.,/]))?+\.?+|(?<!\d)\.\d++)"
+    r"|(?<!\d)(?<!\d[.,])\d++(?:[.,]\d++)?+(?![.,]\d|/)\.?+|(?<!\d)\.\d++)"
 )
 #: Its unit as a group, which may be missing.
 UNIT = r"(?:\s*+(\"|''|\u201d|INCH(?:ES)?+\b|IN\b\.?+|ZOLL\b|MM\b))?+"

@@ -44,6 +44,7 @@ class ToolComments(Columns, frozen=True):
         if not len(calls) or not len(self.text.comments):
             return comment, named
         of_block = self._comments_of_block(self.run.block[calls])
+        called = {*self.tools.tool[calls].tolist(), *np.abs(np.nan_to_num(self.blocks.word("T")[calls])).tolist()}
         for row in calls.tolist() if of_block else []:
             tool = int(self.tools.tool[row])
             if tool in self.run.names:
@@ -53,7 +54,9 @@ class ToolComments(Columns, frozen=True):
             for place in (block, block - 1, block + 1):
                 number, other = of_block.get(place, (-1, -1))
                 if other >= 0 and (place == block or self._stands_alone(place, of_block)):
-                    if other not in (tool, word, int(self.tools.offset_number[row])):
+                    # Alone on a line, it may be the list of the tools of the program.
+                    known = {tool, word, int(self.tools.offset_number[row])} | (called if place != block else set())
+                    if other not in known:
                         comment[row], named[row] = number, other
                     break
         return comment, named
