@@ -261,13 +261,13 @@ def test_the_bounds_are_the_same_in_inch(radius: float, contradicts: bool) -> No
     program = f"{INCH}{square(4, 1, 10, 'Z-.2')}M30\n".replace("T0101", "T0101 (3/4 DIA. CUTTER)")
     found = report_of(program, "fanuc", f"1:radius={radius}").findings
     assert ("radius-contradicts-comment" in [one.rule for one in found]) == contradicts
-    assert all(one.severity == "note" for one in found if one.rule == "radius-contradicts-comment")
+    assert all(one.severity == "warning" for one in found if one.rule == "radius-contradicts-comment")
 
 
 def test_a_radius_of_a_job_is_held_against_the_comment_too() -> None:
     report = report_of(COMMENTED, job={"tools": {"1": {"radius": 5}}})
     assert [(found.line, found.rule) for found in report.findings] == [(3, "radius-contradicts-comment")]
-    assert report.verdict == "pass"
+    assert report.verdict == "fail"
 
 
 def test_a_radius_from_the_comment_does_not_contradict_it() -> None:

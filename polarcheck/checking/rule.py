@@ -67,6 +67,7 @@ if TYPE_CHECKING:
     from polarcheck.table.mode_words import ModeWords as ModeWords
     from polarcheck.table.other_mode import OtherMode as OtherMode
     from polarcheck.table.overcuts import Overcuts as Overcuts
+    from polarcheck.table.part_comments import PartComments as PartComments
     from polarcheck.table.pass_depths import PassDepths as PassDepths
     from polarcheck.table.passes import Passes as Passes
     from polarcheck.table.procedure import Procedure as Procedure
@@ -79,6 +80,7 @@ if TYPE_CHECKING:
     from polarcheck.table.switch_words import SwitchWords as SwitchWords
     from polarcheck.table.tangency import Tangency as Tangency
     from polarcheck.table.tool_center import ToolCenter as ToolCenter
+    from polarcheck.table.tool_comments import ToolComments as ToolComments
     from polarcheck.table.travel import Travel as Travel
     from polarcheck.table.uncompensated_cuts import UncompensatedCuts as UncompensatedCuts
     from polarcheck.table.unpointed import Unpointed as Unpointed

@@ -8,9 +8,6 @@ from typing import NamedTuple
 from polarcheck.columns.comment_lengths import ENDS, NUMBER, UNIT, length_of, plain_text
 from polarcheck.machines.modal import MM_PER_INCH
 
-#: One of these stands in each comment that states a bar.
-BAR_WORDS = ("BAR", "STOCK", "RD", "MAT", "BLANK", "BILLET", "ROH", "STANGE", "RUND")
-
 _IS = r"\s*+[=:-]?+\s*+"
 _BAR = r"BAR(?:\s*+-?STOCK)?+\b"
 _NOUN = (
@@ -96,6 +93,8 @@ def _size_in(text: str, pattern: re.Pattern[str], in_inch: bool) -> float | None
     if not match or _NOT_BEFORE.search(text, 0, match.start(1)):
         return None
     number, unit = match[1], match[2]
+    if in_inch and text[match.start(1) - 1 : match.start(1)] == ".":  # DIA.5 may be a half and a five
+        return None
     if pattern is _SIZE_FIRST and not (unit or "/" in number or ("." in number and in_inch)):
         return None
     size = length_of(number, unit, in_inch)

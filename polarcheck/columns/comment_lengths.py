@@ -15,7 +15,7 @@ from polarcheck.reading.words import Text
 #: A number as a group: whole and fraction, fraction, decimals with a point or a comma.
 NUMBER = (
     r"((?<![\d.])\d++(?:\s++|\s*+-\s*+)\d++/\d++(?![\d/.])|(?<![\d/.])\d++\s*+/\s*+\d++(?![\d/])"
-    r"|(?<![\d.,])\d++(?:[.,]\d++(?![\d.,/]))?+\.?+|(?<!\d)\.\d++)"
+    r"|(?<!\d)(?<!\d[.,])\d++(?:[.,]\d++)?+(?![.,]\d|/)\.?+|(?<!\d)\.\d++)"
 )
 #: Its unit as a group, which may be missing.
 UNIT = r"(?:\s*+(\"|''|\u201d|INCH(?:ES)?+\b|IN\b\.?+|ZOLL\b|MM\b))?+"
@@ -24,6 +24,8 @@ ENDS = r"(?![\w%/#\u00b0])(?![.,]\d)"
 _MILLIMETERS = "MM"
 #: Fractions of an inch have these denominators.
 _DENOMINATORS = (2, 4, 8, 16, 32, 64)
+#: No note is longer [characters].
+_LONGEST = 10_000
 #: No more digits than this are a length; a longer number would cost more than its text to convert.
 _MOST_DIGITS = 9
 
@@ -57,8 +59,12 @@ def _value_of(number: str) -> float | None:
 
 
 def plain_text(comment: str) -> str:
-    """A comment in upper case without its parentheses, as the patterns read it: names of posts have `_` for a blank."""
-    return comment.upper().replace("_", " ").strip(";()% \"'\t\r\n")
+    """
+    A comment in upper case without its parentheses, as the patterns read it: names of posts have `_` for a blank.
+
+    Empty for a comment so long that it is no plain note.
+    """
+    return "" if len(comment) > _LONGEST else comment.upper().replace("_", " ").strip(";()% \"'\t\r\n")
 
 
 def comments_with(text: Text, words: tuple[str, ...]) -> Iterator[tuple[int, str]]:

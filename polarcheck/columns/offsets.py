@@ -159,7 +159,8 @@ class ToolOffsets(Columns, frozen=True):
         tools = self.tools
         rows = np.flatnonzero(tools.calls_offset)
         in_inch = self.lengths.scale[rows] != 1.0
-        called = Called(self.run.block[rows], tools.offset_number[rows], tools.tool[rows], in_inch)
+        word = np.abs(np.nan_to_num(self.blocks.word("T")[rows])).astype(np.int64)
+        called = Called(self.run.block[rows], tools.offset_number[rows], tools.tool[rows], word, in_inch)
         return radii(self.text, called)
 
     @cached_property

@@ -1,4 +1,4 @@
-"""The cutter radius as the comments of a program tell it: `3/4 DIA. CUTTER`, `D=12.`, `R0.25`."""
+"""The cutter radius as the comments of a program state it: `3/4 DIA. CUTTER`, `D=12.`, `R0.25`."""
 
 from __future__ import annotations
 
@@ -9,27 +9,10 @@ import msgspec
 import numpy as np
 
 from polarcheck.arrays import Mask, Rows
-from polarcheck.machines.modal import MM_PER_INCH
+from polarcheck.columns.tool_numbers import named_tool
 from polarcheck.reading.words import Text
 
-# No text may cost more than its length: a repeat takes all it can and gives nothing back (`++`), and a number is tried
-# at the first of its digits only.
-_NUMBER = r"((?<!\d)\d++\s*+/\s*+\d++|(?<!\d)\d++(?:\.\d++)?+|\.\d++)"
-_UNIT = r"\s*+(\"|''|IN\b\.?+|INCH\b|MM\b)?+"
-_IS = r"\s*+[=:]?+\s*+"
-#: The rest of a word such as DIAMETER; digits behind it are the number, as in DIA16.
-_LETTERS = r"[^\W\d]*+"
-_CUTTER_NAMES = r"FREZA|FR(?:Ä|AE)SER"
-_CUTTER = rf"DIA\w*+|END\s*+MILL|EM\b|CUTTER|MILL\b|{_CUTTER_NAMES}"
-#: Diameters before radii: posts write both, as in `D=12. CR=0.`, where CR is the radius of the corner.
-_PATTERNS = (
-    (2.0, re.compile(rf"(?:\bDIA{_LETTERS}\.?+|\bD|Ø|\b(?:{_CUTTER_NAMES})){_IS}{_NUMBER}{_UNIT}")),
-    (2.0, re.compile(rf"{_NUMBER}{_UNIT}[\s-]*+(?:{_CUTTER})")),
-    (1.0, re.compile(rf"(?:(?<![A-Z])R|\bRAD{_LETTERS}){_IS}{_NUMBER}{_UNIT}")),
-)
-#: A tool number of up to eight digits behind its zeros, more than any T word has.
-_OF_TOOL = re.compile(r"\W*+T\s*+(?=\d)0*+(\d{0,8}+)\b")
-_LARGEST = 100.0
+_DIGIT = re.compile(r"\d")
 
 
 class Found(msgspec.Struct, frozen=True):
@@ -40,29 +23,31 @@ class Found(msgspec.Struct, frozen=True):
 
 
 def radius_in(comment: str, inch: bool) -> float | None:
-    """The radius [mm] that a comment names; inch: the unit of the program, unless the comment says its own."""
-    text = comment.upper()
-    for divisor, pattern in _PATTERNS:
-        found = pattern.search(text)
-        if not found:
-            continue
-        above, _, below = found[1].partition("/")
-        if below and not float(below):
-            continue
-        value = float(above) / (float(below) if below else 1.0)
-        unit = found[2] or ("IN" if inch else "MM")
-        radius = value / divisor * (1.0 if unit == "MM" else MM_PER_INCH)
-        if 0 < radius < _LARGEST:
-            return radius
-    return None
+    """
+    The radius of the cutter that a comment names [mm]; None where its words do not say so plainly.
+
+    inch: the unit of the program, unless the comment says its own.
+    """
+    if not _DIGIT.search(comment):
+        return None
+    # Imported late: its patterns take longer to compile than the check of a small file, and few comments have digits.
+    from polarcheck.columns.cutter_comments import cutter_radius
+
+    return cutter_radius(comment, inch)
 
 
 class Called(NamedTuple):
-    """The rows with a T word, one element each: block, offset number, tool number; inch: the program's unit."""
+    """
+    The rows with a T word, one element each.
+
+    block: in the text. offset_number, tool: that are called. word: the number that T has, 808 for T0808. inch: the
+    program's unit.
+    """
 
     block: Rows
     offset_number: Rows
     tool: Rows
+    word: Rows
     inch: Mask
 
 
@@ -90,17 +75,18 @@ def radii(text: Text, called: Called) -> dict[int, Found]:
     for start, end, block in zip(comments.start[chosen], comments.end[chosen], comments.block[chosen], strict=True):
         comment = text.source.excerpt(int(start), int(end)).strip("();% ")
         of_block.setdefault(int(block), []).append(comment)
-        listed = _OF_TOOL.match(comment.upper())
-        if listed:
-            of_tool.setdefault(int(listed[1] or 0), comment)
+        named = named_tool(comment)
+        if named is not None:
+            of_tool.setdefault(named, comment)
     beside = np.concatenate((called.block - 1, called.block + 1))
     filled = set(beside[np.isin(beside, text.words.block)].tolist())
     found: dict[int, Found] = {}
     rows = zip(*(column.tolist() for column in called), strict=True)
-    for block, offset, tool, inch in rows:
+    for block, offset, tool, word, inch in rows:
         near = list(of_block.get(block, []))
         near += [c for other in (block - 1, block + 1) if other not in filled for c in of_block.get(other, [])]
-        near += [of_tool[tool]] if tool in of_tool else []
+        near = [comment for comment in near if named_tool(comment) in (None, tool, word)]
+        near += [of_tool[number] for number in (tool, word) if number in of_tool]
         for comment in near:
             radius = radius_in(comment, inch)
             if offset and radius is not None and offset not in found:

@@ -8,13 +8,15 @@ from typing import NamedTuple
 import numpy as np
 
 from polarcheck.arrays import Columns, Floats, Rows, repeated
-from polarcheck.columns.bar_comments import BAR_WORDS, bar_in
 from polarcheck.columns.blocks import ExecutedBlocks
 from polarcheck.columns.comment_lengths import comments_with
 from polarcheck.columns.lengths import Lengths
 from polarcheck.execution.run import Run
 from polarcheck.machines.modal import Units
 from polarcheck.reading.words import Text
+
+#: One of these stands in each comment that states a bar.
+_BAR_WORDS = ("BAR", "STOCK", "RD", "MAT", "BLANK", "BILLET", "ROH", "STANGE", "RUND")
 
 
 class StockComment(NamedTuple):
@@ -50,7 +52,10 @@ class StockComments(Columns, frozen=True):
         if not len(self.run) or not len(self.text.comments):
             return []
         found = []
-        for number, comment in comments_with(self.text, BAR_WORDS):
+        for number, comment in comments_with(self.text, _BAR_WORDS):
+            # Imported late: the patterns take longer to compile than the check of a small file.
+            from polarcheck.columns.bar_comments import bar_in
+
             block = int(self.text.comments.block[number])
             row = self._row_of(block)
             bar = bar_in(comment, bool(self.lengths.units[self._row_of_units(row)] == Units.INCH))

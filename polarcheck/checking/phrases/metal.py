@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from polarcheck.checking.phrases.comments import comment_on_part as comment_on_part
+from polarcheck.checking.phrases.comments import quoted as quoted
+from polarcheck.checking.phrases.comments import what_is_made as what_is_made
 from polarcheck.checking.phrases.passes import forgotten_arc as forgotten_arc
 from polarcheck.checking.phrases.passes import needed_arc as needed_arc
 from polarcheck.checking.phrases.passes import words_of_arc as words_of_arc

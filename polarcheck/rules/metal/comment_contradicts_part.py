@@ -1,0 +1,154 @@
+from __future__ import annotations
+
+from polarcheck.checking.rule import WARNING, Hits, PartComments, rule
+
+
+@rule(WARNING, "{comment_on_part} states {stated:length}; {what_is_made}", subject="metal")
+def comment_contradicts_part(part_comments: PartComments) -> Hits:
+    """
+    Another shape, size or depth than the comment of this section or tool states.
+
+    The program was changed for another part and the comment was left as it was, or a word of the contour is wrong.
+    Compare with the drawing.
+
+    What counts is a comment between the call of the tool and the end of the section, and the line of a list of tools
+    with the number of this tool; the nearest one, and only where it states one size in plain words: HEX 24 AF, SQ 20,
+    FLATS 22, DIA 30 BOSS, DEPTH 5, 5 DEEP. Roughing, sockets, and a size that another section reaches contradict
+    nothing. A depth counts from Z0 or from any face that the program cuts.
+
+    Source: notes of shops at the heads of sections.
+
+    Bad, tool 1:radius=4:
+
+        O1
+        G21 G98
+        T0101 (HEX 24 AF)
+        G0 X60. Z2. C0
+        G12.1
+        G1 X60. C0 F1500
+        Z-5. F300
+        G42 X22. F200
+        C6.351    (expect: comment-contradicts-part)
+        X0 C12.702
+        X-22. C6.351
+        C-6.351
+        X0 C-12.702
+        X22. C-6.351
+        C0
+        G40 X60. F1500
+        Z2.
+        G13.1
+        M30
+
+    Bad, tool 1:radius=4:
+
+        O1
+        G21 G98
+        T0101 (SQ 22)
+        G0 X60. Z2. C0
+        G12.1
+        G1 X60. C0 F1500
+        Z-5. F300
+        G42 X22. F200
+        C6.351    (expect: comment-contradicts-part)
+        X0 C12.702
+        X-22. C6.351
+        C-6.351
+        X0 C-12.702
+        X22. C-6.351
+        C0
+        G40 X60. F1500
+        Z2.
+        G13.1
+        M30
+
+    Bad, tool 1:radius=4:
+
+        O1
+        G21 G98
+        (T1 EM8, DEPTH 6)
+        T0101
+        G0 X60. Z2. C0
+        G12.1
+        G1 X60. C0 F1500
+        Z-5. F300    (expect: comment-contradicts-part)
+        G42 X22. F200
+        C6.351
+        X0 C12.702
+        X-22. C6.351
+        C-6.351
+        X0 C-12.702
+        X22. C-6.351
+        C0
+        G40 X60. F1500
+        Z2.
+        G13.1
+        M30
+
+    Good, tool 1:radius=4:
+
+        O1
+        G21 G98
+        T0101 (EM8, HEX 22 AF, DEPTH 5)
+        G0 X60. Z2. C0
+        G12.1
+        G1 X60. C0 F1500
+        Z-5. F300
+        G42 X22. F200
+        C6.351
+        X0 C12.702
+        X-22. C6.351
+        C-6.351
+        X0 C-12.702
+        X22. C-6.351
+        C0
+        G40 X60. F1500
+        Z2.
+        G13.1
+        M30
+
+    Good, tool 1:radius=4:
+
+        O1
+        G21 G98
+        T0101 (ROUGH HEX 24 AF)
+        G0 X60. Z2. C0
+        G12.1
+        G1 X60. C0 F1500
+        Z-5. F300
+        G42 X22. F200
+        C6.351
+        X0 C12.702
+        X-22. C6.351
+        C-6.351
+        X0 C-12.702
+        X22. C-6.351
+        C0
+        G40 X60. F1500
+        Z2.
+        G13.1
+        M30
+
+    Good, tool 1:radius=4:
+
+        O1
+        G21 G98
+        T0101 (FROM HEX BAR 24)
+        G0 X60. Z2. C0
+        G12.1
+        G1 X60. C0 F1500
+        Z-5. F300
+        G42 X22. F200
+        C6.351
+        X0 C12.702
+        X-22. C6.351
+        C-6.351
+        X0 C-12.702
+        X22. C-6.351
+        C0
+        G40 X60. F1500
+        Z2.
+        G13.1
+        M30
+    """
+    return Hits(part_comments.contradicts, values={"stated": part_comments.stated})
