@@ -1,5 +1,5 @@
 """
-Contours that repeat themselves, drawn at random, with one slip of the pen in each; and contours meant to differ.
+Contours that repeat themselves, drawn at random, with one slip in each; and contours that are meant to differ.
 
     contour = regular_contour(random.Random(3))
     text = program(contour.points, machine, draw)
@@ -330,7 +330,8 @@ def program(blocks: Sequence[str], contour: Contour, how: Style) -> str:
     polar = machine_of(how.machine).polar
     unit = 25.4 if how.inch else 1.0
     factor = (2.0 if polar.x == "diameter" else 1.0) / unit
-    first, second = sound_path(contour, how)[:2]
+    path = sound_path(contour, how)
+    first, second = path[0], next(point for point in path if point != path[0])
     outward = (second - first) / abs(second - first) * (1j if how.clockwise else -1j)
     away = first + outward * 12
     far = f"X{number(away.real * factor)} {polar.virtual_axis}{number(away.imag / unit)}"

@@ -16,11 +16,13 @@ class Slip(NamedTuple):
     What a number may be instead of what is written.
 
     text: as it would be written. kind: in the words of a shop. plain: no other design is likely to differ by it.
+    is_common: it is often made.
     """
 
     text: str
     kind: str
     plain: bool
+    is_common: bool = True
 
 
 def slip_of(written: str, meant: float, tolerance: float) -> Slip | None:
@@ -58,14 +60,14 @@ def _slips(sign: str, whole: str, point: str, rest: str) -> Iterator[Slip]:
         less = places - (at >= len(whole))
         yield Slip(number(digits[:at] + digits[at + 1 :], less), "a digit is too many", bool(doubled))
         for other in "0123456789":
-            yield Slip(number(digits[:at] + other + digits[at + 1 :], places), "a digit is wrong", False)
+            yield Slip(number(digits[:at] + other + digits[at + 1 :], places), "a digit is wrong", False, False)
     for at in range(len(digits) + 1):
         for other in "0123456789":
             longer = digits[:at] + other + digits[at:]
             if at <= len(whole):
                 yield Slip(number(longer, places), "a digit is missing", at < len(whole))
             if at >= len(whole):
-                yield Slip(number(longer, places + 1), "a digit is missing", at < len(digits))
+                yield Slip(number(longer, places + 1), "a digit is missing", at < len(digits), at < len(digits))
     for factor in _FACTORS:
         yield Slip(plain_number(value * factor), "it is half or twice as large", False)
 

@@ -9,18 +9,19 @@ from polarcheck.table.regularity import Regularity
 
 
 def misfit(regularity: Regularity, run: Run, row: int) -> str:
-    """What is wrong with the block: `X-13.524 does not fit the rest of the contour (two digits are swapped)`."""
+    """What is wrong with the block: `X-13.524 does not fit the rest of the contour, two digits are swapped`."""
     correction = regularity.corrections[row]
-    what = executed_word(run, correction.word) if correction.word >= 0 else "the point before this block"
-    if correction.word < 0 and "block" not in correction.why:
-        what = "this block"
-    return f"{what} does not fit the rest of the contour, {correction.why}"
+    if correction.word >= 0:
+        return f"{executed_word(run, correction.word)} does not fit the rest of the contour, {correction.why}"
+    return f"this block does not fit the rest of the contour, {correction.why}"
 
 
 def remedy(regularity: Regularity, row: int) -> str:
-    """What would be right there: `X-13.254`."""
+    """What would be right there: `with X-13.254`."""
     correction = regularity.corrections[row]
-    return f"a block {correction.text} before it" if "block is missing" in correction.why else correction.text
+    if not correction.text:
+        return "without it"
+    return f"with {correction.text} in a block before it" if "a block" in correction.why else f"with {correction.text}"
 
 
 def as_meant(regularity: Regularity, row: int) -> str:

@@ -26,11 +26,13 @@ class Ring(NamedTuple):
     """
     A closed contour of n corners.
 
-    corner: complex128[n] [mm]. bulge: float64[n], of the edge from each corner to the next.
+    corner: complex128[n] [mm]. bulge: float64[n], of the edge from each corner to the next. turns_at_start: it has a
+    corner where the path begins, and not a point within a side.
     """
 
     corner: Points
     bulge: Floats
+    turns_at_start: bool
 
     def __len__(self) -> int:
         return len(self.corner)
@@ -76,6 +78,7 @@ def _overlapping(point: Points, bulge: Floats) -> Iterator[Ring]:
 
 def _simplified(corner: Points, bulge: Floats) -> Ring:
     """The ring with each line and each arc as one edge, and without ways out and back."""
+    start = corner[0]
     for _ in range(len(corner)):
         if len(corner) < _FEWEST:
             break
@@ -98,7 +101,7 @@ def _simplified(corner: Points, bulge: Floats) -> Ring:
         stays = np.ones(len(corner), bool)
         stays[gone] = False
         corner, bulge = corner[stays], bulge[stays]
-    return Ring(corner, bulge)
+    return Ring(corner, bulge, bool((corner == start).any()))
 
 
 def _is_within(before: Points, corner: Points, behind: Points, into: Floats, out: Floats) -> Mask:
@@ -110,9 +113,14 @@ def _is_within(before: Points, corner: Points, behind: Points, into: Floats, out
     on_line = (into == 0) & (out == 0) & (aside <= _SAME) & onward
     if not (into * out > 0).any():
         return np.asarray(on_line)
-    center = [_center(before, corner, into), _center(corner, behind, out)]
-    sweep = np.abs(np.arctan(into)) + np.abs(np.arctan(out))
-    return np.asarray(on_line | ((into * out > 0) & (np.abs(center[0] - center[1]) <= 2 * _SAME) & (sweep < 1.5)))
+    both, sweep = into * out > 0, np.abs(np.arctan(into)) + np.abs(np.arctan(out))
+    on_circle = np.zeros(len(corner), bool)
+    one, other = (
+        _center(begin[both], end[both], bulge[both])
+        for begin, end, bulge in ((before, corner, into), (corner, behind, out))
+    )
+    on_circle[both] = (np.abs(one - other) <= 2 * _SAME) & (sweep[both] < 1.5)
+    return np.asarray(on_line | on_circle)
 
 
 def _joined(before: Points, behind: Points, into: Floats, out: Floats) -> Floats:
@@ -121,5 +129,4 @@ def _joined(before: Points, behind: Points, into: Floats, out: Floats) -> Floats
 
 
 def _center(start: Points, end: Points, bulge: Floats) -> Points:
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return np.asarray((start + end) / 2 + 1j * (end - start) * (1 - bulge**2) / (4 * bulge))
+    return np.asarray((start + end) / 2 + 1j * (end - start) * (1 - bulge**2) / (4 * bulge))

@@ -11,6 +11,8 @@ from polarcheck.geometry.regularity.rings import Ring
 
 #: Axes of symmetry lie in steps of this angle where they are along an axis, or as those of a polygon on it [rad].
 _STEP, _ALIGNED = np.pi / 12, 0.002
+#: A ring with less area than this share of the square of its size is none.
+_FLAT = 1e-3
 
 
 class Symmetry(NamedTuple):
@@ -18,18 +20,30 @@ class Symmetry(NamedTuple):
     The symmetry of a ring of n corners.
 
     order: how many turns leave it as it is, within one full turn, 1 for none but that. mirrored: a mirror image does.
-    freedom: how many numbers still say where all corners are; 2 n without any symmetry. corners: n.
+    freedom: how many numbers still say where all corners are; 2 n without any symmetry. corners: n. turns_at_start: one
+    of them is where the path begins.
     """
 
     order: int
     mirrored: bool
     freedom: int
     corners: int
+    turns_at_start: bool
 
     @property
     def is_regular(self) -> bool:
         """All corners and edges are alike."""
         return self.order == self.corners
+
+    @property
+    def fixed(self) -> int:
+        """How many numbers of the corners follow from the others."""
+        return 2 * self.corners - self.freedom
+
+    @property
+    def corners_behind_start(self) -> int:
+        """The number of corners but that where the path begins, which may be a point within a side."""
+        return self.corners - self.turns_at_start
 
     @property
     def is_turned(self) -> bool:
@@ -40,8 +54,8 @@ class Symmetry(NamedTuple):
 def symmetry_of(ring: Ring, tolerance: float) -> Symmetry:
     """The symmetry of a ring. tolerance: how far corners may be off [mm]."""
     count = len(ring)
-    if np.isnan(ring.bulge).any():
-        return Symmetry(1, False, 2 * count, count)
+    if np.isnan(ring.bulge).any() or _is_flat(ring):
+        return Symmetry(1, False, 2 * count, count, ring.turns_at_start)
     middle = complex(ring.corner.mean())
     order, mirrors = _order(ring, middle, tolerance), _mirrors(ring, middle, tolerance)
     angle = np.angle(mirrors) / 2
@@ -55,7 +69,14 @@ def symmetry_of(ring: Ring, tolerance: float) -> Symmetry:
         freedom = count + (not through) + (not is_aligned)
     else:
         freedom = 2 * count
-    return Symmetry(order, is_mirrored, freedom, count)
+    return Symmetry(order, is_mirrored, freedom, count, ring.turns_at_start)
+
+
+def _is_flat(ring: Ring) -> bool:
+    """It encloses nothing: all of it lies on one line."""
+    spoke = ring.corner - ring.corner[0]
+    area = abs(float((spoke.conj() * np.roll(spoke, -1)).imag.sum())) / 2
+    return not (ring.bulge != 0).any() and area <= _FLAT * float(np.abs(spoke).max()) ** 2
 
 
 def _order(ring: Ring, middle: complex, tolerance: float) -> int:

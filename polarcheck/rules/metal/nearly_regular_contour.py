@@ -5,9 +5,13 @@ from polarcheck.checking.rule import WARNING, Hits, Regularity, rule
 
 @rule(
     WARNING,
-    "{misfit}: with {remedy} it would be {as_meant}",
-    subject="side",
+    "{misfit}: {remedy} it would be {as_meant}",
+    subject="",
     doubts=(("position", "loop"),),
+    follows={
+        "loop": ("wrong-axis-address-in-polar", "number-without-point", "degrees-in-polar"),
+        "section": ("diameter-radius-mixed", "second-axis-never-programmed", "linear-axis-never-programmed"),
+    },
 )
 def nearly_regular_contour(regularity: Regularity) -> Hits:
     """
@@ -68,4 +72,5 @@ def nearly_regular_contour(regularity: Regularity) -> Hits:
         G40 X60.
         G13.1
     """
+    # Compares nothing: the table searches the word or block with which a contour would be regular.
     return Hits(regularity.is_wrong, at=regularity.wrong_words)
