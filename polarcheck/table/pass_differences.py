@@ -113,7 +113,7 @@ class PassDifferences(Columns, frozen=True):
         return np.stack((passes.end[moves], center, passes.motion[moves].astype(np.complex128)), axis=1)
 
     def _difference(self, number: int, model: int, is_rare: bool) -> Difference | None:
-        """Where a pass differs from a model of it, if one slip explains that; is_rare: several passes are as the model."""
+        """Where a pass differs from a model of it, if a slip explains that; is_rare: more passes are as the model."""
         one, two = self._items(number), self._items(model)
         shorter = min(len(one), len(two))
         head = _agreeing(one[:shorter], two[:shorter])
@@ -167,7 +167,7 @@ class PassDifferences(Columns, frozen=True):
 
 def _agreeing(one: Points, two: Points) -> int:
     """How many moves agree from the first on."""
-    same = (np.abs(one - two) <= _SAME).all(axis=1)
+    same: Mask = np.all(np.abs(one - two) <= _SAME, axis=1)
     return int(np.argmin(same)) if not same.all() else len(same)
 
 
