@@ -56,12 +56,15 @@ if TYPE_CHECKING:
     from polarcheck.table.arcs import Arcs as Arcs
     from polarcheck.table.bar import Bar as Bar
     from polarcheck.table.center import Center as Center
+    from polarcheck.table.contour_depths import ContourDepths as ContourDepths
     from polarcheck.table.coverage import Coverage as Coverage
+    from polarcheck.table.crossings import Crossings as Crossings
     from polarcheck.table.deviations import Deviations as Deviations
     from polarcheck.table.dialect import Dialect as Dialect
     from polarcheck.table.entry import Entry as Entry
     from polarcheck.table.feed_ranges import FeedRanges as FeedRanges
     from polarcheck.table.feeds import Feeds as Feeds
+    from polarcheck.table.increments import Increments as Increments
     from polarcheck.table.infeed import Infeed as Infeed
     from polarcheck.table.mirrored import Mirrored as Mirrored
     from polarcheck.table.mode_words import ModeWords as ModeWords
@@ -69,6 +72,7 @@ if TYPE_CHECKING:
     from polarcheck.table.overcuts import Overcuts as Overcuts
     from polarcheck.table.part_comments import PartComments as PartComments
     from polarcheck.table.pass_depths import PassDepths as PassDepths
+    from polarcheck.table.pass_differences import PassDifferences as PassDifferences
     from polarcheck.table.passes import Passes as Passes
     from polarcheck.table.procedure import Procedure as Procedure
     from polarcheck.table.ramps import Ramps as Ramps

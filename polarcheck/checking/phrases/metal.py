@@ -7,8 +7,12 @@ import numpy as np
 from polarcheck.checking.phrases.comments import comment_on_part as comment_on_part
 from polarcheck.checking.phrases.comments import quoted as quoted
 from polarcheck.checking.phrases.comments import what_is_made as what_is_made
+from polarcheck.checking.phrases.passes import crosses_line as crosses_line
+from polarcheck.checking.phrases.passes import drift as drift
 from polarcheck.checking.phrases.passes import forgotten_arc as forgotten_arc
 from polarcheck.checking.phrases.passes import needed_arc as needed_arc
+from polarcheck.checking.phrases.passes import other_pass as other_pass
+from polarcheck.checking.phrases.passes import pass_difference as pass_difference
 from polarcheck.checking.phrases.passes import words_of_arc as words_of_arc
 from polarcheck.checking.phrases.passes import written_arc as written_arc
 from polarcheck.checking.phrases.regularity import as_meant as as_meant

@@ -5,16 +5,23 @@ from __future__ import annotations
 import numpy as np
 
 from polarcheck.checking.phrases.common import executed_word, written
+from polarcheck.checking.quantity import in_row
 from polarcheck.columns.trace import Trace
 from polarcheck.execution.run import Run
 from polarcheck.machines.machine import Machine
 from polarcheck.machines.modal import Motion, Units
 from polarcheck.table.arc_words import ArcWords
 from polarcheck.table.arcs import Arcs
+from polarcheck.table.crossings import Crossings
+from polarcheck.table.increments import Increments
+from polarcheck.table.pass_differences import PassDifferences
 from polarcheck.table.tangency import Tangency
 
 #: Digits behind the point that a program writes, in mm and in inch.
 _DIGITS, _DIGITS_INCH = 3, 4
+#: Points farther from each other than this are two [mm].
+_APART = 1e-3
+_ARC_LISTS = {int(Motion.CW): "arc_clockwise", int(Motion.CCW): "arc_counterclockwise"}
 
 
 def written_arc(trace: Trace, arcs: Arcs, row: int) -> str:
@@ -63,3 +70,42 @@ def forgotten_arc(arc_words: ArcWords, machine: Machine, row: int, count: int) -
     sense = arc_words.sense(row)
     code = " or ".join(codes.values()) if sense is None else codes[sense]
     return f"{code} is missing" + (f", here and in {count - 1} more blocks" if count > 1 else "")
+
+
+def crosses_line(trace: Trace, crossings: Crossings, row: int) -> str:
+    """Which line a block crosses, or runs back along, and where."""
+    into, place, back = crossings.of_row(row)
+    shown, line = _point(trace, row, place), int(trace.blocks.line[into])
+    return f"turns back along line {line} at {shown}" if back else f"crosses line {line} at {shown}"
+
+
+def _point(trace: Trace, row: int, place: complex) -> str:
+    """A plane point as the program writes it in a row."""
+    return f"{in_row(place + complex(trace.path.center_shift[row]), trace.lengths, row):point}"
+
+
+def pass_difference(trace: Trace, arcs: Arcs, pass_differences: PassDifferences, row: int) -> str:
+    """What is other in a row than in that of another pass."""
+    other = pass_differences.found[row].other
+    line = int(trace.blocks.line[other])
+    if pass_differences.found[row].is_missing:
+        return f"a block as in line {line} is missing before this one"
+    here, there = (complex(trace.path.end[at]) for at in (row, other))
+    if abs(here - there) > _APART:
+        return f"this block ends at {_point(trace, row, here)}, line {line} at {_point(trace, row, there)}"
+    if trace.path.is_arc[row] and trace.path.is_arc[other]:
+        codes = [trace.machine.codes(_ARC_LISTS[int(trace.axes.motion[at])])[0] for at in (row, other)]
+        shown = [f"{code} {written_arc(trace, arcs, at)}" for code, at in zip(codes, (row, other), strict=True)]
+        return f"this block is {shown[0]}, line {line} {shown[1]}"
+    return f"this block is another move than line {line}"
+
+
+def other_pass(trace: Trace, pass_differences: PassDifferences, row: int) -> str:
+    """The lines of the pass that a pass is compared with."""
+    found = pass_differences.found[row]
+    return f"lines {int(trace.blocks.line[found.first])} to {int(trace.blocks.line[found.last])}"
+
+
+def drift(trace: Trace, increments: Increments, row: int) -> str:
+    """Where a contour in increments began."""
+    return f"which is {_point(trace, row, complex(increments.begins[row]))}"

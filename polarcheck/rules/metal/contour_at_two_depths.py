@@ -1,0 +1,63 @@
+from __future__ import annotations
+
+from polarcheck.checking.rule import WARNING, ContourDepths, Mask, rule
+
+
+@rule(
+    WARNING,
+    "Z goes from {contour_depths.z_before:length} to {path.z:length} in the middle of the contour, which is closed only "
+    "with both of its parts",
+    at=("Z", "W"),
+    once="compensation",
+    subject="side",
+    doubts=(("metal", "loop"),),
+    follows={"block": ("z-with-plane-axis",)},
+)
+def contour_at_two_depths(contour_depths: ContourDepths) -> Mask:
+    """
+    Z move in the middle of a closed contour.
+
+    One part of the contour is cut at one depth and the rest at another, so that the part has a step in its wall: the Z
+    block stands too late, or too early. Not reported are passes that close their contour at each depth, a ramp that
+    goes down along the contour, one along its first or last block, and a hop over what stands in the way.
+
+    Source: B-62764EN/01, p. 53 (depth first, then the contour).
+
+    Bad, tool 1:radius=3:
+
+        T0101
+        G98 G0 X100. Z2. C0
+        G12.1
+        G1 G42 X40. F200
+        C20.
+        X-40.
+        Z-5.               (expect: contour-at-two-depths)
+        C-20.
+        X40.
+        C0
+        G40 X100.
+        G13.1
+
+    Good, tool 1:radius=3:
+
+        T0101
+        G98 G0 X100. Z2. C0
+        G12.1
+        G1 Z-5. F200
+        G42 X40.
+        C20.
+        X-40.
+        C-20.
+        X40.
+        C0
+        Z-10.
+        C20.
+        X-40.
+        C-20.
+        X40.
+        C0
+        G40 X100.
+        G13.1
+    """
+    # Compares nothing: the table compares Z along each contour, where it closes only with all of its passes.
+    return contour_depths.changes

@@ -1,0 +1,55 @@
+from __future__ import annotations
+
+from polarcheck.checking.rule import WARNING, Increments, Mask, rule
+
+
+@rule(
+    WARNING,
+    "the increments of this contour do not add up: it ends {increments.gap:length} beside its start, {drift}",
+    once="loop",
+    worst="increments.gap",
+    subject="side",
+    doubts=(("compensation", "loop"),),
+    follows={
+        "loop": ("arc-sense-reversed", "arc-not-tangent", "arc-word-without-arc", "contour-crosses-itself"),
+    },
+)
+def incremental_contour_not_closed(increments: Increments) -> Mask:
+    """
+    Contour in increments that ends beside its start.
+
+    U and H, or G91, add up. A wrong digit in one of them shifts all that follows, and the contour ends a little off the
+    point where it began. Reported is a gap that is more than the rounding of all its words, and less than a tenth of
+    the contour; a contour that runs on over its start is closed.
+
+    Source: B-62764EN/01, p. 53 (a contour that ends where it begins); p. 51 (U and H are increments).
+
+    Bad, tool 1:radius=3:
+
+        T0101
+        G98 G0 X100. C0
+        G12.1
+        G1 G42 X40. F200
+        H20.
+        U-80.
+        H-40.
+        U79.
+        H20.               (expect: incremental-contour-not-closed)
+        G40 X100.
+        G13.1
+
+    Good, tool 1:radius=3:
+
+        T0101
+        G98 G0 X100. C0
+        G12.1
+        G1 G42 X40. F200
+        H20.
+        U-80.
+        H-40.
+        U80.
+        H24.
+        G40 X100. H2.
+        G13.1
+    """
+    return increments.gap > 0

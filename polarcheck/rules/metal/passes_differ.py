@@ -1,0 +1,77 @@
+from __future__ import annotations
+
+from polarcheck.checking.rule import WARNING, Mask, PassDifferences, rule
+
+
+@rule(
+    WARNING,
+    "{pass_difference}; all else in this pass is as in {other_pass}",
+    subject="side",
+    doubts=(("compensation", "loop"),),
+    follows={
+        "loop": ("arc-sense-reversed", "arc-not-tangent", "arc-word-without-arc", "contour-crosses-itself"),
+    },
+)
+def passes_differ(pass_differences: PassDifferences) -> Mask:
+    """
+    Pass of a contour that differs from another pass of it in one block.
+
+    The same contour is cut at several depths, or in several sections, and one word of one pass is another: a digit, a
+    sign, a block that is missing. The wall has a step there. Of several passes the one that differs from the others is
+    reported, of two the later one. Passes that differ as a whole, as with an allowance, are not compared, and a side
+    that is moved on one level may be meant.
+
+    Source: B-62764EN/01, p. 53 (a contour in several passes).
+
+    Bad, tool 1:radius=3:
+
+        T0101
+        G98 G0 X100. Z2. C0
+        G12.1
+        G1 Z-5. F200
+        G42 X30.
+        C8.66
+        X0 C17.321
+        X-30. C8.66
+        C-8.66
+        X0 C-17.321
+        X30. C-8.66
+        C0
+        G40 X100.
+        Z-10.
+        G42 X30.
+        C8.66
+        X0 C17.321
+        X-30. C8.66
+        C-8.66
+        X0 C-13.721         (expect: passes-differ)
+        X30. C-8.66
+        C0
+        G40 X100.
+        G13.1
+
+    Good, tool 1:radius=3:
+
+        T0101
+        G98 G0 X100. Z2. C0
+        G12.1
+        G1 Z-5. F200
+        G42 X40.
+        C20.
+        X-40.
+        C-20.
+        X40.
+        C0
+        G40 X100.
+        Z-10.
+        G42 X40.
+        C20.
+        X-50.
+        C-20.
+        X40.
+        C0
+        G40 X100.
+        G13.1
+    """
+    # Compares nothing: the table compares the moves of passes that begin and end at the same points.
+    return pass_differences.differs
