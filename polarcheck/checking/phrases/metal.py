@@ -4,6 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
+from polarcheck.checking.phrases.misplaced import block_before as block_before
+from polarcheck.checking.phrases.misplaced import cancel as cancel
+from polarcheck.checking.phrases.misplaced import contour_end_there as contour_end_there
+from polarcheck.checking.phrases.misplaced import leads_where as leads_where
+from polarcheck.checking.phrases.misplaced import left_or_right as left_or_right
+from polarcheck.checking.phrases.misplaced import ramp_end as ramp_end
+from polarcheck.checking.phrases.misplaced import side as side
+from polarcheck.checking.phrases.misplaced import wrong_by as wrong_by
+from polarcheck.checking.phrases.misplaced import x_meant as x_meant
 from polarcheck.checking.phrases.passes import forgotten_arc as forgotten_arc
 from polarcheck.checking.phrases.passes import needed_arc as needed_arc
 from polarcheck.checking.phrases.passes import words_of_arc as words_of_arc
