@@ -10,8 +10,8 @@ from polarcheck.checking.rule import WARNING, Mask, MisplacedRamps, rule
     at=("compensation_off",),
     once="section",
     subject="",
-    doubts=(("compensation", "section"), ("metal", "section")),
-    follows={"section": ("compensation-without-contour", "start-up-after-contour", "polar-switched-in-offset-mode")},
+    doubts=(("position", "section"), ("compensation", "section"), ("metal", "section")),
+    follows={"section": ("compensation-without-contour", "polar-switched-in-offset-mode")},
 )
 def cancel_without_start_up(misplaced_ramps: MisplacedRamps) -> Mask:
     """

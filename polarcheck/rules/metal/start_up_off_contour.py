@@ -10,7 +10,7 @@ from polarcheck.checking.rule import WARNING, Mask, MisplacedRamps, rule
     at=("X", "U"),
     once="loop",
     subject="",
-    doubts=(("position", "X"), ("compensation", "loop"), ("metal", "loop")),
+    doubts=(("position", "X"), ("position", "X before"), ("compensation", "loop"), ("metal", "loop")),
 )
 def start_up_off_contour(misplaced_ramps: MisplacedRamps) -> Mask:
     """
