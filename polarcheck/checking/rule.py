@@ -67,6 +67,7 @@ if TYPE_CHECKING:
     from polarcheck.table.increments import Increments as Increments
     from polarcheck.table.infeed import Infeed as Infeed
     from polarcheck.table.mirrored import Mirrored as Mirrored
+    from polarcheck.table.misplaced_ramps import MisplacedRamps as MisplacedRamps
     from polarcheck.table.mode_words import ModeWords as ModeWords
     from polarcheck.table.other_mode import OtherMode as OtherMode
     from polarcheck.table.overcuts import Overcuts as Overcuts

@@ -44,6 +44,7 @@ MAKERS = {
     "ramps": "polarcheck.table.ramps:Ramps",
     "overcuts": "polarcheck.table.overcuts:Overcuts",
     "fitting": "polarcheck.table.fitting:Fitting",
+    "misplaced_ramps": "polarcheck.table.misplaced_ramps:MisplacedRamps",
     "mirrored": "polarcheck.table.mirrored:Mirrored",
     "slots": "polarcheck.table.slots:Slots",
     "uncompensated_cuts": "polarcheck.table.uncompensated_cuts:UncompensatedCuts",

@@ -86,7 +86,7 @@ def loops_of(trace: Trace) -> list[PlaneLoop]:
     at_feed = (motion == Motion.LINE) | (motion == Motion.CW) | (motion == Motion.CCW)
     ramp = compensation.starts_up | compensation.cancels
     z = trace.path.z
-    deeper = trace.axes.moves_z & ~trace.path.travels & ~(z == before(z, trace.blocks.starts, np.nan))
+    deeper = trace.path.moves_z & ~trace.path.travels & ~(z == before(z, trace.blocks.starts, np.nan))
     begins = ramp | trace.mode.enters | deeper | (trace.path.travels & ~at_feed)
     rows = np.flatnonzero(trace.path.on_plane & at_feed & ~ramp & ~np.isnan(trace.path.end + trace.path.start))
     if not len(rows):

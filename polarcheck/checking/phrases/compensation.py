@@ -170,7 +170,7 @@ def swept(blocks: ExecutedBlocks, axes: PlaneAxes, lengths: Lengths, overcuts: O
 
 def _contour_at(blocks: ExecutedBlocks, axes: PlaneAxes, lengths: Lengths, row: int, into: int, place: complex) -> str:
     """A place on the contour, as the program would write it, and the line of the contour."""
-    return f"the contour of line {int(blocks.line[into])} at {_point(axes, lengths, place, row)}"
+    return f"the contour of line {int(blocks.line[into])} at {point(axes, lengths, place, row)}"
 
 
 def way_out(lengths: Lengths, fitting: Fitting, row: int) -> str:
@@ -242,19 +242,19 @@ def cut_part(
 ) -> str:
     """The part that a move without compensation cuts, and where."""
     into, place = uncompensated_cuts.cuts.deepest(row)
-    at = _point(axes, lengths, place, row)
+    at = point(axes, lengths, place, row)
     z = f"{in_row(float(path.z[row]), lengths, row):length}".split()[0]
     return f"the part that the contour of line {int(blocks.line[into])} leaves, at {at} Z{z}"
 
 
 def contour_end(axes: PlaneAxes, lengths: Lengths, path: ProgrammedPath, row: int) -> str:
     """The point to which the row leads."""
-    return _point(axes, lengths, complex(path.end[row]), row)
+    return point(axes, lengths, complex(path.end[row]), row)
 
 
 def contour_start(axes: PlaneAxes, lengths: Lengths, coverage: Coverage, row: int) -> str:
     """The point at which the contour that ends in the row began."""
-    return _point(axes, lengths, complex(coverage.begins[row]), row)
+    return point(axes, lengths, complex(coverage.begins[row]), row)
 
 
 def left(axes: PlaneAxes, lengths: Lengths, compensation: CutterCompensation, coverage: Coverage, row: int) -> str:
@@ -262,14 +262,14 @@ def left(axes: PlaneAxes, lengths: Lengths, compensation: CutterCompensation, co
     ribs, strips = coverage.ribs, coverage.strips
     radius = abs(float(compensation.radius_of_move[row]))
     if strips.height[row] > ribs.height[row]:
-        thickness, place = float(strips.height[row]), _point(axes, lengths, complex(strips.place[row]), row)
+        thickness, place = float(strips.height[row]), point(axes, lengths, complex(strips.place[row]), row)
         apart, most = (in_row(length, lengths, row) for length in (2 * radius + thickness, 2 * radius))
         return (
             f"a strip {in_row(thickness, lengths, row):length} thick stays at {place} between passes {apart:length} "
             f"apart: with R {in_row(radius, lengths, row):length} write passes that are {most:length} apart at most"
         )
     height, width = (in_row(float(column[row]), lengths, row) for column in (ribs.height, ribs.width))
-    place = _point(axes, lengths, complex(ribs.place[row]), row)
+    place = point(axes, lengths, complex(ribs.place[row]), row)
     more = "more than " if ribs.height[row] >= 2 * radius else ""
     return (
         f"a rib {more}{height:length} high stays on the contour at {place}, "
@@ -278,6 +278,6 @@ def left(axes: PlaneAxes, lengths: Lengths, compensation: CutterCompensation, co
     )
 
 
-def _point(axes: PlaneAxes, lengths: Lengths, point: complex, row: int) -> str:
+def point(axes: PlaneAxes, lengths: Lengths, point: complex, row: int) -> str:
     axis = axes.virtual_axis_of(row)
     return f"{in_row(point, lengths, row):point}".replace("C", f"{axis}=" if len(axis) > 1 else axis)

@@ -7,6 +7,15 @@ import numpy as np
 from polarcheck.checking.phrases.comments import comment_on_part as comment_on_part
 from polarcheck.checking.phrases.comments import quoted as quoted
 from polarcheck.checking.phrases.comments import what_is_made as what_is_made
+from polarcheck.checking.phrases.misplaced import block_before as block_before
+from polarcheck.checking.phrases.misplaced import cancel as cancel
+from polarcheck.checking.phrases.misplaced import contour_end_there as contour_end_there
+from polarcheck.checking.phrases.misplaced import leads_where as leads_where
+from polarcheck.checking.phrases.misplaced import left_or_right as left_or_right
+from polarcheck.checking.phrases.misplaced import ramp_end as ramp_end
+from polarcheck.checking.phrases.misplaced import side as side
+from polarcheck.checking.phrases.misplaced import wrong_by as wrong_by
+from polarcheck.checking.phrases.misplaced import x_meant as x_meant
 from polarcheck.checking.phrases.passes import crosses_line as crosses_line
 from polarcheck.checking.phrases.passes import drift as drift
 from polarcheck.checking.phrases.passes import forgotten_arc as forgotten_arc

@@ -5,8 +5,8 @@ from polarcheck.checking.rule import WARNING, ContourDepths, Mask, rule
 
 @rule(
     WARNING,
-    "Z goes from {contour_depths.z_before:length} to {path.z:length} in the middle of the contour, which is closed only "
-    "with both of its parts",
+    "Z goes from {contour_depths.z_before:length} to {path.z:length} in the middle of the contour, which is closed "
+    "only with both of its parts",
     at=("Z", "W"),
     once="compensation",
     subject="side",

@@ -1,0 +1,70 @@
+from __future__ import annotations
+
+from polarcheck.checking.rule import WARNING, Mask, MisplacedRamps, rule
+
+
+@rule(
+    WARNING,
+    "{side} of this block is taken back by the next move: no block of a contour is cut with compensation; write {side} "
+    "into the block that leads to the contour, and G40 into the one that leaves it",
+    at=("compensation_left", "compensation_right"),
+    once="section",
+    subject="",
+    doubts=(("compensation", "section"), ("metal", "section")),
+)
+def compensation_without_contour(misplaced_ramps: MisplacedRamps) -> Mask:
+    """
+    Start-up that is followed at once by the offset cancel.
+
+    The move with G41 or G42 is only the ramp onto the contour, and the next one with G40 the ramp off it. Between them
+    no block is left that is cut with compensation: G41 stands a block too late, behind the ramp, or G40 follows it by
+    mistake. What is cut before and after runs with the cutter center on the programmed path and is off by R.
+
+    Source: builder's guide to G12.1, cutter compensation (ramp on, contour, ramp off).
+
+    Bad, tool 1:radius=4:
+
+        T0101
+        G98 G0 X60. Z2. C0
+        G12.1
+        G1 C16. F800
+        Z-5.
+        X16. F100
+        G41 C-16.         (expect: compensation-without-contour)
+        G40 X42.
+        Z2.
+        G13.1
+
+    Bad, tool 1:radius=4:
+
+        T0101
+        G98 G0 X60. Z2. C0
+        G12.1
+        G1 X60. F1500
+        Z-5.
+        G42 X40. F200     (expect: compensation-without-contour)
+        G40
+        C20.
+        X-40.
+        C-20.
+        X40.
+        C0
+        G40 X60. F1500
+        Z2.
+        G13.1
+
+    Good, tool 1:radius=4:
+
+        T0101
+        G98 G0 X60. Z2. C0
+        G12.1
+        G1 C16. F800
+        Z-5.
+        G41 X16. F100
+        C-16.
+        G40 X42.
+        Z2.
+        G13.1
+    """
+    # Compares nothing: which moves follow each other is a column.
+    return misplaced_ramps.cancelled_at_once

@@ -1,0 +1,61 @@
+from __future__ import annotations
+
+from polarcheck.checking.rule import WARNING, Mask, MisplacedRamps, rule
+
+
+@rule(
+    WARNING,
+    "{side} begins late: {block_before} cuts the contour without compensation, with the cutter center on the "
+    "programmed path, {wrong_by}; write {side} into the block that leads to the contour",
+    at=("compensation_left", "compensation_right"),
+    once="section",
+    subject="",
+    doubts=(("compensation", "section"), ("metal", "section")),
+    follows={"block": ("start-up-on-arc",)},
+)
+def start_up_after_contour(misplaced_ramps: MisplacedRamps) -> Mask:
+    """
+    G41 or G42 one or more blocks late.
+
+    G41 and G42 belong into the move that leads to the contour. One block later that move has run without them, the
+    cutter stands with its center on the contour and is R deep in the part, and the first side of the contour serves as
+    the ramp. It shows where the contour ends at a point that a block before G41 or G42 has reached, or where the block
+    before them is the mirror image of the way out.
+
+    Source: builder's guide to G12.1, cutter compensation (ramp on with the move onto the part).
+
+    Bad, tool 1:radius=4:
+
+        T0101
+        G98 G0 X60. Z2. C0
+        G12.1
+        G1 X60. F1500
+        Z-5.
+        X40. F200
+        C20.
+        G42 X-40.         (expect: start-up-after-contour)
+        C-20.
+        X40.
+        C0
+        G40 X60. F1500
+        Z2.
+        G13.1
+
+    Good, tool 1:radius=4:
+
+        T0101
+        G98 G0 X60. Z2. C0
+        G12.1
+        G1 X60. F1500
+        Z-5.
+        G42 X40. F200
+        C20.
+        X-40.
+        C-20.
+        X40.
+        C0
+        G40 X60. F1500
+        Z2.
+        G13.1
+    """
+    return misplaced_ramps.begun_without >= 0

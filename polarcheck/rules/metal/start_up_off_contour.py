@@ -1,0 +1,60 @@
+from __future__ import annotations
+
+from polarcheck.checking.rule import WARNING, Mask, MisplacedRamps, rule
+
+
+@rule(
+    WARNING,
+    "the start-up ends at {ramp_end}, and the contour at {contour_end_there}: with {x_meant} here the contour would be "
+    "closed; as it stands the ramp {leads_where}",
+    at=("X", "U"),
+    once="loop",
+    subject="",
+    doubts=(("position", "X"), ("position", "X before"), ("compensation", "loop"), ("metal", "loop")),
+)
+def start_up_off_contour(misplaced_ramps: MisplacedRamps) -> Mask:
+    """
+    Start-up with half or twice the X of the contour.
+
+    The ramp ends where the contour begins. With X as a radius in place of the diameter, or the other way, the ramp goes
+    through the part, or stops short of it, and the contour begins somewhere else than it ends. It is reported where the
+    contour would be closed with the X that it ends with, and the way out leads back to where the ramp began.
+
+    Source: builder's guide to G12.1, layout of the plane (X on diameter).
+
+    Bad, tool 1:radius=4:
+
+        T0101
+        G98 G0 X60. Z2. C0
+        G12.1
+        G1 X60. F1500
+        Z-5.
+        G42 X20. F200     (expect: start-up-off-contour)
+        C20.
+        X-40.
+        C-20.
+        X40.
+        C0
+        G40 X60. F1500
+        Z2.
+        G13.1
+
+    Good, tool 1:radius=4:
+
+        T0101
+        G98 G0 X60. Z2. C0
+        G12.1
+        G1 X60. F1500
+        Z-5.
+        G42 X40. F200
+        C20.
+        X-40.
+        C-20.
+        X40.
+        C0
+        G40 X60. F1500
+        Z2.
+        G13.1
+    """
+    # NaN where a start-up ends on its contour.
+    return misplaced_ramps.x_of_contour == misplaced_ramps.x_of_contour
