@@ -1,9 +1,26 @@
 from __future__ import annotations
 
+from polarcheck.checking.causes import OUT_OF_PLACE
 from polarcheck.checking.rule import WARNING, AirCuts, Mask, rule
 
 
-@rule(WARNING, "{in_air}", once="section")
+@rule(
+    WARNING,
+    "{in_air}",
+    once="section",
+    subject="",
+    follows={
+        "section": (
+            *OUT_OF_PLACE,
+            "z-with-plane-axis",
+            "helical-arc-in-polar",
+            "polar-switch-not-alone",
+            "degrees-in-polar",
+            "number-without-point",
+            "bad-number",
+        )
+    },
+)
 def cut_in_air(air_cuts: AirCuts) -> Mask:
     """
     Section that cuts only air.

@@ -9,7 +9,15 @@ from polarcheck.checking.rule import WARNING, Hits, Regularity, rule
     subject="",
     doubts=(("position", "loop"),),
     follows={
-        "loop": ("wrong-axis-address-in-polar", "number-without-point", "degrees-in-polar"),
+        "loop": (
+            "wrong-axis-address-in-polar",
+            "number-without-point",
+            "degrees-in-polar",
+            "arc-end-off-circle",
+            "arc-radius-too-small",
+            "arc-center-on-path",
+            "arc-without-center",
+        ),
         "section": ("diameter-radius-mixed", "second-axis-never-programmed", "linear-axis-never-programmed"),
     },
 )

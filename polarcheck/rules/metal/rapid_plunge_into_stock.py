@@ -8,7 +8,10 @@ from polarcheck.checking.rule import ERROR, Hits, Workpiece, graded, rule
     "{way} takes the cutter, R {cutter}, in rapid traverse into the bar ({bar}) down to Z{depth}; write G1 with a feed",
     where="workpiece.is_mill",
     once="tool call",
-    follows={"block": ("uncompensated-cut-into-part", "rapid-through-part", "rapid-in-polar")},
+    follows={
+        "block": ("uncompensated-cut-into-part", "rapid-through-part", "rapid-in-polar"),
+        "tool call": ("approach-inside-stock",),
+    },
 )
 def rapid_plunge_into_stock(workpiece: Workpiece) -> Hits:
     """

@@ -8,7 +8,10 @@ from polarcheck.checking.rule import ERROR, Hits, Workpiece, graded, rule
     "{way} takes the cutter, R {cutter}, {height} {through} what stands of the bar ({bar}); retract Z first",
     where="workpiece.is_mill",
     once="tool call",
-    follows={"block": ("uncompensated-cut-into-part", "rapid-through-part", "rapid-in-polar")},
+    follows={
+        "block": ("uncompensated-cut-into-part", "rapid-through-part", "rapid-in-polar"),
+        "tool call": ("approach-inside-stock",),
+    },
 )
 def rapid_through_stock(workpiece: Workpiece) -> Hits:
     """
@@ -22,45 +25,43 @@ def rapid_through_stock(workpiece: Workpiece) -> Hits:
 
     Source: builder's guide to G12.1, programming the tool approach point.
 
-    Bad, tool 1:radius=4, set job.stock.diameter=40:
+    Bad, tool 1:radius=2.5, set job.stock.diameter=40:
 
         T0101
-        G98 G0 X60. Z2. C0
-        Z-3.
-        X30.              (expect: rapid-through-stock)
+        G98 G0 X24. Z2. C0
+        G1 Z-3. F60
         G12.1
         G1 X20. F200
-        C8.
-        X60. F1000
-        Z2.
+        C3.
+        X24.
         G13.1
+        G0 C90.           (expect: rapid-through-stock)
 
-    Bad, tool 1:radius=4:
+    Bad, tool 1:radius=2.5:
 
         (BAR DIA 40)
         T0101
-        G98 G0 X60. Z2. C0
-        Z-3.
-        X30.              (expect: rapid-through-stock)
+        G98 G0 X24. Z2. C0
+        G1 Z-3. F60
         G12.1
         G1 X20. F200
-        C8.
-        X60. F1000
-        Z2.
+        C3.
+        X24.
         G13.1
+        G0 C90.           (expect: rapid-through-stock)
 
-    Good, tool 1:radius=4, set job.stock.diameter=40:
+    Good, tool 1:radius=2.5, set job.stock.diameter=40:
 
         T0101
-        G98 G0 X60. Z2. C0
-        Z-3.
-        X48.5
+        G98 G0 X24. Z2. C0
+        G1 Z-3. F60
         G12.1
         G1 X20. F200
-        C8.
-        X60. F1000
-        Z2.
+        C3.
+        X24.
         G13.1
+        G0 Z2.
+        C90.
     """
     hits = workpiece.hits_bar & ~workpiece.plunges
     may_miss = workpiece.may_miss_bar

@@ -11,7 +11,6 @@ from polarcheck.geometry.tolerances import ROUNDING
     needs=("offsets.cutter_diameter",),
     where="entry.approaches_stock",
     doubts=(("compensation", "first start-up"),),
-    follows={"tool call": ("rapid-through-stock", "rapid-plunge-into-stock")},
 )
 def approach_inside_stock(path: ProgrammedPath, entry: Entry) -> Hits:
     """
