@@ -74,6 +74,7 @@ if TYPE_CHECKING:
     from polarcheck.table.part_comments import PartComments as PartComments
     from polarcheck.table.pass_depths import PassDepths as PassDepths
     from polarcheck.table.pass_differences import PassDifferences as PassDifferences
+    from polarcheck.table.pass_ends import PassEnds as PassEnds
     from polarcheck.table.passes import Passes as Passes
     from polarcheck.table.procedure import Procedure as Procedure
     from polarcheck.table.ramps import Ramps as Ramps

@@ -51,6 +51,7 @@ MAKERS = {
     "finished": "polarcheck.table.finished:Finished",
     "workpiece": "polarcheck.table.workpiece:Workpiece",
     "air_cuts": "polarcheck.table.air_cuts:AirCuts",
+    "pass_ends": "polarcheck.table.pass_ends:PassEnds",
     "pass_depths": "polarcheck.table.pass_depths:PassDepths",
     "deviations": "polarcheck.table.deviations:Deviations",
     "coverage": "polarcheck.table.coverage:Coverage",

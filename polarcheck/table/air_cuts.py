@@ -111,7 +111,18 @@ class AirCuts(Columns, frozen=True):
         writes_z = inside & trace.axes.commands_z
         alone = writes_z & ~trace.axes.moves_plane & (rows > last)
         earlier = trace.mode.anywhere_in_section(writes_z & (rows < first))
-        return np.asarray(still & (self._entry > _ABOVE) & trace.mode.anywhere_in_section(alone) & ~earlier)
+        idle = trace.mode.anywhere_in_section(alone) | self._retracts_nowhere_behind
+        return np.asarray(still & (self._entry > _ABOVE) & idle & ~earlier)
+
+    @property
+    def _retracts_nowhere_behind(self) -> Mask:
+        """Rows of sections behind which a Z word alone, before anything else moves, names the present place."""
+        trace, sections = self.trace, self.trace.mode.sections
+        moving = np.flatnonzero(trace.axes.moves | trace.mode.enters | trace.blocks.starts)
+        alone = trace.axes.commands_z & ~trace.path.moves_z & ~trace.blocks.has("X", "U")
+        following = np.append(moving, len(trace))[np.searchsorted(moving, np.minimum(sections.last, len(trace)))]
+        result = np.append(np.append(alone, False)[following], False)
+        return np.asarray(result[trace.mode.section])
 
     @property
     def _sign_wrong(self) -> Mask:
@@ -139,8 +150,13 @@ class AirCuts(Columns, frozen=True):
 
     @property
     def _others_below(self) -> Mask:
-        """The section never leaves the height of its entry above Z0, and other sections or the turning cut below Z0."""
-        stays = (self._lowest >= self._entry - ROUNDING) & (self._lowest > _CLEAR)
+        """
+        The cut stands no lower than the entry of its section above Z0, and other cuts or the turning go below Z0.
+
+        Without compensation that counts of all cuts of the section: some may be on the way to it.
+        """
+        height = np.where(self.trace.compensation.compensates, self.trace.path.z, self._lowest)
+        stays = (height >= self._entry - ROUNDING) & (height > _CLEAR)
         lowest = np.full(len(self.trace.mode.sections) + 1, np.inf)
         np.minimum.at(lowest, self.trace.mode.section[self.walls], self.trace.path.z[self.walls])
         below = bool((lowest < -_ABOVE).any()) or self.bar.deepest_turned < -_ABOVE
@@ -168,7 +184,8 @@ class AirCuts(Columns, frozen=True):
         The section has been cut before at the same angle of C with the same tool, feed and depths.
 
         It is no spring pass: its like are cut at other angles, and not each of them as often; or a block that indexes C
-        alone and moves nothing stands before it.
+        alone and moves nothing stands before it, or the tool retracts before it farther than it approaches, as it does
+        to index.
         """
         trace = self.trace
         repeated = np.zeros(len(trace.mode.sections) + 1, bool)
@@ -181,7 +198,7 @@ class AirCuts(Columns, frozen=True):
             later = np.array([index not in number[:place] for place, index in enumerate(number)]) == 0
             if len(count) > 1 and count.min() < count.max():
                 repeated[members[later]] = True
-            repeated[members[later & self._idle_index[members]]] = True
+            repeated[members[later & (self._idle_index | self._retracts_high)[members]]] = True
         return repeated[trace.mode.section]
 
     @property
@@ -224,6 +241,18 @@ class AirCuts(Columns, frozen=True):
         enter, last = trace.mode.sections.enter, trace.mode.sections.last
         since = np.append(-1, np.minimum(last, len(trace) - 1)[:-1]) + 1
         result = (idle[enter] > idle[since]) & (turns[enter] == turns[since])
+        result[:1] = False
+        return np.asarray(result)
+
+    @cached_property
+    def _retracts_high(self) -> Mask:
+        """Per section: Z goes higher between it and the section before than where it begins."""
+        trace, sections = self.trace, self.trace.mode.sections
+        z = np.nan_to_num(trace.path.z, nan=-np.inf)
+        since = np.append(0, np.minimum(sections.last, len(trace) - 1)[:-1])
+        bounds = np.column_stack((since, sections.enter + 1)).ravel()
+        highest = np.maximum.reduceat(np.append(z, -np.inf), bounds)[::2]
+        result = highest > trace.path.z[sections.enter] + 1
         result[:1] = False
         return np.asarray(result)
 

@@ -14,8 +14,8 @@ from polarcheck.table.air_cuts import AirCuts
 
 #: A step is far off the others if it is as many times as large.
 _FAR = 3.0
-#: Passes of a contour that show its step.
-_LEAST = 3
+#: Passes of a contour that show its step; of fewer, down from Z0, the digits must show what is wrong.
+_LEAST, _FEWEST = 3, 2
 #: A step that is as many times as large as the least has left out a pass.
 _SKIPPED = 1.5
 #: Points that are nearer than this are one [mm].
@@ -65,19 +65,31 @@ class PassDepths(Columns, frozen=True):
 
     def _off(self) -> Iterator[tuple[int, float]]:
         passes = self.passes
-        if len(passes) < _LEAST:
+        if len(passes) < _FEWEST:
             return
         order = np.argsort(passes.contour, kind="stable")
         passes = passes[order]
         first = np.flatnonzero(np.diff(passes.contour, prepend=-1))
         for group in np.split(np.arange(len(passes)), first[1:]):
             z = passes.z[group]
-            if len(z) < _LEAST:
+            if len(z) < _FEWEST:
                 continue
             off = _outlier(z)
-            if off is not None:
-                number, value = off
-                yield int(passes.row[group[number]]), value
+            if off is None:
+                continue
+            number, value = off
+            row = int(passes.row[group[number]])
+            scale = float(self.trace.lengths.scale[row])
+            if len(z) >= _LEAST or _is_slip(z[number] / scale, value / scale):
+                yield row, value
+
+
+def _is_slip(written: float, meant: float) -> bool:
+    """The digits of one number are those of the other and one more, or its point is elsewhere."""
+    long, short = (f"{abs(value):.4f}".replace(".", "").strip("0") for value in (written, meant))
+    if (written < 0) != (meant < 0) or not short:
+        return False
+    return long == short or any(long[:at] + long[at + 1 :] == short for at in range(len(long)))
 
 
 def _outlier(z: Floats) -> tuple[int, float] | None:
@@ -87,6 +99,8 @@ def _outlier(z: Floats) -> tuple[int, float] | None:
     Of two passes at one Z it is the later one, if the next step is as large as two.
     """
     levels = np.append(0.0, z) if z.max() < 0 else z
+    if len(levels) < _LEAST:
+        return None
     ahead = len(levels) - len(z)
     off: dict[float, tuple[int, float]] = {}
     for number in range(ahead, len(levels)):
@@ -99,7 +113,7 @@ def _outlier(z: Floats) -> tuple[int, float] | None:
         if behind + ROUNDING < levels[number] < before - ROUNDING and (
             behind > -np.inf or before - levels[number] <= _FAR * steps.max()
         ):
-            return None
+            continue
         is_again = abs(levels[number] - before) <= ROUNDING
         if abs(levels[number] - behind) <= ROUNDING:
             continue  # the later one counts

@@ -35,6 +35,19 @@ def rapid_through_part(workpiece: Workpiece) -> Hits:
         G13.1
         G0 C120.          (expect: rapid-through-part)
 
+    Bad, tool 1:radius=2.5:
+
+        T0101
+        G98 G0 X26. Z2. C0
+        G12.1
+        G1 X26. F500
+        Z-4. F40
+        G41 X34. F80
+        G3 I-4.
+        G1 G40 X26.
+        G13.1
+        G1 C120. F2000    (expect: rapid-through-part)
+
     Good, tool 1:radius=2.5:
 
         T0101

@@ -1,0 +1,48 @@
+from __future__ import annotations
+
+from polarcheck.checking.rule import WARNING, Mask, PassEnds, rule
+
+
+@rule(
+    WARNING,
+    "the pass begins outside the bar ({bar}) and ends inside it, at {path.end:point}: metal stays beyond its end",
+    subject="metal",
+    once="section",
+)
+def pass_ends_inside_bar(pass_ends: PassEnds) -> Mask:
+    """
+    Pass that ends inside the bar.
+
+    A flat or a slot that is open to the side is cut from outside the bar, ends in the middle of it, and the next move
+    leads the tool out another way. What the wall would go on beside stays: the last coordinate is too short, or that of
+    another block. The bar is that of `[stock]`, or what the program itself turns, or what a comment says.
+
+    Source: builder's guide to G12.1, approach and retract outside the part.
+
+    Bad, tool 1:radius=4, set job.stock.diameter=40:
+
+        T0101
+        G98 G0 X60. Z2. C0
+        G12.1
+        G1 X60. C28. F1500
+        Z-5.
+        G41 X20. C28. F200
+        C-2.              (expect: pass-ends-inside-bar)
+        G40 X60. F1500
+        Z2.
+        G13.1
+
+    Good, tool 1:radius=4, set job.stock.diameter=40:
+
+        T0101
+        G98 G0 X60. Z2. C0
+        G12.1
+        G1 X60. C28. F1500
+        Z-5.
+        G41 X20. C28. F200
+        C-28.
+        G40 X60. F1500
+        Z2.
+        G13.1
+    """
+    return pass_ends.leaves_metal
