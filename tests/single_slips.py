@@ -14,7 +14,7 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from metal_simulation import RAPID, cuts_the_part, differs, simulate
-from setter_programs import Program, drawn
+from setter_programs import BOSSES, Program, drawn
 
 Draw = random.Random
 Plant = Callable[[Program, Draw], Program | None]
@@ -702,7 +702,8 @@ def is_real(slip: Slip, program: Program, changed: Program) -> bool:
         return True
     index = _first_change(program, changed)
     is_beside = index < len(program.lines) and program.lines[index].role != "contour"
-    return is_beside and cuts_the_part(program, sound, changed, other)
+    is_drilled = program.family.endswith("center path") and not program.family.startswith(BOSSES)
+    return is_beside and not is_drilled and cuts_the_part(program, sound, changed, other)
 
 
 def _first_change(program: Program, changed: Program) -> int:
