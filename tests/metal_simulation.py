@@ -18,7 +18,7 @@ from itertools import pairwise
 from typing import Any, NamedTuple
 
 import shapely  # type: ignore[import-untyped]
-from compensation_oracle import Block, Move
+from compensation_oracle import Block, Move, Rules
 from compensation_oracle import simulate as compensated
 from part_reference import along
 from setter_programs import Program
@@ -331,7 +331,7 @@ class _Run:
             return
         blocks = [block for block, *_ in self.pending]
         try:
-            run = compensated(self.entry, blocks)
+            run = compensated(self.entry, blocks, Rules(read_ahead=self.dialect.read_ahead))
         except (ZeroDivisionError, ValueError):
             self.events.add("an alarm of the compensation")
             self.pending = []
