@@ -558,13 +558,33 @@ def per_minute_missing(program: Program, draw: Draw) -> Program | None:
     return program.changed(places[0]) if places else None
 
 
+def entered_again(program: Program, draw: Draw) -> Program | None:
+    """The mode is left and entered between two passes, where C stands elsewhere."""
+    places = [index for index in at(program, "plunge", "lift") if program.lines[index - 1].role == "cancel"]
+    dialect = program.dialect
+    if not places or not dialect.index or dialect.on != "G12.1" or dialect.before:
+        return None
+    index = draw.choice(places)
+    return program.changed(index, dialect.off, dialect.on, program.lines[index].text)
+
+
+def unknown_offset(program: Program, draw: Draw) -> Program | None:
+    """An offset that has no R."""
+    index = draw.choice(at(program, "call"))
+    text = program.lines[index].text
+    match = re.match(r"(?:N\d+ )?T(\d\d)(\d\d)", text)
+    if not match or program.machine == "okuma-osp" or program.family.endswith(("center path", "zigzag")):
+        return None
+    return program.changed(index, text.replace(match[1] + match[2], f"{match[1]}{int(match[2]) + 20}", 1))
+
+
 def other_offset(program: Program, draw: Draw) -> Program | None:
     """The offset of the other cutter."""
     places = at(program, "call")
     if len(program.radii) < 2 or program.machine in ("siemens-transmit", "okuma-osp"):
         return None
     index = draw.choice(places)
-    match = re.match(r"T(\d\d)(\d\d)", program.lines[index].text)
+    match = re.search(r"T(\d\d)(\d\d)", program.lines[index].text)
     if not match:
         return None
     other = next(offset for offset in program.radii if offset != int(match[2]))
@@ -661,6 +681,8 @@ SLIPS = (
     Slip("G99 for G98", per_revolution, ALWAYS, "F of a feed per minute"),
     Slip("G98 missing", per_minute_missing, ALWAYS, "F of a feed per minute"),
     Slip("F of a feed per revolution", block_changed(r"F[\d.]+", "F0.1", "ramp", "plunge"), ALWAYS, "takes hours"),
+    Slip("left and entered again", entered_again, ALWAYS, "C stands elsewhere"),
+    Slip("offset without R", unknown_offset, ALWAYS, "no radius is known"),
     Slip("offset of the other cutter", other_offset, ALWAYS, "the comment, or T with another number"),
 )
 
