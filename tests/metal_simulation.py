@@ -183,11 +183,11 @@ class _Run:
     def words(self, block: str) -> list[tuple[str, float]]:
         block = block.replace("TRANSMIT", "G12.1").replace("TRAFOOF", "G13.1").replace("E=C", "")
         block = re.sub(r"G17 XC|DIAMO[NF]|SETMS\(2\)|S2=\d+|M2=3|SB=\d+", "", block)
-        found = []
+        words = []
         for letter, text in _WORD.findall(block):
             if text:
-                found.append((letter.rstrip("="), self.value(text)))
-        return found
+                words.append((letter.rstrip("="), self.value(text)))
+        return words
 
     def block(self, block: str, index: int) -> None:
         dialect = self.dialect
