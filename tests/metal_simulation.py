@@ -18,7 +18,7 @@ from itertools import pairwise
 from typing import Any, NamedTuple
 
 import shapely  # type: ignore[import-untyped]
-from compensation_oracle import Block, Move
+from compensation_oracle import Block, Move, Rules
 from compensation_oracle import simulate as compensated
 from part_reference import along
 from setter_programs import Program
@@ -26,6 +26,7 @@ from setter_programs import Program
 RAPID = "a rapid through metal"
 _NO_RAPIDS = ("fanuc", "fanuc-16i", "fanuc-30i", "gsk-988", "doosan", "takisawa", "colchester", "turning-center")
 C_LIMIT = 12000.0  # [deg/min]
+_TOUCH = 0.2  # [mm] a rapid that meets less of the metal may be on another way than it seems
 _CLEAR = 0.02  # [mm] thinner differences are rounding
 _WORD = re.compile(r"([A-Z][A-Z0-9]*=|[A-Z])([-+]?(?:\d*\.?\d+|\d+\.)|\[[^A-Z]*?(?:\[[^\]]*\][^\[\]]*)*\]|[-+]?#\d+)?")
 _ALARMS = ("inside_arc_too_small", "interferes", "no_intersection", "arc_center_on_path")
@@ -77,10 +78,13 @@ def levels(*outcomes: Outcome) -> list[float]:
 
 
 def must_stand(program: Program, sound: Outcome, z: float) -> Any:
-    """What a sound program leaves at a Z, without what happens to be left in the middle of a pocket."""
+    """What a sound program leaves at a Z, without what happens to be left within a pocket or slot."""
     stands = metal_at(sound, z)
-    if "pocket" in program.family and "island" not in program.family and stands.geom_type == "MultiPolygon":
-        return max(stands.geoms, key=lambda area: shapely.Polygon(area.exterior).area)
+    pieces = {"slot": 2, "keyway": 1, "pocket": 1, "round_pocket": 1, "pocket_aside": 1}
+    shape, _, layout = program.family.partition(", ")
+    if shape in pieces and layout != "island" and stands.geom_type == "MultiPolygon":
+        areas = sorted(stands.geoms, key=lambda area: shapely.Polygon(area.exterior).area)
+        return shapely.MultiPolygon(areas[-pieces[shape] :])
     return stands
 
 
@@ -90,7 +94,7 @@ def cuts_the_part(program: Program, sound: Outcome, changed: Program, other: Out
         is_way = sweep.is_rapid if rapids else sweep.phase != "OFFSET" and changed.lines[sweep.line].role != "contour"
         if is_way:
             stands = must_stand(program, sound, sweep.z + 0.01).intersection(sweep.area)
-            if not stands.buffer(-2 * _CLEAR).is_empty:
+            if not stands.buffer(-_TOUCH if rapids else -2 * _CLEAR).is_empty:
                 return True
     return False
 
@@ -179,11 +183,11 @@ class _Run:
     def words(self, block: str) -> list[tuple[str, float]]:
         block = block.replace("TRANSMIT", "G12.1").replace("TRAFOOF", "G13.1").replace("E=C", "")
         block = re.sub(r"G17 XC|DIAMO[NF]|SETMS\(2\)|S2=\d+|M2=3|SB=\d+", "", block)
-        found = []
+        words = []
         for letter, text in _WORD.findall(block):
             if text:
-                found.append((letter.rstrip("="), self.value(text)))
-        return found
+                words.append((letter.rstrip("="), self.value(text)))
+        return words
 
     def block(self, block: str, index: int) -> None:
         dialect = self.dialect
@@ -261,7 +265,6 @@ class _Run:
         self.turn = cmath.rect(1, math.radians(self.c)) if self.dialect.index else 1 + 0j
         self.place = complex(self.x, 0)
         self.entry, self.entry_z = self.place, self.z
-        self.motion = "none" if self.motion == "rapid" else self.motion
 
     def leave(self) -> None:
         if not self.in_mode:
@@ -288,7 +291,7 @@ class _Run:
             c = values[v] * scale if v in values else c + values.get(dialect.virtual_step, 0.0) * scale
             z = values["Z"] * scale if "Z" in values else self.z
         end = complex(x, c)
-        kind, center = ("line" if self.motion in ("rapid", "none") else self.motion), None
+        kind, center = ("line" if self.motion == "rapid" else self.motion), None
         moves = any(letter in values for letter in ("X", "U", v, dialect.virtual_step))
         if kind != "line" and moves:
             center = self.center(kind, end, values)
@@ -328,7 +331,7 @@ class _Run:
             return
         blocks = [block for block, *_ in self.pending]
         try:
-            run = compensated(self.entry, blocks)
+            run = compensated(self.entry, blocks, Rules(read_ahead=self.dialect.read_ahead))
         except (ZeroDivisionError, ValueError):
             self.events.add("an alarm of the compensation")
             self.pending = []
@@ -411,7 +414,7 @@ class _Run:
             left = self.bar.intersection(area)
             swept = [sweep.area for sweep in self.sweeps if sweep.z <= top + 1e-6]
             left = left.difference(shapely.union_all(swept)) if swept else left
-            if not left.buffer(-0.05).is_empty:
+            if not left.buffer(-_TOUCH).is_empty:
                 return True
         return False
 

@@ -15,7 +15,8 @@ class Dialect(NamedTuple):
     engage, release: the C axis. reference: of the C axis. spindle, spindle_off: of the live tool. per_minute,
     per_revolution: feed modes. head: the first blocks. calls: M98 and macro statements are written. index: C positioned
     before G12.1 turns the contour. remark: what a comment stands between. cycles: turning cycles of system A.
-    starts_in_inch: where a program selects no unit.
+    starts_in_inch: where a program selects no unit. read_ahead: blocks that the compensation
+    knows in advance.
     """
 
     machine: str
@@ -49,6 +50,7 @@ class Dialect(NamedTuple):
     metric: str = "G21"
     units: tuple[str, ...] = ("mm", "inch")
     starts_in_inch: bool = False
+    read_ahead: int = 3
 
 
 _B = Dialect("", system="B", per_minute="G94", per_revolution="G95", cycles=False, reference="G28 C0")
@@ -81,6 +83,7 @@ DIALECTS = {
             ccw="G103", radius_word="L", centers=False, on="G137 C0", behind=("G17",), off="G136", engage="M110",
             release="M109", reference="", spindle="G97 SB=3000 M13", spindle_off="M12", per_minute="G94",
             per_revolution="G95", calls=False, index=False, cycles=False, inch="", metric="", units=("mm",),
+            read_ahead=10,
         ),
         _B._replace(machine="siemens-iso", head=("G90", "G40"), calls=False),
         Dialect(

@@ -704,11 +704,11 @@ class _Maker:
 def _numbered(lines: list[Line], draw: Draw) -> list[Line]:
     """With N words, but where a block has one already."""
     step = draw.choice((1, 10))
-    found, number = [], 0
+    numbered, number = [], 0
     for line in lines:
         if line.text.startswith(("%", "O", "N", "(", ";", "#", "W", "E")) or line.role == "turn":
-            found.append(line)
+            numbered.append(line)
             continue
         number += step
-        found.append(line._replace(text=f"N{number} {line.text}"))
-    return found
+        numbered.append(line._replace(text=f"N{number} {line.text}"))
+    return numbered
