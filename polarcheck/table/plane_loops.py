@@ -8,7 +8,6 @@ from typing import NamedTuple
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Points, Rows
-from polarcheck.columns.filling import before
 from polarcheck.columns.trace import Trace
 from polarcheck.geometry.plane import arc_sweep
 from polarcheck.geometry.regularity.rings import Ring, rings_in
@@ -85,8 +84,7 @@ def loops_of(trace: Trace) -> list[PlaneLoop]:
     motion, compensation = trace.axes.motion, trace.compensation
     at_feed = (motion == Motion.LINE) | (motion == Motion.CW) | (motion == Motion.CCW)
     ramp = compensation.starts_up | compensation.cancels
-    z = trace.path.z
-    deeper = trace.path.moves_z & ~trace.path.travels & ~(z == before(z, trace.blocks.starts, np.nan))
+    deeper = trace.path.moves_z & ~trace.path.travels
     begins = ramp | trace.mode.enters | deeper | (trace.path.travels & ~at_feed)
     rows = np.flatnonzero(trace.path.on_plane & at_feed & ~ramp & ~np.isnan(trace.path.end + trace.path.start))
     if not len(rows):
