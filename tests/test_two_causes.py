@@ -21,12 +21,7 @@ def test_the_drawn_sections_are_sound() -> None:
     assert len(DRAWN) > 9
 
 
-#: Arcs that end at half of their X are found one by one: the diameter that was halved is not recognised on them.
-HALVED = pytest.mark.xfail(reason="X halved gives a finding for each arc of a round", strict=True)
-ALL = [pytest.param(slip, marks=HALVED) if slip.name == "X halved" else slip for slip in SLIPS]
-
-
-@pytest.mark.parametrize("slip", ALL, ids=lambda slip: slip.name)
+@pytest.mark.parametrize("slip", SLIPS, ids=lambda slip: slip.name)
 def test_one_slip_is_one_finding(slip: Slip) -> None:
     draw = random.Random(5)  # noqa: S311
     written = [

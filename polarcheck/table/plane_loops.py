@@ -8,7 +8,6 @@ from typing import NamedTuple
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Points, Rows
-from polarcheck.columns.filling import before
 from polarcheck.columns.trace import Trace
 from polarcheck.geometry.plane import arc_sweep
 from polarcheck.geometry.regularity.rings import Ring, rings_in
@@ -22,6 +21,10 @@ _FEWEST, _MOST, _WORK = 4, 400, 1_000_000
 _ALIKE, _AS_LONG = 0.4, 0.02
 #: Least and greatest distance that counts as the same place [mm], in halves of the last digit.
 _SAME, _SAME_AT_MOST, _DIGITS = 0.01, 0.03, 5
+#: Readings of X by which a contour may be regular: as it is, and as the other of diameter and radius.
+_X_FACTORS = (1.0, 2.0, 0.5)
+#: Moves before a loop closes; arcs and ends of arcs that show by being tangent how X is meant; what is tangent [rad].
+_LEADS, _FEWEST_ARCS, _FEWEST_ENDS, _SMOOTH = 4, 2, 4, 0.02
 #: An arc of more is a full circle [rad].
 _FULL = 6.2
 
@@ -78,6 +81,27 @@ class PlaneLoop(NamedTuple):
         return bulge
 
 
+def smooth_share(loop: PlaneLoop, point: Points) -> float:
+    """
+    The share of the ends of arcs at which a closed loop is smooth; 0 where there are fewer than four, or it is open.
+
+    point: where its blocks end.
+    """
+    last = len(loop.turns)
+    first = next((at for at in range(min(_LEADS, last - 2)) if abs(point[at] - point[last]) <= loop.tolerance), None)
+    if first is None or np.count_nonzero(loop.turns[first:]) < _FEWEST_ARCS:
+        return 0.0
+    bulge = loop.bulges(point)[first:]
+    way = np.diff(point)[first:]
+    turned = 2 * np.arctan(bulge)
+    into, out = way * np.exp(1j * turned), way * np.exp(-1j * turned)
+    turn = np.abs(np.angle(out * np.roll(into, 1).conj()))
+    beside = (loop.turns[first:] != 0) | (np.roll(loop.turns[first:], 1) != 0)
+    if np.count_nonzero(beside) < _FEWEST_ENDS or np.isnan(bulge).all():
+        return 0.0
+    return float(np.count_nonzero(turn[beside] <= _SMOOTH) / np.count_nonzero(beside))
+
+
 def loops_of(trace: Trace) -> list[PlaneLoop]:
     """The loops that may be regular, each contour once, in the order of the program."""
     if not len(trace.mode.sections):
@@ -85,8 +109,7 @@ def loops_of(trace: Trace) -> list[PlaneLoop]:
     motion, compensation = trace.axes.motion, trace.compensation
     at_feed = (motion == Motion.LINE) | (motion == Motion.CW) | (motion == Motion.CCW)
     ramp = compensation.starts_up | compensation.cancels
-    z = trace.path.z
-    deeper = trace.path.moves_z & ~trace.path.travels & ~(z == before(z, trace.blocks.starts, np.nan))
+    deeper = trace.path.moves_z & ~trace.path.travels
     begins = ramp | trace.mode.enters | deeper | (trace.path.travels & ~at_feed)
     rows = np.flatnonzero(trace.path.on_plane & at_feed & ~ramp & ~np.isnan(trace.path.end + trace.path.start))
     if not len(rows):
@@ -95,17 +118,26 @@ def loops_of(trace: Trace) -> list[PlaneLoop]:
     first = np.flatnonzero(np.diff(stretch, prepend=-1))
     count = np.diff(first, append=len(rows))
     fits = (count >= _FEWEST) & (count <= _MOST)
-    if fits.any():
-        fits &= np.add.reduceat(_as_long_as_another(trace, rows, stretch), first, dtype=np.int64) >= _ALIKE * count
+    if not fits.any():
+        return []
+    chosen = np.repeat(fits, count)
+    rows, stretch, count = rows[chosen], stretch[chosen], count[fits]
+    step = trace.path.end[rows] - trace.path.start[rows]
+    first = np.append(0, np.cumsum(count)[:-1])
+    fits = np.zeros(len(first), bool)
+    for factor in _X_FACTORS:
+        length = np.hypot(step.real * factor, step.imag)
+        fits |= np.add.reduceat(_as_long_as_another(length, stretch), first, dtype=np.int64) >= _ALIKE * count
+        if fits.all():
+            break
     return [*_different(trace, rows, first[fits], count[fits])]
 
 
-def _as_long_as_another(trace: Trace, rows: Rows, stretch: Rows) -> Mask:
+def _as_long_as_another(length: Floats, stretch: Rows) -> Mask:
     """Blocks beside which their stretch has another one as long."""
-    length = np.abs(trace.path.end[rows] - trace.path.start[rows])
     order = np.lexsort((length, stretch))
     near = (np.diff(length[order]) <= _AS_LONG) & (np.diff(stretch[order]) == 0)
-    alike = np.zeros(len(rows), bool)
+    alike = np.zeros(len(length), bool)
     alike[order] = np.append(near, False) | np.append(False, near)
     return alike
 

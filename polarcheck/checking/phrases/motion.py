@@ -11,10 +11,12 @@ from polarcheck.columns.axes import PlaneAxes
 from polarcheck.columns.lengths import Lengths
 from polarcheck.columns.mode import PolarMode
 from polarcheck.execution.run import Run
+from polarcheck.geometry.shapes.shape import polygon_name
 from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.machines.machine import Machine
 from polarcheck.machines.modal import MM_PER_INCH, Units
 from polarcheck.table.arcs import Arcs
+from polarcheck.table.regularity import Regularity
 from polarcheck.table.travel import Travel
 from polarcheck.table.unpointed import Unpointed
 
@@ -41,7 +43,30 @@ def reading(lengths: Lengths, row: int) -> str:
     return "diameter" if lengths.x_factor[row] < 1 else "radius"
 
 
-def written_for(lengths: Lengths, other_machine: OtherMachine, row: int) -> str:
+def misfit_of_x(
+    regularity: Regularity, mode: PolarMode, lengths: Lengths, other_machine: OtherMachine, row: int
+) -> str:
+    """How the section does not fit as X is read, how it would, and what to write."""
+    read, meant = reading(lengths, row), other(lengths, row)
+    found = regularity.x_readings.get(int(mode.section[row]))
+    if found is None:
+        text = f"no arc of this section fits with X read as a {read}, all fit with X as a {meant}"
+        return f"{text}{_written_for(lengths, other_machine, row)}"
+    as_large = ("twice", "half") if found.factor > 1 else ("half", "twice")
+    if found.becomes is None:
+        text = f"no arc of this section is tangent as it is written, all are with X {as_large[0]} as large"
+    elif found.becomes.is_regular:
+        polygon = polygon_name(found.becomes.corners)
+        text = f"with all X {as_large[0]} as large the contour would be a regular {polygon}, as it is written it is not"
+    else:
+        turn = f"{360 / found.becomes.order:g} deg"
+        text = f"with all X {as_large[0]} as large the contour would be the same after each {turn}, now it is not"
+    if (found.factor > 1) == (read == "diameter"):
+        return f"{text}{_written_for(lengths, other_machine, row)}, or C {as_large[1]} as large"
+    return f"{text}; write X {as_large[0]} or C {as_large[1]} as large"
+
+
+def _written_for(lengths: Lengths, other_machine: OtherMachine, row: int) -> str:
     """The machines that the program may be for; where there is none, what to write."""
     return other_machine.text or f"; write X as a {reading(lengths, row)}"
 

@@ -1,26 +1,27 @@
 from __future__ import annotations
 
 from polarcheck.checking.causes import SECTION_READ_OTHERWISE
-from polarcheck.checking.rule import WARNING, Arcs, Mask, rule
+from polarcheck.checking.rule import WARNING, Arcs, Mask, Regularity, rule
 
 
 @rule(
     WARNING,
-    "no arc of this section fits with X read as a {reading}, all fit with X as a {other}{written_for}",
+    "{misfit_of_x}",
     at=("on",),
     once="section",
     subject="",
     doubts=SECTION_READ_OTHERWISE,
     follows={"section": ("wrong-axis-address-in-polar",)},
 )
-def diameter_radius_mixed(arcs: Arcs) -> Mask:
+def diameter_radius_mixed(arcs: Arcs, regularity: Regularity) -> Mask:
     """
     X written as a radius where the control reads a diameter, or the other way.
 
     Most lathes read X in the mode as a diameter, some as a radius; C, I, J and R are radii on all. Here the ends of all
     arcs miss their circles as this machine reads X, and none does with the other reading: the program is for another
     machine, or polar.x of the profile is wrong. The shape would come out stretched along X. Reported once for the
-    section, in place of its arcs.
+    section, in place of its arcs. Without arcs that miss, it is reported where the contour becomes a regular polygon of
+    at least five sides with the other reading, or all of its arcs tangent; C may be what is twice as large.
 
     Source: FANUC B-62764EN/01, p. 51; Mitsubishi M700V programming manual, parameter 8111 and the example on p. 77.
 
@@ -55,6 +56,22 @@ def diameter_radius_mixed(arcs: Arcs) -> Mask:
         G1 C0
         G13.1
 
+    Bad, tool 1:radius=4:
+
+        T0101
+        G98 G0 X60. C0
+        G12.1             (expect: diameter-radius-mixed)
+        G1 G42 X15. F200
+        C8.66
+        X0 C17.321
+        X-15. C8.66
+        C-8.66
+        X0 C-17.321
+        X15. C-8.66
+        C0
+        G40 X60.
+        G13.1
+
     Good:
 
         G98 G0 X60. C0
@@ -66,5 +83,4 @@ def diameter_radius_mixed(arcs: Arcs) -> Mask:
         G1 C0
         G13.1
     """
-    # Compares nothing: the table tries both readings of X on all arcs of a section and counts which fit.
-    return arcs.x_is_misread
+    return arcs.x_is_misread | regularity.x_is_misread
