@@ -45,9 +45,22 @@ class PassDifferences(Columns, frozen=True):
     @cached_property
     def found(self) -> dict[int, Difference]:
         """The differences, by the row that differs."""
-        groups = self._groups
-        differences = [one for group in groups for one in self._differences_of(group)]
-        return {one.row: one for one in reversed(differences)}
+        return {one.row: one for differences in reversed(self._by_group) for one in reversed(differences)}
+
+    @cached_property
+    def _by_group(self) -> list[list[Difference]]:
+        """The differences of each group of passes."""
+        return [self._differences_of(group) for group in self._groups]
+
+    @cached_property
+    def twin(self) -> Rows:
+        """The same number for all rows of passes that are compared, where one of them differs; -1 for other rows."""
+        column = np.full(len(self.trace), -1)
+        passes = self.passes
+        for number, (group, differences) in enumerate(zip(self._groups, self._by_group, strict=True)):
+            for which in group.tolist() if differences else ():
+                column[passes.row[passes.first[which]] : passes.row[passes.last[which]] + 1] = number
+        return column
 
     @cached_property
     def differs(self) -> Mask:
