@@ -80,8 +80,8 @@ class Mistake(NamedTuple):
 
 
 def beside_depth(code: str) -> dict[str, str]:
-    """A block in offset mode beside a Z move, where without it there would be one block without a move."""
-    return {"/C20./": f"/C20./{code}/Z-6./"}
+    """A block in offset mode beside a Z word, where without it there would be one block without a move."""
+    return {"/C20./": f"/C20./{code}/Z-5./"}
 
 
 MIRRORED = "side-of-compensation-mirrored"
@@ -815,7 +815,7 @@ def test_no_rule_follows_from_itself() -> None:
 
 NEAR = "\n".join([*HEAD, *SQUARE.replace("G0 X80.", "G0 X44.").split("/"), *END])
 ROOT_OF_NEAR, NEXT_OF_NEAR = "start-up-shorter-than-radius", "start-up-sweeps-contour"
-DEPTH = "\n".join([*HEAD, *SQUARE.replace("/C20./", "/C20./M3/Z-6./").split("/"), *END])
+DEPTH = "\n".join([*HEAD, *SQUARE.replace("/C20./", "/C20./M3/Z-5./").split("/"), *END])
 
 
 def test_what_follows_stands_alone_where_its_cause_is_not_reported() -> None:
@@ -857,7 +857,7 @@ def test_the_cause_is_as_severe_as_the_worst_that_follows(severities: dict[str, 
 
 def test_a_code_that_is_a_note_elsewhere_is_a_warning_where_it_costs_a_block() -> None:
     assert told(report_of(DEPTH, "fanuc", "1:radius=4")) == [(9, "spindle-code-in-polar")]
-    harmless = report_of(DEPTH.replace("Z-6.\n", ""), "fanuc", "1:radius=4")
+    harmless = report_of(DEPTH.replace("M3\nZ-5.\n", "M3\n"), "fanuc", "1:radius=4")
     assert [(found.rule, found.severity) for found in harmless.findings] == [("spindle-code-in-polar", "note")]
 
 

@@ -87,6 +87,33 @@ OUT_OF_PLACE: Final = (
     "unknown-code",
     "rapid-in-polar",
 )
+#: What is wrong with a contour, be it in the pass that differs from the others or in the one it is compared with.
+FAULTS_OF_CONTOUR: Final = (
+    *OUT_OF_PLACE,
+    "arc-end-off-circle",
+    "arc-radius-too-small",
+    "arc-without-center",
+    "arc-center-on-path",
+    "arc-off-polar-plane",
+    "arc-sense-reversed",
+    "arc-not-tangent",
+    "arc-word-without-arc",
+    "contour-crosses-itself",
+    "contour-at-two-depths",
+    "contour-not-closed",
+    "incremental-contour-not-closed",
+    "inside-arc-smaller-than-radius",
+    "interference",
+    "material-left",
+    "movement-missing-in-offset-mode",
+    "nearly-regular-contour",
+    "no-offset-intersection",
+    "number-without-point",
+    "overcut",
+    "slot-narrower-than-cutter",
+    "wrong-axis-address-in-polar",
+    "z-with-plane-axis",
+)
 
 
 def subject_of(parameters: Iterable[str]) -> str:

@@ -100,6 +100,7 @@ SPANS = {
     "mesh": "ramps.mesh",
     "tight arc": "ramps.tight_arc",
     "misfit": "tangency.size",
+    "twin": "pass_differences.twin",
     "narrow loop": "ramps.narrow_loop",
     "loop": "ramps.loop",
     "compensation": "since.compensation",

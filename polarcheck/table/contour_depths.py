@@ -6,8 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from polarcheck.arrays import Columns, Floats, Mask, Rows
-from polarcheck.columns.filling import before
+from polarcheck.arrays import Columns, Mask, Rows
 from polarcheck.columns.trace import Trace
 from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.table.passes import LEADS, Passes
@@ -27,11 +26,6 @@ class ContourDepths(Columns, frozen=True):
 
     trace: Trace
     passes: Passes
-
-    @cached_property
-    def z_before(self) -> Floats:
-        """Z before each row [mm]; NaN where it is not known."""
-        return before(self.trace.path.z, self.trace.blocks.starts, np.nan)
 
     @cached_property
     def changes(self) -> Mask:
@@ -84,7 +78,7 @@ class ContourDepths(Columns, frozen=True):
     def _with_plane(self) -> Mask:
         """Blocks of a ring that move Z, too, where the others keep their depth; none at its beginning or end."""
         passes, trace = self.passes, self.trace
-        moved = np.abs(trace.path.z - self.z_before)[passes.row] > ROUNDING
+        moved = np.abs(trace.path.z - trace.path.z_before)[passes.row] > ROUNDING
         moved &= passes.in_ring & passes.compensated[passes.number]
         if not moved.any():
             return trace.blocks.nowhere

@@ -18,8 +18,8 @@ from polarcheck.table.passes import LEADS, Passes
 _MOSTLY, _LEAST_MOVES = 0.75, 4
 #: Largest gap as a share of the size of the contour, and the least one [mm].
 _SHARE, _LEAST = 0.1, 0.01
-#: A contour turns at least as far on its way round, without the corner at its start [rad].
-_ROUND = 4.2
+#: How far a contour turns on its way round, without the corner at its start; a spiral turns farther [rad].
+_ROUND, _SPIRAL = 4.2, 8.5
 
 
 class Increments(Columns, frozen=True):
@@ -51,7 +51,7 @@ class Increments(Columns, frozen=True):
         count = passes.last - passes.first + 1
         steps = np.add.reduceat(self.is_step[passes.row].astype(np.int64), passes.first)
         chosen = passes.compensated & ~passes.closed & (count >= _LEAST_MOVES) & (steps >= _MOSTLY * count)
-        chosen &= np.abs(self._turn) >= _ROUND
+        chosen &= (np.abs(self._turn) >= _ROUND) & (np.abs(self._turn) < _SPIRAL)
         gaps = [self._gap_of(which) for which in np.flatnonzero(chosen).tolist()]
         found = [gap for gap in gaps if gap is not None]
         if not found:

@@ -10,15 +10,16 @@ import numpy as np
 from polarcheck.arrays import Columns, Mask, Points, Rows
 from polarcheck.columns.trace import Trace
 from polarcheck.table.passes import Passes
+from polarcheck.table.slips import plain_number, slip_of
 
 #: Points nearer to each other than this [mm] are the same, and how far off a point is that differs.
 _SAME, _OTHER = 1e-4, 0.01
 #: Moves that may differ, and the least number that agree.
 _MOST_DIFFERING, _LEAST_AGREEING = 3, 3
+#: Digits of a number from which on one other digit is a slip, and no other dimension.
+_FINE = 4
 #: Different passes with one beginning and end that are compared with each other.
 _MOST = 12
-#: Significant digits from which on one other digit is a slip, and no other dimension.
-_FINE = 4
 
 
 class Difference(NamedTuple):
@@ -45,9 +46,22 @@ class PassDifferences(Columns, frozen=True):
     @cached_property
     def found(self) -> dict[int, Difference]:
         """The differences, by the row that differs."""
-        groups = self._groups
-        differences = [one for group in groups for one in self._differences_of(group)]
-        return {one.row: one for one in reversed(differences)}
+        return {one.row: one for differences in reversed(self._by_group) for one in reversed(differences)}
+
+    @cached_property
+    def _by_group(self) -> list[list[Difference]]:
+        """The differences of each group of passes."""
+        return [self._differences_of(group) for group in self._groups]
+
+    @cached_property
+    def twin(self) -> Rows:
+        """The same number for all rows of passes that are compared, where one of them differs; -1 for other rows."""
+        column = np.full(len(self.trace), -1)
+        passes = self.passes
+        for number, (group, differences) in enumerate(zip(self._groups, self._by_group, strict=True)):
+            for which in group.tolist() if differences else ():
+                column[passes.row[passes.first[which]] : passes.row[passes.last[which]] + 1] = number
+        return column
 
     @cached_property
     def differs(self) -> Mask:
@@ -162,30 +176,13 @@ class PassDifferences(Columns, frozen=True):
         blocks = self.trace.blocks
         address = chr(int(self.trace.axes.linear_axis[row])) if along_x else self.trace.axes.virtual_axis_of(row)
         words = float(blocks.word(address)[row]), float(blocks.word(address)[other])
-        return not np.isnan(sum(words)) and is_mistyped(*words)
+        if np.isnan(sum(words)):
+            return False
+        slip = slip_of(plain_number(words[0]), words[1], _SAME)
+        return slip is not None and (slip.plain or len(plain_number(words[0]).strip("-").replace(".", "")) >= _FINE)
 
 
 def _agreeing(one: Points, two: Points) -> int:
     """How many moves agree from the first on."""
     same: Mask = np.all(np.abs(one - two) <= _SAME, axis=1)
     return int(np.argmin(same)) if not same.all() else len(same)
-
-
-def is_mistyped(one: float, two: float) -> bool:
-    """Two numbers that a slip explains: a sign, a factor of 2 or 10, two digits swapped, one lost or another."""
-    if one == -two:
-        return True
-    larger, smaller = max(abs(one), abs(two)), min(abs(one), abs(two))
-    if smaller and min(abs(larger / smaller - factor) for factor in (2, 10)) < 1e-6:
-        return one * two > 0
-    texts = [f"{abs(value):.4f}".rstrip("0") for value in (one, two)]
-    if one * two < 0 or abs(len(texts[0]) - len(texts[1])) > 1:
-        return False
-    digits = [text.replace(".", "").lstrip("0") for text in texts]
-    short, long = sorted(texts, key=len)
-    if len(short) < len(long):
-        return len(long) > _FINE and any(long[:at] + long[at + 1 :] == short for at in range(len(long)))
-    off = [at for at in range(len(short)) if texts[0][at] != texts[1][at]]
-    if len(off) == 2 and off[1] == off[0] + 1:
-        return texts[0][off[0]] == texts[1][off[1]] and texts[0][off[1]] == texts[1][off[0]]
-    return len(off) == 1 and min(map(len, digits)) >= _FINE

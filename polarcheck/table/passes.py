@@ -7,7 +7,6 @@ from functools import cached_property
 import numpy as np
 
 from polarcheck.arrays import Columns, Floats, Mask, Points, Rows, States, is_among
-from polarcheck.columns.filling import before
 from polarcheck.columns.trace import Trace
 from polarcheck.geometry.plane import angle_between
 from polarcheck.geometry.tolerances import ADJUSTMENT, ROUNDING
@@ -43,8 +42,7 @@ class Passes(Columns, frozen=True):
     def moves_z_alone(self) -> Mask:
         """Rows of the trace that move Z and nothing on the plane."""
         trace = self.trace
-        z_before = before(trace.path.z, trace.blocks.starts, np.nan)
-        stays = np.abs(trace.path.z - z_before) <= ROUNDING
+        stays = np.abs(trace.path.z - trace.path.z_before) <= ROUNDING
         return np.asarray(trace.path.moves_z & ~trace.path.travels & ~stays)
 
     @cached_property
@@ -116,12 +114,13 @@ class Passes(Columns, frozen=True):
             return first, last
         i, j = (index.ravel() for index in np.mgrid[:LEADS, :LEADS])
         begin, end = first[:, None] + i, last[:, None] - j
-        is_pair = end > begin
+        is_pair = end >= begin
         begin, end = np.minimum(begin, last[:, None]), np.maximum(end, first[:, None])
+        is_pair &= (end > begin) | self.is_arc[begin]
         closes = is_pair & (np.abs(self.start[begin] - self.end[end]) <= _CLOSED)
         length = np.where(closes, end - begin, -1)
         best, rows = np.argmax(length, axis=1), np.arange(len(first))
-        closed = length[rows, best] > 0
+        closed = length[rows, best] >= 0
         return np.where(closed, begin[rows, best], -1), np.where(closed, end[rows, best], -1)
 
     @cached_property

@@ -16,6 +16,7 @@ from polarcheck.geometry.plane import angle_between
 from polarcheck.machines.modal import Motion, Units
 from polarcheck.table.arcs import Arcs
 from polarcheck.table.passes import Passes
+from polarcheck.table.slips import plain_number, slip_of
 
 #: A turn that is meant as a corner [rad], and this many times what rounding turns a tangent by.
 _CORNER, _CLEARLY = np.radians(1.5), 4
@@ -146,8 +147,13 @@ class Tangency(Columns, frozen=True):
             is_sign = abs(needed + had) <= near
             is_like = bool((np.abs(size[at][tangent] - needed) <= near).any())
             is_factor = any(abs(abs(needed) * factor - abs(had)) <= near * factor for factor in _FACTORS)
-            shown = is_sign or (is_like and others >= corners) or (others >= 2 and (corners == 0 or is_factor))
-            shown |= is_factor and corners == 0 and min(abs(passes.turns[0][move]), abs(passes.turns[1][move])) > _SHARP
+            is_slip = is_factor or self._is_mistyped(index, near)
+            if others >= 2:
+                shown = is_sign or corners == 0 or (is_slip and others >= corners) or (is_like and others > corners)
+            else:
+                # One end of a slot may be flatter than the other one on purpose.
+                sharp = min(abs(passes.turns[0][move]), abs(passes.turns[1][move])) > _SHARP
+                shown = is_sign or (is_slip and is_like) or (is_factor and corners == 0 and sharp)
             if shown:
                 chosen.append((needed < 0, index))
         # Of two halves of a circle each would fit the other one: the shorter way round is meant.
@@ -175,6 +181,14 @@ class Tangency(Columns, frozen=True):
         half = np.arcsin(min(1.0, abs(passes.end[move] - passes.start[move]) / 2 / needed))
         slack = min(float(judged.tolerance[index]), 0.05)
         return float(2 * passes.half_of_last_digit[move] / np.sin(half) + needed * slack / np.tan(half) + 1e-3)
+
+    def _is_mistyped(self, index: int, near: float) -> bool:
+        """The R that would be tangent is the one that is written but for a slip that no other design explains."""
+        row = self.passes.row[self._judged.move[index]]
+        scale = float(self.trace.lengths.scale[row])
+        had, needed = (abs(float(of[index])) / scale for of in (self._written[self._judged.move], self._judged.radius))
+        slip = slip_of(plain_number(had), needed, near / scale)
+        return slip is not None and slip.plain
 
     @cached_property
     def _written(self) -> Floats:

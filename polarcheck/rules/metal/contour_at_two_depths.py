@@ -1,17 +1,18 @@
 from __future__ import annotations
 
+from polarcheck.checking.causes import OUT_OF_PLACE
 from polarcheck.checking.rule import WARNING, ContourDepths, Mask, rule
 
 
 @rule(
     WARNING,
-    "Z goes from {contour_depths.z_before:length} to {path.z:length} in the middle of the contour, which is closed "
-    "only with both of its parts",
+    "Z goes from {path.z_before:length} to {path.z:length} in the middle of the contour, which is closed only with "
+    "both of its parts",
     at=("Z", "W"),
     once="compensation",
     subject="side",
     doubts=(("metal", "loop"),),
-    follows={"block": ("z-with-plane-axis",)},
+    follows={"block": ("z-with-plane-axis", "arc-off-polar-plane"), "loop": OUT_OF_PLACE},
 )
 def contour_at_two_depths(contour_depths: ContourDepths) -> Mask:
     """

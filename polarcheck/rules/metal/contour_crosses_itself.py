@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from polarcheck.checking.causes import OUT_OF_PLACE
 from polarcheck.checking.rule import WARNING, Crossings, Mask, rule
 
 
@@ -9,7 +10,7 @@ from polarcheck.checking.rule import WARNING, Crossings, Mask, rule
     once="loop",
     subject="side",
     doubts=(("compensation", "loop"),),
-    follows={"loop": ("arc-sense-reversed", "arc-not-tangent", "arc-word-without-arc")},
+    follows={"loop": (*OUT_OF_PLACE, "arc-sense-reversed", "arc-not-tangent", "arc-word-without-arc")},
 )
 def contour_crosses_itself(crossings: Crossings) -> Mask:
     """

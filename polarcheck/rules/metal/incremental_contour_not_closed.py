@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from polarcheck.checking.causes import OUT_OF_PLACE
 from polarcheck.checking.rule import WARNING, Increments, Mask, rule
 
 
@@ -11,7 +12,13 @@ from polarcheck.checking.rule import WARNING, Increments, Mask, rule
     subject="side",
     doubts=(("compensation", "loop"),),
     follows={
-        "loop": ("arc-sense-reversed", "arc-not-tangent", "arc-word-without-arc", "contour-crosses-itself"),
+        "loop": (
+            *OUT_OF_PLACE,
+            "arc-sense-reversed",
+            "arc-not-tangent",
+            "arc-word-without-arc",
+            "contour-crosses-itself",
+        )
     },
 )
 def incremental_contour_not_closed(increments: Increments) -> Mask:

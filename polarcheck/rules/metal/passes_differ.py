@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from polarcheck.checking.causes import FAULTS_OF_CONTOUR
 from polarcheck.checking.rule import WARNING, Mask, PassDifferences, rule
 
 
@@ -7,10 +8,7 @@ from polarcheck.checking.rule import WARNING, Mask, PassDifferences, rule
     WARNING,
     "{pass_difference}; all else in this pass is as in {other_pass}",
     subject="side",
-    doubts=(("compensation", "loop"),),
-    follows={
-        "loop": ("arc-sense-reversed", "arc-not-tangent", "arc-word-without-arc", "contour-crosses-itself"),
-    },
+    follows={"twin": FAULTS_OF_CONTOUR},
 )
 def passes_differ(pass_differences: PassDifferences) -> Mask:
     """
