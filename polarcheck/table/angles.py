@@ -9,6 +9,7 @@ import numpy as np
 from polarcheck.arrays import Columns, Floats, Mask, repeated
 from polarcheck.columns.trace import Trace
 from polarcheck.machines.codes import code_set
+from polarcheck.machines.modal import Motion
 from polarcheck.table.series import Series, find_series
 
 #: What is written where C turns by an angle [deg].
@@ -61,6 +62,11 @@ class Angles(Columns, frozen=True):
         if not self.series.is_angle.any():
             return np.zeros(len(self.trace), bool)
         return np.asarray(self.series.in_rows(self.series.is_angle.astype(np.float64), len(self.trace)) == 1.0)
+
+    @cached_property
+    def is_positioning(self) -> Mask:
+        """G0 to a usual angle of the virtual axis: the approach of a contour, meant before G12.1."""
+        return np.asarray(self.is_usual & (self.trace.axes.motion == Motion.RAPID))
 
     @cached_property
     def virtual_length(self) -> Floats:

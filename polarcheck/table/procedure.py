@@ -34,7 +34,8 @@ class Procedure(Columns, frozen=True):
         The first row above in which C moves at feed as on a contour, outside the mode and known to be so; -1 for none.
 
         It is a contour with G41 or G42, on an arc, or where at least two moves of C and one of X lead at feed right up
-        to the row, and C may be a length there. Looked for back to the last tool change, G12.1 or G13.1, and only if a
+        to the row, and C may be a length there; with a retract between, too, where a block moves X and C, or X goes
+        below 0, and Z moves in none of them. Looked for back to the last tool change, G12.1 or G13.1, and only if a
         G13.1 stands outside sections. Beside G7.1 C is the radius of a cylinder, on which offset mode may move C.
         """
         trace = self.trace
@@ -47,7 +48,9 @@ class Procedure(Columns, frozen=True):
         stops = since | self._may_begin | self._leaves_work
         first = _first(compensated, since | self._may_begin, trace.blocks.starts)
         # G40 G13.1 is written for safety.
-        return np.where((first < 0) & ~trace.compensation.writes_cancel, self._stretch(turns, stops), first)
+        plain = self._stretch(turns, stops)
+        plain = np.where(plain < 0, self._contour_of_both(turns, since | self._may_begin), plain)
+        return np.where((first < 0) & ~trace.compensation.writes_cancel, plain, first)
 
     @property
     def _turns(self) -> Mask:
@@ -100,6 +103,45 @@ class Procedure(Columns, frozen=True):
         first = _first(plane, stops, trace.blocks.starts)
         is_contour = (turning >= _MOVES_OF_CONTOUR) & (moving > 0) & ~self._is_angle(plane, stops)
         return np.where(is_contour, first, -1)
+
+    def _contour_of_both(self, turns: Mask, stops: Mask) -> Rows:
+        """The same where rapid traverse may stand between the contour and the row, and X and C move in one block."""
+        trace = self.trace
+        if not self._is_rotary:
+            return repeated(np.int64(-1), len(trace))
+        plane = turns & ~self._is_arc & ~trace.path.moves_z
+        both = turns & (trace.path.moves_x | (trace.path.x < 0))
+        turning, both_count, with_z = (
+            before(_count(mask, stops), trace.blocks.starts, 0) for mask in (plane, both, turns & trace.path.moves_z)
+        )
+        is_contour = (turning >= _MOVES_OF_CONTOUR) & (both_count > 0) & (with_z == 0) & ~self._is_angle(plane, stops)
+        return np.where(is_contour, _first(plane, stops, trace.blocks.starts), -1)
+
+    # ---- an arc that no mode has begun ----
+
+    @cached_property
+    def arc_without_mode(self) -> Mask:
+        """
+        Arcs with X and C outside the mode, and known to be so, which no G13.1 ends as a contour.
+
+        C is an axis there: the program has positioned it before. On a cylinder, and in what may be another mode, an arc
+        may move C; with Z it may be one of X and Z along which C turns.
+        """
+        trace, polar = self.trace, self.trace.machine.polar
+        arcs = self._turns & self._is_arc & ~trace.axes.commands_z & ~trace.mode.on_cylinder
+        if not arcs.any():
+            return np.zeros(len(trace), bool)
+        has_x = trace.blocks.has("X", "U") | trace.axes.has_center
+        arcs &= has_x & trace.blocks.with_words(trace.blocks.word_indices("I", "J", trace.machine.arcs.radius_word))
+        since = trace.tools.changes_tool | trace.axes.ends_mode | trace.blocks.starts
+        arcs &= ~happened(self._may_begin, since) & (trace.blocks.whole_program | trace.tools.has_called_tool)
+        is_line = is_among(trace.axes.motion, (Motion.RAPID, Motion.LINE))
+        returned = trace.blocks.listed("c_axis_reference") & trace.blocks.has(*polar.rotary_words)
+        positions = (trace.blocks.has(polar.rotary_address) & is_line) | returned | trace.mode.enters
+        arcs &= happened(positions, trace.blocks.starts)
+        for row in np.flatnonzero(trace.axes.switches_off & (self.contour_without_mode >= 0)).tolist():
+            arcs[int(self.contour_without_mode[row]) : row] = False
+        return np.asarray(arcs)
 
     def _is_angle(self, plane: Mask, stops: Mask) -> Mask:
         """

@@ -2,8 +2,8 @@ from __future__ import annotations
 
 from polarcheck.checking.rule import WARNING, Angles, Entry, ExecutedBlocks, Hits, PlaneAxes, rule
 
-#: A length that many times as far out as the rest of the section is taken for an angle.
-_FAR = 2.0
+#: A length that many times as far out as the rest of the section is taken for an angle, and with G0 beside it.
+_FAR, _FAR_IN_RAPID = 2.0, 1.5
 
 
 @rule(
@@ -12,7 +12,6 @@ _FAR = 2.0
     "section lies within {angles.reach:length} of the center; write the point of the contour",
     once="section",
     doubts=(("position", "block"), ("position", "C before"), ("metal", "section")),
-    follows={"block": ("rapid-in-polar",)},
 )
 def degrees_in_polar(blocks: ExecutedBlocks, axes: PlaneAxes, angles: Angles, entry: Entry) -> Hits:
     """
@@ -21,8 +20,9 @@ def degrees_in_polar(blocks: ExecutedBlocks, axes: PlaneAxes, angles: Angles, en
     In the mode C is no angle but a coordinate of the face, in mm or inch like X. C180. does not turn the part by half a
     turn: it sends the tool 180 mm away from the center. Write the point on the contour, half as large as a diameter, or
     turn C before G12.1. Suspected are 30, 45, 60, 90 and other usual angles more than twice as far out as anything else
-    in the section, unless the same length stands there with both signs, and C that goes from 0 steadily to 180, 270 or
-    360 as far out while X stays where it is.
+    in the section, half as far with G0 beside them, unless the same length stands there with both signs, and C that
+    goes from 0 steadily to 180, 270 or 360 as far out while X stays where it is. A G0 C60. behind G12.1 is the
+    positioning of an approach: write it before G12.1, where C is an angle.
 
     Source: FANUC B-62764EN/01, p. 51; builder's guide to G12.1, layout of the plane.
 
@@ -59,6 +59,19 @@ def degrees_in_polar(blocks: ExecutedBlocks, axes: PlaneAxes, angles: Angles, en
         X50.
         G13.1
 
+    Bad:
+
+        G98 G0 X60. Z2. C0
+        G12.1
+        G0 C120.          (expect: degrees-in-polar)
+        G1 Z-5. F200
+        X30.
+        X60.
+        G0 C240.
+        G1 X30.
+        X60.
+        G13.1
+
     Good:
 
         G98 G0 X120. C-60.
@@ -91,6 +104,7 @@ def degrees_in_polar(blocks: ExecutedBlocks, axes: PlaneAxes, angles: Angles, en
     """
     is_angle = angles.in_series | (angles.is_usual & ~angles.has_both_signs)
     far_out = (angles.reach > 0) & (angles.farthest > _FAR * angles.reach)
+    far_out |= angles.is_positioning & (angles.reach > 0) & (angles.farthest > _FAR_IN_RAPID * angles.reach)
     in_stock = angles.farthest <= entry.stock_diameter / 2
     words = blocks.words_at(axes.virtual_words)
     return Hits(is_angle & far_out & ~in_stock & ~angles.in_misplaced_cycle, at=words)

@@ -15,9 +15,10 @@ def polar_never_entered(axes: PlaneAxes, procedure: Procedure) -> Mask:
 
     Cutter compensation and moves of C at feed belong into the polar mode. Without its G12.1 the control takes C as an
     angle, and compensates in another plane or stops: the shape is not cut. Write G12.1 before G41 or G42. Without them
-    an arc of C tells the same, and so do moves of X and C at feed that lead right up to the G13.1, unless C would lie
-    far outside X as a length, as in a groove round the diameter. A G13.1 for safety, at the head of a program or of a
-    tool, ends nothing and is right.
+    an arc of C tells the same, and so do moves of X and C at feed that lead right up to the G13.1, or to a retract
+    before it where a block moves both, unless C would lie far outside X as a length, as in a groove round the diameter,
+    or Z moves with C, as in a helix. A G13.1 for safety, at the head of a program or of a tool, ends nothing and is
+    right.
 
     Source: FANUC B-62764EN/01, p. 50; builder's guide to G12.1, cutter compensation in the mode.
 
@@ -59,6 +60,32 @@ def polar_never_entered(axes: PlaneAxes, procedure: Procedure) -> Mask:
         C20.
         X60.
         G13.1             (expect: polar-never-entered)
+        M30
+
+    Bad:
+
+        O1
+        T0101
+        G98 G0 X60. Z2. C0
+        Z-5.
+        G1 X40. F200
+        X20. C17.32
+        X-20.
+        X-40. C0
+        X60.
+        G0 Z2.
+        G13.1             (expect: polar-never-entered)
+        M30
+
+    Good:
+
+        O1
+        T0101
+        G98 G0 X42. Z2. C0
+        G1 X38. F50
+        Z-25. C720. F300
+        G0 X60.
+        G13.1
         M30
 
     Good:

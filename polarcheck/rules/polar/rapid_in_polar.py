@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, ExecutedBlocks, Mask, ModalStates, PlaneAxes, PolarMode, rule
+from polarcheck.checking.rule import ERROR, Angles, ExecutedBlocks, Hits, ModalStates, PlaneAxes, PolarMode, rule
 from polarcheck.machines.modal import Motion
 
 
@@ -8,9 +8,11 @@ from polarcheck.machines.modal import Motion
     ERROR,
     "G0 cannot be used in the polar mode; write G1 with a high F",
     at=("rapid",),
-    follows={"block": ("code-not-allowed-in-polar", "polar-entered-twice")},
+    follows={"block": ("code-not-allowed-in-polar", "polar-entered-twice"), "section": ("degrees-in-polar",)},
 )
-def rapid_in_polar(blocks: ExecutedBlocks, modal: ModalStates, axes: PlaneAxes, mode: PolarMode) -> Mask:
+def rapid_in_polar(
+    blocks: ExecutedBlocks, modal: ModalStates, axes: PlaneAxes, mode: PolarMode, angles: Angles
+) -> Hits:
     """
     Rapid traverse in the polar mode.
 
@@ -51,4 +53,5 @@ def rapid_in_polar(blocks: ExecutedBlocks, modal: ModalStates, axes: PlaneAxes, 
     in_rapid = mode.in_polar & (modal.state("motion") == Motion.RAPID) & ~outside
     written = blocks.listed("rapid")
     first_move = mode.first_in_section(in_rapid & (axes.motion == Motion.RAPID)) & ~mode.given_in_section(written)
-    return in_rapid & (written | first_move)
+    # G0 with an angle of C is the positioning of an approach that stands behind G12.1 in place of before it.
+    return Hits(in_rapid & (written | first_move), follows={"section": angles.is_positioning})
