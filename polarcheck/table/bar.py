@@ -63,7 +63,7 @@ class Bar(Columns, frozen=True):
         if not len(trace.mode.sections):
             return _NOTHING
         scale = float(np.broadcast_to(trace.lengths.job_scale, len(trace))[trace.mode.sections.enter[0]])
-        turned = _NOTHING if stock.unknown else self._turned
+        turned = _NOTHING if stock.unknown else self.turned
         face, face_lines = turned.face, turned.face_lines
         if not np.isnan(stock.face):
             face, face_lines = stock.face * scale, (0, 0)
@@ -79,11 +79,11 @@ class Bar(Columns, frozen=True):
             smallest = np.fmin(flats, turned.smallest)
             return Known(float(smallest), flats * _CORNERS, bore, face, "job", (0, 0), face_lines)
         if turned.source == "none" and not stock.unknown:
-            turned = self._stated or turned
+            turned = self.stated or turned
         return turned._replace(bore=bore, face=face, face_lines=face_lines)
 
     @property
-    def _stated(self) -> Known | None:
+    def stated(self) -> Known | None:
         """The bar that a comment states for the program of the first section."""
         row = int(self.trace.mode.sections.enter[0])
         diameter = float(self.stock_comments.diameter[row])
@@ -94,6 +94,20 @@ class Bar(Columns, frozen=True):
         line = int(self.trace.text.blocks.line[self.trace.text.comments.block[comment]])
         smallest, largest = (diameter, diameter) if np.isnan(flats) else (flats, flats * _CORNERS)
         return Known(smallest, float(largest), 0.0, np.nan, "comment", (line, line))
+
+    @cached_property
+    def contradicts_comment(self) -> Mask:
+        """Rows that turn a larger diameter than the bar that a comment of their program states."""
+        trace = self.trace
+        mask = np.zeros(len(trace), bool)
+        if not len(trace.mode.sections) or not self.stock_comments.of_program:
+            return mask
+        stated, turned = self.stated, self.turned
+        if stated is None or not turned.smallest > stated.largest + _CENTER:
+            return mask
+        rows = np.flatnonzero(self.turns & (trace.blocks.line_in_file == turned.lines[0]))
+        mask[rows[:1]] = True
+        return mask
 
     @cached_property
     def deepest_turned(self) -> float:
@@ -110,7 +124,7 @@ class Bar(Columns, frozen=True):
         return np.cumsum(self.trace.tools.changes_tool | self.trace.blocks.starts)
 
     @cached_property
-    def _turns(self) -> Mask:
+    def turns(self) -> Mask:
         """Rows before the first section, of tool calls that neither use C nor drill nor enter the mode."""
         trace = self.trace
         rotary = trace.machine.polar.rotary_words
@@ -145,11 +159,12 @@ class Bar(Columns, frozen=True):
     def _turning_rows(self) -> Rows:
         """Feed moves of X or Z by turning tools, known at both ends."""
         at_feed = np.isin(self.trace.axes.motion, (Motion.LINE, Motion.CW, Motion.CCW))
-        return np.flatnonzero(self._turns & at_feed & ~np.isnan(sum(self._place)))
+        return np.flatnonzero(self.turns & at_feed & ~np.isnan(sum(self._place)))
 
     @cached_property
-    def _turned(self) -> Known:
-        if not self._turns.any():
+    def turned(self) -> Known:
+        """What turning tools leave before the first section."""
+        if not self.turns.any():
             return _NOTHING
         segments = _Segments.concatenated([self._of_moves, self._of_cycles])
         if not 0 < len(segments.row) <= _MOST:
@@ -216,11 +231,11 @@ class Bar(Columns, frozen=True):
         trace = self.trace
         turning, facing = trace.blocks.listed("turning_cycle"), trace.blocks.listed("facing_cycle")
         begins = turning | facing
-        if not (begins & self._turns).any():
+        if not (begins & self.turns).any():
             return self._of_moves[:0]
         ended = (trace.modal.sets("motion") & ~begins) | trace.tools.changes_tool | trace.blocks.starts
         kind = fill_down(np.where(turning, 1, np.where(facing, 2, 0)), begins | ended, 0)
-        in_cycle = (kind > 0) & self._turns
+        in_cycle = (kind > 0) & self.turns
         x = fill_down(trace.lengths.length_of("X") * trace.lengths.x_factor, trace.blocks.has("X") | begins, np.nan)
         z = fill_down(trace.lengths.length_of("Z"), trace.blocks.has("Z") | begins, np.nan)
         first = in_cycle & begins
@@ -239,7 +254,7 @@ class Bar(Columns, frozen=True):
         trace = self.trace
         steps = trace.blocks.has(INCREMENTS["X"], INCREMENTS["Z"], "R")
         unknown = trace.blocks.listed("turning_cycle", "facing_cycle") & steps
-        return bool((unknown & self._turns).any())
+        return bool((unknown & self.turns).any())
 
     @property
     def _drills_center(self) -> bool:

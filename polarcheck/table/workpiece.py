@@ -267,9 +267,10 @@ class Workpiece(Columns, frozen=True):
     def through_bar(self) -> Hits:
         """Ways in rapid traverse through what stands of the bar."""
         bar = self.bar.known
-        if np.isnan(bar.smallest + bar.bore) or self.bar_is_changed_otherwise:
+        if np.isnan(bar.smallest + bar.bore):
             return Hits.none()
         ways = self._into_bar
+        ways = ways[ways.row < self._unknown_from]
         if not len(ways):
             return Hits.none()
         self._bound(ways)
@@ -277,7 +278,7 @@ class Workpiece(Columns, frozen=True):
 
         stands = disc(bar.smallest, bar.bore)
         lower = self._all[(self._all.tip < self.top) & self._all.is_sure]
-        hit, place = hits_on_bar(self._sweeps(ways), stands, self._sweeps(lower), self._holes)
+        hit, place = hits_on_bar(self._sweeps(ways), stands, self._sweeps(lower), *self._holes)
         return Hits(ways.row[hit], place[hit], ways.is_sure[hit])
 
     def _bound(self, ways: Ways) -> None:
@@ -293,23 +294,24 @@ class Workpiece(Columns, frozen=True):
         trace = self.trace
         down = (trace.axes.motion == Motion.LINE) & trace.path.moves_z & (trace.path.z < trace.path.z_before - ROUNDING)
         drilled = (trace.modal.drilling != 0) & trace.axes.moves
-        return np.asarray((down | drilled) & (trace.mode.section < 0) & ~self.is_mill)
+        return np.asarray((down | drilled) & (trace.mode.section < 0) & ~self.is_mill & ~self.bar.turns)
 
     @cached_property
-    def _holes(self) -> Points:
-        """Places where something is drilled [mm]; those that are not known are left out."""
+    def _holes(self) -> tuple[Rows, Points]:
+        """Rows that drill, and where [mm]; places that are not known are left out."""
         trace = self.trace
-        place = trace.path.x * np.exp(1j * np.radians(trace.path.c_angle))
-        return np.asarray(place[self._drills & ~np.isnan(place)])
+        row = np.flatnonzero(self._drills & ~np.isnan(trace.path.x + trace.path.c_angle))
+        return row, np.asarray(trace.path.x[row] * np.exp(1j * np.radians(trace.path.c_angle[row])), np.complex128)
 
     @cached_property
-    def bar_is_changed_otherwise(self) -> bool:
-        """A mill of unknown R, a drill at an unknown place or a tool across cuts the bar before or between."""
+    def _unknown_from(self) -> int:
+        """The first row that cuts the bar and is not followed: a mill of unknown R, a drill, a tool across."""
         trace = self.trace
         mills = trace.mode.in_polar & trace.path.cuts
         unknown = mills & np.isnan(self.radius) & ~np.isnan(trace.path.z)
-        cycle = (trace.modal.drilling != 0) & trace.axes.moves & np.isnan(trace.path.x + trace.path.c_angle)
-        return bool((unknown | cycle | trace.mode.on_cylinder).any())
+        drills = self._drills & np.isnan(trace.path.x + trace.path.c_angle)
+        rows = np.flatnonzero(unknown | drills | trace.mode.on_cylinder)
+        return int(rows[0]) if len(rows) else len(trace)
 
     # ---- the finished part ----
 
@@ -428,6 +430,28 @@ class Workpiece(Columns, frozen=True):
         """Of those, the rows that may not."""
         hits = self.through_bar
         return self.hits_bar & ~self._mask(hits.row[hits.is_sure])
+
+    @cached_property
+    def precedes_idle_plunge(self) -> Mask:
+        """
+        Moves in rapid traverse down below the face, to where a section mills a pocket and its own plunge at feed, a Z
+        word alone before anything moves on the plane, then moves nowhere.
+        """
+        trace, mask = self.trace, np.zeros(len(self.trace), bool)
+        walls, _ = self.overcuts.walls
+        if not len(walls):
+            return mask
+        pockets = np.zeros(len(trace.mode.sections) + 1, bool)
+        first = trace.mode.first_in_section(trace.blocks.mask_of(np.unique(walls.row)))
+        pockets[trace.mode.section[walls.row[self._walls_of_pockets & first[walls.row]]]] = True
+        moving = trace.mode.first_in_section(trace.mode.in_polar & trace.axes.moves)
+        idle = moving & trace.axes.commands_z & ~trace.path.moves_z & ~trace.path.travels
+        idle &= (trace.axes.motion == Motion.LINE) & (trace.path.z < -_CLEARANCE) & pockets[trace.mode.section]
+        down = np.flatnonzero(self.is_rapid & trace.path.moves_z & ~(trace.path.z >= trace.path.z_before))
+        down = np.append(-1, down)[np.searchsorted(down, np.flatnonzero(idle), side="right")]
+        down = down[down >= 0]
+        mask[down[trace.mode.section[down] < 0]] = True
+        return mask
 
     @property
     def bar_is_certain(self) -> bool:

@@ -71,12 +71,23 @@ def through(workpiece: Workpiece, row: int) -> str:
 
 def bar(bar: Bar, lengths: Lengths, row: int) -> str:
     """The bar and where it is known from: `40 mm, [stock]`, `27.7 mm turned in lines 8 to 11`."""
+    return _bar(bar, lengths, row)
+
+
+def _bar(bar: Bar, lengths: Lengths, row: int) -> str:
     known = bar.known
     size = f"{in_row(known.smallest, lengths, row):length}"
     if known.source == "turning":
         first, last = known.lines
         return f"{size} turned in {f'line {first}' if first == last else f'lines {first} to {last}'}"
     return f"{size}, [stock]" if known.source == "job" else f"{size}, comment in line {known.lines[0]}"
+
+
+def bar_there(bar: Bar, workpiece: Workpiece, lengths: Lengths, row: int) -> str:
+    """The bar, or what stands where a pocket is milled."""
+    return (
+        f"the bar ({_bar(bar, lengths, row)})" if workpiece.hits_bar[row] else "what the pocket still has to take off"
+    )
 
 
 def in_step(pass_depths: PassDepths, lengths: Lengths, row: int) -> str:

@@ -128,18 +128,18 @@ class Removed:
         return area
 
 
-def hits_on_bar(ways: Sweeps, bar: Any, cleared: Sweeps, holes: Points) -> tuple[Mask, Points]:
+def hits_on_bar(ways: Sweeps, bar: Any, cleared: Sweeps, drilled: Rows, holes: Points) -> tuple[Mask, Points]:
     """
     Which of these ways lead through what stands of a bar, and where; a way clears what it runs through.
 
     ways: rising in rows, moves of one row side by side. cleared: all moves that cut, rising in rows.
-    holes: places where something is drilled, of any size.
+    drilled, holes: rows that drill, rising, and where, of any size.
     """
     removed = Removed(cleared)
     hit, place = np.zeros(len(ways), bool), np.full(len(ways), np.nan + 0j)
     for number in range(len(ways)):
         way = ways[np.array([number])]
-        if _is_at_hole(way, holes):
+        if _is_at_hole(way, holes[: np.searchsorted(drilled, way.curves.row[0])]):
             continue
         before = removed.until(int(way.curves.row[0]), float(way.tip[0]))
         standing = bar if before is None else areas.difference(bar, before)

@@ -5,11 +5,12 @@ from polarcheck.checking.rule import ERROR, Hits, Workpiece, graded, rule
 
 @rule(
     ERROR,
-    "{way} takes the cutter, R {cutter}, in rapid traverse into the bar ({bar}) down to Z{depth}; write G1 with a feed",
+    "{way} takes the cutter, R {cutter}, in rapid traverse into {bar_there} down to Z{depth}; write G1 with a feed",
     where="workpiece.is_mill",
     once="tool call",
     follows={
-        "block": ("uncompensated-cut-into-part", "rapid-through-part", "rapid-in-polar"),
+        "block": ("uncompensated-cut-into-part", "rapid-through-part"),
+        "motion": ("rapid-in-polar",),
         "tool call": ("approach-inside-stock",),
     },
 )
@@ -20,6 +21,9 @@ def rapid_plunge_into_stock(workpiece: Workpiece) -> Hits:
     The mill goes down in rapid traverse where metal of the bar still stands: G1 is missing, or X or C is that of
     another place. The bar is that of `[stock]`, or what the program itself turns before its first section, or what a
     comment says; then it is a warning.
+
+    Where no bar is known, a pocket shows it: the Z word at feed with which its section begins moves nowhere, since G0
+    has gone down before. That is a warning, too.
 
     Source: builder's guide to G12.1, programming the tool approach point.
 
@@ -48,6 +52,18 @@ def rapid_plunge_into_stock(workpiece: Workpiece) -> Hits:
         Z2. F1000
         G13.1
 
+    Bad, tool 1:radius=2.5:
+
+        T0101
+        G98 G0 X24. Z-3. C0    (expect: rapid-plunge-into-stock)
+        G12.1
+        G1 Z-3. F60
+        G41 X34. F200
+        G3 I-17.
+        G1 G40 X24.
+        Z2. F1000
+        G13.1
+
     Good, tool 1:radius=2.5, set job.stock.diameter=40:
 
         T0101
@@ -62,4 +78,8 @@ def rapid_plunge_into_stock(workpiece: Workpiece) -> Hits:
     """
     hits = workpiece.hits_bar & workpiece.plunges
     may_miss = workpiece.may_miss_bar
-    return graded(error=hits & workpiece.bar_is_certain & ~may_miss, warning=hits, undecided=may_miss)
+    return graded(
+        error=hits & workpiece.bar_is_certain & ~may_miss,
+        warning=hits | workpiece.precedes_idle_plunge,
+        undecided=may_miss,
+    )
