@@ -105,7 +105,9 @@ class Pen:
 
     def depth(self, z: float, feed: float, role: str = "plunge") -> None:
         self.z = self.number(z)
-        self.write(role, self._code(self.dialect.line), "Z" + self.z, self.feed_word(feed))
+        codes = ("G90",) if self.is_step else ()
+        self.is_step = False
+        self.write(role, *codes, self._code(self.dialect.line), "Z" + self.z, self.feed_word(feed))
 
     def move(self, role: str, piece: Piece, feed: float, *codes: str) -> None:
         """A move in the mode."""

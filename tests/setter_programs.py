@@ -36,7 +36,7 @@ class Program(NamedTuple):
     radii: of the cutters by offset number [mm]. bar: the diameter that the cutters meet [mm]. stock: what `[stock]`
     says, or None. evidence: see milled_shapes, and "repeated" where a contour is written twice, "steps"
     where three depths are equally far apart, "bar" where the program or the job says the bar. size: across the flats
-    of a hexagon or square [mm].
+    of a hexagon or square [mm]. reach: the diameter that holds the contour [mm].
     """
 
     seed: int
@@ -50,6 +50,7 @@ class Program(NamedTuple):
     evidence: frozenset[str]
     style: Style
     size: float
+    reach: float
 
     @property
     def machine(self) -> str:
@@ -272,6 +273,7 @@ class _Maker:
             frozenset(evidence),
             self.style,
             self.contour.size[1] if self.contour.size else 0.0,
+            2 * max(abs(point) for point in contour.points()),
         )
 
     # ---- what is milled ----
