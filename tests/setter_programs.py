@@ -136,8 +136,11 @@ def drawn(seed: int, machine: str = "", family: str = "") -> Program:
     family = family or FAMILIES[seed % len(FAMILIES)]
     shape, _, layout = family.partition(", ")
     dialect = DIALECTS[machine or draw.choice([*DIALECTS, "fanuc", "fanuc", "fanuc-30i", "haas-lathe"])]
-    if not machine:
-        while not _can(dialect, layout):
+    while not _can(dialect, layout):
+        if machine:
+            family = draw.choice(FAMILIES)
+            shape, _, layout = family.partition(", ")
+        else:
             dialect = DIALECTS[draw.choice([*DIALECTS])]
     inch = draw.choice(dialect.units) == "inch" if draw.random() < 0.35 or "mm" not in dialect.units else False
     grid = _grid(draw, inch)
