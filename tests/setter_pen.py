@@ -115,7 +115,7 @@ class Pen:
         x, c = self.x_word(piece.end.real), self.number(piece.end.imag)
         everything = self.style.repeats or piece.center is not None
         words: list[str] = []
-        if self.style.steps and self.dialect.system == "B" and role != "lead":
+        if self.style.steps and self.dialect.system == "B":
             codes = (*codes, *self._step_code(role))
         if self.style.steps and role == "contour":
             dx, dc = float(x) - float(self.x), float(c) - float(self.c)
