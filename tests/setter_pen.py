@@ -105,7 +105,9 @@ class Pen:
 
     def depth(self, z: float, feed: float, role: str = "plunge") -> None:
         self.z = self.number(z)
-        self.write(role, self._code(self.dialect.line), "Z" + self.z, self.feed_word(feed))
+        codes = ("G90",) if self.is_step else ()
+        self.is_step = False
+        self.write(role, *codes, self._code(self.dialect.line), "Z" + self.z, self.feed_word(feed))
 
     def move(self, role: str, piece: Piece, feed: float, *codes: str) -> None:
         """A move in the mode."""
@@ -113,7 +115,7 @@ class Pen:
         x, c = self.x_word(piece.end.real), self.number(piece.end.imag)
         everything = self.style.repeats or piece.center is not None
         words: list[str] = []
-        if self.style.steps and self.dialect.system == "B" and role != "lead":
+        if self.style.steps and self.dialect.system == "B":
             codes = (*codes, *self._step_code(role))
         if self.style.steps and role == "contour":
             dx, dc = float(x) - float(self.x), float(c) - float(self.c)

@@ -36,7 +36,7 @@ class Program(NamedTuple):
     radii: of the cutters by offset number [mm]. bar: the diameter that the cutters meet [mm]. stock: what `[stock]`
     says, or None. evidence: see milled_shapes, and "repeated" where a contour is written twice, "steps"
     where three depths are equally far apart, "bar" where the program or the job says the bar. size: across the flats
-    of a hexagon or square [mm].
+    of a hexagon or square [mm]. reach: the diameter that holds the contour [mm].
     """
 
     seed: int
@@ -50,6 +50,7 @@ class Program(NamedTuple):
     evidence: frozenset[str]
     style: Style
     size: float
+    reach: float
 
     @property
     def machine(self) -> str:
@@ -135,8 +136,11 @@ def drawn(seed: int, machine: str = "", family: str = "") -> Program:
     family = family or FAMILIES[seed % len(FAMILIES)]
     shape, _, layout = family.partition(", ")
     dialect = DIALECTS[machine or draw.choice([*DIALECTS, "fanuc", "fanuc", "fanuc-30i", "haas-lathe"])]
-    if not machine:
-        while not _can(dialect, layout):
+    while not _can(dialect, layout):
+        if machine:
+            family = draw.choice(FAMILIES)
+            shape, _, layout = family.partition(", ")
+        else:
             dialect = DIALECTS[draw.choice([*DIALECTS])]
     inch = draw.choice(dialect.units) == "inch" if draw.random() < 0.35 or "mm" not in dialect.units else False
     grid = _grid(draw, inch)
@@ -272,6 +276,7 @@ class _Maker:
             frozenset(evidence),
             self.style,
             self.contour.size[1] if self.contour.size else 0.0,
+            2 * max(abs(point) for point in contour.points()),
         )
 
     # ---- what is milled ----

@@ -192,10 +192,18 @@ def is_real(slip: Slip, program: Program, changed: Program) -> bool:
         return False
     if "always" in slip.needs or slip.needs & program.evidence:
         return True
-    index = _first_change(program, changed)
-    is_beside = index < len(program.lines) and program.lines[index].role != "contour"
     is_drilled = program.family.endswith("center path") and not program.family.startswith(BOSSES)
-    return is_beside and not is_drilled and cuts_the_part(program, sound, changed, other)
+    return _is_beside(program, changed) and not is_drilled and cuts_the_part(program, sound, changed, other)
+
+
+def _is_beside(program: Program, changed: Program) -> bool:
+    """Whether only ways to and from the contour are changed in the plane."""
+    ways = ("ramp", "approach", "position", "position angle", "cancel", "lead")
+    if len(program.lines) == len(changed.lines):
+        pairs = zip(program.lines, changed.lines, strict=True)
+        return all(one.role in ways for one, two in pairs if one.text != two.text)
+    index = _first_change(program, changed)
+    return index < len(program.lines) and program.lines[index].role in ways
 
 
 def _first_change(program: Program, changed: Program) -> int:

@@ -234,7 +234,7 @@ def bar_comment(program: Program, draw: Draw) -> Program | None:
     places = at(program, "bar")
     if not places:
         return None
-    least = program.bar / program.scale * draw.choice((0.5, 0.7))
+    least = min(program.reach, program.bar) / program.scale * draw.choice((0.5, 0.7, 0.85))
     return program.changed(places[0], re.sub(r"[\d.]+", f"{least:.3g}", program.lines[places[0]].text))
 
 
