@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+import re
 from collections.abc import Callable
 
 import pytest
@@ -213,6 +214,7 @@ def test_shapes_and_depths_are_read(seed: int) -> None:
         size = shape_in(comment, False)
         assert size is not None, comment
         assert (size.shape, size.size) == (shape, pytest.approx(value)), comment
+        assert size.is_across_flats == bool(re.search("A.?F|ACROSS|SW", form)), comment
     for form in ("DEPTH {0}", "{0} DEEP", "DEPTH={0}MM", "HEX 24 AF, {0} DEEP", "POCKET {0}MM DEEP"):
         assert depth_in(form.format(written), False) == pytest.approx(value), form
 
@@ -235,7 +237,7 @@ def test_sizes_in_inch(seed: int) -> None:
         assert bar is not None
         assert bar.diameter == pytest.approx(size)
         hexagon = shape_in(f"HEX {written}{unit} AF", in_inch=True)
-        assert hexagon == ("hexagon", pytest.approx(size))
+        assert hexagon == ("hexagon", pytest.approx(size), True)
     assert bar_in(f"{size / 25.4:.4f} BAR", in_inch=True) is not None or size < 3
 
 

@@ -45,6 +45,7 @@ _SHAPES = [
     ("", re.compile(rf"{_WHOLE}{NUMBER}{UNIT}\s*+{_AF}")),
     ("", re.compile(rf"{_WHOLE}(?:A/?F|SW){_IS}{_VALUE}{_NOT_AFTER}")),
 ]
+_ACROSS_FLATS = re.compile(rf"(?<![A-Z]){_AF}")
 #: Of what is not cut here, or not to its size.
 _NOT_HERE = re.compile(
     r"SOCKET|\bKEY\b|\bNUT\b|\bBOLT|SCREW|WRENCH|SPANNER|BROACH|\bBUSH|\bJAW|COLLET|CHUCK|\bGRIP|\bHOLD|\bCLAMP|\bROUGH|\bLEAVE"
@@ -72,10 +73,12 @@ class Size(NamedTuple):
 
     shape: hexagon, square, octagon, pentagon, flats, boss (a round one), or empty for what is so wide across its flats.
     size: across flats, or the diameter [mm].
+    is_across_flats: the comment says AF; without it corners may be meant.
     """
 
     shape: str
     size: float
+    is_across_flats: bool = False
 
 
 def shape_in(comment: str, in_inch: bool) -> Size | None:
@@ -87,6 +90,7 @@ def shape_in(comment: str, in_inch: bool) -> Size | None:
     if bar is not None and bar.across_flats == bar.across_flats:
         return None
     sizes: list[Size] = []
+    is_across_flats = bool(_ACROSS_FLATS.search(text))
     for shape, pattern in _SHAPES:
         if not shape and sizes:
             break
@@ -94,7 +98,7 @@ def shape_in(comment: str, in_inch: bool) -> Size | None:
             size = _length(match, in_inch)
             if size is None:
                 return None
-            sizes.append(Size(shape, size))
+            sizes.append(Size(shape, size, is_across_flats))
     # Two sizes: nobody knows which section is which.
     if not sizes or any(size != sizes[0] for size in sizes):
         return None

@@ -47,6 +47,11 @@ class AirCuts(Columns, frozen=True):
     bar: Bar
     workpiece: Workpiece
 
+    @property
+    def is_outside_bar(self) -> Mask:
+        """Rows of sections that cut nothing since they run outside the bar."""
+        return np.asarray(self.reason == Reason.OUTSIDE_BAR)
+
     @cached_property
     def walls(self) -> Mask:
         """Rows that cut the contour: in offset mode, or all cuts of sections without compensation."""

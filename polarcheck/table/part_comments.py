@@ -15,7 +15,9 @@ from polarcheck.columns.tool_numbers import named_tool
 from polarcheck.columns.trace import Trace
 from polarcheck.geometry.shapes.shape import POLYGONS
 from polarcheck.machines.modal import Motion, Units
+from polarcheck.table.bar import Bar
 from polarcheck.table.finished import Finished
+from polarcheck.table.stock_comments import StockComments
 
 if TYPE_CHECKING:
     from polarcheck.columns.part_comments import Size
@@ -67,7 +69,8 @@ class Contradiction(NamedTuple):
     row: of the contour, or of its depth.
     comment: its number.
     stated, made: sizes or depths [mm].
-    shape: that is made; DEPTH where the depth differs.
+    shape: that is made; DEPTH where the depth differs, TURNED where the program turns to a larger diameter than that of
+    the bar, BEYOND where the part reaches beyond it.
     """
 
     row: int
@@ -77,7 +80,7 @@ class Contradiction(NamedTuple):
     shape: str
 
 
-DEPTH = "depth"
+DEPTH, TURNED, BEYOND = "depth", "turned", "beyond"
 
 
 class PartComments(Columns, frozen=True):
@@ -85,6 +88,8 @@ class PartComments(Columns, frozen=True):
 
     trace: Trace
     finished: Finished
+    stock_comments: StockComments
+    bar: Bar
 
     @cached_property
     def contradictions(self) -> dict[int, Contradiction]:
@@ -97,6 +102,8 @@ class PartComments(Columns, frozen=True):
         for comment in self.comments:
             for hit in (*self._sizes(comment), *self._depths(comment)):
                 hits.setdefault(hit.row, hit)
+        for hit in self._bars():
+            hits.setdefault(hit.row, hit)
         return hits
 
     @property
@@ -242,27 +249,78 @@ class PartComments(Columns, frozen=True):
         at_feed = is_among(trace.axes.motion, (Motion.LINE, Motion.CW, Motion.CCW, Motion.CYCLE))
         return different(np.append(np.nan_to_num(trace.path.z[rows & at_feed]), 0.0))
 
+    # ---- bars ----
+
+    def _bars(self) -> Iterator[Contradiction]:
+        """The bar of a comment that is smaller than what the program turns, or than its part."""
+        sections = self.trace.mode.sections
+        if not 0 < len(sections) <= _MOST_SECTIONS or not self.stock_comments.of_program:
+            return
+        row = int(sections.enter[0])
+        comment = int(self.stock_comments.comment[row])
+        if comment < 0:
+            return
+        across_flats = float(self.stock_comments.across_flats[row])
+        # A hexagon reaches out to its corners.
+        size = float(np.fmax(self.stock_comments.diameter[row], across_flats * 2 / np.sqrt(3)))
+        stated = size if np.isnan(across_flats) else across_flats
+        largest = size + max(_SIZE_TOLERANCE, _SIZE_SHARE * size)
+        known = self.bar.known
+        if known.source == "turning" and known.smallest > largest:
+            turns = np.flatnonzero(self.trace.blocks.line_in_file == known.lines[0])
+            yield Contradiction(int(turns[0]), comment, stated, known.smallest, TURNED)
+        elif known.source == "comment" and self._may_be_beyond(largest / 2):
+            yield from (Contradiction(at, comment, stated, made, BEYOND) for at, made in self._beyond(largest / 2))
+
+    def _may_be_beyond(self, radius: float) -> bool:
+        """A cheap test: some of a contour lies beyond this radius with both ends."""
+        walls, _ = self.finished.overcuts.walls
+        return bool(((np.abs(walls.start) > radius) & (np.abs(walls.end) > radius)).any())
+
+    def _beyond(self, radius: float) -> Iterator[tuple[int, float]]:
+        """
+        The first row of the contour whose part reaches beyond this radius, and the diameter that it needs [mm].
+
+        None where another contour of the program stays within. Straight sides may end beyond the bar, and an arc around
+        the axis goes round it; a corner arc there is for nothing, and so is a whole contour.
+        """
+        from polarcheck.geometry.shapes.rings import nearest_of, rings
+
+        hits = []
+        for level in self.finished.levels:
+            for ring in rings(level.outline, level.gap) if not (level.tangled or level.open) else ():
+                if not ring.closed or ring.inside:
+                    continue
+                nearest = nearest_of(ring)
+                is_beyond = nearest > radius
+                is_corner = ~ring.is_line & ~(np.abs(ring.center) <= _SIZE_TOLERANCE)
+                if not is_beyond.all() and not (is_beyond & is_corner).any():
+                    return
+                hits.append((int(level.walls.row[0]), 2 * float(nearest[is_beyond].max())))
+        yield from hits[:1]
+
 
 def _fits(size: Size, shape: Shape) -> bool:
     """A shape has this size, in whatever way it is measured, and is no other regular polygon."""
     if size.shape in POLYGONS.values() and _is_regular_polygon(shape) and shape.name != size.shape:
         return False
     tolerance = max(_SIZE_TOLERANCE, _SIZE_SHARE * size.size)
-    return any(abs(value - size.size) <= tolerance for value in _values(shape))
+    return any(abs(value - size.size) <= tolerance for value in _values(shape, size.is_across_flats))
 
 
 def _is_depth(depth: float, value: Floats) -> Mask:
     return np.asarray(np.abs(value - depth) <= max(_DEPTH_TOLERANCE, _DEPTH_SHARE * depth))
 
 
-def _values(shape: Shape) -> Iterator[float]:
-    """Each number by which a comment may give the size of a shape: across flats, across corners, a diameter."""
+def _values(shape: Shape, is_across_flats: bool) -> Iterator[float]:
+    """Each number by which a comment may give the size of a shape: across flats, else also corners and diameters."""
     values = shape.values
-    yield from (
-        values[name] for name in ("across_flats", "apart", "diameter", "corner_diameter", "width") if name in values
-    )
+    yield from (values[name] for name in ("across_flats", "apart", "width") if name in values)
     yield from (2 * values[name] for name in ("distance", "least", "most") if name in values)
-    yield from (values[name] for name in ("distance", "least", "most", "length") if name in values)
+    yield from (values[name] for name in ("least", "most") if name in values)
+    if is_across_flats:
+        return
+    yield from (values[name] for name in ("diameter", "corner_diameter", "distance", "length") if name in values)
     if "across_flats" in values and "sides" in values:
         yield values["across_flats"] / float(np.cos(np.pi / values["sides"]))
 
@@ -279,6 +337,13 @@ def _comparable(size: Size, shapes: list[Shape]) -> list[tuple[Shape, float]]:
         is_polygon = "across_flats" in shape.values
         if shape.name == size.shape or not size.shape or (size.shape == "flats" and not is_polygon):
             pairs.append((shape, value))
+    # Corners that are cut off beside the flats make twice as many sides.
+    with_corners = {name: 2 * sides for sides, name in POLYGONS.items()}.get(size.shape, 0)
+    pairs += [
+        (shape, shape.values["least"])
+        for shape in shapes
+        if shape.values.get("sides") == with_corners and "least" in shape.values and not shape.inside
+    ]
     return pairs
 
 

@@ -6,7 +6,7 @@ from polarcheck.checking.phrases.common import short
 from polarcheck.checking.quantity import in_row
 from polarcheck.columns.lengths import Lengths
 from polarcheck.reading.words import Text
-from polarcheck.table.part_comments import DEPTH, PartComments
+from polarcheck.table.part_comments import BEYOND, DEPTH, TURNED, PartComments
 from polarcheck.table.tool_comments import ToolComments
 
 
@@ -32,5 +32,10 @@ def what_is_made(part_comments: PartComments, lengths: Lengths, row: int) -> str
     """What the sections of a comment make instead of what it states."""
     hit = part_comments.contradictions[row]
     made = f"{in_row(hit.made, lengths, row):length}"
-    measure = {DEPTH: "deep", "flats": "apart", "circle": "in diameter"}.get(hit.shape, "across flats")
-    return f"the cut is {made} {measure}" if hit.shape == DEPTH else f"the part here: {hit.shape} {made} {measure}"
+    whole = {
+        DEPTH: f"the cut is {made} deep",
+        TURNED: f"the program turns to {made} here",
+        BEYOND: f"the contour reaches beyond it, to {made}",
+    }
+    measure = {"flats": "apart", "circle": "in diameter"}.get(hit.shape, "across flats")
+    return whole.get(hit.shape, f"the part here: {hit.shape} {made} {measure}")

@@ -120,7 +120,7 @@ def _within(ring: Ring, bar: float) -> Iterator[Ring]:
     if np.isnan(bar) or not len(ring):
         yield ring
         return
-    out = _nearest(ring) >= bar / 2 - SAME
+    out = nearest_of(ring) >= bar / 2 - SAME
     if not out.any():
         yield ring
         return
@@ -133,7 +133,7 @@ def _within(ring: Ring, bar: float) -> Iterator[Ring]:
         yield ring.some(np.flatnonzero((number == piece) & ~out), closed=False)
 
 
-def _nearest(ring: Ring) -> Floats:
+def nearest_of(ring: Ring) -> Floats:
     """How near each side comes to the axis, arcs as their ends and middles [mm]."""
     way = ring.end - ring.start
     share = np.clip(-(ring.start * way.conj()).real / np.maximum(np.abs(way) ** 2, 1e-12), 0, 1)

@@ -6,7 +6,7 @@ from polarcheck.checking.rule import WARNING, Hits, PartComments, rule
 @rule(WARNING, "{comment_on_part} states {stated:length}; {what_is_made}", subject="metal")
 def comment_contradicts_part(part_comments: PartComments) -> Hits:
     """
-    Another shape, size or depth than the comment of this section or tool states.
+    Another shape, size or depth than the comment of this section or tool states, or a bar smaller than the part.
 
     The program was changed for another part and the comment was left as it was, or a word of the contour is wrong.
     Compare with the drawing.
@@ -15,6 +15,10 @@ def comment_contradicts_part(part_comments: PartComments) -> Hits:
     with the number of this tool; the nearest one, and only where it states one size in plain words: HEX 24 AF, SQ 20,
     FLATS 22, DIA 30 BOSS, DEPTH 5, 5 DEEP. Roughing, sockets, and a size that another section reaches contradict
     nothing. A depth counts from Z0 or from any face that the program cuts.
+
+    The comment that states the bar of the program (BAR DIA 28, STOCK D50, HEX BAR 32) may stand anywhere in it. It
+    contradicts a larger diameter that the program turns first, and a contour that reaches beyond the bar with its
+    corners. Sharp corners of a hexagon that the bar cuts off, and a rectangle that makes two flats, contradict nothing.
 
     Source: notes of shops at the heads of sections.
 
@@ -72,6 +76,35 @@ def comment_contradicts_part(part_comments: PartComments) -> Hits:
         G12.1
         G1 X60. C0 F1500
         Z-5. F300    (expect: comment-contradicts-part)
+        G42 X22. F200
+        C6.351
+        X0 C12.702
+        X-22. C6.351
+        C-6.351
+        X0 C-12.702
+        X22. C-6.351
+        C0
+        G40 X60. F1500
+        Z2.
+        G13.1
+        M30
+
+    Bad, tool 1:radius=4:
+
+        O1 (BAR DIA 25)
+        G21 G98
+        T0202
+        G97 S500 M3
+        G0 X34. Z2.
+        G1 X30. F100
+        Z-20.    (expect: comment-contradicts-part)
+        G0 X60. Z50.
+        M5
+        T0101
+        G0 X60. Z2. C0
+        G12.1
+        G1 X60. C0 F1500
+        Z-5. F300
         G42 X22. F200
         C6.351
         X0 C12.702

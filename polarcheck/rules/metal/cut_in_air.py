@@ -1,7 +1,7 @@
 from __future__ import annotations
 
 from polarcheck.checking.causes import OUT_OF_PLACE
-from polarcheck.checking.rule import WARNING, AirCuts, Mask, rule
+from polarcheck.checking.rule import WARNING, AirCuts, Hits, rule
 
 
 @rule(
@@ -18,10 +18,11 @@ from polarcheck.checking.rule import WARNING, AirCuts, Mask, rule
             "degrees-in-polar",
             "number-without-point",
             "bad-number",
-        )
+        ),
+        "program": ("comment-contradicts-part",),
     },
 )
-def cut_in_air(air_cuts: AirCuts) -> Mask:
+def cut_in_air(air_cuts: AirCuts) -> Hits:
     """
     Section that cuts only air.
 
@@ -93,4 +94,4 @@ def cut_in_air(air_cuts: AirCuts) -> Mask:
         G13.1
         G0 X100. Z50.
     """
-    return air_cuts.reason > 0
+    return Hits(air_cuts.reason > 0, follows={"program": air_cuts.is_outside_bar})
