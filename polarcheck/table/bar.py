@@ -96,20 +96,6 @@ class Bar(Columns, frozen=True):
         return Known(smallest, float(largest), 0.0, np.nan, "comment", (line, line))
 
     @cached_property
-    def contradicts_comment(self) -> Mask:
-        """Rows that turn a larger diameter than the bar that a comment of their program states."""
-        trace = self.trace
-        mask = np.zeros(len(trace), bool)
-        if not len(trace.mode.sections) or not self.stock_comments.of_program:
-            return mask
-        stated, turned = self.stated, self.turned
-        if stated is None or not turned.smallest > stated.largest + _CENTER:
-            return mask
-        rows = np.flatnonzero(self.turns & (trace.blocks.line_in_file == turned.lines[0]))
-        mask[rows[:1]] = True
-        return mask
-
-    @cached_property
     def deepest_turned(self) -> float:
         """The lowest Z that a turning tool cuts before the first section [mm]; inf without any."""
         rows = self._turning_rows

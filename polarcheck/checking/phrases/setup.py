@@ -19,7 +19,6 @@ from polarcheck.columns.tools import CalledTools
 from polarcheck.columns.trace import Trace
 from polarcheck.execution.run import Run
 from polarcheck.machines.machine import Machine
-from polarcheck.table.bar import Bar
 from polarcheck.table.entry import Entry
 from polarcheck.table.procedure import Procedure
 from polarcheck.table.spindles import Spindles
@@ -193,13 +192,3 @@ def carried_mode(blocks: ExecutedBlocks, modal: ModalStates, machine: Machine, r
 def per_revolution(machine: Machine) -> str:
     """The code of feed per revolution."""
     return code_of(machine, "feed_per_revolution")
-
-
-def turned_diameter(bar: Bar, lengths: Lengths, row: int) -> str:
-    """The diameter that the program turns."""
-    return f"{in_row(bar.turned.smallest, lengths, row):length}"
-
-
-def bar_comment(bar: Bar) -> int:
-    """The line of the comment that states the bar."""
-    return bar.stated.lines[0] if bar.stated else 0
