@@ -18,7 +18,13 @@ from polarcheck.checking.rule import WARNING, Hits, Regularity, rule
             "arc-center-on-path",
             "arc-without-center",
         ),
-        "section": ("diameter-radius-mixed", "second-axis-never-programmed", "linear-axis-never-programmed"),
+        "section": (
+            "diameter-radius-mixed",
+            "second-axis-never-programmed",
+            "linear-axis-never-programmed",
+            "contour-open-with-infeed",
+            "rapid-in-polar",
+        ),
     },
 )
 def nearly_regular_contour(regularity: Regularity) -> Hits:
