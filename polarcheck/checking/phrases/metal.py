@@ -6,6 +6,7 @@ import numpy as np
 
 from polarcheck.checking.phrases.passes import crosses_line as crosses_line
 from polarcheck.checking.phrases.passes import drift as drift
+from polarcheck.checking.phrases.passes import fit_of_arc as fit_of_arc
 from polarcheck.checking.phrases.passes import forgotten_arc as forgotten_arc
 from polarcheck.checking.phrases.passes import needed_arc as needed_arc
 from polarcheck.checking.phrases.passes import other_pass as other_pass
