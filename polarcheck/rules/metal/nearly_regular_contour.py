@@ -9,8 +9,15 @@ from polarcheck.checking.rule import WARNING, Hits, Regularity, rule
     subject="",
     doubts=(("position", "loop"),),
     follows={
-        "loop": ("wrong-axis-address-in-polar", "number-without-point", "degrees-in-polar"),
-        "section": ("diameter-radius-mixed", "second-axis-never-programmed", "linear-axis-never-programmed"),
+        "loop": ("wrong-axis-address-in-polar", "number-without-point", "degrees-in-polar", "start-up-off-contour"),
+        "section": (
+            "diameter-radius-mixed",
+            "second-axis-never-programmed",
+            "linear-axis-never-programmed",
+            "cancel-without-start-up",
+            "compensation-without-contour",
+            "start-up-after-contour",
+        ),
     },
 )
 def nearly_regular_contour(regularity: Regularity) -> Hits:
