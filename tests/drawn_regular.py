@@ -342,7 +342,13 @@ def program(blocks: Sequence[str], contour: Contour, how: Style) -> str:
         *(f"G0 X{number(140 / unit, 1)} Z1. C0", polar.on[0] + _BESIDE.get(how.machine, "")),
     ]
     feed = "F5." if how.inch else "F200"
-    body = [f"G1 {far} {feed}", f"{side}{blocks[0]}", *blocks[1:], f"G1 {'G40 ' * how.compensated}{far}", f"X{number(140 / unit, 1)}"]
+    body = [
+        f"G1 {far} {feed}",
+        f"{side}{blocks[0]}",
+        *blocks[1:],
+        f"G1 {'G40 ' * how.compensated}{far}",
+        f"X{number(140 / unit, 1)}",
+    ]
     return "\n".join([*head, *body, polar.off[0], "G0 Z20.", "M30"]) + "\n"
 
 

@@ -12,6 +12,7 @@ from polarcheck.columns.filling import last_row
 from polarcheck.columns.trace import Trace
 from polarcheck.geometry.tolerances import SHARE
 from polarcheck.machines.modal import Motion, Side
+from polarcheck.table.arcs import Arcs
 
 #: Points nearer than this [mm] are meant to be one point: words are rounded.
 _SAME = 0.005
@@ -49,6 +50,7 @@ class MisplacedRamps(Columns, frozen=True):
     """Columns of one trace, one value per row."""
 
     trace: Trace
+    arcs: Arcs
 
     @cached_property
     def _moves(self) -> _Moves:
@@ -133,7 +135,10 @@ class MisplacedRamps(Columns, frozen=True):
         trace, moves = self.trace, self._moves
         follows = np.zeros(len(moves.row), bool)
         follows[:-1] = moves.starts_up[:-1] & moves.cancels[1:] & (moves.section[:-1] == moves.section[1:])
-        follows[:-1] &= ~(trace.run.unknown.any())
+        # Between them nothing may move but Z: a block of which it is not known where it leads may be the contour.
+        opens = np.append(0, np.cumsum((trace.axes.moves & ~trace.axes.commands_z) | trace.run.unknown))
+        at = np.flatnonzero(follows)
+        follows[at] = opens[moves.row[at + 1]] == opens[moves.row[at] + 1]
         return trace.blocks.mask_of(moves.row[follows])
 
     @cached_property
@@ -215,6 +220,9 @@ class MisplacedRamps(Columns, frozen=True):
         halved = (np.abs(begin.imag - end.imag) <= _SAME) & (np.abs(begin.real) > _SAME)
         halved &= (np.abs(begin.real * 2 - end.real) <= _SAME) | (np.abs(begin.real - end.real * 2) <= _SAME)
         halved &= np.abs(moves.start[starts] - moves.end[leave]) <= _SAME
+        # The arc that begins at this X is no circle; several tell of another mistake.
+        wrong = np.append(0, np.cumsum(self.arcs.is_no_circle[moves.row]))
+        halved &= wrong[leave] - wrong[starts] <= 1
         column[moves.row[starts[halved]]] = end.real[halved]
         return column
 

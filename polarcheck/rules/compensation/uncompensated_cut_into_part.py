@@ -8,7 +8,7 @@ from polarcheck.checking.rule import ERROR, Hits, UncompensatedCuts, graded, rul
     "{bare} {goes} {cut_part}; retract Z above the part first, or go round it",
     worst="uncompensated_cuts.graveness",
     once="loop",
-    follows={"motion": ("rapid-in-polar",), "loop": ("x-not-positive-at-entry",)},
+    follows={"motion": ("rapid-in-polar",), "loop": ("x-not-positive-at-entry",), "section": ("start-up-on-arc",)},
 )
 def uncompensated_cut_into_part(uncompensated_cuts: UncompensatedCuts) -> Hits:
     """

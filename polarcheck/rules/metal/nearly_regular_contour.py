@@ -17,6 +17,7 @@ from polarcheck.checking.rule import WARNING, Hits, Regularity, rule
             "arc-radius-too-small",
             "arc-center-on-path",
             "arc-without-center",
+            "start-up-off-contour",
         ),
         "section": (
             "diameter-radius-mixed",
@@ -24,6 +25,9 @@ from polarcheck.checking.rule import WARNING, Hits, Regularity, rule
             "linear-axis-never-programmed",
             "contour-open-with-infeed",
             "rapid-in-polar",
+            "cancel-without-start-up",
+            "compensation-without-contour",
+            "start-up-after-contour",
         ),
     },
 )

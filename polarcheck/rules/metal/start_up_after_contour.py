@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Mask, MisplacedRamps, rule
+from polarcheck.checking.rule import WARNING, Mask, MisplacedRamps, ProgrammedPath, rule
 
 
 @rule(
@@ -11,9 +11,8 @@ from polarcheck.checking.rule import WARNING, Mask, MisplacedRamps, rule
     once="section",
     subject="",
     doubts=(("compensation", "section"), ("metal", "section")),
-    follows={"block": ("start-up-on-arc",)},
 )
-def start_up_after_contour(misplaced_ramps: MisplacedRamps) -> Mask:
+def start_up_after_contour(path: ProgrammedPath, misplaced_ramps: MisplacedRamps) -> Mask:
     """
     G41 or G42 one or more blocks late.
 
@@ -58,4 +57,5 @@ def start_up_after_contour(misplaced_ramps: MisplacedRamps) -> Mask:
         Z2.
         G13.1
     """
-    return misplaced_ramps.begun_without >= 0
+    # A start-up on an arc has a rule of its own.
+    return (misplaced_ramps.begun_without >= 0) & ~path.is_arc
