@@ -189,8 +189,7 @@ class AirCuts(Columns, frozen=True):
         The section has been cut before at the same angle of C with the same tool, feed and depths.
 
         It is no spring pass: its like are cut at other angles, and not each of them as often; or a block that indexes C
-        alone and moves nothing stands before it, or the tool retracts before it farther than it approaches, as it does
-        to index.
+        alone and moves nothing stands before it.
         """
         trace = self.trace
         repeated = np.zeros(len(trace.mode.sections) + 1, bool)
@@ -203,7 +202,7 @@ class AirCuts(Columns, frozen=True):
             later = np.array([index not in number[:place] for place, index in enumerate(number)]) == 0
             if len(count) > 1 and count.min() < count.max():
                 repeated[members[later]] = True
-            repeated[members[later & (self._idle_index | self._retracts_high)[members]]] = True
+            repeated[members[later & self._idle_index[members]]] = True
         return repeated[trace.mode.section]
 
     @property
@@ -246,18 +245,6 @@ class AirCuts(Columns, frozen=True):
         enter, last = trace.mode.sections.enter, trace.mode.sections.last
         since = np.append(-1, np.minimum(last, len(trace) - 1)[:-1]) + 1
         result = (idle[enter] > idle[since]) & (turns[enter] == turns[since])
-        result[:1] = False
-        return np.asarray(result)
-
-    @cached_property
-    def _retracts_high(self) -> Mask:
-        """Per section: Z goes higher between it and the section before than where it begins."""
-        trace, sections = self.trace, self.trace.mode.sections
-        z = np.nan_to_num(trace.path.z, nan=-np.inf)
-        since = np.append(0, np.minimum(sections.last, len(trace) - 1)[:-1])
-        bounds = np.column_stack((since, sections.enter + 1)).ravel()
-        highest = np.maximum.reduceat(np.append(z, -np.inf), bounds)[::2]
-        result = highest > trace.path.z[sections.enter] + 1
         result[:1] = False
         return np.asarray(result)
 

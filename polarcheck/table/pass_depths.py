@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from polarcheck.arrays import Columns, Floats, Rows, Table
+from polarcheck.arrays import Columns, Floats, Mask, Rows, Table
 from polarcheck.columns.trace import Trace
 from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.table.air_cuts import AirCuts
@@ -62,6 +62,11 @@ class PassDepths(Columns, frozen=True):
         for row, z in self._off():
             expected[row] = z
         return expected
+
+    @cached_property
+    def is_off(self) -> Mask:
+        """Rows with the first cut of a pass that is off."""
+        return ~np.isnan(self.expected)
 
     def _off(self) -> Iterator[tuple[int, float]]:
         passes = self.passes

@@ -1,7 +1,5 @@
 from __future__ import annotations
 
-import numpy as np
-
 from polarcheck.checking.rule import WARNING, Mask, PassDepths, rule
 
 
@@ -62,4 +60,4 @@ def pass_depth_differs(pass_depths: PassDepths) -> Mask:
         Z2.
         G13.1
     """
-    return ~np.isnan(pass_depths.expected)
+    return pass_depths.is_off
