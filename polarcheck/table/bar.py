@@ -12,7 +12,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from polarcheck.arrays import Columns, Floats, Mask, Rows, Table
+from polarcheck.arrays import Columns, Floats, Mask, Rows, Table, different, is_among
 from polarcheck.columns.filling import before, fill_down
 from polarcheck.columns.trace import Trace
 from polarcheck.geometry.tolerances import ROUNDING
@@ -144,7 +144,7 @@ class Bar(Columns, frozen=True):
     @cached_property
     def _turning_rows(self) -> Rows:
         """Feed moves of X or Z by turning tools, known at both ends."""
-        at_feed = np.isin(self.trace.axes.motion, (Motion.LINE, Motion.CW, Motion.CCW))
+        at_feed = is_among(self.trace.axes.motion, (Motion.LINE, Motion.CW, Motion.CCW))
         return np.flatnonzero(self.turns & at_feed & ~np.isnan(sum(self._place)))
 
     @cached_property
@@ -187,7 +187,7 @@ class Bar(Columns, frozen=True):
         top = min(face, 0.0) if not np.isnan(face) else 0.0
         deepest = min(float(trace.path.z[cutting].min(initial=top)), top - 2 * ROUNDING)
         ends = np.concatenate([outside.z_from, outside.z_to, [deepest, top]])
-        heights = np.unique(np.clip(np.concatenate([ends - ROUNDING, ends + ROUNDING]), deepest, top))
+        heights = different(np.clip(np.concatenate([ends - ROUNDING, ends + ROUNDING]), deepest, top))
         if len(heights) * len(outside.row) > _MOST * _MOST:
             return np.nan, np.nan, outside.row
         smallest, largest = np.inf, 0.0

@@ -48,6 +48,8 @@ class PassDepths(Columns, frozen=True):
             return Passes(rows, np.zeros(0), rows)
         z, section = trace.path.z[rows], trace.mode.section[rows]
         first = np.flatnonzero((np.diff(section, prepend=-1) != 0) | (np.abs(np.diff(z, prepend=np.inf)) > ROUNDING))
+        if len(first) < _FEWEST:
+            return Passes(rows[first], z[first], np.zeros(len(first), np.int64))
         count = np.diff(np.append(first, len(rows)))
         ends = trace.path.end[rows]
         sums = [np.add.reduceat(part, first) for part in (ends.real, ends.imag, np.abs(ends))]

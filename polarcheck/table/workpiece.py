@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import msgspec
 import numpy as np
 
-from polarcheck.arrays import Columns, Floats, Mask, Points, Rows, States, Table
+from polarcheck.arrays import Columns, Floats, Mask, Points, Rows, States, Table, is_among
 from polarcheck.columns.trace import Trace
 from polarcheck.errors import TooHardError
 from polarcheck.geometry import polar
@@ -114,7 +114,7 @@ class Workpiece(Columns, frozen=True):
         has_section[call[trace.mode.sections.enter]] = True
         radial = [number for number, tool in trace.tools.of_job.items() if tool.mount == "radial"]
         followed = ~trace.modal.on_sub_spindle & trace.mode.is_followed & ~trace.mode.on_cylinder
-        return np.asarray(has_section[call] & followed & ~np.isin(trace.tools.offset_number, radial))
+        return np.asarray(has_section[call] & followed & ~is_among(trace.tools.offset_number, radial))
 
     @cached_property
     def radius(self) -> Floats:
@@ -131,7 +131,7 @@ class Workpiece(Columns, frozen=True):
         trace = self.trace
         path, axes = trace.path, trace.axes
         returns = trace.blocks.listed("reference_return") & trace.blocks.has("X", "U") & (trace.mode.section < 0)
-        moves = axes.moves & np.isin(axes.motion, (Motion.RAPID, Motion.LINE)) & (trace.mode.section < 0)
+        moves = axes.moves & is_among(axes.motion, (Motion.RAPID, Motion.LINE)) & (trace.mode.section < 0)
         moves &= ~trace.modal.in_cycle
         row = np.flatnonzero((moves | returns) & ~np.isnan(self.radius))
         returns = returns[row]
@@ -442,7 +442,9 @@ class Workpiece(Columns, frozen=True):
         if not len(walls):
             return mask
         pockets = np.zeros(len(trace.mode.sections) + 1, bool)
-        first = trace.mode.first_in_section(trace.blocks.mask_of(np.unique(walls.row)))
+        is_wall = np.zeros(len(trace), bool)
+        is_wall[walls.row] = True
+        first = trace.mode.first_in_section(is_wall)
         pockets[trace.mode.section[walls.row[self._walls_of_pockets & first[walls.row]]]] = True
         moving = trace.mode.first_in_section(trace.mode.in_polar & trace.axes.moves)
         idle = moving & trace.axes.commands_z & ~trace.path.moves_z & ~trace.path.travels
