@@ -64,6 +64,7 @@ MAKERS = {
     "contour_depths": "polarcheck.table.contour_depths:ContourDepths",
     "pass_differences": "polarcheck.table.pass_differences:PassDifferences",
     "passes": "polarcheck.table.passes:Passes",
+    "same_circle": "polarcheck.table.same_circle:SameCircle",
     "tangency": "polarcheck.table.tangency:Tangency",
     "part_comments": "polarcheck.table.part_comments:PartComments",
     "travel": "polarcheck.table.travel:Travel",

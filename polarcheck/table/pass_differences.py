@@ -13,9 +13,9 @@ from polarcheck.table.passes import Passes
 from polarcheck.table.slips import plain_number, slip_of
 
 #: Points nearer to each other than this [mm] are the same, and how far off a point is that differs.
-_SAME, _OTHER = 1e-4, 0.01
+_SAME, _OTHER = 1e-4, 0.004
 #: Moves that may differ, and the least number that agree.
-_MOST_DIFFERING, _LEAST_AGREEING = 3, 3
+_MOST_DIFFERING, _LEAST_AGREEING = 3, 2
 #: Digits of a number from which on one other digit is a slip, and no other dimension.
 _FINE = 4
 #: Different passes with one beginning and end that are compared with each other.
@@ -133,9 +133,9 @@ class PassDifferences(Columns, frozen=True):
         head = _agreeing(one[:shorter], two[:shorter])
         tail = min(_agreeing(one[::-1][:shorter], two[::-1][:shorter]), shorter - head)
         differing = len(one) - head - tail, len(two) - head - tail
-        if not 0 < max(differing) <= _MOST_DIFFERING or head + tail < max(_LEAST_AGREEING, max(differing) + 1):
+        if not 0 < max(differing) <= _MOST_DIFFERING or head + tail < max(_LEAST_AGREEING, max(differing)):
             return None
-        if not (head and tail):
+        if not tail:
             return None
         row, other = (int(self.passes.row[self.passes.first[which] + head]) for which in (number, model))
         if self.trace.run.block[row] == self.trace.run.block[other] and differing[0] == differing[1]:

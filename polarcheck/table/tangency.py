@@ -16,6 +16,7 @@ from polarcheck.geometry.plane import angle_between
 from polarcheck.machines.modal import Motion, Units
 from polarcheck.table.arcs import Arcs
 from polarcheck.table.passes import Passes
+from polarcheck.table.same_circle import Meant, SameCircle
 from polarcheck.table.slips import plain_number, slip_of
 
 #: A turn that is meant as a corner [rad], and this many times what rounding turns a tangent by.
@@ -30,6 +31,8 @@ _FLAT = 0.02
 _SAME = 0.02
 #: Factors by which an R is mistaken: radius for diameter, a point that moved.
 _FACTORS = (2.0, 0.5, 10.0, 0.1)
+#: Ratios that differ by less than this share are one factor.
+_LIKE = 0.02
 #: The least step of R on drawings, in mm and in inch.
 _STEP, _STEP_INCH = 0.5, 1 / 32
 #: Passes in which arcs are judged.
@@ -57,6 +60,7 @@ class Tangency(Columns, frozen=True):
     trace: Trace
     arcs: Arcs
     passes: Passes
+    same_circle: SameCircle
 
     @cached_property
     def _judged(self) -> _Judged:
@@ -198,50 +202,78 @@ class Tangency(Columns, frozen=True):
         return np.where(self.arcs.sweep[passes.row] > 180 + 1e-3, -size, size)
 
     @cached_property
+    def _meant(self) -> Meant:
+        """All arcs for which another one is meant: on the circle of other arcs, else tangent to its neighbours."""
+        judged, chosen = self._judged, self._misfits
+        tolerance = np.array([self._tolerance_of(index) for index in chosen.tolist()])
+        tangent = Meant(judged.move[chosen], judged.radius[chosen], judged.center[chosen], tolerance)
+        parts = [self.same_circle.mistaken_together, self.same_circle.leaves_circle, tangent]
+        move, first = np.unique(np.concatenate([part.move for part in parts]), return_index=True)
+        columns = (np.concatenate([part[at] for part in parts])[first] for at in range(1, 4))
+        return Meant(move, *columns)
+
+    @cached_property
     def misfits(self) -> Mask:
-        """Arcs that turn a corner at both ends, where another R, or center, would be tangent, and the rest shows it."""
-        return self._column(self._judged.move[self._misfits])
+        """Arcs that turn a corner where another R, or center, would be tangent, as the rest of the contour shows."""
+        return self._column(self._meant.move)
+
+    def _of_meant(self, values: Floats) -> Floats:
+        column = np.full(len(self.trace), np.nan)
+        column[self.passes.row[self._meant.move]] = values
+        return column
 
     @cached_property
     def radius_needed(self) -> Floats:
-        """R of the arc that would be tangent, negative above 180 deg [mm]; NaN for rows that are no misfits."""
-        column = np.full(len(self.trace), np.nan)
-        column[self.passes.row[self._judged.move[self._misfits]]] = self._judged.radius[self._misfits]
-        return column
+        """R of the arc that is meant, negative above 180 deg [mm]; NaN for rows that are no misfits."""
+        return self._of_meant(self._meant.radius)
 
     @cached_property
     def center_needed(self) -> Points:
         """Its center [mm]."""
         column = np.full(len(self.trace), complex("nan+nanj"))
-        column[self.passes.row[self._judged.move[self._misfits]]] = self._judged.center[self._misfits]
+        column[self.passes.row[self._meant.move]] = self._meant.center
         return column
 
     @cached_property
     def radius_tolerance(self) -> Floats:
         """What rounding leaves open of that R [mm]."""
-        column = np.full(len(self.trace), np.nan)
-        rows = self.passes.row[self._judged.move[self._misfits]]
-        column[rows] = [self._tolerance_of(index) for index in self._misfits.tolist()]
-        return column
+        return self._of_meant(self._meant.tolerance)
+
+    @cached_property
+    def on_circle(self) -> Mask:
+        """Misfits that are meant on the circle of other arcs."""
+        circle = self.same_circle
+        return self._column(np.concatenate([circle.mistaken_together.move, circle.leaves_circle.move]))
 
     @cached_property
     def corner(self) -> Floats:
         """The larger turn at the ends of an arc that does not fit [deg]."""
-        column = np.full(len(self.trace), np.nan)
-        move = self._judged.move[self._misfits]
-        into, out = (np.abs(turn[move]) for turn in self.passes.turns)
-        column[self.passes.row[move]] = np.degrees(np.maximum(into, out))
-        return column
+        into, out = (np.abs(turn[self._meant.move]) for turn in self.passes.turns)
+        return self._of_meant(np.degrees(np.fmax(into, out)))
 
     @cached_property
     def size(self) -> Rows:
-        """The same number for misfits of a section with one R that need one R; -1 for other rows."""
+        """
+        The same number for misfits of a section that one mistake explains; -1 for other rows.
+
+        One R stands for one other R, or several are mistaken by one factor.
+        """
         number = np.full(len(self.trace), -1)
         rows = np.flatnonzero(self.misfits)
         if len(rows):
             written = np.zeros(len(self.trace))
             written[self.passes.row] = self._written
-            keys = np.stack((self.trace.mode.section[rows], written[rows].round(2), self.radius_needed[rows].round(1)))
+            ratio = np.abs(written[rows] / self.radius_needed[rows])
+            factor = np.array(_FACTORS)[np.argmin(np.abs(np.log(ratio[:, None] / np.array(_FACTORS))), axis=1)]
+            of_factor = (np.abs(ratio / factor - 1) < _LIKE) & (self.radius_needed[rows] * written[rows] > 0)
+            keys = np.stack(
+                (
+                    self.trace.mode.section[rows],
+                    np.where(of_factor, factor, 0),
+                    np.where(of_factor, 0, written[rows].round(2)),
+                    np.where(of_factor, 0, self.radius_needed[rows].round(1)),
+                )
+            )
             number[rows] = np.unique(keys, axis=1, return_inverse=True)[1].reshape(-1)
         return number
 

@@ -18,6 +18,7 @@ from polarcheck.checking.phrases.misplaced import wrong_by as wrong_by
 from polarcheck.checking.phrases.misplaced import x_meant as x_meant
 from polarcheck.checking.phrases.passes import crosses_line as crosses_line
 from polarcheck.checking.phrases.passes import drift as drift
+from polarcheck.checking.phrases.passes import fit_of_arc as fit_of_arc
 from polarcheck.checking.phrases.passes import forgotten_arc as forgotten_arc
 from polarcheck.checking.phrases.passes import needed_arc as needed_arc
 from polarcheck.checking.phrases.passes import other_pass as other_pass

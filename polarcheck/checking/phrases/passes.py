@@ -109,3 +109,10 @@ def other_pass(trace: Trace, pass_differences: PassDifferences, row: int) -> str
 def drift(trace: Trace, increments: Increments, row: int) -> str:
     """Where a contour in increments began."""
     return f"which is {_point(trace, row, complex(increments.begins[row]))}"
+
+
+def fit_of_arc(tangency: Tangency, row: int) -> str:
+    """How the arc that is meant lies in the contour."""
+    if tangency.on_circle[row]:
+        return "lie on one circle with the other arcs"
+    return "be tangent to the blocks before and after it"

@@ -5,8 +5,7 @@ from polarcheck.checking.rule import WARNING, Arcs, Mask, Tangency, rule
 
 @rule(
     WARNING,
-    "{written_arc} turns a corner of {tangency.corner:whole} deg at either end of the arc; {needed_arc} would be "
-    "tangent to the blocks before and after it",
+    "{written_arc} turns a corner of {tangency.corner:whole} deg at an end of the arc; {needed_arc} would {fit_of_arc}",
     at=("R", "I", "J"),
     once="misfit",
     subject="side",

@@ -11,8 +11,8 @@ from polarcheck.checking.rule import WARNING, ContourDepths, Mask, rule
     at=("Z", "W"),
     once="compensation",
     subject="side",
-    doubts=(("metal", "loop"),),
-    follows={"block": ("z-with-plane-axis", "arc-off-polar-plane"), "loop": OUT_OF_PLACE},
+    doubts=(("compensation", "loop"),),
+    follows={"block": ("z-with-plane-axis", "arc-off-polar-plane"), "loop": (*OUT_OF_PLACE, "nearly-regular-contour")},
 )
 def contour_at_two_depths(contour_depths: ContourDepths) -> Mask:
     """

@@ -27,23 +27,23 @@ def passes_differ(pass_differences: PassDifferences) -> Mask:
         G98 G0 X100. Z2. C0
         G12.1
         G1 Z-5. F200
-        G42 X30.
-        C8.66
-        X0 C17.321
-        X-30. C8.66
-        C-8.66
-        X0 C-17.321
-        X30. C-8.66
+        G42 X40.
+        C9.
+        X12. C22.
+        X-34. C14.
+        X-28. C-11.
+        X10. C-19.
+        X40. C-8.
         C0
         G40 X100.
         Z-10.
-        G42 X30.
-        C8.66
-        X0 C17.321
-        X-30. C8.66
-        C-8.66
-        X0 C-13.721         (expect: passes-differ)
-        X30. C-8.66
+        G42 X40.
+        C9.
+        X12. C22.
+        X-34. C14.
+        X-28. C-11.
+        X10. C-16.         (expect: passes-differ)
+        X40. C-8.
         C0
         G40 X100.
         G13.1

@@ -8,6 +8,7 @@ from polarcheck.checking.rule import WARNING, Arcs, Mask, Tangency, rule
     "negative radius of an arc: more than 180 deg, or an alarm",
     at=("R",),
     subject="",
+    doubts=(("compensation", "loop"),),
     follows={"block": ("full-circle-by-radius", "arc-off-polar-plane", "arc-sweep-above-limit")},
 )
 def negative_arc_radius(arcs: Arcs, tangency: Tangency) -> Mask:
