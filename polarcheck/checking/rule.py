@@ -79,6 +79,7 @@ if TYPE_CHECKING:
     from polarcheck.table.procedure import Procedure as Procedure
     from polarcheck.table.ramps import Ramps as Ramps
     from polarcheck.table.regularity import Regularity as Regularity
+    from polarcheck.table.same_circle import SameCircle as SameCircle
     from polarcheck.table.senses import Senses as Senses
     from polarcheck.table.slots import Slots as Slots
     from polarcheck.table.spindles import Spindles as Spindles

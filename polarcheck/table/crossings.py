@@ -67,6 +67,9 @@ class Crossings(Columns, frozen=True):
         back = np.abs(angle_between(ends[:-1], begins[1:])) >= _BACK
         lines = ~passes.is_arc[:-1] & ~passes.is_arc[1:]
         arcs = passes.is_arc[:-1] & passes.is_arc[1:] & (np.abs(np.diff(passes.center)) <= _SAME)
+        # An arc of the wrong sense runs back along the lines on both sides, or one that is parted does.
+        cusps = np.bincount(passes.number[1:][back & joined], minlength=len(passes.first))
+        arcs |= (passes.closed & (cusps > 1))[passes.number[1:]]
         length = self.trace.path.length[passes.row]
         long = np.minimum(length[1:], length[:-1]) > _LEAST
         move = np.flatnonzero(joined & back & long & (lines | arcs)) + 1

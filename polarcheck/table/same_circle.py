@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from polarcheck.arrays import Columns, Floats, Mask, Points, Rows
+from polarcheck.arrays import Columns, Floats, Mask, Points, Rows, States
 from polarcheck.columns.trace import Trace
 from polarcheck.geometry.plane import cross
 from polarcheck.machines.modal import Motion
@@ -67,14 +67,10 @@ class SameCircle(Columns, frozen=True):
             return _nothing()
         start, end = passes.start[move], passes.end[move]
         center, radius = np.full(len(move), complex("nan+nanj")), np.full(len(move), np.nan)
-        about_axis = passes.is_arc & (np.abs(passes.center) <= _SAME)
-        of_pass = np.full(len(passes.first), np.nan)
-        of_pass[passes.number[about_axis]] = np.abs(passes.start[about_axis])
+        of_pass, sense = self._bar
         at_bar = of_pass[passes.number[move]]
         on_bar = (np.abs(np.abs(start) - at_bar) <= _SAME) & (np.abs(np.abs(end) - at_bar) <= _SAME)
-        same_sense = np.zeros(len(passes.first), np.int16)
-        same_sense[passes.number[about_axis]] = passes.motion[about_axis]
-        on_bar &= same_sense[passes.number[move]] == passes.motion[move]
+        on_bar &= sense[passes.number[move]] == passes.motion[move]
         center[on_bar], radius[on_bar] = 0, at_bar[on_bar]
         near = on_bar & self._is_slip(move, radius)
         beside = np.zeros(len(move), bool)
@@ -90,6 +86,38 @@ class SameCircle(Columns, frozen=True):
             center[fits], radius[fits], beside[fits] = about[fits], size[fits], True
         chosen = near | beside
         return self._meant(move[chosen], center[chosen], radius[chosen])
+
+    @cached_property
+    def reversed(self) -> Mask:
+        """Rows of arcs that end on the circle of such an arc and have its R, and bend the other way."""
+        passes, trace = self.passes, self.trace
+        move = np.flatnonzero(self._judged & self.arcs.by_radius[passes.row])
+        if not len(move):
+            return trace.blocks.nowhere
+        start, end, motion = passes.start[move], passes.end[move], passes.motion[move]
+        size = np.abs(start - passes.center[move])
+        at_bar, sense = self._bar
+        number = passes.number[move]
+        on_bar = np.abs(np.abs(start) - at_bar[number]) <= _SAME
+        on_bar &= (np.abs(np.abs(end) - at_bar[number]) <= _SAME) & (sense[number] != motion)
+        chosen = on_bar & (np.abs(size - at_bar[number]) <= _SAME)
+        for other, far in ((passes.beside[0][move], end), (passes.beside[1][move], start)):
+            about = passes.center[other]
+            fits = (other >= 0) & passes.is_arc[other] & (passes.motion[other] != motion)
+            fits &= (np.abs(np.abs(far - about) - size) <= _SAME) & (np.abs(about - passes.center[move]) > _SAME)
+            joint = np.abs(passes.start[other] - about)
+            chosen |= fits & (np.abs(joint - size) <= _SAME) & (passes.beside[0][move] != passes.beside[1][move])
+        return trace.blocks.mask_of(passes.row[move[chosen]])
+
+    @cached_property
+    def _bar(self) -> tuple[Floats, States]:
+        """Per pass the radius of its arcs about the center of C [mm], NaN without any, and their motion."""
+        passes = self.passes
+        about_axis = passes.is_arc & (np.abs(passes.center) <= _SAME)
+        radius, sense = np.full(len(passes.first), np.nan), np.zeros(len(passes.first), np.int16)
+        radius[passes.number[about_axis]] = np.abs(passes.start[about_axis])
+        sense[passes.number[about_axis]] = passes.motion[about_axis]
+        return radius, sense
 
     def _is_slip(self, move: Rows, radius: Floats) -> Mask:
         """The R that is written is the R that is meant but for a slip, or nearly that."""

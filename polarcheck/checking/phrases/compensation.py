@@ -26,6 +26,8 @@ from polarcheck.machines.modal import Motion, Side
 from polarcheck.table.coverage import Coverage
 from polarcheck.table.fitting import Fitting
 from polarcheck.table.overcuts import Overcuts
+from polarcheck.table.passes import Passes
+from polarcheck.table.senses import Senses
 from polarcheck.table.slots import Slots
 from polarcheck.table.tool_center import ToolCenter
 from polarcheck.table.uncompensated_cuts import UncompensatedCuts
@@ -104,6 +106,22 @@ def written_sense(axes: PlaneAxes, machine: Machine, row: int) -> str:
 def other_sense(axes: PlaneAxes, machine: Machine, row: int) -> str:
     """The other one."""
     return code_of(machine, "arc_counterclockwise" if axes.motion[row] == Motion.CW else "arc_clockwise")
+
+
+def corner_of_sense(senses: Senses, passes: Passes, row: int) -> str:
+    """The turn at the ends of an arc [deg], the smaller one where both are known."""
+    corner = float(senses.corner[row])
+    if np.isnan(corner):
+        at = int(np.flatnonzero(passes.row == row)[0])
+        corner = float(np.degrees(np.nanmax(np.abs([turn[at] for turn in passes.turns]))))
+    return f"{corner:.0f}"
+
+
+def fit_of_sense(senses: Senses, row: int) -> str:
+    """How an arc lies in its contour the other way round."""
+    if senses.fits_reversed[row]:
+        return "is tangent to the blocks before and after it"
+    return "lies on one circle with the other arcs"
 
 
 def _along(axes: PlaneAxes, lengths: Lengths, path: ProgrammedPath, row: int, length: float, other: float) -> str:

@@ -1,24 +1,25 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Mask, Senses, rule
+from polarcheck.checking.rule import WARNING, Mask, SameCircle, Senses, rule
 
 
 @rule(
     WARNING,
-    "{written_sense} turns a corner of {senses.corner:whole} deg at both ends; {other_sense} is tangent to the blocks "
-    "before and after it: write {other_sense}",
+    "{written_sense} turns a corner of {corner_of_sense} deg at its ends; {other_sense} {fit_of_sense}: write "
+    "{other_sense}",
     at=("arc_clockwise", "arc_counterclockwise"),
-    doubts=(("compensation", "loop"),),
+    once="motion",
+    doubts=(("compensation", "loop"), ("move", "loop")),
 )
-def arc_sense_reversed(senses: Senses) -> Mask:
+def arc_sense_reversed(senses: Senses, same_circle: SameCircle) -> Mask:
     """
     G2 where G3 is meant at a corner, or the reverse.
 
     A corner is rounded by an arc that is tangent to the blocks on both sides. With the other code the arc by R bends
     the other way, and the corner becomes a notch; by I and J it goes round the rest of the circle. Where the cutter
     fits into the notch no control objects, and the part is scrap. It is reported where the rest of the contour shows
-    what is meant: another of its arcs is tangent, and this one alone would be the other way round. Several such notches
-    are a pattern that is meant.
+    what is meant: another of its arcs is tangent, and this one alone would be the other way round, or it ends on the
+    circle of another arc with the same R. Several such notches are a pattern that is meant.
 
     Source: FANUC B-62754EN/01, p. 67 (G02 clockwise, G03 counterclockwise).
 
@@ -71,4 +72,4 @@ def arc_sense_reversed(senses: Senses) -> Mask:
         G13.1
     """
     shown = (senses.tangent_in_loop > 0) & (senses.fitting_reversed_in_loop == 1)
-    return senses.fits_reversed & (shown | senses.turns_back)
+    return (senses.fits_reversed & (shown | senses.turns_back)) | same_circle.reversed

@@ -10,7 +10,15 @@ from polarcheck.checking.rule import WARNING, Crossings, Mask, rule
     once="loop",
     subject="side",
     doubts=(("compensation", "loop"),),
-    follows={"loop": (*OUT_OF_PLACE, "arc-sense-reversed", "arc-not-tangent", "arc-word-without-arc")},
+    follows={
+        "loop": (
+            *OUT_OF_PLACE,
+            "arc-sense-reversed",
+            "arc-not-tangent",
+            "arc-word-without-arc",
+            "nearly-regular-contour",
+        )
+    },
 )
 def contour_crosses_itself(crossings: Crossings) -> Mask:
     """

@@ -18,6 +18,7 @@ from polarcheck.checking.rule import WARNING, Increments, Mask, rule
             "arc-not-tangent",
             "arc-word-without-arc",
             "contour-crosses-itself",
+            "nearly-regular-contour",
         )
     },
 )
