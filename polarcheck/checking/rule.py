@@ -62,6 +62,7 @@ if TYPE_CHECKING:
     from polarcheck.table.deviations import Deviations as Deviations
     from polarcheck.table.dialect import Dialect as Dialect
     from polarcheck.table.entry import Entry as Entry
+    from polarcheck.table.entry_angles import EntryAngles as EntryAngles
     from polarcheck.table.feed_ranges import FeedRanges as FeedRanges
     from polarcheck.table.feeds import Feeds as Feeds
     from polarcheck.table.increments import Increments as Increments

@@ -44,6 +44,7 @@ MAKERS = {
     "ramps": "polarcheck.table.ramps:Ramps",
     "overcuts": "polarcheck.table.overcuts:Overcuts",
     "fitting": "polarcheck.table.fitting:Fitting",
+    "entry_angles": "polarcheck.table.entry_angles:EntryAngles",
     "misplaced_ramps": "polarcheck.table.misplaced_ramps:MisplacedRamps",
     "mirrored": "polarcheck.table.mirrored:Mirrored",
     "slots": "polarcheck.table.slots:Slots",

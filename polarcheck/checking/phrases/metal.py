@@ -14,6 +14,7 @@ from polarcheck.checking.phrases.misplaced import leads_where as leads_where
 from polarcheck.checking.phrases.misplaced import left_or_right as left_or_right
 from polarcheck.checking.phrases.misplaced import ramp_end as ramp_end
 from polarcheck.checking.phrases.misplaced import side as side
+from polarcheck.checking.phrases.misplaced import turned as turned
 from polarcheck.checking.phrases.misplaced import wrong_by as wrong_by
 from polarcheck.checking.phrases.misplaced import x_meant as x_meant
 from polarcheck.checking.phrases.passes import crosses_line as crosses_line

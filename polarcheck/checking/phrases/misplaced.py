@@ -13,14 +13,24 @@ from polarcheck.columns.blocks import ExecutedBlocks
 from polarcheck.columns.lengths import Lengths
 from polarcheck.columns.offsets import ToolOffsets
 from polarcheck.columns.path import ProgrammedPath
+from polarcheck.columns.trace import Trace
 from polarcheck.execution.run import Run
 from polarcheck.machines.machine import Machine
+from polarcheck.table.entry_angles import EntryAngles
 from polarcheck.table.misplaced_ramps import MisplacedRamps
 
 
 def cancel(machine: Machine) -> str:
     """G40."""
     return code_of(machine, "compensation_off")
+
+
+def turned(trace: Trace, entry_angles: EntryAngles, index: int) -> str:
+    """Where C stands at the G12.1 of a section, and at that before it."""
+    enter = trace.mode.sections.enter
+    here, before = (float(trace.path.c_angle[enter[at]]) for at in (index, index - 1))
+    by = f"{abs(float(entry_angles.turned_by[index])):.4g} deg"
+    return by if np.isnan(here - before) else f"at {here % 360:.4g} deg, {by}"
 
 
 def left_or_right(machine: Machine) -> str:

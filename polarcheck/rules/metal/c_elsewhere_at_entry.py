@@ -1,0 +1,67 @@
+from __future__ import annotations
+
+from polarcheck.checking.rule import WARNING, EntryAngles, Mask, rule
+
+
+@rule(
+    WARNING,
+    "{rotary} stands where the section before has left it, {turned} from its G12.1: nobody has positioned it, and this "
+    "section comes out turned by as much; write {rotary} with the approach before {switch}",
+    over="sections",
+    at=("on",),
+    once="program",
+    doubts=(("metal", "section"),),
+)
+def c_elsewhere_at_entry(entry_angles: EntryAngles) -> Mask:
+    """
+    Second section at another angle of C than the first, which nobody has positioned.
+
+    The angle of C at G12.1 becomes the direction of X on the plane. A section leaves C wherever its last point lies:
+    after X40. C20. that is 45 deg. If the next G12.1 follows without a C word, its whole shape is turned by as much
+    against the first. Write G0 C0, or the angle that is meant, before each G12.1. Where C stands at the same angle, or
+    what the section cuts is the same turned by that angle, as a round or a hexagon at 60 deg, nothing is reported.
+
+    Source: FANUC B-62764EN/01, p. 51; builder's guide to G12.1, angular orientation of the plane.
+
+    Bad:
+
+        G98 G0 X60. Z2. C0
+        G12.1
+        G1 X40. F200
+        C20.
+        G13.1
+        G12.1             (expect: c-elsewhere-at-entry)
+        G1 X30. F200
+        C15.
+        X60.
+        G13.1
+
+    Good:
+
+        G98 G0 X60. Z2. C0
+        G12.1
+        G1 X40. F200
+        C20.
+        G13.1
+        G0 C0
+        G12.1
+        G1 X30. F200
+        C15.
+        X60.
+        G13.1
+
+    Good:
+
+        G98 G0 X60. Z2. C0
+        G12.1
+        G1 X40. F200
+        C20.
+        G13.1
+        G12.1
+        G1 X40. C0 F200
+        G3 I-20. J0
+        G1 X60.
+        G13.1
+    """
+    # NaN where C stands as at the section before.
+    return entry_angles.turned_by == entry_angles.turned_by
