@@ -90,6 +90,9 @@ class AirCuts(Columns, frozen=True):
             (self._depth_missing, Reason.DEPTH_MISSING),
         ):
             reason[mask & self.walls] = why
+        # A bar that is too small, or another unit, is one mistake of the whole program.
+        outside = np.flatnonzero(reason == Reason.OUTSIDE_BAR)
+        reason[outside[1:]] = Reason.NOT_IN_AIR
         first = trace.mode.first_in_section(reason > 0)
         return np.where(first, reason, 0).astype(np.int16)
 

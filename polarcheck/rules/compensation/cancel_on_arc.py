@@ -9,6 +9,7 @@ from polarcheck.checking.rule import ERROR, CutterCompensation, Mask, Programmed
     at=("compensation_off", "arc_clockwise", "arc_counterclockwise"),
     subject="move",
     doubts=(("metal", "block"),),
+    follows={"compensation": ("compensation-without-contour",)},
 )
 def cancel_on_arc(path: ProgrammedPath, compensation: CutterCompensation) -> Mask:
     """

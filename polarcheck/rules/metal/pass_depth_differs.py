@@ -3,7 +3,11 @@ from __future__ import annotations
 from polarcheck.checking.rule import WARNING, Mask, PassDepths, rule
 
 
-@rule(WARNING, "this pass is cut at Z{depth}, out of step with the others of its contour: Z{in_step} would fit")
+@rule(
+    WARNING,
+    "this pass is cut at Z{depth}, out of step with the others of its contour: Z{in_step} would fit",
+    follows={"section": ("cut-in-air",)},
+)
 def pass_depth_differs(pass_depths: PassDepths) -> Mask:
     """
     One pass of a contour far off the steps of the others.

@@ -8,6 +8,7 @@ from polarcheck.checking.rule import WARNING, Mask, PassEnds, rule
     "the pass begins outside the bar ({bar}) and ends inside it, at {path.end:point}: metal stays beyond its end",
     subject="metal",
     once="section",
+    follows={"compensation": ("start-up-sweeps-contour", "nearly-regular-contour", "passes-differ")},
 )
 def pass_ends_inside_bar(pass_ends: PassEnds) -> Mask:
     """

@@ -10,6 +10,9 @@ from polarcheck.machines.modal import Side
     at=("on", "off"),
     once="section",
     doubts=(("compensation", "section"),),
+    follows={
+        "section": ("side-repeated-in-offset-mode", "side-changed-in-offset-mode", "arc-off-polar-plane"),
+    },
 )
 def polar_switched_in_offset_mode(mode: PolarMode, compensation: CutterCompensation) -> Mask:
     """
