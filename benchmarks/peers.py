@@ -236,7 +236,8 @@ The first draws sound programs as setters and CAM posts write them (`tests/sette
 (`tests/single_slips.py`), and prints for each kind of slip how many are spoken about, by a finding or as unverified,
 how many pass, and how many give more than one finding. A simulation that shares no code with polarcheck
 (`tests/metal_simulation.py`) runs both programs: a slip counts where the part comes out otherwise, the control stops or
-metal is met by rapid, and where a check without a drawing could know. `--show-passing FOLDER` writes those that pass.
+metal is met by rapid, and where a check without a drawing could know. `--show-passing FOLDER` writes those that pass,
+`--show-many FOLDER` those with several findings, the slip marked.
 The second checks programs without a slip, without a bar and with five, and prints those that do not pass.
 `benchmarks/two_slips.py` does the same with pairs of slips.
 """
