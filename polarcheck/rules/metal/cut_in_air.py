@@ -12,6 +12,7 @@ from polarcheck.checking.rule import WARNING, AirCuts, Hits, rule
     follows={
         "section": (
             *OUT_OF_PLACE,
+            "contour-at-two-depths",
             "z-with-plane-axis",
             "helical-arc-in-polar",
             "polar-switch-not-alone",
