@@ -84,3 +84,11 @@ def test_the_message_quotes_the_comment() -> None:
     ).findings
     assert finding.message == "T0707 calls tool 7, the comment beside it names T9: (T9 END MILL D12)"
     assert finding.severity == "warning"
+
+
+def test_what_a_wrong_radius_makes_follows_from_it() -> None:
+    section = SECTION.replace("X60.", "X50.")
+    report = report_of(f"O1\nG21 G98\nT0707 (EM8)\n{section}M30\n", "fanuc", "7:radius=6,nose=0")
+    (finding,) = report.findings
+    assert (finding.line, finding.rule, finding.severity) == (3, "radius-contradicts-comment", "error")
+    assert {"start-up-shorter-than-radius", "cancel-shorter-than-radius"} <= {one.rule for one in finding.follows}

@@ -23,18 +23,13 @@ class ToolComments(Columns, frozen=True):
     tools: CalledTools
 
     @property
-    def names_other_tool(self) -> Mask:
-        """A T word whose comment names another tool."""
-        return self.comment >= 0
-
-    @property
     def named_tool(self) -> Rows:
         """The number of the tool in the comment, as it is written; -1 where no comment names another one."""
         return self._beside[1]
 
     @property
     def comment(self) -> Rows:
-        """The number of that comment in text.comments; -1 for none."""
+        """The number in text.comments of the comment that names another tool than T calls; -1 for none."""
         return self._beside[0]
 
     @cached_property

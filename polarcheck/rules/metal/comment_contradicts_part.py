@@ -184,4 +184,5 @@ def comment_contradicts_part(part_comments: PartComments) -> Hits:
         G13.1
         M30
     """
+    # Compares nothing: the table looks for the sections that each comment speaks of, and measures what they make.
     return Hits(part_comments.contradicts, values={"stated": part_comments.stated})

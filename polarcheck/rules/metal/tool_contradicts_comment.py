@@ -61,4 +61,4 @@ def tool_contradicts_comment(tool_comments: ToolComments) -> Hits:
         T0709 (T9 END MILL D12)
         M30
     """
-    return Hits(tool_comments.names_other_tool, values={"named": tool_comments.named_tool})
+    return Hits(tool_comments.comment >= 0, values={"named": tool_comments.named_tool})

@@ -6,14 +6,20 @@ from polarcheck.checking.rule import WARNING, Entry, Hits, rule
 _WEAR = 0.25
 
 
-@rule(WARNING, "R {given:length} {is_given}, the comment tells {told:length}: {comment}; measure the cutter", at=("T",))
+@rule(
+    WARNING,
+    "R {given:length} {is_given}, the comment tells {told:length}: {comment}; measure the cutter",
+    at=("T",),
+    doubts=(("compensation", "tool call"),),
+)
 def radius_contradicts_comment(entry: Entry) -> Hits:
     """
     Given radius that is not that of the program's own comment.
 
-    With the wrong radius a bad program passes and a good one fails. Measure the cutter, and look up the offset number:
-    the last digits of T. A radius near that of the comment is wear, one near 0 the adjustment of a program that gives
-    the path of the tool center; of these nothing is said.
+    With the wrong radius a bad program passes and a good one fails: what is found of compensation with this tool is
+    listed under this finding. Measure the cutter, and look up the offset number: the last digits of T. A radius near
+    that of the comment is wear, one near 0 the adjustment of a program that gives the path of the tool center; of these
+    nothing is said.
 
     What counts is the comment beside the T word, in its block or alone on the line before or after it, and the line of
     a list of tools with its number. It names a cutter in plain words: EM10, CUTTER 10, D12 EM, 8MM DIA. CUTTER. A bar,
