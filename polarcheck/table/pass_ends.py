@@ -46,6 +46,8 @@ class PassEnds(Columns, frozen=True):
         out = moving[last + 1]
         leads_out = np.abs(trace.path.end[out]) > half + ROUNDING
         leads_out &= (trace.mode.section[out] == trace.mode.section[moving[last]]) & ~trace.path.moves_z[out]
+        # An arc at the end leads away from a contour.
+        leads_out &= ~trace.path.is_arc[moving[last]]
         below = trace.path.z[moving[last]] < self.workpiece.top - ROUNDING
         found = (np.abs(start) > half - ROUNDING) & (np.abs(end) < half - _EDGE) & leads_out & below
         found &= ~self._goes_back(out, start)

@@ -8,7 +8,12 @@ from polarcheck.checking.rule import ERROR, Hits, UncompensatedCuts, graded, rul
     "{bare} {goes} {cut_part}; retract Z above the part first, or go round it",
     worst="uncompensated_cuts.graveness",
     once="loop",
-    follows={"motion": ("rapid-in-polar",), "loop": ("x-not-positive-at-entry",), "section": ("start-up-on-arc",)},
+    follows={
+        "motion": ("rapid-in-polar",),
+        "loop": ("x-not-positive-at-entry",),
+        "section": ("start-up-on-arc",),
+        "tool call": ("rapid-plunge-into-stock",),
+    },
 )
 def uncompensated_cut_into_part(uncompensated_cuts: UncompensatedCuts) -> Hits:
     """

@@ -10,7 +10,7 @@ from polarcheck.checking.rule import WARNING, EntryAngles, Mask, rule
     over="sections",
     at=("on",),
     once="program",
-    doubts=(("metal", "section"),),
+    doubts=(("metal", "section"), ("position", "section")),
 )
 def c_elsewhere_at_entry(entry_angles: EntryAngles) -> Mask:
     """

@@ -9,7 +9,6 @@ from polarcheck.checking.rule import ERROR, Hits, Workpiece, graded, rule
     where="workpiece.is_mill",
     once="tool call",
     follows={
-        "block": ("uncompensated-cut-into-part", "rapid-through-part"),
         "motion": ("rapid-in-polar",),
         "tool call": ("approach-inside-stock",),
     },

@@ -11,7 +11,7 @@ from polarcheck.checking.rule import ERROR, Hits, Workpiece, graded, rule
     follows={
         "block": ("uncompensated-cut-into-part", "rapid-through-part"),
         "motion": ("rapid-in-polar",),
-        "tool call": ("approach-inside-stock",),
+        "tool call": ("approach-inside-stock", "rapid-plunge-into-stock"),
     },
 )
 def rapid_through_stock(workpiece: Workpiece) -> Hits:
