@@ -28,8 +28,8 @@ _WORDS = ("HEX", "SQ", "OCT", "PENT", "FLATS", "BOSS", "AF", "A/F", "A.F", "SW",
 #: What is made may differ from a comment by so much: sizes of drawings are rounded, and have tolerances [mm].
 _SIZE_TOLERANCE, _SIZE_SHARE = 0.25, 0.01
 _DEPTH_TOLERANCE, _DEPTH_SHARE = 0.3, 0.02
-#: More sections than this are not held against comments.
-_MOST_SECTIONS = 400
+#: A program with more sections than this is not held against its comments.
+_MOST_SECTIONS = 100
 
 
 class PartComment(NamedTuple):

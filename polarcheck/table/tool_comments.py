@@ -39,18 +39,21 @@ class ToolComments(Columns, frozen=True):
         if not len(calls) or not len(self.text.comments):
             return comment, named
         of_block = self._comments_of_block(self.run.block[calls])
-        called = {*self.tools.tool[calls].tolist(), *np.abs(np.nan_to_num(self.blocks.word("T")[calls])).tolist()}
-        for row in calls.tolist() if of_block else []:
-            tool = int(self.tools.tool[row])
+        if not of_block:
+            return comment, named
+        tools, offsets, blocks = (
+            c[calls].tolist() for c in (self.tools.tool, self.tools.offset_number, self.run.block)
+        )
+        words = np.abs(np.nan_to_num(self.blocks.word("T")[calls])).tolist()
+        called = {*tools, *words}
+        for row, tool, offset, block, word in zip(calls.tolist(), tools, offsets, blocks, words, strict=True):
             if tool in self.run.names:
                 continue
-            block = int(self.run.block[row])
-            word = abs(int(np.nan_to_num(self.blocks.word("T")[row])))
             for place in (block, block - 1, block + 1):
                 number, other = of_block.get(place, (-1, -1))
                 if other >= 0 and (place == block or self._stands_alone(place, of_block)):
                     # Alone on a line, it may be the list of the tools of the program.
-                    known = {tool, word, int(self.tools.offset_number[row])} | (called if place != block else set())
+                    known = {tool, word, offset} | (called if place != block else set())
                     if other not in known:
                         comment[row], named[row] = number, other
                     break
