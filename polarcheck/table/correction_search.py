@@ -195,7 +195,9 @@ class _Search:
     def _slip(self, axis: _Axis, at: int, shift: float) -> Slip | None:
         """The slip that shifts a word of an axis, or leaves it out."""
         trace, index, step = self.trace, axis.word[at], shift / axis.scale[at]
-        tolerance = _DIGITS * 2 * axis.digit / axis.scale[at]
+        # A point at the wrong place gives a word more digits than the others have.
+        least = float(trace.lengths.least_increment[self.loop.row[at]])
+        tolerance = _DIGITS * max(2 * axis.digit / axis.scale[at], least)
         if index < 0:
             value = float((self.loop.point[at] / axis.direction).real) / axis.scale[at] + step
             return Slip(f"{axis.address}{self._as_elsewhere(axis, value, tolerance)}", "a word is missing", False)

@@ -44,11 +44,11 @@ def reading(lengths: Lengths, row: int) -> str:
 
 
 def misfit_of_x(
-    regularity: Regularity, mode: PolarMode, lengths: Lengths, other_machine: OtherMachine, row: int
+    arcs: Arcs, regularity: Regularity, mode: PolarMode, lengths: Lengths, other_machine: OtherMachine, row: int
 ) -> str:
     """How the section does not fit as X is read, how it would, and what to write."""
     read, meant = reading(lengths, row), other(lengths, row)
-    found = regularity.x_readings.get(int(mode.section[row]))
+    found = None if arcs.x_is_misread[row] else regularity.x_readings.get(int(mode.section[row]))
     if found is None:
         text = f"no arc of this section fits with X read as a {read}, all fit with X as a {meant}"
         return f"{text}{_written_for(lengths, other_machine, row)}"

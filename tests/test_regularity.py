@@ -1,0 +1,61 @@
+"""Contours that are nearly regular: one slip in a drawn contour is noticed, and what differs on purpose is silent."""
+
+from __future__ import annotations
+
+import random
+
+import pytest
+from drawn_regular import MEANT, SLIPS, blocks_of, corners, findings, regular_contour, style
+
+from polarcheck.table.slips import slip_of
+
+RULES = {"nearly-regular-contour", "diameter-radius-mixed"}
+#: What moves no corner farther than this is no slip [mm].
+_LEAST = 0.05
+
+
+@pytest.mark.parametrize("name", SLIPS)
+def test_most_slips_in_a_regular_contour_are_noticed(name: str) -> None:
+    noticed = written = 0
+    for seed in range(14):
+        draw = random.Random(f"{name} {seed}")  # noqa: S311 - programs that can be written again
+        contour, how = regular_contour(draw), style(draw)._replace(compensated=True)
+        sound = blocks_of(contour, how)
+        if findings(sound, contour, how):
+            continue
+        wrong = SLIPS[name](list(sound), draw)
+        if wrong is None:
+            continue
+        before, after = corners(sound, contour, how), corners(wrong, contour, how)
+        if len(before) == len(after) and max(abs(a - b) for a, b in zip(before, after, strict=True)) < _LEAST:
+            continue
+        written += 1
+        noticed += bool(findings(wrong, contour, how))
+    assert written > 3
+    assert noticed >= 0.7 * written
+
+
+def test_what_differs_on_purpose_is_silent() -> None:
+    for seed in range(40):
+        draw = random.Random(seed)  # noqa: S311
+        contour, how = draw.choice(MEANT)(draw), style(draw)
+        found = findings(blocks_of(contour, how), contour, how)
+        assert not [message for rule, message in found if rule in RULES], (seed, contour.family)
+
+
+@pytest.mark.parametrize(
+    ("written", "meant", "kind"),
+    [
+        ("13.586", 13.856, "two digits are swapped"),
+        ("-13.524", -13.254, "two digits are swapped"),
+        ("17.321", -17.321, "the sign is wrong"),
+        ("1.7321", 17.321, "the point is at the wrong place"),
+        ("133.856", 13.856, "a digit is too many"),
+        ("3.856", 13.856, "a digit is missing"),
+        ("15.", 30.0, "it is half or twice as large"),
+        ("28.", 30.0, None),
+    ],
+)
+def test_a_slip_of_the_pen(written: str, meant: float, kind: str | None) -> None:
+    slip = slip_of(written, meant, 0.002)
+    assert (slip.kind if slip else None) == kind
