@@ -79,13 +79,18 @@ class Crossings(Columns, frozen=True):
     def _crossing(self) -> list[_Found]:
         """Moves that cross an earlier move of their pass: the first of each pass."""
         passes = self.passes
-        chosen = np.flatnonzero(passes.is_wall & ~self._is_convex & ~self._repeats)
-        first, last = (
-            np.where(passes.closed, ring, end)
-            for ring, end in zip(passes.ring, (passes.first, passes.last), strict=True)
-        )
+        first = np.where(passes.closed, passes.ring[0], passes.first)
+        last = np.where(passes.closed, passes.ring[1], passes.last)
         count = last - first + 1
-        chosen = chosen[(count[chosen] > 3) & ((count[chosen] <= _SHORT) | ~self._goes_round_once[chosen])][:_MOST]
+        chosen = np.flatnonzero(passes.is_wall & (count > 3) & ((count <= _SHORT) | ~self._goes_round_once))
+        if not len(chosen):
+            return []
+        chosen = chosen[~self._is_convex[chosen]]
+        if len(chosen) > 1:
+            shape = passes.shape[chosen]
+            order = np.argsort(shape, kind="stable")
+            chosen = np.sort(chosen[order[np.append(True, np.diff(shape[order]) != 0)]])
+        chosen = chosen[:_MOST]
         chosen = chosen[np.cumsum(count[chosen]) <= _MOST_MOVES]
         found = [self._crossing_of(int(first[which]), int(last[which]), bool(passes.closed[which])) for which in chosen]
         return [one for one in found if one is not None]
@@ -135,20 +140,6 @@ class Crossings(Columns, frozen=True):
         first = self.passes.first
         one_side = (np.minimum.reduceat(low, first) > -slack) | (np.maximum.reduceat(high, first) < slack)
         return self._goes_round_once & one_side
-
-    @cached_property
-    def _repeats(self) -> Mask:
-        """Per pass: another one above has the same moves."""
-        passes = self.passes
-        weight = np.arange(len(passes.row)) - passes.first[passes.number] + 1.0
-        center = np.where(np.isnan(passes.center), 0, passes.center)
-        sums = [
-            np.add.reduceat(column, passes.first)
-            for column in (passes.end * weight, center * weight, passes.end * passes.motion)
-        ]
-        keys = np.stack([np.round(part, 4) for total in sums for part in (total.real, total.imag)])
-        _, first, inverse = np.unique(keys, axis=1, return_index=True, return_inverse=True)
-        return np.asarray(first[inverse.reshape(-1)] != np.arange(len(passes.first)))
 
     # ---- by rows ----
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from polarcheck.arrays import Columns, Mask, Points, Rows
 from polarcheck.columns.trace import Trace
-from polarcheck.table.passes import Passes
+from polarcheck.table.passes import Passes, numbered
 from polarcheck.table.slips import plain_number, slip_of
 
 #: Points nearer to each other than this [mm] are the same, and how far off a point is that differs.
@@ -69,17 +69,6 @@ class PassDifferences(Columns, frozen=True):
         return self.trace.blocks.mask_of(np.array(sorted(self.found), np.int64))
 
     @cached_property
-    def _shape(self) -> Rows:
-        """The number of the shape of each pass: the same for passes of the same moves."""
-        passes = self.passes
-        weight = np.arange(len(passes.row)) - passes.first[passes.number] + 1.0
-        center = np.where(np.isnan(passes.center), 0, passes.center)
-        columns = (passes.end, passes.end * weight, center * weight, passes.end * passes.motion)
-        sums = [np.add.reduceat(column, passes.first) for column in columns]
-        keys = np.stack([np.round(part, 4) for total in sums for part in (total.real, total.imag)])
-        return np.unique(keys, axis=1, return_inverse=True)[1].reshape(-1)
-
-    @cached_property
     def _groups(self) -> list[Rows]:
         """Passes of a program that begin and end at the same points, where there are several shapes of them."""
         passes = self.passes
@@ -89,12 +78,11 @@ class PassDifferences(Columns, frozen=True):
             return []
         ends = passes.start[passes.first[long]], passes.end[passes.last[long]]
         program = self.trace.blocks.program[passes.row[passes.first[long]]]
-        keys = np.stack(
-            [np.round(part / _OTHER) for point in ends for part in (point.real, point.imag)]
-            + [program.astype(np.float64), passes.compensated[long].astype(np.float64)]
-        )
-        _, group = np.unique(keys, axis=1, return_inverse=True)
-        group, shape = group.reshape(-1), self._shape[long]
+        keys = [np.round(part / _OTHER) for point in ends for part in (point.real, point.imag)]
+        group = numbered([*keys, program.astype(np.float64), passes.compensated[long].astype(np.float64)])
+        if np.bincount(group).max() < 2:
+            return []
+        shape = passes.shape[long]
         order = np.lexsort((shape, group))
         several = np.zeros(int(group.max()) + 1, bool)
         several[group[order][1:][(np.diff(group[order]) == 0) & (np.diff(shape[order]) != 0)]] = True
@@ -102,7 +90,7 @@ class PassDifferences(Columns, frozen=True):
 
     def _differences_of(self, group: Rows) -> list[Difference]:
         """Each shape against the most frequent one that it differs from in a block or two; the rarer one is wrong."""
-        shape = self._shape[group]
+        shape = self.passes.shape[group]
         kinds, first, count = np.unique(shape, return_index=True, return_counts=True)
         if len(kinds) > _MOST:
             return []

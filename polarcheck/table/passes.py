@@ -104,6 +104,15 @@ class Passes(Columns, frozen=True):
         radius = np.abs(self.trace.compensation.radius[self.row[self.first]])
         return np.asarray(self.compensated & ~(radius <= ADJUSTMENT + ROUNDING))
 
+    @cached_property
+    def shape(self) -> Rows:
+        """Per pass a number of its moves, the same for passes of the same moves."""
+        weight = np.arange(len(self.row)) - self.first[self.number] + 1.0
+        center = np.where(np.isnan(self.center), 0, self.center)
+        columns = (self.end, self.end * weight, center * weight, self.end * self.motion)
+        sums = [np.add.reduceat(column, self.first) for column in columns]
+        return numbered([np.round(part, 4) for total in sums for part in (total.real, total.imag)])
+
     # ---- rings ----
 
     @cached_property
@@ -164,3 +173,14 @@ class Passes(Columns, frozen=True):
         previous, following = self.beside
         into, out = angle_between(ends[previous], begins), angle_between(ends, begins[following])
         return np.where(previous < 0, np.nan, into), np.where(following < 0, np.nan, out)
+
+
+def numbered(columns: list[Floats]) -> Rows:
+    """A number for each element, the same where all columns are equal; np.unique would load masked arrays."""
+    order = np.lexsort(columns)
+    differs = np.zeros(len(order), bool)
+    for column in columns:
+        differs[1:] |= np.diff(column[order]) != 0
+    number = np.empty(len(order), np.int64)
+    number[order] = np.cumsum(differs)
+    return number

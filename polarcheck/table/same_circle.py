@@ -162,6 +162,8 @@ class SameCircle(Columns, frozen=True):
         chosen &= halves | ((turn > 0) == (passes.motion[one] == Motion.CCW))
         move = np.concatenate([one[chosen], two[chosen]])
         both_center, both_radius = np.tile(center[chosen], 2), np.tile(radius[chosen], 2)
+        if not len(move):
+            return _nothing()
         move, first = np.unique(move, return_index=True)
         return self._meant(move, both_center[first], both_radius[first])
 

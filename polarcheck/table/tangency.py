@@ -208,6 +208,9 @@ class Tangency(Columns, frozen=True):
         tolerance = np.array([self._tolerance_of(index) for index in chosen.tolist()])
         tangent = Meant(judged.move[chosen], judged.radius[chosen], judged.center[chosen], tolerance)
         parts = [self.same_circle.mistaken_together, self.same_circle.leaves_circle, tangent]
+        parts = [part for part in parts if len(part.move)] or [tangent]
+        if len(parts) == 1:
+            return parts[0]
         move, first = np.unique(np.concatenate([part.move for part in parts]), return_index=True)
         columns = (np.concatenate([part[at] for part in parts])[first] for at in range(1, 4))
         return Meant(move, *columns)

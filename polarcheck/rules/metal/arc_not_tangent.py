@@ -9,7 +9,7 @@ from polarcheck.checking.rule import WARNING, Arcs, Mask, Tangency, rule
     at=("R", "I", "J"),
     once="misfit",
     subject="side",
-    doubts=(("compensation", "loop"), ("move", "loop")),
+    doubts=(("compensation", "loop"), ("move", "loop"), ("metal", "section")),
 )
 def arc_not_tangent(tangency: Tangency, arcs: Arcs) -> Mask:
     """
