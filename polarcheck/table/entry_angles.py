@@ -94,7 +94,9 @@ class EntryAngles(Columns, frozen=True):
 
 
 def _corners(start: Points, end: Points, center: Points) -> Points:
-    """The ends of moves, without those at which a line goes straight on; the last goes on with the first."""
+    """The ends of moves, without those at which a line goes straight on; of a closed path the last goes on first."""
+    if len(end) and np.abs(end[-1] - start[0]) > _SAME:
+        return np.append(start[:1], end)
     is_line = np.isnan(center)
     with np.errstate(invalid="ignore", divide="ignore"):
         direction = (end - start) / np.abs(end - start)
