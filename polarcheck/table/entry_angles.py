@@ -94,17 +94,14 @@ class EntryAngles(Columns, frozen=True):
 
 
 def _corners(start: Points, end: Points, center: Points) -> Points:
-    """The ends of moves, without those at which a line goes straight on; the last goes on with the first in a ring."""
-    if not len(end):
-        return end
+    """The ends of moves, without those at which a line goes straight on; of a closed path the last goes on first."""
+    if len(end) and np.abs(end[-1] - start[0]) > _SAME:
+        return np.append(start[:1], end)
     is_line = np.isnan(center)
     with np.errstate(invalid="ignore", divide="ignore"):
         direction = (end - start) / np.abs(end - start)
     goes_on = is_line & np.roll(is_line, -1) & (np.abs(np.roll(direction, -1) - direction) <= _SAME)
-    if np.abs(end[-1] - start[0]) <= _SAME:
-        return end[~goes_on]
-    goes_on[-1] = False
-    return np.append(start[:1], end[~goes_on])
+    return end[~goes_on]
 
 
 def _ring(rows: Rows, start: Points, end: Points) -> Rows:

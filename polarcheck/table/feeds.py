@@ -18,6 +18,8 @@ from polarcheck.table.tool_center import ToolCenter
 _NOT_PER_REVOLUTION = {Units.MM: 5.0, Units.INCH: 0.2}
 #: Nobody mills so slowly [in the units of the program for each minute].
 _NOT_PER_MINUTE = {Units.MM: 1.0, Units.INCH: 0.04}
+#: A block takes minutes, or hours [s].
+_MINUTES, _HOURS = 300.0, 7200.0
 
 
 class Feeds(Columns, frozen=True):
@@ -107,6 +109,30 @@ class Feeds(Columns, frozen=True):
         return np.asarray(
             is_small & trace.feedrate.per_minute & ~np.isnan(trace.feedrate.feed) & ~self.is_left_per_revolution
         )
+
+    @cached_property
+    def block_time(self) -> Floats:
+        """How long a move of the mode takes at its F, were that per minute [s]; 0 for rows without one, NaN unknown."""
+        trace = self.trace
+        rows = np.flatnonzero(trace.path.moves_at_feed & (trace.feedrate.feed_number > 0))
+        time = np.zeros(len(trace))
+        depth = np.where(trace.path.moves_z[rows], trace.path.z[rows] - trace.path.z_before[rows], 0.0)
+        time[rows] = 60 * np.hypot(trace.path.length[rows], depth) / trace.feedrate.feed_number[rows]
+        return time
+
+    @cached_property
+    def takes_too_long(self) -> Mask:
+        """
+        F in force is per minute, or no code has said what it is, and no cutter moves so slowly.
+
+        That is an F below what anything is milled with in a block of minutes, or any F in one that takes hours.
+        """
+        trace = self.trace
+        is_small = ~self._is_at_least(_NOT_PER_MINUTE) & (trace.feedrate.feed_number > 0)
+        takes_long = is_small & (self.block_time > _MINUTES)
+        hours = trace.feedrate.per_minute & (self.block_time > _HOURS)
+        known = self.is_left_per_revolution | self.looks_per_revolution
+        return np.asarray((((trace.feedrate.per_minute | self.mode_is_unknown) & takes_long) | hours) & ~known)
 
     @cached_property
     def begins(self) -> Mask:

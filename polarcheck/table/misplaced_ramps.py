@@ -23,6 +23,8 @@ _MOVES_OF_LOOP = 3
 #: A size that is meant is a multiple of this share of a unit (mm, inch).
 _DIGITS = (0, 1, 2, 3, 4)
 _ROUND = 2e-4
+#: Sizes of drawings in inch are parts of this.
+_FRACTION = 32
 #: So many rows are looked at one by one; a program with more is written so on purpose.
 _MOST = 2000
 
@@ -119,13 +121,12 @@ class MisplacedRamps(Columns, frozen=True):
             return False
         scale = float(self.trace.lengths.scale[row])
         ends = self._moves.end[first:last]
-        width = float(np.ptp(ends.real)), float(np.ptp(ends.imag)), _across_flats(ends)
-        for size in width:
-            if size > 0 and _digits(size / scale) > min(
-                _digits((size + sign * 2 * radius) / scale) for sign in (-1, 1)
-            ):
-                return True
-        return False
+        same = np.flatnonzero(np.abs(ends - self.trace.path.start[row]) <= _SAME)
+        ends = ends[same[0] :] if len(same) > 1 else ends  # a closed contour without its lead
+        sizes = [size for size in (float(np.ptp(ends.real)), float(np.ptp(ends.imag)), _across_flats(ends)) if size > 0]
+        written = [_digits(size / scale) for size in sizes]
+        meant = [min(_digits((size + sign * 2 * radius) / scale) for sign in (-1, 1)) for size in sizes]
+        return bool(sizes) and min(written) > min(meant) + 1
 
     # ---- a start-up that comes late, or is taken back at once ----
 
@@ -244,5 +245,11 @@ def _across_flats(ends: Points) -> float:
 
 
 def _digits(size: float) -> int:
-    """How many digits behind the point a size needs; one more than all of _DIGITS where none suffice."""
+    """
+    How many digits behind the point a size needs; one more than all of _DIGITS where none suffice.
+
+    Fractions as 1 5/16 are as round as a size of one digit.
+    """
+    if abs(size - round(size)) > _ROUND and abs(size - round(size * _FRACTION) / _FRACTION) <= _ROUND / 2:
+        return 1
     return next((digits for digits in _DIGITS if abs(size - round(size, digits)) <= _ROUND), len(_DIGITS))

@@ -154,3 +154,28 @@ def meeting(lengths: Lengths, machine: Machine, center: Center, tool_center: Too
 def per_minute(machine: Machine) -> str:
     """The code of feed per minute."""
     return code_of(machine, "feed_per_minute")
+
+
+def slow_feed(lengths: Lengths, trace: Trace, row: int) -> str:
+    """F in force, as feed per minute."""
+    return f"{in_row(float(trace.feedrate.feed_number[row]), lengths, row):feed}"
+
+
+def long_time(feeds: Feeds, row: int) -> str:
+    """How long the block takes."""
+    minutes = float(feeds.block_time[row]) / 60
+    return f"{minutes:.0f} minutes" if minutes < 120 else f"{minutes / 60:.0f} hours"
+
+
+def instead(machine: Machine, feeds: Feeds, row: int) -> str:
+    """What to write."""
+    if feeds.mode_is_unknown[row]:
+        return f"no code has said what F is: write {per_minute(machine)} and an F per minute"
+    return "write an F per minute"
+
+
+def of_turns(lengths: Lengths, trace: Trace, feeds: Feeds, row: int) -> str:
+    """Feed per revolution; F as one, where it is none."""
+    if not feeds.is_too_high_per_revolution[row]:
+        return "feed per revolution"
+    return f"{in_row(float(trace.feedrate.feed_number[row]), lengths, row):length} for each turn"

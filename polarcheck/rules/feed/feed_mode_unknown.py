@@ -17,7 +17,7 @@ def feed_mode_unknown(path: ProgrammedPath, feeds: Feeds) -> Mask:
     What F means is modal, and no block of the program has said it. Most lathes power on with feed per revolution; else
     the program before this one decides. F200 is then no 200 mm a minute but 200 mm for each turn of a spindle that is
     the C axis now. Write G98 (G94 in systems B and C) at the head of the program. An F below 5 mm or .2 inch may be
-    meant per revolution; nothing is said of it, nor of programs that are shown without their head.
+    meant per revolution; nothing is said of it here, nor of programs that are shown without their head.
 
     Source: FANUC B-62764EN/01, p. 51, feed per minute in the mode; builder's guide to G12.1, feed command.
 
@@ -66,7 +66,7 @@ def feed_mode_unknown(path: ProgrammedPath, feeds: Feeds) -> Mask:
         G97 T0101
         G0 X60. C0
         G12.1
-        G1 X40. F.2
+        G1 X40. F2.
         C10.
         X60.
         G13.1

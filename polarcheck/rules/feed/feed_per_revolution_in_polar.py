@@ -1,22 +1,23 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import NOTE, Feedrate, Mask, PolarMode, ProgrammedPath, rule
+from polarcheck.checking.rule import NOTE, Feedrate, Feeds, Hits, PolarMode, ProgrammedPath, graded, rule
 from polarcheck.machines.modal import FeedMode
 
 
 @rule(
     NOTE,
-    "feed per revolution of a spindle that turns as the {rotary} axis now; write feed per minute",
+    "{of_turns} of a spindle that turns as the {rotary} axis now; write feed per minute",
     at=("feed_per_revolution", "line", "arc_clockwise", "arc_counterclockwise"),
     follows={"block": ("feed-missing-in-polar",)},
 )
-def feed_per_revolution_in_polar(mode: PolarMode, path: ProgrammedPath, feedrate: Feedrate) -> Mask:
+def feed_per_revolution_in_polar(mode: PolarMode, path: ProgrammedPath, feedrate: Feedrate, feeds: Feeds) -> Hits:
     """
     Feed per revolution in the polar mode.
 
     The spindle that F counts is the C axis now. Unless the lathe counts the turns of the live tool, the tool stands
-    still or creeps. The manuals allow it, so that it is a note. G98 (G94) gives the feed per minute, also for what
-    comes after G13.1.
+    still or creeps. The manuals allow it, so that it is a note. An F of 5 mm or .2 inch and more is none per
+    revolution: G98 (G94) is forgotten, and it is a warning. G98 (G94) gives the feed per minute, also for what comes
+    after G13.1.
 
     Source: FANUC B-62764EN/01, p. 51; builder's guide to G12.1, feed command.
 
@@ -37,6 +38,14 @@ def feed_per_revolution_in_polar(mode: PolarMode, path: ProgrammedPath, feedrate
         C10.
         G13.1
 
+    Bad:
+
+        G99 G0 X60. C0
+        G12.1
+        G1 X40. F120      (expect: feed-per-revolution-in-polar)
+        C10.
+        G13.1
+
     Good:
 
         G99 G0 X60. C0
@@ -46,4 +55,7 @@ def feed_per_revolution_in_polar(mode: PolarMode, path: ProgrammedPath, feedrate
         G13.1
         G99 G0 X60.
     """
-    return mode.first_in_section(path.cuts & (feedrate.feed_mode == FeedMode.PER_REVOLUTION))
+    per_revolution = path.cuts & (feedrate.feed_mode == FeedMode.PER_REVOLUTION)
+    high = mode.first_in_section(per_revolution & feeds.is_too_high_per_revolution)
+    first = mode.first_in_section(per_revolution) & ~mode.anywhere_in_section(high)
+    return graded(warning=high, note=first)

@@ -25,7 +25,7 @@ def path_near_center(center: Center, tool_center: ToolCenter, machine: Machine) 
 
         G98 G0 X60. C0
         G12.1
-        G1 X40. F.5
+        G1 X40. F1.
         C.008
         X-40.             (expect: path-near-center)
         G13.1

@@ -11,6 +11,7 @@ from polarcheck.checking.rule import WARNING, Mask, MisplacedRamps, rule
     once="section",
     subject="",
     doubts=(("compensation", "section"), ("metal", "section")),
+    follows={"section": ("wrong-axis-address-in-polar",)},
 )
 def compensation_without_contour(misplaced_ramps: MisplacedRamps) -> Mask:
     """
