@@ -11,7 +11,6 @@ from polarcheck.checking.rule import WARNING, Mask, MisplacedRamps, rule
     once="loop",
     subject="",
     doubts=(("position", "X"), ("position", "X before"), ("compensation", "loop"), ("metal", "loop")),
-    follows={"loop": ("nearly-regular-contour",)},
 )
 def start_up_off_contour(misplaced_ramps: MisplacedRamps) -> Mask:
     """
