@@ -15,8 +15,9 @@ from polarcheck.geometry.regularity.symmetry import Symmetry, symmetry_of
 from polarcheck.machines.modal import Motion
 from polarcheck.table.last_digit import half_of_last_digit
 
-#: Blocks of a loop that is looked at, and how much work is done in one file: the squares of these numbers together.
-_FEWEST, _MOST, _WORK = 4, 400, 1_000_000
+#: Blocks of a loop that is looked at, and how much work is done in one file: the squares of these numbers together, and
+#: what each loop takes beside them.
+_FEWEST, _MOST, _WORK, _WORK_OF_LOOP = 4, 64, 60_000, 300
 #: Edges that are as long as another one, as a share of all, where a contour may be regular; and what is as long [mm].
 _ALIKE, _AS_LONG = 0.4, 0.02
 #: Least and greatest distance that counts as the same place [mm], in halves of the last digit.
@@ -161,7 +162,7 @@ def _different(trace: Trace, rows: Rows, first: Rows, count: Rows) -> Iterator[P
         if key in known:
             continue
         known.add(key)
-        work += size**2
+        work += size**2 + _WORK_OF_LOOP
         if work > _WORK:
             return
         above = int(travels[max(int(np.searchsorted(travels, own[0])) - 1, 0)])
