@@ -42,10 +42,12 @@ class ContourDepths(Columns, frozen=True):
         breaks = trace.compensation.starts_up | trace.compensation.cancels | trace.mode.enters
         breaks |= trace.compensation.side != trace.compensation.side_before
         contour = np.cumsum(breaks)[row]
-        begins = np.flatnonzero(np.append(True, np.diff(contour) != 0) & passes.compensated)
-        until = np.searchsorted(contour, contour[begins], side="right")
-        opened = np.add.reduceat(np.append(passes.closed, False), np.stack((begins, until), axis=1).ravel())[::2] == 0
-        chosen = np.flatnonzero((until - begins > 1) & opened)[:_MOST]
+        # Passes that close nothing, one after the other in one contour.
+        opened = passes.compensated & ~passes.closed
+        joined = np.append(False, (np.diff(contour) == 0) & opened[1:] & opened[:-1])
+        begins = np.flatnonzero(opened & ~joined)
+        until = np.searchsorted(np.cumsum(~joined), np.cumsum(~joined)[begins], side="right")
+        chosen = np.flatnonzero(until - begins > 1)[:_MOST]
         rows = [self._break_of(int(begins[which]), int(until[which])) for which in chosen.tolist()]
         return trace.blocks.mask_of(np.array([row for row in rows if row is not None], np.int64))
 

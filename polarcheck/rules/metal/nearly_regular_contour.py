@@ -17,6 +17,8 @@ from polarcheck.checking.rule import WARNING, Hits, Regularity, rule
             "arc-radius-too-small",
             "arc-center-on-path",
             "arc-without-center",
+            "arc-off-polar-plane",
+            "contour-at-two-depths",
             "start-up-off-contour",
         ),
         "section": (
