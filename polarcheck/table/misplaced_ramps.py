@@ -20,6 +20,8 @@ _SAME = 0.005
 _MOVES_OF_CONTOUR = 2
 #: Least number of blocks of a loop that tells where its start-up should have ended.
 _MOVES_OF_LOOP = 3
+#: A contour begins with so many moves of an approach.
+_LEADS = 4
 #: A size that is meant is a multiple of this share of a unit (mm, inch).
 _DIGITS = (0, 1, 2, 3, 4)
 _ROUND = 2e-4
@@ -98,7 +100,7 @@ class MisplacedRamps(Columns, frozen=True):
     def _has_witness(self, row: int, since: int) -> bool:
         trace, moves = self.trace, self._moves
         first, last = np.searchsorted(moves.row, (since, row), side="right").tolist()
-        first, last = (first, last - 1)  # the contour, the move of G40 excluded
+        last -= 1  # the contour, the move of G40 excluded
         if self._is_path_of_center(row, first, last):
             return False
         if bool(np.any(trace.compensation.starts_up & (trace.mode.section != trace.mode.section[row]))):
@@ -106,13 +108,14 @@ class MisplacedRamps(Columns, frozen=True):
         leaves_from, leaves_to = trace.path.start[row], trace.path.end[row]
         before_end = np.append(moves.start[first : first + 1], moves.end[first : last - 1])
         closes = bool(np.any(np.abs(before_end - leaves_from) <= _SAME))
-        return closes or any(_mirrors(leaves_to, place) for place in self._approaches(row, since))
+        return closes or any(_mirrors(leaves_to, place) for place in self._approaches(row, since, first, last))
 
-    def _approaches(self, row: int, since: int) -> list[complex]:
-        """Where the tool stands behind G12.1, and where it goes down to the contour."""
+    def _approaches(self, row: int, since: int, first: int, last: int) -> list[complex]:
+        """Where the tool stands behind G12.1, where it goes down to the contour, and where its first moves begin."""
         trace = self.trace
         down = np.flatnonzero(trace.path.moves_z[since:row] & ~trace.path.travels[since:row]) + since
-        return [complex(trace.path.end[at]) for at in (since, *down.tolist()[-4:])]
+        leads = self._moves.start[first : min(first + _LEADS, last)]
+        return [*(complex(trace.path.end[at]) for at in (since, *down.tolist()[-_LEADS:])), *leads.tolist()]
 
     def _is_path_of_center(self, row: int, first: int, last: int) -> bool:
         """The contour is no round size as written, and one with R taken off either side."""
@@ -156,7 +159,8 @@ class MisplacedRamps(Columns, frozen=True):
         if n < _MOVES_OF_LOOP:
             return late
         starts = np.flatnonzero(moves.starts_up)
-        bare = ~moves.compensated & moves.at_feed & ~moves.cancels
+        # A G40 ends the pass before, be it one that takes nothing back.
+        bare = ~moves.compensated & moves.at_feed & ~trace.compensation.writes_cancel[moves.row]
         has_bare = np.zeros(n, bool)
         has_bare[1:] = bare[:-1] & (moves.section[1:] == moves.section[:-1])
         starts = starts[has_bare[starts]]
