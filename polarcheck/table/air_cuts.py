@@ -119,18 +119,7 @@ class AirCuts(Columns, frozen=True):
         writes_z = inside & trace.axes.commands_z
         alone = writes_z & ~trace.axes.moves_plane & (rows > last)
         earlier = trace.mode.anywhere_in_section(writes_z & (rows < first))
-        idle = trace.mode.anywhere_in_section(alone) | self._retracts_nowhere_behind
-        return np.asarray(still & (self._entry > _ABOVE) & idle & ~earlier)
-
-    @property
-    def _retracts_nowhere_behind(self) -> Mask:
-        """Rows of sections behind which a Z word alone, before anything else moves, names the present place."""
-        trace, sections = self.trace, self.trace.mode.sections
-        moving = np.flatnonzero(trace.axes.moves | trace.mode.enters | trace.blocks.starts)
-        alone = trace.axes.commands_z & ~trace.path.moves_z & ~trace.blocks.has("X", "U")
-        following = np.append(moving, len(trace))[np.searchsorted(moving, np.minimum(sections.last, len(trace)))]
-        result = np.append(np.append(alone, False)[following], False)
-        return np.asarray(result[trace.mode.section])
+        return np.asarray(still & (self._entry > _ABOVE) & trace.mode.anywhere_in_section(alone) & ~earlier)
 
     @property
     def _sign_wrong(self) -> Mask:

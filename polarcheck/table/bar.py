@@ -106,8 +106,8 @@ class Bar(Columns, frozen=True):
 
     @cached_property
     def _tool_call(self) -> Rows:
-        """A number per tool call: from one T with another tool to the next."""
-        return np.cumsum(self.trace.tools.changes_tool | self.trace.blocks.starts)
+        """A number per T word: the same tool may turn first and mill then."""
+        return np.cumsum(self.trace.blocks.has("T") | self.trace.blocks.starts)
 
     @cached_property
     def turns(self) -> Mask:

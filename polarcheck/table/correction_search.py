@@ -19,6 +19,8 @@ from polarcheck.table.slips import Slip, plain_number, slip_of
 
 #: Least number of corners of a contour that repeats itself in a turn, and of one that is only its own mirror image.
 _CORNERS, _MIRRORED_CORNERS = 5, 6
+#: The order of what comes again after half a turn.
+_HALF_TURN = 2
 #: By how many numbers fewer a correction must say where all corners are: more where other designs differ so, too.
 _GAIN, _GAIN_IF_UNSURE = 4, 5
 #: From so many corners on a shape that repeats itself in turns and mirrors is meant, be it that its sides are parallel.
@@ -120,6 +122,8 @@ class _Search:
         added = len(trial.point) - len(self.loop.point)
         if written is not None and symmetry.corners_behind_start < written.corners_behind_start + max(added, 0):
             return False
+        if added > 0 and symmetry.order <= _HALF_TURN and symmetry.corners < _MANY_CORNERS:
+            return False  # a rectangle with a lead comes again after half a turn with one block more
         before = 2 * symmetry.corners if written is None else written.freedom
         if before - symmetry.freedom < (_GAIN if plain or added else _GAIN_IF_UNSURE):
             return False

@@ -103,7 +103,8 @@ class Workpiece(Columns, frozen=True):
 
     @cached_property
     def _tool_call(self) -> Rows:
-        return np.cumsum(self.trace.tools.changes_tool | self.trace.blocks.starts)
+        """A number per T word: the same tool may turn first and mill then."""
+        return np.cumsum(self.trace.blocks.has("T") | self.trace.blocks.starts)
 
     @cached_property
     def is_mill(self) -> Mask:

@@ -64,4 +64,5 @@ def pass_depth_differs(pass_depths: PassDepths) -> Mask:
         Z2.
         G13.1
     """
+    # Compares nothing: the passes of a contour have to be read together.
     return pass_depths.is_off

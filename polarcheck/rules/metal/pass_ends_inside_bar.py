@@ -46,4 +46,5 @@ def pass_ends_inside_bar(pass_ends: PassEnds) -> Mask:
         Z2.
         G13.1
     """
+    # Compares nothing: begin and end of a pass have to be read together.
     return pass_ends.leaves_metal
