@@ -128,7 +128,10 @@ class Feeds(Columns, frozen=True):
         That is an F below what anything is milled with in a block of minutes, or any F in one that takes hours.
         """
         trace = self.trace
-        is_small = ~self._is_at_least(_NOT_PER_MINUTE) & (trace.feedrate.feed_number > 0)
+        # Where neither G20 nor G21 stands, the number may be one of inch.
+        is_inch = ~happened(trace.modal.sets("units"), trace.blocks.starts)
+        may_do = is_inch & (trace.feedrate.feed_number / trace.lengths.scale >= _NOT_PER_MINUTE[Units.INCH])
+        is_small = ~self._is_at_least(_NOT_PER_MINUTE) & ~may_do & (trace.feedrate.feed_number > 0)
         takes_long = is_small & (self.block_time > _MINUTES)
         hours = trace.feedrate.per_minute & (self.block_time > _HOURS)
         known = self.is_left_per_revolution | self.looks_per_revolution

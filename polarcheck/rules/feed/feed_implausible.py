@@ -24,7 +24,7 @@ def feed_implausible(feeds: Feeds) -> Mask:
 
     Bad:
 
-        G98 G0 X60. C0
+        G21 G98 G0 X60. C0
         G12.1
         G1 X40. F.1       (expect: feed-implausible)
         C10.
@@ -34,7 +34,7 @@ def feed_implausible(feeds: Feeds) -> Mask:
     Bad:
 
         O1
-        G97 T0101
+        G21 G97 T0101
         G0 X60. C0
         G12.1
         G1 X40. F.1       (expect: feed-implausible)
