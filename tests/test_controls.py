@@ -286,7 +286,7 @@ def test_an_open_contour_is_one_pass() -> None:
     assert len(moves) < 15
     (finding,) = report_of(program, "gsk-988", "2:radius=10").findings
     assert (finding.line, finding.rule) == (4, "contour-open-with-infeed")
-    assert [one.rule for one in finding.follows] == ["contour-not-closed"]
+    assert [one.rule for one in finding.follows] == ["contour-not-closed", "nearly-regular-contour"]
 
 
 def test_infeed_is_a_word_of_one_control() -> None:
@@ -556,7 +556,7 @@ def test_codes_that_a_haas_has() -> None:
 
 @pytest.mark.parametrize("name", ["fanuc", "fanuc-16i", "gsk-988", "turning-center"])
 def test_feed_per_revolution_in_the_mode_is_a_note_where_the_documents_allow_it(name: str) -> None:
-    told = graded("O1\nG99 G0 X50. Z2. C0\nG12.1\nG1 X40. F.2\nG13.1\nM30\n", name, "feed-per-revolution-in-polar")
+    told = graded("O1\nG99 G0 X50. Z2. C0\nG12.1\nG1 X40. F.1\nG13.1\nM30\n", name, "feed-per-revolution-in-polar")
     assert [(line, severity) for line, severity, _ in told] == [(4, "note")]
 
 
