@@ -58,3 +58,95 @@ def test_what_is_milled_off_is_no_longer_in_the_way() -> None:
     )
     assert found(slot.format(first="-2.5"), **bar(40)) == {}
     assert found(slot.format(first="-4.5"), **bar(40)) == {"rapid-plunge-into-stock": "error"}
+
+
+# ---- the bar ----
+
+
+@pytest.mark.parametrize(
+    ("turning", "diameter", "face"),
+    [
+        ("G0 X42. Z2. G99/G1 Z0 F0.2/X-1.6/G0 X40. Z1./G1 Z-30./X44.", 40, 0),
+        ("G0 X42. Z2./G94 X-1.6 Z0 F.2/G90 X38. Z-30. F.2/X36.", 36, 0),
+        (
+            "G0 X42. Z2./G71 U1.5 R0.5/G71 P100 Q200 U0.5 W0.1 F.2/N100 G0 X34./G1 Z-30./N200 X44./G70 P100 Q200",
+            34,
+            None,
+        ),
+        # Boring: the tool moves towards the center behind a cut along Z.
+        ("G0 X20. Z2. G99/G1 Z-30. F0.2/X19./G0 Z2.", None, None),
+        # A spigot: the smaller diameter is what stands for certain.
+        ("G0 X42. Z2. G99/G0 X30. Z1./G1 Z-3. F0.2/X40./Z-30./X44.", 30, None),
+    ],
+)
+def test_the_bar_that_is_turned(turning: str, diameter: float | None, face: float | None) -> None:
+    program = f"O1/T0303/G97 S1500 M3/{turning}/G0 X100. Z50. M5/T0101/G98/G28 H0/G0 X60. Z2. C0/G12.1/G1 Z-5. F500/"
+    program += f"{CONTOUR}/G40 X60. F1500/Z2./G13.1/G0 Z50./M30"
+    stock = report_of(program.replace("/", "\n"), "fanuc-30i", "1:radius=4,nose=0").stock
+    assert (stock and stock.diameter) == diameter
+    assert (stock and stock.face) == face
+
+
+def test_a_pass_names_its_bar() -> None:
+    stock = report_of("(BAR DIA 50)\nT0101\nG98 G0 X60. Z2. C0\nG12.1\nG1 X50. F200\nG13.1", "fanuc-30i").stock
+    assert stock is not None
+    assert (stock.source, stock.diameter, stock.line) == ("comment", 50, 1)
+    job = {"stock": {"unknown": True}}
+    assert report_of("(BAR DIA 50)\nT0101\nG98 G0 X60. Z2. C0\nG12.1\nG13.1", "fanuc-30i", job=job).stock is None
+
+
+@pytest.mark.parametrize(
+    "stock", [{"diameter": 40, "hexagon": 30}, {"diameter": 40, "unknown": True}, {"diameter": 20, "bore": 20}]
+)
+def test_what_a_bar_cannot_be(stock: dict[str, object]) -> None:
+    with pytest.raises(Exception, match="stock"):
+        found(CONTOUR, stock=stock)
+
+
+def test_a_pocket_is_entered_from_inside() -> None:
+    """The wall of a pocket lies R farther out than the cutter center: that is not the rim of the bar."""
+    pocket = "G21 G98 G40/T0101/G97 S3000 M13/G0 X24. Z2. C0/G12.1/G1 X24. F500/Z-4. F40/G41 X34. F80/G3 I-17./"
+    pocket += "G1 G40 X24./Z2./G13.1/G0 Z50./M30"
+    for diameter in (36, 40, 41.8, 60):
+        assert found(pocket, **bar(diameter)) == {}
+
+
+@pytest.mark.parametrize("job", [{}, bar(40)])
+def test_a_cutter_on_the_far_side_of_a_wall_is_seen_whatever_the_bar(job: dict[str, object]) -> None:
+    assert list(found(f"{HEAD}/G1 X60. C-25. F1500/G41 X16. F200/C25./{END}", **job)) == [
+        "side-of-compensation-mirrored"
+    ]
+
+
+# ---- cuts in air ----
+
+
+@pytest.mark.parametrize("turning", ["", f"{TURNING}/G98/"])
+@pytest.mark.parametrize("depth", ["", "/Z5."])
+def test_a_section_in_air(turning: str, depth: str) -> None:
+    head = HEAD.replace("/Z-5.", depth).replace("T0101", f"{turning}T0101")
+    assert found(f"{head}/{CONTOUR}/{END}") == {"cut-in-air": "warning"}
+
+
+def test_an_origin_at_the_back_is_no_air() -> None:
+    head = HEAD.replace("Z2.", "Z32.").replace("Z-5.", "Z25.")
+    assert found(f"{head}/{CONTOUR}/{END.replace('Z2.', 'Z32.')}") == {}
+
+
+def test_the_same_section_again() -> None:
+    section = f"{HOLE.replace(' C0', '')}/Z2./G13.1"
+    head = "G21 G98 G40/T0101/G97 S3000 M13"
+    indexed = "{head}/G0 C0/{section}/{first}{section}/G0 C240./{section}/G0 Z50./M30"
+    assert found(indexed.format(head=head, section=section, first="G0 C120./"), 2.5) == {}
+    assert found(indexed.format(head=head, section=section, first=""), 2.5) == {"cut-in-air": "warning"}
+    assert found(indexed.format(head=head, section=section, first="G0 C240./"), 2.5) == {"cut-in-air": "warning"}
+    # A spring pass at each angle is meant.
+    twice = f"{head}/G0 C0/{section}/{section}/G0 C120./{section}/{section}/G0 Z50./M30"
+    assert found(twice, 2.5) == {}
+
+
+def test_a_move_of_several_axes_is_said_and_not_judged() -> None:
+    """X and Z at once, out of a pocket with little room: whether it clears depends on the lathe."""
+    program = f"G21 G98 G40/T0101/G97 S3000 M13/{HOLE}/Z-2./G13.1/G0 X300. Z50./M30"
+    report = report_of(f"O1\n{program.replace('/', chr(10))}\n", "fanuc-30i", "1:radius=3.5,nose=0")
+    assert [finding.rule for finding in report.findings if finding.severity != "note"] == ["rapid-through-part"]

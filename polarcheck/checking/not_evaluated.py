@@ -326,6 +326,16 @@ def _skipped_loops(tables: Tables, rule: Rule, rows: Mask, reason: str, matters:
         yield Missing(rule.name, SAID, sentence, sentence, int(counts[order[NAMED:]].sum()), matters)
 
 
+def _metal_not_followed(tables: Tables, rule: Rule) -> Iterator[Missing]:
+    """Report ways into the bar that were not looked at, and why. They matter little: most of them are sound."""
+    workpiece, trace = tables["workpiece"], tables["trace"]
+    for row, count, why_not in workpiece.not_followed():
+        block = block_and_line(trace.blocks, trace.run, row)
+        yield Missing(
+            rule.name, SAID, why_not, f"where {block} leads is not looked at: {why_not}", count, matters=False
+        )
+
+
 _CROSS_BESIDE = {
     SkipReason.CROSSES: (
         f"crosses itself or others beside it more than {CROSSINGS} times a block: no part can be told from them; "
@@ -370,4 +380,5 @@ _EXTRA_REASONS: dict[str, _ExtraReasons] = {
     "start-up-shorter-than-radius": _ramps_of_center,
     **dict.fromkeys(_TABLE_OF, _contours_skipped),
     "part-differs-from-drawing": _parts_not_compared,
+    "rapid-through-stock": _metal_not_followed,
 }

@@ -71,9 +71,6 @@ class Stock(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     face: Annotated[
         float, msgspec.Meta(ge=-_LARGEST_LATHE, le=_LARGEST_LATHE, description="Z of its face before milling")
     ] = math.nan
-    length: Annotated[
-        float, msgspec.Meta(gt=0, le=_LARGEST_LATHE, description="from its face to its back, where that ends it")
-    ] = math.nan
     clearance: Annotated[
         float, msgspec.Meta(ge=0, le=_LARGEST_LATHE, description="between bar and cutter at the approach")
     ] = 0.0

@@ -7,6 +7,7 @@ stand. All places are on the plane that turns with the part: X as a radius, at t
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -313,6 +314,33 @@ class Workpiece(Columns, frozen=True):
         drills = self._drills & np.isnan(trace.path.x + trace.path.c_angle)
         rows = np.flatnonzero(unknown | drills | trace.mode.on_cylinder)
         return int(rows[0]) if len(rows) else len(trace)
+
+    def not_followed(self) -> Iterator[tuple[int, int, str]]:
+        """
+        Ways in rapid traverse below the face that are not compared with the bar: the first row, their number, and why.
+        """
+        trace, bar = self.trace, self.bar.known
+        if not len(trace.mode.sections) or np.isnan(bar.smallest):
+            return
+        down = self.is_rapid & (trace.mode.section < 0) & (trace.path.z < self.top - _CLEARANCE)
+        down &= (np.abs(trace.path.x) < bar.smallest / 2) & trace.axes.moves
+        calls = np.zeros(int(self._tool_call.max(initial=0)) + 1, bool)
+        calls[self._tool_call[trace.mode.sections.enter]] = True
+        mills = calls[self._tool_call]
+        why_not = [
+            (mills & trace.modal.on_sub_spindle, "the sub-spindle has a Z of its own"),
+            (mills & ~self.is_mill & ~trace.modal.on_sub_spindle, "the tool is not a mill along Z"),
+        ]
+        if np.isnan(bar.bore):
+            why_not.append((self.is_mill, "the program drills on X0, and how large that hole is nobody knows"))
+        else:
+            rest = self.is_mill & (np.arange(len(trace)) >= self._unknown_from)
+            line = int(trace.blocks.line[min(self._unknown_from, len(trace) - 1)])
+            why_not.append((rest, f"what line {line} takes off the bar is not known"))
+        for mask, reason in why_not:
+            rows = np.flatnonzero(down & mask)
+            if len(rows):
+                yield int(rows[0]), len(rows), reason
 
     # ---- the finished part ----
 
