@@ -14,6 +14,8 @@ from polarcheck.machines.modal import Motion
 
 #: One arc alone speaks for the other reading of X where it misses its circle by this many tolerances.
 _CLEARLY = 10
+#: From so many arcs on it is no single word that is wrong.
+_SEVERAL = 3
 
 
 class Arcs(Columns, frozen=True):
@@ -100,6 +102,23 @@ class Arcs(Columns, frozen=True):
         """R of an arc as written, with its sign [mm]; NaN for other rows."""
         rows = np.flatnonzero(self.by_radius)
         return self._of_arcs(rows, self.trace.lengths.length_of(self.trace.machine.arcs.radius_word)[rows])
+
+    @cached_property
+    def misfit_section(self) -> Rows:
+        """
+        The section of rows of which three arcs or more, and half of all, do not reach or do not end on their circle;
+        else -1. One word, a unit or the reading of an axis is wrong there in all of them.
+        """
+        section, tolerance = self.trace.mode.section, self.trace.machine.arcs.tolerance
+        arcs = self.by_center | self.by_radius
+        bad = np.abs(self.start_radius - self.end_radius) > tolerance
+        bad |= self.chord > 2 * np.abs(self.radius) + tolerance
+        if not bad.any():
+            return repeated(np.int64(-1), len(self.trace))
+        total, misfits = (np.bincount(section[rows & (section >= 0)], minlength=1) for rows in (arcs, bad))
+        misfits = np.append(misfits, np.zeros(len(total) - len(misfits), np.int64))
+        is_whole = np.append((misfits >= _SEVERAL) & (2 * misfits >= total), False)
+        return np.where(is_whole[np.minimum(section, len(total))], section, -1)
 
     @cached_property
     def negative_stops(self) -> Mask:

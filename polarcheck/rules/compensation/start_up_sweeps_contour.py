@@ -10,7 +10,10 @@ from polarcheck.checking.rule import ERROR, Hits, Slots, rule
     once="loop",
     worst="slots.ramp_depth",
     doubts=(("metal", "X before"),),
-    follows={"loop": ("overcut", "slot-narrower-than-cutter")},
+    follows={
+        "loop": ("overcut", "slot-narrower-than-cutter"),
+        "large radius": ("start-up-shorter-than-radius",),
+    },
 )
 def start_up_sweeps_contour(slots: Slots) -> Hits:
     """

@@ -12,8 +12,13 @@ from polarcheck.checking.rule import ERROR, Arcs, Hits, Machine, rule
     at=("X", "U", "C", "H", "I", "J"),
     needs=("arcs.end_radius",),
     where="arcs.by_center",
+    once="misfitting arcs",
     doubts=END_IN_DOUBT,
-    follows={"block": ("arc-center-on-path",), "loop": ("number-without-point",)},
+    follows={
+        "block": ("arc-center-on-path",),
+        "loop": ("number-without-point",),
+        "misfitting arcs": ("arc-radius-too-small",),
+    },
 )
 def arc_end_off_circle(arcs: Arcs, machine: Machine) -> Hits:
     """

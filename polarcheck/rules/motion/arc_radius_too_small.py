@@ -11,6 +11,7 @@ from polarcheck.checking.rule import ERROR, Arcs, Machine, Mask, rule
     at=("X", "U", "C", "H", "R"),
     needs=("arcs.chord",),
     where="arcs.by_radius",
+    once="misfitting arcs",
     doubts=END_IN_DOUBT,
     follows={"loop": ("number-without-point",)},
 )

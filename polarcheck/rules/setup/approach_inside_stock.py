@@ -11,6 +11,10 @@ from polarcheck.geometry.tolerances import ROUNDING
     needs=("offsets.cutter_diameter",),
     where="entry.approaches_stock",
     doubts=(("compensation", "first start-up"),),
+    follows={
+        "misfitting arcs": ("arc-radius-too-small", "arc-end-off-circle"),
+        "section": ("degrees-in-polar", "number-without-point"),
+    },
 )
 def approach_inside_stock(path: ProgrammedPath, entry: Entry) -> Hits:
     """
