@@ -243,7 +243,8 @@ def test_a_reader_who_goes_away_changes_no_exit_code() -> None:
         (["--set", "limits.z_maximum=inf"], "--set: limits.z_maximum: expected a number, found inf"),
         (
             ["--set", "severities.rapid=off"],
-            "--set: severities.rapid: unknown rule 'rapid'; did you mean rapid-through-center or rapid-in-polar?",
+            "--set: severities.rapid: unknown rule 'rapid'; did you mean "
+            "rapid-plunge-into-stock, rapid-through-part or rapid-through-stock?",
         ),
         (["--machine", "haas"], "unknown machine 'haas'; did you mean haas-lathe?"),
         (["--subprograms", "gone"], "'gone' does not exist"),
@@ -283,7 +284,8 @@ def test_what_means_nothing_is_named_in_one_line(arguments: list[str], told: str
         ("offsets = 'gone.txt'\n", "gone.txt: No such file"),
         (
             "select = ['rapid']\n",
-            "polarcheck.toml:1: select: unknown rule 'rapid'; did you mean rapid-through-center or rapid-in-polar?",
+            "polarcheck.toml:1: select: unknown rule 'rapid'; did you mean "
+            "rapid-plunge-into-stock, rapid-through-part or rapid-through-stock?",
         ),
         ("tools = 3\n", "polarcheck.toml:1: tools: expected a table, found 3"),
         ("[tools.-1]\nradius = 4\n", "tools.-1: expected the number of a tool offset, 8 for T0808, found -1"),
@@ -722,8 +724,8 @@ def test_explain_says_how_the_mode_is_programmed_on_the_machine(machine: str, wo
 
 def test_explain_suggests_what_begins_with_the_word() -> None:
     assert (
-        call("explain", "rapid").stderr
-        == "polarcheck: unknown rule 'rapid'; did you mean rapid-through-center or rapid-in-polar?\n"
+        call("explain", "rapid").stderr == "polarcheck: unknown rule 'rapid'; did you mean "
+        "rapid-plunge-into-stock, rapid-through-part or rapid-through-stock?\n"
     )
     assert call("explain", "start-up").stderr.endswith(
         "did you mean start-up-on-arc, start-up-shorter-than-radius or start-up-sweeps-contour?\n"

@@ -558,7 +558,7 @@ BROKEN = [
         GSK_1,
         {
             "N120 G42 G01 X80. F200;": "G42 G1 X80. C5. F200",
-            "N210 G01 C0;": "N210 G1 C-8. (expect: contour-not-closed)",
+            "N210 G01 C0;": "N210 G1 C-8. (expect: nearly-regular-contour)",
         },
     ),
     Case("003-56", GSK_1, {"N220 G40 X150.0;": "N220 G40 X98. (expect: cancel-shorter-than-radius)"}),

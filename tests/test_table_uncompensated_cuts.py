@@ -86,10 +86,12 @@ def test_in_inch_and_where_rapid_traverse_is_allowed() -> None:
     assert found(f"{hexagon}/X-3.2", INCH, radius=0.2) == [("X-3.2", "warning")]
     head = MM.replace("G12.1", "G112").replace("G13.1", "G113").replace("C", "Y").replace("Z2. Y0", "Z2. C0")
     blocks = f"Z-3./{HEXAGON}/G0 X-80.".replace("C", "Y")
-    report = report_of(head.format(blocks.replace("/", "\n")), "haas-lathe", "1:radius=5")
+    report = report_of(head.format(blocks.replace("/", "\n")), "haas-lathe", "1:radius=5", only=[RULE])
     assert ("G0 X-80.", RULE, "error") in [(one.block, one.rule, one.severity) for one in report.findings]
     # One finding for moves of one loop, the worst.
-    report = report_of(head.format(f"{blocks}/G1 X80./G0 X-80.".replace("/", "\n")), "haas-lathe", "1:radius=5")
+    report = report_of(
+        head.format(f"{blocks}/G1 X80./G0 X-80.".replace("/", "\n")), "haas-lathe", "1:radius=5", only=[RULE]
+    )
     [finding] = [one for one in report.findings if one.rule == RULE]
     assert (finding.severity, finding.count) == ("error", 3)
 

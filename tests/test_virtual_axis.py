@@ -43,7 +43,11 @@ def test_a_word_beside_the_switch_chooses_the_address(switch: str, address: str,
 
 def test_each_section_has_its_own_form() -> None:
     program = (
-        HEAD + section("G12.1 D1 E=C", "C", "H") + section("G12.1 D0 E=C", "Y", "V") + section("G12.1", "Y", "V") + END
+        HEAD
+        + section("G12.1 D1 E=C", "C", "H")
+        + section("G0 C0\nG12.1 D0 E=C", "Y", "V")
+        + section("G0 C0\nG12.1", "Y", "V")
+        + END
     )
     assert said(report_of(program, "citizen")) == []
     trace = tables_of(program, "citizen")["trace"]

@@ -189,7 +189,12 @@ def test_our_own_files_hold_the_plain_form(path: Path) -> None:
 
 
 #: Lists of texts that hold no codes.
-_OF_ADDRESSES = {"control.axes", "polar.not_simulated_beside", "polar.virtual_axis_of_other_controls"}
+_OF_ADDRESSES = {
+    "arcs.corner_words",
+    "control.axes",
+    "polar.not_simulated_beside",
+    "polar.virtual_axis_of_other_controls",
+}
 
 
 def test_every_list_of_texts_is_one_of_codes_or_of_addresses() -> None:

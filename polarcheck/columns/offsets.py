@@ -39,6 +39,10 @@ class _Set(NamedTuple):
     value: Floats
 
 
+#: A longer number calls nothing.
+_LARGEST_T = 1e15
+
+
 class ToolOffsets(Columns, frozen=True):
     """What the tool offset in force holds."""
 
@@ -159,7 +163,8 @@ class ToolOffsets(Columns, frozen=True):
         tools = self.tools
         rows = np.flatnonzero(tools.calls_offset)
         in_inch = self.lengths.scale[rows] != 1.0
-        word = np.abs(np.nan_to_num(self.blocks.word("T")[rows])).astype(np.int64)
+        number = np.abs(np.nan_to_num(self.blocks.word("T")[rows]))
+        word = np.where(number < _LARGEST_T, number, 0).astype(np.int64)
         called = Called(self.run.block[rows], tools.offset_number[rows], tools.tool[rows], word, in_inch)
         return radii(self.text, called)
 

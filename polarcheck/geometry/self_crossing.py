@@ -69,7 +69,7 @@ def _pairs(start: Points, end: Points) -> tuple[Rows, Rows]:
     """Pairs of segments, not next to each other, whose boxes overlap; none where there are too many."""
     none = np.zeros(0, np.int64)
     count = len(start)
-    if count > SEGMENTS:
+    if not 1 < count <= SEGMENTS:
         return none, none
     low_x, high_x = np.minimum(start.real, end.real) - _MEETS, np.maximum(start.real, end.real) + _MEETS
     low_c, high_c = np.minimum(start.imag, end.imag) - _MEETS, np.maximum(start.imag, end.imag) + _MEETS

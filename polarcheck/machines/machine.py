@@ -122,8 +122,8 @@ class CircularInterpolation(msgspec.Struct, frozen=True, kw_only=True, forbid_un
 
     tolerance: NotNegative
     radius_word: Address
-    corner_words: list[Address]
     sweep_limit: Annotated[float, msgspec.Meta(gt=0, le=360)]
+    corner_words: list[Address]
 
 
 class Compensation(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

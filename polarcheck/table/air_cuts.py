@@ -22,6 +22,8 @@ from polarcheck.table.workpiece import Workpiece
 
 #: Z is above something if it is so by more than this [mm]: rounding of words, and finishing passes over a face.
 _ABOVE = 0.01
+#: An approach that stands higher shows nothing of the path: it is one of many in manuals [mm].
+_FARTHEST = 10.0
 #: A section at the height of its entry is in air beside others that cut below Z0, if it is as high as this [mm].
 _CLEAR = 0.9
 #: Points that are nearer than this are one, and angles [mm, deg].
@@ -119,7 +121,8 @@ class AirCuts(Columns, frozen=True):
         writes_z = inside & trace.axes.commands_z
         alone = writes_z & ~trace.axes.moves_plane & (rows > last)
         earlier = trace.mode.anywhere_in_section(writes_z & (rows < first))
-        return np.asarray(still & (self._entry > _ABOVE) & trace.mode.anywhere_in_section(alone) & ~earlier)
+        near = (self._entry > _ABOVE) & (self._entry < _FARTHEST)
+        return np.asarray(still & near & trace.mode.anywhere_in_section(alone) & ~earlier)
 
     @property
     def _sign_wrong(self) -> Mask:

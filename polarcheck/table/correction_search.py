@@ -314,7 +314,8 @@ class _Search:
             parts.append(f"{axis.address}{self._as_elsewhere(axis, value, tolerance)}")
         if turns:
             machine, scale = self.trace.machine, float(self.trace.lengths.scale[self.loop.row[at]])
-            code = machine.codes("arc_clockwise" if turns < 0 else "arc_counterclockwise")[0]
+            codes = machine.codes("arc_clockwise" if turns < 0 else "arc_counterclockwise")
+            code = next(iter(codes), "G2" if turns < 0 else "G3")
             parts = [code, *parts, f"{machine.arcs.radius_word}{plain_number(round(self._usual_arc[1] / scale, 4))}"]
         slip = Slip(" ".join(parts), "a block is missing", False)
         return _Trial(at + 1, -1, slip, np.insert(moved, at + 1, place), self._with_edge(at, turns))

@@ -108,7 +108,11 @@ class MisplacedRamps(Columns, frozen=True):
         leaves_from, leaves_to = trace.path.start[row], trace.path.end[row]
         before_end = np.append(moves.start[first : first + 1], moves.end[first : last - 1])
         closes = bool(np.any(np.abs(before_end - leaves_from) <= _SAME))
-        return closes or any(_mirrors(leaves_to, place) for place in self._approaches(row, since, first, last))
+        # Above Z0 nothing is cut on most programs: only a contour that closes shows there that one is meant.
+        in_air = float(trace.path.z[row]) > 0
+        return closes or (
+            not in_air and any(_mirrors(leaves_to, place) for place in self._approaches(row, since, first, last))
+        )
 
     def _approaches(self, row: int, since: int, first: int, last: int) -> list[complex]:
         """Where the tool stands behind G12.1, where it goes down to the contour, and where its first moves begin."""

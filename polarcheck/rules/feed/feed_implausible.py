@@ -9,7 +9,10 @@ from polarcheck.checking.rule import WARNING, Feeds, Mask, rule
     at=("F", "feed_per_minute", "line", "arc_clockwise", "arc_counterclockwise"),
     once="program",
     worst="feeds.block_time",
-    follows={"block": ("feed-missing-in-polar", "feed-lost-from-per-revolution")},
+    follows={
+        "block": ("feed-missing-in-polar", "feed-lost-from-per-revolution"),
+        "section": ("code-not-allowed-in-polar",),
+    },
 )
 def feed_implausible(feeds: Feeds) -> Mask:
     """

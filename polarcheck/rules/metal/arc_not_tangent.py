@@ -10,6 +10,7 @@ from polarcheck.checking.rule import WARNING, Arcs, Mask, Tangency, rule
     once="misfit",
     subject="side",
     doubts=(("compensation", "loop"), ("move", "loop"), ("metal", "section")),
+    follows={"block": ("arc-sweep-above-limit",)},
 )
 def arc_not_tangent(tangency: Tangency, arcs: Arcs) -> Mask:
     """

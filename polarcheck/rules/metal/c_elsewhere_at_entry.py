@@ -11,6 +11,7 @@ from polarcheck.checking.rule import WARNING, EntryAngles, Mask, rule
     at=("on",),
     once="program",
     doubts=(("metal", "section"), ("position", "section")),
+    follows={"tool call": ("polar-switched-in-offset-mode",)},
 )
 def c_elsewhere_at_entry(entry_angles: EntryAngles) -> Mask:
     """

@@ -17,6 +17,7 @@ from polarcheck.checking.rule import WARNING, Crossings, Mask, rule
             "arc-not-tangent",
             "arc-word-without-arc",
             "nearly-regular-contour",
+            "arc-sweep-above-limit",
         )
     },
 )

@@ -27,6 +27,7 @@ from polarcheck.checking.rule import WARNING, Hits, Regularity, rule
             "linear-axis-never-programmed",
             "contour-open-with-infeed",
             "rapid-in-polar",
+            "code-not-allowed-in-polar",
             "cancel-without-start-up",
             "compensation-without-contour",
             "start-up-after-contour",

@@ -8,7 +8,10 @@ from polarcheck.checking.rule import ERROR, Hits, Workpiece, graded, rule
     "{way} takes the cutter, R {cutter}, {height} {through} the finished part; retract Z above the part first",
     where="workpiece.is_mill",
     once="tool call",
-    follows={"block": ("uncompensated-cut-into-part", "rapid-plunge-into-stock")},
+    follows={
+        "block": ("uncompensated-cut-into-part", "rapid-plunge-into-stock"),
+        "tool call": ("start-up-shorter-than-radius", "cancel-shorter-than-radius"),
+    },
 )
 def rapid_through_part(workpiece: Workpiece) -> Hits:
     """

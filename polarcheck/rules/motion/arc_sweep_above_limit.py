@@ -12,7 +12,7 @@ LAST_DIGIT = 0.1
     "{machine.arcs.sweep_limit:whole/arcs.sweep} deg in one block; write it as several arcs",
     at=("X", "U", "C", "H", "I", "J", "R"),
     subject="move",
-    follows={"block": ("arc-sense-reversed", "arc-not-tangent")},
+    follows={"block": ("arc-sense-reversed",)},
 )
 def arc_sweep_above_limit(arcs: Arcs, machine: Machine) -> Mask:
     """
