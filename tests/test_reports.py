@@ -367,6 +367,7 @@ def test_json_is_the_contract() -> None:
         "not_evaluated",
         "looked_at",
         "silenced",
+        "stock",
     ]
     assert list(checked) == keys
     keys = "rule severity message line column end_line end_column block program section_line alarm values count source"

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import re
 
+from polarcheck.columns.comment_lengths import LONGEST
+
 #: What a comment says of a tool behind its number. With anything else T6 may be a temper, and T10 a wrench.
 _TOOL = re.compile(
     r"\bEND\s?-?MILL|\bE[./]?M\b|\bEM\d|MILL\b|CUTTER|DRILL|\bTAP\b|REAM|\bTURN|\bBOR(?:E|ING)\b|GROOV|THREAD|\bFACE\b|FACING"
@@ -22,7 +24,8 @@ def speaks_of_tool(comment: str) -> bool:
     """A comment that says of a tool by its number which it is, and of no other tool."""
     text = comment.upper()
     return (
-        len(_TOOL_NUMBER.findall(text)) == 1
+        len(text) <= LONGEST
+        and len(_TOOL_NUMBER.findall(text)) == 1
         and not _OF_ANOTHER.search(text)
         and (bool(_TOOL.search(text)) or not re.search(r"[^\W\d]{2}", text))
     )

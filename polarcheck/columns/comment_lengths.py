@@ -26,8 +26,10 @@ _MILLIMETERS = "MM"
 _DENOMINATORS = (2, 4, 8, 16, 32, 64)
 #: Words that are looked at in the comments of a file.
 _MOST = 2000
-#: No note is longer [characters].
-_LONGEST = 10_000
+#: No note is longer [characters]. Some patterns cost more than the length of their text, and so little of so much.
+LONGEST = 400
+#: Quotes round a word; behind a number they are inches.
+_QUOTES = re.compile(r"\"(?=[A-Z])|(?<=[A-Z])\"")
 #: No more digits than this are a length; a longer number would cost more than its text to convert.
 _MOST_DIGITS = 9
 
@@ -66,7 +68,10 @@ def plain_text(comment: str) -> str:
 
     Empty for a comment so long that it is no plain note.
     """
-    return "" if len(comment) > _LONGEST else comment.upper().replace("_", " ").strip(";()% \"'\t\r\n")
+    if len(comment) > LONGEST:
+        return ""
+    plain = _QUOTES.sub("", comment.upper().replace("_", " "))
+    return plain.strip(";()% \"'\t\r\n")
 
 
 def comments_with(text: Text, words: tuple[str, ...]) -> Iterator[tuple[int, str]]:

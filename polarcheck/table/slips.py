@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator
 from typing import NamedTuple
 
-_NUMBER = re.compile(r"([+-]?)(\d*)(\.?)(\d*)")
+_NUMBER = re.compile(r"([+-]?)(\d*+)(\.?)(\d*+)")
 #: Factors by which a point at another place, or a radius for a diameter, changes a number.
 _POINTS, _FACTORS = (10.0, 0.1, 100.0, 0.01, 1000.0, 0.001), (2.0, 0.5)
 

@@ -12,7 +12,7 @@ from polarcheck.checking.rule import WARNING, ContourDepths, Mask, rule
     once="compensation",
     subject="side",
     doubts=(("compensation", "loop"),),
-    follows={"block": ("z-with-plane-axis", "arc-off-polar-plane"), "loop": OUT_OF_PLACE},
+    follows={"block": ("z-with-plane-axis", "helical-arc-in-polar", "arc-off-polar-plane"), "loop": OUT_OF_PLACE},
 )
 def contour_at_two_depths(contour_depths: ContourDepths) -> Mask:
     """
