@@ -11,6 +11,7 @@ from polarcheck.checking.rule import ERROR, Hits, Slots, rule
     worst="slots.ramp_depth",
     doubts=(("metal", "X before"),),
     follows={
+        "block": ("path-through-center",),
         "loop": ("overcut", "slot-narrower-than-cutter"),
         "large radius": ("start-up-shorter-than-radius",),
     },
