@@ -150,3 +150,14 @@ def test_a_move_of_several_axes_is_said_and_not_judged() -> None:
     program = f"G21 G98 G40/T0101/G97 S3000 M13/{HOLE}/Z-2./G13.1/G0 X300. Z50./M30"
     report = report_of(f"O1\n{program.replace('/', chr(10))}\n", "fanuc-30i", "1:radius=3.5,nose=0")
     assert [finding.rule for finding in report.findings if finding.severity != "note"] == ["rapid-through-part"]
+
+
+def test_too_many_ways_are_said() -> None:
+    """Each index goes down into the bar: more of them than are followed."""
+    index = "G0 C{}/G1 Z-3. F60/G12.1/G1 X10. F200/X24./G13.1/G0 Z-2."
+    blocks = "/".join(index.format(number % 360) for number in range(260))
+    program = f"O1/G21 G98 G40/T0101/G97 S3000 M13/G0 X24. Z2. C0/{blocks}/G0 Z50./M30"
+    report = report_of(program.replace("/", "\n"), "fanuc-30i", "1:radius=4,nose=0", job=bar(40))
+    reasons = {missing.rule: missing.reason for missing in report.not_evaluated}
+    assert "too many to follow the metal" in reasons["rapid-through-stock"]
+    assert report.verdict != "pass"
