@@ -107,7 +107,6 @@ SPANS = {
     "loop": "ramps.loop",
     "compensation": "since.compensation",
     "first start-up": "ramps.first_start_up",
-    "large radius": "ramps.large_radius",
     "tool call": "since.tool_call",
     "modal state": "since.modal_state",
     "plane": "since.plane",

@@ -28,6 +28,8 @@ _DENOMINATORS = (2, 4, 8, 16, 32, 64)
 _MOST = 2000
 #: No note is longer [characters]. Some patterns cost more than the length of their text, and so little of so much.
 LONGEST = 400
+#: Zeros before a number.
+_ZEROS = re.compile(r"0{9,}+")
 #: Quotes round a word; behind a number they are inches.
 _QUOTES = re.compile(r"\"(?=[A-Z])|(?<=[A-Z])\"")
 #: No more digits than this are a length; a longer number would cost more than its text to convert.
@@ -68,6 +70,7 @@ def plain_text(comment: str) -> str:
 
     Empty for a comment so long that it is no plain note.
     """
+    comment = _ZEROS.sub("0", comment)
     if len(comment) > LONGEST:
         return ""
     plain = _QUOTES.sub("", comment.upper().replace("_", " "))

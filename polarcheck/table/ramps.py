@@ -61,23 +61,6 @@ class Ramps(Columns, frozen=True):
         column[first] = section[first]
         return column
 
-    @cached_property
-    def large_radius(self) -> Rows:
-        """
-        The tool call of rows of the mode, where all of its start-ups and offset cancels are shorter than R; else -1.
-
-        What does not fit there is R, or the unit.
-        """
-        trace = self.trace
-        is_ramp = (trace.compensation.starts_up | trace.compensation.cancels) & ~trace.path.is_arc
-        short = is_ramp & (trace.path.length < np.abs(trace.compensation.radius_of_move) - ROUNDING)
-        if not (short & trace.compensation.starts_up).any():
-            return np.full(len(trace), -1)
-        call = np.cumsum(trace.tools.calls_offset | trace.blocks.starts)
-        total, too_short = (np.bincount(call[mask], minlength=int(call[-1]) + 1) for mask in (is_ramp, short))
-        all_short = (total > 1) & (too_short == total)
-        return np.where(all_short[call] & (trace.mode.whole_section >= 0), call, -1)
-
     # ---- start-up and offset cancel ----
 
     @cached_property

@@ -19,7 +19,6 @@ from polarcheck.checking.rule import (
     needs=("compensation.radius", "path.length"),
     where="ramps.cancel_judged_by_radius",
     doubts=(("metal", "block"),),
-    follows={"large radius": ("start-up-shorter-than-radius",)},
 )
 def cancel_shorter_than_radius(
     path: ProgrammedPath, compensation: CutterCompensation, ramps: Ramps, machine: Machine

@@ -12,7 +12,6 @@ from polarcheck.checking.rule import ERROR, CutterCompensation, Mask, ToolCenter
     where="ramps.compensated",
     once="tight arc",
     doubts=(("metal", "narrow loop"),),
-    follows={"large radius": ("start-up-shorter-than-radius",)},
 )
 def inside_arc_smaller_than_radius(compensation: CutterCompensation, tool_center: ToolCenter) -> Mask:
     """

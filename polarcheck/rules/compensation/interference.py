@@ -10,7 +10,6 @@ from polarcheck.checking.rule import ERROR, Mask, Ramps, ToolCenter, rule
     where="ramps.compensated",
     once="mesh",
     doubts=(("metal", "narrow loop"),),
-    follows={"large radius": ("start-up-shorter-than-radius",)},
 )
 def interference(tool_center: ToolCenter, ramps: Ramps) -> Mask:
     """

@@ -9,7 +9,6 @@ from polarcheck.checking.rule import ERROR, Mask, Ramps, ToolCenter, rule
     needs=("compensation.radius",),
     where="ramps.compensated",
     doubts=(("metal", "narrow loop"),),
-    follows={"large radius": ("start-up-shorter-than-radius",)},
 )
 def no_offset_intersection(tool_center: ToolCenter, ramps: Ramps) -> Mask:
     """

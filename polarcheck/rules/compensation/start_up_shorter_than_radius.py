@@ -9,7 +9,6 @@ from polarcheck.checking.rule import ERROR, CutterCompensation, Mask, Programmed
     at=("compensation_left", "compensation_right"),
     needs=("compensation.radius", "path.length"),
     where="ramps.start_up_judged_by_radius",
-    once="large radius",
     doubts=(("metal", "loop"),),
 )
 def start_up_shorter_than_radius(path: ProgrammedPath, compensation: CutterCompensation, ramps: Ramps) -> Mask:

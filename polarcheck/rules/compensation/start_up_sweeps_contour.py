@@ -13,7 +13,6 @@ from polarcheck.checking.rule import ERROR, Hits, Slots, rule
     follows={
         "block": ("path-through-center",),
         "loop": ("overcut", "slot-narrower-than-cutter"),
-        "large radius": ("start-up-shorter-than-radius",),
     },
 )
 def start_up_sweeps_contour(slots: Slots) -> Hits:

@@ -12,7 +12,6 @@ from polarcheck.checking.rule import ERROR, Arcs, Hits, Machine, rule
     at=("X", "U", "C", "H", "I", "J"),
     needs=("arcs.end_radius",),
     where="arcs.by_center",
-    once="misfitting arcs",
     doubts=END_IN_DOUBT,
     follows={
         "block": ("arc-center-on-path",),
