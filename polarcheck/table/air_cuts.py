@@ -12,7 +12,6 @@ from functools import cached_property
 import numpy as np
 
 from polarcheck.arrays import Columns, Floats, Mask, Points, Rows, States
-from polarcheck.columns.filling import before
 from polarcheck.columns.trace import Trace
 from polarcheck.geometry import polar
 from polarcheck.geometry.tolerances import ROUNDING
@@ -133,7 +132,7 @@ class AirCuts(Columns, frozen=True):
         if not above.any():
             return above
         # Z goes down behind it, in the section or with its first move afterwards.
-        down = np.flatnonzero((z < before(z, trace.blocks.starts, np.nan) - ROUNDING) & (trace.mode.section >= 0))
+        down = np.flatnonzero((z < trace.path.z_before - ROUNDING) & (trace.mode.section >= 0))
         section = trace.mode.section
         latest = np.full(len(trace.mode.sections) + 1, -1)
         np.maximum.at(latest, section[down], down)
@@ -233,11 +232,9 @@ class AirCuts(Columns, frozen=True):
         axis, increment = trace.machine.polar.rotary_words
         c = trace.path.c_angle
         alone = trace.blocks.has(axis) & (trace.mode.section < 0) & trace.blocks.consists_of("G", axis, increment)
-        alone &= (trace.axes.motion == Motion.RAPID) & (
-            np.abs(c - before(c, trace.blocks.starts, np.nan)) <= _SAME_ANGLE
-        )
+        alone &= (trace.axes.motion == Motion.RAPID) & (np.abs(c - trace.path.c_angle_before) <= _SAME_ANGLE)
         idle = np.concatenate([[0], np.cumsum(alone)])
-        turns = np.concatenate([[0], np.cumsum(np.abs(c - before(c, trace.blocks.starts, np.nan)) > _SAME_ANGLE)])
+        turns = np.concatenate([[0], np.cumsum(np.abs(c - trace.path.c_angle_before) > _SAME_ANGLE)])
         enter, last = trace.mode.sections.enter, trace.mode.sections.last
         since = np.append(-1, np.minimum(last, len(trace) - 1)[:-1]) + 1
         result = (idle[enter] > idle[since]) & (turns[enter] == turns[since])

@@ -105,7 +105,7 @@ class Bar(Columns, frozen=True):
     # ---- what the program turns ----
 
     @cached_property
-    def _tool_call(self) -> Rows:
+    def tool_call(self) -> Rows:
         """A number per T word: the same tool may turn first and mill then."""
         return np.cumsum(self.trace.blocks.has("T") | self.trace.blocks.starts)
 
@@ -117,7 +117,7 @@ class Bar(Columns, frozen=True):
         uses_c = trace.blocks.has(*rotary) & trace.modal.uses_axes & trace.axes.moves
         uses_c |= trace.blocks.has("Y", "V") & trace.axes.moves
         other = uses_c | (trace.modal.drilling != 0) | (trace.mode.section >= 0) | trace.mode.on_cylinder
-        call = self._tool_call
+        call = self.tool_call
         has_other = np.zeros(int(call.max(initial=0)) + 1, bool)
         has_other[call[other]] = True
         first = int(trace.mode.sections.enter[0])
@@ -132,7 +132,7 @@ class Bar(Columns, frozen=True):
 
         A cycle ends where it began (B-63944EN, canned cycles): X and Z are those before it.
         """
-        trace, call = self.trace, self._tool_call
+        trace, call = self.trace, self.tool_call
         begins = np.diff(call, prepend=-1) != 0
         cycle = trace.modal.in_cycle | trace.blocks.listed("repetitive_cycle")
         places: list[Floats] = []
@@ -249,7 +249,7 @@ class Bar(Columns, frozen=True):
         first = int(trace.mode.sections.enter[0])
         on_center = np.abs(self._place[0]) <= _CENTER
         down = trace.path.moves_z & (np.abs(trace.path.x) <= _CENTER) & on_center
-        down &= trace.path.z < before(trace.path.z, trace.blocks.starts, np.nan) - 1
+        down &= trace.path.z < trace.path.z_before - 1
         cycle = (trace.modal.drilling != 0) | trace.blocks.listed("repetitive_cycle")
         return bool((down | (cycle & on_center))[:first].any())
 
@@ -265,7 +265,7 @@ class Bar(Columns, frozen=True):
             ~in_cycle & (segments.z_to < min(-ROUNDING, float(segments.z_from.max()) - 1)) & ~segments.faces
         )
         along = along[segments.z_to[along] < segments.z_from[along] - ROUNDING]
-        call = self._tool_call
+        call = self.tool_call
         inside = np.zeros(int(call.max()) + 1, bool)
         inside[call[segments.row[in_cycle & (segments.x_to > self._place[0][segments.row])]]] = True
         x_before, x_after = self._place[:2]

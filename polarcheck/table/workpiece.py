@@ -103,15 +103,10 @@ class Workpiece(Columns, frozen=True):
     # ---- the tools ----
 
     @cached_property
-    def _tool_call(self) -> Rows:
-        """A number per T word: the same tool may turn first and mill then."""
-        return np.cumsum(self.trace.blocks.has("T") | self.trace.blocks.starts)
-
-    @cached_property
     def is_mill(self) -> Mask:
         """Rows of tool calls that enter the mode, along Z of the main spindle."""
         trace = self.trace
-        call = self._tool_call
+        call = self.bar.tool_call
         has_section = np.zeros(int(call.max(initial=0)) + 1, bool)
         has_section[call[trace.mode.sections.enter]] = True
         radial = [number for number, tool in trace.tools.of_job.items() if tool.mount == "radial"]
@@ -324,9 +319,9 @@ class Workpiece(Columns, frozen=True):
             return
         down = self.is_rapid & (trace.mode.section < 0) & (trace.path.z < self.top - _CLEARANCE)
         down &= (np.abs(trace.path.x) < bar.smallest / 2) & trace.axes.moves
-        calls = np.zeros(int(self._tool_call.max(initial=0)) + 1, bool)
-        calls[self._tool_call[trace.mode.sections.enter]] = True
-        mills = calls[self._tool_call]
+        calls = np.zeros(int(self.bar.tool_call.max(initial=0)) + 1, bool)
+        calls[self.bar.tool_call[trace.mode.sections.enter]] = True
+        mills = calls[self.bar.tool_call]
         why_not = [
             (mills & trace.modal.on_sub_spindle, "the sub-spindle has a Z of its own"),
             (mills & ~self.is_mill & ~trace.modal.on_sub_spindle, "the tool is not a mill along Z"),

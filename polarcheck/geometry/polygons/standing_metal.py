@@ -186,8 +186,3 @@ def lines_along(curves: Curves) -> Any:
     chords = segments(as_one_loop(curves), _TOLERANCE)
     ends = np.stack([coordinates(chords.start), coordinates(chords.end)], axis=1)
     return shapely.multilinestrings(shapely.linestrings(ends))
-
-
-def rows_of(ways: Sweeps, hit: Mask) -> Rows:
-    """The rows of the ways that hit."""
-    return np.unique(ways.curves.row[hit])
