@@ -87,11 +87,6 @@ class Increments(Columns, frozen=True):
         return int(passes.row[tail[j]]), complex(ends[j]), complex(starts[i])
 
     @cached_property
-    def ends_off_start(self) -> Mask:
-        """The last row of a contour in increments that ends beside its start."""
-        return self.trace.blocks.mask_of(self._found[0])
-
-    @cached_property
     def begins(self) -> Points:
         """In these rows the start of the contour [mm]; NaN in others."""
         column = np.full(len(self.trace), NOWHERE)
