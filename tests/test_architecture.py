@@ -27,6 +27,7 @@ ORDER = (
     ("parts", "feed_table"),
     ("checking",),
     ("silence",),
+    ("asked",),
     ("table",),
     ("columns",),
     ("execution",),

@@ -21,12 +21,13 @@ from contour_families import FAMILIES, Program, Twin, program_of
 from part_reference import judge
 from programs import job_of, report_of, tables_of
 
+from polarcheck.asked.comparison import Comparison
+from polarcheck.asked.deviations import Deviations
 from polarcheck.commands import main
 from polarcheck.machines import drawing
 from polarcheck.machines.job import Job, Stock
 from polarcheck.machines.part import DrawnPart
 from polarcheck.parts.comparison import compared
-from polarcheck.table.deviations import Comparison, Deviations
 
 HEAD = "O1\nG21 G40 G97 G98 G18\nT0101\nG0 X150. Z2. C0\nG12.1\n"
 TAIL = "G13.1\nG0 X160.\nM30\n"

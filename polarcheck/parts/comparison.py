@@ -8,6 +8,7 @@ from collections.abc import Sequence
 
 import msgspec
 
+from polarcheck.asked.deviations import Deviations
 from polarcheck.checking.channels import first_runs
 from polarcheck.checking.phrases.drawing import told
 from polarcheck.checking.quantity import rounded
@@ -15,7 +16,6 @@ from polarcheck.checking.tables import Tables
 from polarcheck.columns.trace import Trace
 from polarcheck.errors import TooHardError
 from polarcheck.finding import FileReport, PartComparison
-from polarcheck.table.deviations import Deviations
 
 
 def compared_in(report: FileReport, runs: Sequence[tuple[str, Tables]]) -> FileReport:

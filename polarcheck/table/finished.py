@@ -73,6 +73,12 @@ class Finished(Columns, frozen=True):
         return self._put_together(self.levels, *self.overcuts.walls)
 
     @cached_property
+    def of_sections_put_together(self) -> list[Level]:
+        """Those levels of single sections, in the frame of the part, that others are put together with."""
+        together = {level.sections for level in self.of_part}
+        return [self._turned(level) for level in self.levels if level.sections not in together]
+
+    @cached_property
     def meant(self) -> list[Level]:
         """The same of contours whose R is not known, which is 0 in them: what the program is meant to make."""
         walls, left = self.overcuts.walls_of_unknown_radius

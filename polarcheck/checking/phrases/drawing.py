@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 
+from polarcheck.asked.comparison import Comparison, Fit, title_of
+from polarcheck.asked.deviations import Deviations
 from polarcheck.checking.phrases.common import short
 from polarcheck.checking.quantity import in_row
 from polarcheck.columns.blocks import ExecutedBlocks
 from polarcheck.columns.lengths import Lengths
 from polarcheck.machines.modal import MM_PER_INCH
-from polarcheck.table.deviations import Comparison, Deviations, Fit, title_of
 
 #: A turn below this is none [rad].
 _NO_TURN = 1e-5
