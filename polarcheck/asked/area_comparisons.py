@@ -122,6 +122,7 @@ class AreaComparisons(Columns, frozen=True):
             area=self._area(part, curves, unit, 0.0 if math.isnan(angle) else angle),
             is_pocket=part.is_pocket,
             certain=self._certain(part, curves, unit),
+            most=self._most(part, curves, unit),
         )
         if place < 0 and self.asked_parts.any_angle(number, section):
             return self._best_turned(feature, curves, unit)
@@ -183,6 +184,7 @@ class AreaComparisons(Columns, frozen=True):
             radius=float(radius or self.milled.cuts.radius[own].max()),
             tolerance=self.asked_parts.tolerance(number, row),
             certain=math.nan,
+            most=self._most_of_bar,
             excess_is_judged=self._is_all_known(section),
             cuts=own,
             own_cuts=own & ~self._of_other_contours(number),
@@ -255,6 +257,17 @@ class AreaComparisons(Columns, frozen=True):
         if len(curves) == 1 and _is_closed(curves[0]):
             return _BEYOND * float(np.abs(curves[0]).max())
         return _BEYOND * max(abs((start.conjugate() * (end - start)).imag / abs(end - start)) for start, end in curves)
+
+    @property
+    def _most_of_bar(self) -> float:
+        """Beyond this distance from the axis there is no metal; inf where the bar is not known."""
+        return float(np.fmin(self.bar.known.largest / 2, math.inf))
+
+    def _most(self, part: Part, curves: list[Points], unit: float) -> float:
+        """The same; where flats and slots end is known where the bar is."""
+        if len(curves) == 1 and _is_closed(curves[0]) and part.shape not in ("flat", "flats"):
+            return self._most_of_bar
+        return float(np.fmin(self._most_of_bar, self._certain(part, curves, unit)))
 
     def _best_turned(self, feature: Feature, curves: list[Points], unit: float) -> Feature:
         """The feature at the angle at which it differs least; one of its walls runs as some straight cut does."""

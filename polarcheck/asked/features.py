@@ -49,7 +49,7 @@ class Feature(NamedTuple):
 
     number: of the part in the job. curve: of the curve in its drawing. area: what it encloses (shapely). is_pocket: the
     part stands around it. z: its depth. radius: R that mills it. tolerance: allowed difference. certain: up to this
-    distance from the axis there is metal before milling. excess_is_judged: all that may clear something there is known.
+    distance from the axis there is metal before milling. most: beyond it there is none, inf where nobody knows. excess_is_judged: all that may clear something there is known.
     cuts: bool per cut, those in its sections. own_cuts: those without the contours of other parts.
     """
 
@@ -61,6 +61,7 @@ class Feature(NamedTuple):
     radius: float
     tolerance: float
     certain: float
+    most: float
     excess_is_judged: bool
     cuts: Mask
     own_cuts: Mask
@@ -135,6 +136,8 @@ def _difference(feature: Feature, features: Sequence[Feature], cleared: _Cleared
         if not chosen.any():
             continue
         stands = _must_stand(feature, features, z, tolerance)
+        if np.isfinite(feature.most):
+            stands = areas.intersection(stands, disc(feature.most))
         lacks = areas.intersection(stands, cleared.by(chosen))
         found = farthest(lacks, lacks, feature.area)
         if found.size > worst.size:
