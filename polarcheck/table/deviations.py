@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import cmath
 import math
 from collections.abc import Iterator
 from functools import cached_property
@@ -24,6 +23,7 @@ from polarcheck.time_limit import keep_time
 if TYPE_CHECKING:
     from polarcheck.geometry.comparison.deviation import Difference, Made
     from polarcheck.geometry.comparison.measured_path import Way
+    from polarcheck.geometry.comparison.placements import Placement
 
 #: Tolerance of a part whose job states none [mm].
 TOLERANCE = 0.02
@@ -31,25 +31,19 @@ TOLERANCE = 0.02
 _SAME_Z = 1e-3
 #: A contour that differs by more than this share of its size is another one.
 _OTHER = 0.1
-#: Another placement is reported if it reduces the difference at least to this share.
-_FAR_LESS = 0.05
 #: A contour is compared in full with this number of curves of a drawing, the nearest ones.
 _NEAREST = 4
 
 
 class Fit(NamedTuple):
     """
-    A change of the part with which it would agree.
+    A change with which the part would agree.
 
-    turned: angle by which the part is turned, after it is mirrored [rad].
-    mirrored: C has the other sign.
-    factor: X is multiplied by this.
+    placement: the change of what the job asks for.
     largest: the largest difference after the change [mm].
     """
 
-    turned: float
-    mirrored: bool
-    factor: float
+    placement: Placement
     largest: float
 
 
@@ -377,7 +371,7 @@ class Deviations:
 
         center = target.scale * complex(*target.part.center)
         angle = best_turn(chain.made.way, target.way, center)
-        return angle, _placed(target.way, angle, False, 1.0, center)
+        return angle, _placed(target.way, angle, center)
 
     def _is_superseded(self, result: Comparison, best: Comparison) -> bool:
         """Another contour agrees, and this one is roughing that leaves material, or is meant for another curve."""
@@ -392,35 +386,24 @@ class Deviations:
 
     def _fit(self, result: Comparison) -> Fit | None:
         """The change with which the part would agree, or nearly agree; None if there is none."""
-        from polarcheck.geometry.comparison.alignment import best_turn
-        from polarcheck.geometry.comparison.deviation import difference
+        from polarcheck.geometry.comparison.placements import Freedom, better_placement
 
-        if result.part.shape == "circle" or not math.isnan(result.turned):
+        if result.is_other_way_round:
             return None
         chain, target = self._chain_of[result.number, result.curve, result.row, result.difference.at]
+        is_drawn = result.part.drawing is not None
+        curves = [target.way]
+        if is_drawn and target.is_closed:
+            others = self._curves_of(result.number, int(chain.level.outline.row[0]), chain.is_closed)
+            curves += [other.way for other in others if other.curve != target.curve]
+        freedom = Freedom(is_drawn, math.isnan(result.turned), result.part.shape == "circle")
         center = target.scale * complex(*result.part.center)
-        enough = max(result.tolerance, _FAR_LESS * result.difference.largest)
-        for mirrored, factor in ((False, 1.0), (True, 1.0), (False, 2.0), (False, 0.5)):
-            keep_time()
-            if result.part.drawing is None and (mirrored or factor != 1):
-                break
-            way = _placed(target.way, 0.0, mirrored, factor, center)
-            angles = [best_turn(chain.made.way, way, center)] if factor == 1 else [0.0]
-            for angle in [0.0, *angles] if mirrored else angles:
-                turned = _placed(way, angle, False, 1.0, center)
-                remaining = difference(chain.made, turned, both_ways=target.is_closed and chain.is_closed)
-                if remaining.length and remaining.largest <= enough:
-                    return Fit(angle if mirrored else -angle, mirrored, 1 / factor, remaining.largest)
-        return None
+        fit = better_placement(chain.made, curves, center, result.difference, result.tolerance, freedom)
+        return None if fit is None else Fit(*fit)
 
 
-def _placed(way: Way, angle: float, mirrored: bool, factor: float, center: complex) -> Way:
-    """A way turned about a center [rad], or mirrored first, with C of the other sign, or with its X multiplied."""
-    from polarcheck.geometry.comparison.measured_path import way_of
+def _placed(way: Way, angle: float, center: complex) -> Way:
+    """A way turned about a center [rad]."""
+    from polarcheck.geometry.comparison.placements import Placement
 
-    def moved(points: Points) -> Points:
-        points = points.conj() if mirrored else points
-        points = factor * points.real + 1j * points.imag
-        return center + (points - center) * cmath.exp(1j * angle)
-
-    return way_of(moved(way.start), moved(way.end), way.of)
+    return Placement(turned=angle).of(way, center)
