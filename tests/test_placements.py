@@ -30,9 +30,15 @@ def on(machine: str, text: str) -> str:
     """The same program in the words of another control; that of Haas has X as a radius."""
     if machine != "haas-lathe":
         return text
-    head, polar, tail = re.split(r"(?<=G12.1)|(?=G13.1)", text)
-    polar = re.sub(r"X(-?[\d.]+)", lambda word: f"X{float(word[1]) / 2:.5f}", polar.replace("C", "Y"))
-    return f"{head}{polar}{tail}".replace("G12.1", "G112\nG17").replace("G13.1", "G113\nG18")
+
+    def changed(section: re.Match[str]) -> str:
+        return re.sub(r"X(-?[\d.]+)", lambda word: f"X{float(word[1]) / 2:.5f}", section[0].replace("C", "Y"))
+
+    return (
+        re.sub(r"(?<=G12.1).*?(?=G13.1)", changed, text, flags=re.DOTALL)
+        .replace("G12.1", "G112\nG17")
+        .replace("G13.1", "G113\nG18")
+    )
 
 
 def drawing(corners: list[complex], scale: float = 1.0) -> Job:
