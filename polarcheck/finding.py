@@ -232,9 +232,10 @@ class PartComparison(msgspec.Struct, frozen=True, kw_only=True):
     largest: largest difference.
     tolerance: of the comparison.
     too_much, cut_away: most material that is left on the part, and that is missing.
-    at: [x, c] of the largest difference, x as a radius.
+    at: [x, c] of the largest difference as its section writes it, x as a radius; null where nothing differs.
     line: of the block there.
-    turned: angle of a shape that may be turned in any way [deg].
+    turned: angle of a shape whose angle is not compared [deg].
+    angle_not_compared: why it is not; null where it is, and where the shape has none.
     text: the comparison in words, in the units of the program.
     """
 
@@ -249,6 +250,7 @@ class PartComparison(msgspec.Struct, frozen=True, kw_only=True):
     at: tuple[float | None, float | None]
     line: int
     turned: float | None
+    angle_not_compared: str | None
     text: str
 
 

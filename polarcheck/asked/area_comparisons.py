@@ -256,7 +256,8 @@ class AreaComparisons(Columns, frozen=True):
             return bar
         if len(curves) == 1 and _is_closed(curves[0]):
             return _BEYOND * float(np.abs(curves[0]).max())
-        return _BEYOND * max(abs((start.conjugate() * (end - start)).imag / abs(end - start)) for start, end in curves)
+        nearest = (abs((start.conjugate() * (end - start)).imag / abs(end - start)) for start, end in curves)
+        return float(_BEYOND * max(nearest))
 
     @property
     def _most_of_bar(self) -> float:

@@ -12,6 +12,7 @@ from polarcheck.machines.part import Part
 if TYPE_CHECKING:
     from polarcheck.geometry.comparison.deviation import Difference, Made
     from polarcheck.geometry.comparison.measured_path import Way
+    from polarcheck.geometry.comparison.placements import Placement
     from polarcheck.geometry.shapes.shape import Shape
     from polarcheck.table.finished import Level
 
@@ -23,17 +24,13 @@ SAME_Z = 1e-3
 
 class Fit(NamedTuple):
     """
-    A change of the part with which it would agree.
+    A change with which the part would agree.
 
-    turned: angle by which the part is turned, after it is mirrored [rad].
-    mirrored: C has the other sign.
-    factor: X is multiplied by this.
+    placement: the change of what the job asks for.
     largest: the largest difference after the change [mm].
     """
 
-    turned: float
-    mirrored: bool
-    factor: float
+    placement: Placement
     largest: float
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import cmath
 import math
 from collections.abc import Iterator
 from functools import cached_property
@@ -10,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from polarcheck.arrays import Columns, Points
+from polarcheck.arrays import Columns
 from polarcheck.asked.asked_parts import AskedParts
 from polarcheck.asked.comparison import SAME_Z, Comparison, Contour, Fit, Target
 from polarcheck.columns.trace import Trace
@@ -23,8 +22,6 @@ if TYPE_CHECKING:
 
 #: A contour that differs by more than this share of its size is another one.
 _OTHER = 0.1
-#: Another placement is reported if it reduces the difference at least to this share.
-_FAR_LESS = 0.05
 #: A contour is compared in full with this number of curves of a drawing, the nearest ones.
 _NEAREST = 4
 
@@ -203,7 +200,7 @@ class ContourComparisons(Columns, frozen=True):
         is_known = bool(self.trace.path.knows_section_entry[contour.level.section])
         center = target.scale * complex(*target.part.center) if is_known else 0j
         angle = best_turn(contour.made.way, target.way, center)
-        return angle, _placed(target.way, angle, False, 1.0, center)
+        return angle, _placed(target.way, angle, center)
 
     def _is_superseded(self, result: Comparison, best: Comparison) -> bool:
         """Another contour agrees, and this one is roughing that leaves material, or is meant for another curve."""
@@ -219,37 +216,24 @@ class ContourComparisons(Columns, frozen=True):
 
     def fit(self, result: Comparison) -> Fit | None:
         """The change with which the part would agree, or nearly agree; None if there is none."""
-        from polarcheck.geometry.comparison.alignment import best_turn
-        from polarcheck.geometry.comparison.deviation import difference
+        from polarcheck.geometry.comparison.placements import Freedom, better_placement
 
-        if result.contour is None or result.target is None:
-            return None
-        if result.part.shape == "circle" or not math.isnan(result.turned):
-            return None
         contour, target = result.contour, result.target
+        if result.is_other_way_round or contour is None or target is None:
+            return None
+        is_drawn = result.part.drawing is not None
+        curves = [target.way]
+        if is_drawn and target.is_closed:
+            others = self._curves_of(result.number, int(contour.level.outline.row[0]), contour.is_closed)
+            curves += [other.way for other in others if other.curve != target.curve]
+        freedom = Freedom(is_drawn, math.isnan(result.turned), result.part.shape == "circle")
         center = target.scale * complex(*result.part.center)
-        enough = max(result.tolerance, _FAR_LESS * result.difference.largest)
-        for mirrored, factor in ((False, 1.0), (True, 1.0), (False, 2.0), (False, 0.5)):
-            keep_time()
-            if result.part.drawing is None and (mirrored or factor != 1):
-                break
-            way = _placed(target.way, 0.0, mirrored, factor, center)
-            angles = [best_turn(contour.made.way, way, center)] if factor == 1 else [0.0]
-            for angle in [0.0, *angles] if mirrored else angles:
-                turned = _placed(way, angle, False, 1.0, center)
-                remaining = difference(contour.made, turned, both_ways=target.is_closed and contour.is_closed)
-                if remaining.length and remaining.largest <= enough:
-                    return Fit(angle if mirrored else -angle, mirrored, 1 / factor, remaining.largest)
-        return None
+        fit = better_placement(contour.made, curves, center, result.difference, result.tolerance, freedom)
+        return None if fit is None else Fit(*fit)
 
 
-def _placed(way: Way, angle: float, mirrored: bool, factor: float, center: complex) -> Way:
-    """A way turned about a center [rad], or mirrored first, with C of the other sign, or with its X multiplied."""
-    from polarcheck.geometry.comparison.measured_path import way_of
+def _placed(way: Way, angle: float, center: complex) -> Way:
+    """A way turned about a center [rad]."""
+    from polarcheck.geometry.comparison.placements import Placement
 
-    def moved(points: Points) -> Points:
-        points = points.conj() if mirrored else points
-        points = factor * points.real + 1j * points.imag
-        return center + (points - center) * cmath.exp(1j * angle)
-
-    return way_of(moved(way.start), moved(way.end), way.of)
+    return Placement(turned=angle).of(way, center)

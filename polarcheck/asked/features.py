@@ -49,8 +49,9 @@ class Feature(NamedTuple):
 
     number: of the part in the job. curve: of the curve in its drawing. area: what it encloses (shapely). is_pocket: the
     part stands around it. z: its depth. radius: R that mills it. tolerance: allowed difference. certain: up to this
-    distance from the axis there is metal before milling. most: beyond it there is none, inf where nobody knows. excess_is_judged: all that may clear something there is known.
-    cuts: bool per cut, those in its sections. own_cuts: those without the contours of other parts.
+    distance from the axis there is metal before milling. most: beyond it there is none, inf where nobody knows.
+    excess_is_judged: all that may clear something there is known. cuts: bool per cut, those in its sections. own_cuts:
+    those without the contours of other parts.
     """
 
     number: int

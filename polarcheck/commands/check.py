@@ -50,7 +50,7 @@ def _outputs(ctx: click.Context, parameter: click.Parameter, values: tuple[str, 
 @click.argument("paths", nargs=-1, required=True, metavar="PATH...")
 @options.executing("programs")
 @options.judging
-@options.drawing
+@options.comparing
 @option(
     "--format",
     "form",
