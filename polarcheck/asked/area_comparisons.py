@@ -131,7 +131,7 @@ class AreaComparisons(Columns, frozen=True):
     def _of_drawing(
         self, number: int, matched: dict[int, int], angle: float, section: int, own: Mask
     ) -> list[tuple[Feature, int]]:
-        """Rings of a drawing are parts and pockets by turns, from the outside to the inside."""
+        """The closed curves of a drawing, each with the comparison of its contour."""
         from polarcheck.geometry.comparison.deviation import turned_radius
         from polarcheck.geometry.comparison.measured_path import way_of_curves
         from polarcheck.geometry.comparison.metal import is_circle, is_inside, polygon_of
@@ -145,12 +145,6 @@ class AreaComparisons(Columns, frozen=True):
             at: sum(is_inside(area, other) for other in rings.values() if other is not area)
             for at, area in rings.items()
         }
-        votes = [0, 0]
-        for at, place in matched.items():
-            contour = self.contour_comparisons.all[place].contour
-            if at in rings and contour is not None:
-                votes[(depth[at] + contour.is_pocket) % 2] += 1
-        flipped = votes[1] > votes[0]
         reach = max(float(np.abs(curves[at]).max()) for at in rings)
         bar, round_ = self._bar_radius, turned_radius(way_of_curves([curves[at] for at in rings]))
         certain = min(_BEYOND * reach if math.isnan(bar) else bar, round_)
@@ -159,14 +153,31 @@ class AreaComparisons(Columns, frozen=True):
             place = matched.get(at, -1)
             if place < 0 and matched:
                 # Holes are drilled, and the outermost ring may be that of the bar.
-                outermost = depth[at] == 0 and not reach < bar - float(self.milled.cuts.radius[own].max())
-                if is_circle(area) or outermost:
-                    continue
                 place = matched.get(-1, -1)
+                is_of_bar = depth[at] == 0 and not reach < bar - float(self.milled.cuts.radius[own].max())
+                if is_circle(area) or (place < 0 and is_of_bar):
+                    continue
             feature = self._feature(number, at, place, section, own)
-            is_pocket = bool((depth[at] + flipped) % 2)
-            found.append((feature._replace(area=area, is_pocket=is_pocket, certain=certain), place))
-        return found
+            found.append((feature._replace(area=area, certain=certain), place))
+        return self._with_roles(found, depth)
+
+    def _with_roles(self, rings: list[tuple[Feature, int]], depth: dict[int, int]) -> list[tuple[Feature, int]]:
+        """
+        The rings as parts or pockets: as they are milled, but at one Z by turns from the outside to the inside.
+
+        depth: by the number of a ring, how many others enclose it.
+        """
+        from polarcheck.geometry.comparison.metal import is_inside
+
+        result: list[tuple[Feature, int]] = []
+        for feature, place in sorted(rings, key=lambda ring: depth[ring[0].curve]):
+            contour = self.contour_comparisons.all[place].contour if place >= 0 else None
+            around = [other for other, _ in result if is_inside(feature.area, other.area)]
+            is_pocket = contour.is_pocket if contour is not None else bool(around) and not around[-1].is_pocket
+            if around and is_pocket == around[-1].is_pocket and abs(feature.z - around[-1].z) <= SAME_Z:
+                is_pocket = not is_pocket
+            result.append((feature._replace(is_pocket=is_pocket), place))
+        return result
 
     def _feature(self, number: int, curve: int, place: int, section: int, own: Mask) -> Feature:
         """The feature without its area."""
@@ -299,7 +310,7 @@ class AreaComparisons(Columns, frozen=True):
 
         results = self.contour_comparisons.all
         own = [one for one in results if one.number == feature.number]
-        if any(one.differs and (-1 in (one.curve, feature.curve) or one.curve == feature.curve) for one in own):
+        if any(one.differs and (place < 0 or one.curve in (-1, feature.curve) or feature.curve < 0) for one in own):
             return None
         base = results[place] if place >= 0 else None
         if found.is_none and base is not None:
