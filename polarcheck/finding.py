@@ -292,6 +292,7 @@ class FileReport(msgspec.Struct, frozen=True, kw_only=True):
     looked_at: aspects that were checked; outside polar sections these are text, flow and position.
     silenced: suppressed findings.
     stock: the bar before milling, if anything is known of it.
+    makes: in one line what the only section makes, for text; not part of the JSON contract.
     part: what the program makes, if requested.
     compared: its contours compared with those asked for, if requested.
     """
@@ -308,6 +309,7 @@ class FileReport(msgspec.Struct, frozen=True, kw_only=True):
     looked_at: list[str] = []
     silenced: list[Silenced] = []
     stock: KnownStock | None = None
+    makes: str | UnsetType = UNSET
     part: list[MadeShape] | UnsetType = UNSET
     compared: list[PartComparison] | UnsetType = UNSET
 

@@ -84,6 +84,12 @@ class Finished(Columns, frozen=True):
         walls, left = self.overcuts.walls_of_unknown_radius
         return self._levels_of(walls, left, level_of(self.trace, walls))
 
+    @property
+    def has_areas(self) -> bool:
+        """True once levels with polygons have been computed."""
+        computed = vars(self)
+        return bool(computed.get("levels") or computed.get("meant"))
+
     @cached_property
     def meant_of_part(self) -> list[Level]:
         """Those in the frame of the part, put together likewise."""
