@@ -5,9 +5,10 @@ The walls of a group cut the plane into faces. The part consists of the faces th
 Leads, nested passes, spirals and overlaps need no special treatment: a lead turns its tool side to the air it crosses,
 and a pass to the material that the next pass removes. The surroundings of a pocket are a face as well.
 
-A contour that does not close bounds no face. If only a gap separates its end from its start, the gap is closed. Else
-its first and last walls are extended straight ahead, as a flat continues beyond the bar. The part is unknown there
-unless the bar is known.
+Where a contour runs on past its start, rounding moves its end to one side of the wall that it follows: both ends are
+joined to the walls beside them. A contour that does not close bounds no face. If only a gap separates its end from its
+start, the gap is closed. Else its first and last walls are extended straight ahead, as a flat continues beyond the
+bar. The part is unknown there unless the bar is known.
 """
 
 from __future__ import annotations
@@ -17,14 +18,19 @@ import numpy as np
 import shapely  # type: ignore[import-untyped]
 
 from polarcheck.arrays import Floats, Mask, Points, Rows
-from polarcheck.geometry.contour_ends import gaps_between_ends
+from polarcheck.geometry.contour_ends import CLOSED, gaps_between_ends
 from polarcheck.geometry.polygons import areas
 from polarcheck.geometry.polygons.faces import GRID, Geometries, Standing, Walls, standing
 from polarcheck.geometry.segments import Curves, Segments, directions, first_of_its_kind, members, segments
 from polarcheck.geometry.tolerances import TOUCH
+from polarcheck.time_limit import keep_time
 
 #: Corners of the circle that stands for the bar, in a quarter.
 _BAR_CORNERS = 256
+#: Pairs of ends and walls to compare at a time.
+_PAIRS = 1_000_000
+#: Instead of a curve: a line from the end of a loop to the wall beside it.
+_JOINED = -2
 
 
 class Contours(msgspec.Struct, frozen=True):
@@ -119,7 +125,7 @@ class _Plane(msgspec.Struct, frozen=True):
     All groups side by side.
 
     walls: the walls, n of them, and other lines.
-    move: int[n], the curve that each wall is part of, -1 for other lines.
+    move: int[n], the curve that each wall is part of, -1 for other lines, _JOINED for those that join ends to walls.
     along: float64[n] [mm], distance of the start of each wall from the start of its loop.
     total: float64[n] [mm], length of that loop.
     chosen: the curves of all groups, m of them, with the group as their loop.
@@ -166,11 +172,14 @@ def _plane(contours: Contours) -> _Plane:
     nothing = np.zeros(len(parts), bool)
     walls = Walls(parts.start, parts.end, left, ~left, nothing, parts.loop)
     first = np.flatnonzero(np.diff(which, prepend=-1))
-    more = [_joints(chosen, first, half, pitch), _square(np.unique(group), half, pitch)]
-    walls, origin = _together([walls, *more])
-    others = np.full(len(origin) - len(parts), -1)
-    move, along, total = (np.append(column, others)[origin] for column in (row[parts.move], along, total))
     last = np.append(first[1:], len(which))[: len(first)] - 1
+    ends = np.append(chosen.start[first], chosen.end[last])
+    more = [_joints(chosen, first, half, pitch), _square(np.unique(group), half, pitch)]
+    joined = _joined_ends(ends, np.tile(chosen.loop[first], 2), walls, pitch)
+    walls, origin = _together([walls, *more, joined])
+    others = np.full(len(origin) - len(parts), -1)
+    others[len(others) - len(joined) :] = _JOINED
+    move, along, total = (np.append(column, others)[origin] for column in (row[parts.move], along, total))
     return _Plane(walls, move, along, total, chosen, contours.left[row], first, last, half, pitch)
 
 
@@ -212,6 +221,45 @@ def _joints(curves: Curves, first: Rows, half: float, pitch: float) -> Walls:
     return _lines(start, end, np.concatenate([curves.loop[torn], group]), pitch, joins=True)
 
 
+def _joined_ends(point: Points, group: Rows, walls: Walls, pitch: float) -> Walls:
+    """Lines from the ends of loops [mm] to the walls of their group beside them, nearer than points are rounded to."""
+    ends = point + pitch * group
+    end, wall = _candidates(ends, walls)
+    way = walls.end[wall] - walls.start[wall]
+    beside = (ends[end] - walls.start[wall]) * way.conj() / np.abs(way)
+    length = np.abs(way)
+    foot = walls.start[wall] + way * np.clip(beside.real, 0, length) / length
+    distance = np.abs(ends[end] - foot)
+    joins = (distance > TOUCH / 10) & (distance <= CLOSED)
+    end, foot = end[joins], foot[joins] - pitch * group[end[joins]]
+    return _lines(point[end], foot, group[end], pitch, joins=False)
+
+
+def _candidates(ends: Points, walls: Walls) -> tuple[Rows, Rows]:
+    """Ends of loops and walls whose boxes are no farther apart than CLOSED, as pairs of their numbers."""
+    order = np.argsort(ends.real, kind="stable")
+    across = ends.real[order]
+    low, high = np.minimum(walls.start.real, walls.end.real), np.maximum(walls.start.real, walls.end.real)
+    first, until = np.searchsorted(across, low - CLOSED), np.searchsorted(across, high + CLOSED, side="right")
+    pairs: list[tuple[Rows, Rows]] = [(np.zeros(0, np.int64), np.zeros(0, np.int64))]
+    begins = 0
+    total = np.cumsum(until - first)
+    while begins < len(total):
+        keep_time()
+        before = total[begins - 1] if begins else 0
+        stop = max(int(np.searchsorted(total, before + _PAIRS)), begins + 1)
+        count = (until - first)[begins:stop]
+        wall = np.repeat(np.arange(begins, stop), count)
+        place = np.arange(len(wall)) - np.repeat(np.cumsum(count) - count, count)
+        end = order[first[wall] + place]
+        c, a, b = ends[end].imag, walls.start[wall].imag, walls.end[wall].imag
+        near = (c >= np.minimum(a, b) - CLOSED) & (c <= np.maximum(a, b) + CLOSED)
+        pairs.append((end[near], wall[near]))
+        begins = stop
+    end, wall = (np.concatenate(column) for column in zip(*pairs, strict=True))
+    return end, wall
+
+
 def _square(group: Rows, half: float, pitch: float) -> Walls:
     """The squares round these groups."""
     corner = np.array([1 + 1j, -1 + 1j, -1 - 1j, 1 - 1j]) * complex(half)
@@ -222,16 +270,29 @@ def _square(group: Rows, half: float, pitch: float) -> Walls:
 
 def _standing(plane: _Plane, lines: Walls | None, chosen: Mask, thinnest: float) -> tuple[Standing, _Outline]:
     """The standing faces of the chosen groups with these added lines, and the outline along programmed curves."""
-    walls, origin, is_curve = plane.walls, np.arange(len(plane.move)), plane.move >= 0
+    walls, origin, move = plane.walls, np.arange(len(plane.move)), plane.move
     if lines is not None:
-        is_curve = np.append(is_curve, np.zeros(len(lines.group), bool))
+        move = np.append(move, np.full(len(lines.group), -1))
         walls, origin = _together([walls, lines])
         in_chosen = chosen[walls.group]
         walls, origin = walls[in_chosen], origin[in_chosen]
     faces = standing(walls, len(chosen), thinnest)
     wall = origin[faces.wall]
-    of_curve = is_curve[wall]
-    return faces, (faces.start[of_curve], faces.end[of_curve], wall[of_curve])
+    start, end = _without_joints(faces, move[wall] == _JOINED)
+    of_curve = move[wall] >= 0
+    return faces, (start[of_curve], end[of_curve], wall[of_curve])
+
+
+def _without_joints(faces: Standing, joined: Mask) -> tuple[Points, Points]:
+    """Start and end of the edges of parts, moved to one point where a line joins an end to the wall beside it."""
+    start, end, ring = faces.start.copy(), faces.end.copy(), faces.ring
+    for edge in np.flatnonzero(joined).tolist():
+        before, behind = edge - 1, edge + 1
+        if behind < len(ring) and ring[behind] == ring[edge]:
+            start[behind] = start[edge]
+        elif before >= 0 and ring[before] == ring[edge]:
+            end[before] = end[edge]
+    return start, end
 
 
 # ---- contours that do not close ----
