@@ -80,7 +80,7 @@ def overlapped(
         begins, center, ends = rounds[number]
         turn = cmath.phase((ends - center) / (begins - center))
         steps = [center + (begins - center) * cmath.exp(1j * turn * step / chords) for step in range(1, chords + 1)]
-        elements += [Element(begins), *(map(Element, steps) if chords else [Element(ends, center)])]
+        elements += [Element(begins), *(map(Element, steps) if chords else [Element(ends, center, turn > 0)])]
         points += [begins, *steps] if chords else [begins, ends]
         area += 0 if chords else corner**2 * (turn - math.sin(turn)) / 2
     end = start + overlap * along

@@ -189,7 +189,7 @@ def _entry(trace: Trace, group: Sequence[_Depth], shape: Shape) -> MadeShape:
         is_regular=shape.is_regular,
         values={name: round(value, 6) + 0.0 for name, value in shape.values.items()},
         odd=odd,
-        text=f"{words}; {_depths_in_words(known, sizes)}" if known else words,
+        text=f"{words}; {_depths_in_words(known, sizes)}",
         left_standing=[*_corners_left(shape, first.radius, sizes)],
         needs=first.needs,
     )
@@ -197,6 +197,8 @@ def _entry(trace: Trace, group: Sequence[_Depth], shape: Shape) -> MadeShape:
 
 def _depths_in_words(depths: Sequence[float], sizes: Sizes) -> str:
     """`to Z-6.000 in 3 passes, 2.000 each`; the passes of one depth count once."""
+    if not depths:
+        return "to Z not known"
     deep = sorted({round(z, 6) for z in depths}, reverse=True)
     text = f"to Z{sizes(deep[-1])}"
     if len(deep) == 1:
