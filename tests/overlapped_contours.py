@@ -64,11 +64,13 @@ def overlapped(
     begin: float = 0.5,
     leads: tuple[str, str] = ("ramp", "ramp"),
     control: Control = CONTROLS[0],
+    drift: complex = 0,
 ) -> Overlapped:
     """
     Such a contour round these corners, counterclockwise, from the middle of the side behind the first corner.
 
     corner: R of the corners [mm]. chords: so many stand for each corner, 0 for an arc. radius: R of the tool.
+    drift: how far off its place it ends [mm].
     """
     rounds = [_rounded(corners, number, corner) for number in range(len(corners))]
     first, second = rounds[0][2], rounds[1][0]
@@ -83,7 +85,7 @@ def overlapped(
         elements += [Element(begins), *(map(Element, steps) if chords else [Element(ends, center, turn > 0)])]
         points += [begins, *steps] if chords else [begins, ends]
         area += 0 if chords else corner**2 * (turn - math.sin(turn)) / 2
-    end = start + overlap * along
+    end = start + overlap * along + drift
     elements.append(Element(end))
     area += sum((a.conjugate() * b).imag for a, b in zip(points, points[1:] + points[:1], strict=True)) / 2
     around = sum(abs(b - a) for a, b in zip(points, points[1:] + points[:1], strict=True))
