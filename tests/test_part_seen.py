@@ -5,14 +5,17 @@ from __future__ import annotations
 import cmath
 import math
 import re
+from pathlib import Path
 
 import pytest
 from drawn_contours import CONTROLS, Drawn, Element
 from overlapped_contours import Overlapped, contour, overlapped
 from programs import tables_of
+from test_cli import call
 
 from polarcheck.finding import MadeShape
 from polarcheck.parts.part_report import made_by
+from polarcheck.pictures.section_view import views_of
 
 #: Of what is told of a contour, the share of the length of its walls by which its area may be off: points are rounded,
 #: and sides that are straight but for that are one [mm].
@@ -179,3 +182,44 @@ def test_shapes_at_two_depths_by_increments_of_z() -> None:
     text = "G21 G98 G40 T0101\nG0 X80. C0\nG12.1\nG1 X54. C0 F200\nW-3.\n" + "\n".join(first)
     text += "\nW-3.\nG42 X50. C0\nG3 X50. C0 I-25.\nG1 G40 X70.\nG13.1\nM30\n"
     assert [shape.shape for shape in made(text, "1:radius=4")] == ["hexagon", "circle"]
+
+
+# ---- numbers without a decimal point ----
+
+ROUND = "{units} G98 G40 T0808\nG0 X{far} Z2. C0\n{on}\nG1 X{far} F300\nZ-.2\nG42 X{x} C0 F200\nG3 X{end} C0 I-{r}\n"
+ROUND += "G1 G40 X{far}\nZ2.\n{off}\nM30\n"
+IN_MM = {"units": "G21", "far": "180.", "x": "140", "end": "140.", "r": "70.", "on": "G12.1", "off": "G13.1"}
+IN_INCH = {**IN_MM, "units": "G20", "far": "7.", "x": "5", "end": "5.", "r": "2.5"}
+
+
+@pytest.mark.parametrize(
+    ("words", "machine", "as_meant"),
+    [
+        (IN_MM, "fanuc", "line 6: X140 is taken as X140., as probably meant; the control reads 0.140"),
+        (IN_MM, "siemens-iso", "line 6: X140 is taken as X140., as probably meant; the control reads 0.140"),
+        (IN_INCH, "fanuc", "line 6: X5 is taken as X5., as probably meant; the control reads 0.0005"),
+        (
+            {**IN_MM, "r": "70"},
+            "fanuc",
+            "line 6: X140 is taken as X140., as probably meant (and 1 more number without a decimal point); "
+            "the control reads 0.140",
+        ),
+        ({**IN_MM, "on": "G112", "off": "G113"}, "haas-lathe", None),  # it reads whole units
+        ({**IN_MM, "x": "140."}, "fanuc", None),
+    ],
+)
+def test_a_number_that_is_taken_as_meant_is_told(words: dict[str, str], machine: str, as_meant: str | None) -> None:
+    tables = tables_of(ROUND.format_map(words), machine, "8:radius=4")
+    (seen,) = made_by(tables)
+    assert seen.as_meant == as_meant
+    assert seen.shape == "circle"
+    (view,) = views_of(tables)
+    assert view.remarks == ([as_meant] if as_meant else [])
+
+
+@pytest.mark.usefixtures("own_folder")
+def test_the_report_of_the_part_and_its_page_tell_what_is_taken_as_meant() -> None:
+    Path("round.nc").write_text(ROUND.format_map(IN_MM))
+    said = "line 6: X140 is taken as X140., as probably meant; the control reads 0.140"
+    assert f"       but   {said}\n" in call("part", "round.nc", "--tool", "8:radius=4").stdout
+    assert said in call("plot", "round.nc", "--tool", "8:radius=4").stdout

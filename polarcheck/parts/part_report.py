@@ -18,6 +18,7 @@ from polarcheck.finding import FileReport, LeftStanding, MadeShape, OddSide
 from polarcheck.geometry.shapes.shape import SAME, Shape
 from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.machines.modal import Units
+from polarcheck.parts.as_meant import as_meant
 from polarcheck.time_limit import keep_time
 
 if TYPE_CHECKING:
@@ -69,7 +70,8 @@ def _by_section(trace: Trace, tables: Tables) -> list[MadeShape]:
         left = [one for number, one in standing if number == section]
         if left and entries:
             entries[0] = msgspec.structs.replace(entries[0], left_standing=[*entries[0].left_standing, *left])
-        made += entries or [_nothing(trace, section, _why_nothing(tables, section))]
+        entries = entries or [_nothing(trace, section, _why_nothing(tables, section))]
+        made += [msgspec.structs.replace(entries[0], as_meant=as_meant(trace, section) or None), *entries[1:]]
     return made
 
 
