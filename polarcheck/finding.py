@@ -203,6 +203,8 @@ class MadeShape(msgspec.Struct, frozen=True, kw_only=True):
     text: the shape in words.
     left_standing: material that the tool leaves.
     needs: what is unknown, and what to give; null if nothing is.
+    as_meant: numbers without a decimal point that are taken as if they had one, told at the first shape of a section;
+        null if there are none.
     channel: of a file with several channels, as `$2`.
     """
 
@@ -218,6 +220,7 @@ class MadeShape(msgspec.Struct, frozen=True, kw_only=True):
     text: str
     left_standing: list[LeftStanding] = []
     needs: str | None = None
+    as_meant: str | None = None
     channel: str | UnsetType = UNSET
 
 

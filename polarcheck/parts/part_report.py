@@ -19,6 +19,7 @@ from polarcheck.finding import FileReport, LeftStanding, MadeShape, OddSide
 from polarcheck.geometry.shapes.shape import SAME, Shape
 from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.machines.modal import Units
+from polarcheck.parts.as_meant import as_meant
 from polarcheck.time_limit import keep_time
 
 if TYPE_CHECKING:
@@ -108,7 +109,8 @@ def _by_section(trace: Trace, tables: Tables) -> list[MadeShape]:
         left = [one for number, one in standing if number == section]
         if left and entries:
             entries[0] = msgspec.structs.replace(entries[0], left_standing=[*entries[0].left_standing, *left])
-        made += entries or [_nothing(trace, section, _why_nothing(tables, section))]
+        entries = entries or [_nothing(trace, section, _why_nothing(tables, section))]
+        made += [msgspec.structs.replace(entries[0], as_meant=as_meant(trace, section) or None), *entries[1:]]
     return made
 
 
@@ -237,7 +239,7 @@ def _entry(trace: Trace, group: Sequence[_Depth], shape: Shape) -> MadeShape:
         is_regular=shape.is_regular,
         values={name: round(value, 6) + 0.0 for name, value in shape.values.items()},
         odd=odd,
-        text=f"{words}; {_depths_in_words(known, sizes)}" if known else words,
+        text=f"{words}; {_depths_in_words(known, sizes)}",
         left_standing=[*_corners_left(shape, first.radius, sizes)],
         needs=first.needs,
     )
@@ -245,6 +247,8 @@ def _entry(trace: Trace, group: Sequence[_Depth], shape: Shape) -> MadeShape:
 
 def _depths_in_words(depths: Sequence[float], sizes: Sizes) -> str:
     """`to Z-6.000 in 3 passes, 2.000 each`; the passes of one depth count once."""
+    if not depths:
+        return "to Z not known"
     deep = sorted({round(z, 6) for z in depths}, reverse=True)
     text = f"to Z{sizes(deep[-1])}"
     if len(deep) == 1:

@@ -158,7 +158,7 @@ class Finished(Columns, frozen=True):
         order = np.argsort(place[begins], kind="stable")
         loops, groups = walls.loop[begins][order], place[begins][order]
         tolerance = trace.machine.compensation.overcut_tolerance
-        parts = finished_parts(Contours(walls, left, loops, groups, radius, self.overcuts.bar, tolerance))
+        parts = finished_parts(Contours(walls, left, loops, groups, radius, self.overcuts.bar, tolerance, True))
         rows = [np.flatnonzero(place == number) for number in range(len(radius))]
         return [self._level(parts, number, radius, walls, left, chosen) for number, chosen in enumerate(rows)]
 
@@ -175,7 +175,7 @@ class Finished(Columns, frozen=True):
             radius=float(radius[number]),
             polygon=shapely.transform(parts.polygon[number], lambda points: points - [shift, 0.0]),
             open=bool(parts.open[number]),
-            gap=float(parts.gap[number]),
+            gap=float(max(parts.gap[number], parts.beside[number])),
             tangled=bool(parts.tangled[number]),
             outline=outline_of(parts.start[own] - shift, parts.end[own] - shift, parts.move[own], walls),
             walls=walls[chosen],

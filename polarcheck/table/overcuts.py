@@ -34,15 +34,17 @@ def loop_of_row(trace: Trace) -> Rows:
 
 
 def level_of(trace: Trace, walls: Curves) -> Rows:
-    """For each wall a number of the level of its loop: its section, and the Z at which the loop begins."""
+    """For each wall a number of the level of its loop: its section, and the depth at which the loop begins."""
     first = np.flatnonzero(np.diff(walls.loop, prepend=-1))
-    row = walls.row[first]
-    z = np.round(trace.path.z[row] / ROUNDING)
-    # Where Z is not known, all loops between two Z moves are at one level.
-    moved = np.where(np.isnan(z), np.cumsum(trace.path.moves_z & ~trace.path.travels)[row], 0)
-    keys = np.stack([trace.mode.section[row], np.nan_to_num(z), moved], axis=1)
-    _, number = np.unique(keys, axis=0, return_inverse=True)
+    number = level_of_rows(trace, walls.row[first])
     return np.asarray(number[np.cumsum(np.diff(walls.loop, prepend=-1) != 0) - 1])
+
+
+def level_of_rows(trace: Trace, row: Rows) -> Rows:
+    """For each of these rows a number of its section and depth; where Z is not known, increments alone tell depths."""
+    depth, is_known = trace.path.depth[row] / ROUNDING, ~np.isnan(trace.path.z[row])
+    keys = np.stack([trace.mode.section[row], np.round(depth), is_known], axis=1)
+    return np.asarray(np.unique(keys, axis=0, return_inverse=True)[1].ravel())
 
 
 class CutsOfRows(Table, frozen=True):
