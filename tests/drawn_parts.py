@@ -495,6 +495,7 @@ class _Planner:
         else:
             self.boss(self.boss_form(name), self.depth())
         if is_drawn:
+            self.is_one_file = draw.random() < 0.6
             self.features = [self.as_drawing(number, one) for number, one in enumerate(self.features)]
         return Plan(
             self.seed,
@@ -727,7 +728,7 @@ class _Planner:
         return all(abs(depth - depths[0] * (number + 1)) < 1e-6 for number, depth in enumerate(depths))
 
     def as_drawing(self, number: int, feature: Feature) -> Feature:
-        keys = {"drawing": f"part{number or ''}.dxf"}
-        if "z" in feature.keys:
+        keys = {"drawing": f"part{'' if self.is_one_file else number or ''}.dxf"}
+        if "z" in feature.keys and not (self.is_one_file and len(self.features) > 1):
             keys["z"] = feature.z  # type: ignore[assignment]
         return feature._replace(keys=keys)

@@ -14,7 +14,7 @@ from itertools import pairwise
 from typing import Any, NamedTuple
 
 import shapely  # type: ignore[import-untyped]
-from drawn_parts import Plan, points_of, turned_area
+from drawn_parts import Feature, Plan, points_of, turned_area
 from metal_simulation import Outcome, metal_at, simulate
 from setter_programs import Program
 
@@ -44,7 +44,7 @@ class Judgement(NamedTuple):
 def judged(plan: Plan, program: Program, allowed: float) -> Judgement:
     """What differs by more than a length [mm]."""
     outcome = simulate(program)
-    events = outcome.events - {"C too fast"}
+    events = outcome.events
     worst = Judgement(0.0, 0.0, 0.0, 0j, events)
     for z in _levels(plan, outcome):
         metal = metal_at(outcome, z)
@@ -63,14 +63,27 @@ def _levels(plan: Plan, outcome: Outcome) -> list[float]:
 
 
 def _apart(plan: Plan, outcome: Outcome, metal: Any, z: float, allowed: float) -> tuple[Any, Any]:
-    stands = outcome.bar
-    for feature in plan.features:
-        if feature.z < z:
-            stands = stands.intersection(feature.stands())
-    turns = _turns(plan)
     surely = outcome.bar if is_bar_known(plan) else _bar(plan)
-    pairs = [_difference(metal, turned_area(stands, turn), surely, allowed) for turn in turns]
+    pairs = []
+    for stands in _readings(plan, outcome.bar, z):
+        pairs += [_difference(metal, turned_area(stands, turn), surely, allowed) for turn in _turns(plan)]
     return min(pairs, key=lambda pair: max(pair[0].area, pair[1].area))
+
+
+def _readings(plan: Plan, bar: Any, z: float) -> list[Any]:
+    """What should stand; of a closed curve of a drawing, either side may be the part."""
+    drawings: dict[str, list[Feature]] = {}
+    for number, feature in enumerate(plan.features):
+        if feature.z < z:
+            drawings.setdefault(feature.keys.get("drawing", str(number)), []).append(feature)
+    readings = [bar]
+    for features in drawings.values():
+        area = shapely.intersection_all([feature.stands() for feature in features])
+        sides = [area]
+        if features[0].is_drawn and features[0].form.contour().closed:
+            sides.append(bar.difference(area))
+        readings = [reading.intersection(side) for reading in readings for side in sides]
+    return readings
 
 
 def _difference(metal: Any, stands: Any, bar: Any, allowed: float) -> tuple[Any, Any]:

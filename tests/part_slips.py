@@ -26,7 +26,7 @@ Plant = Callable[[Plan, Draw], Program | None]
 
 
 class Defect(NamedTuple):
-    """A defect: the plan that its program should follow, the sound program, this one, and what is wrong with the metal."""
+    """A defect: the plan, the sound program, the one with the defect, and what is wrong with the metal."""
 
     kind: str
     seed: int
@@ -290,6 +290,8 @@ def radius_wrong(plan: Plan, draw: Draw) -> Program | None:
         return None
     program = plan.program()
     tool = draw.choice(tools)
+    if at(program, "offset"):
+        return None  # G10 sets it
     radius = round(program.radii[tool] + draw.choice((1, -1)) * _size(draw, 0.5 * program.radii[tool]), 2)
     return program._replace(radii={**program.radii, tool: radius})
 
