@@ -260,11 +260,18 @@ def _depths_in_words(depths: Sequence[float], sizes: Sizes) -> str:
 
 def _corners_left(shape: Shape, radius: float, sizes: Sizes) -> Iterator[LeftStanding]:
     """The inside corners that no round cutter reaches into."""
-    count = int(shape.values.get("inside_corners", 0))
+    values = shape.values
+    count = int(values.get("inside_corners", 0))
     if count and radius > ROUNDING:
         where = "1 inside corner" if count == 1 else f"{count} inside corners"
         text = f"R{sizes(radius)} of the cutter in {where}"
+        if radius > values.get("corner_reach", radius) + SAME:
+            text += f"; the walls beside are too short for it: R{sizes(values['corner_reach'])} would reach them"
         yield LeftStanding(kind="corner", text=text, line=None, size=round(radius, 6), count=count)
+    if radius > values.get("reach_beyond", radius) + SAME:
+        corner = f"R{sizes(radius)} of the cutter, of an inside corner just outside the bar"
+        text = f"{corner}: R{sizes(values['reach_beyond'])} would leave nothing"
+        yield LeftStanding(kind="corner", text=text, line=None, size=round(radius, 6), count=1)
 
 
 def _lines(trace: Trace, section: int) -> tuple[int, int]:
