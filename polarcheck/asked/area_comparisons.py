@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from polarcheck.arrays import Columns, Mask, Points, is_among
-from polarcheck.asked.asked_parts import AskedParts
+from polarcheck.asked.asked_parts import BEYOND, AskedParts
 from polarcheck.asked.comparison import SAME_Z, Comparison
 from polarcheck.asked.contour_comparisons import ContourComparisons
 from polarcheck.columns.trace import Trace
@@ -22,12 +22,12 @@ if TYPE_CHECKING:
     from polarcheck.asked.features import AreaDifference, Feature
     from polarcheck.geometry.shapes.shape import Shape
 
-#: How much farther than what is asked for the metal reaches where the bar is not known, as a share.
-_BEYOND = 1.02
 #: How far from the axis flats and slots without an end reach, as a multiple of all that is cut.
 _ENDLESS = 4.0
 #: Another angle of a shape is taken where it differs by so much less [mm].
 _BETTER = 1e-3
+#: So many depths of sections are tried.
+_DEPTHS = 8
 
 
 class AreaComparisons(Columns, frozen=True):
@@ -121,11 +121,11 @@ class AreaComparisons(Columns, frozen=True):
         feature = self._feature(number, -1, place, section, own)._replace(
             area=self._area(part, curves, unit, 0.0 if math.isnan(angle) else angle),
             is_pocket=part.is_pocket,
-            certain=self._certain(part, curves, unit),
-            most=self._most(part, curves, unit),
+            certain=self._certain(number, curves, unit),
+            most=self._most(number, curves, unit),
         )
-        if place < 0 and self.asked_parts.any_angle(number, section):
-            return self._best_turned(feature, curves, unit)
+        if place < 0:
+            return self._best_placed(feature, curves, unit, section)
         return feature
 
     def _of_drawing(
@@ -147,7 +147,7 @@ class AreaComparisons(Columns, frozen=True):
         }
         reach = max(float(np.abs(curves[at]).max()) for at in rings)
         bar, round_ = self._bar_radius, turned_radius(way_of_curves([curves[at] for at in rings]))
-        certain = min(_BEYOND * reach if math.isnan(bar) else bar, round_)
+        certain = min(BEYOND * reach if math.isnan(bar) else bar, round_)
         found = []
         for at, area in rings.items():
             place = matched.get(at, -1)
@@ -258,48 +258,61 @@ class AreaComparisons(Columns, frozen=True):
         """Up to here there is metal for certain; NaN where the bar is not known."""
         return self.bar.known.smallest / 2
 
-    def _certain(self, part: Part, curves: list[Points], unit: float) -> float:
+    def _certain(self, number: int, curves: list[Points], unit: float) -> float:
         """How far from the axis there is metal for certain before milling."""
+        part = self.asked_parts.parts[number]
         bar, round_ = self._bar_radius, part.diameter / 2 * unit
         if part.shape in ("flat", "flats") and not math.isnan(round_):
             return float(np.fmin(bar, round_))
         if not math.isnan(bar):
             return bar
         if len(curves) == 1 and _is_closed(curves[0]):
-            return _BEYOND * float(np.abs(curves[0]).max())
-        nearest = (abs((start.conjugate() * (end - start)).imag / abs(end - start)) for start, end in curves)
-        return float(_BEYOND * max(nearest))
+            return BEYOND * float(np.abs(curves[0]).max())
+        return self.asked_parts.certain_metal(number, unit)
 
     @property
     def _most_of_bar(self) -> float:
         """Beyond this distance from the axis there is no metal; inf where the bar is not known."""
         return float(np.fmin(self.bar.known.largest / 2, math.inf))
 
-    def _most(self, part: Part, curves: list[Points], unit: float) -> float:
+    def _most(self, number: int, curves: list[Points], unit: float) -> float:
         """The same; where flats and slots end is known where the bar is."""
+        part = self.asked_parts.parts[number]
         if len(curves) == 1 and _is_closed(curves[0]) and part.shape not in ("flat", "flats"):
             return self._most_of_bar
-        return float(np.fmin(self._most_of_bar, self._certain(part, curves, unit)))
+        return float(np.fmin(self._most_of_bar, self._certain(number, curves, unit)))
 
-    def _best_turned(self, feature: Feature, curves: list[Points], unit: float) -> Feature:
-        """The feature at the angle at which it differs least; one of its walls runs as some straight cut does."""
+    def _best_placed(self, feature: Feature, curves: list[Points], unit: float, section: int) -> Feature:
+        """
+        The feature where it differs least: at the depth of some section, and, where its angle is not compared, at an
+        angle at which one of its walls runs as some straight cut does.
+        """
         from polarcheck.asked.features import differences, directions_of
 
         part = self.asked_parts.parts[feature.number]
+        cuts = self.milled.cuts[feature.cuts]
+        depths = {feature.z}
+        if math.isnan(part.z):
+            depths = {round(float(cuts.low[cuts.section == one].min()), 6) for one in set(cuts.section.tolist())}
         period = 360.0 / (part.count_of_sides or 2)
-        chosen = self.milled.cuts.low <= feature.z + SAME_Z
-        tried: list[float] = []
-        for angle in directions_of(self.milled.cuts, chosen):
-            for quarter in (0.0, 90.0, 180.0, 270.0):
-                turn = (angle + quarter) % period
-                if all(abs(turn - other) > _BETTER for other in tried):
-                    tried.append(turn)
         best, least = feature, math.inf
-        for turn in sorted(tried, key=lambda turn: min(turn, period - turn)):
-            candidate = feature._replace(area=self._area(part, curves, unit, math.radians(turn)))
-            (found,) = differences([candidate], self.milled.cuts)
-            if found.proud.size + found.deep.size < least - _BETTER:
-                best, least = candidate, found.proud.size + found.deep.size
+        for z in sorted(depths)[:_DEPTHS]:
+            tried = [0.0]
+            if self.asked_parts.any_angle(feature.number, section):
+                for angle in directions_of(cuts, cuts.low <= z + SAME_Z):
+                    for quarter in (0.0, 90.0, 180.0, 270.0):
+                        turn = (angle + quarter) % period
+                        if all(abs(turn - other) > _BETTER for other in tried):
+                            tried.append(turn)
+            for turn in sorted(tried, key=lambda turn: min(turn, period - turn)):
+                area = self._area(part, curves, unit, math.radians(turn))
+                candidate = feature._replace(
+                    area=area, z=z, cuts=feature.cuts[feature.cuts], own_cuts=feature.own_cuts[feature.cuts]
+                )
+                (found,) = differences([candidate], cuts)
+                size = found.proud.size + found.deep.size
+                if size < least - _BETTER:
+                    best, least = feature._replace(area=area, z=z), size
         return best
 
     # ---- results ----
@@ -317,7 +330,9 @@ class AreaComparisons(Columns, frozen=True):
             return base._replace(is_partial=False) if base.is_partial and feature.excess_is_judged else None
         if found.is_none and not feature.excess_is_judged:
             return None
-        proud, deep = (found.proud.size, found.deep.size) if not found.is_none else (found.off, 0.0)
+        proud, deep = (
+            (found.proud.size, found.deep.size) if not found.is_none else (min(found.off, feature.tolerance), 0.0)
+        )
         difference = Difference(
             proud=proud, proud_at=found.proud.place, deep=deep, deep_at=found.deep.place, mean=0.0, length=1.0
         )

@@ -13,6 +13,9 @@ from polarcheck.columns.trace import Trace
 from polarcheck.machines.job import Job
 from polarcheck.machines.part import DrawnPart, Part
 
+#: How much farther than what is asked for the metal reaches where the bar is not known, as a share.
+BEYOND = 1.02
+
 
 class AskedParts(Columns, frozen=True):
     """The parts of the job of one run."""
@@ -64,6 +67,19 @@ class AskedParts(Columns, frozen=True):
         from polarcheck.geometry.comparison.nominal import curves_of
 
         return curves_of(part, unit)
+
+    def certain_metal(self, number: int, unit: float) -> float:
+        """
+        The radius up to which metal is certain where flats or a slot have no end [mm]: a little more than the distance
+        of the farthest wall; inf for other parts.
+        """
+        part = self.job.part[number]
+        if part.shape == "slot" and math.isnan(part.length):
+            center = abs(complex(*part.center))
+            return BEYOND * unit * (part.width / 2 + center)
+        if part.shape in ("flat", "flats") and math.isnan(part.diameter):
+            return BEYOND * unit * part.apothem
+        return math.inf
 
     def entry(self, row: int) -> float:
         """C at the beginning of the section of a row [rad], 0 where it is not known."""

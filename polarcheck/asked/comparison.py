@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 
 #: Tolerance of a part whose job states none [mm].
 TOLERANCE = 0.02
-#: Depths nearer to each other than this are equal [mm]: a job states the Z of a part to the least increment.
-SAME_Z = 1e-3
+#: Depths nearer to each other than this are equal [mm]: the Z of a program in inch has four digits.
+SAME_Z = 5e-3
 
 
 class Fit(NamedTuple):

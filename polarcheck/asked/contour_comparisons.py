@@ -13,6 +13,7 @@ from polarcheck.arrays import Columns
 from polarcheck.asked.asked_parts import AskedParts
 from polarcheck.asked.comparison import SAME_Z, Comparison, Contour, Fit, Target
 from polarcheck.columns.trace import Trace
+from polarcheck.table.bar import Bar
 from polarcheck.table.finished import Finished, Level
 from polarcheck.table.overcuts import Overcuts
 from polarcheck.time_limit import keep_time
@@ -32,6 +33,7 @@ class ContourComparisons(Columns, frozen=True):
     trace: Trace
     overcuts: Overcuts
     finished: Finished
+    bar: Bar
     asked_parts: AskedParts
 
     @cached_property
@@ -83,7 +85,7 @@ class ContourComparisons(Columns, frozen=True):
     def _contours_of(self, level: Level, of_one_section: bool, of_all: bool) -> Iterator[Contour]:
         from polarcheck.geometry.comparison.deviation import made_of
 
-        outline, bar = level.outline, self.overcuts.bar / 2
+        outline, bar = level.outline, self.bar.known.largest / 2
         closed = outline.closed[outline.chain]
         for number in np.unique(outline.chain[closed]).tolist():
             keep_time()
@@ -161,7 +163,8 @@ class ContourComparisons(Columns, frozen=True):
             if any_angle:
                 angle, way = self._turned(contour, target)
             both_ways = target.is_closed and contour.is_closed
-            deviation = difference(contour.made, way, both_ways=both_ways)
+            metal = self.asked_parts.certain_metal(target.number, target.scale)
+            deviation = difference(contour.made, way, both_ways=both_ways, metal=metal)
             row = int(contour.made.outline.row[max(deviation.of, 0)])
             is_other_way = (
                 contour.is_closed and target.is_closed and part.drawing is None and part.is_pocket != contour.is_pocket
