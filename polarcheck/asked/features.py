@@ -41,6 +41,8 @@ from polarcheck.time_limit import keep_time
 _CHORDS = 0.004
 #: Far from the walls metal counts that is twice as thick as this, and that lies no nearer to the round of the bar [mm].
 _RIM = 0.1
+#: A program clears the middle of a pocket itself where it clears more than this share of it.
+_ROUGHED = 0.5
 #: Areas are apart where they share no more than this of the smaller one.
 _SHARED = 0.01
 
@@ -136,7 +138,8 @@ def _difference(feature: Feature, features: Sequence[Feature], cleared: _Cleared
             far = areas.intersection(whole, disc(feature.certain - _RIM))
             far = grown(grown(far, -_RIM), _RIM)
             middle = grown(feature.area, -2 * feature.radius - tolerance)
-            if feature.is_bar_known or (feature.is_pocket and shapely.intersects(gone, middle)):
+            roughed = shapely.area(areas.intersection(gone, middle)) > _ROUGHED * shapely.area(middle)
+            if feature.is_bar_known or (feature.is_pocket and roughed):
                 stays = joined([stays, far])
             elif feature.is_pocket:
                 island = farthest(far, far, feature.area)
