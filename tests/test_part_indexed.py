@@ -190,3 +190,22 @@ def test_json_has_the_sections() -> None:
         {"line": 17, "end_line": 24, "angle": 120.0},
         {"line": 26, "end_line": 33, "angle": 240.0},
     ]
+
+
+@pytest.mark.parametrize("inch", [False, True])
+@pytest.mark.parametrize("control", ["fanuc", "haas-lathe"])
+@pytest.mark.parametrize("entry", [0.0, 20.0])
+def test_a_section_that_no_part_is_for_is_told_as_what_it_makes(entry: float, control: str, inch: bool) -> None:
+    sections = [Section(polygon(6, 25.4), entry), Section(polygon(4, 20.32), entry, depths=(-2.54,))]
+    Path("a.nc").write_text(program(sections, control, inch))
+    size = 1.0 if inch else 25.4
+    Path("polarcheck.toml").write_text(f'[[part]]\nshape = "hexagon"\nacross_flats = {size}\nsection = 1\n')
+    arguments = ("a.nc", "--machine", control, "--tool", tool(4, inch))
+    said = call("part", *arguments)
+    assert said.exit_code == 0, said.stdout
+    words = " ".join(said.stdout.split())
+    assert f"square, {'0.8000' if inch else '20.320'} across flats" in words
+    assert words.count("but compared with nothing: no [[part]] is for this section") == 1
+    assert words.index("square") < words.index("compared with nothing")
+    (file,) = json.loads(call("part", *arguments, "--format", "json").stdout)["files"]
+    assert [shape["is_compared"] for shape in file["part"]] == [True, False]

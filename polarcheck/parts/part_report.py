@@ -31,6 +31,7 @@ from polarcheck.table.finished import turned_columns
 
 if TYPE_CHECKING:
     from polarcheck.columns.trace import Trace
+    from polarcheck.machines.job import Job
     from polarcheck.table.finished import Finished, Level
     from polarcheck.table.overcuts import Overcuts
 
@@ -98,7 +99,8 @@ def _by_section(trace: Trace, tables: Tables) -> list[MadeShape]:
     """The same; raises TooHardError where it takes too long."""
     depths = _depths(tables)
     standing = _ribs_and_strips(tables)
-    made = []
+    job: Job = tables["job"]
+    made: list[MadeShape] = []
     for section in range(len(trace.mode.sections)):
         of_section = [depth for depth in depths if depth.sections[0] == section]
         entries = [*_entries(trace, of_section)]
@@ -107,10 +109,14 @@ def _by_section(trace: Trace, tables: Tables) -> list[MadeShape]:
             entries[0] = msgspec.structs.replace(entries[0], left_standing=[*entries[0].left_standing, *left])
         if not any(section in depth.sections for depth in depths):
             entries = [_nothing(trace, (section,), _why_nothing(tables, section))]
+        sections = of_section[0].sections if of_section else (section,)
         if entries:
-            sections = of_section[0].sections if of_section else (section,)
             meant = "; ".join(filter(None, (as_meant(trace, number) for number in sections)))
-            made += [msgspec.structs.replace(entries[0], as_meant=meant or None), *entries[1:]]
+            entries[0] = msgspec.structs.replace(entries[0], as_meant=meant or None)
+        if job.part:
+            is_compared = any(part.section in (None, number + 1) for part in job.part for number in sections)
+            entries = [msgspec.structs.replace(entry, is_compared=is_compared) for entry in entries]
+        made += entries
     return made
 
 
