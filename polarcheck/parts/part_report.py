@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import msgspec
 import numpy as np
@@ -19,6 +19,7 @@ from polarcheck.geometry.shapes.shape import SAME, Shape
 from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.machines.modal import Units
 from polarcheck.parts.as_meant import as_meant
+from polarcheck.parts.depths import Area, are_same, known_of, with_differences
 from polarcheck.time_limit import keep_time
 
 if TYPE_CHECKING:
@@ -37,13 +38,19 @@ def part_of(report: FileReport, runs: Sequence[tuple[str, Tables]]) -> FileRepor
 
 
 class _Depth(NamedTuple):
-    """What one depth of a section makes. radius: R of the cutter [mm], NaN if not known. needs: as in MadeShape."""
+    """
+    What one depth of a section makes.
+
+    radius: R of the cutter [mm], NaN if not known. needs: as in MadeShape. polygon: what stands (shapely, mm), within
+    what is known of it; None without a contour.
+    """
 
     section: int
     z: float
     radius: float
     shapes: list[Shape]
     needs: str | None
+    polygon: Any = None
 
 
 def made_by(tables: Tables) -> list[MadeShape]:
@@ -67,6 +74,10 @@ def _by_section(trace: Trace, tables: Tables) -> list[MadeShape]:
     for section in range(len(trace.mode.sections)):
         own = [depth for depth in found if depth.section == section]
         entries = [*_merged(trace, own)]
+        areas = [Area(depth.z, depth.polygon) for depth in own if depth.polygon is not None]
+        if len(entries) > 1 and len(areas) > 1:
+            units = trace.lengths.units[int(trace.mode.sections.enter[section])]
+            entries = [*with_differences(entries, areas, Sizes(bool(units == Units.INCH)))]
         left = [one for number, one in standing if number == section]
         if left and entries:
             entries[0] = msgspec.structs.replace(entries[0], left_standing=[*entries[0].left_standing, *left])
@@ -106,14 +117,13 @@ def _of_contours(tables: Tables) -> Iterator[_Depth]:
     finished: Finished = tables["finished"]
     for level in finished.levels:
         why = "its contour crosses itself too often to say what it makes" if level.tangled else None
-        yield _Depth(level.section, level.z, level.radius, shapes_of_level(trace, level), why)
+        yield _Depth(level.section, level.z, level.radius, shapes_of_level(trace, level), why, known_of(level))
     for level in finished.meant:
         row = int(level.walls.row[0])
         why = f"R of {called_tool(trace.tools, row)} is not known, so whether the tool makes it was not looked at"
         shapes = shapes_of_level(trace, level)
-        yield _Depth(
-            level.section, level.z, np.nan, shapes, f"{why}: {to_give(trace.tools, trace.machine, row, 'radius')}"
-        )
+        why = f"{why}: {to_give(trace.tools, trace.machine, row, 'radius')}"
+        yield _Depth(level.section, level.z, np.nan, shapes, why, known_of(level))
 
 
 def _ribs_and_strips(tables: Tables) -> list[tuple[int, LeftStanding]]:
@@ -161,7 +171,10 @@ def _merged(trace: Trace, depths: Sequence[_Depth]) -> Iterator[MadeShape]:
 
 def _are_same(one: _Depth, other: _Depth) -> bool:
     return (
-        len(one.shapes) == len(other.shapes) and one.needs == other.needs and all(map(_alike, one.shapes, other.shapes))
+        len(one.shapes) == len(other.shapes)
+        and one.needs == other.needs
+        and all(map(_alike, one.shapes, other.shapes))
+        and are_same(one.polygon, other.polygon)
     )
 
 
