@@ -404,6 +404,11 @@ class ProgrammedPath(Columns, frozen=True):
         return np.nan_to_num(self.c_angle[self.mode.sections.enter]) - self.axes.kept_angle[self.mode.sections.enter]
 
     @cached_property
+    def knows_section_entry(self) -> Mask:
+        """Sections at whose beginning C is known; a boolean per section."""
+        return ~np.isnan(self.c_angle[self.mode.sections.enter])
+
+    @cached_property
     def on_plane(self) -> Mask:
         """
         A move on the polar plane, be it in rapid traverse; a cycle is none, and neither is a move of no length.

@@ -236,20 +236,35 @@ class Overcuts:
         nothing = CutsOfRows.none(), np.zeros(0, bool), np.zeros(0, np.int64)
         if not self.compensates:
             return nothing
-        from polarcheck.geometry.overcuts.clearance import keeps_away
-
+        if self._keeps_away:
+            return nothing
         path, is_ramp = self.path
-        # With an allowance, the cutter stays away from the contour.
-        radius = np.abs((self.radius - self.trace.compensation.allowance)[path.row])
+        radius = self._radius_of_path
         tolerance = self.trace.machine.compensation.overcut_tolerance
         walls, left = self.walls
-        if keeps_away(walls, path, radius, tolerance):
-            return nothing
         from polarcheck.geometry.overcuts import own_loop
 
         around = self._air_radius(walls), self.level
         cuts, tangled = own_loop.overcuts(walls, left, *around, path, radius, is_ramp, tolerance, self.bar)
         return CutsOfRows.of(cuts, path, walls), is_ramp[cuts.move], tangled
+
+    @property
+    def _radius_of_path(self) -> Floats:
+        """For each move of `path` its R [mm]; with an allowance, the cutter stays away from the contour."""
+        return np.abs((self.radius - self.trace.compensation.allowance)[self.path[0].row])
+
+    @cached_property
+    def _keeps_away(self) -> bool:
+        """True if all moves of `path` stay away from all walls, without any polygon."""
+        from polarcheck.geometry.overcuts.clearance import keeps_away
+
+        tolerance = self.trace.machine.compensation.overcut_tolerance
+        return bool(keeps_away(self.walls[0], self.path[0], self._radius_of_path, tolerance))
+
+    @property
+    def has_areas(self) -> bool:
+        """True once polygons of loops have been computed."""
+        return "_all_cuts" in vars(self) and self.compensates and not self._keeps_away
 
     def _air_radius(self, walls: Curves) -> Floats:
         """

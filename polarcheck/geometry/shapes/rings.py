@@ -27,6 +27,8 @@ _SHORT, _LOOKS = 0.25, 50
 _MEETING = 1 / 3
 #: Half of the strip in which blocks make one straight line, as rounding.kept_ends wants it [mm].
 _HALF = SAME / 8 * (1 + 1j)
+#: Chords of a curve turn by less than a corner does [rad].
+SHARP = 0.26
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,6 +39,8 @@ class Ring:
     start, end: complex128[n]. center: complex128[n], NaN for lines. sweep: float64[n] [rad], 0 for lines, above 0
     counterclockwise. row: int[n], of the longest block of each. closed: the last one ends where the first one starts.
     inside: it bounds a pocket; it was turned round, so that what it encloses is on its left in either case.
+    beyond: of an open ring that ends at the bar, the largest R that leaves nothing in it of an inside corner outside
+    [mm].
     """
 
     start: Points
@@ -46,6 +50,7 @@ class Ring:
     row: Rows
     closed: bool
     inside: bool = False
+    beyond: float = np.inf
 
     def __len__(self) -> int:
         return len(self.row)
@@ -151,7 +156,27 @@ def _within(ring: Ring, bar: float) -> Iterator[Ring]:
         ring, out = ring.some(order), out[order]
     number = np.cumsum(np.diff(out, prepend=True) != 0)
     for piece in np.unique(number[~out]):
-        yield ring.some(np.flatnonzero((number == piece) & ~out), closed=False)
+        chosen = np.flatnonzero((number == piece) & ~out)
+        yield replace(ring.some(chosen, closed=False), beyond=_fits_beyond(ring, chosen, bar / 2))
+
+
+def _fits_beyond(ring: Ring, chosen: Rows, radius: float) -> float:
+    """The largest R whose rounding of the inside corners at both ends of these sides stays outside of the bar [mm]."""
+    into, out = directions(ring)
+    largest = np.inf
+    for corner, wall in ((int(chosen[-1]) + 1, int(chosen[-1])), (int(chosen[0]), int(chosen[0]))):
+        before, behind = corner - 1, corner % len(ring)
+        if not ring.is_line[wall] or (not ring.closed and not 0 < corner < len(ring)):
+            continue
+        turn = float(np.angle(out[behind] * into[before].conjugate()))
+        if turn > -SHARP:
+            continue
+        at, way = ring.start[behind], (-into[wall] if wall == before else out[wall])
+        along = float((at * way.conjugate()).real)
+        aside = abs(at) ** 2 - along**2
+        if aside < radius**2 and along < 0:
+            largest = min(largest, (-along - np.sqrt(radius**2 - aside)) / np.tan(-turn / 2))
+    return float(max(largest, 0.0))
 
 
 def nearest_of(ring: Ring) -> Floats:
