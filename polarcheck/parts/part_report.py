@@ -26,6 +26,7 @@ from polarcheck.geometry.shapes.shape import SAME, Shape
 from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.machines.modal import Units
 from polarcheck.parts.as_meant import as_meant
+from polarcheck.parts.differing_depths import Area, known_of, with_differences
 from polarcheck.parts.made_depths import Depth, merged, put_together
 from polarcheck.table.finished import turned_columns
 
@@ -106,6 +107,10 @@ def _by_section(trace: Trace, tables: Tables) -> list[MadeShape]:
     for section in range(len(trace.mode.sections)):
         of_section = [depth for depth in depths if depth.sections[0] == section]
         entries = [*_entries(trace, of_section)]
+        areas = [Area(depth.z, depth.polygon) for depth in of_section if depth.polygon is not None]
+        if len(entries) > 1 and len(areas) > 1:
+            sizes = _sizes(trace, int(trace.mode.sections.enter[section]))
+            entries = [*with_differences(entries, areas, sizes)]
         left = [one for number, one in standing if any(number in depth.sections for depth in of_section)]
         if left and entries:
             entries[0] = msgspec.structs.replace(entries[0], left_standing=[*entries[0].left_standing, *left])
@@ -196,14 +201,14 @@ def _of_levels(
 
 def _of_level(trace: Trace, level: Level) -> Depth:
     why = "its contour crosses itself too often to say what it makes" if level.tangled else None
-    return Depth(level.sections, level.z, level.radius, shapes_of_level(trace, level), why)
+    return Depth(level.sections, level.z, level.radius, shapes_of_level(trace, level), why, known_of(level))
 
 
 def _of_meant_level(trace: Trace, level: Level) -> Depth:
     row = int(level.walls.row[0])
     why = f"R of {called_tool(trace.tools, row)} is not known, so whether the tool makes it was not looked at"
     needs = f"{why}: {to_give(trace.tools, trace.machine, row, 'radius')}"
-    return Depth(level.sections, level.z, np.nan, shapes_of_level(trace, level), needs)
+    return Depth(level.sections, level.z, np.nan, shapes_of_level(trace, level), needs, known_of(level))
 
 
 def _ribs_and_strips(tables: Tables) -> list[tuple[int, LeftStanding]]:
