@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import cmath
 import math
 
+from polarcheck.asked.comparison import Comparison, Fit, title_of
+from polarcheck.asked.deviations import Deviations
 from polarcheck.checking.phrases.common import short
-from polarcheck.checking.phrases.part import Sizes
+from polarcheck.checking.phrases.part import Sizes, shape_in_words
 from polarcheck.checking.quantity import Quantity, in_row
 from polarcheck.columns.blocks import ExecutedBlocks
 from polarcheck.columns.lengths import Lengths
 from polarcheck.machines.modal import MM_PER_INCH, Units
-from polarcheck.table.deviations import Comparison, Deviations, Fit, title_of
 
 #: A turn below this is none [rad].
 _NO_TURN = 1e-5
@@ -36,11 +38,11 @@ def told(blocks: ExecutedBlocks, lengths: Lengths, one: Comparison) -> str:
         by = f"by {largest.beside(tolerance, 'length')}, {tolerance:length} is allowed"
         return f"differs from {title} {by}: {_deviation(lengths, one)}"
     least, shown = _LEAST[largest.inch], _least(lengths, one, found.largest)
-    where = f", largest at {_where(lengths, one, found.at)} by line {int(blocks.line[one.row])}"
-    return (
-        f"agrees with {title} within {shown:length} (tolerance {tolerance:length})"
-        f"{where if found.largest > least else ''}"
-    )
+    where = ""
+    if found.largest > least and not cmath.isnan(found.at):
+        where = f", largest at {_where(lengths, one, found.at)} by line {int(blocks.line[one.row])}"
+    angle = f"; its angle was not compared: {one.any_angle}" if one.any_angle else ""
+    return f"agrees with {title} within {shown:length} (tolerance {tolerance:length}){where}{angle}"
 
 
 def _deviation(lengths: Lengths, one: Comparison) -> str:
@@ -53,7 +55,13 @@ def _deviation(lengths: Lengths, one: Comparison) -> str:
     more = ""
     if size > one.tolerance:
         more = f", and {in_row(size, lengths, one.row):length} {other} at {_where(lengths, one, place)}"
-    return f"{what} at {_where(lengths, one, worst)}{more}{_fit(lengths, one, one.fit)}"
+    return f"{what} at {_where(lengths, one, worst)}{more}{_fit(lengths, one, one.fit)}{_made(lengths, one)}"
+
+
+def _made(lengths: Lengths, one: Comparison) -> str:
+    """What is made in the place of the part."""
+    sizes = Sizes(bool(lengths.units[one.row] == Units.INCH))
+    return "".join(f"; it makes: {shape_in_words(shape, lambda row: row + 1, sizes)}" for shape in one.made)
 
 
 def _least(lengths: Lengths, one: Comparison, size: float) -> Quantity:
@@ -62,7 +70,7 @@ def _least(lengths: Lengths, one: Comparison, size: float) -> Quantity:
 
 
 def _where(lengths: Lengths, one: Comparison, point: complex) -> str:
-    return f"{in_row(point, lengths, one.row):point}"
+    return f"{in_row(one.written(point), lengths, one.row):point}"
 
 
 def _fit(lengths: Lengths, one: Comparison, fit: Fit | None) -> str:

@@ -12,13 +12,10 @@ from polarcheck.geometry.plane import passes_toward
 from polarcheck.geometry.shapes.corners import sides_of
 from polarcheck.geometry.shapes.open_ones import flats_of, keyway_of
 from polarcheck.geometry.shapes.polygons import cross_of, in_chords, polygon_of
-from polarcheck.geometry.shapes.rings import Ring, directions, rings
+from polarcheck.geometry.shapes.rings import SHARP, Ring, directions, rings
 from polarcheck.geometry.shapes.rounds import round_of, two_rounds_of
 from polarcheck.geometry.shapes.shape import Shape
 from polarcheck.time_limit import keep_time
-
-#: Chords of a curve turn by less than a corner does [rad].
-_SHARP = 0.26
 
 
 def shapes_of(outline: Outline, gap: float = 0.0, bar: float = np.nan) -> list[Shape]:
@@ -40,13 +37,32 @@ def shapes_of_rings(found: Iterable[Ring]) -> list[Shape]:
             single.append(ring)
         elif len(ring):
             others.append(_shape_of(ring))
-    return [*flats_of(single), *others]
+    beyond = _beyond(min((ring.beyond for ring in single), default=np.inf))
+    return [*(shape._replace(values=shape.values | beyond) for shape in flats_of(single)), *others]
 
 
 def _shape_of(ring: Ring) -> Shape:
-    found = _recognised(ring)
-    sharp = int(np.count_nonzero(_is_sharp_inside(ring)))
-    return found._replace(values={**found.values, "inside_corners": float(sharp)}) if sharp else found
+    found, corners = _recognised(ring), _beyond(ring.beyond)
+    sharp = _is_sharp_inside(ring)
+    if sharp.any():
+        corners["inside_corners"] = float(np.count_nonzero(sharp))
+        fits = _fits_corners(ring, sharp)
+        corners |= {"corner_reach": fits} if np.isfinite(fits) else {}
+    return found._replace(values=found.values | corners)
+
+
+def _beyond(radius: float) -> dict[str, float]:
+    return {"reach_beyond": radius} if np.isfinite(radius) else {}
+
+
+def _fits_corners(ring: Ring, sharp: Mask) -> float:
+    """The largest R that mills each straight wall beside a sharp inside corner, if only to its far end [mm]."""
+    into, out = directions(ring)
+    turn = np.abs(np.angle(np.roll(out, -1) * into.conj()))
+    taken = np.where(sharp, np.tan(np.minimum(turn, 3.0) / 2), 0.0)
+    taken = taken + np.roll(taken, 1)
+    beside = ring.is_line & (taken > 0)
+    return float(np.min(ring.length[beside] / taken[beside], initial=np.inf))
 
 
 def _recognised(ring: Ring) -> Shape:
@@ -91,7 +107,7 @@ def _is_sharp_inside(ring: Ring) -> Mask:
     """The sides behind which the tool finds a sharp inside corner."""
     into, out = directions(ring)
     turn = np.angle(np.roll(out, -1) * into.conj()) * _air(ring)
-    sharp = turn > _SHARP
+    sharp = turn > SHARP
     sharp[-1] &= ring.closed
     return np.asarray(sharp)
 
