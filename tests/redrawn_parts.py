@@ -210,6 +210,21 @@ def _keyway(values: Values) -> Drawn:
     return Drawn(area, area, open=True)
 
 
+def _round_with_keyway(values: Values) -> Drawn:
+    half, bottom, radius = values["width"] / 2, values["distance"], values["diameter"] / 2
+    disc = _disc(radius)
+    outward = bottom > radius
+    end = values.get("radius", 0.0)
+    box = shapely.box(0.0, -half, bottom - end, half) if outward else shapely.box(bottom + end, -half, FAR, half)
+    if end:
+        box = box.union(_disc(end, complex(bottom - end if outward else bottom + end)))
+    box = _rounded(box, values.get("corner_radius", 0.0))
+    for direction in _round_about(round(values["keyways"])):
+        keyway = shapely.affinity.rotate(box, math.degrees(cmath.phase(direction)), origin=(0, 0))
+        disc = disc.union(keyway) if outward else disc.difference(keyway)
+    return Drawn(disc, disc)
+
+
 def _cam(values: Values) -> Drawn:
     discs = [_disc(values["radius"]), _disc(values["radius_small"], complex(values["apart"]))]
     area = shapely.union_all(discs).convex_hull
@@ -229,6 +244,7 @@ _DRAWN_BY: Mapping[str, Callable[[Values], Drawn]] = {
     "flats": _flats,
     "slot": _slot,
     "keyway": _keyway,
+    "round with keyway": _round_with_keyway,
     "cam": _cam,
     "cross": _cross,
 }

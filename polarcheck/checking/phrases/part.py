@@ -148,6 +148,17 @@ def _keyway(shape: Shape, line_of: _Line, sizes: Sizes) -> _Told:
     return [f"keyway {sizes(value['width'])} wide", bottom, end]
 
 
+def _round_with_keyway(shape: Shape, line_of: _Line, sizes: Sizes) -> _Told:
+    value = shape.values
+    count, is_key = int(value["keyways"]), (value["distance"] > value["diameter"] / 2) != shape.inside
+    name, end = ("key", "top") if is_key else ("keyway", "bottom")
+    which = f"a {name}" if count == 1 else f"{count} {name}s"
+    middle = "center of the circle" if "center_x" in value else "center"
+    its = f"{'its' if count == 1 else 'their'} {end} {_away(value['distance'], middle, sizes)}"
+    told = [f"round {sizes(value['diameter'])} with {which} {sizes(value['width'])} wide", its]
+    return told + ([f"round end R{sizes(value['radius'])}"] if "radius" in value else [])
+
+
 def _cam(shape: Shape, line_of: _Line, sizes: Sizes) -> _Told:
     value = shape.values
     return [f"cam R{sizes(value['radius'])} and R{sizes(value['radius_small'])}", f"{sizes(value['apart'])} apart"]
@@ -175,6 +186,7 @@ _TOLD: Mapping[str, Callable[[Shape, _Line, Sizes], _Told]] = {
     "flats": _flats,
     "slot": _slot,
     "keyway": _keyway,
+    "round with keyway": _round_with_keyway,
     "cam": _cam,
     "cross": _cross,
     "groove": _groove,

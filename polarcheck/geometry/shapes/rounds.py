@@ -19,8 +19,9 @@ def round_of(ring: Ring) -> Shape | None:
     center = complex(np.average(ring.center[arc], weights=ring.length[arc]))
     radius = float(np.average(ring.radius[arc], weights=ring.length[arc]))
     off = np.abs(ring.center[arc] - center) + np.abs(ring.radius[arc] - radius)
-    beyond = np.abs(np.concatenate([ring.start, ring.end]) - center) - radius
-    if off.max() > 2 * SAME or beyond.max() > 2 * SAME:
+    # Ends inside of the circle are those of a keyway, or of flats that cut each other off.
+    ends = np.abs(np.concatenate([ring.start, ring.end]) - center) - radius
+    if off.max() > 2 * SAME or np.abs(ends).max() > 3 * SAME:
         return None
     values = {"diameter": 2 * radius, **off_axis(center)}
     row = int(ring.row[0])

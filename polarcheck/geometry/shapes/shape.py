@@ -36,12 +36,14 @@ class Shape(NamedTuple):
     """
     What one outline is.
 
-    name: circle, triangle to dodecagon or `11-sided`, rectangle, polygon, round with flats, flats, slot, keyway, cam,
-    cross, groove, contour. inside: it is a pocket. values: its numbers [mm, mm2, deg], each only where it applies:
+    name: circle, triangle to dodecagon or `11-sided`, rectangle, polygon, round with flats, round with keyway, flats,
+    slot, keyway, cam, cross, groove, contour. inside: it is a pocket. values: its numbers [mm, mm2, deg], each only
+    where it applies:
 
     diameter; across_flats (of an odd number of sides twice the distance of a side from the middle), width, length,
-    sides, flats, distance (of a flat from the axis), apart (of parallel flats, of the circles of a cam), corner_radius
-    or corner_chamfer, and corner_least where corners differ; radius, radius_small (of a cam, of the end of a slot);
+    sides, flats, keyways, distance (of a flat or a bottom from the axis), apart (of parallel flats, of the circles of a
+    cam), corner_radius or corner_chamfer, and corner_least where corners differ; radius, radius_small (of a cam, of the
+    end of a slot);
     joined (R of the arc between two flats);
     turned (the direction of the first side's normal or of the length); center_x, center_c, where it is off the axis;
     x_least, x_most, c_least, c_most, area, inside_radius of contours; least, most where sides differ;
