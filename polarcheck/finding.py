@@ -203,6 +203,8 @@ class MadeShape(msgspec.Struct, frozen=True, kw_only=True):
     text: the shape in words.
     left_standing: material that the tool leaves.
     needs: what is unknown, and what to give; null if nothing is.
+    as_meant: numbers without a decimal point that are taken as if they had one, told at the first shape of a section;
+        null if there are none.
     channel: of a file with several channels, as `$2`.
     """
 
@@ -218,6 +220,7 @@ class MadeShape(msgspec.Struct, frozen=True, kw_only=True):
     text: str
     left_standing: list[LeftStanding] = []
     needs: str | None = None
+    as_meant: str | None = None
     channel: str | UnsetType = UNSET
 
 
@@ -232,9 +235,10 @@ class PartComparison(msgspec.Struct, frozen=True, kw_only=True):
     largest: largest difference.
     tolerance: of the comparison.
     too_much, cut_away: most material that is left on the part, and that is missing.
-    at: [x, c] of the largest difference, x as a radius.
+    at: [x, c] of the largest difference as its section writes it, x as a radius; null where nothing differs.
     line: of the block there.
-    turned: angle of a shape that may be turned in any way [deg].
+    turned: angle of a shape whose angle is not compared [deg].
+    angle_not_compared: why it is not; null where it is, and where the shape has none.
     text: the comparison in words, in the units of the program.
     """
 
@@ -249,6 +253,7 @@ class PartComparison(msgspec.Struct, frozen=True, kw_only=True):
     at: tuple[float | None, float | None]
     line: int
     turned: float | None
+    angle_not_compared: str | None
     text: str
 
 
@@ -290,6 +295,7 @@ class FileReport(msgspec.Struct, frozen=True, kw_only=True):
     looked_at: aspects that were checked; outside polar sections these are text, flow and position.
     silenced: suppressed findings.
     stock: the bar before milling, if anything is known of it.
+    makes: in one line what the only section makes, for text; not part of the JSON contract.
     part: what the program makes, if requested.
     compared: its contours compared with those asked for, if requested.
     """
@@ -306,6 +312,7 @@ class FileReport(msgspec.Struct, frozen=True, kw_only=True):
     looked_at: list[str] = []
     silenced: list[Silenced] = []
     stock: KnownStock | None = None
+    makes: str | UnsetType = UNSET
     part: list[MadeShape] | UnsetType = UNSET
     compared: list[PartComparison] | UnsetType = UNSET
 

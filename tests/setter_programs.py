@@ -75,7 +75,11 @@ class Program(NamedTuple):
 
 
 class Cut(NamedTuple):
-    """A contour to be milled: by which tool, to which depths [mm, below 0], at which angle of C [deg], and how."""
+    """
+    A contour to be milled: by which tool, to which depths [mm, below 0], at which angle of C [deg], and how.
+
+    wrong: the number of a pass that mills another contour, and that contour; only where how is "ramps".
+    """
 
     contour: Contour
     tool: int
@@ -83,6 +87,7 @@ class Cut(NamedTuple):
     angle: float | None = None
     how: str = "ramps"
     approach: complex | None = None
+    wrong: tuple[int, Contour] | None = None
 
 
 FANUC = ("fanuc", "fanuc-16i", "fanuc-30i", "doosan", "colchester")
@@ -165,7 +170,7 @@ def drawn(seed: int, machine: str = "", family: str = "") -> Program:
         style = style._replace(packed=False)
     if dialect.machine == "turning-center" or layout.startswith(("macro", "subprogram")):
         style = style._replace(repeats_z=False)
-    return _Maker(seed, family, layout, dialect, style, inch, contour, draw, grid).program()
+    return Maker(seed, family, layout, dialect, style, inch, contour, draw, grid).program()
 
 
 def _can(dialect: Dialect, layout: str) -> bool:
@@ -183,7 +188,7 @@ def _grid(draw: Draw, inch: bool) -> Grid:
     return value
 
 
-class _Maker:
+class Maker:
     """Puts a program together."""
 
     def __init__(
@@ -598,11 +603,12 @@ class _Maker:
                     pen.depth(self.safe, self.fast, "lift")
                     self.go_around(start, finish)
                 pen.depth(depth, feed / 2 if contour.is_pocket or cut.approach else self.fast)
+            wrong = cut.wrong[1] if cut.wrong and cut.wrong[0] == number else None
             if cut.how != "one ramp" or number == 0:
-                pen.move("ramp" if code else "lead", Piece(first), feed, code)
+                pen.move("ramp" if code else "lead", Piece(wrong.start if wrong and not lead else first), feed, code)
             for piece in [lead] if lead and (cut.how != "one ramp" or not number) else []:
                 pen.move("contour", piece, feed)
-            for piece in contour.pieces:
+            for piece in (wrong or contour).pieces:
                 pen.move("contour", piece, feed)
             if cut.how == "one ramp" and number + 1 < len(cut.depths):
                 continue

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from itertools import groupby
 from typing import TYPE_CHECKING, NamedTuple
 
 import msgspec
@@ -18,6 +19,7 @@ from polarcheck.finding import FileReport, LeftStanding, MadeShape, OddSide
 from polarcheck.geometry.shapes.shape import SAME, Shape
 from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.machines.modal import Units
+from polarcheck.parts.as_meant import as_meant
 from polarcheck.time_limit import keep_time
 
 if TYPE_CHECKING:
@@ -33,6 +35,10 @@ def part_of(report: FileReport, runs: Sequence[tuple[str, Tables]]) -> FileRepor
         channel = tables["text"].source.channel
         made += [msgspec.structs.replace(one, channel=channel) if channel else one for one in made_by(tables)]
     return msgspec.structs.replace(report, part=made)
+
+
+#: More shapes than these are no line.
+_IN_ONE_LINE = 4
 
 
 class _Depth(NamedTuple):
@@ -56,20 +62,55 @@ def made_by(tables: Tables) -> list[MadeShape]:
         return [_nothing(trace, section, str(error)) for section in range(len(trace.mode.sections))]
 
 
-def _by_section(trace: Trace, tables: Tables) -> list[MadeShape]:
-    """The same; raises TooHardError where it takes too long."""
+def in_one_line(tables: Tables) -> str:
+    """
+    What one run makes, as short as it is true: `hexagon, 30.000 across flats, to Z-5.000`.
+
+    Empty where not all of it is known, or where it takes too long.
+    """
+    trace: Trace = tables["trace"]
+    try:
+        groups = [*_merged(_depths(tables))]
+    except TooHardError:
+        return ""
+    shapes = [(group, shape) for group in groups for shape in group[0].shapes]
+    if not all(group[0].shapes for group in groups) or not 0 < len(shapes) <= _IN_ONE_LINE:
+        return ""
+    row = int(trace.mode.sections.enter[0])
+    sizes = Sizes(bool(trace.lengths.units[row] == Units.INCH))
+    parts = []
+    for depth, made in groupby(shapes, lambda pair: _deepest(pair[0], sizes)):
+        words = [_words(trace, shape, _row_of(trace, group, shape), short=True) for group, shape in made]
+        parts.append(f"{'; '.join(dict.fromkeys(words))}, {depth}")
+    needs = dict.fromkeys(group[0].needs.partition(",")[0] for group in groups if group[0].needs)
+    return "; ".join(parts) + (f" ({', '.join(needs)})" if needs else "")
+
+
+def _deepest(group: Sequence[_Depth], sizes: Sizes) -> str:
+    known = [depth.z for depth in group if not np.isnan(depth.z)]
+    return f"to Z{sizes(min(known))}" if known else "to Z not known"
+
+
+def _depths(tables: Tables) -> list[_Depth]:
+    """All depths of all sections; raises TooHardError where that takes too long."""
     from polarcheck.parts.tool_paths import depths_of_paths
 
-    found = [*_of_contours(tables), *(_Depth(*one) for one in depths_of_paths(tables))]
+    return [*_of_contours(tables), *(_Depth(*one) for one in depths_of_paths(tables))]
+
+
+def _by_section(trace: Trace, tables: Tables) -> list[MadeShape]:
+    """The same; raises TooHardError where it takes too long."""
+    found = _depths(tables)
     standing = _ribs_and_strips(tables)
     made = []
     for section in range(len(trace.mode.sections)):
         own = [depth for depth in found if depth.section == section]
-        entries = [*_merged(trace, own)]
+        entries = [*_entries(trace, own)]
         left = [one for number, one in standing if number == section]
         if left and entries:
             entries[0] = msgspec.structs.replace(entries[0], left_standing=[*entries[0].left_standing, *left])
-        made += entries or [_nothing(trace, section, _why_nothing(tables, section))]
+        entries = entries or [_nothing(trace, section, _why_nothing(tables, section))]
+        made += [msgspec.structs.replace(entries[0], as_meant=as_meant(trace, section) or None), *entries[1:]]
     return made
 
 
@@ -91,9 +132,13 @@ def _bar(trace: Trace) -> float:
     return float(diameter[0]) if len(diameter) else np.nan
 
 
-def _words(trace: Trace, shape: Shape, row: int) -> str:
+def _words(trace: Trace, shape: Shape, row: int, short: bool = False) -> str:
     sizes = Sizes(bool(trace.lengths.units[row] == Units.INCH))
-    return shape_in_words(shape, lambda at: int(trace.blocks.line_in_file[at]), sizes)
+    return shape_in_words(shape, lambda at: int(trace.blocks.line_in_file[at]), sizes, short)
+
+
+def _row_of(trace: Trace, group: Sequence[_Depth], shape: Shape) -> int:
+    return shape.row if shape.row >= 0 else int(trace.mode.sections.enter[group[0].section])
 
 
 # ---- contours with G41 and G42 ----
@@ -139,8 +184,8 @@ def _ribs_and_strips(tables: Tables) -> list[tuple[int, LeftStanding]]:
 # ---- entries ----
 
 
-def _merged(trace: Trace, depths: Sequence[_Depth]) -> Iterator[MadeShape]:
-    """One entry for each shape, whatever the number of depths at which it is made."""
+def _merged(depths: Sequence[_Depth]) -> Iterator[list[_Depth]]:
+    """The depths that make the same shapes are one group; in their order."""
     groups: list[list[_Depth]] = []
     for depth in depths:
         keep_time()
@@ -149,7 +194,12 @@ def _merged(trace: Trace, depths: Sequence[_Depth]) -> Iterator[MadeShape]:
             groups.append([depth])
         else:
             same.append(depth)
-    for group in groups:
+    yield from groups
+
+
+def _entries(trace: Trace, depths: Sequence[_Depth]) -> Iterator[MadeShape]:
+    """One entry for each shape, whatever the number of depths at which it is made."""
+    for group in _merged(depths):
         first = group[0]
         if not first.shapes and first.needs:
             yield _nothing(trace, first.section, first.needs)
@@ -173,7 +223,7 @@ def _alike(one: Shape, other: Shape) -> bool:
 
 def _entry(trace: Trace, group: Sequence[_Depth], shape: Shape) -> MadeShape:
     first = group[0]
-    row = shape.row if shape.row >= 0 else int(trace.mode.sections.enter[first.section])
+    row = _row_of(trace, group, shape)
     sizes = Sizes(bool(trace.lengths.units[row] == Units.INCH))
     known = [depth.z for depth in group if not np.isnan(depth.z)]
     line, end_line = _lines(trace, first.section)
@@ -189,7 +239,7 @@ def _entry(trace: Trace, group: Sequence[_Depth], shape: Shape) -> MadeShape:
         is_regular=shape.is_regular,
         values={name: round(value, 6) + 0.0 for name, value in shape.values.items()},
         odd=odd,
-        text=f"{words}; {_depths_in_words(known, sizes)}" if known else words,
+        text=f"{words}; {_depths_in_words(known, sizes)}",
         left_standing=[*_corners_left(shape, first.radius, sizes)],
         needs=first.needs,
     )
@@ -197,6 +247,8 @@ def _entry(trace: Trace, group: Sequence[_Depth], shape: Shape) -> MadeShape:
 
 def _depths_in_words(depths: Sequence[float], sizes: Sizes) -> str:
     """`to Z-6.000 in 3 passes, 2.000 each`; the passes of one depth count once."""
+    if not depths:
+        return "to Z not known"
     deep = sorted({round(z, 6) for z in depths}, reverse=True)
     text = f"to Z{sizes(deep[-1])}"
     if len(deep) == 1:

@@ -14,6 +14,7 @@ from polarcheck.columns.filling import before
 from polarcheck.geometry.segments import Curves
 from polarcheck.geometry.shapes.shape import Shape
 from polarcheck.geometry.tolerances import ZERO
+from polarcheck.table.overcuts import level_of_rows
 from polarcheck.time_limit import keep_time
 
 if TYPE_CHECKING:
@@ -32,7 +33,7 @@ def depths_of_paths(tables: Tables) -> Iterator[_Depth]:
     plain &= ~(_changes_depth(trace) | above_the_face(trace))[moves.row]
     chosen = np.flatnonzero(plain & ~np.isnan(moves.start + moves.end) & (moves.length > ZERO))
     radius = np.fmax(np.abs(trace.compensation.radius_of_move), trace.offsets.cutter_diameter / 2)[moves.row]
-    for own in _levels(moves.section, trace.path.z[moves.row], radius, chosen):
+    for own in _levels(level_of_rows(trace, moves.row), radius, chosen):
         keep_time()
         row = int(moves.row[own[0]])
         section, z, cutter = int(trace.mode.section[row]), float(trace.path.z[row]), float(radius[own[0]])
@@ -65,12 +66,12 @@ def above_the_face(trace: Trace) -> Mask:
     return above
 
 
-def _levels(section: Rows, z: Floats, radius: Floats, chosen: Rows) -> Iterator[Rows]:
-    """The moves of one cutter at one Z of one section, in the order in which the program comes to them."""
+def _levels(level: Rows, radius: Floats, chosen: Rows) -> Iterator[Rows]:
+    """The moves of one cutter at one level, in the order in which the program comes to them."""
     if not len(chosen):
         return
-    columns = np.stack([section[chosen], np.round(z[chosen], 6), radius[chosen]])
-    _, first, level = np.unique(columns, axis=1, return_index=True, return_inverse=True, equal_nan=True)
+    columns = np.stack([level[chosen], np.nan_to_num(radius[chosen], nan=-1)])
+    _, first, level = np.unique(columns, axis=1, return_index=True, return_inverse=True)
     place = np.argsort(np.argsort(first))[level.ravel()]
     order = np.argsort(place, kind="stable")
     yield from np.split(chosen[order], np.flatnonzero(np.diff(place[order])) + 1)

@@ -25,24 +25,24 @@ class Sizes(NamedTuple):
         return f"{value / MM_PER_INCH**2:.4f} inch2" if self.inch else f"{value:.1f} mm2"
 
 
-def shape_in_words(shape: Shape, line_of: Callable[[int], int], sizes: Sizes) -> str:
+def shape_in_words(shape: Shape, line_of: Callable[[int], int], sizes: Sizes, short: bool = False) -> str:
     """
     A shape as a note on a drawing: `hexagon, 27.000 across flats, corners R0.500, turned by 30 deg`.
 
-    line_of: the line of a row of the program.
+    line_of: the line of a row of the program. short: without areas, inside radii and distances from the axis.
     """
     value = shape.values
     told = _TOLD.get(shape.name, _polygon)(shape, line_of, sizes)
     told += _corners(value, sizes)
     if shape.name != "circle" and "turned" in value:
         told += _turned(shape)
-    told += _off_axis(value, shape, sizes)
+    told += _off_axis(value, shape, sizes, short)
     if (
         shape.name in ("contour", "polygon", "groove")
         or "regular_by_x" in value
         or ("x_least" in value and not shape.is_regular)
     ):
-        told += _extents(value, sizes)
+        told += _extents(value, sizes, short)
     if shape.is_open and shape.name == "contour":
         told.append("open: beyond its ends the part is not known")
     text = ", ".join(told)
@@ -210,19 +210,23 @@ def _turned(shape: Shape) -> _Told:
     return [f"turned by {turned} deg"] if turned != "0" else []
 
 
-def _off_axis(value: Mapping[str, float], shape: Shape, sizes: Sizes) -> _Told:
+def _off_axis(value: Mapping[str, float], shape: Shape, sizes: Sizes, short: bool) -> _Told:
     if "center_x" not in value:
         return []
     x, c = value["center_x"], value["center_c"]
     what = "its middle line" if shape.is_open else "center"
+    if short:
+        return [f"{what} at x {sizes(x)} c {sizes(c)}"]
     return [f"{what} {sizes(abs(complex(x, c)))} off the axis (x {sizes(x)}, c {sizes(c)})"]
 
 
-def _extents(value: Mapping[str, float], sizes: Sizes) -> _Told:
+def _extents(value: Mapping[str, float], sizes: Sizes, short: bool) -> _Told:
     told = []
     if "x_least" in value:
         told.append(f"x from {sizes(value['x_least'])} to {sizes(value['x_most'])}")
         told.append(f"c from {sizes(value['c_least'])} to {sizes(value['c_most'])}")
+    if short:
+        return told
     if value.get("inside_radius"):
         told.append(f"smallest inside radius {sizes(value['inside_radius'])}")
     elif "inside_radius" in value:

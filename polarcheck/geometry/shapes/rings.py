@@ -23,6 +23,8 @@ from polarcheck.geometry.shapes.shape import SAME
 _STUB = 1e-3
 #: A side is short beside another one of which it is less than this share; and how often sides are put together.
 _SHORT, _LOOKS = 0.25, 50
+#: Sine of the least angle at which the ends of a chain make a corner.
+_MEETING = 1 / 3
 #: Half of the strip in which blocks make one straight line, as rounding.kept_ends wants it [mm].
 _HALF = SAME / 8 * (1 + 1j)
 #: Chords of a curve turn by less than a corner does [rad].
@@ -113,11 +115,30 @@ def _ring_of(part: Outline, closed: bool, gap: float) -> Ring:
     start, end, center, row = part.start, part.end, part.center, part.row
     left = abs(end[-1] - start[0]) if len(row) else 0.0
     if not closed and 0 < left <= gap + SAME:
-        start, end = np.append(start, end[-1]), np.append(end, start[0])
-        center, sweep, row = np.append(center, np.nan), np.append(sweep, 0.0), np.append(row, row[-1])
+        corner = _corner(part, left)
+        if corner is None:
+            start, end = np.append(start, end[-1]), np.append(end, start[0])
+            center, sweep, row = np.append(center, np.nan), np.append(sweep, 0.0), np.append(row, row[-1])
+        else:
+            start, end = np.append(corner, start[1:]), np.append(end[:-1], corner)
         closed = True
     ring = Ring(start, end, center, sweep, row, closed)
     return ring.some(ring.length > _STUB)
+
+
+def _corner(part: Outline, left: float) -> complex | None:
+    """Where the last and the first line of a chain meet near its ends, `left` [mm] from each other; None for arcs."""
+    if part.is_arc[0] or part.is_arc[-1]:
+        return None
+    begin, way = part.end[0] - part.start[0], part.end[-1] - part.start[-1]
+    across = (way.conjugate() * begin).imag / (abs(way) * abs(begin))
+    if abs(across) < _MEETING:
+        return None
+    gap = part.start[0] - part.end[-1]
+    along = (gap.conjugate() * begin).imag / abs(begin) / across
+    meet = complex(part.end[-1] + along * way / abs(way))
+    is_near = max(abs(meet - part.start[0]), abs(meet - part.end[-1])) <= left / _MEETING
+    return meet if is_near else None
 
 
 def _within(ring: Ring, bar: float) -> Iterator[Ring]:

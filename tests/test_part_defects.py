@@ -1,0 +1,72 @@
+"""
+Sound parts are no other parts, parts with a defect are, and the generator and the judge know which is which.
+
+A small share of what benchmarks/part_defects.py draws.
+"""
+
+from __future__ import annotations
+
+import sys
+from typing import Any
+
+import pytest
+import shapely  # type: ignore[import-untyped]
+from drawn_parts import FAMILIES, NAMES, Feature, drawn_plan
+from part_judge import judged
+from part_slips import KINDS, drawn_defect, drawn_sound
+from programs import ROOT
+
+sys.path.insert(0, str(ROOT / "benchmarks"))
+
+
+BAR = shapely.Point(0, 0).buffer(60, quad_segs=64)
+
+
+def area_of(keys: dict[str, Any], features: Feature) -> Any:
+    """What may stand by a [[part]] with sharp corners that says its angle: half planes, or a circle."""
+    shape, center = keys["shape"], keys.get("center", [0.0, 0.0])
+    if shape == "circle":
+        area = shapely.Point(center).buffer(keys["diameter"] / 2, quad_segs=64)
+        return BAR.difference(area) if keys.get("inside") else area
+    sides = next((sides for sides, name in NAMES.items() if name == shape), keys.get("sides", keys.get("count", 1)))
+    apothem = keys["distance"] if "distance" in keys else keys["across_flats"] / 2
+    area = BAR
+    for number in range(sides):
+        half = shapely.box(-1000, -1000, apothem, 1000)
+        area = area.intersection(
+            shapely.affinity.translate(
+                shapely.affinity.rotate(half, keys["turned"] + 360 / sides * number, origin=(0, 0)), *center
+            )
+        )
+    return area
+
+
+@pytest.mark.parametrize(
+    "family", ["triangle", "hexagon", "dodecagon", "polygon", "circle", "circle aside", "flat", "flats"]
+)
+def test_the_keys_of_a_part_say_what_its_feature_is(family: str) -> None:
+    for seed in range(40):
+        (feature,) = drawn_plan(seed, family).features
+        if (
+            ("turned" in feature.keys or "circle" in family)
+            and not feature.form.corner
+            and not feature.form.values.get("small")
+        ):
+            apart = shapely.symmetric_difference(area_of(feature.keys, feature), feature.stands().intersection(BAR))
+            assert apart.buffer(-0.01).is_empty, (seed, feature.keys)
+
+
+@pytest.mark.parametrize("family", FAMILIES)
+def test_a_sound_program_makes_its_part(family: str) -> None:
+    plan, program = drawn_sound(1, family)
+    judgement = judged(plan, program, plan.allowed)
+    assert not judgement.differs
+    assert not judgement.events
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_defect_of_each_kind_can_be_drawn(kind: str) -> None:
+    defect = drawn_defect(3, (kind,))
+    assert defect is not None
+    assert defect.judgement.differs
+    assert judged(defect.plan, defect.sound, defect.plan.allowed).differs is False
