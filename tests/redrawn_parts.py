@@ -457,9 +457,9 @@ def _measured(shape: MadeShape, sweep: Sweep, bar: float) -> Iterator[tuple[str,
         return
     told = np.array([values[name] for name in ("x_least", "c_least", "x_most", "c_most")])
     ribs = any(left.kind != "corner" for left in shape.left_standing)
-    candidates = _areas_left(shape, sweep, bar)
-    if not candidates and ribs:
+    if ribs:
         return
+    candidates = _areas_left(shape, sweep, bar)
     if not candidates:
         yield "there is no such area", 0.0
         return
@@ -470,7 +470,7 @@ def _measured(shape: MadeShape, sweep: Sweep, bar: float) -> Iterator[tuple[str,
     if off[best] > TOLERANCE and not corners:
         yield "other extents", off[best]
     wrong = abs(area.area - values["area"]) / max(area.length, NOTHING)
-    if wrong > TOLERANCE and not corners and not ribs:
+    if wrong > TOLERANCE and not corners:
         yield "another area", wrong
     hollow = values.get("inside_radius", 0.0)
     if hollow > sweep.radius and not corners:
