@@ -159,7 +159,22 @@ class AreaComparisons(Columns, frozen=True):
                     continue
             feature = self._feature(number, at, place, section, own)
             found.append((feature._replace(area=area, certain=certain), place))
-        return self._with_roles(found, depth)
+        found = self._with_roles(found, depth)
+        if not matched and len(found) == 1:
+            return [(self._as_boss_or_pocket(found[0][0]), -1)]
+        return found
+
+    def _as_boss_or_pocket(self, feature: Feature) -> Feature:
+        """A ring that no contour is compared with: a part or a pocket, whichever differs less."""
+        from polarcheck.asked.features import differences
+
+        cuts = self.milled.cuts[feature.cuts]
+        tried = []
+        for is_pocket in (False, True):
+            own = np.ones(len(cuts), bool)
+            (found,) = differences([feature._replace(is_pocket=is_pocket, cuts=own, own_cuts=own)], cuts)
+            tried.append((found.proud.size + found.deep.size, is_pocket))
+        return feature._replace(is_pocket=min(tried)[1])
 
     def _with_roles(self, rings: list[tuple[Feature, int]], depth: dict[int, int]) -> list[tuple[Feature, int]]:
         """

@@ -15,6 +15,8 @@ from polarcheck.machines.part import DrawnPart, Part
 
 #: How much farther than what is asked for the metal reaches where the bar is not known, as a share.
 BEYOND = 1.02
+#: What lies so far beyond the round that flats are milled on [mm] is the way in the air.
+ON_ROUND = 0.1
 
 
 class AskedParts(Columns, frozen=True):
@@ -80,6 +82,13 @@ class AskedParts(Columns, frozen=True):
         if part.shape in ("flat", "flats") and math.isnan(part.diameter):
             return BEYOND * unit * part.apothem
         return math.inf
+
+    def air(self, number: int, unit: float) -> float:
+        """The radius beyond which only walls are compared, no way from one to the next [mm]; inf for none."""
+        part = self.job.part[number]
+        if part.shape in ("flat", "flats") and not math.isnan(part.diameter):
+            return part.diameter / 2 * unit + ON_ROUND
+        return self.certain_metal(number, unit)
 
     def entry(self, row: int) -> float:
         """C at the beginning of the section of a row [rad], 0 where it is not known."""

@@ -163,7 +163,7 @@ class ContourComparisons(Columns, frozen=True):
             if any_angle:
                 angle, way = self._turned(contour, target)
             both_ways = target.is_closed and contour.is_closed
-            metal = self.asked_parts.certain_metal(target.number, target.scale)
+            metal = self.asked_parts.air(target.number, target.scale)
             deviation = difference(contour.made, way, both_ways=both_ways, metal=metal)
             row = int(contour.made.outline.row[max(deviation.of, 0)])
             is_other_way = (
@@ -199,10 +199,16 @@ class ContourComparisons(Columns, frozen=True):
     def _turned(self, contour: Contour, target: Target) -> tuple[float, Way]:
         """The best angle of a shape that may have any angle [rad], and the shape turned by it."""
         from polarcheck.geometry.comparison.alignment import best_turn
+        from polarcheck.geometry.comparison.measured_path import way_of
 
         is_known = bool(self.trace.path.knows_section_entry[contour.level.section])
         center = target.scale * complex(*target.part.center) if is_known else 0j
-        angle = best_turn(contour.made.way, target.way, center)
+        way = contour.made.way
+        if math.isfinite(self.asked_parts.air(target.number, target.scale)):
+            # Of flats and slots the walls say the angle, not what leads from one to the next.
+            lines = ~contour.made.outline.is_arc[way.of]
+            way = way_of(way.start[lines], way.end[lines], way.of[lines]) if lines.any() else way
+        angle = best_turn(way, target.way, center)
         return angle, _placed(target.way, angle, center)
 
     def _is_superseded(self, result: Comparison, best: Comparison) -> bool:
