@@ -166,22 +166,23 @@ def _rectangle(values: Values) -> Drawn:
 
 
 def _round_with_flats(values: Values) -> Drawn:
-    count = round(values["flats"])
-    disc = _disc(values["diameter"] / 2)
-    if "distance" in values:
-        area = disc.intersection(_within(_round_about(count), [values["distance"]] * count))
-        return Drawn(area, area)
-    if "least" in values and count == 2 and "apart" in values:
-        raise NotDrawnError("which of two flats is the nearer one is not said")
-    raise NotDrawnError("the directions of uneven flats are not said")
+    area = _disc(values["diameter"] / 2).intersection(_between_flats(values))
+    return Drawn(area, area)
 
 
 def _flats(values: Values) -> Drawn:
-    count = round(values["flats"])
-    if "distance" not in values or (count > 2 and "apart" not in values):
-        raise NotDrawnError("the directions of uneven flats are not said")
-    area = _within(_round_about(count), [values["distance"]] * count)
+    area = _between_flats(values)
     return Drawn(area, area, open=True)
+
+
+def _between_flats(values: Values) -> Any:
+    """What flats leave: each where the words say that it is, else all alike; the first has the direction 0."""
+    count = round(values["flats"])
+    if "turned_1" not in values:
+        return _within(_round_about(count), [values["distance"]] * count)
+    numbers = range(1, count + 1)
+    directions = [cmath.rect(1, math.radians(values[f"turned_{number}"] - values["turned"])) for number in numbers]
+    return _within(directions, [values[f"distance_{number}"] for number in numbers])
 
 
 def _open_regular(values: Values) -> Drawn:
@@ -336,7 +337,6 @@ def mismatches(
             beside = [
                 one for one in made if one is not shape and one.line == shape.line and z in (one.depths or [None])
             ]
-            # A line that runs several times begins several sections: the shape is that of one of them.
             best: list[Mismatch] | None = None
             for sections, turned in _sections_of(tables, shape):
                 sweep = sweep_at(tables, sections, z, turned, all_moves)
@@ -348,9 +348,20 @@ def mismatches(
 
 
 def _sections_of(tables: Tables, shape: MadeShape) -> list[tuple[list[int], list[float]]]:
+    """
+    The sections that a shape may be of, with the angles of C at which they begin.
+
+    A line that runs several times begins several sections: the shape is that of one of them.
+    """
     trace = tables["trace"]
-    lines = trace.blocks.line_in_file[trace.mode.sections.enter].tolist()
-    return [([number], []) for number, line in enumerate(lines) if line == shape.line]
+    lines = trace.blocks.line_in_file[trace.mode.sections.enter]
+    numbers = [np.flatnonzero(lines == one.line).tolist() for one in shape.sections]
+    angles = [one.angle or 0.0 for one in shape.sections]
+    if len(numbers) == 1:
+        return [([number], angles) for number in numbers[0]]
+    several = [one.line for one in shape.sections]
+    places = [numbers[at][several[:at].count(line) % len(numbers[at])] for at, line in enumerate(several)]
+    return [(places, angles)]
 
 
 def _compared(
@@ -379,6 +390,8 @@ def _compared(
     if shape.inside:
         behind = drawn.most.buffer(BAND).difference(drawn.most.buffer(TOLERANCE))
         entered = sweep.area.intersection(behind).intersection(clear).difference(other)
+        for boss in _bosses(beside):
+            entered = entered.intersection(boss.buffer(-TOLERANCE))
     else:
         entered = sweep.area.intersection(drawn.least.buffer(-TOLERANCE)).intersection(clear).difference(other)
     if entered.area > NOTHING:
@@ -423,6 +436,13 @@ def _reachable(shape: MadeShape, drawn: Drawn, radius: float) -> Any:
     if shape.inside:
         return drawn.least.buffer(-size, quad_segs=segments).buffer(size, quad_segs=segments)
     return drawn.most.buffer(size, quad_segs=segments).buffer(-size, quad_segs=segments)
+
+
+def _bosses(beside: Sequence[MadeShape]) -> Iterator[Any]:
+    """What flats of this depth leave, in which a slot is cut."""
+    for one in beside:
+        if one.shape == "flats":
+            yield drawn_of(one, one.values).least  # type: ignore[union-attr]
 
 
 def _outline(shape: MadeShape, drawn: Drawn, sweep: Sweep) -> Any:

@@ -173,3 +173,42 @@ def test_words_of_drawn_contours_are_what_their_cutters_leave() -> None:
         tables = tables_of(drawn.text(), drawn.machine, *drawn.tools)
         wrong += [(seed, drawn.family, one) for one in differences(tables, made_by(tables))]
     assert wrong == []
+
+
+def flats(*places: tuple[float, float]) -> str:
+    """Flats in one section, each by its direction and its distance from the center."""
+    blocks = []
+    for angle, distance in places:
+        direction = cmath.rect(1, math.radians(angle))
+        way = [complex(distance + 9, -40), complex(distance, -30), complex(distance, 30), complex(distance + 9, 40)]
+        one, two, three, four = (f"X{2 * (direction * at).real:.3f} C{(direction * at).imag:.3f}" for at in way)
+        blocks += ["G1 Z2. F300", one, "Z-2.", f"G42 {two}", three, f"G40 {four}"]
+    return "\n".join(blocks)
+
+
+@pytest.mark.parametrize("bar", [0, 32])
+@pytest.mark.parametrize(
+    ("places", "words"),
+    [
+        (((0, 12), (90, 12)), "2 flats, 12.000 from the center at 0 and 90 deg; to Z-2.000"),
+        (((0, 12), (90, 13)), "2 flats, 12.000 at 0 deg and 13.000 at 90 deg from the center; to Z-2.000"),
+        (((0, 12), (180, 14)), "flats 26.000 apart, 12.000 at 0 deg and 14.000 at 180 deg from the center; to Z-2.000"),
+    ],
+)
+def test_of_uneven_flats_each_is_told_with_its_direction(
+    places: tuple[tuple[float, float], ...], words: str, bar: float
+) -> None:
+    made, wrong = told(flats(*places), 4.0, bar, HEAD.replace("X80.", "X90."))
+    assert ([one.text for one in made], wrong) == ([words], [])
+
+
+def test_a_slot_between_flats_is_no_third_flat() -> None:
+    slot = "G1 Z2.\nX0 C-40.\nZ-2.\nG41 X10. C-30.\nC30.\nG40 X0 C40.\nG41 X-10. C30.\nC-30.\nG40 X0 C-40."
+    made, wrong = told(flats((90, 12), (270, 12)) + "\n" + slot, 4.0, 32.0, HEAD.replace("X80.", "X90."))
+    assert ([one.text for one in made], wrong) == (
+        [
+            "flats 24.000 apart, turned by 90 deg; to Z-2.000",
+            "slot 10.000 wide, open at both ends, turned by 90 deg; to Z-2.000",
+        ],
+        [],
+    )

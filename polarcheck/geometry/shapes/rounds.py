@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from polarcheck.geometry.shapes.rings import Ring
-from polarcheck.geometry.shapes.shape import SAME, SAME_DIRECTION, Shape, off_axis, polygon_name, turned_by
+from polarcheck.geometry.shapes.shape import SAME, SAME_DIRECTION, Shape, each_flat, off_axis, polygon_name, turned_by
 
 #: How far a line may be from the circle that it touches [mm].
 _TANGENT = 3 * SAME
@@ -47,10 +47,12 @@ def _with_flats(ring: Ring, center: complex, values: dict[str, float]) -> Shape:
         return Shape(polygon_name(count), ring.inside, values, row=row)
     if count == 2 and even.max() <= slack:
         values["apart"] = float(out.sum())
-    if equal or count == 1:
+    if np.ptp(out) <= 2 * SAME:
         values["distance"] = float(out.mean())
     else:
         values |= {"least": float(out.min()), "most": float(out.max())}
+    if not equal:
+        values |= each_flat(normal, out)
     return Shape("round with flats", ring.inside, values, row=row)
 
 

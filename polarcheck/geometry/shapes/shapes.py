@@ -33,8 +33,8 @@ def shapes_of_rings(found: Iterable[Ring]) -> list[Shape]:
     others: list[Shape] = []
     for ring in found:
         keep_time()
-        if len(ring) == 1 and not ring.closed and ring.is_line[0]:
-            single.append(ring)
+        if _is_of_flats(ring):
+            single += [ring.some(np.array([side])) for side in range(len(ring))]
         elif len(ring):
             others.append(_shape_of(ring))
     beyond = _beyond(min((ring.beyond for ring in single), default=np.inf))
@@ -49,6 +49,15 @@ def _shape_of(ring: Ring) -> Shape:
         fits = _fits_corners(ring, sharp)
         corners |= {"corner_reach": fits} if np.isfinite(fits) else {}
     return found._replace(values=found.values | corners)
+
+
+def _is_of_flats(ring: Ring) -> bool:
+    """An open ring of straight sides, convex: what stands is within all of them."""
+    if ring.closed or not ring.is_line.all():
+        return False
+    into, out = directions(ring)
+    turn = np.angle(out[1:] * into[:-1].conj())
+    return len(ring) > 0 and bool((turn > 0).all()) and float(turn.sum()) < 2 * np.pi
 
 
 def _beyond(radius: float) -> dict[str, float]:
