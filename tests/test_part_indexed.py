@@ -147,9 +147,32 @@ def test_a_shape_in_a_shape_keeps_its_own_section() -> None:
     assert outside.line < inside.line
 
 
+@pytest.mark.parametrize(("control", "inch"), VARIATIONS)
+@pytest.mark.parametrize("first", [0.0, 15.0])
+def test_flats_that_close_no_polygon_are_told_with_their_angles(first: float, control: str, inch: bool) -> None:
+    entries = [first + angle for angle in (0.0, 60.0, 120.0, 180.0, 240.0)]
+    (shape,) = made([Section(flat(12.0, 14.0), angle) for angle in entries], control, inch)
+    assert (shape.shape, shape.values) == ("flats", {"flats": 5, "distance": pytest.approx(12.0, abs=0.003)})
+    assert angles(shape) == entries
+    assert f" at C{first:g}, C{first + 60:g}, C{first + 120:g}, C{first + 180:g}, C{first + 240:g}" in shape.text
+
+
 def test_what_has_no_name_together_is_told_one_by_one() -> None:
-    shapes = made([Section(flat(12.0, 22.0), angle) for angle in (0.0, 100.0, 240.0)])
+    sections = [Section(flat(distance, 22.0), angle) for distance, angle in ((10.0, 0.0), (12.0, 100.0), (13.0, 240.0))]
+    shapes = made(sections)
     assert [shape.values["turned"] for shape in shapes] == [pytest.approx(angle) for angle in (0.0, 100.0, 240.0)]
+    shapes = made([Section(polygon(6, 30.0)), Section(flat(10.0, 20.0), 30.0)])
+    assert [(shape.shape, angles(shape)) for shape in shapes] == [("hexagon", [0.0]), ("flats", [30.0])]
+
+
+@pytest.mark.parametrize(("control", "inch"), VARIATIONS)
+def test_a_flat_of_several_that_is_off_is_told_with_its_line(control: str, inch: bool) -> None:
+    sections = flats(6, half=14.0)
+    sections[4] = sections[4]._replace(points=flat(12.1, 14.0))
+    (shape,) = made(sections, control, inch)
+    assert (shape.shape, len(shape.odd)) == ("hexagon", 1)
+    assert shape.odd[0].size == pytest.approx(24.2, abs=0.004)
+    assert shape.sections[4].line < shape.odd[0].line < shape.sections[4].end_line
 
 
 def test_roughing_and_finishing_of_one_shape_are_one() -> None:
