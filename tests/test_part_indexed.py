@@ -152,15 +152,17 @@ def test_a_shape_in_a_shape_keeps_its_own_section() -> None:
 def test_flats_that_close_no_polygon_are_told_with_their_angles(first: float, control: str, inch: bool) -> None:
     entries = [first + angle for angle in (0.0, 60.0, 120.0, 180.0, 240.0)]
     (shape,) = made([Section(flat(12.0, 14.0), angle) for angle in entries], control, inch)
-    assert (shape.shape, shape.values) == ("flats", {"flats": 5, "distance": pytest.approx(12.0, abs=0.003)})
+    assert (shape.shape, shape.values["flats"]) == ("flats", 5)
+    assert shape.values["distance"] == pytest.approx(12.0, abs=0.003)
+    assert [shape.values[f"turned_{number}"] for number in range(1, 6)] == pytest.approx(entries)
     assert angles(shape) == entries
     assert f" at C{first:g}, C{first + 60:g}, C{first + 120:g}, C{first + 180:g}, C{first + 240:g}" in shape.text
 
 
 def test_what_has_no_name_together_is_told_one_by_one() -> None:
     sections = [Section(flat(distance, 22.0), angle) for distance, angle in ((10.0, 0.0), (12.0, 100.0), (13.0, 240.0))]
-    shapes = made(sections)
-    assert [shape.values["turned"] for shape in shapes] == [pytest.approx(angle) for angle in (0.0, 100.0, 240.0)]
+    (shape,) = made(sections)
+    assert "3 flats, 10.000 at 0 deg, 12.000 at 100 deg and 13.000 at 240 deg from the center;" in shape.text
     shapes = made([Section(polygon(6, 30.0)), Section(flat(10.0, 20.0), 30.0)])
     assert [(shape.shape, angles(shape)) for shape in shapes] == [("hexagon", [0.0]), ("flats", [30.0])]
 

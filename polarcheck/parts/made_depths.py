@@ -38,7 +38,7 @@ def put_together(joined: Depth, single: Sequence[Depth]) -> Iterator[Depth]:
     """
     shapes = [shape for depth in single for shape in depth.shapes]
     if not joined.shapes or _nameless(joined.shapes) > _nameless(shapes):
-        yield from _flats_together(joined, single)
+        yield from single
         return
     makers: list[tuple[int, ...]] = []
     for shape in joined.shapes:
@@ -54,28 +54,6 @@ def put_together(joined: Depth, single: Sequence[Depth]) -> Iterator[Depth]:
     # Of roughing, for instance, nothing is left.
     used = {number for sections in by_sections for number in sections}
     yield from (depth for depth in single if used.isdisjoint(depth.sections))
-
-
-def _flats_together(joined: Depth, single: Sequence[Depth]) -> Iterator[Depth]:
-    """Flats at one distance that close no polygon, as one of six forgotten, are told together; all else one by one."""
-    flats = [depth for depth in single if len(depth.shapes) == 1 and _is_flat(depth.shapes[0])]
-    of_distance: dict[float, list[Depth]] = {}
-    for depth in flats:
-        distance = depth.shapes[0].values["distance"]
-        same = next((known for known in of_distance if abs(known - distance) <= SAME), distance)
-        of_distance.setdefault(same, []).append(depth)
-    for distance, depths in of_distance.items():
-        if len(depths) > 1:
-            sections = tuple(number for depth in depths for number in depth.sections)
-            first = depths[0].shapes[0]
-            values = {"flats": float(len(depths)), "distance": distance}
-            yield joined._replace(sections=sections, shapes=[first._replace(values=values)])
-    together = [id(depth) for depths in of_distance.values() if len(depths) > 1 for depth in depths]
-    yield from (depth for depth in single if id(depth) not in together)
-
-
-def _is_flat(shape: Shape) -> bool:
-    return shape.name == "flats" and shape.values["flats"] == 1 and "distance" in shape.values
 
 
 def _nameless(shapes: Sequence[Shape]) -> int:
