@@ -20,7 +20,7 @@ import numpy as np
 import shapely  # type: ignore[import-untyped]
 
 from polarcheck.checking.tables import Tables
-from polarcheck.finding import MadeShape
+from polarcheck.finding import MadeInSection, MadeShape
 from polarcheck.geometry.cutter_compensation.compensation import Phase
 from polarcheck.geometry.plane import arc_sweep
 from polarcheck.machines.modal import Motion
@@ -352,20 +352,30 @@ def _share_sections(one: MadeShape, other: MadeShape) -> bool:
 
 
 def _sections_of(tables: Tables, shape: MadeShape) -> list[tuple[list[int], list[float]]]:
-    """
-    The sections that a shape may be of, with the angles of C at which they begin.
-
-    A line that runs several times begins several sections: the shape is that of one of them.
-    """
+    """The sections that make a shape, with their angles; a list for each way to take them."""
     trace = tables["trace"]
-    lines = trace.blocks.line_in_file[trace.mode.sections.enter]
-    numbers = [np.flatnonzero(lines == one.line).tolist() for one in shape.sections]
+    lines = trace.blocks.line_in_file[trace.mode.sections.enter].tolist()
+    entry = np.where(trace.path.knows_section_entry, trace.path.section_entry, np.nan)
+
+    def of(one: MadeInSection) -> list[int]:
+        return [
+            number
+            for number, line in enumerate(lines)
+            if line == one.line
+            and (
+                math.isnan(entry[number])
+                if one.angle is None
+                else abs(math.sin((math.radians(entry[number] - one.angle)) / 2)) < 1e-6
+            )
+        ]
+
     angles = [one.angle or 0.0 for one in shape.sections]
-    if len(numbers) == 1:
-        return [([number], angles) for number in numbers[0]]
-    several = [one.line for one in shape.sections]
-    places = [numbers[at][several[:at].count(line) % len(numbers[at])] for at, line in enumerate(several)]
-    return [(places, angles)]
+    if len(shape.sections) == 1:
+        return [([number], angles) for number in of(shape.sections[0])]
+    numbers: list[int] = []
+    for one in shape.sections:
+        numbers.append(next(number for number in of(one) if number not in numbers))
+    return [(numbers, angles)]
 
 
 def _compared(
