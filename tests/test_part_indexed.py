@@ -251,3 +251,34 @@ def test_a_section_that_no_part_is_for_is_told_as_what_it_makes(entry: float, co
     assert words.index("square") < words.index("compared with nothing")
     (file,) = json.loads(call("part", *arguments, "--format", "json").stdout)["files"]
     assert [shape["is_compared"] for shape in file["part"]] == [True, False]
+
+
+# ---- init --part ----
+
+
+def of_init(sections: list[Section], control: str = "fanuc", inch: bool = False) -> str:
+    Path("a.nc").write_text(program(sections, control, inch))
+    return call("init", "--part", "a.nc", "--machine", control, "--tool", tool(3, inch)).stdout
+
+
+@pytest.mark.parametrize(("control", "inch"), VARIATIONS)
+@pytest.mark.parametrize("first", [0.0, 15.0])
+def test_what_sections_make_together_agrees_with_the_part_that_is_written_of_it(
+    first: float, control: str, inch: bool
+) -> None:
+    entry = of_init(flats(3, first=first), control, inch)
+    assert "section =" not in entry, "no section makes it alone"
+    Path("polarcheck.toml").write_text(entry)
+    said = call("part", "a.nc", "--machine", control, "--tool", tool(3, inch))
+    assert said.exit_code == 0, said.stdout
+    assert "agrees with the triangle asked for" in said.stdout
+
+
+def test_an_angle_that_nobody_knows_is_no_part_of_the_entry() -> None:
+    assert "turned" not in of_init([Section(polygon(6, 30.0, 10.0), None)], "siemens-iso").partition("[[part]]")[2]
+    assert "turned = 30" in of_init([Section(polygon(6, 30.0, 10.0), 20.0)])
+
+
+def test_flats_at_unequal_angles_have_no_entry() -> None:
+    entry = of_init([Section(flat(12.0, 14.0), angle) for angle in (0.0, 60.0, 120.0, 180.0, 240.0)])
+    assert "\n[[part]]" not in entry

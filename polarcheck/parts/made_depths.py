@@ -42,6 +42,7 @@ def put_together(joined: Depth, single: Sequence[Depth]) -> Iterator[Depth]:
         return
     makers: list[tuple[int, ...]] = []
     for shape in joined.shapes:
+        keep_time()
         alike = [depth for depth in single if any(are_alike(shape, other) for other in depth.shapes)]
         makers.append(tuple(number for depth in alike for number in depth.sections))
     alone = {number for sections in makers for number in sections}
