@@ -42,6 +42,7 @@ def put_together(joined: Depth, single: Sequence[Depth]) -> Iterator[Depth]:
         return
     makers: list[tuple[int, ...]] = []
     for shape in joined.shapes:
+        keep_time()
         alike = [depth for depth in single if any(are_alike(shape, other) for other in depth.shapes)]
         makers.append(tuple(number for depth in alike for number in depth.sections))
     alone = {number for sections in makers for number in sections}
@@ -57,7 +58,9 @@ def put_together(joined: Depth, single: Sequence[Depth]) -> Iterator[Depth]:
 
 
 def _nameless(shapes: Sequence[Shape]) -> int:
-    return sum(shape.name in _WITHOUT_NAME for shape in shapes)
+    """How many of the shapes are none of a drawing, be it that their sides are uneven."""
+    uneven = ("sides" in shape.values and "across_flats" not in shape.values for shape in shapes)
+    return sum(is_uneven or shape.name in _WITHOUT_NAME for is_uneven, shape in zip(uneven, shapes, strict=True))
 
 
 def merged(depths: Sequence[Depth]) -> list[list[Depth]]:

@@ -82,10 +82,11 @@ def turned_by(direction: complex, count: int) -> float:
 
 
 def each_flat(normal: Points, out: Floats) -> dict[str, float]:
-    """How far each of several uneven flats is from the middle, and its direction; as values of a shape."""
+    """How far each of several uneven flats is from the middle, and its direction from 0; as values of a shape."""
+    flats = sorted((turned_by(direction, 1), distance) for direction, distance in zip(normal, out, strict=True))
     values: dict[str, float] = {}
-    for number, (direction, distance) in enumerate(zip(normal.tolist(), out.tolist(), strict=True), 1):
-        values |= {f"distance_{number}": distance, f"turned_{number}": turned_by(direction, 1)}
+    for number, (turned, distance) in enumerate(flats, 1):
+        values |= {f"distance_{number}": float(distance), f"turned_{number}": turned}
     return values
 
 
