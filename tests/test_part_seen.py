@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 from drawn_contours import CONTROLS, Drawn, Element
-from overlapped_contours import Overlapped, contour, overlapped
+from overlapped_contours import LEADS, Overlapped, contour, overlapped
 from programs import tables_of
 from test_cli import call
 
@@ -87,7 +87,8 @@ def test_a_contour_that_ends_beside_its_start_keeps_its_last_wall(control: str) 
         turned = [cmath.rect(1, math.radians(7 * number)) * point for point in QUADRILATERAL]
         drift = cmath.rect(0.05, math.radians(90 * number + 10))
         overlap = (0, 0.2, 1)[number % 3]
-        shape = overlapped(turned, 1.5, 0, 4, overlap=overlap, drift=drift, control=BY_MACHINE[control])
+        leads = LEADS[number % 4], LEADS[number // 4 % 4]
+        shape = overlapped(turned, 1.5, 0, 2, overlap=overlap, leads=leads, drift=drift, control=BY_MACHINE[control])
         assert is_seen(shape, drift), shape.drawn.text()
     pocket = overlapped(QUADRILATERAL, 1.5, 0, 0.5, is_pocket=True, overlap=0, drift=0.05, control=BY_MACHINE[control])
     assert is_seen(pocket, 0.05)

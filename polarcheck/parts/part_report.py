@@ -112,7 +112,7 @@ def _by_section(trace: Trace, tables: Tables) -> list[MadeShape]:
         left = [one for number, one in standing if any(number in depth.sections for depth in of_section)]
         if left and entries:
             entries[0] = msgspec.structs.replace(entries[0], left_standing=[*entries[0].left_standing, *left])
-        if not any(section in depth.sections for depth in depths):
+        if not any(section in depth.sections and (depth.shapes or depth.needs) for depth in depths):
             entries = [_nothing(trace, (section,), _why_nothing(tables, section))]
         sections = of_section[0].sections if of_section else (section,)
         if entries:
