@@ -65,6 +65,23 @@ def test_the_words_name_lines_and_angles() -> None:
     )
 
 
+def test_many_angles_are_told_by_their_step() -> None:
+    (shape,) = made(flats(12, half=6.0))
+    assert shape.text.endswith(" at C0 to C330, 30 deg apart")
+    assert len(shape.sections) == 12
+
+
+def test_a_loop_has_its_sections_in_one_line() -> None:
+    lines = program(flats(1)).splitlines()
+    first, last = lines.index("G0 X80. C0 Z2."), lines.index("G13.1")
+    section = [line.replace("C0 Z2.", "C[#1] Z2.") for line in lines[first : last + 1]]
+    loop = ["#1=0", "WHILE[#1 LT 360]DO1", *section, "#1=#1+120", "END1"]
+    text = "\n".join([*lines[:first], *loop, *lines[last + 1 :]]) + "\n"
+    (shape,) = made_by(tables_of(text, "fanuc", tool(3)))
+    assert shape.text.endswith("by the section of line 10 at C0, C120, C240")
+    assert angles(shape) == [0.0, 120.0, 240.0]
+
+
 def test_incremental_indexing_is_the_same() -> None:
     text = program(flats(3)).replace("C120. Z2.", "H120. Z2.").replace("C240. Z2.", "H120. Z2.")
     (shape,) = made_by(tables_of(text, "fanuc", tool(3)))

@@ -48,6 +48,8 @@ def part_of(report: FileReport, runs: Sequence[tuple[str, Tables]]) -> FileRepor
 
 #: More shapes than these are no line.
 _IN_ONE_LINE = 4
+#: More angles than these are told by their first and last one, if their steps are the same [deg].
+_IN_A_LIST, _SAME_STEP = 8, 1e-3
 
 
 def made_by(tables: Tables) -> list[MadeShape]:
@@ -276,9 +278,18 @@ def _sections_in_words(trace: Trace, depth: Depth, sections: Sequence[MadeInSect
         if any(angles):
             yield f"{angle_in_words(angles[0])} at {_switch(trace, depth.sections[0])}"
         return
-    lines = ", ".join(str(one.line) for one in sections)
-    at = f" at {', '.join(map(angle_in_words, angles))}" if any(angles) else ""
-    yield f"by the sections of lines {lines}{at}"
+    # A loop or a called program begins its sections in one line.
+    lines = list(dict.fromkeys(str(one.line) for one in sections))
+    where = f"sections of lines {', '.join(lines)}" if len(lines) > 1 else f"section of line {lines[0]}"
+    yield f"by the {where}{f' at {_angles_in_words(angles)}' if any(angles) else ''}"
+
+
+def _angles_in_words(angles: Sequence[float]) -> str:
+    steps = np.diff(angles)
+    if len(angles) > _IN_A_LIST and np.ptp(steps) <= _SAME_STEP:
+        first, last = angle_in_words(angles[0]), angle_in_words(angles[-1])
+        return f"{first} to {last}, {float(steps.mean()):.4g} deg apart"
+    return ", ".join(map(angle_in_words, angles))
 
 
 def _depths_in_words(depths: Sequence[float], sizes: Sizes) -> str:
