@@ -107,7 +107,7 @@ def _by_section(trace: Trace, tables: Tables) -> list[MadeShape]:
     for section in range(len(trace.mode.sections)):
         of_section = [depth for depth in depths if depth.sections[0] == section]
         entries = [*_entries(trace, of_section)]
-        areas = [Area(depth.z, depth.polygon) for depth in of_section if depth.polygon is not None]
+        areas = [Area(depth.z, depth.polygon, depth.is_cleared) for depth in of_section if depth.polygon is not None]
         if len(entries) > 1 and len(areas) > 1:
             sizes = _sizes(trace, int(trace.mode.sections.enter[section]))
             entries = [*with_differences(entries, areas, sizes)]
