@@ -177,7 +177,7 @@ class LeftStanding(msgspec.Struct, frozen=True, kw_only=True):
     line: of the block that leaves it; null for corners.
     size: R of corners, else height or thickness [mm].
     count: of corners.
-    place: [x, c] [mm, radius]; null for corners.
+    place: [x, c] in the frame of the part [mm, radius]; null for corners.
     """
 
     kind: str
@@ -188,28 +188,44 @@ class LeftStanding(msgspec.Struct, frozen=True, kw_only=True):
     place: tuple[float, float] | None = None
 
 
+class MadeInSection(msgspec.Struct, frozen=True, kw_only=True):
+    """
+    A polar section that makes a shape, or some of it.
+
+    line, end_line: of its G12.1 and of its end.
+    angle: of C at G12.1 [deg], from 0 to 360; null if unknown.
+    """
+
+    line: int
+    end_line: int
+    angle: float | None
+
+
 class MadeShape(msgspec.Struct, frozen=True, kw_only=True):
     """
-    A shape that a polar section makes, at one or more depths.
+    A shape that polar sections make, at one or more depths, in the frame of the part: angles count from C0.
 
-    line, end_line: of the G12.1 of the section and of its end.
+    line, end_line: of the G12.1 of the first section and of its end.
+    sections: all sections that make it together, as flats with C between them.
     z: of the deepest pass [mm]; null if unknown.
     depths: Z of each pass [mm], in the order of the program.
     shape: hexagon, circle, flats, slot, contour, ...; null if unknown.
     inside: it is a pocket.
     is_regular: all its sides are equal.
-    values: its sizes [mm, mm2, deg], see docs/part.md.
+    values: its sizes [mm, mm2, deg], see docs/part.md; where the angle of C is unknown, as the section writes it.
     odd: sides that differ from the others.
     text: the shape in words.
     left_standing: material that the tool leaves.
     needs: what is unknown, and what to give; null if nothing is.
     as_meant: numbers without a decimal point that are taken as if they had one, told at the first shape of a section;
         null if there are none.
+    is_compared: false where the job asks for parts, but for none of these sections; absent where it asks for none.
     channel: of a file with several channels, as `$2`.
     """
 
     line: int
     end_line: int
+    sections: list[MadeInSection]
     z: float | None
     depths: list[float]
     shape: str | None
@@ -221,6 +237,7 @@ class MadeShape(msgspec.Struct, frozen=True, kw_only=True):
     left_standing: list[LeftStanding] = []
     needs: str | None = None
     as_meant: str | None = None
+    is_compared: bool | UnsetType = UNSET
     channel: str | UnsetType = UNSET
 
 

@@ -42,7 +42,7 @@ CONTROLS = {
     "okuma-osp": Control(
         ("{unit} G97 G40 G94", "M110", "T0808", "M13"),
         ("M12", "M109", "M30"),
-        on=("G137 C0", "G17"),
+        on=("G137{angle}", "G17"),
         off=("G136",),
         move="G101",
         second="Y",
@@ -93,7 +93,7 @@ def program(sections: Sequence[Section], control: str = "fanuc", inch: bool = Fa
         angle = "" if section.angle is None else f" C{number(section.angle, 1.0)}"
         lines += [
             f"G0 X{number(words.before * section.approach, _unit(inch))}{angle} Z{number(2.0, _unit(inch))}",
-            *words.on,
+            *(line.format(angle=angle) for line in words.on),
         ]
         for depth in section.depths:
             lines += [f"{words.move} X{_x(words, section.approach, inch)} {words.second}0 F{300 / _unit(inch):.0f}."]
@@ -103,7 +103,7 @@ def program(sections: Sequence[Section], control: str = "fanuc", inch: bool = Fa
                 x, c = _x(words, point.real, inch), number(point.imag, _unit(inch))
                 lines.append(f"{words.move} {side}X{x} {words.second}{c}")
             cancel = "G40 " if section.side != 40 else ""
-            lines += [f"{words.move} {cancel}X{_x(words, section.approach, inch)}"]
+            lines += [f"{words.move} {cancel}X{_x(words, section.approach, inch)} {words.second}0"]
         lines += [f"{words.move} Z{number(2.0, _unit(inch))}", *words.off]
     return (
         "\n".join(

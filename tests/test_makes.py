@@ -89,7 +89,7 @@ def test_several_sections_have_no_line() -> None:
     [
         ("X30. C8.6603", "X30. C8.6603 F", False),  # a word without a number
         ("G1 X-30. C8.6603", "G0 X-30. C8.6603", False),  # the control stops, or the tool goes another way
-        ("G1 G40 X80.", "G1 G40 X30.5", False),  # the ramp is too short
+        ("G1 G40 X80. C0", "G1 G40 X30.5", False),  # the ramp is too short
         ("G98 G40 G97", "G40 G97", True),  # the feed mode is not known: the path is the same
     ],
 )

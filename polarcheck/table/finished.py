@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import msgspec
 import numpy as np
@@ -11,6 +11,8 @@ import numpy as np
 from polarcheck.arrays import Columns, Mask, Rows
 from polarcheck.columns.trace import Trace
 from polarcheck.table.overcuts import Overcuts, level_of
+
+Turned = TypeVar("Turned", "Curves", "Outline")
 
 if TYPE_CHECKING:
     from polarcheck.geometry.outline import Outline
@@ -75,8 +77,18 @@ class Finished(Columns, frozen=True):
     @cached_property
     def of_sections_put_together(self) -> list[Level]:
         """Those levels of single sections, in the frame of the part, that others are put together with."""
-        together = {level.sections for level in self.of_part}
-        return [self._turned(level) for level in self.levels if level.sections not in together]
+        return self._parts_of(self.of_part, self.levels)
+
+    @cached_property
+    def meant_put_together(self) -> list[Level]:
+        """The same of contours whose R is not known."""
+        return self._parts_of(self.meant_of_part, self.meant)
+
+    def _parts_of(self, of_part: list[Level], levels: list[Level]) -> list[Level]:
+        """The levels of single sections, in the frame of the part, of which levels of several are put together."""
+        rows = [level.walls.row for level in of_part if len(level.sections) > 1]
+        together = set(np.concatenate(rows).tolist()) if rows else set()
+        return [self._turned(level) for level in levels if int(level.walls.row[0]) in together]
 
     @cached_property
     def meant(self) -> list[Level]:
@@ -127,8 +139,8 @@ class Finished(Columns, frozen=True):
         turn = np.exp(1j * np.radians(angle))
         return level._replace(
             polygon=turned(level.polygon, float(np.radians(angle))),
-            outline=_turned_columns(level.outline, turn),
-            walls=_turned_columns(level.walls, turn),
+            outline=turned_columns(level.outline, turn),
+            walls=turned_columns(level.walls, turn),
             angle=angle,
         )
 
@@ -185,6 +197,9 @@ class Finished(Columns, frozen=True):
         )
 
 
-def _turned_columns(table: Any, turn: complex) -> Any:
+def turned_columns(table: Turned, turn: complex) -> Turned:
     """Curves or an outline turned about the center."""
-    return msgspec.structs.replace(table, **{name: getattr(table, name) * turn for name in ("start", "end", "center")})
+    columns = {name: getattr(table, name) for name in ("start", "end", "center")}
+    # Of lines the center stays NaN in its real part alone: equal lines are recognised by that.
+    turned = {name: np.where(np.isnan(points), points, points * turn) for name, points in columns.items()}
+    return msgspec.structs.replace(table, **turned)

@@ -25,28 +25,59 @@ class Sizes(NamedTuple):
         return f"{value / MM_PER_INCH**2:.4f} inch2" if self.inch else f"{value:.1f} mm2"
 
 
-def shape_in_words(shape: Shape, line_of: Callable[[int], int], sizes: Sizes, short: bool = False) -> str:
+class Manner(NamedTuple):
+    """
+    How a shape is told.
+
+    short: without areas, inside radii and distances from the axis.
+    from_c0: angles and places count from C0 of the part, else from C at the begin of the section, which is not known.
+    switch: the code that begins the section.
+    """
+
+    short: bool = False
+    from_c0: bool = True
+    switch: str = "G12.1"
+
+
+_PLAIN = Manner()
+
+
+def shape_in_words(shape: Shape, line_of: Callable[[int], int], sizes: Sizes, how: Manner = _PLAIN) -> str:
     """
     A shape as a note on a drawing: `hexagon, 27.000 across flats, corners R0.500, turned by 30 deg`.
 
-    line_of: the line of a row of the program. short: without areas, inside radii and distances from the axis.
+    line_of: the line of a row of the program.
     """
     value = shape.values
     told = _TOLD.get(shape.name, _polygon)(shape, line_of, sizes)
     told += _corners(value, sizes)
-    if shape.name != "circle" and "turned" in value:
+    if shape.name != "circle" and "turned" in value and (how.from_c0 or not how.short):
         told += _turned(shape)
-    told += _off_axis(value, shape, sizes, short)
+    told += _off_axis(value, shape, sizes, how.short)
     if (
         shape.name in ("contour", "polygon", "groove")
         or "regular_by_x" in value
         or ("x_least" in value and not shape.is_regular)
     ):
-        told += _extents(value, sizes, short)
+        told += _extents(value, sizes, how.short)
     if shape.is_open and shape.name == "contour":
         told.append("open: beyond its ends the part is not known")
+    if not (how.from_c0 or how.short) and _has_direction(shape):
+        from_c = f"from C at {how.switch}, which is not known"
+        is_turned = bool(value.get("turned")) and told[-1].startswith("turned")
+        told = [*told[:-1], f"{told[-1]} {from_c}"] if is_turned else [*told, f"C at {how.switch} is not known"]
     text = ", ".join(told)
     return f"pocket: {text}" if shape.inside and not shape.is_open and shape.name != "groove" else text
+
+
+def _has_direction(shape: Shape) -> bool:
+    """It is not the same however the part is turned."""
+    return shape.name != "circle" or "center_x" in shape.values
+
+
+def angle_in_words(angle: float) -> str:
+    """C as a word: C22.5, C120."""
+    return f"C{round(angle, 3) + 0.0:g}"
 
 
 _Told = list[str]
