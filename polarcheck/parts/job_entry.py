@@ -58,7 +58,8 @@ def job_entry(made: MadeShape, bar: float | None, *, inch: bool) -> dict[str, An
     keys = _SHAPES[made.shape](made, math.nan if bar is None else bar)
     entry: dict[str, Any] = {"shape": keys.shape, **keys.counts}
     entry |= {key: _length(length, inch) for key, length in keys.lengths.items()}
-    if "turned" in value and keys.shape != "circle":
+    knows_angle = all(section.angle is not None for section in made.sections)
+    if "turned" in value and keys.shape != "circle" and knows_angle:
         entry["turned"] = round(value["turned"], _ANGLE_DIGITS) + 0.0
     if "center_x" in value:
         entry["center"] = [_length(value[key], inch) for key in ("center_x", "center_c")]
