@@ -166,22 +166,23 @@ def _rectangle(values: Values) -> Drawn:
 
 
 def _round_with_flats(values: Values) -> Drawn:
-    count = round(values["flats"])
-    disc = _disc(values["diameter"] / 2)
-    if "distance" in values:
-        area = disc.intersection(_within(_round_about(count), [values["distance"]] * count))
-        return Drawn(area, area)
-    if "least" in values and count == 2 and "apart" in values:
-        raise NotDrawnError("which of two flats is the nearer one is not said")
-    raise NotDrawnError("the directions of uneven flats are not said")
+    area = _disc(values["diameter"] / 2).intersection(_between_flats(values))
+    return Drawn(area, area)
 
 
 def _flats(values: Values) -> Drawn:
-    count = round(values["flats"])
-    if "distance" not in values or (count > 2 and "apart" not in values):
-        raise NotDrawnError("the directions of uneven flats are not said")
-    area = _within(_round_about(count), [values["distance"]] * count)
+    area = _between_flats(values)
     return Drawn(area, area, open=True)
+
+
+def _between_flats(values: Values) -> Any:
+    """What flats leave: each where the words say that it is, else all alike; the first has the direction 0."""
+    count = round(values["flats"])
+    if "turned_1" not in values:
+        return _within(_round_about(count), [values["distance"]] * count)
+    numbers = range(1, count + 1)
+    directions = [cmath.rect(1, math.radians(values[f"turned_{number}"] - values["turned"])) for number in numbers]
+    return _within(directions, [values[f"distance_{number}"] for number in numbers])
 
 
 def _open_regular(values: Values) -> Drawn:
@@ -210,6 +211,21 @@ def _keyway(values: Values) -> Drawn:
     return Drawn(area, area, open=True)
 
 
+def _round_with_keyway(values: Values) -> Drawn:
+    half, bottom, radius = values["width"] / 2, values["distance"], values["diameter"] / 2
+    disc = _disc(radius)
+    outward = bottom > radius
+    end = values.get("radius", 0.0)
+    box = shapely.box(0.0, -half, bottom - end, half) if outward else shapely.box(bottom + end, -half, FAR, half)
+    if end:
+        box = box.union(_disc(end, complex(bottom - end if outward else bottom + end)))
+    box = _rounded(box, values.get("corner_radius", 0.0))
+    for direction in _round_about(round(values["keyways"])):
+        keyway = shapely.affinity.rotate(box, math.degrees(cmath.phase(direction)), origin=(0, 0))
+        disc = disc.union(keyway) if outward else disc.difference(keyway)
+    return Drawn(disc, disc)
+
+
 def _cam(values: Values) -> Drawn:
     discs = [_disc(values["radius"]), _disc(values["radius_small"], complex(values["apart"]))]
     area = shapely.union_all(discs).convex_hull
@@ -229,6 +245,7 @@ _DRAWN_BY: Mapping[str, Callable[[Values], Drawn]] = {
     "flats": _flats,
     "slot": _slot,
     "keyway": _keyway,
+    "round with keyway": _round_with_keyway,
     "cam": _cam,
     "cross": _cross,
 }
@@ -320,7 +337,6 @@ def mismatches(
             beside = [
                 one for one in made if one is not shape and _share_sections(one, shape) and z in (one.depths or [None])
             ]
-            # A line that runs several times begins several sections: the shape is that of one of them.
             best: list[Mismatch] | None = None
             for sections, turned in _sections_of(tables, shape):
                 sweep = sweep_at(tables, sections, z, turned, all_moves)
@@ -388,6 +404,8 @@ def _compared(
     if shape.inside:
         behind = drawn.most.buffer(BAND).difference(drawn.most.buffer(TOLERANCE))
         entered = sweep.area.intersection(behind).intersection(clear).difference(other)
+        for boss in _bosses(beside):
+            entered = entered.intersection(boss.buffer(-TOLERANCE))
     else:
         entered = sweep.area.intersection(drawn.least.buffer(-TOLERANCE)).intersection(clear).difference(other)
     if entered.area > NOTHING:
@@ -434,6 +452,13 @@ def _reachable(shape: MadeShape, drawn: Drawn, radius: float) -> Any:
     return drawn.most.buffer(size, quad_segs=segments).buffer(-size, quad_segs=segments)
 
 
+def _bosses(beside: Sequence[MadeShape]) -> Iterator[Any]:
+    """What flats of this depth leave, in which a slot is cut."""
+    for one in beside:
+        if one.shape == "flats":
+            yield drawn_of(one, one.values).least  # type: ignore[union-attr]
+
+
 def _outline(shape: MadeShape, drawn: Drawn, sweep: Sweep) -> Any:
     """The line that must be swept: the outline, TOLERANCE within the air, R of the cutter in corners left apart."""
     reach = _reachable(shape, drawn, sweep.radius)
@@ -466,9 +491,9 @@ def _measured(shape: MadeShape, sweep: Sweep, bar: float) -> Iterator[tuple[str,
         return
     told = np.array([values[name] for name in ("x_least", "c_least", "x_most", "c_most")])
     ribs = any(left.kind != "corner" for left in shape.left_standing)
-    candidates = _areas_left(shape, sweep, bar)
-    if not candidates and ribs:
+    if ribs:
         return
+    candidates = _areas_left(shape, sweep, bar)
     if not candidates:
         yield "there is no such area", 0.0
         return
@@ -479,7 +504,7 @@ def _measured(shape: MadeShape, sweep: Sweep, bar: float) -> Iterator[tuple[str,
     if off[best] > TOLERANCE and not corners:
         yield "other extents", off[best]
     wrong = abs(area.area - values["area"]) / max(area.length, NOTHING)
-    if wrong > TOLERANCE and not corners and not ribs:
+    if wrong > TOLERANCE and not corners:
         yield "another area", wrong
     hollow = values.get("inside_radius", 0.0)
     if hollow > sweep.radius and not corners:

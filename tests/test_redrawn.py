@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import cmath
+import math
 from pathlib import Path
 from typing import Any
 
@@ -9,6 +11,7 @@ import numpy as np
 import pytest
 from contour_families import FAMILIES, program_of
 from contour_verdicts import compare
+from drawn_contours import contour
 from programs import tables_of
 from redrawn_parts import Mismatch, mismatches
 from test_samples import NAMES, SAMPLES, settings
@@ -71,11 +74,11 @@ HEAD = "G21 G98 G40 T0808\nG0 X80. Z2. C0\nG12.1\nG1 Z-2. F300\n"
 
 
 def told(body: str, radius: float, stock: float = 0, head: str = HEAD) -> tuple[list[MadeShape], list[Mismatch]]:
-    """What is told of a program, and what of it is not what the cutter leaves."""
+    """What is told of a program, and what of it is not what the cutter leaves; on its way to G41 it cuts nothing."""
     job = {"stock": {"diameter": stock}} if stock else {}
     tables = tables_of(f"{head}{body}\nG13.1\nM30\n", "fanuc", f"8:radius={radius}", job=job)
     made = made_by(tables)
-    return made, differences(tables, made, stock or np.nan)
+    return made, differences(tables, made, stock or np.nan, all_moves=False)
 
 
 def left(made: list[MadeShape]) -> list[str]:
@@ -120,3 +123,92 @@ def test_a_cutter_too_large_for_the_walls_beside_inside_corners_is_told() -> Non
     ]
     made, wrong = told(cross, 3.9, head=HEAD.replace("X80.", "X90."))
     assert (left(made), wrong) == (["R3.900 of the cutter in 4 inside corners"], [])
+
+
+def keyed(count: int, turned: float, center: complex = 0j) -> str:
+    """A shaft of R20 with keyways 6 wide down to 15 from its center, as blocks from G42 to G40."""
+
+    def words(point: complex, start: complex | None = None) -> str:
+        place = f"X{2 * point.real:.3f} C{point.imag:.3f}"
+        if start is None:
+            return place
+        return f"{place} I{center.real - start.real:.3f} J{center.imag - start.imag:.3f}"
+
+    first = center + cmath.rect(20, math.radians(turned) - math.pi / count)
+    away = center + cmath.rect(50, math.radians(turned) - math.pi / count)
+    blocks, here = [f"G1 {words(away)} F200", f"G42 {words(first)}"], first
+    for number in range(count):
+        direction = cmath.rect(1, math.radians(turned) + math.tau * number / count)
+        rim = math.sqrt(20**2 - 3**2)
+        one, two, three, four = (center + direction * complex(*at) for at in ((rim, -3), (15, -3), (15, 3), (rim, 3)))
+        blocks += [f"G3 {words(one, here)}", f"G1 {words(two)}", words(three), words(four)]
+        here = four
+    return "\n".join([*blocks, f"G3 {words(first, here)}", f"G1 G40 {words(away)}"])
+
+
+@pytest.mark.parametrize(("count", "turned", "center"), [(1, 0.0, 0j), (4, 30.0, 0j), (1, 90.0, 3 - 2j)])
+def test_a_shaft_with_keyways_is_no_round_with_flats(count: int, turned: float, center: complex) -> None:
+    made, wrong = told(keyed(count, turned, center), 2.0)
+    assert ([one.shape for one in made], wrong) == (["round with keyway"], [])
+    sizes = {"diameter": 40, "keyways": count, "width": 6, "distance": 15, "turned": turned}
+    assert {name: made[0].values[name] for name in sizes} == pytest.approx(sizes, abs=0.01)
+    words = "a keyway 6" if count == 1 else "4 keyways 6"
+    assert words in made[0].text.replace("5.999", "6.000")
+    assert left(made) == [f"R2.000 of the cutter in {2 * count} inside corners"]
+
+
+def test_extents_of_a_polygon_with_round_corners_are_those_of_its_arcs() -> None:
+    """One of its corners is sharp: its sides alone reach less far than its arcs."""
+    body = "G42 X40. C0 F200\nC5.\nG3 X20. C15. I-10. J0\nG1 X-30.\nX-50. C-5.\nC-20.\nX30.\nG3 X40. C-15. I0. J5.\n"
+    made, wrong = told(body + "G1 C0\nG40 X80.", 2.0)
+    assert (made[0].values["x_most"], made[0].values["c_most"]) == (pytest.approx(20), pytest.approx(15))
+    assert wrong == []
+
+
+@pytest.mark.slow
+def test_words_of_drawn_contours_are_what_their_cutters_leave() -> None:
+    wrong = []
+    for seed in range(240):
+        drawn = contour(seed)
+        tables = tables_of(drawn.text(), drawn.machine, *drawn.tools)
+        wrong += [(seed, drawn.family, one) for one in differences(tables, made_by(tables))]
+    assert wrong == []
+
+
+def flats(*places: tuple[float, float]) -> str:
+    """Flats in one section, each by its direction and its distance from the center."""
+    blocks = []
+    for angle, distance in places:
+        direction = cmath.rect(1, math.radians(angle))
+        way = [complex(distance + 9, -40), complex(distance, -30), complex(distance, 30), complex(distance + 9, 40)]
+        one, two, three, four = (f"X{2 * (direction * at).real:.3f} C{(direction * at).imag:.3f}" for at in way)
+        blocks += ["G1 Z2. F300", one, "Z-2.", f"G42 {two}", three, f"G40 {four}"]
+    return "\n".join(blocks)
+
+
+@pytest.mark.parametrize("bar", [0, 32])
+@pytest.mark.parametrize(
+    ("places", "words"),
+    [
+        (((0, 12), (90, 12)), "2 flats, 12.000 from the center at 0 and 90 deg; to Z-2.000"),
+        (((0, 12), (90, 13)), "2 flats, 12.000 at 0 deg and 13.000 at 90 deg from the center; to Z-2.000"),
+        (((0, 12), (180, 14)), "flats 26.000 apart, 12.000 at 0 deg and 14.000 at 180 deg from the center; to Z-2.000"),
+    ],
+)
+def test_of_uneven_flats_each_is_told_with_its_direction(
+    places: tuple[tuple[float, float], ...], words: str, bar: float
+) -> None:
+    made, wrong = told(flats(*places), 4.0, bar, HEAD.replace("X80.", "X90."))
+    assert ([one.text for one in made], wrong) == ([words], [])
+
+
+def test_a_slot_between_flats_is_no_third_flat() -> None:
+    slot = "G1 Z2.\nX0 C-40.\nZ-2.\nG41 X10. C-30.\nC30.\nG40 X0 C40.\nG41 X-10. C30.\nC-30.\nG40 X0 C-40."
+    made, wrong = told(flats((90, 12), (270, 12)) + "\n" + slot, 4.0, 32.0, HEAD.replace("X80.", "X90."))
+    assert ([one.text for one in made], wrong) == (
+        [
+            "flats 24.000 apart, turned by 90 deg; to Z-2.000",
+            "slot 10.000 wide, open at both ends, turned by 90 deg; to Z-2.000",
+        ],
+        [],
+    )

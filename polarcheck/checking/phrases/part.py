@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple
 
 from polarcheck.geometry.shapes.shape import Shape
@@ -135,11 +135,26 @@ def _round_with_flats(shape: Shape, line_of: _Line, sizes: Sizes) -> _Told:
     if "apart" in value:
         told[0] += f" {sizes(value['apart'])} apart"
     middle = "center of the circle" if "center_x" in value else "center"
+    if "turned_1" in value:
+        return [*told, _each(value, middle, sizes)]
     if "distance" in value and "apart" not in value:
         told[0] += f", {_away(value['distance'], middle, sizes)}"
-    if "least" in value:
-        told.append(f"{sizes(value['least'])} to {sizes(value['most'])} from the {middle}")
     return told
+
+
+def _each(value: Mapping[str, float], middle: str, sizes: Sizes) -> str:
+    """`12.000 at 0 deg and 14.000 at 90 deg from the center`: uneven flats one by one."""
+    numbers = range(1, int(value["flats"]) + 1)
+    angles = [_degrees(value[f"turned_{number}"]) for number in numbers]
+    if "distance" in value:
+        return f"{_away(value['distance'], middle, sizes)} at {_and(angles)} deg"
+    distances = [sizes(value[f"distance_{number}"]) for number in numbers]
+    flats = [f"{distance} at {angle} deg" for distance, angle in zip(distances, angles, strict=True)]
+    return f"{_and(flats)} from the {middle}"
+
+
+def _and(words: Sequence[str]) -> str:
+    return f"{', '.join(words[:-1])} and {words[-1]}"
 
 
 def _flats(shape: Shape, line_of: _Line, sizes: Sizes) -> _Told:
@@ -147,21 +162,16 @@ def _flats(shape: Shape, line_of: _Line, sizes: Sizes) -> _Told:
     count = int(value["flats"])
     if "apart" in value:
         told = [f"flats {sizes(value['apart'])} apart"]
-        told += [] if "distance" in value else [_from_to(value, sizes)]
+        told += [] if "distance" in value else [_each(value, "center", sizes)]
         return told + ([f"an arc R{sizes(value['joined'])} from one to the other"] if "joined" in value else [])
     if count == 1:
         return [f"flat {_away(value['distance'], 'center', sizes)}"]
-    where = _away(value["distance"], "center", sizes) if "distance" in value else _from_to(value, sizes)
-    return [f"{count} flats", where]
+    return [f"{count} flats", _each(value, "center", sizes)]
 
 
 def _away(distance: float, middle: str, sizes: Sizes) -> str:
     """How far a flat or a bottom is from the middle; beyond it where the part does not reach that far."""
     return f"{sizes(abs(distance))} {'from' if distance >= 0 else 'beyond'} the {middle}"
-
-
-def _from_to(value: Mapping[str, float], sizes: Sizes) -> str:
-    return f"{sizes(value['least'])} and {sizes(value['most'])} from the center"
 
 
 def _slot(shape: Shape, line_of: _Line, sizes: Sizes) -> _Told:
@@ -177,6 +187,17 @@ def _keyway(shape: Shape, line_of: _Line, sizes: Sizes) -> _Told:
     end = f"round end R{sizes(value['radius'])}" if "radius" in value else "square end"
     bottom = f"its bottom {_away(value['distance'], 'center', sizes)}"
     return [f"keyway {sizes(value['width'])} wide", bottom, end]
+
+
+def _round_with_keyway(shape: Shape, line_of: _Line, sizes: Sizes) -> _Told:
+    value = shape.values
+    count, is_key = int(value["keyways"]), (value["distance"] > value["diameter"] / 2) != shape.inside
+    name, end = ("key", "top") if is_key else ("keyway", "bottom")
+    which = f"a {name}" if count == 1 else f"{count} {name}s"
+    middle = "center of the circle" if "center_x" in value else "center"
+    its = f"{'its' if count == 1 else 'their'} {end} {_away(value['distance'], middle, sizes)}"
+    told = [f"round {sizes(value['diameter'])} with {which} {sizes(value['width'])} wide", its]
+    return told + ([f"round end R{sizes(value['radius'])}"] if "radius" in value else [])
 
 
 def _cam(shape: Shape, line_of: _Line, sizes: Sizes) -> _Told:
@@ -206,6 +227,7 @@ _TOLD: Mapping[str, Callable[[Shape, _Line, Sizes], _Told]] = {
     "flats": _flats,
     "slot": _slot,
     "keyway": _keyway,
+    "round with keyway": _round_with_keyway,
     "cam": _cam,
     "cross": _cross,
     "groove": _groove,
@@ -224,9 +246,13 @@ def _corners(value: Mapping[str, float], sizes: Sizes) -> _Told:
 
 
 def _turned(shape: Shape) -> _Told:
+    turned = _degrees(shape.values["turned"])
+    return [f"turned by {turned} deg"] if turned != "0" and "turned_1" not in shape.values else []
+
+
+def _degrees(angle: float) -> str:
     # Words with three digits turn a side of some millimetres by some thousandths of a degree.
-    turned = f"{shape.values['turned']:.2f}".rstrip("0").rstrip(".")
-    return [f"turned by {turned} deg"] if turned != "0" else []
+    return f"{angle:.2f}".rstrip("0").rstrip(".")
 
 
 def _off_axis(value: Mapping[str, float], shape: Shape, sizes: Sizes, short: bool) -> _Told:

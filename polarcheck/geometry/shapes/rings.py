@@ -15,7 +15,7 @@ import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Points, Rows
 from polarcheck.geometry.outline import Outline
-from polarcheck.geometry.plane import arc_sweep
+from polarcheck.geometry.plane import arc_sweep, passes_toward
 from polarcheck.geometry.rounding import kept_ends
 from polarcheck.geometry.shapes.shape import SAME
 
@@ -289,3 +289,23 @@ def _joined(ring: Ring, begins: Mask) -> Ring:
     # The block that says most of the side; the first of those that say as much.
     order = np.lexsort((ring.row, -np.round(ring.length, 3), np.cumsum(begins)))
     return Ring(ring.start[first], ring.end[last], center, sweep, ring.row[order[first]], ring.closed, ring.inside)
+
+
+def extents_of(ring: Ring) -> dict[str, float]:
+    """How far it reaches along X and C, as values of a shape."""
+    (x_least, x_most), (c_least, c_most) = _extents(ring, 1), _extents(ring, 1j)
+    return {"x_least": x_least, "x_most": x_most, "c_least": c_least, "c_most": c_most}
+
+
+def _extents(ring: Ring, axis: complex) -> tuple[float, float]:
+    """The least and the largest coordinate along an axis, those of arcs between their ends included."""
+    ends = np.concatenate([ring.start, ring.end])
+    places = [(ends * np.conj(axis)).real]
+    arcs = np.flatnonzero(~ring.is_line)
+    for sign in (1, -1):
+        toward = np.full(len(arcs), sign * axis, np.complex128)
+        there = passes_toward(ring.start[arcs] - ring.center[arcs], ring.sweep[arcs], toward)
+        top = ring.center[arcs] + sign * axis * ring.radius[arcs]
+        places.append((top[there] * np.conj(axis)).real)
+    along = np.concatenate(places)
+    return float(along.min()), float(along.max())

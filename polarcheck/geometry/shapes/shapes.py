@@ -8,11 +8,11 @@ import numpy as np
 
 from polarcheck.arrays import Mask
 from polarcheck.geometry.outline import Outline
-from polarcheck.geometry.plane import passes_toward
 from polarcheck.geometry.shapes.corners import sides_of
+from polarcheck.geometry.shapes.keyways import keyed_round_of
 from polarcheck.geometry.shapes.open_ones import flats_of, keyway_of
 from polarcheck.geometry.shapes.polygons import cross_of, in_chords, polygon_of
-from polarcheck.geometry.shapes.rings import SHARP, Ring, directions, rings
+from polarcheck.geometry.shapes.rings import SHARP, Ring, directions, extents_of, rings
 from polarcheck.geometry.shapes.rounds import round_of, two_rounds_of
 from polarcheck.geometry.shapes.shape import Shape
 from polarcheck.time_limit import keep_time
@@ -33,8 +33,8 @@ def shapes_of_rings(found: Iterable[Ring]) -> list[Shape]:
     others: list[Shape] = []
     for ring in found:
         keep_time()
-        if len(ring) == 1 and not ring.closed and ring.is_line[0]:
-            single.append(ring)
+        if _is_of_flats(ring):
+            single += [ring.some(np.array([side])) for side in range(len(ring))]
         elif len(ring):
             others.append(_shape_of(ring))
     beyond = _beyond(min((ring.beyond for ring in single), default=np.inf))
@@ -49,6 +49,15 @@ def _shape_of(ring: Ring) -> Shape:
         fits = _fits_corners(ring, sharp)
         corners |= {"corner_reach": fits} if np.isfinite(fits) else {}
     return found._replace(values=found.values | corners)
+
+
+def _is_of_flats(ring: Ring) -> bool:
+    """An open ring of straight sides, convex: what stands is within all of them."""
+    if ring.closed or not ring.is_line.all():
+        return False
+    into, out = directions(ring)
+    turn = np.angle(out[1:] * into[:-1].conj())
+    return len(ring) > 0 and bool((turn > 0).all()) and float(turn.sum()) < 2 * np.pi
 
 
 def _beyond(radius: float) -> dict[str, float]:
@@ -68,31 +77,17 @@ def _fits_corners(ring: Ring, sharp: Mask) -> float:
 def _recognised(ring: Ring) -> Shape:
     sides = sides_of(ring)
     of_sides = sides and (in_chords(ring, sides) or polygon_of(ring, sides) or cross_of(ring, sides))
-    return round_of(ring) or two_rounds_of(ring) or of_sides or keyway_of(ring) or contour_of(ring)
+    of_circle = round_of(ring) or two_rounds_of(ring) or keyed_round_of(ring)
+    return of_circle or of_sides or keyway_of(ring) or contour_of(ring)
 
 
 def contour_of(ring: Ring) -> Shape:
     """Anything else, by its extents."""
-    x, c = _extents(ring, 1), _extents(ring, 1j)
-    values = {"x_least": x[0], "x_most": x[1], "c_least": c[0], "c_most": c[1]}
+    values = extents_of(ring)
     if ring.closed:
         values["area"] = ring.area
     values |= _inside_radius(ring)
     return Shape("contour", ring.inside, values, row=int(ring.row[0]), is_open=not ring.closed)
-
-
-def _extents(ring: Ring, axis: complex) -> tuple[float, float]:
-    """The least and the largest coordinate along an axis, those of arcs between their ends included."""
-    ends = np.concatenate([ring.start, ring.end])
-    places = [(ends * np.conj(axis)).real]
-    arcs = np.flatnonzero(~ring.is_line)
-    for sign in (1, -1):
-        toward = np.full(len(arcs), sign * axis, np.complex128)
-        there = passes_toward(ring.start[arcs] - ring.center[arcs], ring.sweep[arcs], toward)
-        top = ring.center[arcs] + sign * axis * ring.radius[arcs]
-        places.append((top[there] * np.conj(axis)).real)
-    along = np.concatenate(places)
-    return float(along.min()), float(along.max())
 
 
 def _inside_radius(ring: Ring) -> dict[str, float]:
