@@ -16,12 +16,13 @@ def part_differs_from_drawing(deviations: Deviations) -> Mask:
     """
     Part that is not the one of the drawing.
 
-    What the contours in offset mode leave standing differs from what the job asks for by more than its tolerance,
-    0.02 mm unless that says another one. The drawing (--drawing, or drawing in a [[part]] of polarcheck.toml) has its
-    origin on the spindle axis, and its x runs towards C0 as a radius; a [[part]] may also give a shape with its
-    numbers. Deviations are measured from the part to the drawing and back. The block that is named is the one whose
-    wall lies nearest to the largest of them. Where the part would fit if it were turned, mirrored, or had X as a
-    diameter, that is said as well. Correct the coordinates, or the drawing.
+    What the contours in offset mode leave standing differs from what the job asks for by more than its tolerance, 0.02
+    mm unless that or --tolerance says another one. The drawing (--drawing, or drawing in a [[part]] of
+    polarcheck.toml) has its origin on the spindle axis, and its x runs towards C0 as a radius; a [[part]] may also
+    give a shape with its numbers. Deviations are measured from the part to the drawing and back. The block that is
+    named is the one whose wall lies nearest to the largest of them. Where the part would fit if it were turned,
+    mirrored, or had X as a diameter, or the drawing if it were shifted or in other units, that is said as well.
+    Correct the coordinates, or the drawing.
 
     Source: B-62764EN/01, p. 51-53 (X as a diameter, C as a length, and C0 where the mode begins).
 
