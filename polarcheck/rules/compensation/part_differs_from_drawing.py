@@ -16,8 +16,8 @@ def part_differs_from_drawing(deviations: Deviations) -> Mask:
     """
     Part that is not the one of the drawing.
 
-    What the program makes differs from what the job asks for by more than its tolerance, 0.02 mm unless that says
-    another one. The drawing (--drawing, or drawing in a [[part]] of polarcheck.toml) has its origin on the spindle
+    What the program makes differs from what the job asks for by more than its tolerance, 0.02 mm unless that or
+    --tolerance says another one. The drawing (--drawing, or drawing in a [[part]]) has its origin on the spindle
     axis, and its x runs towards C0 as a radius; a [[part]] may also give a shape with its numbers. Contours in offset
     mode are measured to the drawing and back. Then the metal that the cutters clear, in all sections and at each depth,
     is laid over the part: metal that should be gone and still stands, as a wall that is never milled, and metal that is
