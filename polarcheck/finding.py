@@ -177,7 +177,7 @@ class LeftStanding(msgspec.Struct, frozen=True, kw_only=True):
     line: of the block that leaves it; null for corners.
     size: R of corners, else height or thickness [mm].
     count: of corners.
-    place: [x, c] [mm, radius]; null for corners.
+    place: [x, c] in the frame of the part [mm, radius]; null for corners.
     """
 
     kind: str
@@ -188,26 +188,44 @@ class LeftStanding(msgspec.Struct, frozen=True, kw_only=True):
     place: tuple[float, float] | None = None
 
 
+class MadeInSection(msgspec.Struct, frozen=True, kw_only=True):
+    """
+    A polar section that makes a shape, or some of it.
+
+    line, end_line: of its G12.1 and of its end.
+    angle: of C at G12.1 [deg], from 0 to 360; null if unknown.
+    """
+
+    line: int
+    end_line: int
+    angle: float | None
+
+
 class MadeShape(msgspec.Struct, frozen=True, kw_only=True):
     """
-    A shape that a polar section makes, at one or more depths.
+    A shape that polar sections make, at one or more depths, in the frame of the part: angles count from C0.
 
-    line, end_line: of the G12.1 of the section and of its end.
+    line, end_line: of the G12.1 of the first section and of its end.
+    sections: all sections that make it together, as flats with C between them.
     z: of the deepest pass [mm]; null if unknown.
     depths: Z of each pass [mm], in the order of the program.
     shape: hexagon, circle, flats, slot, contour, ...; null if unknown.
     inside: it is a pocket.
     is_regular: all its sides are equal.
-    values: its sizes [mm, mm2, deg], see docs/part.md.
+    values: its sizes [mm, mm2, deg], see docs/part.md; where the angle of C is unknown, as the section writes it.
     odd: sides that differ from the others.
     text: the shape in words.
     left_standing: material that the tool leaves.
     needs: what is unknown, and what to give; null if nothing is.
+    as_meant: numbers without a decimal point that are taken as if they had one, told at the first shape of a section;
+        null if there are none.
+    is_compared: false where the job asks for parts, but for none of these sections; absent where it asks for none.
     channel: of a file with several channels, as `$2`.
     """
 
     line: int
     end_line: int
+    sections: list[MadeInSection]
     z: float | None
     depths: list[float]
     shape: str | None
@@ -218,6 +236,8 @@ class MadeShape(msgspec.Struct, frozen=True, kw_only=True):
     text: str
     left_standing: list[LeftStanding] = []
     needs: str | None = None
+    as_meant: str | None = None
+    is_compared: bool | UnsetType = UNSET
     channel: str | UnsetType = UNSET
 
 
@@ -232,9 +252,10 @@ class PartComparison(msgspec.Struct, frozen=True, kw_only=True):
     largest: largest difference.
     tolerance: of the comparison.
     too_much, cut_away: most material that is left on the part, and that is missing.
-    at: [x, c] of the largest difference, x as a radius.
+    at: [x, c] of the largest difference as its section writes it, x as a radius; null where nothing differs.
     line: of the block there.
-    turned: angle of a shape that may be turned in any way [deg].
+    turned: angle of a shape whose angle is not compared [deg].
+    angle_not_compared: why it is not; null where it is, and where the shape has none.
     text: the comparison in words, in the units of the program.
     """
 
@@ -249,6 +270,7 @@ class PartComparison(msgspec.Struct, frozen=True, kw_only=True):
     at: tuple[float | None, float | None]
     line: int
     turned: float | None
+    angle_not_compared: str | None
     text: str
 
 
@@ -290,6 +312,7 @@ class FileReport(msgspec.Struct, frozen=True, kw_only=True):
     looked_at: aspects that were checked; outside polar sections these are text, flow and position.
     silenced: suppressed findings.
     stock: the bar before milling, if anything is known of it.
+    makes: in one line what the only section makes, for text; not part of the JSON contract.
     part: what the program makes, if requested.
     compared: its contours compared with those asked for, if requested.
     """
@@ -306,6 +329,7 @@ class FileReport(msgspec.Struct, frozen=True, kw_only=True):
     looked_at: list[str] = []
     silenced: list[Silenced] = []
     stock: KnownStock | None = None
+    makes: str | UnsetType = UNSET
     part: list[MadeShape] | UnsetType = UNSET
     compared: list[PartComparison] | UnsetType = UNSET
 

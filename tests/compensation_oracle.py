@@ -273,7 +273,12 @@ def along(
     if center is None:
         run.line(element.row, entry[-1], leave[0], "OFFSET")
     elif compensated_sweep(element, entry[-1], leave[0]) * abs(leave[0] - center) > ZERO:
-        run.moves.append(Move(element.row, kind, entry[-1], leave[0], center, "OFFSET", False))
+        points = [entry[-1], leave[0]]
+        # Of more than a full circle both ends alone do not tell how much it is.
+        if compensated_sweep(element, *points) > math.tau and abs(points[1] - points[0]) > ZERO:
+            points.insert(1, 2 * center - points[0])
+        for start, end in pairwise(points):
+            run.moves.append(Move(element.row, kind, start, end, center, "OFFSET", False))
     return entry, leave
 
 

@@ -17,6 +17,7 @@ from plane_moves import path_of_rows, points_along, turn_of
 from programs import SHARED
 
 from polarcheck.geometry.cutter_compensation.compensation import Method, Path, Phase, ToolPath, tool_center_path
+from polarcheck.geometry.plane import arc_sweep
 from polarcheck.machines.modal import Motion, Side
 
 CASES = SHARED / "facts" / "compensation_cases.json"
@@ -659,3 +660,15 @@ def test_tool_keeps_its_distance(program, start_up):
         points = points_along(tool.start[move], tool.end[move], tool.center[move], tool.kind[move], 60)
         for row in contour:
             assert distance_to_block(points, path, row).min() >= path.radius[0] - 1e-6
+
+
+@pytest.mark.parametrize("turned", [1e-6, -1e-6, 0.0])
+def test_a_full_circle_between_arcs_that_nearly_touch_it_is_run_whole(turned):
+    """Rounded centers move the ends of its offset circle by less than a micrometre: past each other, or not."""
+    spoke = cmath.exp(1j * turned)
+    before, behind = Block("ccw", 20 + 0j, 20 - 8 * spoke, "", 3.0), Block("ccw", 12 + 8j, 12 + 0j, "", 3.0)
+    blocks = [Block("line", 20 - 16 * spoke, None, "G42", 3.0), before, Block("ccw", 20 + 0j, 0j, "", 3.0), behind]
+    path = tool_center_path(path_of((20 - 40 * spoke, blocks)))
+    of_circle = (path.kind == Motion.CCW) & (np.abs(path.center) < 1e-3)
+    sweep = arc_sweep(path.start[of_circle], path.end[of_circle], path.center[of_circle], path.kind[of_circle])
+    assert sweep.sum() == pytest.approx(2 * np.pi, abs=1e-4)

@@ -124,6 +124,72 @@ def test_what_is_no_contour_is_passed_over(tmp_path: Path) -> None:
     assert area(curve) == pytest.approx(100 * math.pi, abs=0.05)
 
 
+def layered(space: Any) -> None:
+    """Circles of 10, 20, 30 and 40: on a layer, in a block that is inserted there, on one that is off, on 0."""
+    for name in ("Contour", "NOTES", "Rough"):
+        space.doc.layers.add(name)
+    space.doc.layers.get("Rough").off()
+    space.add_circle((0, 0), 5, dxfattribs={"layer": "Contour"})
+    block = space.doc.blocks.new("inner")
+    block.add_circle((0, 0), 10, dxfattribs={"layer": "0"})
+    block.add_circle((0, 0), 20, dxfattribs={"layer": "NOTES"})
+    space.add_blockref("inner", (0, 0), dxfattribs={"layer": "CONTOUR"})
+    space.add_circle((0, 0), 15, dxfattribs={"layer": "Rough"})
+    space.add_circle((0, 0), 25)
+    space.add_text("x", dxfattribs={"layer": "NOTES"})
+
+
+@pytest.mark.parametrize(
+    ("layers", "diameters"),
+    [
+        ([], [10, 20, 40, 50]),
+        (["Contour"], [10, 20]),
+        (["CONTOUR"], [10, 20]),
+        (["rough"], [30]),
+        (["0"], [50]),
+        (["notes", "0"], [40, 50]),
+    ],
+)
+@pytest.mark.parametrize("version", ["R12", "R2010", "R2018"])
+def test_of_named_layers_only_what_lies_on_them_counts(
+    tmp_path: Path, version: str, layers: list[str], diameters: list[float]
+) -> None:
+    path = written(tmp_path / "a.dxf", layered, version)
+    found = drawing.read_drawing(path, "part.dxf", layers).curves
+    assert sorted(2 * abs(curve[0]) for curve in found) == pytest.approx(diameters)
+
+
+@pytest.mark.parametrize(
+    ("layers", "message"),
+    [
+        (["Contur"], "part.dxf: has no layer Contur; its layers are 0, Contour, NOTES, Rough"),
+        (
+            ["empty"],
+            "part.dxf: shows no line, arc or curve of a part; ignored: 2 on layer Contour, 1 on layer NOTES, "
+            "1 on layers that are off, frozen or DEFPOINTS, 1 on layer 0",
+        ),
+    ],
+)
+def test_a_layer_that_is_not_there_is_told_with_those_that_are(tmp_path: Path, layers: list[str], message: str) -> None:
+    def draw(space: Any) -> None:
+        layered(space)
+        if layers == ["empty"]:
+            space.doc.layers.add("Empty")
+
+    with pytest.raises(JobError) as raised:
+        drawing.read_drawing(written(tmp_path / "a.dxf", draw), "part.dxf", layers)
+    assert str(raised.value) == message
+
+
+def test_of_many_layers_the_first_are_named(tmp_path: Path) -> None:
+    def draw(space: Any) -> None:
+        for number in range(20):
+            space.add_line((0, 0), (1, number), dxfattribs={"layer": f"L{number:02}"})
+
+    with pytest.raises(JobError, match=r"has no layer x; its layers are 0, L00, .*, L10 and 9 more$"):
+        drawing.read_drawing(written(tmp_path / "a.dxf", draw), "part.dxf", ["x"])
+
+
 def test_what_was_passed_over_is_told_where_nothing_is_left(tmp_path: Path) -> None:
     path = written(tmp_path / "a.dxf", lambda space: [space.add_text("x"), space.add_text("y")])
     with pytest.raises(JobError, match=r"^part\.dxf: shows no line, arc or curve of a part; ignored: 2 TEXT$"):

@@ -121,6 +121,27 @@ FAULTS_OF_CONTOUR: Final = (
     "wrong-axis-address-in-polar",
     "z-with-plane-axis",
 )
+#: What leaves other metal than a contour says, or says that the contour is another one.
+FAULTS_OF_METAL: Final = (
+    "c-elsewhere-at-entry",
+    "cancel-shorter-than-radius",
+    "cancel-without-start-up",
+    "compensation-without-contour",
+    "cut-in-air",
+    "degrees-in-polar",
+    "diameter-radius-mixed",
+    "pass-depth-differs",
+    "pass-ends-inside-bar",
+    "passes-differ",
+    "polar-never-entered",
+    "radius-contradicts-comment",
+    "rapid-through-part",
+    "side-of-compensation-mirrored",
+    "start-up-after-contour",
+    "start-up-off-contour",
+    "start-up-shorter-than-radius",
+    "tool-contradicts-comment",
+)
 
 
 def subject_of(parameters: Iterable[str]) -> str:

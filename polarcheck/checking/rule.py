@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from polarcheck.arrays import Floats as Floats
     from polarcheck.arrays import Mask as Mask
     from polarcheck.arrays import States
+    from polarcheck.asked.deviations import Deviations as Deviations
     from polarcheck.checking.macro_faults import Faults as Faults
     from polarcheck.checking.other_machine import OtherMachine as OtherMachine
     from polarcheck.columns.axes import PlaneAxes as PlaneAxes
@@ -59,7 +60,6 @@ if TYPE_CHECKING:
     from polarcheck.table.contour_depths import ContourDepths as ContourDepths
     from polarcheck.table.coverage import Coverage as Coverage
     from polarcheck.table.crossings import Crossings as Crossings
-    from polarcheck.table.deviations import Deviations as Deviations
     from polarcheck.table.dialect import Dialect as Dialect
     from polarcheck.table.entry import Entry as Entry
     from polarcheck.table.entry_angles import EntryAngles as EntryAngles

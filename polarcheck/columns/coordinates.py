@@ -107,6 +107,11 @@ class Coordinates(Lookups):
         return np.asarray((without_points & (2 * large > unpointed))[program])
 
     @cached_property
+    def is_taken_as_pointed(self) -> Mask:
+        """Per word: a coordinate without a point that is followed as if it had one, though the control reads less."""
+        return np.asarray(self.is_unpointed & ~self._counts_increments)
+
+    @cached_property
     def _counts_increments(self) -> Mask:
         """
         Per word: its number is read in least increments.

@@ -229,10 +229,23 @@ class ProgrammedPath(Columns, frozen=True):
     @cached_property
     def z(self) -> Floats:
         """Z after the row [mm]; NaN while unknown."""
-        absolute, steps = self._programmed("Z", "W", 1.0, np.ones(len(self.run), bool))
-        if self.frames is not None:
-            absolute = absolute + self.frames.z
+        absolute, steps = self._z_words
         return positions(absolute, steps, self._forgets("Z", "W"), self._set_by("Z"))
+
+    @cached_property
+    def depth(self) -> Floats:
+        """
+        Z after the row, counted from 0 where Z is not known [mm]: by that, what is made at one depth is told apart.
+
+        Increments tell how much deeper a block is than another one. A Z word without a known value moves nothing.
+        """
+        absolute, steps = self._z_words
+        return positions(absolute, np.nan_to_num(steps), self._forgets("Z", "W"), np.nan_to_num(self._set_by("Z")))
+
+    @property
+    def _z_words(self) -> tuple[Floats, Floats]:
+        absolute, steps = self._programmed("Z", "W", 1.0, np.ones(len(self.run), bool))
+        return absolute if self.frames is None else absolute + self.frames.z, steps
 
     @cached_property
     def written_to_center(self) -> tuple[Floats, Floats]:
@@ -389,6 +402,11 @@ class ProgrammedPath(Columns, frozen=True):
     def section_entry(self) -> Floats:
         """C angle [deg] of the linear axis of each section's plane: that at its G12.1, or C0; 0 where not known."""
         return np.nan_to_num(self.c_angle[self.mode.sections.enter]) - self.axes.kept_angle[self.mode.sections.enter]
+
+    @cached_property
+    def knows_section_entry(self) -> Mask:
+        """Sections at whose beginning C is known; a boolean per section."""
+        return ~np.isnan(self.c_angle[self.mode.sections.enter])
 
     @cached_property
     def on_plane(self) -> Mask:

@@ -21,7 +21,8 @@ if TYPE_CHECKING:
 #: The argument and options of `check` that decide what is found.
 DECIDING = (
     *("paths", "machine", "changes", "tools", "offsets", "units", "select", "ignore", "severities", "inline"),
-    *("config", "no_config", "drawing", "block_skip", "subprograms", "max_blocks", "max_statements", "max_seconds"),
+    *("config", "no_config", "drawings", "drawing_layers", "tolerance", "block_skip", "subprograms"),
+    *("max_blocks", "max_statements", "max_seconds"),
     *("radius_from_comments", "extensions", "encoding", "max_size", "workers", "cluster"),
 )
 _FILE = "polarcheck-baseline.json"

@@ -50,7 +50,7 @@ def _outputs(ctx: click.Context, parameter: click.Parameter, values: tuple[str, 
 @click.argument("paths", nargs=-1, required=True, metavar="PATH...")
 @options.executing("programs")
 @options.judging
-@options.drawing
+@options.comparing
 @option(
     "--format",
     "form",
@@ -211,6 +211,8 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
     if fixed.ends:
         return max(faults.report(), fixed.status)
     form = arguments.form or ("text" if len(tasks) <= _LONG or arguments.shown_too else "short")
+    if not arguments.quiet:
+        tasks = reporting.with_makes(tasks, (form, *(other for other, _ in arguments.outputs)))
     failures: list[str] = []
     plain = reporting.background(
         reports.Background(

@@ -56,6 +56,10 @@ def _profiles(begun: str) -> Iterator[Item]:
     yield _item(begun, _PROFILE, "file")
 
 
+def _drawings(begun: str) -> Iterator[Item]:
+    yield _item(begun, ".dxf", "file")
+
+
 def _machines(begun: str) -> Iterator[Item]:
     """Yield the built-in machines, and machine files."""
     from polarcheck import machines
@@ -170,9 +174,12 @@ Values = Callable[[str], Iterator[Item]]
 OPTIONS: dict[str, Values] = {
     "EXT": _nothing,
     "FILE": _files,
+    "FILE.dxf": _drawings,
     "FOLDER": _folders,
     "FORMAT:FILE": _outputs,
     "KEY=VALUE": _keys,
+    "LAYER": _nothing,
+    "LENGTH": _nothing,
     "N": _nothing,
     "N:KEY=VALUE": _tool,
     "NAME": _encodings,

@@ -28,6 +28,7 @@ def config(ctx: click.Context) -> None:
 @click.argument("path", metavar="FILE")
 @options.executing("programs")
 @options.judging
+@options.comparing
 @options.extensions
 @narrower("--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True)
 @options.debug

@@ -123,9 +123,30 @@ tools = option(
 offsets = option(
     "--offsets", type=click.Path(exists=True, dir_okay=False, path_type=Path), help="Offset table from the control."
 )
-drawing = option(
-    "--drawing", type=click.Path(exists=True, dir_okay=False, path_type=Path), metavar="FILE.dxf",
-    help="What the programs should make, in place of [[part]] in polarcheck.toml.",
+
+
+def _tolerance(ctx: click.Context, parameter: click.Parameter, value: float | None) -> float | None:
+    if value is not None and not 0 < value <= _LARGEST_TOLERANCE:
+        raise click.BadParameter(f"{value:g}: expected a length above 0 and up to {_LARGEST_TOLERANCE:g}, such as 0.05")
+    return value
+
+
+_LARGEST_TOLERANCE = 100.0
+_drawings = option(
+    "--drawing", "drawings", type=click.Path(exists=True, dir_okay=False, path_type=Path), multiple=True,
+    metavar="FILE.dxf", help="What the programs should make, in place of [[part]] in polarcheck.toml.",
+)  # fmt: skip
+_layers = option(
+    "--drawing-layer",
+    "drawing_layers",
+    multiple=True,
+    metavar="LAYER",
+    help="Of each --drawing only what lies on this layer.",
+)
+_tolerances = option(
+    "--tolerance", type=float, callback=_tolerance, metavar="LENGTH",
+    help="How far a part may differ from a drawing or [[part]] that says nothing else, in the units of the programs, "
+    "or of polarcheck.toml where that names them; else 0.02 mm.",
 )  # fmt: skip
 subprograms = option(
     "--subprograms", type=click.Path(exists=True, file_okay=False), multiple=True, metavar="FOLDER",
@@ -206,6 +227,9 @@ def executing(what: str, *, both: bool = True) -> Decorator:
     more = (subprograms, _max_blocks, _max_statements, _max_seconds, radius_from_comments, encoding(what))
     return _all(*each, *more)
 
+
+#: The options that say what programs should make.
+comparing = _all(_drawings, _layers, _tolerances)
 
 #: The options that decide which rules run, and which findings fail.
 judging = _all(

@@ -124,11 +124,19 @@ def _origin(key: str, job: Job, merged: Merged, sources: Sources) -> tuple[str, 
 
 
 def _of_part(key: str, merged: Merged, sources: Sources) -> tuple[str, str]:
-    if "drawing" in sources:
-        return _of_option("drawing", "--drawing", sources)
     _, number, last = key.split(".")
+    if last == "tolerance" and "tolerance" in sources and not _says_tolerance(merged, int(number), sources):
+        return _of_option("tolerance", "--tolerance", sources)
+    if "drawings" in sources:
+        return _of_option(
+            *(("drawing_layers", "--drawing-layer") if last == "layers" else ("drawings", "--drawing")), sources
+        )
     layer = [layer for layer in merged.layers if isinstance(layer, PartLayer)][int(number) - 1]
     return "file", layer.at(f"part.{last}")
+
+
+def _says_tolerance(merged: Merged, number: int, sources: Sources) -> bool:
+    return "drawings" not in sources and merged.job.part[number - 1].tolerance > 0
 
 
 def _of_tool(key: str, job: Job, merged: Merged, sources: Sources) -> tuple[str, str]:

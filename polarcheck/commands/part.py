@@ -16,7 +16,7 @@ _RULE = "part-differs-from-drawing"
 @click.command(short_help="Tell what a program makes: hexagon, 27.000 across flats.")
 @click.argument("paths", nargs=-1, required=True, metavar="PATH...")
 @options.executing("programs")
-@options.drawing
+@options.comparing
 @narrower("--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True)
 @options.extensions
 @options.max_size

@@ -16,7 +16,7 @@ from polarcheck.errors import OutputError, UsageError
 
 if TYPE_CHECKING:
     from polarcheck.batch.tasks import Task
-    from polarcheck.checking.settings import Extra
+    from polarcheck.checking.settings import Extra, Settings
     from polarcheck.finding import Report
     from polarcheck.reports import Background
 
@@ -34,8 +34,8 @@ def refuse(form: str | None, wants_statistics: bool) -> None:
         raise UsageError(f"--statistics: expected --format {', '.join(_WITH_COUNTS)}, found {form}")
 
 
-#: The format that can show paths.
-_WITH_PATHS = "text"
+#: The format for people in which there is room for paths and for what a section makes.
+_TEXT = "text"
 paths = option("--show", "shown_too", type=click.Choice(["path"]), help="In text, the paths of each section, too.")
 
 
@@ -43,12 +43,29 @@ def extras(shown_too: str | None, form: str | None, outputs: Iterable[tuple[str,
     """Return the functions that add paths to reports. Raises UsageError for a format that cannot show paths."""
     if shown_too is None:
         return ()
-    for other in (form or _WITH_PATHS, *(form for form, _ in outputs)):
-        if other != _WITH_PATHS:
-            raise UsageError(f"--show {shown_too}: expected --format {_WITH_PATHS}, found {other}")
+    for other in (form or _TEXT, *(form for form, _ in outputs)):
+        if other != _TEXT:
+            raise UsageError(f"--show {shown_too}: expected --format {_TEXT}, found {other}")
     from polarcheck.pictures.section_view import with_views
 
     return (with_views,)
+
+
+def with_makes(tasks: Sequence[Task], forms: Iterable[str]) -> list[Task]:
+    """Return the tasks; if any of these formats is text, their reports say in one line what a section makes."""
+    if _TEXT not in forms:
+        return list(tasks)
+    import msgspec
+
+    from polarcheck.parts.makes import with_makes
+
+    of_settings: dict[int, Settings] = {}
+    for task in tasks:
+        settings = task.settings
+        # Tasks with the same settings share them: other processes get them once.
+        if id(settings) not in of_settings:
+            of_settings[id(settings)] = msgspec.structs.replace(settings, extras=(*settings.extras, with_makes))
+    return [msgspec.structs.replace(task, settings=of_settings[id(task.settings)]) for task in tasks]
 
 
 def background(plain: Background, tasks: Iterable[Task], failures: Sequence[str]) -> Background:

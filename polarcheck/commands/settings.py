@@ -21,6 +21,7 @@ from polarcheck.errors import MachineError, UsageError
 from polarcheck.machines import profiles, toml_text
 from polarcheck.machines.job import Job, PunchedTool, Running, check_tools, check_work_offsets, with_tool
 from polarcheck.machines.machine import Machine
+from polarcheck.machines.part import Part
 from polarcheck.reading.files import STANDARD_INPUT
 
 
@@ -52,7 +53,9 @@ class Options(msgspec.Struct, frozen=True):
     encoding: str | None = None
     inline: bool | None = None
     baseline: Path | None = None
-    drawing: Path | None = None
+    drawings: Sequence[Path] = ()
+    drawing_layers: Sequence[str] = ()
+    tolerance: float | None = None
     extras: Sequence[Extra] = ()
 
 
@@ -177,6 +180,8 @@ class _SettingsMaker:
     """Makes settings; settings with the same machine and rules share these."""
 
     def __init__(self, options: Options) -> None:
+        if options.drawing_layers and not options.drawings:
+            raise UsageError("--drawing-layer: give the drawing by --drawing, too; a [[part]] has layers of its own")
         self._options = options
         self._known = load_all()
         self._changes = changes(options.changes)
@@ -258,10 +263,7 @@ def _changed(job: Job, options: Options) -> Job:
         job = msgspec.structs.replace(job, tools={**written, **listed})
     for tool in options.tools:
         job = with_tool(job, tool)
-    if options.drawing is not None:
-        from polarcheck.machines import drawing
-
-        job = msgspec.structs.replace(job, part=[drawing.part_of(options.drawing, str(options.drawing))])
+    job = msgspec.structs.replace(job, part=_parts(job.part, options)) if options.drawings or job.part else job
     changes_of_job = {key: value for key in _OVER_JOB if (value := getattr(options, key)) is not None}
     if options.units:
         changes_of_job["program_units"] = options.units
@@ -273,6 +275,20 @@ def _changed(job: Job, options: Options) -> Job:
     return msgspec.structs.replace(job, **changes_of_job) if changes_of_job else job
 
 
+def _parts(parts: Sequence[Part], options: Options) -> list[Part]:
+    """Return what programs should make: the drawings of the command line, else the parts of the job."""
+    if options.drawings:
+        from polarcheck.machines import drawing
+
+        asked = Part(drawing="", layers=list(options.drawing_layers))
+        parts = [drawing.part_of(path, str(path), asked) for path in options.drawings]
+    tolerance = options.tolerance
+    return [
+        part if tolerance is None or part.tolerance > 0 else msgspec.structs.replace(part, tolerance=tolerance)
+        for part in parts
+    ]
+
+
 #: Options with the name of the key of a job that they set.
 _OVER_JOB = ("radius_from_comments", "fail_on", "strict", "encoding", "inline")
 
@@ -280,8 +296,8 @@ _OVER_JOB = ("radius_from_comments", "fail_on", "strict", "encoding", "inline")
 def _files_read(options: Options, job: Job, profile: profiles.Profile, file: JobFile) -> list[Path]:
     """Return the job files, offset tables, drawings, the baseline and the user's machine files."""
     machines = [Path(title) for title in profile.chain if title not in profiles.names()]
-    tables = [path for path in (options.offsets, options.baseline, options.drawing) if path]
-    tables += [Path(part.drawing) for part in job.part if part.drawing is not None and options.drawing is None]
+    tables = [path for path in (options.offsets, options.baseline) if path]
+    tables += [Path(part.drawing) for part in job.part if part.drawing is not None]
     return [*machines, *tables, *file.paths, *([Path(job.offsets)] if job.offsets else [])]
 
 

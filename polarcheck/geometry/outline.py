@@ -14,6 +14,9 @@ from polarcheck.geometry.segments import Curves
 from polarcheck.geometry.tolerances import CORNER
 from polarcheck.machines.modal import Motion
 
+#: More open chains than these are not linked to each other.
+_MOST_OPEN = 100
+
 
 class Outline(Table, frozen=True):
     """
@@ -54,7 +57,9 @@ def outline_of(start: Points, end: Points, move: Rows, curves: Curves) -> Outlin
         none = np.zeros(0, np.int64)
         nowhere = np.zeros(0, complex)
         return Outline(nowhere, nowhere, nowhere, none.astype(np.int16), none, none, np.zeros(0, bool))
-    first = np.append(0, np.flatnonzero(np.abs(start[1:] - end[:-1]) > CORNER) + 1)
+    order = _linked(start, end)
+    start, end, move = start[order], end[order], move[order]
+    first = _first_of_chains(start, end)
     count = np.diff(np.append(first, len(move)))
     closed = np.abs(end[first + count - 1] - start[first]) <= CORNER
     chain = np.repeat(np.arange(len(first)), count)
@@ -67,6 +72,34 @@ def outline_of(start: Points, end: Points, move: Rows, curves: Curves) -> Outlin
     turns = ((start[begins] - center).conj() * (end[begins] - center)).imag
     kind = np.where(np.isnan(center), Motion.LINE, np.where(turns > 0, Motion.CCW, Motion.CW)).astype(np.int16)
     return Outline(start[begins], end[last], center, kind, curves.row[of], chain[begins], closed)
+
+
+def _first_of_chains(start: Points, end: Points) -> Rows:
+    return np.append(0, np.flatnonzero(np.abs(start[1:] - end[:-1]) > CORNER) + 1)
+
+
+def _linked(start: Points, end: Points) -> Rows:
+    """The order in which open chains follow that begin where another one ends: lines that join loops part a wall."""
+    order = np.arange(len(start))
+    first = _first_of_chains(start, end)
+    last = np.append(first[1:], len(start)) - 1
+    is_open = np.flatnonzero(np.abs(end[last] - start[first]) > CORNER)
+    if not 1 < len(is_open) <= _MOST_OPEN:
+        return order
+    meets = np.abs(end[last[is_open]][:, None] - start[first[is_open]]) <= CORNER
+    meets &= (meets.sum(axis=0) == 1) & (meets.sum(axis=1) == 1)[:, None]
+    if not meets.any():
+        return order
+    after = np.full(len(first), -1)
+    before, behind = np.nonzero(meets)
+    after[is_open[before]] = is_open[behind]
+    chains: dict[int, None] = {}
+    begins = [*np.setdiff1d(np.arange(len(first)), after).tolist(), *range(len(first))]
+    for chain in begins:
+        while chain >= 0 and chain not in chains:
+            chains[chain] = None
+            chain = int(after[chain])
+    return np.concatenate([order[first[chain] : last[chain] + 1] for chain in chains])
 
 
 def _from_block(move: Rows, first: Rows, count: Rows, closed: Mask) -> Rows:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -50,18 +50,18 @@ class Drawing(msgspec.Struct, frozen=True):
 
 def part_of(path: Path, title: str, part: Part | None = None) -> DrawnPart:
     """The part of a drawing, with the other values of its entry. Raises JobError as read_drawing does."""
-    drawing = read_drawing(path, title)
+    drawing = read_drawing(path, title, () if part is None else part.layers)
     values = {} if part is None else {name: getattr(part, name) for name in Part.__struct_fields__}
     return DrawnPart(**{**values, "drawing": str(path)}, curves=drawing.curves, scale=drawing.scale)
 
 
-def read_drawing(path: Path, title: str) -> Drawing:
+def read_drawing(path: Path, title: str, layers: Sequence[str] = ()) -> Drawing:
     """
     The lines and curves of the model space of a DXF file, of R12 or later, as text or binary.
 
     Blocks are resolved. Ignored are text, dimensions, points, hatches, layers that are off or frozen, DEFPOINTS, and
-    broken lines such as center lines. Raises JobError, one line that begins with the title, for a file that cannot be
-    read or shows no curve.
+    broken lines such as center lines. Where layers are named only these count, also if they are off. Raises JobError,
+    one line that begins with the title, for a file that cannot be read, shows no curve or has no such layer.
     """
     try:
         data = bounded.read_file(path, _LARGEST, "no drawing of a part is")
@@ -73,7 +73,7 @@ def read_drawing(path: Path, title: str) -> Drawing:
         raise JobError(f"{title}: reading a drawing needs ezdxf, which is not installed: {_HINT}") from None
     try:
         # ezdxf assumes meters where a file does not say.
-        return _drawing(_document(data), says_units=b"$INSUNITS" in data)
+        return _drawing(_document(data), layers, says_units=b"$INSUNITS" in data)
     except _NoDrawingError as error:
         raise JobError(f"{title}: {error}") from None
     except Exception as error:
@@ -136,14 +136,13 @@ def _document(data: bytes) -> Any:
     return Document.read(io.StringIO(data.decode(encoding, "surrogateescape").lstrip("\ufeff"), None))
 
 
-def _drawing(document: Any, *, says_units: bool) -> Drawing:
+def _drawing(document: Any, layers: Sequence[str], *, says_units: bool) -> Drawing:
     scale = _UNITS.get(int(document.header.get("$INSUNITS", 0)), math.nan) if says_units else math.nan
     unit = 1.0 if math.isnan(scale) else scale
     # Without units the chords are short enough for inches.
     sagitta = _SAGITTA / (MM_PER_INCH if math.isnan(scale) else scale)
-    ignored = Counter[str]()
-    curves, points = [], 0
-    for entity in _shown(document, ignored):
+    ignored, curves, points = Counter[str](), [], 0
+    for entity in _shown(document, _Layers(document, layers), ignored):
         curve = tuple(itertools.islice(_points(entity, sagitta, _FARTHEST / unit), _MOST_POINTS))
         points += len(curve)
         if points >= _MOST_POINTS:
@@ -166,46 +165,91 @@ _CURVES = ("LINE", "ARC", "CIRCLE", "ELLIPSE", "SPLINE")
 _POLYLINES = ("LWPOLYLINE", "POLYLINE")
 
 
-def _shown(document: Any, ignored: Counter[str]) -> Iterator[Any]:
+def _shown(document: Any, layers: _Layers, ignored: Counter[str]) -> Iterator[Any]:
     """The curves of the model space, with blocks and polylines resolved."""
-    hidden = {layer.dxf.name.lower() for layer in document.layers if layer.is_off() or layer.is_frozen()}
-    hidden.add("defpoints")
-    broken = {
-        layer.dxf.name.lower() for layer in document.layers if _is_broken(layer.dxf.get("linetype", "CONTINUOUS"))
-    }
-    waiting: list[Iterator[Any]] = [iter(document.modelspace())]
+    # What lies on layer 0 of a block is on the layer on which the block is inserted.
+    waiting: list[tuple[Iterator[Any], str]] = [(iter(document.modelspace()), "0")]
     count = blocks = 0
     while waiting:
-        entity = next(waiting[-1], None)
+        entities, outer = waiting[-1]
+        entity = next(entities, None)
         if entity is None:
             waiting.pop()
             continue
         count += 1
         if count > _MOST_ENTITIES:
             raise _NoDrawingError(f"has more than {_MOST_ENTITIES} lines and arcs: no drawing of a part has")
-        kind, layer = entity.dxftype(), str(entity.dxf.get("layer", "0")).lower()
-        line = str(entity.dxf.get("linetype", "BYLAYER")).upper()
-        if layer in hidden or entity.dxf.get("invisible", 0):
-            ignored["on layers that are off, frozen or DEFPOINTS"] += 1
-        elif kind not in ("INSERT", *_CURVES, *_POLYLINES):
-            ignored[kind[:_LONGEST]] += 1
-        elif kind != "INSERT" and (layer in broken if line == "BYLAYER" else _is_broken(line)):
-            ignored["with a broken line"] += 1
+        kind, layer = entity.dxftype(), str(entity.dxf.get("layer", "0"))
+        layer = outer if layer == "0" else layer
+        reason = layers.reason(entity, kind, layer)
+        if reason:
+            ignored[reason] += 1
         elif kind in _CURVES:
             yield entity
         elif kind != "INSERT":
-            waiting.append(iter(entity.virtual_entities()))
+            waiting.append((iter(entity.virtual_entities()), layer))
         else:
             blocks += max(int(entity.dxf.row_count * entity.dxf.column_count), 1)
             if blocks > _MOST_BLOCKS or len(waiting) > _DEEPEST:
                 raise _NoDrawingError(
                     f"has blocks at more than {_MOST_BLOCKS} places, or more than {_DEEPEST} in each other"
                 )
-            waiting.append(entity.multi_insert() if entity.mcount > 1 else iter(entity.virtual_entities()))
+            inserted = entity.multi_insert() if entity.mcount > 1 else iter(entity.virtual_entities())
+            waiting.append((inserted, layer))
 
 
 #: How much of the name of a kind of entity a message shows [characters].
 _LONGEST = 20
+
+
+class _Layers:
+    """The layers of a drawing, and those that are named; capitals make no difference."""
+
+    def __init__(self, document: Any, named: Sequence[str]) -> None:
+        layers = {layer.dxf.name.lower(): layer for layer in document.layers}
+        self._spelled = {name: str(layer.dxf.name) for name, layer in layers.items()}
+        self._named = {name.lower() for name in named}
+        hidden = {name for name, layer in layers.items() if layer.is_off() or layer.is_frozen()}
+        broken = {name for name, layer in layers.items() if _is_broken(layer.dxf.get("linetype", "CONTINUOUS"))}
+        self._hidden = (hidden | {"defpoints"}) - self._named
+        self._broken = broken - self._named
+        self._check(document, named)
+
+    def _check(self, document: Any, named: Sequence[str]) -> None:
+        """Raises _NoDrawingError for a layer that is not there. The table need not list the layers of all entities."""
+        if self._named <= self._spelled.keys():
+            return
+        for entity in itertools.chain(*document.blocks):
+            layer = str(entity.dxf.get("layer", "0"))
+            self._spelled.setdefault(layer.lower(), layer)
+        missing = [name for name in named if name.lower() not in self._spelled]
+        if missing:
+            names = sorted((name for name in self._spelled.values() if name.lower() != "defpoints"), key=str.lower)
+            raise _NoDrawingError(f"has no layer {missing[0][:_LONGEST_NAME]}; its layers are {_listed(names)}")
+
+    def reason(self, entity: Any, kind: str, layer: str) -> str:
+        """Why an entity on a layer is ignored, for the message; empty if it is not."""
+        name, line = layer.lower(), str(entity.dxf.get("linetype", "BYLAYER")).upper()
+        if name in self._hidden or entity.dxf.get("invisible", 0):
+            return "on layers that are off, frozen or DEFPOINTS"
+        if kind == "INSERT":
+            return ""
+        if kind not in (*_CURVES, *_POLYLINES):
+            return str(kind[:_LONGEST])
+        if self._named and name not in self._named:
+            return f"on layer {self._spelled.get(name, layer)[:_LONGEST_NAME]}"
+        return "with a broken line" if (name in self._broken if line == "BYLAYER" else _is_broken(line)) else ""
+
+
+def _listed(names: Sequence[str]) -> str:
+    """Names for a message, of many the first."""
+    more = len(names) - _MOST_NAMES
+    listed = ", ".join(name[:_LONGEST_NAME] for name in names[:_MOST_NAMES])
+    return f"{listed} and {more} more" if more > 0 else listed
+
+
+#: How many names of layers a message shows, and how much of each [characters].
+_MOST_NAMES, _LONGEST_NAME = 12, 40
 
 
 def _is_broken(linetype: str) -> bool:

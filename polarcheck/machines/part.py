@@ -102,6 +102,9 @@ class Part(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     tolerance: Annotated[
         float, msgspec.Meta(gt=0, le=_LARGEST, description="how far the part may differ; 0.02 mm unless given")
     ] = math.nan
+    layers: Annotated[
+        list[str], msgspec.Meta(description="of the drawing: only what lies on these; else all that show a contour")
+    ] = []
     section: (
         Annotated[int, msgspec.Meta(ge=1, le=10**6, description="the polar section, 1 for the first; else any")] | None
     ) = None
@@ -116,6 +119,8 @@ class Part(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
             if self.shape is not None or given:
                 raise KeyedError("shape" if self.shape else given[0], "a part has a drawing or a shape, not both")
             return
+        if self.layers:
+            raise KeyedError("layers", "a drawing has layers, a shape has none")
         if self.shape is None:
             raise KeyedError("", f"expected drawing = a DXF file, or shape = {listed(_KEYS)}")
         for key in given:

@@ -8,6 +8,8 @@ from collections.abc import Sequence
 
 import msgspec
 
+from polarcheck.asked.comparison import Comparison
+from polarcheck.asked.deviations import Deviations
 from polarcheck.checking.channels import first_runs
 from polarcheck.checking.phrases.drawing import told
 from polarcheck.checking.quantity import rounded
@@ -15,7 +17,6 @@ from polarcheck.checking.tables import Tables
 from polarcheck.columns.trace import Trace
 from polarcheck.errors import TooHardError
 from polarcheck.finding import FileReport, PartComparison
-from polarcheck.table.deviations import Deviations
 
 
 def compared_in(report: FileReport, runs: Sequence[tuple[str, Tables]]) -> FileReport:
@@ -44,11 +45,17 @@ def compared(tables: Tables) -> list[PartComparison]:
             tolerance=rounded(one.tolerance),
             too_much=rounded(one.difference.proud),
             cut_away=rounded(one.difference.deep),
-            at=(rounded(one.difference.at.real), rounded(one.difference.at.imag)),
+            at=_at(one),
             line=int(trace.blocks.line[one.row]),
             turned=rounded(math.degrees(one.turned)),
+            angle_not_compared=one.any_angle or None,
             text=told(trace.blocks, trace.lengths, one),
         )
         for one in deviations.comparisons
         if not one.is_superseded
     ]
+
+
+def _at(one: Comparison) -> tuple[float | None, float | None]:
+    place = one.written(one.difference.at)
+    return rounded(place.real), rounded(place.imag)

@@ -1,27 +1,38 @@
-"""What a program makes: the shapes of its finished part, section by section and depth by depth."""
+"""
+What a program makes: the shapes of its finished part, section by section and depth by depth.
+
+All is told in the frame of the part, whose x runs towards C0: C at G12.1 is added to angles and turns places. Where it
+is not known they are told as the section writes them.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Callable, Iterator, Sequence
+from itertools import groupby
+from typing import TYPE_CHECKING
 
 import msgspec
 import numpy as np
 
 from polarcheck.checking.channels import first_runs
+from polarcheck.checking.phrases.common import switch
 from polarcheck.checking.phrases.offsets import called_tool, to_give
-from polarcheck.checking.phrases.part import Sizes, shape_in_words
+from polarcheck.checking.phrases.part import Manner, Sizes, angle_in_words, shape_in_words
 from polarcheck.checking.quantity import rounded
 from polarcheck.checking.tables import Tables
 from polarcheck.errors import TooHardError
-from polarcheck.finding import FileReport, LeftStanding, MadeShape, OddSide
+from polarcheck.finding import FileReport, LeftStanding, MadeInSection, MadeShape, OddSide
 from polarcheck.geometry.shapes.shape import SAME, Shape
 from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.machines.modal import Units
-from polarcheck.time_limit import keep_time
+from polarcheck.parts.as_meant import as_meant
+from polarcheck.parts.differing_depths import Area, known_of, with_differences
+from polarcheck.parts.made_depths import Depth, merged, put_together
+from polarcheck.table.finished import turned_columns
 
 if TYPE_CHECKING:
     from polarcheck.columns.trace import Trace
+    from polarcheck.machines.job import Job
     from polarcheck.table.finished import Finished, Level
     from polarcheck.table.overcuts import Overcuts
 
@@ -35,14 +46,10 @@ def part_of(report: FileReport, runs: Sequence[tuple[str, Tables]]) -> FileRepor
     return msgspec.structs.replace(report, part=made)
 
 
-class _Depth(NamedTuple):
-    """What one depth of a section makes. radius: R of the cutter [mm], NaN if not known. needs: as in MadeShape."""
-
-    section: int
-    z: float
-    radius: float
-    shapes: list[Shape]
-    needs: str | None
+#: More shapes than these are no line.
+_IN_ONE_LINE = 4
+#: More angles than these are told by their first and last one, if their steps are the same [deg].
+_IN_A_LIST, _SAME_STEP = 8, 1e-3
 
 
 def made_by(tables: Tables) -> list[MadeShape]:
@@ -53,23 +60,70 @@ def made_by(tables: Tables) -> list[MadeShape]:
     try:
         return _by_section(trace, tables)
     except TooHardError as error:
-        return [_nothing(trace, section, str(error)) for section in range(len(trace.mode.sections))]
+        return [_nothing(trace, (section,), str(error)) for section in range(len(trace.mode.sections))]
+
+
+def in_one_line(tables: Tables) -> str:
+    """
+    What one run makes, as short as it is true: `hexagon, 30.000 across flats, to Z-5.000`.
+
+    Empty where not all of it is known, or where it takes too long.
+    """
+    trace: Trace = tables["trace"]
+    try:
+        groups = merged(_depths(tables))
+    except TooHardError:
+        return ""
+    shapes = [(group, shape) for group in groups for shape in group[0].shapes]
+    if not all(group[0].shapes for group in groups) or not 0 < len(shapes) <= _IN_ONE_LINE:
+        return ""
+    sizes = _sizes(trace, int(trace.mode.sections.enter[0]))
+    parts = []
+    for depth, made in groupby(shapes, lambda pair: _deepest(pair[0], sizes)):
+        words = [_words(trace, shape, group[0], short=True) for group, shape in made]
+        parts.append(f"{'; '.join(dict.fromkeys(words))}, {depth}")
+    needs = dict.fromkeys(group[0].needs.partition(",")[0] for group in groups if group[0].needs)
+    return "; ".join(parts) + (f" ({', '.join(needs)})" if needs else "")
+
+
+def _deepest(group: Sequence[Depth], sizes: Sizes) -> str:
+    known = [depth.z for depth in group if not np.isnan(depth.z)]
+    return f"to Z{sizes(min(known))}" if known else "to Z not known"
+
+
+def _depths(tables: Tables) -> list[Depth]:
+    """All depths of all sections; raises TooHardError where that takes too long."""
+    from polarcheck.parts.tool_paths import depths_of_paths
+
+    return [*_of_contours(tables), *depths_of_paths(tables)]
 
 
 def _by_section(trace: Trace, tables: Tables) -> list[MadeShape]:
     """The same; raises TooHardError where it takes too long."""
-    from polarcheck.parts.tool_paths import depths_of_paths
-
-    found = [*_of_contours(tables), *(_Depth(*one) for one in depths_of_paths(tables))]
+    depths = _depths(tables)
     standing = _ribs_and_strips(tables)
-    made = []
+    job: Job = tables["job"]
+    made: list[MadeShape] = []
     for section in range(len(trace.mode.sections)):
-        own = [depth for depth in found if depth.section == section]
-        entries = [*_merged(trace, own)]
-        left = [one for number, one in standing if number == section]
+        of_section = [depth for depth in depths if depth.sections[0] == section]
+        entries = [*_entries(trace, of_section)]
+        areas = [Area(depth.z, depth.polygon) for depth in of_section if depth.polygon is not None]
+        if len(entries) > 1 and len(areas) > 1:
+            sizes = _sizes(trace, int(trace.mode.sections.enter[section]))
+            entries = [*with_differences(entries, areas, sizes)]
+        left = [one for number, one in standing if any(number in depth.sections for depth in of_section)]
         if left and entries:
             entries[0] = msgspec.structs.replace(entries[0], left_standing=[*entries[0].left_standing, *left])
-        made += entries or [_nothing(trace, section, _why_nothing(tables, section))]
+        if not any(section in depth.sections for depth in depths):
+            entries = [_nothing(trace, (section,), _why_nothing(tables, section))]
+        sections = of_section[0].sections if of_section else (section,)
+        if entries:
+            meant = "; ".join(filter(None, (as_meant(trace, number) for number in sections)))
+            entries[0] = msgspec.structs.replace(entries[0], as_meant=meant or None)
+        if job.part:
+            is_compared = any(part.section in (None, number + 1) for part in job.part for number in sections)
+            entries = [msgspec.structs.replace(entry, is_compared=is_compared) for entry in entries]
+        made += entries
     return made
 
 
@@ -81,9 +135,18 @@ def shapes_of_level(trace: Trace, level: Level) -> list[Shape]:
 
 
 def level_in_words(trace: Trace, level: Level) -> str:
-    """The same as text, in the units of the program; empty where nothing is to be told."""
-    shapes = shapes_of_level(trace, level)
-    return "; ".join(_words(trace, shape, int(level.walls.row[0])) for shape in shapes)
+    """What a level of one section makes, in the frame of the part, in the units of the program; empty for nothing."""
+    turn = _turn(trace, level.section)
+    if not level.angle and turn != 1:
+        level = level._replace(outline=turned_columns(level.outline, turn))
+    depth = Depth(level.sections, level.z, level.radius, shapes_of_level(trace, level))
+    return "; ".join(_words(trace, shape, depth) for shape in depth.shapes)
+
+
+def _turn(trace: Trace, section: int) -> complex:
+    """The direction of x of a section in the frame of the part; 1 where C is not known at its beginning."""
+    known = trace.path.knows_section_entry[section]
+    return complex(np.exp(1j * np.radians(trace.path.section_entry[section]))) if known else 1 + 0j
 
 
 def _bar(trace: Trace) -> float:
@@ -91,27 +154,61 @@ def _bar(trace: Trace) -> float:
     return float(diameter[0]) if len(diameter) else np.nan
 
 
-def _words(trace: Trace, shape: Shape, row: int) -> str:
-    sizes = Sizes(bool(trace.lengths.units[row] == Units.INCH))
-    return shape_in_words(shape, lambda at: int(trace.blocks.line_in_file[at]), sizes)
+def _sizes(trace: Trace, row: int) -> Sizes:
+    return Sizes(bool(trace.lengths.units[row] == Units.INCH))
+
+
+def _words(trace: Trace, shape: Shape, depth: Depth, short: bool = False) -> str:
+    known = bool(trace.path.knows_section_entry[depth.sections[0]])
+    how = Manner(short=short, from_c0=known, switch=_switch(trace, depth.sections[0]))
+    line_of = lambda at: int(trace.blocks.line_in_file[at])  # noqa: E731
+    return shape_in_words(shape, line_of, _sizes(trace, _row_of(trace, depth, shape)), how)
+
+
+def _switch(trace: Trace, section: int) -> str:
+    """The code that begins a section, as G12.1 or G112."""
+    return switch(trace.blocks, trace.machine, int(trace.mode.sections.enter[section]))
+
+
+def _row_of(trace: Trace, depth: Depth, shape: Shape) -> int:
+    return shape.row if shape.row >= 0 else int(trace.mode.sections.enter[depth.sections[0]])
 
 
 # ---- contours with G41 and G42 ----
 
 
-def _of_contours(tables: Tables) -> Iterator[_Depth]:
+def _of_contours(tables: Tables) -> Iterator[Depth]:
     trace: Trace = tables["trace"]
     finished: Finished = tables["finished"]
-    for level in finished.levels:
-        why = "its contour crosses itself too often to say what it makes" if level.tangled else None
-        yield _Depth(level.section, level.z, level.radius, shapes_of_level(trace, level), why)
-    for level in finished.meant:
-        row = int(level.walls.row[0])
-        why = f"R of {called_tool(trace.tools, row)} is not known, so whether the tool makes it was not looked at"
-        shapes = shapes_of_level(trace, level)
-        yield _Depth(
-            level.section, level.z, np.nan, shapes, f"{why}: {to_give(trace.tools, trace.machine, row, 'radius')}"
-        )
+    yield from _of_levels(trace, finished.of_part, finished.of_sections_put_together, _of_level)
+    yield from _of_levels(trace, finished.meant_of_part, finished.meant_put_together, _of_meant_level)
+
+
+def _of_levels(
+    trace: Trace, levels: Sequence[Level], single: Sequence[Level], depth_of: Callable[[Trace, Level], Depth]
+) -> Iterator[Depth]:
+    """single: the levels of single sections that levels of several sections are put together of."""
+    for level in levels:
+        depth = depth_of(trace, level)
+        if len(level.sections) == 1:
+            yield depth
+        else:
+            own = np.isin([int(one.walls.row[0]) for one in single], level.walls.row)
+            yield from put_together(
+                depth, [depth_of(trace, one) for one, is_own in zip(single, own, strict=True) if is_own]
+            )
+
+
+def _of_level(trace: Trace, level: Level) -> Depth:
+    why = "its contour crosses itself too often to say what it makes" if level.tangled else None
+    return Depth(level.sections, level.z, level.radius, shapes_of_level(trace, level), why, known_of(level))
+
+
+def _of_meant_level(trace: Trace, level: Level) -> Depth:
+    row = int(level.walls.row[0])
+    why = f"R of {called_tool(trace.tools, row)} is not known, so whether the tool makes it was not looked at"
+    needs = f"{why}: {to_give(trace.tools, trace.machine, row, 'radius')}"
+    return Depth(level.sections, level.z, np.nan, shapes_of_level(trace, level), needs, known_of(level))
 
 
 def _ribs_and_strips(tables: Tables) -> list[tuple[int, LeftStanding]]:
@@ -124,64 +221,43 @@ def _ribs_and_strips(tables: Tables) -> list[tuple[int, LeftStanding]]:
     found = []
     for kind, left in (("rib", coverage.ribs), ("strip", coverage.strips)):
         for row in np.flatnonzero(left.height > 0).tolist():
-            sizes = Sizes(bool(trace.lengths.units[row] == Units.INCH))
-            place, line = complex(left.place[row]), int(trace.blocks.line_in_file[row])
+            sizes, section = _sizes(trace, row), int(trace.mode.section[row])
+            place = complex(left.place[row]) * _turn(trace, section)
+            line = int(trace.blocks.line_in_file[row])
             size = float(left.height[row])
             how = "high" if kind == "rib" else "thick"
             text = f"a {kind} {sizes(size)} {how} behind line {line}, at x {sizes(place.real)} c {sizes(place.imag)}"
             told = LeftStanding(
                 kind=kind, text=text, line=line, size=round(size, 6), place=(round(place.real, 6), round(place.imag, 6))
             )
-            found.append((int(trace.mode.section[row]), told))
+            found.append((section, told))
     return found
 
 
 # ---- entries ----
 
 
-def _merged(trace: Trace, depths: Sequence[_Depth]) -> Iterator[MadeShape]:
+def _entries(trace: Trace, depths: Sequence[Depth]) -> Iterator[MadeShape]:
     """One entry for each shape, whatever the number of depths at which it is made."""
-    groups: list[list[_Depth]] = []
-    for depth in depths:
-        keep_time()
-        same = next((group for group in groups if _are_same(group[0], depth)), None)
-        if same is None:
-            groups.append([depth])
-        else:
-            same.append(depth)
-    for group in groups:
+    for group in merged(depths):
         first = group[0]
         if not first.shapes and first.needs:
-            yield _nothing(trace, first.section, first.needs)
+            yield _nothing(trace, first.sections, first.needs)
         for shape in first.shapes:
             yield _entry(trace, group, shape)
 
 
-def _are_same(one: _Depth, other: _Depth) -> bool:
-    return (
-        len(one.shapes) == len(other.shapes) and one.needs == other.needs and all(map(_alike, one.shapes, other.shapes))
-    )
-
-
-def _alike(one: Shape, other: Shape) -> bool:
-    if (one.name, one.inside, len(one.odd)) != (other.name, other.inside, len(other.odd)):
-        return False
-    if one.values.keys() != other.values.keys():
-        return False
-    return all(abs(value - other.values[name]) <= 2 * SAME for name, value in one.values.items() if name != "area")
-
-
-def _entry(trace: Trace, group: Sequence[_Depth], shape: Shape) -> MadeShape:
+def _entry(trace: Trace, group: Sequence[Depth], shape: Shape) -> MadeShape:
     first = group[0]
-    row = shape.row if shape.row >= 0 else int(trace.mode.sections.enter[first.section])
-    sizes = Sizes(bool(trace.lengths.units[row] == Units.INCH))
+    sizes = _sizes(trace, _row_of(trace, first, shape))
     known = [depth.z for depth in group if not np.isnan(depth.z)]
-    line, end_line = _lines(trace, first.section)
+    sections = _sections(trace, first.sections)
     odd = [OddSide(line=int(trace.blocks.line_in_file[side.row]), size=round(side.size, 6)) for side in shape.odd]
-    words = _words(trace, shape, row)
+    told = [_words(trace, shape, first), _depths_in_words(known, sizes), *_sections_in_words(trace, first, sections)]
     return MadeShape(
-        line=line,
-        end_line=end_line,
+        line=sections[0].line,
+        end_line=sections[0].end_line,
+        sections=sections,
         z=rounded(min(known)) if known else None,
         depths=[round(z, 6) for z in known],
         shape=shape.name,
@@ -189,14 +265,37 @@ def _entry(trace: Trace, group: Sequence[_Depth], shape: Shape) -> MadeShape:
         is_regular=shape.is_regular,
         values={name: round(value, 6) + 0.0 for name, value in shape.values.items()},
         odd=odd,
-        text=f"{words}; {_depths_in_words(known, sizes)}" if known else words,
+        text="; ".join(told),
         left_standing=[*_corners_left(shape, first.radius, sizes)],
         needs=first.needs,
     )
 
 
+def _sections_in_words(trace: Trace, depth: Depth, sections: Sequence[MadeInSection]) -> Iterator[str]:
+    """`C10 at G12.1`, or `by the sections of lines 9, 20, 31 at C0, C120, C240`; nothing for one at C0."""
+    angles = [one.angle for one in sections if one.angle is not None]
+    if len(sections) == 1:
+        if any(angles):
+            yield f"{angle_in_words(angles[0])} at {_switch(trace, depth.sections[0])}"
+        return
+    # A loop or a called program begins its sections in one line.
+    lines = list(dict.fromkeys(str(one.line) for one in sections))
+    where = f"sections of lines {', '.join(lines)}" if len(lines) > 1 else f"section of line {lines[0]}"
+    yield f"by the {where}{f' at {_angles_in_words(angles)}' if any(angles) else ''}"
+
+
+def _angles_in_words(angles: Sequence[float]) -> str:
+    steps = np.diff(angles)
+    if len(angles) > _IN_A_LIST and np.ptp(steps) <= _SAME_STEP:
+        first, last = angle_in_words(angles[0]), angle_in_words(angles[-1])
+        return f"{first} to {last}, {float(steps.mean()):.4g} deg apart"
+    return ", ".join(map(angle_in_words, angles))
+
+
 def _depths_in_words(depths: Sequence[float], sizes: Sizes) -> str:
     """`to Z-6.000 in 3 passes, 2.000 each`; the passes of one depth count once."""
+    if not depths:
+        return "to Z not known"
     deep = sorted({round(z, 6) for z in depths}, reverse=True)
     text = f"to Z{sizes(deep[-1])}"
     if len(deep) == 1:
@@ -208,25 +307,45 @@ def _depths_in_words(depths: Sequence[float], sizes: Sizes) -> str:
 
 def _corners_left(shape: Shape, radius: float, sizes: Sizes) -> Iterator[LeftStanding]:
     """The inside corners that no round cutter reaches into."""
-    count = int(shape.values.get("inside_corners", 0))
+    values = shape.values
+    count = int(values.get("inside_corners", 0))
     if count and radius > ROUNDING:
         where = "1 inside corner" if count == 1 else f"{count} inside corners"
         text = f"R{sizes(radius)} of the cutter in {where}"
+        if radius > values.get("corner_reach", radius) + SAME:
+            text += f"; the walls beside are too short for it: R{sizes(values['corner_reach'])} would reach them"
         yield LeftStanding(kind="corner", text=text, line=None, size=round(radius, 6), count=count)
+    if radius > values.get("reach_beyond", radius) + SAME:
+        corner = f"R{sizes(radius)} of the cutter, of an inside corner just outside the bar"
+        text = f"{corner}: R{sizes(values['reach_beyond'])} would leave nothing"
+        yield LeftStanding(kind="corner", text=text, line=None, size=round(radius, 6), count=1)
 
 
-def _lines(trace: Trace, section: int) -> tuple[int, int]:
-    """Of the G12.1 and of the end of a section."""
-    sections = trace.mode.sections
-    enter, last = int(sections.enter[section]), min(int(sections.last[section]), len(trace) - 1)
-    return int(trace.blocks.line_in_file[enter]), int(trace.blocks.line_in_file[last])
+def _sections(trace: Trace, numbers: Sequence[int]) -> list[MadeInSection]:
+    sections, lines = trace.mode.sections, trace.blocks.line_in_file
+    return [
+        MadeInSection(
+            line=int(lines[sections.enter[number]]),
+            end_line=int(lines[min(int(sections.last[number]), len(trace) - 1)]),
+            angle=_angle(trace, number),
+        )
+        for number in numbers
+    ]
 
 
-def _nothing(trace: Trace, section: int, needs: str) -> MadeShape:
-    line, end_line = _lines(trace, section)
+def _angle(trace: Trace, section: int) -> float | None:
+    """C at the beginning of a section [deg], from 0 to 360; None where it is not known."""
+    if not trace.path.knows_section_entry[section]:
+        return None
+    return round(float(trace.path.section_entry[section]) % 360, 6) % 360
+
+
+def _nothing(trace: Trace, numbers: Sequence[int], needs: str) -> MadeShape:
+    sections = _sections(trace, numbers)
     return MadeShape(
-        line=line,
-        end_line=end_line,
+        line=sections[0].line,
+        end_line=sections[0].end_line,
+        sections=sections,
         z=None,
         depths=[],
         shape=None,

@@ -14,32 +14,69 @@ from polarcheck.columns.filling import before
 from polarcheck.geometry.segments import Curves
 from polarcheck.geometry.shapes.shape import Shape
 from polarcheck.geometry.tolerances import ZERO
+from polarcheck.parts.made_depths import Depth, put_together
+from polarcheck.table.finished import turned_columns
+from polarcheck.table.overcuts import level_of_rows
 from polarcheck.time_limit import keep_time
 
 if TYPE_CHECKING:
     from polarcheck.columns.trace import Trace
+    from polarcheck.table.milled import Milled
     from polarcheck.table.moves import Moves
 
-#: Number of the section, Z and R [mm], the shapes, and what is to be given.
-_Depth = tuple[int, float, float, list[Shape], str | None]
 
+def depths_of_paths(tables: Tables) -> Iterator[Depth]:
+    """
+    Each Z of sections that never use compensation, with what the cutter leaves and clears there.
 
-def depths_of_paths(tables: Tables) -> Iterator[_Depth]:
-    """Each Z of a section that never uses compensation, with what the cutter leaves and clears there."""
+    In the frame of the part, as the finished part is: sections at one Z with one R are put together.
+    """
     trace: Trace = tables["trace"]
     moves: Moves = tables["tool_center"].moves
     plain = ~trace.mode.anywhere_in_section(trace.compensation.compensates)[moves.row] & trace.path.cuts[moves.row]
     plain &= ~(_changes_depth(trace) | above_the_face(trace))[moves.row]
     chosen = np.flatnonzero(plain & ~np.isnan(moves.start + moves.end) & (moves.length > ZERO))
+    if not len(chosen):
+        return
+    section = trace.mode.section[moves.row]
     radius = np.fmax(np.abs(trace.compensation.radius_of_move), trace.offsets.cutter_diameter / 2)[moves.row]
-    for own in _levels(moves.section, trace.path.z[moves.row], radius, chosen):
+    milled: Milled = tables["milled"]
+    z = trace.path.z[moves.row]
+    is_known, frame = ~np.isnan(z), milled.frame_of_section[section]
+    # Where Z is not known, depths of different sections cannot be compared.
+    level = np.where(is_known, np.round(z, 6), level_of_rows(trace, moves.row))
+    for own in _levels(np.where(is_known, frame, -1), level, radius, chosen):
         keep_time()
-        row = int(moves.row[own[0]])
-        section, z, cutter = int(trace.mode.section[row]), float(trace.path.z[row]), float(radius[own[0]])
-        if np.isnan(cutter) or not cutter:
-            yield section, z, np.nan, [], _needs_radius(trace, row)
-        elif float(moves.length[own].sum()) >= 2 * cutter:  # less is a step aside, or what is left of a ramp
-            yield section, z, cutter, _left(moves, own, cutter, float(trace.lengths.stock_diameter[row])), None
+        # Sections without much more than a step aside, or what is left of a ramp, make nothing.
+        parts = [own[section[own] == number] for number in dict.fromkeys(section[own].tolist())]
+        parts = [part for part in parts if not float(moves.length[part].sum()) < 2 * float(radius[part[0]])]
+        if not parts:
+            continue
+        single = [_depth(trace, moves, part, float(radius[own[0]])) for part in parts]
+        if len(parts) == 1 or single[0].needs:
+            yield from single
+        else:
+            yield from put_together(_depth(trace, moves, np.concatenate(parts), float(radius[own[0]])), single)
+
+
+def _depth(trace: Trace, moves: Moves, own: Rows, cutter: float) -> Depth:
+    """What these moves of a cutter at one Z make."""
+    row = int(moves.row[own[0]])
+    sections = tuple(dict.fromkeys(trace.mode.section[moves.row[own]].tolist()))
+    z = float(trace.path.z[row])
+    if np.isnan(cutter) or not cutter:
+        return Depth(sections, z, np.nan, [], _needs_radius(trace, row))
+    path = Curves(
+        moves.start[own], moves.end[own], moves.center[own], moves.kind[own], np.zeros(len(own), int), moves.row[own]
+    )
+    entry = np.where(trace.path.knows_section_entry, trace.path.section_entry, 0.0)
+    parts = [
+        turned_columns(path[trace.mode.section[path.row] == number], complex(np.exp(1j * np.radians(entry[number]))))
+        for number in sections
+    ]
+    return Depth(
+        sections, z, cutter, _left(Curves.concatenated(parts), cutter, float(trace.lengths.stock_diameter[row]))
+    )
 
 
 def _changes_depth(trace: Trace) -> Mask:
@@ -65,24 +102,19 @@ def above_the_face(trace: Trace) -> Mask:
     return above
 
 
-def _levels(section: Rows, z: Floats, radius: Floats, chosen: Rows) -> Iterator[Rows]:
-    """The moves of one cutter at one Z of one section, in the order in which the program comes to them."""
-    if not len(chosen):
-        return
-    columns = np.stack([section[chosen], np.round(z[chosen], 6), radius[chosen]])
-    _, first, level = np.unique(columns, axis=1, return_index=True, return_inverse=True, equal_nan=True)
-    place = np.argsort(np.argsort(first))[level.ravel()]
+def _levels(frame: Rows, level: Floats, radius: Floats, chosen: Rows) -> Iterator[Rows]:
+    """The moves of one cutter at one level in one frame, in the order in which the program comes to them."""
+    columns = np.stack([frame[chosen], level[chosen], np.nan_to_num(radius[chosen], nan=-1)])
+    _, first, number = np.unique(columns, axis=1, return_index=True, return_inverse=True)
+    place = np.argsort(np.argsort(first))[number.ravel()]
     order = np.argsort(place, kind="stable")
     yield from np.split(chosen[order], np.flatnonzero(np.diff(place[order])) + 1)
 
 
-def _left(moves: Moves, own: Rows, radius: float, bar: float) -> list[Shape]:
+def _left(path: Curves, radius: float, bar: float) -> list[Shape]:
     from polarcheck.geometry.polygons.cleared import cleared
     from polarcheck.geometry.shapes.grooves import shapes_of_cleared
 
-    path = Curves(
-        moves.start[own], moves.end[own], moves.center[own], moves.kind[own], np.zeros(len(own), int), moves.row[own]
-    )
     _, outline, across = cleared(path, radius)
     return shapes_of_cleared(outline, across, radius, bar)
 

@@ -13,7 +13,7 @@ from polarcheck.checking.polar_sections import polar_sections
 from polarcheck.checking.tables import Tables
 from polarcheck.columns.trace import Trace
 from polarcheck.errors import TooHardError
-from polarcheck.finding import FileReport, Finding, MadeShape
+from polarcheck.finding import FileReport, Finding, MadeShape, PolarSection
 from polarcheck.parts.part_report import made_by
 from polarcheck.pictures.picture import Drawn, Mark, SectionPicture
 
@@ -104,11 +104,16 @@ def _sections(tables: Tables, lines: Any, remarks: list[str]) -> list[SectionPic
             Extras(
                 [level for level in (*levels, *meant) if level.section == number],
                 [mark for of_section, mark in marks if of_section == number],
-                list(dict.fromkeys(_in_words(shape) for shape in makes if shape.line == section.line)),
+                list(dict.fromkeys(_in_words(shape) for shape in makes if _is_of(shape, section))),
             ),
         )
         for number, section in enumerate(sections[:_MOST])
     ]
+
+
+def _is_of(shape: MadeShape, section: PolarSection) -> bool:
+    """True for a section that makes a shape, or some of it."""
+    return any(one.line == section.line for one in shape.sections)
 
 
 def _in_words(shape: MadeShape) -> str:

@@ -166,7 +166,7 @@ class SectionPicture(msgspec.Struct, frozen=True, kw_only=True):
     marks: areas that are overcut or left standing.
     move_count: the number of all moves.
     makes: the shapes that it makes, all depths together, as in `polarcheck part`, with what is left standing.
-    remarks: what is not drawn, and why.
+    remarks: what is not drawn, and why; what is drawn as meant and not as the control reads it.
     """
 
     title: str

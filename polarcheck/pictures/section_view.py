@@ -16,6 +16,7 @@ from polarcheck.errors import TooHardError
 from polarcheck.finding import FileReport
 from polarcheck.geometry.plane import arc_sweep, quiet
 from polarcheck.machines.modal import Motion
+from polarcheck.parts.as_meant import as_meant
 from polarcheck.table.moves import Moves, programmed_moves
 from polarcheck.table.tool_center import ToolCenter
 
@@ -40,7 +41,7 @@ class SectionView(msgspec.Struct, frozen=True, kw_only=True):
     rate: the rate of C at these times; inf through the center, NaN if unknown [deg/min].
     limit: the limit of C; NaN without one [deg/min].
     highest_line: the line of the block with the highest rate, 0 if C does not turn.
-    remarks: what is not shown, and why.
+    remarks: what is not shown, and why; what is shown as meant and not as the control reads it.
     """
 
     title: str
@@ -95,6 +96,7 @@ def views_of(tables: Tables, lines: Collection[int] = ()) -> Iterator[SectionVie
         channel = f"{trace.text.source.channel}: " if trace.text.source.channel else ""
         in_section = moves[moves.section == number]
         remarks = [_NO_RADIUS] if not in_section.is_of_tool.all() else []
+        remarks += [meant] if (meant := as_meant(trace, number)) else []
         if number + 1 == _SECTIONS < len(sections):
             remarks.append(f"{len(sections) - _SECTIONS} more sections are not shown")
         time, rate = _curve(in_section)

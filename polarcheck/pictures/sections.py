@@ -18,6 +18,7 @@ from polarcheck.checking.quantity import rounded
 from polarcheck.columns.trace import Trace
 from polarcheck.finding import PolarSection
 from polarcheck.machines.modal import MM_PER_INCH
+from polarcheck.parts.as_meant import as_meant
 from polarcheck.pictures import paths, rates
 from polarcheck.pictures.moves import LENGTH, POSITIONING, RATE, TIME, SectionMoves, numbers_of
 from polarcheck.pictures.parts import parts
@@ -122,7 +123,7 @@ def section_picture(
         parts=list(parts(trace, extras.levels, unseen)),
         marks=list(extras.marks),
         makes=list(extras.makes),
-        remarks=_remarks(len(chosen), len(listed)),
+        remarks=_remarks(len(chosen), len(listed), as_meant(trace, section)),
     )
 
 
@@ -189,8 +190,9 @@ def _points(path: Chords, move: Rows) -> Points:
     )
 
 
-def _remarks(count: int, listed: int) -> list[str]:
-    return [f"the table lists {listed} of {count} moves: those that are drawn"] if listed < count else []
+def _remarks(count: int, listed: int, meant: str) -> list[str]:
+    remarks = [meant] if meant else []
+    return [*remarks, f"the table lists {listed} of {count} moves: those that are drawn"] if listed < count else remarks
 
 
 def _title(summary: PolarSection) -> str:

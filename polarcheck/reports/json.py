@@ -11,7 +11,7 @@ from polarcheck.reading.names import with_characters
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from polarcheck.finding import Report
+    from polarcheck.finding import FileReport, Report
     from polarcheck.reports import Background
 
 #: Characters that JSON need not escape, but that control a terminal or an editor, or are invisible: escape sequences,
@@ -27,7 +27,13 @@ def json(report: Report, background: Background | None = None) -> str:
     """Return the report as JSON, in the order of its fields; NaN is null."""
     if not isinstance(report.files, list):
         return "".join(json_pieces(report, background))
-    return encoded(report, indent=2) + "\n"
+    files = [without_text(file) for file in report.files]
+    return encoded(msgspec.structs.replace(report, files=files), indent=2) + "\n"
+
+
+def without_text(file: FileReport) -> FileReport:
+    """The report of a file without what is for reports in text only."""
+    return file if file.makes is msgspec.UNSET else msgspec.structs.replace(file, makes=msgspec.UNSET)
 
 
 def encoded(value: Any, indent: int = 0) -> str:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from polarcheck.reports import Background, Parts, of_each
-from polarcheck.reports.json import encoded
+from polarcheck.reports.json import encoded, without_text
 
 if TYPE_CHECKING:
     from polarcheck.finding import FileReport, Report
@@ -50,5 +50,5 @@ def lines(file: FileReport) -> Iterator[dict[str, Any]]:
         yield {"type": "finding", "path": file.path, **msgspec.to_builtins(finding)}
     for finding in file.silenced:
         yield {"type": "silenced", "path": file.path, **msgspec.to_builtins(finding)}
-    fields = msgspec.to_builtins(msgspec.structs.replace(file, findings=[], silenced=[]))
+    fields = msgspec.to_builtins(msgspec.structs.replace(without_text(file), findings=[], silenced=[]))
     yield {"type": "file", **{name: value for name, value in fields.items() if name not in _LISTED}}

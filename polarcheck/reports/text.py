@@ -8,6 +8,8 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
+from msgspec import UNSET
+
 from polarcheck.reading.excerpt import excerpt, visible, without_commands
 from polarcheck.reports import SEVERITIES, Background, Parts, counted, of_each, painted
 from polarcheck.reports.pages.resting import resting
@@ -275,6 +277,8 @@ def _verdicts(report: Report, page: _Page) -> Iterator[str]:
         machine = f", for {visible(file.machine)}" if report.machine is None else ""
         space = " " * (width - len(word))
         yield f"{page.paint(file.verdict, word)}{space}  {visible(file.path)}: {', '.join(facts)}{machine}"
+        if file.makes and file.part is UNSET and len(widths) <= _RESTING:
+            yield from page.indented(f"makes: {file.makes}")
         if file.verdict != "fail" and len(widths) <= _RESTING:
             for line in resting(file):
                 yield from page.indented(line)

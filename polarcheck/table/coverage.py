@@ -126,6 +126,12 @@ class Coverage(Columns, frozen=True):
             Corners(corners.point, corners.reach, corners.turn, group),
         )
 
+    @property
+    def has_areas(self) -> bool:
+        """True once polygons of loops have been computed: loops may leave material at their ends or between passes."""
+        computed = vars(self)
+        return computed.get("_parts") is not None or bool(computed.get("_levels"))
+
     # ---- gaps ----
 
     @cached_property

@@ -34,15 +34,17 @@ def loop_of_row(trace: Trace) -> Rows:
 
 
 def level_of(trace: Trace, walls: Curves) -> Rows:
-    """For each wall a number of the level of its loop: its section, and the Z at which the loop begins."""
+    """For each wall a number of the level of its loop: its section, and the depth at which the loop begins."""
     first = np.flatnonzero(np.diff(walls.loop, prepend=-1))
-    row = walls.row[first]
-    z = np.round(trace.path.z[row] / ROUNDING)
-    # Where Z is not known, all loops between two Z moves are at one level.
-    moved = np.where(np.isnan(z), np.cumsum(trace.path.moves_z & ~trace.path.travels)[row], 0)
-    keys = np.stack([trace.mode.section[row], np.nan_to_num(z), moved], axis=1)
-    _, number = np.unique(keys, axis=0, return_inverse=True)
+    number = level_of_rows(trace, walls.row[first])
     return np.asarray(number[np.cumsum(np.diff(walls.loop, prepend=-1) != 0) - 1])
+
+
+def level_of_rows(trace: Trace, row: Rows) -> Rows:
+    """For each of these rows a number of its section and depth; where Z is not known, increments alone tell depths."""
+    depth, is_known = trace.path.depth[row] / ROUNDING, ~np.isnan(trace.path.z[row])
+    keys = np.stack([trace.mode.section[row], np.round(depth), is_known], axis=1)
+    return np.asarray(np.unique(keys, axis=0, return_inverse=True)[1].ravel())
 
 
 class CutsOfRows(Table, frozen=True):
@@ -234,20 +236,35 @@ class Overcuts:
         nothing = CutsOfRows.none(), np.zeros(0, bool), np.zeros(0, np.int64)
         if not self.compensates:
             return nothing
-        from polarcheck.geometry.overcuts.clearance import keeps_away
-
+        if self._keeps_away:
+            return nothing
         path, is_ramp = self.path
-        # With an allowance, the cutter stays away from the contour.
-        radius = np.abs((self.radius - self.trace.compensation.allowance)[path.row])
+        radius = self._radius_of_path
         tolerance = self.trace.machine.compensation.overcut_tolerance
         walls, left = self.walls
-        if keeps_away(walls, path, radius, tolerance):
-            return nothing
         from polarcheck.geometry.overcuts import own_loop
 
         around = self._air_radius(walls), self.level
         cuts, tangled = own_loop.overcuts(walls, left, *around, path, radius, is_ramp, tolerance, self.bar)
         return CutsOfRows.of(cuts, path, walls), is_ramp[cuts.move], tangled
+
+    @property
+    def _radius_of_path(self) -> Floats:
+        """For each move of `path` its R [mm]; with an allowance, the cutter stays away from the contour."""
+        return np.abs((self.radius - self.trace.compensation.allowance)[self.path[0].row])
+
+    @cached_property
+    def _keeps_away(self) -> bool:
+        """True if all moves of `path` stay away from all walls, without any polygon."""
+        from polarcheck.geometry.overcuts.clearance import keeps_away
+
+        tolerance = self.trace.machine.compensation.overcut_tolerance
+        return bool(keeps_away(self.walls[0], self.path[0], self._radius_of_path, tolerance))
+
+    @property
+    def has_areas(self) -> bool:
+        """True once polygons of loops have been computed."""
+        return "_all_cuts" in vars(self) and self.compensates and not self._keeps_away
 
     def _air_radius(self, walls: Curves) -> Floats:
         """

@@ -48,6 +48,11 @@ class Slots(Columns, frozen=True):
         cuts, tangled = other_loops.cuts_into_others(contours, level[walls.row], path, radius, is_ramp)
         return CutsOfRows.of(cuts, path, walls), is_ramp[cuts.move], tangled
 
+    @property
+    def has_areas(self) -> bool:
+        """True once polygons of loops have been computed: a level has several loops."""
+        return "_all_cuts" in vars(self) and bool(self._levels[1].any())
+
     @cached_property
     def _levels(self) -> tuple[Rows, Mask]:
         """

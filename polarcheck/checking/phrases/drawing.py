@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import cmath
 import math
 
+from polarcheck.asked.comparison import Comparison, Fit, title_of
+from polarcheck.asked.deviations import Deviations
 from polarcheck.checking.phrases.common import short
-from polarcheck.checking.quantity import in_row
+from polarcheck.checking.phrases.part import Sizes, shape_in_words
+from polarcheck.checking.quantity import Quantity, in_row
 from polarcheck.columns.blocks import ExecutedBlocks
 from polarcheck.columns.lengths import Lengths
-from polarcheck.machines.modal import MM_PER_INCH
-from polarcheck.table.deviations import Comparison, Deviations, Fit, title_of
+from polarcheck.machines.modal import MM_PER_INCH, Units
 
 #: A turn below this is none [rad].
 _NO_TURN = 1e-5
@@ -34,13 +37,12 @@ def told(blocks: ExecutedBlocks, lengths: Lengths, one: Comparison) -> str:
     if not one.agrees:
         by = f"by {largest.beside(tolerance, 'length')}, {tolerance:length} is allowed"
         return f"differs from {title} {by}: {_deviation(lengths, one)}"
-    least = _LEAST[largest.inch]
-    shown = in_row(max(found.largest, least), lengths, one.row)
-    where = f", largest at {_where(lengths, one, found.at)} by line {int(blocks.line[one.row])}"
-    return (
-        f"agrees with {title} within {shown:length} (tolerance {tolerance:length})"
-        f"{where if found.largest > least else ''}"
-    )
+    least, shown = _LEAST[largest.inch], _least(lengths, one, found.largest)
+    where = ""
+    if found.largest > least and not cmath.isnan(found.at):
+        where = f", largest at {_where(lengths, one, found.at)} by line {int(blocks.line[one.row])}"
+    angle = f"; its angle was not compared: {one.any_angle}" if one.any_angle else ""
+    return f"agrees with {title} within {shown:length} (tolerance {tolerance:length}){where}{angle}"
 
 
 def _deviation(lengths: Lengths, one: Comparison) -> str:
@@ -53,23 +55,69 @@ def _deviation(lengths: Lengths, one: Comparison) -> str:
     more = ""
     if size > one.tolerance:
         more = f", and {in_row(size, lengths, one.row):length} {other} at {_where(lengths, one, place)}"
-    return f"{what} at {_where(lengths, one, worst)}{more}{_fit(lengths, one, one.fit)}"
+    return f"{what} at {_where(lengths, one, worst)}{more}{_fit(lengths, one, one.fit)}{_made(lengths, one)}"
+
+
+def _made(lengths: Lengths, one: Comparison) -> str:
+    """What is made in the place of the part."""
+    sizes = Sizes(bool(lengths.units[one.row] == Units.INCH))
+    return "".join(f"; it makes: {shape_in_words(shape, lambda row: row + 1, sizes)}" for shape in one.made)
+
+
+def _least(lengths: Lengths, one: Comparison, size: float) -> Quantity:
+    """A difference, but no smaller than what anybody measures."""
+    return in_row(max(size, _LEAST[in_row(size, lengths, one.row).inch]), lengths, one.row)
 
 
 def _where(lengths: Lengths, one: Comparison, point: complex) -> str:
-    return f"{in_row(point, lengths, one.row):point}"
+    return f"{in_row(one.written(point), lengths, one.row):point}"
 
 
 def _fit(lengths: Lengths, one: Comparison, fit: Fit | None) -> str:
-    """How the drawing would have to be placed to fit."""
+    """How the part, or what it is compared with, would have to be placed to fit."""
     if fit is None:
         return ""
-    ways = ["mirrored, with C of the other sign"] if fit.mirrored else []
-    if abs(fit.turned) > _NO_TURN:
-        ways.append(f"turned by {math.degrees(fit.turned):.2f}".rstrip("0").rstrip(".") + " deg")
-    if fit.factor != 1:
-        ways.append(f"with {'twice' if fit.factor > 1 else 'half of'} its X, as diameter and radius are mixed up")
-    return f". The part would fit {' and '.join(ways)}: within {in_row(fit.largest, lengths, one.row):length}"
+    placement = fit.placement
+    is_drawn, is_any_angle = one.part.drawing is not None, not math.isnan(one.turned)
+    if placement.scale != 1 or (placement.shift and is_drawn):
+        what = "drawing" if is_drawn else f"{one.part.shape}"
+        ways = [*_scaled(placement.scale), *_mirrored(placement.mirrored), *_stretched(placement.x_factor)]
+        ways += [*_turned(0 if is_any_angle else placement.turned), *_shifted(lengths, one.row, placement.shift)]
+    else:
+        # The opposite change of the part; a mirrored one is turned to the same side.
+        what, angle = "part", placement.turned if placement.mirrored else -placement.turned
+        ways = [*_shifted(lengths, one.row, -placement.shift), *_mirrored(placement.mirrored)]
+        ways += [*_turned(0 if is_any_angle else angle), *_stretched(1 / placement.x_factor)]
+    return f". The {what} would fit {' and '.join(ways)}: within {_least(lengths, one, fit.largest):length}"
+
+
+def _scaled(scale: float) -> list[str]:
+    if scale == 1:
+        return []
+    return [f"{MM_PER_INCH} times as {'large (as one in inch)' if scale > 1 else 'small (as one in mm)'}"]
+
+
+def _mirrored(mirrored: bool) -> list[str]:
+    return ["mirrored, with C of the other sign"] if mirrored else []
+
+
+def _stretched(factor: float) -> list[str]:
+    if factor == 1:
+        return []
+    return [f"with {'twice' if factor > 1 else 'half of'} its X, as diameter and radius are mixed up"]
+
+
+def _turned(angle: float) -> list[str]:
+    if abs(angle) <= _NO_TURN:
+        return []
+    return ["turned by " + f"{math.degrees(angle):.2f}".rstrip("0").rstrip(".") + " deg"]
+
+
+def _shifted(lengths: Lengths, row: int, shift: complex) -> list[str]:
+    if not shift:
+        return []
+    sizes = Sizes(bool(lengths.units[row] == Units.INCH))
+    return [f"shifted by x {sizes(shift.real)} c {sizes(shift.imag)}"]
 
 
 def compared_with(deviations: Deviations, number: int) -> str:

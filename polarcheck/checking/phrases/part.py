@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple
 
 from polarcheck.geometry.shapes.shape import Shape
@@ -25,7 +25,24 @@ class Sizes(NamedTuple):
         return f"{value / MM_PER_INCH**2:.4f} inch2" if self.inch else f"{value:.1f} mm2"
 
 
-def shape_in_words(shape: Shape, line_of: Callable[[int], int], sizes: Sizes) -> str:
+class Manner(NamedTuple):
+    """
+    How a shape is told.
+
+    short: without areas, inside radii and distances from the axis.
+    from_c0: angles and places count from C0 of the part, else from C at the begin of the section, which is not known.
+    switch: the code that begins the section.
+    """
+
+    short: bool = False
+    from_c0: bool = True
+    switch: str = "G12.1"
+
+
+_PLAIN = Manner()
+
+
+def shape_in_words(shape: Shape, line_of: Callable[[int], int], sizes: Sizes, how: Manner = _PLAIN) -> str:
     """
     A shape as a note on a drawing: `hexagon, 27.000 across flats, corners R0.500, turned by 30 deg`.
 
@@ -34,19 +51,33 @@ def shape_in_words(shape: Shape, line_of: Callable[[int], int], sizes: Sizes) ->
     value = shape.values
     told = _TOLD.get(shape.name, _polygon)(shape, line_of, sizes)
     told += _corners(value, sizes)
-    if shape.name != "circle" and "turned" in value:
+    if shape.name != "circle" and "turned" in value and (how.from_c0 or not how.short):
         told += _turned(shape)
-    told += _off_axis(value, shape, sizes)
+    told += _off_axis(value, shape, sizes, how.short)
     if (
         shape.name in ("contour", "polygon", "groove")
         or "regular_by_x" in value
         or ("x_least" in value and not shape.is_regular)
     ):
-        told += _extents(value, sizes)
+        told += _extents(value, sizes, how.short)
     if shape.is_open and shape.name == "contour":
         told.append("open: beyond its ends the part is not known")
+    if not (how.from_c0 or how.short) and _has_direction(shape):
+        from_c = f"from C at {how.switch}, which is not known"
+        is_turned = bool(value.get("turned")) and told[-1].startswith("turned")
+        told = [*told[:-1], f"{told[-1]} {from_c}"] if is_turned else [*told, f"C at {how.switch} is not known"]
     text = ", ".join(told)
     return f"pocket: {text}" if shape.inside and not shape.is_open and shape.name != "groove" else text
+
+
+def _has_direction(shape: Shape) -> bool:
+    """It is not the same however the part is turned."""
+    return shape.name != "circle" or "center_x" in shape.values
+
+
+def angle_in_words(angle: float) -> str:
+    """C as a word: C22.5, C120."""
+    return f"C{round(angle, 3) + 0.0:g}"
 
 
 _Told = list[str]
@@ -104,11 +135,26 @@ def _round_with_flats(shape: Shape, line_of: _Line, sizes: Sizes) -> _Told:
     if "apart" in value:
         told[0] += f" {sizes(value['apart'])} apart"
     middle = "center of the circle" if "center_x" in value else "center"
+    if "turned_1" in value:
+        return [*told, _each(value, middle, sizes)]
     if "distance" in value and "apart" not in value:
         told[0] += f", {_away(value['distance'], middle, sizes)}"
-    if "least" in value:
-        told.append(f"{sizes(value['least'])} to {sizes(value['most'])} from the {middle}")
     return told
+
+
+def _each(value: Mapping[str, float], middle: str, sizes: Sizes) -> str:
+    """`12.000 at 0 deg and 14.000 at 90 deg from the center`: uneven flats one by one."""
+    numbers = range(1, int(value["flats"]) + 1)
+    angles = [_degrees(value[f"turned_{number}"]) for number in numbers]
+    if "distance" in value:
+        return f"{_away(value['distance'], middle, sizes)} at {_and(angles)} deg"
+    distances = [sizes(value[f"distance_{number}"]) for number in numbers]
+    flats = [f"{distance} at {angle} deg" for distance, angle in zip(distances, angles, strict=True)]
+    return f"{_and(flats)} from the {middle}"
+
+
+def _and(words: Sequence[str]) -> str:
+    return f"{', '.join(words[:-1])} and {words[-1]}"
 
 
 def _flats(shape: Shape, line_of: _Line, sizes: Sizes) -> _Told:
@@ -116,21 +162,16 @@ def _flats(shape: Shape, line_of: _Line, sizes: Sizes) -> _Told:
     count = int(value["flats"])
     if "apart" in value:
         told = [f"flats {sizes(value['apart'])} apart"]
-        told += [] if "distance" in value else [_from_to(value, sizes)]
+        told += [] if "distance" in value else [_each(value, "center", sizes)]
         return told + ([f"an arc R{sizes(value['joined'])} from one to the other"] if "joined" in value else [])
     if count == 1:
         return [f"flat {_away(value['distance'], 'center', sizes)}"]
-    where = _away(value["distance"], "center", sizes) if "distance" in value else _from_to(value, sizes)
-    return [f"{count} flats", where]
+    return [f"{count} flats", _each(value, "center", sizes)]
 
 
 def _away(distance: float, middle: str, sizes: Sizes) -> str:
     """How far a flat or a bottom is from the middle; beyond it where the part does not reach that far."""
     return f"{sizes(abs(distance))} {'from' if distance >= 0 else 'beyond'} the {middle}"
-
-
-def _from_to(value: Mapping[str, float], sizes: Sizes) -> str:
-    return f"{sizes(value['least'])} and {sizes(value['most'])} from the center"
 
 
 def _slot(shape: Shape, line_of: _Line, sizes: Sizes) -> _Told:
@@ -146,6 +187,17 @@ def _keyway(shape: Shape, line_of: _Line, sizes: Sizes) -> _Told:
     end = f"round end R{sizes(value['radius'])}" if "radius" in value else "square end"
     bottom = f"its bottom {_away(value['distance'], 'center', sizes)}"
     return [f"keyway {sizes(value['width'])} wide", bottom, end]
+
+
+def _round_with_keyway(shape: Shape, line_of: _Line, sizes: Sizes) -> _Told:
+    value = shape.values
+    count, is_key = int(value["keyways"]), (value["distance"] > value["diameter"] / 2) != shape.inside
+    name, end = ("key", "top") if is_key else ("keyway", "bottom")
+    which = f"a {name}" if count == 1 else f"{count} {name}s"
+    middle = "center of the circle" if "center_x" in value else "center"
+    its = f"{'its' if count == 1 else 'their'} {end} {_away(value['distance'], middle, sizes)}"
+    told = [f"round {sizes(value['diameter'])} with {which} {sizes(value['width'])} wide", its]
+    return told + ([f"round end R{sizes(value['radius'])}"] if "radius" in value else [])
 
 
 def _cam(shape: Shape, line_of: _Line, sizes: Sizes) -> _Told:
@@ -175,6 +227,7 @@ _TOLD: Mapping[str, Callable[[Shape, _Line, Sizes], _Told]] = {
     "flats": _flats,
     "slot": _slot,
     "keyway": _keyway,
+    "round with keyway": _round_with_keyway,
     "cam": _cam,
     "cross": _cross,
     "groove": _groove,
@@ -193,24 +246,32 @@ def _corners(value: Mapping[str, float], sizes: Sizes) -> _Told:
 
 
 def _turned(shape: Shape) -> _Told:
+    turned = _degrees(shape.values["turned"])
+    return [f"turned by {turned} deg"] if turned != "0" and "turned_1" not in shape.values else []
+
+
+def _degrees(angle: float) -> str:
     # Words with three digits turn a side of some millimetres by some thousandths of a degree.
-    turned = f"{shape.values['turned']:.2f}".rstrip("0").rstrip(".")
-    return [f"turned by {turned} deg"] if turned != "0" else []
+    return f"{angle:.2f}".rstrip("0").rstrip(".")
 
 
-def _off_axis(value: Mapping[str, float], shape: Shape, sizes: Sizes) -> _Told:
+def _off_axis(value: Mapping[str, float], shape: Shape, sizes: Sizes, short: bool) -> _Told:
     if "center_x" not in value:
         return []
     x, c = value["center_x"], value["center_c"]
     what = "its middle line" if shape.is_open else "center"
+    if short:
+        return [f"{what} at x {sizes(x)} c {sizes(c)}"]
     return [f"{what} {sizes(abs(complex(x, c)))} off the axis (x {sizes(x)}, c {sizes(c)})"]
 
 
-def _extents(value: Mapping[str, float], sizes: Sizes) -> _Told:
+def _extents(value: Mapping[str, float], sizes: Sizes, short: bool) -> _Told:
     told = []
     if "x_least" in value:
         told.append(f"x from {sizes(value['x_least'])} to {sizes(value['x_most'])}")
         told.append(f"c from {sizes(value['c_least'])} to {sizes(value['c_most'])}")
+    if short:
+        return told
     if value.get("inside_radius"):
         told.append(f"smallest inside radius {sizes(value['inside_radius'])}")
     elif "inside_radius" in value:

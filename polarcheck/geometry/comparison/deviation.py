@@ -14,6 +14,7 @@ import numpy as np
 import shapely  # type: ignore[import-untyped]
 
 from polarcheck.arrays import Floats, Mask, Points, Rows
+from polarcheck.geometry import polar
 from polarcheck.geometry.comparison.measured_path import Way, way_of_outline
 from polarcheck.geometry.outline import Outline
 
@@ -25,6 +26,8 @@ _CHORDS = 0.01
 _ABOUT_AXIS = 0.1
 #: What reaches farther beyond the round of the drawing than this [mm] is the way of the tool in the air.
 _IN_AIR = 0.1
+#: Sine of the angle between lines that are parallel, at most.
+_PARALLEL = 0.05
 #: Of each side the places that are looked at more closely, how often, and into how many parts each time.
 _PLACES, _TURNS, _PARTS = 8, 6, 8
 #: Places that are off by so little less than the largest [mm] are as far off.
@@ -94,14 +97,20 @@ def made_of(outline: Outline, polygon: Any, bar: float) -> Made:
     return Made(outline, way_of_outline(outline), about, polygon, np.inf if np.isnan(bar) else bar)
 
 
-def difference(made: Made, drawn: Way, *, both_ways: bool) -> Difference:
+def difference(made: Made, drawn: Way, *, both_ways: bool, metal: float = np.inf) -> Difference:
     """
     The deviation of the chains of a part from the curves of a drawing.
 
-    both_ways: the chains should cover all of these curves; else only the chains are measured to the curves.
+    both_ways: the chains should cover all of these curves; else only the chains are measured to the curves. metal: of
+    curves without an end, the radius up to which there is metal for certain [mm]: what lies beyond and is no wall may
+    be the way of the tool from one wall to the next.
     """
     turned = turned_radius(drawn)
-    first = _extremes(made.way, lambda points: _from_part(made, drawn, points), _compared(made, drawn, turned))
+    places = _compared(made, drawn, turned)
+    if np.isfinite(metal):
+        between = _between_walls(made, drawn, metal)[made.way.of[made.way.at(places[0])[1]]]
+        places = places[0], places[1] & ~between
+    first = _extremes(made.way, lambda points: _from_part(made, drawn, points), places)
     of_part = _difference(made, first, lambda points: made.way.of[made.way.nearest(points)[2]])
     if not both_ways:
         return of_part
@@ -166,6 +175,16 @@ def _compared(made: Made, drawn: Way, turned: float) -> tuple[Floats, Mask]:
     if np.isinf(min(turned, made.bar)):
         compared &= ~_leading(made, which, far)
     return along, compared if compared.any() else size <= made.bar + _ON_CIRCLE
+
+
+def _between_walls(made: Made, drawn: Way, metal: float) -> Mask:
+    """Elements of an outline that lie beyond this radius, and are parallel to no line of the drawing."""
+    outline = made.outline
+    nearest = polar.nearest(outline.start, outline.end, outline.center, outline.kind)
+    walls = drawn.end - drawn.start
+    way = outline.end - outline.start
+    across = np.abs((way[:, None].conj() * walls).imag) / np.maximum(np.abs(way[:, None] * walls), 1e-9)
+    return np.asarray((nearest > metal) & (outline.is_arc | (across.min(axis=1) > _PARALLEL)))
 
 
 def _is_open_end(drawn: Way, points: Points) -> Mask:

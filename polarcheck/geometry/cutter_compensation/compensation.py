@@ -308,12 +308,24 @@ def _along(programmed: Programmed, blocks: _Blocks) -> _Ways:
     length[arcs] = _arc_length(programmed, blocks, arcs)
     blocks.leave[closed] = blocks.entry[closed]
     kept = np.flatnonzero(~(length <= ZERO) | (programmed.full & ~(blocks.in_mode & blocks.known)))
-    turning = blocks.turning[kept]
+    # A full circle and a bit more would be taken as that bit alone: it is run in two halves.
+    round_ = 2 * np.pi * np.abs(blocks.leave[kept] - programmed.center[kept])
+    halved = (
+        programmed.full[kept]
+        & blocks.in_mode[kept]
+        & blocks.known[kept]
+        & (np.abs(blocks.leave[kept] - blocks.entry[kept]) > ZERO)
+    )
+    halved &= length[kept] > round_
+    first = np.cumsum(halved + 1)[halved] - 2
+    kept = np.repeat(kept, halved + 1)
+    start, end, turning = blocks.entry[kept], blocks.leave[kept], blocks.turning[kept]
+    end[first] = start[first + 1] = 2 * programmed.center[kept[first]] - start[first]
     return _Ways(
         order=kept * 4 + _BLOCK,
         row=programmed.row[kept],
-        start=blocks.entry[kept],
-        end=blocks.leave[kept],
+        start=start,
+        end=end,
         center=np.where(turning != 0, programmed.center[kept], _NOWHERE),
         kind=_KINDS[turning.astype(np.int16) + 1],
         phase=phase[kept],

@@ -22,7 +22,7 @@ from polarcheck.geometry.plane import arc_sweep
 from polarcheck.geometry.polygons.faces import coordinates, edges_of, lines_of
 from polarcheck.geometry.polygons.widened import widened
 from polarcheck.geometry.segments import Curves, Segments, first_of_its_kind, segments
-from polarcheck.geometry.tolerances import ROUNDING
+from polarcheck.geometry.tolerances import ROUNDING, TOUCH
 from polarcheck.machines.modal import Motion
 from polarcheck.time_limit import keep_time
 
@@ -107,7 +107,8 @@ def _across(polygon: Any, chords: Segments, radius: float) -> float:
 def _outline(polygon: Any, path: Curves, chords: Segments, radius: float) -> Outline:
     """Its elements are of the moves of the path and, from len(path) on, of the points where these meet."""
     start, end = edges_of(_part_on_left(polygon))
-    has_length = start != end
+    # Where walls that are in line meet, rounding leaves an edge that would be of a corner.
+    has_length = np.abs(end - start) > TOUCH
     start, end = start[has_length], end[has_length]
     middle = (start + end) / 2
     near = _nearest(chords, middle)

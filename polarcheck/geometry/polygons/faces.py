@@ -54,6 +54,7 @@ class Standing(msgspec.Struct, frozen=True):
     polygon: shapely geometry[groups] [mm], empty where no face stands.
     start, end: complex128[k] [mm], the edges of the polygons, with the polygon on the left.
     wall: int[k], the wall that each edge is part of.
+    ring: int[k], the ring that each edge is part of; its edges follow one another.
     tangled: bool[groups], the walls cross too often.
     """
 
@@ -61,6 +62,7 @@ class Standing(msgspec.Struct, frozen=True):
     start: Points
     end: Points
     wall: Rows
+    ring: Rows
     tangled: Mask
 
 
@@ -73,7 +75,8 @@ def standing(walls: Walls, groups: int, thinnest: float) -> Standing:
     tangled[: len(edges.tangled)] = edges.tangled
     if not len(edges.wall):
         nowhere = np.zeros(0, complex)
-        return Standing(np.full(groups, shapely.Polygon(), object), nowhere, nowhere, np.zeros(0, np.int64), tangled)
+        none = np.zeros(0, np.int64)
+        return Standing(np.full(groups, shapely.Polygon(), object), nowhere, nowhere, none, none, tangled)
     edges, sides = _distinct(edges, walls)
     lines = _lines(edges, sides, walls)
     face = _faces(lines)
@@ -85,7 +88,7 @@ def standing(walls: Walls, groups: int, thinnest: float) -> Standing:
     start = edges.nodes[np.where(forward, edges.start[edge], edges.end[edge])]
     end = edges.nodes[np.where(forward, edges.end[edge], edges.start[edge])]
     polygon = _polygons(start, end, ring[of], lines.group[line[of]], groups)
-    return Standing(polygon, start, end, edges.wall[edge], tangled)
+    return Standing(polygon, start, end, edges.wall[edge], ring[of], tangled)
 
 
 class _Sides(msgspec.Struct, frozen=True):

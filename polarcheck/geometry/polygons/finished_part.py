@@ -5,9 +5,10 @@ The walls of a group cut the plane into faces. The part consists of the faces th
 Leads, nested passes, spirals and overlaps need no special treatment: a lead turns its tool side to the air it crosses,
 and a pass to the material that the next pass removes. The surroundings of a pocket are a face as well.
 
-A contour that does not close bounds no face. If only a gap separates its end from its start, the gap is closed. Else
-its first and last walls are extended straight ahead, as a flat continues beyond the bar. The part is unknown there
-unless the bar is known.
+Where a contour runs on past its start, rounding moves its end to one side of the wall that it follows: both ends are
+joined to the walls beside them. A contour that does not close bounds no face. If only a gap separates its end from its
+start, the gap is closed. Else its first and last walls are extended straight ahead, as a flat continues beyond the
+bar. The part is unknown there unless the bar is known.
 """
 
 from __future__ import annotations
@@ -17,14 +18,22 @@ import numpy as np
 import shapely  # type: ignore[import-untyped]
 
 from polarcheck.arrays import Floats, Mask, Points, Rows
-from polarcheck.geometry.contour_ends import gaps_between_ends
+from polarcheck.geometry.contour_ends import CLOSED, gaps_between_ends
 from polarcheck.geometry.polygons import areas
 from polarcheck.geometry.polygons.faces import GRID, Geometries, Standing, Walls, standing
 from polarcheck.geometry.segments import Curves, Segments, directions, first_of_its_kind, members, segments
 from polarcheck.geometry.tolerances import TOUCH
+from polarcheck.time_limit import keep_time
 
 #: Corners of the circle that stands for the bar, in a quarter.
 _BAR_CORNERS = 256
+#: Pairs of ends and walls to compare at a time.
+_PAIRS = 1_000_000
+#: A contour ends beside its start where that is nearer than this share of its length, and runs on in the direction of
+#: its start where it turns by no more than this [rad].
+_BESIDE, _STRAIGHT = 0.025, 0.35
+#: Instead of a curve: a line from the end of a loop to the wall beside it.
+_JOINED = -2
 
 
 class Contours(msgspec.Struct, frozen=True):
@@ -38,6 +47,8 @@ class Contours(msgspec.Struct, frozen=True):
     radius: float64[groups] [mm].
     bar: diameter [mm], NaN if unknown.
     tolerance: of the chords of arcs [mm].
+    closes_beside: contours that end a little beside their start are closed, too: what they make is told, though the
+        ramps may cut into that.
     """
 
     curves: Curves
@@ -47,6 +58,7 @@ class Contours(msgspec.Struct, frozen=True):
     radius: Floats
     bar: float
     tolerance: float
+    closes_beside: bool = False
 
 
 class FinishedParts(msgspec.Struct, frozen=True):
@@ -56,6 +68,7 @@ class FinishedParts(msgspec.Struct, frozen=True):
     polygon: shapely geometry[groups] [mm], empty where there is no part.
     open: bool[groups], the outline is known only along the walls.
     gap: float64[groups] [mm], length of the gap that was closed, 0 for none.
+    beside: float64[groups] [mm], how far a contour ends beside its start, 0 where none does or nothing was closed.
     tangled: bool[groups], the walls cross too often.
     start, end: complex128[k] [mm], the walls that bound the part, with the part on their left.
     move: int[k], the curve that each wall is part of.
@@ -68,6 +81,7 @@ class FinishedParts(msgspec.Struct, frozen=True):
     polygon: Geometries
     open: Mask
     gap: Floats
+    beside: Floats
     tangled: Mask
     start: Points
     end: Points
@@ -111,7 +125,9 @@ def finished_parts(contours: Contours) -> FinishedParts:
     along = np.abs(np.stack([start, end], axis=1) - plane.walls.start[wall][:, None]) + plane.along[wall][:, None]
     ahead = plane.total[wall][:, None] - along
     move, group = plane.move[wall], plane.walls.group[wall]
-    return FinishedParts(polygon, is_open, gap, tangled, start, end, move, group, along, ahead, plane.pitch)
+    return FinishedParts(
+        polygon, is_open, gap, plane.beside, tangled, start, end, move, group, along, ahead, plane.pitch
+    )
 
 
 class _Plane(msgspec.Struct, frozen=True):
@@ -119,7 +135,7 @@ class _Plane(msgspec.Struct, frozen=True):
     All groups side by side.
 
     walls: the walls, n of them, and other lines.
-    move: int[n], the curve that each wall is part of, -1 for other lines.
+    move: int[n], the curve that each wall is part of, -1 for other lines, _JOINED for those that join ends to walls.
     along: float64[n] [mm], distance of the start of each wall from the start of its loop.
     total: float64[n] [mm], length of that loop.
     chosen: the curves of all groups, m of them, with the group as their loop.
@@ -127,6 +143,7 @@ class _Plane(msgspec.Struct, frozen=True):
     first, last: int[loops], the first and the last curve of each loop of a group.
     half: half the side of the square round each group [mm].
     pitch: distance between neighbouring groups [mm].
+    beside: float64[groups] [mm], see FinishedParts.
     """
 
     walls: Walls
@@ -139,6 +156,7 @@ class _Plane(msgspec.Struct, frozen=True):
     last: Rows
     half: float
     pitch: float
+    beside: Floats
 
 
 #: The outline of parts: start and end of each edge, and its wall.
@@ -166,12 +184,20 @@ def _plane(contours: Contours) -> _Plane:
     nothing = np.zeros(len(parts), bool)
     walls = Walls(parts.start, parts.end, left, ~left, nothing, parts.loop)
     first = np.flatnonzero(np.diff(which, prepend=-1))
-    more = [_joints(chosen, first, half, pitch), _square(np.unique(group), half, pitch)]
-    walls, origin = _together([walls, *more])
-    others = np.full(len(origin) - len(parts), -1)
-    move, along, total = (np.append(column, others)[origin] for column in (row[parts.move], along, total))
     last = np.append(first[1:], len(which))[: len(first)] - 1
-    return _Plane(walls, move, along, total, chosen, contours.left[row], first, last, half, pitch)
+    ends = np.append(chosen.start[first], chosen.end[last])
+    more = [_joints(chosen, first, half, pitch), _square(np.unique(group), half, pitch)]
+    beside = np.zeros(len(contours.radius))
+    if contours.closes_beside:
+        lines, length = _besides(chosen, first, last, contours.radius, pitch)
+        np.maximum.at(beside, lines.group, length)
+        more.append(lines)
+    joined = _joined_ends(ends, np.tile(chosen.loop[first], 2), walls, pitch)
+    walls, origin = _together([walls, *more, joined])
+    others = np.full(len(origin) - len(parts), -1)
+    others[len(others) - len(joined) :] = _JOINED
+    move, along, total = (np.append(column, others)[origin] for column in (row[parts.move], along, total))
+    return _Plane(walls, move, along, total, chosen, contours.left[row], first, last, half, pitch, beside)
 
 
 def _lengths(parts: Segments, which: Rows) -> tuple[Floats, Floats]:
@@ -212,6 +238,45 @@ def _joints(curves: Curves, first: Rows, half: float, pitch: float) -> Walls:
     return _lines(start, end, np.concatenate([curves.loop[torn], group]), pitch, joins=True)
 
 
+def _joined_ends(point: Points, group: Rows, walls: Walls, pitch: float) -> Walls:
+    """Lines from the ends of loops [mm] to the walls of their group beside them, nearer than points are rounded to."""
+    ends = point + pitch * group
+    end, wall = _candidates(ends, walls)
+    way = walls.end[wall] - walls.start[wall]
+    beside = (ends[end] - walls.start[wall]) * way.conj() / np.abs(way)
+    length = np.abs(way)
+    foot = walls.start[wall] + way * np.clip(beside.real, 0, length) / length
+    distance = np.abs(ends[end] - foot)
+    joins = (distance > TOUCH / 10) & (distance <= CLOSED)
+    end, foot = end[joins], foot[joins] - pitch * group[end[joins]]
+    return _lines(point[end], foot, group[end], pitch, joins=False)
+
+
+def _candidates(ends: Points, walls: Walls) -> tuple[Rows, Rows]:
+    """Ends of loops and walls whose boxes are no farther apart than CLOSED, as pairs of their numbers."""
+    order = np.argsort(ends.real, kind="stable")
+    across = ends.real[order]
+    low, high = np.minimum(walls.start.real, walls.end.real), np.maximum(walls.start.real, walls.end.real)
+    first, until = np.searchsorted(across, low - CLOSED), np.searchsorted(across, high + CLOSED, side="right")
+    pairs: list[tuple[Rows, Rows]] = [(np.zeros(0, np.int64), np.zeros(0, np.int64))]
+    begins = 0
+    total = np.cumsum(until - first)
+    while begins < len(total):
+        keep_time()
+        before = total[begins - 1] if begins else 0
+        stop = max(int(np.searchsorted(total, before + _PAIRS)), begins + 1)
+        count = (until - first)[begins:stop]
+        wall = np.repeat(np.arange(begins, stop), count)
+        place = np.arange(len(wall)) - np.repeat(np.cumsum(count) - count, count)
+        end = order[first[wall] + place]
+        c, a, b = ends[end].imag, walls.start[wall].imag, walls.end[wall].imag
+        near = (c >= np.minimum(a, b) - CLOSED) & (c <= np.maximum(a, b) + CLOSED)
+        pairs.append((end[near], wall[near]))
+        begins = stop
+    end, wall = (np.concatenate(column) for column in zip(*pairs, strict=True))
+    return end, wall
+
+
 def _square(group: Rows, half: float, pitch: float) -> Walls:
     """The squares round these groups."""
     corner = np.array([1 + 1j, -1 + 1j, -1 - 1j, 1 - 1j]) * complex(half)
@@ -222,19 +287,95 @@ def _square(group: Rows, half: float, pitch: float) -> Walls:
 
 def _standing(plane: _Plane, lines: Walls | None, chosen: Mask, thinnest: float) -> tuple[Standing, _Outline]:
     """The standing faces of the chosen groups with these added lines, and the outline along programmed curves."""
-    walls, origin, is_curve = plane.walls, np.arange(len(plane.move)), plane.move >= 0
+    walls, origin, move = plane.walls, np.arange(len(plane.move)), plane.move
     if lines is not None:
-        is_curve = np.append(is_curve, np.zeros(len(lines.group), bool))
+        move = np.append(move, np.full(len(lines.group), -1))
         walls, origin = _together([walls, lines])
         in_chosen = chosen[walls.group]
         walls, origin = walls[in_chosen], origin[in_chosen]
     faces = standing(walls, len(chosen), thinnest)
     wall = origin[faces.wall]
-    of_curve = is_curve[wall]
-    return faces, (faces.start[of_curve], faces.end[of_curve], wall[of_curve])
+    start, end = _without_joints(faces, move[wall] == _JOINED)
+    edge = _begun_behind(faces.ring, move[wall] == -1)
+    edge = edge[move[wall[edge]] >= 0]
+    return faces, (start[edge], end[edge], wall[edge])
+
+
+def _begun_behind(ring: Rows, is_other: Mask) -> Rows:
+    """The edges of rings, in the order of the rings; those with lines that are no walls begin behind one of these."""
+    order = np.arange(len(ring))
+    for number in np.unique(ring[is_other]).tolist():
+        first, until = np.searchsorted(ring, number), np.searchsorted(ring, number, side="right")
+        begins = np.flatnonzero(is_other[first:until] & ~np.roll(is_other[first:until], -1))
+        if len(begins):
+            order[first:until] = np.roll(order[first:until], -int(begins[-1]) - 1)
+    return order
+
+
+def _without_joints(faces: Standing, joined: Mask) -> tuple[Points, Points]:
+    """Start and end of the edges of parts, moved to one point where a line joins an end to the wall beside it."""
+    start, end, ring = faces.start.copy(), faces.end.copy(), faces.ring
+    for edge in np.flatnonzero(joined).tolist():
+        before, behind = edge - 1, edge + 1
+        if behind < len(ring) and ring[behind] == ring[edge]:
+            start[behind] = start[edge]
+        elif before >= 0 and ring[before] == ring[edge]:
+            end[before] = end[edge]
+    return start, end
 
 
 # ---- contours that do not close ----
+
+
+def _besides(curves: Curves, first: Rows, last: Rows, radius: Floats, pitch: float) -> tuple[Walls, Floats]:
+    """
+    Lines that close contours which end a little beside their start; for each line how far beside, or how far either
+    end is from the corner [mm].
+
+    At a corner the walls are extended to where they meet, along a wall its end is joined to what lies beside it. The
+    walls of a blade lie as near to each other, but run against each other.
+    """
+    begins, ends = directions(curves.start, curves.end, curves.center, curves.kind)
+    start, end, group = curves.start[first], curves.end[last], curves.loop[first]
+    begin, way = begins[first], ends[last]
+    until = np.append(0, np.cumsum(np.abs(curves.end - curves.start)))
+    total = until[last + 1] - until[first]
+    limit = np.minimum(_BESIDE * total, np.where(radius[group] > 0, radius[group], np.inf))
+    is_line = np.isnan(curves.center[first]) & np.isnan(curves.center[last])
+    turn = np.abs(np.angle(begin * way.conj()))
+    gap = start - end
+    length = np.abs(gap)
+    is_near = (length > CLOSED) & (last - first >= 2)
+
+    # At a corner: end + along * way is start - back * begin.
+    bends = (turn > _STRAIGHT) & (turn < np.pi - _STRAIGHT)
+    across = np.where(bends, (way.conj() * begin).imag, np.nan)
+    along = (gap.conj() * begin).imag / across
+    back = (way.conj() * gap).imag / across
+    meet = end + along * way
+    is_corner = is_near & is_line & (length <= limit) & bends
+    is_corner &= (np.abs(along) <= 3 * length) & (np.abs(back) <= 3 * length)
+
+    # Along a wall: over some of their length the two lie side by side.
+    over = -(gap * way.conj()).real
+    apart = np.abs((gap * way.conj()).imag)
+    is_wall = is_near & (turn <= _STRAIGHT) & (apart <= limit) & (apart > CLOSED)
+    lies_along = is_wall & is_line & (over > 0) & (length > limit)
+    lies_along &= over <= np.minimum(*(np.abs(curves.end[rows] - curves.start[rows]) for rows in (first, last)))
+    is_step = is_near & ~is_corner & (length <= limit) & (is_wall | (~is_line & (turn < np.pi - _STRAIGHT)))
+    foot_of_end = start + begin * ((end - start) * begin.conj()).real
+    foot_of_start = end + way * (gap * way.conj()).real
+    lines = [
+        (end, meet, is_corner),
+        (meet, start, is_corner),
+        (end, start, is_step),
+        (end, foot_of_end, lies_along),
+        (start, foot_of_start, lies_along),
+    ]
+    points = [np.concatenate([line[side][line[2]] for line in lines]) for side in (0, 1)]
+    loop = np.concatenate([np.flatnonzero(chosen) for _, _, chosen in lines])
+    size = np.where(is_corner, np.fmax(length, np.fmax(np.abs(along), np.abs(back))), np.where(is_step, length, apart))
+    return _lines(points[0], points[1], group[loop], pitch, joins=False), size[loop]
 
 
 def _bridges(plane: _Plane, contours: Contours) -> tuple[Walls, Floats]:

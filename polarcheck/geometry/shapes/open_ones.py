@@ -6,16 +6,16 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from polarcheck.arrays import Floats
+from polarcheck.arrays import Floats, Points, Rows
 from polarcheck.geometry.shapes.rings import Ring
-from polarcheck.geometry.shapes.shape import SAME, SAME_DIRECTION, Shape, off_axis, polygon_name, turned_by
+from polarcheck.geometry.shapes.shape import SAME, SAME_DIRECTION, Shape, each_flat, off_axis, polygon_name, turned_by
 
 #: Walls that are nearer to parallel than this are so [rad].
 _PARALLEL = 5 * SAME_DIRECTION
 
 
 def flats_of(found: Sequence[Ring]) -> list[Shape]:
-    """What open rings of one straight side each make together: flats, or the walls of a slot."""
+    """What open rings of one straight side each make together: flats, and the walls of slots."""
     if not found:
         return []
     normal = np.array([ring.normal[0] for ring in found])
@@ -24,28 +24,48 @@ def flats_of(found: Sequence[Ring]) -> list[Shape]:
     # A wall that another one interrupts is one flat.
     again = (np.abs(np.angle(normal[:, None] * normal.conj())) <= _PARALLEL) & (np.abs(out[:, None] - out) <= SAME)
     first = np.argmax(again, axis=1) == np.arange(len(found))
-    normal, out, count = normal[first], out[first], int(np.count_nonzero(first))
+    normal, out, slots = normal[first], out[first], []
+    while (pair := _facing(normal, out)) is not None:
+        slots.append(_slot(complex(normal[pair[0]]), out[pair], row))
+        normal, out = np.delete(normal, pair), np.delete(out, pair)
+    return [*([_flats(normal, out, row)] if len(out) else []), *slots]
+
+
+def _facing(normal: Points, out: Floats) -> Rows | None:
+    """The two walls that face each other across the narrowest slot; None where no two do."""
+    if len(out) < 2:
+        return None
+    opposite = np.abs(np.angle(-normal[:, None] * normal.conj())) <= _PARALLEL
+    width = np.where(opposite, -(out[:, None] + out), -1.0)
+    width[width <= 0] = np.inf
+    best = int(np.argmin(width))
+    pair = np.sort(np.array(np.unravel_index(best, width.shape), np.int64))
+    return pair if np.isfinite(width.flat[best]) else None
+
+
+def _flats(normal: Points, out: Floats, row: int) -> Shape:
+    count = len(out)
     order = np.argsort(np.angle(normal * normal[0].conjugate()) % (2 * np.pi - _PARALLEL), kind="stable")
     normal, out = normal[order], out[order]
     even = np.abs(np.angle(normal * normal[0].conjugate() * np.exp(-2j * np.pi * np.arange(count) / count)))
     even = even.max() <= _PARALLEL
+    equal = bool(np.ptp(out) <= 2 * SAME)
     if count == 2 and even:
-        apart = float(out.sum())
-        if apart < 0:
-            return [_slot(complex(normal[0]), out, row)]
-        values = {"flats": 2.0, "apart": apart, "turned": turned_by(normal[0], 2)}
-        values |= {"distance": apart / 2} if abs(out[0] - out[1]) <= 2 * SAME else _sizes(out)
-        return [Shape("flats", False, values, row=row, is_open=True)]
-    if count > 2 and even and np.ptp(out) <= 2 * SAME:
+        values = {"flats": 2.0, "apart": float(out.sum()), "turned": turned_by(normal[0], 2)}
+        values |= {"distance": float(out.mean())} if equal else _sizes(normal, out)
+        return Shape("flats", False, values, row=row, is_open=True)
+    if count > 2 and even and equal:
         values = {"across_flats": 2 * float(out.mean()), "sides": float(count), "turned": turned_by(normal[0], count)}
-        return [Shape(polygon_name(count), False, values, row=row, is_open=True)]
+        return Shape(polygon_name(count), False, values, row=row, is_open=True)
     values = {"flats": float(count), "turned": turned_by(normal[0], 1)}
-    values |= {"distance": float(out.mean())} if np.ptp(out) <= 2 * SAME else _sizes(out)
-    return [Shape("flats", False, values, row=row, is_open=True)]
+    values |= {"distance": float(out.mean())} if equal else {}
+    values |= _sizes(normal, out) if count > 1 else {}
+    return Shape("flats", False, values, row=row, is_open=True)
 
 
-def _sizes(out: Floats) -> dict[str, float]:
-    return {"least": float(out.min()), "most": float(out.max())}
+def _sizes(normal: Points, out: Floats) -> dict[str, float]:
+    sizes = {} if np.ptp(out) <= 2 * SAME else {"least": float(out.min()), "most": float(out.max())}
+    return sizes | each_flat(normal, out)
 
 
 def _slot(normal: complex, out: Floats, row: int) -> Shape:
@@ -60,7 +80,7 @@ def _joined_flats(ring: Ring, normal: complex, out: Floats) -> Shape | None:
     if ring.is_line[1] or ring.sweep[1] < 0:
         return None
     values = {"flats": 2.0, "apart": float(out.sum()), "turned": turned_by(normal, 2), "joined": float(ring.radius[1])}
-    values |= {"distance": float(out.mean())} if abs(out[0] - out[1]) <= 2 * SAME else _sizes(out)
+    values |= {"distance": float(out.mean())} if abs(out[0] - out[1]) <= 2 * SAME else _sizes(ring.normal[[0, 2]], out)
     return Shape("flats", False, values, row=int(ring.row[0]), is_open=True)
 
 

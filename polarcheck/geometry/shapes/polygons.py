@@ -8,7 +8,7 @@ import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Points
 from polarcheck.geometry.shapes.corners import Sides, is_at, without_chamfers
-from polarcheck.geometry.shapes.rings import Ring
+from polarcheck.geometry.shapes.rings import Ring, extents_of
 from polarcheck.geometry.shapes.shape import SAME, SAME_DIRECTION, OddSide, Shape, off_axis, polygon_name, turned_by
 
 #: With more sides than this equal ones stand for a circle.
@@ -170,11 +170,8 @@ def _uneven(ring: Ring, sides: Sides) -> Shape | None:
         out = (sides.middle * normal.conj()).real
         across = (out + np.roll(out, -half))[:half]
         values |= {"least": float(across.min()), "most": float(across.max())}
-    points = np.concatenate([sides.start, sides.end])
-    values |= {"x_least": float(points.real.min()), "x_most": float(points.real.max())}
-    values |= {"c_least": float(points.imag.min()), "c_most": float(points.imag.max())}
     mixed, rows = _mixed(sides)
-    values |= {"area": ring.area, **mixed}
+    values |= {**extents_of(ring), "area": ring.area, **mixed}
     name = polygon_name(count) if count > 4 else "polygon"
     return Shape(name, ring.inside, values, (), int(sides.row[0]), False, mixed=rows)
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Points, Rows
 from polarcheck.geometry.outline import Outline
-from polarcheck.geometry.plane import arc_sweep
+from polarcheck.geometry.plane import arc_sweep, passes_toward
 from polarcheck.geometry.rounding import kept_ends
 from polarcheck.geometry.shapes.shape import SAME
 
@@ -23,8 +23,12 @@ from polarcheck.geometry.shapes.shape import SAME
 _STUB = 1e-3
 #: A side is short beside another one of which it is less than this share; and how often sides are put together.
 _SHORT, _LOOKS = 0.25, 50
+#: Sine of the least angle at which the ends of a chain make a corner.
+_MEETING = 1 / 3
 #: Half of the strip in which blocks make one straight line, as rounding.kept_ends wants it [mm].
 _HALF = SAME / 8 * (1 + 1j)
+#: Chords of a curve turn by less than a corner does [rad].
+SHARP = 0.26
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,6 +39,8 @@ class Ring:
     start, end: complex128[n]. center: complex128[n], NaN for lines. sweep: float64[n] [rad], 0 for lines, above 0
     counterclockwise. row: int[n], of the longest block of each. closed: the last one ends where the first one starts.
     inside: it bounds a pocket; it was turned round, so that what it encloses is on its left in either case.
+    beyond: of an open ring that ends at the bar, the largest R that leaves nothing in it of an inside corner outside
+    [mm].
     """
 
     start: Points
@@ -44,6 +50,7 @@ class Ring:
     row: Rows
     closed: bool
     inside: bool = False
+    beyond: float = np.inf
 
     def __len__(self) -> int:
         return len(self.row)
@@ -108,11 +115,30 @@ def _ring_of(part: Outline, closed: bool, gap: float) -> Ring:
     start, end, center, row = part.start, part.end, part.center, part.row
     left = abs(end[-1] - start[0]) if len(row) else 0.0
     if not closed and 0 < left <= gap + SAME:
-        start, end = np.append(start, end[-1]), np.append(end, start[0])
-        center, sweep, row = np.append(center, np.nan), np.append(sweep, 0.0), np.append(row, row[-1])
+        corner = _corner(part, left)
+        if corner is None:
+            start, end = np.append(start, end[-1]), np.append(end, start[0])
+            center, sweep, row = np.append(center, np.nan), np.append(sweep, 0.0), np.append(row, row[-1])
+        else:
+            start, end = np.append(corner, start[1:]), np.append(end[:-1], corner)
         closed = True
     ring = Ring(start, end, center, sweep, row, closed)
     return ring.some(ring.length > _STUB)
+
+
+def _corner(part: Outline, left: float) -> complex | None:
+    """Where the last and the first line of a chain meet near its ends, `left` [mm] from each other; None for arcs."""
+    if part.is_arc[0] or part.is_arc[-1]:
+        return None
+    begin, way = part.end[0] - part.start[0], part.end[-1] - part.start[-1]
+    across = (way.conjugate() * begin).imag / (abs(way) * abs(begin))
+    if abs(across) < _MEETING:
+        return None
+    gap = part.start[0] - part.end[-1]
+    along = (gap.conjugate() * begin).imag / abs(begin) / across
+    meet = complex(part.end[-1] + along * way / abs(way))
+    is_near = max(abs(meet - part.start[0]), abs(meet - part.end[-1])) <= left / _MEETING
+    return meet if is_near else None
 
 
 def _within(ring: Ring, bar: float) -> Iterator[Ring]:
@@ -130,7 +156,27 @@ def _within(ring: Ring, bar: float) -> Iterator[Ring]:
         ring, out = ring.some(order), out[order]
     number = np.cumsum(np.diff(out, prepend=True) != 0)
     for piece in np.unique(number[~out]):
-        yield ring.some(np.flatnonzero((number == piece) & ~out), closed=False)
+        chosen = np.flatnonzero((number == piece) & ~out)
+        yield replace(ring.some(chosen, closed=False), beyond=_fits_beyond(ring, chosen, bar / 2))
+
+
+def _fits_beyond(ring: Ring, chosen: Rows, radius: float) -> float:
+    """The largest R whose rounding of the inside corners at both ends of these sides stays outside of the bar [mm]."""
+    into, out = directions(ring)
+    largest = np.inf
+    for corner, wall in ((int(chosen[-1]) + 1, int(chosen[-1])), (int(chosen[0]), int(chosen[0]))):
+        before, behind = corner - 1, corner % len(ring)
+        if not ring.is_line[wall] or (not ring.closed and not 0 < corner < len(ring)):
+            continue
+        turn = float(np.angle(out[behind] * into[before].conjugate()))
+        if turn > -SHARP:
+            continue
+        at, way = ring.start[behind], (-into[wall] if wall == before else out[wall])
+        along = float((at * way.conjugate()).real)
+        aside = abs(at) ** 2 - along**2
+        if aside < radius**2 and along < 0:
+            largest = min(largest, (-along - np.sqrt(radius**2 - aside)) / np.tan(-turn / 2))
+    return float(max(largest, 0.0))
 
 
 def nearest_of(ring: Ring) -> Floats:
@@ -243,3 +289,23 @@ def _joined(ring: Ring, begins: Mask) -> Ring:
     # The block that says most of the side; the first of those that say as much.
     order = np.lexsort((ring.row, -np.round(ring.length, 3), np.cumsum(begins)))
     return Ring(ring.start[first], ring.end[last], center, sweep, ring.row[order[first]], ring.closed, ring.inside)
+
+
+def extents_of(ring: Ring) -> dict[str, float]:
+    """How far it reaches along X and C, as values of a shape."""
+    (x_least, x_most), (c_least, c_most) = _extents(ring, 1), _extents(ring, 1j)
+    return {"x_least": x_least, "x_most": x_most, "c_least": c_least, "c_most": c_most}
+
+
+def _extents(ring: Ring, axis: complex) -> tuple[float, float]:
+    """The least and the largest coordinate along an axis, those of arcs between their ends included."""
+    ends = np.concatenate([ring.start, ring.end])
+    places = [(ends * np.conj(axis)).real]
+    arcs = np.flatnonzero(~ring.is_line)
+    for sign in (1, -1):
+        toward = np.full(len(arcs), sign * axis, np.complex128)
+        there = passes_toward(ring.start[arcs] - ring.center[arcs], ring.sweep[arcs], toward)
+        top = ring.center[arcs] + sign * axis * ring.radius[arcs]
+        places.append((top[there] * np.conj(axis)).real)
+    along = np.concatenate(places)
+    return float(along.min()), float(along.max())

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from polarcheck.geometry.shapes.rings import Ring
-from polarcheck.geometry.shapes.shape import SAME, SAME_DIRECTION, Shape, off_axis, polygon_name, turned_by
+from polarcheck.geometry.shapes.shape import SAME, SAME_DIRECTION, Shape, each_flat, off_axis, polygon_name, turned_by
 
 #: How far a line may be from the circle that it touches [mm].
 _TANGENT = 3 * SAME
@@ -19,8 +19,9 @@ def round_of(ring: Ring) -> Shape | None:
     center = complex(np.average(ring.center[arc], weights=ring.length[arc]))
     radius = float(np.average(ring.radius[arc], weights=ring.length[arc]))
     off = np.abs(ring.center[arc] - center) + np.abs(ring.radius[arc] - radius)
-    beyond = np.abs(np.concatenate([ring.start, ring.end]) - center) - radius
-    if off.max() > 2 * SAME or beyond.max() > 2 * SAME:
+    # Ends inside of the circle are those of a keyway, or of flats that cut each other off.
+    ends = np.abs(np.concatenate([ring.start, ring.end]) - center) - radius
+    if off.max() > 2 * SAME or np.abs(ends).max() > 3 * SAME:
         return None
     values = {"diameter": 2 * radius, **off_axis(center)}
     row = int(ring.row[0])
@@ -46,10 +47,12 @@ def _with_flats(ring: Ring, center: complex, values: dict[str, float]) -> Shape:
         return Shape(polygon_name(count), ring.inside, values, row=row)
     if count == 2 and even.max() <= slack:
         values["apart"] = float(out.sum())
-    if equal or count == 1:
+    if np.ptp(out) <= 2 * SAME:
         values["distance"] = float(out.mean())
     else:
         values |= {"least": float(out.min()), "most": float(out.max())}
+    if not equal:
+        values |= each_flat(normal, out)
     return Shape("round with flats", ring.inside, values, row=row)
 
 

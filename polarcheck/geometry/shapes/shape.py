@@ -6,6 +6,8 @@ import cmath
 import math
 from typing import NamedTuple
 
+from polarcheck.arrays import Floats, Points
+
 #: Sizes and places that agree in this [mm] are the same: what the last digit of a program in inches may move a side by.
 SAME = 0.004
 #: Directions that agree in this are the same, where a length gives no better measure [rad].
@@ -36,17 +38,21 @@ class Shape(NamedTuple):
     """
     What one outline is.
 
-    name: circle, triangle to dodecagon or `11-sided`, rectangle, polygon, round with flats, flats, slot, keyway, cam,
-    cross, groove, contour. inside: it is a pocket. values: its numbers [mm, mm2, deg], each only where it applies:
+    name: circle, triangle to dodecagon or `11-sided`, rectangle, polygon, round with flats, round with keyway, flats,
+    slot, keyway, cam, cross, groove, contour. inside: it is a pocket. values: its numbers [mm, mm2, deg], each only
+    where it applies:
 
     diameter; across_flats (of an odd number of sides twice the distance of a side from the middle), width, length,
-    sides, flats, distance (of a flat from the axis), apart (of parallel flats, of the circles of a cam), corner_radius
-    or corner_chamfer, and corner_least where corners differ; radius, radius_small (of a cam, of the end of a slot);
+    sides, flats, keyways, distance (of a flat or a bottom from the axis), apart (of parallel flats, of the circles of a
+    cam), corner_radius or corner_chamfer, and corner_least where corners differ; radius, radius_small (of a cam, of the
+    end of a slot);
     joined (R of the arc between two flats);
-    turned (the direction of the first side's normal or of the length); center_x, center_c, where it is off the axis;
+    turned (the direction of the first side's normal or of the length); distance_1, turned_1 and so on, of the flats
+    where they are uneven; center_x, center_c, where it is off the axis;
     x_least, x_most, c_least, c_most, area, inside_radius of contours; least, most where sides differ;
-    inside_corners: how many sharp ones the cutter cannot reach into; regular_by_x: by what X is to be multiplied to
-    make it regular.
+    inside_corners: how many sharp ones the cutter cannot reach into; corner_reach: the largest R of a cutter that
+    reaches each wall beside them; reach_beyond: the largest R that leaves nothing in the bar of a corner just outside;
+    regular_by_x: by what X is to be multiplied to make it regular.
 
     odd: the sides that differ from the others. row: of its first block. is_regular: False where what has the name of a
     regular polygon is none. is_open: nobody knows what the part is like beyond its ends. mixed:
@@ -73,6 +79,14 @@ def turned_by(direction: complex, count: int) -> float:
     step = 360 / count
     turned = math.degrees(cmath.phase(direction)) % step
     return 0.0 if min(turned, step - turned) < math.degrees(SAME_DIRECTION) / 4 else turned
+
+
+def each_flat(normal: Points, out: Floats) -> dict[str, float]:
+    """How far each of several uneven flats is from the middle, and its direction; as values of a shape."""
+    values: dict[str, float] = {}
+    for number, (direction, distance) in enumerate(zip(normal.tolist(), out.tolist(), strict=True), 1):
+        values |= {f"distance_{number}": distance, f"turned_{number}": turned_by(direction, 1)}
+    return values
 
 
 def off_axis(center: complex) -> dict[str, float]:

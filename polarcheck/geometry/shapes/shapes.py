@@ -8,17 +8,14 @@ import numpy as np
 
 from polarcheck.arrays import Mask
 from polarcheck.geometry.outline import Outline
-from polarcheck.geometry.plane import passes_toward
 from polarcheck.geometry.shapes.corners import sides_of
+from polarcheck.geometry.shapes.keyways import keyed_round_of
 from polarcheck.geometry.shapes.open_ones import flats_of, keyway_of
 from polarcheck.geometry.shapes.polygons import cross_of, in_chords, polygon_of
-from polarcheck.geometry.shapes.rings import Ring, directions, rings
+from polarcheck.geometry.shapes.rings import SHARP, Ring, directions, extents_of, rings
 from polarcheck.geometry.shapes.rounds import round_of, two_rounds_of
 from polarcheck.geometry.shapes.shape import Shape
 from polarcheck.time_limit import keep_time
-
-#: Chords of a curve turn by less than a corner does [rad].
-_SHARP = 0.26
 
 
 def shapes_of(outline: Outline, gap: float = 0.0, bar: float = np.nan) -> list[Shape]:
@@ -36,47 +33,61 @@ def shapes_of_rings(found: Iterable[Ring]) -> list[Shape]:
     others: list[Shape] = []
     for ring in found:
         keep_time()
-        if len(ring) == 1 and not ring.closed and ring.is_line[0]:
-            single.append(ring)
+        if _is_of_flats(ring):
+            single += [ring.some(np.array([side])) for side in range(len(ring))]
         elif len(ring):
             others.append(_shape_of(ring))
-    return [*flats_of(single), *others]
+    beyond = _beyond(min((ring.beyond for ring in single), default=np.inf))
+    return [*(shape._replace(values=shape.values | beyond) for shape in flats_of(single)), *others]
 
 
 def _shape_of(ring: Ring) -> Shape:
-    found = _recognised(ring)
-    sharp = int(np.count_nonzero(_is_sharp_inside(ring)))
-    return found._replace(values={**found.values, "inside_corners": float(sharp)}) if sharp else found
+    found, corners = _recognised(ring), _beyond(ring.beyond)
+    sharp = _is_sharp_inside(ring)
+    if sharp.any():
+        corners["inside_corners"] = float(np.count_nonzero(sharp))
+        fits = _fits_corners(ring, sharp)
+        corners |= {"corner_reach": fits} if np.isfinite(fits) else {}
+    return found._replace(values=found.values | corners)
+
+
+def _is_of_flats(ring: Ring) -> bool:
+    """An open ring of straight sides, convex: what stands is within all of them."""
+    if ring.closed or not ring.is_line.all():
+        return False
+    into, out = directions(ring)
+    turn = np.angle(out[1:] * into[:-1].conj())
+    return len(ring) > 0 and bool((turn > 0).all()) and float(turn.sum()) < 2 * np.pi
+
+
+def _beyond(radius: float) -> dict[str, float]:
+    return {"reach_beyond": radius} if np.isfinite(radius) else {}
+
+
+def _fits_corners(ring: Ring, sharp: Mask) -> float:
+    """The largest R that mills each straight wall beside a sharp inside corner, if only to its far end [mm]."""
+    into, out = directions(ring)
+    turn = np.abs(np.angle(np.roll(out, -1) * into.conj()))
+    taken = np.where(sharp, np.tan(np.minimum(turn, 3.0) / 2), 0.0)
+    taken = taken + np.roll(taken, 1)
+    beside = ring.is_line & (taken > 0)
+    return float(np.min(ring.length[beside] / taken[beside], initial=np.inf))
 
 
 def _recognised(ring: Ring) -> Shape:
     sides = sides_of(ring)
     of_sides = sides and (in_chords(ring, sides) or polygon_of(ring, sides) or cross_of(ring, sides))
-    return round_of(ring) or two_rounds_of(ring) or of_sides or keyway_of(ring) or contour_of(ring)
+    of_circle = round_of(ring) or two_rounds_of(ring) or keyed_round_of(ring)
+    return of_circle or of_sides or keyway_of(ring) or contour_of(ring)
 
 
 def contour_of(ring: Ring) -> Shape:
     """Anything else, by its extents."""
-    x, c = _extents(ring, 1), _extents(ring, 1j)
-    values = {"x_least": x[0], "x_most": x[1], "c_least": c[0], "c_most": c[1]}
+    values = extents_of(ring)
     if ring.closed:
         values["area"] = ring.area
     values |= _inside_radius(ring)
     return Shape("contour", ring.inside, values, row=int(ring.row[0]), is_open=not ring.closed)
-
-
-def _extents(ring: Ring, axis: complex) -> tuple[float, float]:
-    """The least and the largest coordinate along an axis, those of arcs between their ends included."""
-    ends = np.concatenate([ring.start, ring.end])
-    places = [(ends * np.conj(axis)).real]
-    arcs = np.flatnonzero(~ring.is_line)
-    for sign in (1, -1):
-        toward = np.full(len(arcs), sign * axis, np.complex128)
-        there = passes_toward(ring.start[arcs] - ring.center[arcs], ring.sweep[arcs], toward)
-        top = ring.center[arcs] + sign * axis * ring.radius[arcs]
-        places.append((top[there] * np.conj(axis)).real)
-    along = np.concatenate(places)
-    return float(along.min()), float(along.max())
 
 
 def _inside_radius(ring: Ring) -> dict[str, float]:
@@ -91,7 +102,7 @@ def _is_sharp_inside(ring: Ring) -> Mask:
     """The sides behind which the tool finds a sharp inside corner."""
     into, out = directions(ring)
     turn = np.angle(np.roll(out, -1) * into.conj()) * _air(ring)
-    sharp = turn > _SHARP
+    sharp = turn > SHARP
     sharp[-1] &= ring.closed
     return np.asarray(sharp)
 

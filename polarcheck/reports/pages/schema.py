@@ -35,6 +35,7 @@ def _report() -> Schema:
         definitions[kind]["properties"]["severity"] = {"enum": [level.name.lower() for level in reversed(Severity)]}
     definitions["Silenced"]["properties"]["by"] = {"enum": list(SILENCED_BY)}
     definitions["FileReport"]["properties"]["verdict"] = {"enum": list(VERDICTS)}
+    del definitions["FileReport"]["properties"]["makes"]
     definitions["Report"]["properties"]["schema"] = {"const": 1}
     return content
 

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from polarcheck.checking.causes import FAULTS_OF_CONTOUR, FAULTS_OF_METAL
 from polarcheck.checking.rule import ERROR, Deviations, Mask, rule
 
 
@@ -9,6 +10,7 @@ from polarcheck.checking.rule import ERROR, Deviations, Mask, rule
     "{deviations.tolerance:length} is allowed: {deviation}",
     needs=("compensation.radius",),
     where="deviations.asked",
+    follows={"file": (*FAULTS_OF_CONTOUR, *FAULTS_OF_METAL)},
 )
 def part_differs_from_drawing(deviations: Deviations) -> Mask:
     """

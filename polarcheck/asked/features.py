@@ -1,0 +1,225 @@
+"""
+The metal that mills leave beside what a job asks for: areas that must stand, and areas that must be gone.
+
+A contour may agree with its nearest curve and leave scrap: the other wall of a slot is not milled, a pass at another
+depth cuts into the part, or the tool runs on the wrong side. All cuts of all sections count here. Lengths in mm, in the
+frame of the part. Import late: shapely takes its time.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+import shapely  # type: ignore[import-untyped]
+
+from polarcheck.arrays import Mask
+from polarcheck.asked.comparison import SAME_Z
+from polarcheck.geometry.comparison.metal import (
+    NOTHING,
+    Extreme,
+    beside,
+    cleared_by,
+    disc,
+    empty,
+    farthest,
+    grown,
+    is_inside,
+    joined,
+    off_wall,
+    reachable,
+    within,
+)
+from polarcheck.geometry.polygons import areas
+from polarcheck.geometry.polygons.faces import coordinates
+from polarcheck.geometry.segments import segments
+from polarcheck.table.milled import Cuts
+from polarcheck.time_limit import keep_time
+
+#: What the chords of rounds may add to a difference, beside the tolerance [mm].
+_CHORDS = 0.004
+#: Far from the walls metal counts that is twice as thick as this, and that lies no nearer to the round of the bar [mm].
+_RIM = 0.1
+#: A program clears the middle of a pocket itself where it clears more than this share of it.
+_ROUGHED = 0.5
+#: Areas are apart where they share no more than this of the smaller one.
+_SHARED = 0.01
+
+
+class Feature(NamedTuple):
+    """
+    A closed shape that a job asks for.
+
+    number: of the part in the job. curve: of the curve in its drawing. area: what it encloses (shapely). is_pocket: the
+    part stands around it. z: its depth. radius: R that mills it. tolerance: allowed difference. certain: up to this
+    distance from the axis there is metal before milling. most: beyond it there is none, inf where nobody knows.
+    excess_is_judged: all that may clear something there is known. is_bar_known: what is far from the walls is compared
+    as well. is_solid: there is no hole where it is to be cleared. cuts: bool per cut, those in its sections. own_cuts:
+    those without the contours of other parts.
+    """
+
+    number: int
+    curve: int
+    area: Any
+    is_pocket: bool
+    z: float
+    radius: float
+    tolerance: float
+    certain: float
+    most: float
+    excess_is_judged: bool
+    is_bar_known: bool
+    is_solid: bool
+    cuts: Mask
+    own_cuts: Mask
+
+
+class AreaDifference(NamedTuple):
+    """
+    How the metal differs from a feature.
+
+    proud: metal that should be gone. deep: metal that is missing. proud_row, deep_row: the row of the cut that comes
+    nearest, -1 for none. off: how far the wall that is made is off the one that is asked for [mm]. island: what stands
+    in the middle of a pocket along whose walls alone the program mills: it may be gone before.
+    """
+
+    proud: Extreme
+    deep: Extreme
+    proud_row: int
+    deep_row: int
+    off: float
+    island: Extreme
+
+    @property
+    def is_none(self) -> bool:
+        """The metal is as it should be."""
+        return self.proud.size == self.deep.size == 0
+
+
+def differences(features: Sequence[Feature], cuts: Cuts) -> list[AreaDifference]:
+    """The difference of each feature. Raises TooHardError where areas are too many."""
+    cleared = _Cleared(cuts)
+    found = []
+    for feature in features:
+        keep_time()
+        found.append(_difference(feature, features, cleared))
+    return found
+
+
+class _Cleared:
+    """Areas that cuts clear, by their choice."""
+
+    def __init__(self, cuts: Cuts) -> None:
+        self.cuts = cuts
+        self._known: dict[bytes, Any] = {}
+
+    def by(self, chosen: Mask) -> Any:
+        key = chosen.tobytes()
+        if key not in self._known:
+            own = self.cuts[chosen]
+            self._known[key] = cleared_by(own.curves, own.radius) if len(own) else empty()
+        return self._known[key]
+
+
+def _difference(feature: Feature, features: Sequence[Feature], cleared: _Cleared) -> AreaDifference:
+    cuts, tolerance = cleared.cuts, max(feature.tolerance, _CHORDS) + _CHORDS
+    deep = cuts.low <= feature.z + SAME_Z
+    gone = cleared.by(deep)
+    off = off_wall(gone, feature.area, feature.radius, feature.certain - 2 * _CHORDS, feature.is_pocket)
+    proud, proud_row, island = NOTHING, -1, NOTHING
+    if feature.excess_is_judged:
+        metal = disc(feature.certain)
+        asked = areas.intersection(beside(feature.area, feature.radius, tolerance, feature.is_pocket), metal)
+        stays = areas.difference(_cleared_of_others(asked, feature, features), gone)
+        side = areas.intersection(feature.area, metal) if feature.is_pocket else areas.difference(metal, feature.area)
+        whole = areas.difference(_cleared_of_others(side, feature, features), gone)
+        if feature.is_solid:
+            far = areas.intersection(whole, disc(feature.certain - _RIM))
+            far = grown(grown(far, -_RIM), _RIM)
+            middle = grown(feature.area, -2 * feature.radius - tolerance)
+            roughed = shapely.area(areas.intersection(gone, middle)) > _ROUGHED * shapely.area(middle)
+            if feature.is_bar_known or (feature.is_pocket and roughed):
+                stays = joined([stays, far])
+            elif feature.is_pocket:
+                island = farthest(far, far, feature.area)
+        proud = farthest(stays, whole, feature.area)
+        if proud.size:
+            proud_row = nearest_row(cuts, deep if deep.any() else np.ones(len(cuts), bool), proud.place)
+    worst, deep_row = NOTHING, -1
+    heights = sorted({one.z for one in features if one.z >= feature.z - SAME_Z})
+    for number, z in enumerate(heights):
+        top = number == len(heights) - 1
+        own = feature.own_cuts if feature.is_pocket else feature.cuts
+        chosen = own if top else own & (cuts.low <= z + SAME_Z) & (cuts.high <= z + SAME_Z)
+        if not chosen.any():
+            continue
+        stands = _must_stand(feature, features, z, tolerance)
+        if np.isfinite(feature.most):
+            stands = areas.intersection(stands, disc(feature.most))
+        lacks = areas.intersection(stands, cleared.by(chosen))
+        found = farthest(lacks, lacks, feature.area)
+        if found.size > worst.size:
+            worst, deep_row = found, nearest_row(cuts, chosen, found.place)
+    return AreaDifference(proud, worst, proud_row, deep_row, off, island)
+
+
+def _are_apart(one: Any, other: Any) -> bool:
+    both = shapely.area(areas.intersection(one, other))
+    return bool(both <= _SHARED * min(shapely.area(one), shapely.area(other)))
+
+
+def _must_stand(feature: Feature, features: Sequence[Feature], z: float, tolerance: float) -> Any:
+    """What must stand of a part, or around a pocket, just above a height."""
+    stands = within(feature.area, feature.radius, tolerance, feature.is_pocket)
+    for other in features:
+        if other is feature or other.z > z + SAME_Z:
+            continue
+        if other.is_pocket:
+            if feature.is_pocket or not is_inside(feature.area, other.area, tolerance):
+                stands = areas.difference(stands, grown(other.area, tolerance))
+        elif feature.is_pocket:
+            if not is_inside(other.area, feature.area, tolerance):
+                stands = areas.intersection(stands, grown(other.area, -tolerance))
+        elif not _are_apart(feature.area, other.area):
+            stands = areas.intersection(stands, grown(other.area, -tolerance))
+    return stands
+
+
+def _cleared_of_others(area: Any, feature: Feature, features: Sequence[Feature]) -> Any:
+    """An area beside the walls of a feature, without what other features need or keep the cutter from."""
+    for other in features:
+        if other is feature:
+            continue
+        if other.is_pocket:
+            if not feature.is_pocket and is_inside(feature.area, other.area, feature.tolerance):
+                area = areas.intersection(area, reachable(other.area, feature.radius, True))
+        elif feature.is_pocket:
+            if is_inside(other.area, feature.area, feature.tolerance):
+                around = areas.difference(feature.area, other.area)
+                area = areas.intersection(area, reachable(around, feature.radius, True))
+        elif not is_inside(feature.area, other.area, feature.tolerance):
+            both = joined([feature.area, other.area])
+            area = areas.difference(area, reachable(both, feature.radius, False))
+    return area
+
+
+def nearest_row(cuts: Cuts, chosen: Mask, place: complex) -> int:
+    """The row of the cut that comes nearest to a place."""
+    own = cuts[chosen]
+    chords = segments(own.curves, _CHORDS)
+    if not len(chords):
+        return int(own.curves.row[0]) if len(own) else -1
+    lines = shapely.linestrings(np.stack([coordinates(chords.start), coordinates(chords.end)], axis=1))
+    far = shapely.distance(lines, shapely.points(place.real, place.imag))
+    return int(own.curves.row[chords.move[int(np.argmin(far))]])
+
+
+def directions_of(cuts: Cuts, chosen: Mask, most: int = 8) -> list[float]:
+    """The directions of the longest straight cuts [deg], from 0 to 180."""
+    own = cuts.curves[chosen & np.isnan(cuts.curves.center)]
+    way = own.end - own.start
+    angle = np.round(np.degrees(np.angle(way)) % 180, 3) % 180
+    each, number = np.unique(angle, return_inverse=True)
+    length = np.bincount(number.ravel(), weights=np.abs(way), minlength=len(each))
+    return [float(each[at]) for at in np.argsort(-length, kind="stable")[:most]]
