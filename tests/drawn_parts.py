@@ -672,7 +672,7 @@ class _Planner:
             self.tool += 1
         if len(rough) == 0 and draw.random() < 0.35 and z < -2.5:
             count = draw.choice((2, 3))
-            depths = tuple(round(z * (index + 1) / count, 2) for index in range(count))
+            depths = (*(round(z * (index + 1) / count, 2) for index in range(count - 1)), z)
         else:
             depths = (z,)
         contour = form.contour()
@@ -725,7 +725,7 @@ class _Planner:
         )
 
     def evenly(self, depths: tuple[float, ...]) -> bool:
-        return all(abs(depth - depths[0] * (number + 1)) < 1e-6 for number, depth in enumerate(depths))
+        return all(abs(depth - depths[0] * (number + 1)) < 1e-3 for number, depth in enumerate(depths))
 
     def as_drawing(self, number: int, feature: Feature) -> Feature:
         keys = {"drawing": f"part{'' if self.is_one_file else number or ''}.dxf"}
