@@ -6,6 +6,7 @@ A small share of what benchmarks/part_defects.py draws.
 
 from __future__ import annotations
 
+import math
 import sys
 from typing import Any
 
@@ -30,7 +31,8 @@ def area_of(keys: dict[str, Any], features: Feature) -> Any:
         area = shapely.Point(center).buffer(keys["diameter"] / 2, quad_segs=64)
         return BAR.difference(area) if keys.get("inside") else area
     sides = next((sides for sides, name in NAMES.items() if name == shape), keys.get("sides", keys.get("count", 1)))
-    apothem = keys["distance"] if "distance" in keys else keys["across_flats"] / 2
+    flats = keys.get("across_flats", keys.get("across_corners", 0.0) * math.cos(math.pi / sides))
+    apothem = keys.get("distance", flats / 2)
     area = BAR
     for number in range(sides):
         half = shapely.box(-1000, -1000, apothem, 1000)
