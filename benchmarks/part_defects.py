@@ -34,6 +34,8 @@ from setter_programs import Program
 RULE = "part-differs-from-drawing"
 #: The share of defects that should be said.
 GOAL = 0.99
+#: `as sound`: the same rules say the same of the program without the defect.
+MISSED = ("unverified", "pass", "as sound", "crash")
 
 
 class Result(NamedTuple):
@@ -63,10 +65,10 @@ def defect_of(seed: int, kinds: tuple[str, ...], show: Path | None) -> Result | 
     about += f"x {judgement.place.real:.3f} (radius) c {judgement.place.imag:.3f}"
     report = report_of(defect.plan, defect.program)
     verdict = verdict_of(report)
-    if verdict == "other" and not rules_of(report) - rules_of(report_of(defect.plan, defect.sound)):
-        verdict = "pass"
+    if verdict in ("part", "other") and not rules_of(report) - rules_of(report_of(defect.plan, defect.sound)):
+        verdict = "as sound"
     result = Result(defect.kind, seed, defect.plan.family, defect.program.machine, verdict, about, said(report))
-    if show is not None and result.verdict in ("pass", "unverified"):
+    if show is not None and result.verdict in MISSED:
         write(show / f"{_slug(defect.kind)}_{seed}", defect.plan, defect.program, _head(result))
     return result
 
@@ -106,6 +108,8 @@ def rules_of(report: dict[str, Any]) -> set[str]:
 def verdict_of(report: dict[str, Any]) -> str:
     """`part`, or `other` for another finding of weight; else `unverified` where the part is not compared, or `pass`."""
     rules = rules_of(report)
+    if "crash" in rules:
+        return "crash"
     if RULE in rules:
         return "part"
     if rules:
@@ -151,7 +155,7 @@ def print_sound(results: Iterable[Result]) -> bool:
         rows[result.name][result.verdict] += 1
         if result.verdict != "pass":
             print(f"seed {result.seed} {result.machine} {result.family}: {' | '.join(result.says)[:300]}", flush=True)
-    columns = ("pass", "part", "other", "unverified")
+    columns = ("pass", "part", "other", "unverified", "crash")
     return _print(rows, "sound part", columns, lambda row: row["pass"], 1.0)
 
 
@@ -162,12 +166,12 @@ def print_table(results: Iterable[Result | None]) -> bool:
         if result is None:
             continue
         rows[result.name][result.verdict] += 1
-        if result.verdict in ("pass", "unverified"):
+        if result.verdict in MISSED:
             says = " | ".join(result.says)[:200]
             print(
                 f"{result.name}: seed {result.seed} {result.machine} {result.family}: {result.about} {says}", flush=True
             )
-    columns = ("part", "other", "unverified", "pass")
+    columns = ("part", "other", *MISSED)
     return _print(rows, "defect", columns, lambda row: row["part"] + row["other"], GOAL)
 
 

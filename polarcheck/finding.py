@@ -219,6 +219,7 @@ class MadeShape(msgspec.Struct, frozen=True, kw_only=True):
     needs: what is unknown, and what to give; null if nothing is.
     as_meant: numbers without a decimal point that are taken as if they had one, told at the first shape of a section;
         null if there are none.
+    is_compared: false where the job asks for parts, but for none of these sections; absent where it asks for none.
     channel: of a file with several channels, as `$2`.
     """
 
@@ -236,6 +237,7 @@ class MadeShape(msgspec.Struct, frozen=True, kw_only=True):
     left_standing: list[LeftStanding] = []
     needs: str | None = None
     as_meant: str | None = None
+    is_compared: bool | UnsetType = UNSET
     channel: str | UnsetType = UNSET
 
 

@@ -44,9 +44,11 @@ def check(folder: Path) -> dict[str, Any]:
     """The report of the program in a folder."""
     with contextlib.chdir(folder):
         result = CliRunner().invoke(main, ["check", "--format", "json", "--set", "limits.c_feed=36000", PROGRAM])
-    if not result.stdout.startswith("{"):
-        raise RuntimeError(f"{folder}: {result.output}{result.exception!r}")
-    report: dict[str, Any] = json.loads(result.stdout)["files"][0]
+    try:
+        report: dict[str, Any] = json.loads(result.stdout)["files"][0]
+    except ValueError:
+        crash = {"rule": "crash", "severity": "error", "line": 0, "message": result.output + repr(result.exception)}
+        return {"findings": [crash], "not_evaluated": []}
     return report
 
 

@@ -87,7 +87,13 @@ def _readings(plan: Plan, bar: Any, z: float) -> list[Any]:
 
 
 def _difference(metal: Any, stands: Any, bar: Any, allowed: float) -> tuple[Any, Any]:
-    return metal.intersection(bar).difference(stands.buffer(allowed)), stands.buffer(-allowed).difference(metal)
+    """What is too much and too little, without what is thinner than half of what is allowed."""
+    extra, missing = metal.intersection(bar).difference(stands), stands.difference(metal)
+    if extra.buffer(-allowed / 4).is_empty:
+        extra = shapely.Polygon()
+    if missing.buffer(-allowed / 4).is_empty:
+        missing = shapely.Polygon()
+    return extra.difference(stands.buffer(allowed)), missing.intersection(stands.buffer(-allowed))
 
 
 def _turns(plan: Plan) -> list[float]:

@@ -373,7 +373,7 @@ def _reformed(plan: Plan, number: int, changes: dict[str, float]) -> Program:
 def mirror_image(plan: Plan, draw: Draw) -> Program | None:
     number = draw.randrange(len(plan.features))
     feature = plan.features[number]
-    if not feature.is_drawn and "turned" not in feature.keys and "center" not in feature.keys:
+    if not feature.is_drawn and "turned" not in feature.keys:
         return None
 
     def one(old: Pass) -> Pass:

@@ -20,7 +20,7 @@ import numpy as np
 import shapely  # type: ignore[import-untyped]
 
 from polarcheck.checking.tables import Tables
-from polarcheck.finding import MadeShape
+from polarcheck.finding import MadeInSection, MadeShape
 from polarcheck.geometry.cutter_compensation.compensation import Phase
 from polarcheck.geometry.plane import arc_sweep
 from polarcheck.machines.modal import Motion
@@ -335,7 +335,7 @@ def mismatches(
             continue  # what stands beside the part is no part, and the words do not say where it ends
         for z in dict.fromkeys(shape.depths) or (None,):
             beside = [
-                one for one in made if one is not shape and one.line == shape.line and z in (one.depths or [None])
+                one for one in made if one is not shape and _share_sections(one, shape) and z in (one.depths or [None])
             ]
             best: list[Mismatch] | None = None
             for sections, turned in _sections_of(tables, shape):
@@ -347,21 +347,35 @@ def mismatches(
             yield from [Mismatch(shape.line, z, shape.text, "nothing is swept", 0.0)] if best is None else best
 
 
-def _sections_of(tables: Tables, shape: MadeShape) -> list[tuple[list[int], list[float]]]:
-    """
-    The sections that a shape may be of, with the angles of C at which they begin.
+def _share_sections(one: MadeShape, other: MadeShape) -> bool:
+    return not {part.line for part in one.sections}.isdisjoint(part.line for part in other.sections)
 
-    A line that runs several times begins several sections: the shape is that of one of them.
-    """
+
+def _sections_of(tables: Tables, shape: MadeShape) -> list[tuple[list[int], list[float]]]:
+    """The sections that make a shape, with their angles; a list for each way to take them."""
     trace = tables["trace"]
-    lines = trace.blocks.line_in_file[trace.mode.sections.enter]
-    numbers = [np.flatnonzero(lines == one.line).tolist() for one in shape.sections]
+    lines = trace.blocks.line_in_file[trace.mode.sections.enter].tolist()
+    entry = np.where(trace.path.knows_section_entry, trace.path.section_entry, np.nan)
+
+    def of(one: MadeInSection) -> list[int]:
+        return [
+            number
+            for number, line in enumerate(lines)
+            if line == one.line
+            and (
+                math.isnan(entry[number])
+                if one.angle is None
+                else abs(math.sin((math.radians(entry[number] - one.angle)) / 2)) < 1e-6
+            )
+        ]
+
     angles = [one.angle or 0.0 for one in shape.sections]
-    if len(numbers) == 1:
-        return [([number], angles) for number in numbers[0]]
-    several = [one.line for one in shape.sections]
-    places = [numbers[at][several[:at].count(line) % len(numbers[at])] for at, line in enumerate(several)]
-    return [(places, angles)]
+    if len(shape.sections) == 1:
+        return [([number], angles) for number in of(shape.sections[0])]
+    numbers: list[int] = []
+    for one in shape.sections:
+        numbers.append(next(number for number in of(one) if number not in numbers))
+    return [(numbers, angles)]
 
 
 def _compared(

@@ -571,9 +571,11 @@ def test_options_come_from_the_environment_too() -> None:
     assert result.exit_code == 0
     assert re.fullmatch(r"a\.nc:4:1: error: .* \[rapid-in-polar\]\n", result.stdout)
     assert call("rules", POLARCHECK_FORMAT="concise").exit_code == 0
+    # POLARCHECK_PART is the flag of check; that of init names programs.
+    without = ("fix", "unsafe_fixes", "parts")
     for command in main.commands.values():
         for option in command.params:
-            if isinstance(option, click.Option) and option.name not in ("fix", "unsafe_fixes"):
+            if isinstance(option, click.Option) and option.name not in without:
                 written = max(option.opts, key=len).lstrip("-").upper().replace("-", "_")
                 assert option.envvar == f"POLARCHECK_{written}"
 

@@ -65,6 +65,23 @@ def test_the_words_name_lines_and_angles() -> None:
     )
 
 
+def test_many_angles_are_told_by_their_step() -> None:
+    (shape,) = made(flats(12, half=6.0))
+    assert shape.text.endswith(" at C0 to C330, 30 deg apart")
+    assert len(shape.sections) == 12
+
+
+def test_a_loop_has_its_sections_in_one_line() -> None:
+    lines = program(flats(1)).splitlines()
+    first, last = lines.index("G0 X80. C0 Z2."), lines.index("G13.1")
+    section = [line.replace("C0 Z2.", "C[#1] Z2.") for line in lines[first : last + 1]]
+    loop = ["#1=0", "WHILE[#1 LT 360]DO1", *section, "#1=#1+120", "END1"]
+    text = "\n".join([*lines[:first], *loop, *lines[last + 1 :]]) + "\n"
+    (shape,) = made_by(tables_of(text, "fanuc", tool(3)))
+    assert shape.text.endswith("by the section of line 10 at C0, C120, C240")
+    assert angles(shape) == [0.0, 120.0, 240.0]
+
+
 def test_incremental_indexing_is_the_same() -> None:
     text = program(flats(3)).replace("C120. Z2.", "H120. Z2.").replace("C240. Z2.", "H120. Z2.")
     (shape,) = made_by(tables_of(text, "fanuc", tool(3)))
@@ -77,9 +94,10 @@ def test_each_depth_is_put_together() -> None:
     (shape,) = made(sections)
     assert shape.depths == [*depths]
     sections[2] = sections[2]._replace(depths=depths[:2])
-    triangle, rest = made(sections)
+    triangle, *rest = made(sections)
     assert (triangle.shape, triangle.depths, len(triangle.sections)) == ("triangle", [-2.0, -4.0], 3)
-    assert (rest.shape, rest.depths, angles(rest)) == ("flats", [-6.0], [0.0, 120.0])
+    assert all(shape.depths == [-6.0] for shape in rest)
+    assert [angle for shape in rest for angle in angles(shape)] == [0.0, 120.0]
 
 
 @pytest.mark.parametrize(("control", "inch"), VARIATIONS)
@@ -189,3 +207,22 @@ def test_json_has_the_sections() -> None:
         {"line": 17, "end_line": 24, "angle": 120.0},
         {"line": 26, "end_line": 33, "angle": 240.0},
     ]
+
+
+@pytest.mark.parametrize("inch", [False, True])
+@pytest.mark.parametrize("control", ["fanuc", "haas-lathe"])
+@pytest.mark.parametrize("entry", [0.0, 20.0])
+def test_a_section_that_no_part_is_for_is_told_as_what_it_makes(entry: float, control: str, inch: bool) -> None:
+    sections = [Section(polygon(6, 25.4), entry), Section(polygon(4, 20.32), entry, depths=(-2.54,))]
+    Path("a.nc").write_text(program(sections, control, inch))
+    size = 1.0 if inch else 25.4
+    Path("polarcheck.toml").write_text(f'[[part]]\nshape = "hexagon"\nacross_flats = {size}\nsection = 1\n')
+    arguments = ("a.nc", "--machine", control, "--tool", tool(4, inch))
+    said = call("part", *arguments)
+    assert said.exit_code == 0, said.stdout
+    words = " ".join(said.stdout.split())
+    assert f"square, {'0.8000' if inch else '20.320'} across flats" in words
+    assert words.count("but compared with nothing: no [[part]] is for this section") == 1
+    assert words.index("square") < words.index("compared with nothing")
+    (file,) = json.loads(call("part", *arguments, "--format", "json").stdout)["files"]
+    assert [shape["is_compared"] for shape in file["part"]] == [True, False]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import cmath
 import math
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -223,3 +224,63 @@ def test_the_report_of_the_part_and_its_page_tell_what_is_taken_as_meant() -> No
     said = "line 6: X140 is taken as X140., as probably meant; the control reads 0.140"
     assert f"       but   {said}\n" in call("part", "round.nc", "--tool", "8:radius=4").stdout
     assert said in call("plot", "round.nc", "--tool", "8:radius=4").stdout
+
+
+# ---- passes that differ ----
+
+
+def at_depths(control: str, off: dict[int, complex], turned: float = 0, count: int = 3) -> list[MadeShape]:
+    """Passes of a hexagon at Z-2, Z-4, ..; in those of `off`, numbered from 0, its second corner is so far away."""
+    passes = []
+    for number in range(count):
+        drawn = hexagon(control, turned)
+        corners = list(drawn.elements)
+        corners[2] = Element(corners[2].end + off.get(number, 0))
+        passes.append(replace(drawn, elements=tuple(corners), depths=(2.0 * number + 2,)).blocks())
+    at = passes[0].index(f"Z{drawn.number(2)}")
+    begin = next(number for number, block in enumerate(passes[0]) if block == f"Z{drawn.number(-2)}")
+    blocks = [*passes[0][:begin], *(block for one in passes for block in one[begin:at]), *passes[0][at:]]
+    return made("\n".join(blocks), *drawn.tools, machine=drawn.machine)
+
+
+@pytest.mark.parametrize("turned", [0.0, 20.0])
+@pytest.mark.parametrize("control", BY_MACHINE)
+def test_a_pass_that_differs_is_told_apart_with_how_much(control: str, turned: float) -> None:
+    outward = cmath.rect(1, math.radians(turned + 30 + 120))
+    unit = BY_MACHINE[control].unit
+    for number in range(3):
+        odd, sound = sorted(at_depths(control, {number: -5 * outward}, turned), key=lambda shape: len(shape.depths))
+        assert (len(odd.depths), len(sound.depths)) == (1, 2)
+        assert odd.depths[0] == pytest.approx(-2.0 * number - 2, abs=0.01)
+        assert (sound.shape, sound.is_regular) == ("hexagon", True)
+        assert "than at" not in sound.text
+        (depth,) = re.findall(r"cuts up to ([\d.]+) deeper than at Z-", odd.text)
+        assert float(depth) * unit == pytest.approx(5, abs=0.1)  # the new corner is nearly flat
+    odd, _ = at_depths(control, {0: 1 * outward}, turned)
+    (more,) = re.findall(r"leaves up to ([\d.]+) more than at Z-", odd.text)
+    assert float(more) * unit == pytest.approx(1, abs=0.01)
+
+
+@pytest.mark.parametrize("control", BY_MACHINE)
+def test_passes_that_are_the_same_are_one_entry(control: str) -> None:
+    (seen,) = at_depths(control, {})
+    assert len(seen.depths) == 3
+
+
+def test_passes_of_the_same_extents_that_differ_are_told_apart() -> None:
+    """A groove in one of two passes of a contour: their extents are the same."""
+    way = "X30. F200\nC10.\nX10.\nC{depth}\nX-10.\nC10.\nX-30.\nC-10.\nX30.\nC0\n"
+    head = "G21 G98 G40 T0808\nG0 X60. Z2. C0\nG12.1\nG1 X50. F300\nZ-2.\nG42 "
+    text = head + way.format(depth="4.") + "Z-4.\n" + way.format(depth="3.") + "G40 X50.\nZ2.\nG13.1\nM30\n"
+    first, second = made(text, "8:radius=2")
+    assert (first.depths, second.depths) == ([-2], [-4])
+    assert "leaves up to 1.000 more than at Z-4.000" in first.text
+
+
+def test_shapes_one_behind_the_other_are_not_compared() -> None:
+    text = "G21 G98 G40 T0101\nG0 X80. Z2. C0\nG12.1\nG1 X54. C0 F200\nZ-3.\n" + "\n".join(hexagon("fanuc").loop())
+    text += "\nZ-6.\nG42 X50. C0\nG3 X50. C0 I-25.\nG1 G40 X70.\nZ2.\nG13.1\nM30\n"
+    assert [shape.text for shape in made(text, "1:radius=4")] == [
+        "hexagon, 30.000 across flats; to Z-3.000",
+        "circle 50.000; to Z-6.000",
+    ]

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 #: How far from the axis flats and slots without an end reach, as a multiple of all that is cut.
 _ENDLESS = 4.0
-#: Another angle of a shape is taken where it differs by so much less [mm].
+#: Another angle of a shape is taken where it differs by so much less [mm2], or from others by so much [deg].
 _BETTER = 1e-3
 #: So many depths of sections are tried.
 _DEPTHS = 8
@@ -138,9 +138,10 @@ class AreaComparisons(Columns, frozen=True):
 
         row = int(self.trace.mode.sections.enter[section])
         curves = self.asked_parts.curves(number, self.asked_parts.unit(number, row))
-        rings = {at: polygon_of(curve * np.exp(1j * angle)) for at, curve in enumerate(curves) if _is_closed(curve)}
+        curves = [curve * np.exp(1j * angle) for curve in curves]
+        rings = {at: polygon_of(curve) for at, curve in enumerate(curves) if _is_closed(curve)}
         if not rings:
-            return []
+            return self._of_open_curves(number, curves, matched.get(-1, -1), section, own)
         depth = {
             at: sum(is_inside(area, other) for other in rings.values() if other is not area)
             for at, area in rings.items()
@@ -164,6 +165,21 @@ class AreaComparisons(Columns, frozen=True):
             return [(self._as_boss_or_pocket(found[0][0]), -1)]
         return found
 
+    def _of_open_curves(
+        self, number: int, curves: list[Points], place: int, section: int, own: Mask
+    ) -> list[tuple[Feature, int]]:
+        """Curves that end in the air: on one side of each there is the part, on the other what is milled."""
+        from polarcheck.geometry.comparison.metal import sides_of
+
+        far = _ENDLESS * max(self._reach, *(float(np.abs(curve).max()) for curve in curves))
+        nearest = max(float(np.abs(curve).min()) for curve in curves)
+        bar = self._bar_radius
+        certain = BEYOND * nearest if math.isnan(bar) else bar
+        feature = self._feature(number, -1, place, section, own)._replace(
+            area=sides_of(curves, far), certain=certain, most=min(self._most_of_bar, certain)
+        )
+        return [(self._as_boss_or_pocket(feature), place)]
+
     def _as_boss_or_pocket(self, feature: Feature) -> Feature:
         """A ring that no contour is compared with: a part or a pocket, whichever differs less."""
         from polarcheck.asked.features import differences
@@ -173,12 +189,12 @@ class AreaComparisons(Columns, frozen=True):
         for is_pocket in (False, True):
             own = np.ones(len(cuts), bool)
             (found,) = differences([feature._replace(is_pocket=is_pocket, cuts=own, own_cuts=own)], cuts)
-            tried.append((found.proud.size + found.deep.size, is_pocket))
+            tried.append((found.proud.area + found.deep.area, is_pocket))
         return feature._replace(is_pocket=min(tried)[1])
 
     def _with_roles(self, rings: list[tuple[Feature, int]], depth: dict[int, int]) -> list[tuple[Feature, int]]:
         """
-        The rings as parts or pockets: as they are milled, but at one Z by turns from the outside to the inside.
+        The rings as parts or pockets: as they are milled, but by turns where one of two would not be there.
 
         depth: by the number of a ring, how many others enclose it.
         """
@@ -189,8 +205,10 @@ class AreaComparisons(Columns, frozen=True):
             contour = self.contour_comparisons.all[place].contour if place >= 0 else None
             around = [other for other, _ in result if is_inside(feature.area, other.area)]
             is_pocket = contour.is_pocket if contour is not None else bool(around) and not around[-1].is_pocket
-            if around and is_pocket == around[-1].is_pocket and abs(feature.z - around[-1].z) <= SAME_Z:
-                is_pocket = not is_pocket
+            if around and is_pocket == around[-1].is_pocket:
+                # A part stands on a part, and a pocket lies in a pocket.
+                lower = around[-1].z - feature.z
+                is_pocket ^= lower >= -SAME_Z if not is_pocket else lower <= SAME_Z
             result.append((feature._replace(is_pocket=is_pocket), place))
         return result
 
@@ -212,6 +230,8 @@ class AreaComparisons(Columns, frozen=True):
             certain=math.nan,
             most=self._most_of_bar,
             excess_is_judged=self._is_all_known(section),
+            is_bar_known=self.bar.known.source != "none",
+            is_solid=not self.milled.is_drilled and self.bar.known.bore == 0,
             cuts=own,
             own_cuts=own & ~self._of_other_contours(number),
         )
@@ -325,7 +345,7 @@ class AreaComparisons(Columns, frozen=True):
                     area=area, z=z, cuts=feature.cuts[feature.cuts], own_cuts=feature.own_cuts[feature.cuts]
                 )
                 (found,) = differences([candidate], cuts)
-                size = found.proud.size + found.deep.size
+                size = found.proud.area + found.deep.area
                 if size < least - _BETTER:
                     best, least = feature._replace(area=area, z=z), size
         return best
@@ -342,7 +362,9 @@ class AreaComparisons(Columns, frozen=True):
             return None
         base = results[place] if place >= 0 else None
         if found.is_none and base is not None:
-            return base._replace(is_partial=False) if base.is_partial and feature.excess_is_judged else None
+            is_partial = base.is_partial and not feature.excess_is_judged
+            changed = is_partial != base.is_partial or found.island.size > 0
+            return base._replace(is_partial=is_partial, island=found.island.size > 0) if changed else None
         if found.is_none and not feature.excess_is_judged:
             return None
         proud, deep = (
@@ -373,6 +395,7 @@ class AreaComparisons(Columns, frozen=True):
             row=row,
             entry=self.asked_parts.entry(row),
             any_angle=self.asked_parts.any_angle(feature.number, section),
+            island=found.is_none and found.island.size > 0,
             made=() if found.is_none else self._made(feature),
         )
 

@@ -39,6 +39,10 @@ from polarcheck.time_limit import keep_time
 
 #: What the chords of rounds may add to a difference, beside the tolerance [mm].
 _CHORDS = 0.004
+#: Far from the walls metal counts that is twice as thick as this, and that lies no nearer to the round of the bar [mm].
+_RIM = 0.1
+#: A program clears the middle of a pocket itself where it clears more than this share of it.
+_ROUGHED = 0.5
 #: Areas are apart where they share no more than this of the smaller one.
 _SHARED = 0.01
 
@@ -50,7 +54,8 @@ class Feature(NamedTuple):
     number: of the part in the job. curve: of the curve in its drawing. area: what it encloses (shapely). is_pocket: the
     part stands around it. z: its depth. radius: R that mills it. tolerance: allowed difference. certain: up to this
     distance from the axis there is metal before milling. most: beyond it there is none, inf where nobody knows.
-    excess_is_judged: all that may clear something there is known. cuts: bool per cut, those in its sections. own_cuts:
+    excess_is_judged: all that may clear something there is known. is_bar_known: what is far from the walls is compared
+    as well. is_solid: there is no hole where it is to be cleared. cuts: bool per cut, those in its sections. own_cuts:
     those without the contours of other parts.
     """
 
@@ -64,6 +69,8 @@ class Feature(NamedTuple):
     certain: float
     most: float
     excess_is_judged: bool
+    is_bar_known: bool
+    is_solid: bool
     cuts: Mask
     own_cuts: Mask
 
@@ -73,7 +80,8 @@ class AreaDifference(NamedTuple):
     How the metal differs from a feature.
 
     proud: metal that should be gone. deep: metal that is missing. proud_row, deep_row: the row of the cut that comes
-    nearest, -1 for none. off: how far the wall that is made is off the one that is asked for [mm].
+    nearest, -1 for none. off: how far the wall that is made is off the one that is asked for [mm]. island: what stands
+    in the middle of a pocket along whose walls alone the program mills: it may be gone before.
     """
 
     proud: Extreme
@@ -81,6 +89,7 @@ class AreaDifference(NamedTuple):
     proud_row: int
     deep_row: int
     off: float
+    island: Extreme
 
     @property
     def is_none(self) -> bool:
@@ -118,13 +127,22 @@ def _difference(feature: Feature, features: Sequence[Feature], cleared: _Cleared
     deep = cuts.low <= feature.z + SAME_Z
     gone = cleared.by(deep)
     off = off_wall(gone, feature.area, feature.radius, feature.certain - 2 * _CHORDS, feature.is_pocket)
-    proud, proud_row = NOTHING, -1
+    proud, proud_row, island = NOTHING, -1, NOTHING
     if feature.excess_is_judged:
         metal = disc(feature.certain)
         asked = areas.intersection(beside(feature.area, feature.radius, tolerance, feature.is_pocket), metal)
         stays = areas.difference(_cleared_of_others(asked, feature, features), gone)
         side = areas.intersection(feature.area, metal) if feature.is_pocket else areas.difference(metal, feature.area)
         whole = areas.difference(_cleared_of_others(side, feature, features), gone)
+        if feature.is_solid:
+            far = areas.intersection(whole, disc(feature.certain - _RIM))
+            far = grown(grown(far, -_RIM), _RIM)
+            middle = grown(feature.area, -2 * feature.radius - tolerance)
+            roughed = shapely.area(areas.intersection(gone, middle)) > _ROUGHED * shapely.area(middle)
+            if feature.is_bar_known or (feature.is_pocket and roughed):
+                stays = joined([stays, far])
+            elif feature.is_pocket:
+                island = farthest(far, far, feature.area)
         proud = farthest(stays, whole, feature.area)
         if proud.size:
             proud_row = nearest_row(cuts, deep if deep.any() else np.ones(len(cuts), bool), proud.place)
@@ -143,7 +161,7 @@ def _difference(feature: Feature, features: Sequence[Feature], cleared: _Cleared
         found = farthest(lacks, lacks, feature.area)
         if found.size > worst.size:
             worst, deep_row = found, nearest_row(cuts, chosen, found.place)
-    return AreaDifference(proud, worst, proud_row, deep_row, off)
+    return AreaDifference(proud, worst, proud_row, deep_row, off, island)
 
 
 def _are_apart(one: Any, other: Any) -> bool:

@@ -304,6 +304,12 @@ def _parts_not_compared(tables: Tables, rule: Rule) -> Iterator[Missing]:
             compared = f"was compared with {compared_with(deviations, comparison.number)} along its walls alone"
             reason = f"{contour}, and {compared}: end it where it began, or beyond"
             yield Missing(rule.name, SAID, reason, reason, 1)
+        if comparison.island and comparison.agrees and not tables["trace"].job.stock.unknown:
+            title = compared_with(deviations, comparison.number)
+            line = int(tables["trace"].blocks.line[comparison.row])
+            along = f"{title} is milled along its walls alone at line {line}"
+            reason = f"{along}: whether its middle is cleared before is not known; give the bar, [stock] diameter"
+            yield Missing(rule.name, SAID, reason, reason, 1)
     for number, cause in deviations.missing():
         reason = f"{compared_with(deviations, number)} was compared with nothing: {cause}"
         rows = deviations.asked if deviations.asked.any() else tables["trace"].mode.in_polar

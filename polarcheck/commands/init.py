@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Set
 from pathlib import Path
+from typing import Any
 
 import click
+from click.core import ParameterSource
 
 from polarcheck.commands import options
 from polarcheck.commands.options import option
@@ -15,22 +18,77 @@ from polarcheck.errors import UsageError
 
 @click.command(short_help="Write a commented polarcheck.toml for the programs of a folder.")
 @click.argument("folder", type=click.Path(exists=True, file_okay=False), default=".")
-@options.machine
+@click.option(
+    "--part", "parts", type=click.Path(exists=True, dir_okay=False), multiple=True, metavar="FILE",
+    help="Show the [[part]] of what this program makes now, and write nothing.",
+)  # fmt: skip
+@options.executing("programs")
 @options.extensions
+@options.max_size
 @option("--schema/--no-schema", default=True, help="Write the schema beside it, which lets editors complete its keys.")
 @option("-q", "--quiet", is_flag=True, help="No bar on the terminal.")
 @options.debug
-def init(folder: str, machine: str | None, extensions: tuple[str, ...], schema: bool, quiet: bool) -> None:
+@click.pass_context
+def init(
+    ctx: click.Context,
+    /,
+    folder: str,
+    parts: tuple[str, ...],
+    extensions: tuple[str, ...],
+    schema: bool,
+    quiet: bool,
+    **arguments: Any,
+) -> None:
     """
     Write a commented polarcheck.toml into FOLDER, with the lathe and the tools that its programs tell.
 
     It asks nothing, overwrites nothing, and says what is still to fill in.
 
+    With --part it writes no file, but shows the [[part]] entries of what programs make now, as a start: compare them
+    with the drawing, and append them to polarcheck.toml. Then it takes the options that say how a program is read and
+    run, and ends with 2 if something could not be read, 3 for a bug.
+
     \b
     polarcheck init
     polarcheck init programs --machine fanuc-30i
+    polarcheck init --part O1234.NC --tool 8:radius=4 >> polarcheck.toml
     """
-    show("".join(f"{line}\n" for line in _init(folder, machine, extensions, schema, quiet)).encode())
+    written = {name for name in ctx.params if ctx.get_parameter_source(name) is ParameterSource.COMMANDLINE}
+    if parts:
+        _refuse(
+            ctx, written & {"folder", "extensions", "schema"}, "cannot be combined with --part, which writes no file"
+        )
+        ctx.exit(_parts(parts, debug=options.DEBUG in ctx.meta, **arguments))
+    _refuse(ctx, written & arguments.keys() - {"machine"}, "is for --part")
+    lines = _init(folder, arguments["machine"], extensions, schema, quiet)
+    show("".join(f"{line}\n" for line in lines).encode())
+
+
+def _refuse(ctx: click.Context, names: Set[str], reason: str) -> None:
+    """Raise UsageError for the first of these parameters."""
+    for parameter in ctx.command.params:
+        if parameter.name in names:
+            title = parameter.opts[0] if isinstance(parameter, click.Option) else (parameter.name or "").upper()
+            raise UsageError(f"{title} {reason}")
+
+
+def _parts(paths: tuple[str, ...], *, debug: bool, max_size: int, no_config: bool, **arguments: Any) -> int:
+    """Show the [[part]] entries of what programs make; return the exit code."""
+    from polarcheck.checking.causes import READ_OTHERWISE
+    from polarcheck.commands import progress, running, settings
+    from polarcheck.memory import keep_within_memory
+    from polarcheck.parts.part_report import part_of
+    from polarcheck.reports.pages import new_parts
+
+    keep_within_memory()
+    applies = settings.Options(use_config=not no_config, select=(*READ_OTHERWISE,), extras=(part_of,), **arguments)
+    faults = running.Faults(debug)
+    tasks = running.planned(paths, settings.OfPrograms(applies), (), faults)
+    checked = running.Runner(max_size, 1, None).check(tasks, progress.Bar(len(tasks), True), faults)
+    units = {task.title: task.settings.job.units for task in tasks}
+    show(new_parts.text(list(checked.files), units).encode())
+    running.warn_unused(applies.tools, checked.called)
+    return faults.report()
 
 
 def _init(folder: str, machine: str | None, extensions: tuple[str, ...], schema: bool, quiet: bool) -> list[str]:

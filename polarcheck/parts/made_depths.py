@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from polarcheck.geometry.shapes.shape import SAME, Shape
+from polarcheck.parts.differing_depths import are_same
 from polarcheck.time_limit import keep_time
 
 #: Names of what is none of the shapes of a drawing.
@@ -18,7 +19,7 @@ class Depth(NamedTuple):
 
     sections: their numbers. z: [mm], NaN where it is not known. radius: R of the cutter [mm], NaN if not known. shapes:
     in the frame of the part; where C is not known at the beginning of the section, as it writes them. needs: as in
-    MadeShape.
+    MadeShape. polygon: what contours leave there, within what is known of it (shapely, mm); None without a contour.
     """
 
     sections: tuple[int, ...]
@@ -26,6 +27,7 @@ class Depth(NamedTuple):
     radius: float
     shapes: list[Shape]
     needs: str | None = None
+    polygon: Any = None
 
 
 def put_together(joined: Depth, single: Sequence[Depth]) -> Iterator[Depth]:
@@ -77,6 +79,7 @@ def _are_same(one: Depth, other: Depth) -> bool:
         and len(one.shapes) == len(other.shapes)
         and one.needs == other.needs
         and all(map(are_alike, one.shapes, other.shapes))
+        and are_same(one.polygon, other.polygon)
     )
 
 

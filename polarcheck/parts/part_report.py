@@ -26,11 +26,13 @@ from polarcheck.geometry.shapes.shape import SAME, Shape
 from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.machines.modal import Units
 from polarcheck.parts.as_meant import as_meant
+from polarcheck.parts.differing_depths import Area, known_of, with_differences
 from polarcheck.parts.made_depths import Depth, merged, put_together
 from polarcheck.table.finished import turned_columns
 
 if TYPE_CHECKING:
     from polarcheck.columns.trace import Trace
+    from polarcheck.machines.job import Job
     from polarcheck.table.finished import Finished, Level
     from polarcheck.table.overcuts import Overcuts
 
@@ -46,6 +48,8 @@ def part_of(report: FileReport, runs: Sequence[tuple[str, Tables]]) -> FileRepor
 
 #: More shapes than these are no line.
 _IN_ONE_LINE = 4
+#: More angles than these are told by their first and last one, if their steps are the same [deg].
+_IN_A_LIST, _SAME_STEP = 8, 1e-3
 
 
 def made_by(tables: Tables) -> list[MadeShape]:
@@ -98,19 +102,28 @@ def _by_section(trace: Trace, tables: Tables) -> list[MadeShape]:
     """The same; raises TooHardError where it takes too long."""
     depths = _depths(tables)
     standing = _ribs_and_strips(tables)
-    made = []
+    job: Job = tables["job"]
+    made: list[MadeShape] = []
     for section in range(len(trace.mode.sections)):
         of_section = [depth for depth in depths if depth.sections[0] == section]
         entries = [*_entries(trace, of_section)]
+        areas = [Area(depth.z, depth.polygon) for depth in of_section if depth.polygon is not None]
+        if len(entries) > 1 and len(areas) > 1:
+            sizes = _sizes(trace, int(trace.mode.sections.enter[section]))
+            entries = [*with_differences(entries, areas, sizes)]
         left = [one for number, one in standing if any(number in depth.sections for depth in of_section)]
         if left and entries:
             entries[0] = msgspec.structs.replace(entries[0], left_standing=[*entries[0].left_standing, *left])
         if not any(section in depth.sections for depth in depths):
             entries = [_nothing(trace, (section,), _why_nothing(tables, section))]
+        sections = of_section[0].sections if of_section else (section,)
         if entries:
-            sections = of_section[0].sections if of_section else (section,)
             meant = "; ".join(filter(None, (as_meant(trace, number) for number in sections)))
-            made += [msgspec.structs.replace(entries[0], as_meant=meant or None), *entries[1:]]
+            entries[0] = msgspec.structs.replace(entries[0], as_meant=meant or None)
+        if job.part:
+            is_compared = any(part.section in (None, number + 1) for part in job.part for number in sections)
+            entries = [msgspec.structs.replace(entry, is_compared=is_compared) for entry in entries]
+        made += entries
     return made
 
 
@@ -188,14 +201,14 @@ def _of_levels(
 
 def _of_level(trace: Trace, level: Level) -> Depth:
     why = "its contour crosses itself too often to say what it makes" if level.tangled else None
-    return Depth(level.sections, level.z, level.radius, shapes_of_level(trace, level), why)
+    return Depth(level.sections, level.z, level.radius, shapes_of_level(trace, level), why, known_of(level))
 
 
 def _of_meant_level(trace: Trace, level: Level) -> Depth:
     row = int(level.walls.row[0])
     why = f"R of {called_tool(trace.tools, row)} is not known, so whether the tool makes it was not looked at"
     needs = f"{why}: {to_give(trace.tools, trace.machine, row, 'radius')}"
-    return Depth(level.sections, level.z, np.nan, shapes_of_level(trace, level), needs)
+    return Depth(level.sections, level.z, np.nan, shapes_of_level(trace, level), needs, known_of(level))
 
 
 def _ribs_and_strips(tables: Tables) -> list[tuple[int, LeftStanding]]:
@@ -265,9 +278,18 @@ def _sections_in_words(trace: Trace, depth: Depth, sections: Sequence[MadeInSect
         if any(angles):
             yield f"{angle_in_words(angles[0])} at {_switch(trace, depth.sections[0])}"
         return
-    lines = ", ".join(str(one.line) for one in sections)
-    at = f" at {', '.join(map(angle_in_words, angles))}" if any(angles) else ""
-    yield f"by the sections of lines {lines}{at}"
+    # A loop or a called program begins its sections in one line.
+    lines = list(dict.fromkeys(str(one.line) for one in sections))
+    where = f"sections of lines {', '.join(lines)}" if len(lines) > 1 else f"section of line {lines[0]}"
+    yield f"by the {where}{f' at {_angles_in_words(angles)}' if any(angles) else ''}"
+
+
+def _angles_in_words(angles: Sequence[float]) -> str:
+    steps = np.diff(angles)
+    if len(angles) > _IN_A_LIST and np.ptp(steps) <= _SAME_STEP:
+        first, last = angle_in_words(angles[0]), angle_in_words(angles[-1])
+        return f"{first} to {last}, {float(steps.mean()):.4g} deg apart"
+    return ", ".join(map(angle_in_words, angles))
 
 
 def _depths_in_words(depths: Sequence[float], sizes: Sizes) -> str:

@@ -86,6 +86,13 @@ class Milled(Columns, frozen=True):
         return np.asarray(cuts & (np.isnan(self.radius) | ~known))
 
     @property
+    def is_drilled(self) -> bool:
+        """Holes may be drilled before a section: what they take off is not known."""
+        trace, first = self.trace, self.trace.mode.sections.enter
+        drills = (trace.modal.drilling != 0) & (trace.mode.section < 0)
+        return bool(drills[: int(first[-1])].any()) if len(first) else False
+
+    @property
     def top(self) -> float:
         """Z of the face [mm]: that of the bar, else Z0 where a tool goes below it, else inf."""
         face = self.bar.known.face

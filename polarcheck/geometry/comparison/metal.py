@@ -33,18 +33,21 @@ _MOST_CHORDS = 60_000
 _OUTSIDE = 0.01
 #: The area of chords of a circle is smaller by no more than this share.
 _ROUND = 1e-3
+#: Dimensions of an area.
+_AREA = 2
 #: A pocket as wide as its cutter is cut by it, though its walls are rounded [mm].
 _SPARE = 0.01
 
 
 class Extreme(NamedTuple):
-    """The greatest difference on one side: how far from the wall that is asked for, and where [mm]; 0 for none."""
+    """A difference on one side: how far from the wall that is asked for, and where [mm]; 0 for none; its area [mm2]."""
 
     size: float
     place: complex
+    area: float
 
 
-NOTHING = Extreme(0.0, complex(np.nan))
+NOTHING = Extreme(0.0, complex(np.nan), 0.0)
 
 
 def cleared_by(curves: Curves, radius: Floats) -> Any:
@@ -71,7 +74,14 @@ def empty() -> Any:
 def polygon_of(points: Points) -> Any:
     """The area within a closed curve."""
     area = shapely.polygons(coordinates(points))
-    return area if shapely.is_valid(area) else shapely.make_valid(area)
+    return area if shapely.is_valid(area) else polygons_of(areas.make_valid(area))
+
+
+def polygons_of(area: Any) -> Any:
+    """An area without lines and points that belong to it."""
+    parts = shapely.get_parts(area, return_index=False)
+    parts = shapely.get_parts(parts[shapely.get_dimensions(parts) == _AREA])
+    return joined([*parts])
 
 
 def within_lines(area: Any, lines: Sequence[Points]) -> Any:
@@ -80,6 +90,25 @@ def within_lines(area: Any, lines: Sequence[Points]) -> Any:
         out = -1j * (end - start)
         area = areas.difference(area, polygon_of(np.array([start, start + out, end + out, end, start])))
     return area
+
+
+def sides_of(curves: Sequence[Points], far: float) -> Any:
+    """
+    What lies on the one side of curves that end in the air, within a circle about the axis: each curve goes straight on
+    from its ends, and from one side of a curve to the other what stands and what is milled take turns.
+    """
+    area = empty()
+    for curve in curves:
+        first, last = curve[0] - curve[1], curve[-1] - curve[-2]
+        line = np.concatenate(
+            [[curve[0] + 3 * far * first / abs(first)], curve, [curve[-1] + 3 * far * last / abs(last)]]
+        )
+        begin, end = np.angle(line[[0, -1]])
+        sweep = (begin - end) % (2 * np.pi)
+        back = 3 * far * np.exp(1j * (end + np.linspace(0, sweep, 64)))
+        side = polygon_of(np.concatenate([line, back, line[:1]]))
+        area = areas.symmetric_difference(area, side)
+    return areas.intersection(area, disc(far))
 
 
 def is_inside(one: Any, other: Any, by: float = 0.0) -> bool:
@@ -144,7 +173,7 @@ def farthest(found: Any, whole: Any, area: Any) -> Extreme:
     wall = shapely.boundary(area)
     far = shapely.distance(shapely.points(points), wall)
     most = int(np.argmax(far))
-    return Extreme(float(far[most]), complex(*points[most]))
+    return Extreme(float(far[most]), complex(*points[most]), float(shapely.area(found)))
 
 
 def off_wall(cleared: Any, area: Any, radius: float, certain: float, is_pocket: bool) -> float:

@@ -65,6 +65,7 @@ def _with_itself(area: Any) -> Any:
 union = _element_wise(shapely.union)
 difference = _element_wise(shapely.difference)
 intersection = _element_wise(shapely.intersection)
+symmetric_difference = _element_wise(shapely.symmetric_difference)
 buffer = _element_wise(shapely.buffer)
 make_valid = _element_wise(shapely.make_valid)
 maximum_inscribed_circle = _element_wise(shapely.maximum_inscribed_circle)

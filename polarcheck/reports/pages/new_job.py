@@ -68,7 +68,7 @@ def text(survey: Survey, machine: str | None, outer: str | None, schema: bool, e
 
 
 def _extensions(extensions: Sequence[str]) -> str:
-    names = ", ".join(_toml(name) for name in extensions)
+    names = ", ".join(toml(name) for name in extensions)
     return f"extensions = [{names}]" if extensions else '#extensions = ["nc", "tap"]'
 
 
@@ -114,7 +114,7 @@ def _outer(outer: str | None) -> Iterator[str]:
     if outer is not None:
         yield ""
         yield from _prose(f"{outer} has applied to these programs so far. This line lets it apply under this file:")
-        yield f"#extend = {_toml(outer)}"
+        yield f"#extend = {toml(outer)}"
 
 
 def _machine(survey: Survey, machine: str | None) -> Iterator[str]:
@@ -130,7 +130,7 @@ def _machine(survey: Survey, machine: str | None) -> Iterator[str]:
     yield from _prose(
         "The lathe: one of `polarcheck machines`, or a file of your own, which `polarcheck machines new` writes."
     )
-    yield f"machine = {_toml(certain)}" if certain else f"#machine = {_toml(profiles.DEFAULT)}"
+    yield f"machine = {toml(certain)}" if certain else f"#machine = {toml(profiles.DEFAULT)}"
 
 
 def _unit(survey: Survey) -> str:
@@ -145,7 +145,7 @@ def _unit_of_lengths(survey: Survey) -> str:
 def _units(survey: Survey) -> Iterator[str]:
     reasons = {1: f"the programs say {_unit(survey)}", 2: "of the programs some say mm, some inch"}
     if survey.units:
-        yield f"units = {_toml(_unit(survey))}  # of the lengths in this file; {reasons[len(survey.units)]}"
+        yield f"units = {toml(_unit(survey))}  # of the lengths in this file; {reasons[len(survey.units)]}"
     else:
         yield '#units = "mm"  # of the lengths in this file; else they are in those of each program'
         yield '#program_units = "mm"  # of programs with neither G20 nor G21'
@@ -179,7 +179,7 @@ def _programs(survey: Survey) -> Iterator[str]:
     entries = list(_differing(survey))
     for files_of_entry, key, radius, comment in entries[:_ENTRIES]:
         yield "#[[programs]]"
-        yield f"#files = {_toml(files_of_entry)}"
+        yield f"#files = {toml(files_of_entry)}"
         yield f"#[programs.tools.{_key(key)}]"
         yield f"#radius = {_length(radius, survey)}  # {shortened(comment, _LONGEST)}"
     if len(entries) > _ENTRIES:
@@ -187,7 +187,7 @@ def _programs(survey: Survey) -> Iterator[str]:
     if not entries:
         yield "#[[programs]]"
         yield '#files = ["O12*.nc", "lathe7/**"]'
-        yield f"#machine = {_toml(profiles.DEFAULT)}"
+        yield f"#machine = {toml(profiles.DEFAULT)}"
 
 
 def _differing(survey: Survey) -> Iterator[tuple[list[str], str, float, str]]:
@@ -223,10 +223,11 @@ def _order(key: str) -> tuple[int, str]:
 
 
 def _key(key: str) -> str:
-    return key if key.isascii() and key.isdecimal() else _toml(key)
+    return key if key.isascii() and key.isdecimal() else toml(key)
 
 
-def _toml(value: object) -> str:
+def toml(value: object) -> str:
+    """Return a value as TOML writes it."""
     # JSON allows unprintable characters that TOML does not.
     text = msgspec.json.encode(value).decode()
     return "".join(character if character.isprintable() else f"\\U{ord(character):08x}" for character in text)

@@ -31,6 +31,8 @@ def part_lines(file: FileReport) -> Iterator[tuple[str, str]]:
             yield "left", left.text
         if shape.needs and shape.shape is not None:
             yield "but", shape.needs
+        if shape.is_compared is False:
+            yield "but", "compared with nothing: no [[part]] is for this section"
         if shape.as_meant:
             yield "but", shape.as_meant
     for section in file.compared or []:
