@@ -147,9 +147,10 @@ def test_a_shape_in_a_shape_keeps_its_own_section() -> None:
     assert outside.line < inside.line
 
 
-def test_what_has_no_name_together_is_told_one_by_one() -> None:
-    shapes = made([Section(flat(12.0, 22.0), angle) for angle in (0.0, 100.0, 240.0)])
-    assert [shape.values["turned"] for shape in shapes] == [pytest.approx(angle) for angle in (0.0, 100.0, 240.0)]
+def test_flats_at_uneven_angles_are_told_together_each_with_its_direction() -> None:
+    (shape,) = made([Section(flat(12.0, 22.0), angle) for angle in (0.0, 100.0, 240.0)])
+    assert [shape.values[f"turned_{number}"] for number in (1, 2, 3)] == pytest.approx([0.0, 100.0, 240.0])
+    assert shape.text.startswith("3 flats, 12.000 from the center at 0, 100 and 240 deg; to Z-5.000; by the sections")
 
 
 def test_roughing_and_finishing_of_one_shape_are_one() -> None:

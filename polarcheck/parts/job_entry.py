@@ -78,7 +78,7 @@ def _length(value: float, inch: bool) -> float:
 
 
 #: Values of what has sides, flats or corners that differ.
-_UNEVEN = {"least", "corner_least", "regular_by_x"}
+_UNEVEN = {"least", "corner_least", "regular_by_x", "turned_1"}
 
 
 def _circle(made: MadeShape, bar: float) -> _Keys:
