@@ -24,7 +24,7 @@ def shapes_of_cleared(outline: Outline, across: float, radius: float, bar: float
     """
     found = list(rings(outline, 0.0, bar))
     around = [ring for ring in found if ring.inside]
-    stands = shapes_of_rings(ring for ring in found if not ring.inside)
+    stands = shapes_of_rings((ring for ring in found if not ring.inside), bar)
     if across < GROOVE:
         return [*stands, *shapes_of_rings(around)]
     inner = sum(ring.area for ring in found if ring.closed and not ring.inside)
