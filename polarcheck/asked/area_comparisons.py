@@ -10,7 +10,7 @@ import numpy as np
 
 from polarcheck.arrays import Columns, Mask, Points, is_among
 from polarcheck.asked.asked_parts import BEYOND, AskedParts
-from polarcheck.asked.comparison import SAME_Z, Comparison
+from polarcheck.asked.comparison import SAME_Z, TOLERANCE, Comparison
 from polarcheck.asked.contour_comparisons import ContourComparisons
 from polarcheck.columns.trace import Trace
 from polarcheck.machines.part import Part
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 #: How far from the axis flats and slots without an end reach, as a multiple of all that is cut.
 _ENDLESS = 4.0
-#: Another angle of a shape is taken where it differs by so much less [mm2], or from others by so much [deg].
+#: Another place of a shape is taken where it is nearer by so much [mm], or turned by so much [deg].
 _BETTER = 1e-3
 #: So many depths of sections are tried.
 _DEPTHS = 8
@@ -152,14 +152,14 @@ class AreaComparisons(Columns, frozen=True):
         found = []
         for at, area in rings.items():
             place = matched.get(at, -1)
-            if place < 0 and matched:
-                # Holes are drilled, and the outermost ring may be that of the bar.
+            # Holes are drilled, and the outermost ring may be that of the bar.
+            is_of_bar = depth[at] == 0 and not reach < bar - float(self.milled.cuts.radius[own].max())
+            may_be_absent = place < 0 and bool(matched) and (is_circle(area) or is_of_bar)
+            if place < 0:
                 place = matched.get(-1, -1)
-                is_of_bar = depth[at] == 0 and not reach < bar - float(self.milled.cuts.radius[own].max())
-                if is_circle(area) or (place < 0 and is_of_bar):
-                    continue
             feature = self._feature(number, at, place, section, own)
-            found.append((feature._replace(area=area, certain=certain), place))
+            feature = feature._replace(area=area, certain=certain, may_be_absent=may_be_absent)
+            found.append((feature if place >= 0 else self._nearest([feature]), place))
         found = self._with_roles(found, depth)
         if not matched and len(found) == 1:
             return [(self._as_boss_or_pocket(found[0][0]), -1)]
@@ -224,6 +224,7 @@ class AreaComparisons(Columns, frozen=True):
             curve=curve,
             area=None,
             is_pocket=False,
+            may_be_absent=False,
             z=self._depth(number, place, row, own),
             radius=float(radius or self.milled.cuts.radius[own].max()),
             tolerance=self.asked_parts.tolerance(number, row),
@@ -244,7 +245,10 @@ class AreaComparisons(Columns, frozen=True):
     def _depth(self, number: int, place: int, row: int, own: Mask) -> float:
         stated = self.asked_parts.z(number, row)
         if not math.isnan(stated):
-            return stated
+            low = self.milled.cuts.low[own]
+            nearest = float(low[np.argmin(np.abs(low - stated))])
+            allowed = max(SAME_Z, min(self.asked_parts.tolerance(number, row), TOLERANCE))
+            return nearest if abs(nearest - stated) <= allowed else stated
         of_contour = self.contour_comparisons.all[place].z if place >= 0 else math.nan
         return float(self.milled.cuts.low[own].min()) if math.isnan(of_contour) else of_contour
 
@@ -319,35 +323,44 @@ class AreaComparisons(Columns, frozen=True):
 
     def _best_placed(self, feature: Feature, curves: list[Points], unit: float, section: int) -> Feature:
         """
-        The feature where it differs least: at the depth of some section, and, where its angle is not compared, at an
-        angle at which one of its walls runs as some straight cut does.
+        The feature where its wall is nearest to that of what is cleared: at the depth of some section, and, where its
+        angle is not compared, at an angle at which one of its walls runs as some straight cut does.
         """
-        from polarcheck.asked.features import differences, directions_of
+        from polarcheck.asked.features import directions_of
 
         part = self.asked_parts.parts[feature.number]
         cuts = self.milled.cuts[feature.cuts]
-        depths = {feature.z}
-        if math.isnan(part.z):
-            depths = {round(float(cuts.low[cuts.section == one].min()), 6) for one in set(cuts.section.tolist())}
         period = 360.0 / (part.count_of_sides or 2)
+        tried = [0.0]
+        if self.asked_parts.any_angle(feature.number, section):
+            for angle in directions_of(cuts, cuts.low <= cuts.low.max()):
+                for quarter in (0.0, 90.0, 180.0, 270.0):
+                    turn = (angle + quarter) % period
+                    if all(abs(turn - other) > _BETTER for other in tried):
+                        tried.append(turn)
+        turns = sorted(tried, key=lambda turn: min(turn, period - turn))
+        places = [feature._replace(area=self._area(part, curves, unit, math.radians(turn))) for turn in turns]
+        return self._nearest(places)
+
+    def _nearest(self, places: list[Feature]) -> Feature:
+        """
+        Of the places of a feature, each at the depth of some section, that which is nearest to what is cleared there.
+        """
+        from polarcheck.asked.features import distance_of_wall
+
+        feature, cuts = places[0], self.milled.cuts[places[0].cuts]
+        depths = [feature.z]
+        if math.isnan(self.asked_parts.parts[feature.number].z):
+            depths = sorted(
+                {round(float(cuts.low[cuts.section == one].min()), 6) for one in set(cuts.section.tolist())}
+            )
         best, least = feature, math.inf
-        for z in sorted(depths)[:_DEPTHS]:
-            tried = [0.0]
-            if self.asked_parts.any_angle(feature.number, section):
-                for angle in directions_of(cuts, cuts.low <= z + SAME_Z):
-                    for quarter in (0.0, 90.0, 180.0, 270.0):
-                        turn = (angle + quarter) % period
-                        if all(abs(turn - other) > _BETTER for other in tried):
-                            tried.append(turn)
-            for turn in sorted(tried, key=lambda turn: min(turn, period - turn)):
-                area = self._area(part, curves, unit, math.radians(turn))
-                candidate = feature._replace(
-                    area=area, z=z, cuts=feature.cuts[feature.cuts], own_cuts=feature.own_cuts[feature.cuts]
-                )
-                (found,) = differences([candidate], cuts)
-                size = found.proud.area + found.deep.area
-                if size < least - _BETTER:
-                    best, least = feature._replace(area=area, z=z), size
+        for z in depths[:_DEPTHS]:
+            at_depth = cuts[np.abs(cuts.low - z) <= SAME_Z]
+            for place in places:
+                far = distance_of_wall(place, at_depth)
+                if far < least - _BETTER:
+                    best, least = place._replace(z=z), far
         return best
 
     # ---- results ----
@@ -360,6 +373,8 @@ class AreaComparisons(Columns, frozen=True):
         own = [one for one in results if one.number == feature.number]
         if any(one.differs and (place < 0 or one.curve in (-1, feature.curve) or feature.curve < 0) for one in own):
             return None
+        if feature.may_be_absent and not found.is_made:
+            return None
         base = results[place] if place >= 0 else None
         if found.is_none and base is not None:
             is_partial = base.is_partial and not feature.excess_is_judged
@@ -367,18 +382,15 @@ class AreaComparisons(Columns, frozen=True):
             return base._replace(is_partial=is_partial, island=found.island.size > 0) if changed else None
         if found.is_none and not feature.excess_is_judged:
             return None
-        proud, deep = (
-            (found.proud.size, found.deep.size) if not found.is_none else (min(found.off, feature.tolerance), 0.0)
-        )
+        proud, deep, is_made = found.proud.size, found.deep.size, found.is_made or base is not None
+        if found.is_none:
+            proud = min(found.off, feature.tolerance) if is_made else found.off
         difference = Difference(
             proud=proud, proud_at=found.proud.place, deep=deep, deep_at=found.deep.place, mean=0.0, length=1.0
         )
         row = found.proud_row if proud >= deep else found.deep_row
-        row = (
-            int(self.milled.cuts.curves.row[self._cuts_of(self.asked_parts.parts[feature.number])][0])
-            if row < 0
-            else row
-        )
+        if row < 0:
+            row = int(self.milled.cuts.curves.row[self._cuts_of(self.asked_parts.parts[feature.number])][0])
         if base is not None:
             return base._replace(
                 difference=difference, row=row, is_partial=False, contour=None, entry=self.asked_parts.entry(row)
@@ -396,7 +408,8 @@ class AreaComparisons(Columns, frozen=True):
             entry=self.asked_parts.entry(row),
             any_angle=self.asked_parts.any_angle(feature.number, section),
             island=found.is_none and found.island.size > 0,
-            made=() if found.is_none else self._made(feature),
+            is_made=is_made,
+            made=() if found.is_none and is_made else self._made(feature),
         )
 
     def _made(self, feature: Feature) -> tuple[Shape, ...]:

@@ -89,6 +89,7 @@ class Comparison(NamedTuple):
     is_other_way_round: a boss where a pocket should be, or the reverse.
     is_partial: the contour is open though all drawn curves are closed; only its walls are compared.
     island: the program mills along the walls of a pocket alone: whether something stands in its middle is not known.
+    is_made: cuts come near to its walls.
     is_superseded: roughing, or not the nearest contour, or it leaves material that a contour of unknown R may remove.
     contour, target: what was compared; None where only areas were.
     fit: the change with which the part would agree; None for none.
@@ -109,6 +110,7 @@ class Comparison(NamedTuple):
     is_other_way_round: bool = False
     is_partial: bool = False
     island: bool = False
+    is_made: bool = True
     is_superseded: bool = False
     contour: Contour | None = None
     target: Target | None = None

@@ -11,7 +11,7 @@ import numpy as np
 
 from polarcheck.arrays import Columns
 from polarcheck.asked.asked_parts import AskedParts
-from polarcheck.asked.comparison import SAME_Z, Comparison, Contour, Fit, Target
+from polarcheck.asked.comparison import SAME_Z, TOLERANCE, Comparison, Contour, Fit, Target
 from polarcheck.columns.trace import Trace
 from polarcheck.table.bar import Bar
 from polarcheck.table.finished import Finished, Level
@@ -120,7 +120,9 @@ class ContourComparisons(Columns, frozen=True):
         if not (contour.of_one_section if part.section == level.section + 1 else contour.of_all and not part.section):
             return False
         if not math.isnan(part.z):
-            return abs(level.z - self.asked_parts.z(number, int(level.walls.row[0]))) <= SAME_Z
+            row = int(level.walls.row[0])
+            allowed = max(SAME_Z, min(self.asked_parts.tolerance(number, row), TOLERANCE))
+            return abs(level.z - self.asked_parts.z(number, row)) <= allowed
         if part.drawing is not None:
             return True
         own = set(level.sections)

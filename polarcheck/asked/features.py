@@ -43,6 +43,8 @@ _CHORDS = 0.004
 _RIM = 0.1
 #: A program clears the middle of a pocket itself where it clears more than this share of it.
 _ROUGHED = 0.5
+#: A wall is made where cuts come nearer than R / 2 to more than this share of it.
+_MADE = 0.05
 #: Areas are apart where they share no more than this of the smaller one.
 _SHARED = 0.01
 
@@ -52,17 +54,18 @@ class Feature(NamedTuple):
     A closed shape that a job asks for.
 
     number: of the part in the job. curve: of the curve in its drawing. area: what it encloses (shapely). is_pocket: the
-    part stands around it. z: its depth. radius: R that mills it. tolerance: allowed difference. certain: up to this
-    distance from the axis there is metal before milling. most: beyond it there is none, inf where nobody knows.
-    excess_is_judged: all that may clear something there is known. is_bar_known: what is far from the walls is compared
-    as well. is_solid: there is no hole where it is to be cleared. cuts: bool per cut, those in its sections. own_cuts:
-    those without the contours of other parts.
+    part stands around it. may_be_absent: another tool may make it. z: its depth. radius: R that mills it. tolerance:
+    allowed difference. certain: up to this distance from the axis there is metal before milling. most: beyond it there
+    is none, inf where nobody knows. excess_is_judged: all that may clear something there is known. is_bar_known: what
+    is far from the walls is compared as well. is_solid: there is no hole where it is to be cleared. cuts: bool per cut,
+    those in its sections. own_cuts: those without the contours of other parts.
     """
 
     number: int
     curve: int
     area: Any
     is_pocket: bool
+    may_be_absent: bool
     z: float
     radius: float
     tolerance: float
@@ -81,7 +84,8 @@ class AreaDifference(NamedTuple):
 
     proud: metal that should be gone. deep: metal that is missing. proud_row, deep_row: the row of the cut that comes
     nearest, -1 for none. off: how far the wall that is made is off the one that is asked for [mm]. island: what stands
-    in the middle of a pocket along whose walls alone the program mills: it may be gone before.
+    in the middle of a pocket along whose walls alone the program mills: it may be gone before. is_made: cuts come near
+    to its wall.
     """
 
     proud: Extreme
@@ -90,6 +94,7 @@ class AreaDifference(NamedTuple):
     deep_row: int
     off: float
     island: Extreme
+    is_made: bool
 
     @property
     def is_none(self) -> bool:
@@ -127,21 +132,25 @@ def _difference(feature: Feature, features: Sequence[Feature], cleared: _Cleared
     deep = cuts.low <= feature.z + SAME_Z
     gone = cleared.by(deep)
     off = off_wall(gone, feature.area, feature.radius, feature.certain - 2 * _CHORDS, feature.is_pocket)
+    is_made = not len(off) or float((off <= feature.radius / 2).mean()) > _MADE
     proud, proud_row, island = NOTHING, -1, NOTHING
     if feature.excess_is_judged:
-        metal = disc(feature.certain)
+        around = joined([other.area for other in features if other is not feature and not other.is_pocket])
+        metal = areas.union(disc(feature.certain), around)
         asked = areas.intersection(beside(feature.area, feature.radius, tolerance, feature.is_pocket), metal)
         stays = areas.difference(_cleared_of_others(asked, feature, features), gone)
         side = areas.intersection(feature.area, metal) if feature.is_pocket else areas.difference(metal, feature.area)
         whole = areas.difference(_cleared_of_others(side, feature, features), gone)
         if feature.is_solid:
-            far = areas.intersection(whole, disc(feature.certain - _RIM))
+            far = areas.intersection(whole, areas.union(disc(feature.certain - _RIM), grown(around, -_RIM)))
             far = grown(grown(far, -_RIM), _RIM)
             middle = grown(feature.area, -2 * feature.radius - tolerance)
             roughed = shapely.area(areas.intersection(gone, middle)) > _ROUGHED * shapely.area(middle)
             if feature.is_bar_known or (feature.is_pocket and roughed):
                 stays = joined([stays, far])
-            elif feature.is_pocket:
+            elif not feature.is_pocket:
+                stays = joined([stays, areas.intersection(far, grown(around, -_RIM))])
+            else:
                 island = farthest(far, far, feature.area)
         proud = farthest(stays, whole, feature.area)
         if proud.size:
@@ -161,7 +170,7 @@ def _difference(feature: Feature, features: Sequence[Feature], cleared: _Cleared
         found = farthest(lacks, lacks, feature.area)
         if found.size > worst.size:
             worst, deep_row = found, nearest_row(cuts, chosen, found.place)
-    return AreaDifference(proud, worst, proud_row, deep_row, off, island)
+    return AreaDifference(proud, worst, proud_row, deep_row, float(off.max(initial=0.0)), island, is_made)
 
 
 def _are_apart(one: Any, other: Any) -> bool:
@@ -213,6 +222,13 @@ def nearest_row(cuts: Cuts, chosen: Mask, place: complex) -> int:
     lines = shapely.linestrings(np.stack([coordinates(chords.start), coordinates(chords.end)], axis=1))
     far = shapely.distance(lines, shapely.points(place.real, place.imag))
     return int(own.curves.row[chords.move[int(np.argmin(far))]])
+
+
+def distance_of_wall(feature: Feature, cuts: Cuts) -> float:
+    """The mean distance from the wall of a feature to the edge of what cuts clear [mm]; inf where that is nothing."""
+    gone = cleared_by(cuts.curves, cuts.radius) if len(cuts) else empty()
+    off = off_wall(gone, feature.area, feature.radius, feature.certain - 2 * _CHORDS, feature.is_pocket)
+    return float(off.mean()) if len(off) else 0.0
 
 
 def directions_of(cuts: Cuts, chosen: Mask, most: int = 8) -> list[float]:

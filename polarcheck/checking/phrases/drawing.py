@@ -50,6 +50,8 @@ def _deviation(lengths: Lengths, one: Comparison) -> str:
     if one.is_other_way_round:
         does, should = ("a boss", "a pocket") if one.part.is_pocket else ("a pocket", "a boss")
         return f"it is {does}, and {should} is asked for: the tool is on the wrong side"
+    if not one.is_made:
+        return f"nothing mills its walls{_fit(lengths, one, one.fit)}{_made(lengths, one)}"
     sides = [(found.proud, found.proud_at, "too much stays"), (found.deep, found.deep_at, "too much is cut away")]
     (_, worst, what), (size, place, other) = sorted(sides, key=lambda side: -side[0])
     more = ""

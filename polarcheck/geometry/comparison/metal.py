@@ -177,11 +177,13 @@ def farthest(found: Any, whole: Any, area: Any) -> Extreme:
     return Extreme(float(far[most]), complex(*points[most]), float(shapely.area(found)))
 
 
-def off_wall(cleared: Any, area: Any, radius: float, certain: float, is_pocket: bool) -> float:
-    """The largest distance from the wall that is asked for to the edge of what is cleared [mm]."""
+def off_wall(cleared: Any, area: Any, radius: float, certain: float, is_pocket: bool) -> Floats:
+    """The distances from points of the wall that is asked for to the edge of what is cleared [mm]; none in the air."""
     wall = shapely.segmentize(shapely.boundary(reachable(area, radius, is_pocket)), radius / 4)
     points = shapely.get_coordinates(wall)
     points = points[np.hypot(points[:, 0], points[:, 1]) <= certain]
     edge = shapely.boundary(cleared)
+    if shapely.is_empty(edge):
+        return np.full(len(points), np.inf)
     shapely.prepare(edge)
-    return float(shapely.distance(shapely.points(points), edge).max(initial=0.0))
+    return np.asarray(shapely.distance(shapely.points(points), edge))
