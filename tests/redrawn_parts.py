@@ -6,7 +6,8 @@ A part drawn again from what `polarcheck part` says of it, and laid over what th
 
 A shape is drawn from its name and its values alone, without polarcheck.geometry.shapes. At each of its depths the
 cutters must come within TOLERANCE of its whole outline, and must not enter it by more. Where the words leave a size
-open, as in `corners from sharp to R5.000`, the least and the largest part that they allow are drawn.
+open, as in `hexagon, not quite regular, 29.900 to 30.100 across flats`, the least and the largest part that they allow
+are drawn.
 """
 
 from __future__ import annotations
@@ -114,32 +115,40 @@ def _round_about(count: int) -> list[complex]:
 
 
 def _with_corners(area: Any, values: Values) -> Drawn:
-    """A polygon with its corners: sharp, round or chamfered."""
-    sizes = [values.get("corner_least", 0.0)] if "corner_least" in values else []
-    if "corner_radius" in values:
-        sizes.append(values["corner_radius"])
-        rounded = [_rounded(area, size) for size in sizes]
-        return Drawn(rounded[-1], rounded[0])
-    if "corner_chamfer" in values:
-        sizes.append(values["corner_chamfer"])
-        cut = [_chamfered(area, size) for size in sizes]
-        return Drawn(cut[-1], cut[0])
+    """A polygon whose first corner is behind the side of direction 0, with its corners: sharp, round or chamfered."""
+    name = "corner_chamfer" if "corner_chamfer" in values else "corner_radius"
+    if name not in values:
+        return Drawn(area, area)
+    points = [complex(*point) for point in shapely.get_coordinates(area.exterior)[:-1]]
+    points.sort(key=lambda point: cmath.phase(point) % math.tau)
+    sizes = [values.get(f"corner_{number}", values[name]) for number in range(1, len(points) + 1)]
+    if "corner_least" in values and "corner_1" not in values:
+        raise NotDrawnError("which corner is how large is not said")
+    for number, (corner, size) in enumerate(zip(points, sizes, strict=True)):
+        beside = points[number - 1], points[(number + 1) % len(points)]
+        area = _without_corner(area, corner, beside, size, is_round=name == "corner_radius")
     return Drawn(area, area)
+
+
+def _without_corner(area: Any, corner: complex, beside: tuple[complex, complex], size: float, *, is_round: bool) -> Any:
+    """The area without what a round or a chamfer takes off at a corner."""
+    if not size:
+        return area
+    ways = [(other - corner) / abs(other - corner) for other in beside]
+    half = abs(cmath.phase(ways[1] / ways[0])) / 2
+    leg = size / math.tan(half) if is_round else size
+    ends = [corner + way * leg for way in ways]
+    taken = shapely.Polygon([(point.real, point.imag) for point in (corner, *ends)])
+    if is_round:
+        middle = (ways[0] + ways[1]) / abs(ways[0] + ways[1])
+        taken = taken.difference(_disc(size, corner + middle * size / math.sin(half)))
+    return area.difference(taken)
 
 
 def _rounded(area: Any, radius: float) -> Any:
     if not radius:
         return area
     return area.buffer(-radius, join_style="mitre", mitre_limit=50).buffer(radius, quad_segs=_in_quarter(radius))
-
-
-def _chamfered(area: Any, leg: float) -> Any:
-    points = [complex(*point) for point in shapely.get_coordinates(area.exterior)[:-1]]
-    cut = []
-    for number, corner in enumerate(points):
-        for other in (points[number - 1], points[(number + 1) % len(points)]):
-            cut.append(corner + (other - corner) / abs(other - corner) * leg)
-    return shapely.Polygon([(point.real, point.imag) for point in cut])
 
 
 def _regular(values: Values) -> Drawn:

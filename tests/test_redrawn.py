@@ -212,3 +212,22 @@ def test_a_slot_between_flats_is_no_third_flat() -> None:
         ],
         [],
     )
+
+
+def test_of_corners_that_differ_each_is_told() -> None:
+    """Counterclockwise from the corner behind the right side: R3, sharp, R3, sharp."""
+    body = "G42 X40. C0 F200\nC7.\nG3 X34. C10. I-3. J0\nG1 X-40.\nC-7.\nG3 X-34. C-10. I3. J0\nG1 X40.\nC0\nG40 X80."
+    made, wrong = told(body, 2.0)
+    assert ([one.text for one in made], wrong) == (
+        ["rectangle 40.000 x 20.000, 2 corners R3.000, 2 sharp; to Z-2.000"],
+        [],
+    )
+    assert [made[0].values[f"corner_{number}"] for number in (1, 2, 3, 4)] == pytest.approx([3, 0, 3, 0])
+
+
+def test_a_piece_between_two_grooves_is_no_flat_of_the_other_pieces() -> None:
+    """The path of the tool center, in the shape of a U: a tongue stands inside, and more outside."""
+    path = "X70. C3. F200\nX-60.\nC-7.\nX70."
+    made, _ = told(f"G1 Z2.\n{path.replace('F200', 'F200 Z2.', 1)}\nZ-2.\n{path}", 3.75, 63.5)
+    assert "contour" in [one.shape for one in made]
+    assert all("turned_1" not in one.values for one in made)

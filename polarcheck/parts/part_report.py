@@ -107,12 +107,12 @@ def _by_section(trace: Trace, tables: Tables) -> list[MadeShape]:
     by_first: dict[int, list[Depth]] = {}
     for depth in depths:
         by_first.setdefault(depth.sections[0], []).append(depth)
-    makers = {section for depth in depths for section in depth.sections}
+    makers = {section for depth in depths if depth.shapes or depth.needs for section in depth.sections}
     made: list[MadeShape] = []
     for section in range(len(trace.mode.sections)):
         of_section = by_first.get(section, [])
         entries = [*_entries(trace, of_section)]
-        areas = [Area(depth.z, depth.polygon) for depth in of_section if depth.polygon is not None]
+        areas = [Area(depth.z, depth.polygon, depth.is_cleared) for depth in of_section if depth.polygon is not None]
         if len(entries) > 1 and len(areas) > 1:
             sizes = _sizes(trace, int(trace.mode.sections.enter[section]))
             entries = [*with_differences(entries, areas, sizes)]

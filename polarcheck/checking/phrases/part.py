@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple
 
-from polarcheck.geometry.shapes.shape import Shape
+from polarcheck.geometry.shapes.shape import SAME, Shape
 from polarcheck.machines.modal import MM_PER_INCH
 
 
@@ -237,11 +237,16 @@ _TOLD: Mapping[str, Callable[[Shape, _Line, Sizes], _Told]] = {
 
 def _corners(value: Mapping[str, float], sizes: Sizes) -> _Told:
     for name, mark in (("corner_radius", "R"), ("corner_chamfer", "chamfered ")):
-        if name in value:
-            if "corner_least" in value:
-                least = f"{mark}{sizes(value['corner_least'])}" if value["corner_least"] else "sharp"
-                return [f"corners from {least} to {mark}{sizes(value[name])}"]
+        if name not in value:
+            continue
+        if "corner_least" not in value:
             return [f"corners {mark}{sizes(value[name])}"]
+        words = [f"{mark}{sizes(size)}" if size else "sharp" for size in (value["corner_least"], value[name])]
+        each = [value[f"corner_{number}"] for number in range(1, int(value.get("sides", 4)) + 1) if "corner_1" in value]
+        counts = [sum(abs(size - value[key]) <= 2 * SAME for size in each) for key in ("corner_least", name)]
+        if each and sum(counts) == len(each):
+            return [f"{counts[1]} corner{'s' * (counts[1] > 1)} {words[1]}, {counts[0]} {words[0]}"]
+        return [f"corners from {words[0]} to {words[1]}"]
     return []
 
 

@@ -55,12 +55,24 @@ class Sides:
         """It turns to the left at each corner, and once round."""
         return len(self) > 2 and bool((self.turn > 0).all()) and abs(float(self.turn.sum()) - 2 * np.pi) < 1
 
-    def corner_values(self) -> dict[str, float]:
-        """How large the corners are, as values of a shape; nothing where all are sharp."""
+    def corner_values(self, turned: float = np.nan) -> dict[str, float]:
+        """
+        How large the corners are, as values of a shape; nothing where all are sharp.
+
+        turned: direction of the side behind which corner_1 lies [deg], NaN for corners without numbers.
+        """
         for name, size in (("corner_radius", self.radius), ("corner_chamfer", self.chamfer)):
-            if size.any():
-                least, most = float(size.min()), float(size.max())
-                return {name: float(size.mean())} if most - least <= 2 * SAME else {name: most, "corner_least": least}
+            if not size.any():
+                continue
+            least, most = float(size.min()), float(size.max())
+            if most - least <= 2 * SAME:
+                return {name: float(size.mean())}
+            values = {name: most, "corner_least": least}
+            if not np.isnan(turned):
+                first = int(np.argmax((self.normal * np.exp(-1j * np.radians(turned))).real))
+                in_turn = np.roll(size, -first).tolist()
+                values |= {f"corner_{number}": value for number, value in enumerate(in_turn, 1)}
+            return values
         return {}
 
 

@@ -10,7 +10,7 @@ from polarcheck.geometry.shapes.shape import Shape
 from polarcheck.geometry.shapes.shapes import contour_of, shapes_of_rings
 
 #: A path with material on both sides along this share of it makes a groove; at corners and crossings there is less.
-_MOST = 0.5
+GROOVE = 0.5
 #: Pockets that have a name of their own, whichever way they are cut.
 _NAMED = ("circle", "slot")
 
@@ -24,8 +24,8 @@ def shapes_of_cleared(outline: Outline, across: float, radius: float, bar: float
     """
     found = list(rings(outline, 0.0, bar))
     around = [ring for ring in found if ring.inside]
-    stands = shapes_of_rings(ring for ring in found if not ring.inside)
-    if across < _MOST:
+    stands = shapes_of_rings((ring for ring in found if not ring.inside), bar)
+    if across < GROOVE:
         return [*stands, *shapes_of_rings(around)]
     inner = sum(ring.area for ring in found if ring.closed and not ring.inside)
     return [*stands, *(_groove(ring, radius, inner if len(around) == 1 or not inner else np.nan) for ring in around)]

@@ -18,17 +18,42 @@ def flats_of(found: Sequence[Ring]) -> list[Shape]:
     """What open rings of one straight side each make together: flats, and the walls of slots."""
     if not found:
         return []
+    row = int(found[0].row[0])
+    normal, out, pairs = _walls(found)
+    slots = [_slot(complex(directions[0]), distances, row) for directions, distances in pairs]
+    return [*([_flats(normal, out, row)] if len(out) else []), *slots]
+
+
+def bound_one_piece(found: Sequence[Ring], bar: float) -> bool:
+    """All walls, within the bar, lie within those that are flats: one piece stands. bar: diameter [mm], NaN unknown."""
+    normal, out, _ = _walls(found)
+    for ring in found:
+        points = np.array([ring.start[0], ring.end[0]])
+        if not np.isnan(bar):
+            # Where it leaves the bar.
+            along = points[1] - points[0]
+            along /= abs(along)
+            way = (points * along.conjugate()).real
+            aside = points[0] - way[0] * along
+            half = np.sqrt(max((bar / 2) ** 2 - abs(aside) ** 2, 0.0))
+            points = aside + along * np.clip(way, -half, half)
+        if ((points[:, None] * normal.conj()).real > out + 3 * SAME).any():
+            return False
+    return True
+
+
+def _walls(found: Sequence[Ring]) -> tuple[Points, Floats, list[tuple[Points, Floats]]]:
+    """The normals of flats and their distances from the axis, each wall once; and those of the walls of each slot."""
     normal = np.array([ring.normal[0] for ring in found])
     out = np.array([float(((ring.start[0] + ring.end[0]) / 2 * ring.normal[0].conjugate()).real) for ring in found])
-    row = int(found[0].row[0])
     # A wall that another one interrupts is one flat.
     again = (np.abs(np.angle(normal[:, None] * normal.conj())) <= _PARALLEL) & (np.abs(out[:, None] - out) <= SAME)
     first = np.argmax(again, axis=1) == np.arange(len(found))
     normal, out, slots = normal[first], out[first], []
     while (pair := _facing(normal, out)) is not None:
-        slots.append(_slot(complex(normal[pair[0]]), out[pair], row))
+        slots.append((normal[pair], out[pair]))
         normal, out = np.delete(normal, pair), np.delete(out, pair)
-    return [*([_flats(normal, out, row)] if len(out) else []), *slots]
+    return normal, out, slots
 
 
 def _facing(normal: Points, out: Floats) -> Rows | None:

@@ -77,7 +77,7 @@ def _regular(ring: Ring, sides: Sides) -> Shape | None:
     if odd and np.count_nonzero(fit.good) <= count / 2:
         values |= {"least": 2 * float(fit.sizes.min()), "most": 2 * float(fit.sizes.max())}
         odd = ()
-    values |= {**sides.corner_values(), **off_axis(fit.center)}
+    values |= {**sides.corner_values(turned), **off_axis(fit.center)}
     regular = not odd and "least" not in values
     return Shape(polygon_name(count), ring.inside, values, odd, int(sides.row[0]), regular)
 
@@ -152,8 +152,9 @@ def _rectangle(ring: Ring, sides: Sides) -> Shape | None:
     long = int(across[0] < across[1])
     along = np.exp(1j * np.angle(normal[long]))
     center = along * complex((out[long] - out[long + 2]) / 2, (out[long + 1] - out[long - 1]) / 2)
-    values = {"width": float(across[1 - long]), "length": float(across[long]), "turned": turned_by(along, 2)}
-    values |= {**sides.corner_values(), **off_axis(center)}
+    turned = turned_by(along, 2)
+    values = {"width": float(across[1 - long]), "length": float(across[long]), "turned": turned}
+    values |= {**sides.corner_values(turned), **off_axis(center)}
     return Shape("rectangle", ring.inside, values, row=int(sides.row[0]))
 
 

@@ -44,8 +44,8 @@ class Shape(NamedTuple):
 
     diameter; across_flats (of an odd number of sides twice the distance of a side from the middle), width, length,
     sides, flats, keyways, distance (of a flat or a bottom from the axis), apart (of parallel flats, of the circles of a
-    cam), corner_radius or corner_chamfer, and corner_least where corners differ; radius, radius_small (of a cam, of the
-    end of a slot);
+    cam), corner_radius or corner_chamfer, and corner_least where corners differ, corner_1, corner_2 and so on of each,
+    counterclockwise from the side that has the direction turned; radius, radius_small (of a cam, of the end of a slot);
     joined (R of the arc between two flats);
     turned (the direction of the first side's normal or of the length); distance_1, turned_1 and so on, of the flats
     where they are uneven; center_x, center_c, where it is off the axis;

@@ -10,7 +10,7 @@ from polarcheck.arrays import Mask
 from polarcheck.geometry.outline import Outline
 from polarcheck.geometry.shapes.corners import sides_of
 from polarcheck.geometry.shapes.keyways import keyed_round_of
-from polarcheck.geometry.shapes.open_ones import flats_of, keyway_of
+from polarcheck.geometry.shapes.open_ones import bound_one_piece, flats_of, keyway_of
 from polarcheck.geometry.shapes.polygons import cross_of, in_chords, polygon_of
 from polarcheck.geometry.shapes.rings import SHARP, Ring, directions, extents_of, rings
 from polarcheck.geometry.shapes.rounds import round_of, two_rounds_of
@@ -24,24 +24,29 @@ def shapes_of(outline: Outline, gap: float = 0.0, bar: float = np.nan) -> list[S
 
     gap: what of it was closed by a straight line [mm]. bar: diameter [mm], NaN if not known.
     """
-    return shapes_of_rings(rings(outline, gap, bar))
+    return shapes_of_rings(rings(outline, gap, bar), bar)
 
 
-def shapes_of_rings(found: Iterable[Ring]) -> list[Shape]:
+def shapes_of_rings(found: Iterable[Ring], bar: float = np.nan) -> list[Shape]:
     """The same of rings."""
-    single: list[Ring] = []
-    others: list[Shape] = []
+    chains: list[Ring] = []
+    others: list[Ring] = []
     for ring in found:
-        keep_time()
         if _is_of_flats(ring):
-            single += [ring.some(np.array([side])) for side in range(len(ring))]
+            chains.append(ring)
         elif len(ring):
-            others.append(_shape_of(ring))
+            others.append(ring)
+    single = [ring.some(np.array([side])) for ring in chains for side in range(len(ring))]
+    if len(single) > len(chains) and not bound_one_piece(single, bar):
+        single = [ring for ring in chains if len(ring) == 1]
+        others = [*(ring for ring in chains if len(ring) > 1), *others]
     beyond = _beyond(min((ring.beyond for ring in single), default=np.inf))
-    return [*(shape._replace(values=shape.values | beyond) for shape in flats_of(single)), *others]
+    flats = [shape._replace(values=shape.values | beyond) for shape in flats_of(single)]
+    return flats + [_shape_of(ring) for ring in others]
 
 
 def _shape_of(ring: Ring) -> Shape:
+    keep_time()
     found, corners = _recognised(ring), _beyond(ring.beyond)
     sharp = _is_sharp_inside(ring)
     if sharp.any():
