@@ -99,6 +99,11 @@ def test_a_finding_that_makes_the_part_doubtful_leaves_it_out(block: str, writte
     assert bool(line_of(text.replace(block, written))) == is_told
 
 
+def test_a_contour_that_is_not_known_as_a_whole_has_no_line() -> None:
+    text = program([Section(polygon(6, 30.0), depths=TWICE)])
+    assert line_of(text.replace("X30. C8.6603", "X#5041 C8.6603")) == ""
+
+
 def test_json_has_the_part_where_it_is_asked_for_and_no_line() -> None:
     Path("a.nc").write_text(program([Section(polygon(6, 30.0), depths=TWICE)]))
     said = call("check", "a.nc", "--tool", tool(4), "-o", "json:a.json", "-o", "jsonl:a.jsonl")

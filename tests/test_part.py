@@ -132,6 +132,15 @@ def test_the_cutter_stays_in_the_corners_of_a_pocket() -> None:
     assert [left.text for left in found.left_standing] == ["R2.000 of the cutter in 4 inside corners"]
 
 
+@pytest.mark.parametrize(("block", "written"), [("X-30. C8.660", "X#5041 C8.660"), ("C8.660", "C#500")])
+def test_a_place_that_is_not_known_is_told(block: str, written: str) -> None:
+    shapes = made(HEXAGON.replace(block, written, 1), "8:radius=4")
+    line = HEAD.count("\n") + HEXAGON.split("\n").index(next(one for one in HEXAGON.split("\n") if block in one)) + 1
+    missing = f"X or C of line {line} is not known: the contour is told without what is milled there"
+    assert {shape.needs for shape in shapes} == {missing}
+    assert [shape.needs for shape in made(HEXAGON, "8:radius=4")] == [None]
+
+
 def test_without_a_radius_a_contour_is_told_and_what_to_give() -> None:
     (found,) = made(HEXAGON)
     assert found.text == "hexagon, 30.000 across flats; to Z-2.000"

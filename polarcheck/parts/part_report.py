@@ -75,7 +75,8 @@ def in_one_line(tables: Tables) -> str:
     except TooHardError:
         return ""
     shapes = [(group, shape) for group in groups for shape in group[0].shapes]
-    if not all(group[0].shapes for group in groups) or not 0 < len(shapes) <= _IN_ONE_LINE:
+    is_whole = all(group[0].shapes for group in groups) and not _missing(trace, 0)
+    if not is_whole or not 0 < len(shapes) <= _IN_ONE_LINE:
         return ""
     sizes = _sizes(trace, int(trace.mode.sections.enter[0]))
     parts = []
@@ -118,6 +119,8 @@ def _by_section(trace: Trace, tables: Tables) -> list[MadeShape]:
         left = [one for number, one in standing if any(number in depth.sections for depth in of_section)]
         if left and entries:
             entries[0] = msgspec.structs.replace(entries[0], left_standing=[*entries[0].left_standing, *left])
+        if missing := _missing(trace, section):
+            entries = [entry if entry.shape is None else _replaced_needs(entry, missing) for entry in entries]
         if section not in makers:
             entries = [_nothing(trace, (section,), _why_nothing(tables, section))]
         sections = of_section[0].sections if of_section else (section,)
@@ -129,6 +132,23 @@ def _by_section(trace: Trace, tables: Tables) -> list[MadeShape]:
             entries = [msgspec.structs.replace(entry, is_compared=is_compared) for entry in entries]
         made += entries
     return made
+
+
+def _missing(trace: Trace, section: int) -> str:
+    """Why the contour of a section is not whole: the line of the first block that ends nobody knows where."""
+    mills = np.where(
+        trace.mode.anywhere_in_section(trace.compensation.compensates), trace.compensation.compensates, trace.path.cuts
+    )
+    rows = np.flatnonzero((trace.mode.section == section) & mills & trace.path.on_plane & np.isnan(trace.path.end))
+    if not len(rows):
+        return ""
+    line = int(trace.blocks.line_in_file[rows[0]])
+    return f"X or C of line {line} is not known: the contour is told without what is milled there"
+
+
+def _replaced_needs(entry: MadeShape, missing: str) -> MadeShape:
+    needs = missing if entry.needs is None else f"{entry.needs}; {missing}"
+    return msgspec.structs.replace(entry, needs=needs)
 
 
 def shapes_of_level(trace: Trace, level: Level) -> list[Shape]:

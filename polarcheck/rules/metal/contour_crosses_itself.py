@@ -71,6 +71,22 @@ def contour_crosses_itself(crossings: Crossings) -> Mask:
         C6.
         G40 X100.
         G13.1
+
+    Good, tool 1:radius=3:
+
+        T0101
+        G98 G0 X100. C0
+        G12.1
+        G1 G42 X30. F200
+        C8.660
+        X0 C17.321
+        X#5041 C8.660
+        X-30. C-8.660
+        X0 C-17.321
+        X30. C-8.660
+        C0
+        G40 X100.
+        G13.1
     """
     # Compares nothing: the table searches the moves of each pass for crossings.
     return crossings.crosses
