@@ -497,6 +497,7 @@ class _Planner:
         if is_drawn:
             self.is_one_file = draw.random() < 0.6
             self.features = [self.as_drawing(number, one) for number, one in enumerate(self.features)]
+        self.features = [self.said_otherwise(number, one) for number, one in enumerate(self.features)]
         return Plan(
             self.seed,
             family,
@@ -672,7 +673,7 @@ class _Planner:
             self.tool += 1
         if len(rough) == 0 and draw.random() < 0.35 and z < -2.5:
             count = draw.choice((2, 3))
-            depths = tuple(round(z * (index + 1) / count, 2) for index in range(count))
+            depths = (*(round(z * (index + 1) / count, 2) for index in range(count - 1)), z)
         else:
             depths = (z,)
         contour = form.contour()
@@ -725,7 +726,19 @@ class _Planner:
         )
 
     def evenly(self, depths: tuple[float, ...]) -> bool:
-        return all(abs(depth - depths[0] * (number + 1)) < 1e-6 for number, depth in enumerate(depths))
+        return all(abs(depth - depths[0] * (number + 1)) < 1e-3 for number, depth in enumerate(depths))
+
+    def said_otherwise(self, number: int, feature: Feature) -> Feature:
+        """Across corners for across flats, or with the section that mills it."""
+        draw = random.Random(f"keys {self.seed} {self.family} {number}")  # noqa: S311 - plans that can be drawn again
+        keys, sections = dict(feature.keys), [one.feature for one in self.passes]
+        if feature.form.kind == "polygon" and "across_flats" in keys and draw.random() < 0.2:
+            flats = keys.pop("across_flats")
+            keys = {**keys, "across_corners": flats / math.cos(math.pi / feature.form.values["sides"])}
+        is_one_file = feature.is_drawn and len(self.features) > 1
+        if sections.count(number) == 1 and not is_one_file and draw.random() < 0.15:
+            keys["section"] = sections.index(number) + 1
+        return feature._replace(keys=keys)
 
     def as_drawing(self, number: int, feature: Feature) -> Feature:
         keys = {"drawing": f"part{'' if self.is_one_file else number or ''}.dxf"}

@@ -43,7 +43,9 @@ def write(folder: Path, plan: Plan, program: Program, head: str = "") -> None:
 def check(folder: Path) -> dict[str, Any]:
     """The report of the program in a folder."""
     with contextlib.chdir(folder):
-        result = CliRunner().invoke(main, ["check", "--format", "json", "--set", "limits.c_feed=36000", PROGRAM])
+        result = CliRunner().invoke(
+            main, ["check", "--format", "json", "--set", "limits.c_feed=36000", "--max-seconds", "100", PROGRAM]
+        )
     try:
         report: dict[str, Any] = json.loads(result.stdout)["files"][0]
     except ValueError:

@@ -123,6 +123,29 @@ def test_what_makes_no_sense_is_refused_in_one_line(tmp_path: Path) -> None:
     assert result.stderr.endswith("polarcheck.toml:4: part.1.layers: a drawing has layers, a shape has none\n")
 
 
+def test_a_tolerance_that_nothing_takes_is_said(tmp_path: Path) -> None:
+    path = tmp_path / "O1.NC"
+    path.write_text(program(polygon(6, 13.5)))
+    warning = (
+        "polarcheck: warning: --tolerance: nothing is compared; give a --drawing, or a [[part]] in polarcheck.toml\n"
+    )
+    drawing = dxf(tmp_path / "part.dxf", {"Contour": polygon(6, 13.5)})
+    for command in ("check", "part"):
+        assert run(command, path, "--tool", "1:radius=4", "--tolerance", "0.1").stderr == warning
+        assert run(command, path, "--tool", "1:radius=4", "--tolerance", "0.1", "--drawing", drawing).stderr == ""
+
+
+def test_one_file_with_two_layers_is_two_parts(tmp_path: Path) -> None:
+    path = tmp_path / "O1.NC"
+    path.write_text(two_contours())
+    dxf(tmp_path / "part.dxf", {"Six": polygon(6, 13.5), "Four": polygon(4, 20.1), "Old": polygon(5, 20.0)})
+    entries = "".join(f'[[part]]\ndrawing = "part.dxf"\nlayers = ["{layer}"]\n' for layer in ("SIX", "FOUR"))
+    (tmp_path / "polarcheck.toml").write_text(f"[tools.1]\nradius = 4.0\n{entries}")
+    result = run("part", path)
+    assert "agrees with part.dxf (SIX) within" in result.stdout
+    assert "differs from part.dxf (FOUR) by" in result.stdout.replace("\n             ", " ")
+
+
 def test_config_show_says_where_they_come_from(tmp_path: Path) -> None:
     path = tmp_path / "O1.NC"
     path.write_text(HEAD + TAIL)

@@ -147,10 +147,34 @@ def test_a_shape_in_a_shape_keeps_its_own_section() -> None:
     assert outside.line < inside.line
 
 
-def test_flats_at_uneven_angles_are_told_together_each_with_its_direction() -> None:
-    (shape,) = made([Section(flat(12.0, 22.0), angle) for angle in (0.0, 100.0, 240.0)])
-    assert [shape.values[f"turned_{number}"] for number in (1, 2, 3)] == pytest.approx([0.0, 100.0, 240.0])
-    assert shape.text.startswith("3 flats, 12.000 from the center at 0, 100 and 240 deg; to Z-5.000; by the sections")
+@pytest.mark.parametrize(("control", "inch"), VARIATIONS)
+@pytest.mark.parametrize("first", [0.0, 15.0])
+def test_flats_that_close_no_polygon_are_told_with_their_angles(first: float, control: str, inch: bool) -> None:
+    entries = [first + angle for angle in (0.0, 60.0, 120.0, 180.0, 240.0)]
+    (shape,) = made([Section(flat(12.0, 14.0), angle) for angle in entries], control, inch)
+    assert (shape.shape, shape.values["flats"]) == ("flats", 5)
+    assert shape.values["distance"] == pytest.approx(12.0, abs=0.003)
+    assert [shape.values[f"turned_{number}"] for number in range(1, 6)] == pytest.approx(entries)
+    assert angles(shape) == entries
+    assert f" at C{first:g}, C{first + 60:g}, C{first + 120:g}, C{first + 180:g}, C{first + 240:g}" in shape.text
+
+
+def test_what_has_no_name_together_is_told_one_by_one() -> None:
+    sections = [Section(flat(distance, 22.0), angle) for distance, angle in ((10.0, 0.0), (12.0, 100.0), (13.0, 240.0))]
+    (shape,) = made(sections)
+    assert "3 flats, 10.000 at 0 deg, 12.000 at 100 deg and 13.000 at 240 deg from the center;" in shape.text
+    shapes = made([Section(polygon(6, 30.0)), Section(flat(10.0, 20.0), 30.0)])
+    assert [(shape.shape, angles(shape)) for shape in shapes] == [("hexagon", [0.0]), ("flats", [30.0])]
+
+
+@pytest.mark.parametrize(("control", "inch"), VARIATIONS)
+def test_a_flat_of_several_that_is_off_is_told_with_its_line(control: str, inch: bool) -> None:
+    sections = flats(6, half=14.0)
+    sections[4] = sections[4]._replace(points=flat(12.1, 14.0))
+    (shape,) = made(sections, control, inch)
+    assert (shape.shape, len(shape.odd)) == ("hexagon", 1)
+    assert shape.odd[0].size == pytest.approx(24.2, abs=0.004)
+    assert shape.sections[4].line < shape.odd[0].line < shape.sections[4].end_line
 
 
 def test_roughing_and_finishing_of_one_shape_are_one() -> None:
@@ -227,3 +251,34 @@ def test_a_section_that_no_part_is_for_is_told_as_what_it_makes(entry: float, co
     assert words.index("square") < words.index("compared with nothing")
     (file,) = json.loads(call("part", *arguments, "--format", "json").stdout)["files"]
     assert [shape["is_compared"] for shape in file["part"]] == [True, False]
+
+
+# ---- init --part ----
+
+
+def of_init(sections: list[Section], control: str = "fanuc", inch: bool = False) -> str:
+    Path("a.nc").write_text(program(sections, control, inch))
+    return call("init", "--part", "a.nc", "--machine", control, "--tool", tool(3, inch)).stdout
+
+
+@pytest.mark.parametrize(("control", "inch"), VARIATIONS)
+@pytest.mark.parametrize("first", [0.0, 15.0])
+def test_what_sections_make_together_agrees_with_the_part_that_is_written_of_it(
+    first: float, control: str, inch: bool
+) -> None:
+    entry = of_init(flats(3, first=first), control, inch)
+    assert "section =" not in entry, "no section makes it alone"
+    Path("polarcheck.toml").write_text(entry)
+    said = call("part", "a.nc", "--machine", control, "--tool", tool(3, inch))
+    assert said.exit_code == 0, said.stdout
+    assert "agrees with the triangle asked for" in said.stdout
+
+
+def test_an_angle_that_nobody_knows_is_no_part_of_the_entry() -> None:
+    assert "turned" not in of_init([Section(polygon(6, 30.0, 10.0), None)], "siemens-iso").partition("[[part]]")[2]
+    assert "turned = 30" in of_init([Section(polygon(6, 30.0, 10.0), 20.0)])
+
+
+def test_flats_at_unequal_angles_have_no_entry() -> None:
+    entry = of_init([Section(flat(12.0, 14.0), angle) for angle in (0.0, 60.0, 120.0, 180.0, 240.0)])
+    assert "\n[[part]]" not in entry

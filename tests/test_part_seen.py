@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 from drawn_contours import CONTROLS, Drawn, Element
-from overlapped_contours import Overlapped, contour, overlapped
+from overlapped_contours import LEADS, Overlapped, contour, overlapped
 from programs import tables_of
 from test_cli import call
 
@@ -87,7 +87,8 @@ def test_a_contour_that_ends_beside_its_start_keeps_its_last_wall(control: str) 
         turned = [cmath.rect(1, math.radians(7 * number)) * point for point in QUADRILATERAL]
         drift = cmath.rect(0.05, math.radians(90 * number + 10))
         overlap = (0, 0.2, 1)[number % 3]
-        shape = overlapped(turned, 1.5, 0, 4, overlap=overlap, drift=drift, control=BY_MACHINE[control])
+        leads = LEADS[number % 4], LEADS[number // 4 % 4]
+        shape = overlapped(turned, 1.5, 0, 2, overlap=overlap, leads=leads, drift=drift, control=BY_MACHINE[control])
         assert is_seen(shape, drift), shape.drawn.text()
     pocket = overlapped(QUADRILATERAL, 1.5, 0, 0.5, is_pocket=True, overlap=0, drift=0.05, control=BY_MACHINE[control])
     assert is_seen(pocket, 0.05)
@@ -284,3 +285,21 @@ def test_shapes_one_behind_the_other_are_not_compared() -> None:
         "hexagon, 30.000 across flats; to Z-3.000",
         "circle 50.000; to Z-6.000",
     ]
+
+
+def test_passes_of_the_path_of_the_tool_that_differ() -> None:
+    """What stands within the path is compared; of a pocket what is cleared."""
+    corners = [cmath.rect(22, math.radians(60 * number)) for number in range(7)]
+    off = [*corners[:2], 0.9 * corners[2], *corners[3:]]
+    ways = ("\n".join(f"X{2 * point.real:.3f} C{point.imag:.3f}" for point in way) for way in (off, corners))
+    head = "G21 G98 G40 T0808\nG0 X90. Z2. C0\nG12.1\nG1 X80. C0 F300\n"
+    boss = head + "".join(f"Z-{number}.\n{way}\n" for number, way in enumerate(ways, 1)) + "X90.\nZ2.\nG13.1\nM30\n"
+    told = [shape.text for shape in made(boss, "8:radius=4") if shape.shape == "hexagon"]
+    assert len(told) == 2
+    assert "cuts up to 1.98" in told[0]
+    assert " deeper than at Z-2.000" in told[0]
+    way = "X16. C0\nC{c}.\nX-16.\nC-10.\nX16.\nC0\nX6. C0\nC3.\nX-6.\nC-3.\nX6.\nC0\nX0\n"
+    pocket = head.replace("X80.", "X0").replace("X90.", "X0") + "Z-2.\n" + way.format(c=10) + "Z-4.\n" + way.format(c=9)
+    first, second = made(pocket + "Z2.\nG13.1\nM30\n", "8:radius=4")
+    assert "cuts up to 1.000 deeper than at Z-4.000" in first.text
+    assert "than at" not in second.text

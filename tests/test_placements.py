@@ -147,6 +147,38 @@ def test_of_flats_the_round_of_the_drawing_shows_the_axis(change: Any, expected:
     assert expected in said(text, drawing(corners))
 
 
+def center_path(corners: list[complex]) -> str:
+    """The way of the tool center along these corners, without G41 and G42."""
+    middle = (corners[-1] + corners[0]) / 2
+    away = middle * (1 + 30 / abs(middle))
+
+    def at(point: complex) -> str:
+        return f"X{2 * point.real:.5f} C{point.imag:.5f}"
+
+    blocks = [f"G1 {at(away)} F300", "Z-3.", at(middle), *map(at, corners), at(middle), at(away), "Z2."]
+    return HEAD + "\n".join(blocks) + "\n" + TAIL
+
+
+@pytest.mark.parametrize(
+    ("change", "expected"),
+    [
+        (lambda point: point + 12, "The drawing would fit shifted by x -12.000 c 0.000: within 0"),
+        (lambda point: point * 25.4, "The drawing would fit 25.4 times as small (as one in mm): within 0"),
+        (lambda point: point * TURN, "The part would fit turned by 30 deg: within 0"),
+        (
+            lambda point: (point - 3j) * 25.4,
+            "The drawing would fit 25.4 times as small (as one in mm) and shifted by x 0.000 c 3.000: within 0",
+        ),
+    ],
+    ids=["shifted", "mm", "turned", "both"],
+)
+@pytest.mark.parametrize("machine", ["fanuc-30i", "haas-lathe", "siemens-iso"])
+@pytest.mark.parametrize("turn", [0.0, 0.25])
+def test_so_it_is_without_compensation(change: Any, expected: str, machine: str, turn: float) -> None:
+    text = on(machine, center_path(polygon(6, 17.5, turn=turn)))
+    assert expected in said(text, drawing([change(corner) for corner in polygon(6, 13.5, turn=turn)]), 4.0, machine)
+
+
 def test_a_shape_that_is_shifted_or_in_other_units() -> None:
     text = program(polygon(6, 13.5))
     for expected, part in (

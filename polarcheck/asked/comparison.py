@@ -136,5 +136,7 @@ class Comparison(NamedTuple):
 
 
 def title_of(part: Part) -> str:
-    """The name of the drawing, or the shape."""
-    return Path(part.drawing).name if part.drawing is not None else f"the {part.shape} asked for"
+    """The name of the drawing with its layers, or the shape."""
+    if part.drawing is None:
+        return f"the {part.shape} asked for"
+    return Path(part.drawing).name + (f" ({', '.join(part.layers)})" if part.layers else "")

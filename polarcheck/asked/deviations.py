@@ -10,7 +10,7 @@ import numpy as np
 from polarcheck.arrays import Columns, Floats, Mask
 from polarcheck.asked.area_comparisons import AreaComparisons
 from polarcheck.asked.asked_parts import AskedParts
-from polarcheck.asked.comparison import Comparison
+from polarcheck.asked.comparison import Comparison, Fit
 from polarcheck.asked.contour_comparisons import ContourComparisons
 from polarcheck.columns.trace import Trace
 from polarcheck.machines.part import Part
@@ -52,8 +52,15 @@ class Deviations(Columns, frozen=True):
         if not self.asked_parts.parts:
             return []
         results = sorted(self.area_comparisons.all, key=lambda result: result.section)
-        fit = self.contour_comparisons.fit
-        return [result._replace(fit=fit(result)) if result.differs else result for result in results]
+        return [result._replace(fit=self._fit(result)) if result.differs else result for result in results]
+
+    def _fit(self, result: Comparison) -> Fit | None:
+        """The change with which the part would agree, or nearly agree; None if there is none."""
+        if result.target is None:
+            from polarcheck.asked.metal_fit import metal_fit  # imported late: most programs agree
+
+            return metal_fit(result, self.asked_parts, self.area_comparisons.milled)
+        return self.contour_comparisons.fit(result)
 
     @cached_property
     def _worst(self) -> dict[int, Comparison]:

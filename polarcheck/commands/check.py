@@ -248,6 +248,7 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
         say(failures[-1])
     elif arguments.diff_base is None:
         running.warn_unused(applies.tools, checked.called)
+        running.warn_without_part(applies.tolerance, tasks)
     for error in reporting.written(outputs, form, report, plain._replace(lines=checked.lines)):
         say(str(error))
         status = max(status, COULD_NOT_RUN)

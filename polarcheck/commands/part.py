@@ -70,6 +70,7 @@ def _part(
         say(f"{how} after {len(checked.files)} of {len(tasks)} files; these are reported")
     else:
         running.warn_unused(applies.tools, checked.called)
+        running.warn_without_part(applies.tolerance, tasks)
     show(
         (
             part_lines.json(list(checked.files)) if form == "json" else part_lines.text(list(checked.files), columns())

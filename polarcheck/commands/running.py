@@ -184,6 +184,12 @@ def _by_processes(tasks: Sequence[Task], most: int, count: int) -> Generator[Out
     return executors.by_processes(tasks, most, count)
 
 
+def warn_without_part(tolerance: float | None, tasks: Sequence[Task]) -> None:
+    """Warn of a --tolerance that no comparison takes."""
+    if tolerance is not None and tasks and not any(task.settings.job.part for task in tasks):
+        warn("--tolerance: nothing is compared; give a --drawing, or a [[part]] in polarcheck.toml")
+
+
 def warn_unused(tools: Iterable[str], called: set[str]) -> None:
     """Warn of each --tool that no program of the run calls."""
     from polarcheck.machines.job import key_of_option

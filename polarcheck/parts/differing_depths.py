@@ -24,10 +24,11 @@ _POINTS = 1000
 
 
 class Area(NamedTuple):
-    """What stands at one depth: its Z [mm], and the polygon (shapely, mm)."""
+    """What stands at one depth, or what is cleared there: its Z [mm], and the polygon (shapely, mm)."""
 
     z: float
     polygon: Any
+    is_cleared: bool = False
 
 
 def with_differences(entries: Sequence[MadeShape], areas: Sequence[Area], sizes: Sizes) -> Iterator[MadeShape]:
@@ -47,7 +48,8 @@ def with_differences(entries: Sequence[MadeShape], areas: Sequence[Area], sizes:
         if depths in groups and depths not in seen:
             seen.add(depths)
             one, other = by_z[min(depths)], by_z[min(usual)]
-            if names[depths] == names[usual] or _in_common(one.polygon, other.polygon) >= _IN_COMMON:
+            is_pass = names[depths] == names[usual] or _in_common(one.polygon, other.polygon) >= _IN_COMMON
+            if one.is_cleared == other.is_cleared and is_pass:
                 text = _in_words(one, other, sizes)
         yield msgspec.structs.replace(entry, text=f"{entry.text}; {text}") if text else entry
 
@@ -65,6 +67,14 @@ def known_of(level: Level) -> Any:
     return areas.intersection(level.polygon, areas.buffer(shapely.Point(0, 0), reach), grid_size=GRID)
 
 
+def within(cleared: Any) -> Any:
+    """What stands within the areas that a path clears."""
+    import shapely
+
+    holes = [hole for part in shapely.get_parts(cleared) for hole in part.interiors]
+    return shapely.MultiPolygon([shapely.Polygon(hole) for hole in holes])
+
+
 def are_same(one: Any, other: Any) -> bool:
     """Two polygons are the same but for rounding."""
     import shapely
@@ -77,9 +87,10 @@ def are_same(one: Any, other: Any) -> bool:
 def _in_words(one: Area, other: Area, sizes: Sizes) -> str:
     """`cuts up to 8.660 deeper than at Z-6.000, at x 0.000 c -17.321`."""
     text = []
+    more, less = (one, other) if one.is_cleared else (other, one)
     for said, (size, place) in (
-        ("cuts up to {} deeper", _farthest(other.polygon, one.polygon)),
-        ("leaves up to {} more", _farthest(one.polygon, other.polygon)),
+        ("cuts up to {} deeper", _farthest(more.polygon, less.polygon)),
+        ("leaves up to {} more", _farthest(less.polygon, more.polygon)),
     ):
         if size > 2 * SAME:
             where = f"at x {sizes(place.real)} c {sizes(place.imag)}"

@@ -58,7 +58,9 @@ def job_entry(made: MadeShape, bar: float | None, *, inch: bool) -> dict[str, An
     keys = _SHAPES[made.shape](made, math.nan if bar is None else bar)
     entry: dict[str, Any] = {"shape": keys.shape, **keys.counts}
     entry |= {key: _length(length, inch) for key, length in keys.lengths.items()}
-    if "turned" in value and keys.shape != "circle":
+    # From an angle of C that is not known nothing can be compared.
+    is_known = all(section.angle is not None for section in made.sections)
+    if "turned" in value and keys.shape != "circle" and is_known:
         entry["turned"] = round(value["turned"], _ANGLE_DIGITS) + 0.0
     if "center_x" in value:
         entry["center"] = [_length(value[key], inch) for key in ("center_x", "center_c")]
@@ -77,7 +79,7 @@ def _length(value: float, inch: bool) -> float:
     return round(value / MM_PER_INCH if inch else value, _DIGITS[inch]) + 0.0
 
 
-#: Values of what has sides, flats or corners that differ.
+#: Values of what has sides, flats or corners that differ, or flats at unequal angles.
 _UNEVEN = {"least", "corner_least", "regular_by_x", "turned_1"}
 
 

@@ -19,7 +19,8 @@ class Depth(NamedTuple):
 
     sections: their numbers. z: [mm], NaN where it is not known. radius: R of the cutter [mm], NaN if not known. shapes:
     in the frame of the part; where C is not known at the beginning of the section, as it writes them. needs: as in
-    MadeShape. polygon: what contours leave there, within what is known of it (shapely, mm); None without a contour.
+    MadeShape. polygon: what is left there, within what is known of it (shapely, mm), or, where is_cleared, what is
+    cleared; None where depths are not compared by it.
     """
 
     sections: tuple[int, ...]
@@ -28,6 +29,7 @@ class Depth(NamedTuple):
     shapes: list[Shape]
     needs: str | None = None
     polygon: Any = None
+    is_cleared: bool = False
 
 
 def put_together(joined: Depth, single: Sequence[Depth]) -> Iterator[Depth]:
@@ -42,6 +44,7 @@ def put_together(joined: Depth, single: Sequence[Depth]) -> Iterator[Depth]:
         return
     makers: list[tuple[int, ...]] = []
     for shape in joined.shapes:
+        keep_time()
         alike = [depth for depth in single if any(are_alike(shape, other) for other in depth.shapes)]
         makers.append(tuple(number for depth in alike for number in depth.sections))
     alone = {number for sections in makers for number in sections}
@@ -57,7 +60,9 @@ def put_together(joined: Depth, single: Sequence[Depth]) -> Iterator[Depth]:
 
 
 def _nameless(shapes: Sequence[Shape]) -> int:
-    return sum(shape.name in _WITHOUT_NAME for shape in shapes)
+    """How many of the shapes are none of a drawing, be it that their sides are uneven."""
+    uneven = ("sides" in shape.values and "across_flats" not in shape.values for shape in shapes)
+    return sum(is_uneven or shape.name in _WITHOUT_NAME for is_uneven, shape in zip(uneven, shapes, strict=True))
 
 
 def merged(depths: Sequence[Depth]) -> list[list[Depth]]:
@@ -79,7 +84,7 @@ def _are_same(one: Depth, other: Depth) -> bool:
         and len(one.shapes) == len(other.shapes)
         and one.needs == other.needs
         and all(map(are_alike, one.shapes, other.shapes))
-        and are_same(one.polygon, other.polygon)
+        and (one.is_cleared != other.is_cleared or are_same(one.polygon, other.polygon))
     )
 
 

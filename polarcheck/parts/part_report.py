@@ -103,18 +103,22 @@ def _by_section(trace: Trace, tables: Tables) -> list[MadeShape]:
     depths = _depths(tables)
     standing = _ribs_and_strips(tables)
     job: Job = tables["job"]
+    by_first: dict[int, list[Depth]] = {}
+    for depth in depths:
+        by_first.setdefault(depth.sections[0], []).append(depth)
+    makers = {section for depth in depths if depth.shapes or depth.needs for section in depth.sections}
     made: list[MadeShape] = []
     for section in range(len(trace.mode.sections)):
-        of_section = [depth for depth in depths if depth.sections[0] == section]
+        of_section = by_first.get(section, [])
         entries = [*_entries(trace, of_section)]
-        areas = [Area(depth.z, depth.polygon) for depth in of_section if depth.polygon is not None]
+        areas = [Area(depth.z, depth.polygon, depth.is_cleared) for depth in of_section if depth.polygon is not None]
         if len(entries) > 1 and len(areas) > 1:
             sizes = _sizes(trace, int(trace.mode.sections.enter[section]))
             entries = [*with_differences(entries, areas, sizes)]
         left = [one for number, one in standing if any(number in depth.sections for depth in of_section)]
         if left and entries:
             entries[0] = msgspec.structs.replace(entries[0], left_standing=[*entries[0].left_standing, *left])
-        if not any(section in depth.sections for depth in depths):
+        if section not in makers:
             entries = [_nothing(trace, (section,), _why_nothing(tables, section))]
         sections = of_section[0].sections if of_section else (section,)
         if entries:
@@ -188,12 +192,13 @@ def _of_levels(
     trace: Trace, levels: Sequence[Level], single: Sequence[Level], depth_of: Callable[[Trace, Level], Depth]
 ) -> Iterator[Depth]:
     """single: the levels of single sections that levels of several sections are put together of."""
+    first = [int(one.walls.row[0]) for one in single]
     for level in levels:
         depth = depth_of(trace, level)
         if len(level.sections) == 1:
             yield depth
         else:
-            own = np.isin([int(one.walls.row[0]) for one in single], level.walls.row)
+            own = np.isin(first, level.walls.row)
             yield from put_together(
                 depth, [depth_of(trace, one) for one, is_own in zip(single, own, strict=True) if is_own]
             )

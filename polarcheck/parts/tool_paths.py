@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from polarcheck.columns.filling import before
 from polarcheck.geometry.segments import Curves
 from polarcheck.geometry.shapes.shape import Shape
 from polarcheck.geometry.tolerances import ZERO
+from polarcheck.parts.differing_depths import within
 from polarcheck.parts.made_depths import Depth, put_together
 from polarcheck.table.finished import turned_columns
 from polarcheck.table.overcuts import level_of_rows
@@ -74,9 +75,9 @@ def _depth(trace: Trace, moves: Moves, own: Rows, cutter: float) -> Depth:
         turned_columns(path[trace.mode.section[path.row] == number], complex(np.exp(1j * np.radians(entry[number]))))
         for number in sections
     ]
-    return Depth(
-        sections, z, cutter, _left(Curves.concatenated(parts), cutter, float(trace.lengths.stock_diameter[row]))
-    )
+    bar = float(trace.lengths.stock_diameter[row])
+    shapes, polygon, is_cleared = _left(Curves.concatenated(parts), cutter, bar)
+    return Depth(sections, z, cutter, shapes, polygon=polygon, is_cleared=is_cleared)
 
 
 def _changes_depth(trace: Trace) -> Mask:
@@ -111,12 +112,20 @@ def _levels(frame: Rows, level: Floats, radius: Floats, chosen: Rows) -> Iterato
     yield from np.split(chosen[order], np.flatnonzero(np.diff(place[order])) + 1)
 
 
-def _left(path: Curves, radius: float, bar: float) -> list[Shape]:
+def _left(path: Curves, radius: float, bar: float) -> tuple[list[Shape], Any, bool]:
+    """
+    The shapes that a path makes, and an area by which depths are compared: what stands within the path; else what it
+    clears, True; None for a groove alone, whose ends are those of the ways in and out.
+    """
     from polarcheck.geometry.polygons.cleared import cleared
-    from polarcheck.geometry.shapes.grooves import shapes_of_cleared
+    from polarcheck.geometry.shapes.grooves import GROOVE, shapes_of_cleared
 
-    _, outline, across = cleared(path, radius)
-    return shapes_of_cleared(outline, across, radius, bar)
+    area, outline, across = cleared(path, radius)
+    shapes = shapes_of_cleared(outline, across, radius, bar)
+    standing = within(area)
+    if standing.is_empty:
+        return shapes, area if across < GROOVE else None, True
+    return shapes, standing, False
 
 
 def _needs_radius(trace: Trace, row: int) -> str:

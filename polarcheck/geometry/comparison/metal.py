@@ -171,6 +171,7 @@ def farthest(found: Any, whole: Any, area: Any) -> Extreme:
     touching = pieces[shapely.intersects(pieces, found)]
     points = shapely.get_coordinates(touching if len(touching) else found)
     wall = shapely.boundary(area)
+    shapely.prepare(wall)
     far = shapely.distance(shapely.points(points), wall)
     most = int(np.argmax(far))
     return Extreme(float(far[most]), complex(*points[most]), float(shapely.area(found)))
@@ -181,4 +182,6 @@ def off_wall(cleared: Any, area: Any, radius: float, certain: float, is_pocket: 
     wall = shapely.segmentize(shapely.boundary(reachable(area, radius, is_pocket)), radius / 4)
     points = shapely.get_coordinates(wall)
     points = points[np.hypot(points[:, 0], points[:, 1]) <= certain]
-    return float(shapely.distance(shapely.points(points), shapely.boundary(cleared)).max(initial=0.0))
+    edge = shapely.boundary(cleared)
+    shapely.prepare(edge)
+    return float(shapely.distance(shapely.points(points), edge).max(initial=0.0))

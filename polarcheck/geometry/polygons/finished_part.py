@@ -18,20 +18,15 @@ import numpy as np
 import shapely  # type: ignore[import-untyped]
 
 from polarcheck.arrays import Floats, Mask, Points, Rows
-from polarcheck.geometry.contour_ends import CLOSED, gaps_between_ends
+from polarcheck.geometry.contour_ends import gaps_between_ends
 from polarcheck.geometry.polygons import areas
 from polarcheck.geometry.polygons.faces import GRID, Geometries, Standing, Walls, standing
+from polarcheck.geometry.polygons.loop_ends import LoopEnds, closed_beside, joined_to_walls
 from polarcheck.geometry.segments import Curves, Segments, directions, first_of_its_kind, members, segments
 from polarcheck.geometry.tolerances import TOUCH
-from polarcheck.time_limit import keep_time
 
 #: Corners of the circle that stands for the bar, in a quarter.
 _BAR_CORNERS = 256
-#: Pairs of ends and walls to compare at a time.
-_PAIRS = 1_000_000
-#: A contour ends beside its start where that is nearer than this share of its length, and runs on in the direction of
-#: its start where it turns by no more than this [rad].
-_BESIDE, _STRAIGHT = 0.025, 0.35
 #: Instead of a curve: a line from the end of a loop to the wall beside it.
 _JOINED = -2
 
@@ -178,26 +173,50 @@ def _plane(contours: Contours) -> _Plane:
     half = 2 * reach + 4 * float(contours.radius.max(initial=0.0))
     pitch = 3 * half
     along, total = _lengths(parts, which)
+    first = np.flatnonzero(np.diff(which, prepend=-1))
+    number = np.searchsorted(which[first], which[parts.move])
+    length = np.bincount(number, np.abs(parts.end - parts.start), len(first)).astype(np.float64)
+    loops = _ends(chosen, first, length, contours, pitch)
     is_first = first_of_its_kind(chosen)[parts.move]
     parts, along, total = parts[is_first].shifted(pitch * parts.loop[is_first]), along[is_first], total[is_first]
+    number = number[is_first]
     left = contours.left[row][parts.move]
     nothing = np.zeros(len(parts), bool)
     walls = Walls(parts.start, parts.end, left, ~left, nothing, parts.loop)
-    first = np.flatnonzero(np.diff(which, prepend=-1))
-    last = np.append(first[1:], len(which))[: len(first)] - 1
-    ends = np.append(chosen.start[first], chosen.end[last])
     more = [_joints(chosen, first, half, pitch), _square(np.unique(group), half, pitch)]
     beside = np.zeros(len(contours.radius))
     if contours.closes_beside:
-        lines, length = _besides(chosen, first, last, contours.radius, pitch)
+        lines, length = closed_beside(loops, walls, number, along)
         np.maximum.at(beside, lines.group, length)
         more.append(lines)
-    joined = _joined_ends(ends, np.tile(chosen.loop[first], 2), walls, pitch)
+    joined = joined_to_walls(loops, walls)
     walls, origin = _together([walls, *more, joined])
     others = np.full(len(origin) - len(parts), -1)
     others[len(others) - len(joined) :] = _JOINED
     move, along, total = (np.append(column, others)[origin] for column in (row[parts.move], along, total))
+    last = _last_of(first, len(which))
     return _Plane(walls, move, along, total, chosen, contours.left[row], first, last, half, pitch, beside)
+
+
+def _last_of(first: Rows, count: int) -> Rows:
+    """The last curve of each loop; count: of all curves."""
+    return np.append(first[1:], count)[: len(first)] - 1
+
+
+def _ends(chosen: Curves, first: Rows, total: Floats, contours: Contours, pitch: float) -> LoopEnds:
+    """The ends of loops, at the place of their group; total: their length [mm]."""
+    last, group = _last_of(first, len(chosen)), chosen.loop[first]
+    start, end = chosen[first], chosen[last]
+    return LoopEnds(
+        start.start + pitch * group,
+        end.end + pitch * group,
+        directions(start.start, start.end, start.center, start.kind)[0],
+        directions(end.start, end.end, end.center, end.kind)[1],
+        np.isnan(start.center) & np.isnan(end.center),
+        total,
+        contours.radius[group],
+        group,
+    )
 
 
 def _lengths(parts: Segments, which: Rows) -> tuple[Floats, Floats]:
@@ -236,45 +255,6 @@ def _joints(curves: Curves, first: Rows, half: float, pitch: float) -> Walls:
     out[here[in_row]] = begin[after[in_row]]
     start, end = np.concatenate([curves.end[torn], begin]), np.concatenate([curves.start[torn + 1], out])
     return _lines(start, end, np.concatenate([curves.loop[torn], group]), pitch, joins=True)
-
-
-def _joined_ends(point: Points, group: Rows, walls: Walls, pitch: float) -> Walls:
-    """Lines from the ends of loops [mm] to the walls of their group beside them, nearer than points are rounded to."""
-    ends = point + pitch * group
-    end, wall = _candidates(ends, walls)
-    way = walls.end[wall] - walls.start[wall]
-    beside = (ends[end] - walls.start[wall]) * way.conj() / np.abs(way)
-    length = np.abs(way)
-    foot = walls.start[wall] + way * np.clip(beside.real, 0, length) / length
-    distance = np.abs(ends[end] - foot)
-    joins = (distance > TOUCH / 10) & (distance <= CLOSED)
-    end, foot = end[joins], foot[joins] - pitch * group[end[joins]]
-    return _lines(point[end], foot, group[end], pitch, joins=False)
-
-
-def _candidates(ends: Points, walls: Walls) -> tuple[Rows, Rows]:
-    """Ends of loops and walls whose boxes are no farther apart than CLOSED, as pairs of their numbers."""
-    order = np.argsort(ends.real, kind="stable")
-    across = ends.real[order]
-    low, high = np.minimum(walls.start.real, walls.end.real), np.maximum(walls.start.real, walls.end.real)
-    first, until = np.searchsorted(across, low - CLOSED), np.searchsorted(across, high + CLOSED, side="right")
-    pairs: list[tuple[Rows, Rows]] = [(np.zeros(0, np.int64), np.zeros(0, np.int64))]
-    begins = 0
-    total = np.cumsum(until - first)
-    while begins < len(total):
-        keep_time()
-        before = total[begins - 1] if begins else 0
-        stop = max(int(np.searchsorted(total, before + _PAIRS)), begins + 1)
-        count = (until - first)[begins:stop]
-        wall = np.repeat(np.arange(begins, stop), count)
-        place = np.arange(len(wall)) - np.repeat(np.cumsum(count) - count, count)
-        end = order[first[wall] + place]
-        c, a, b = ends[end].imag, walls.start[wall].imag, walls.end[wall].imag
-        near = (c >= np.minimum(a, b) - CLOSED) & (c <= np.maximum(a, b) + CLOSED)
-        pairs.append((end[near], wall[near]))
-        begins = stop
-    end, wall = (np.concatenate(column) for column in zip(*pairs, strict=True))
-    return end, wall
 
 
 def _square(group: Rows, half: float, pitch: float) -> Walls:
@@ -325,57 +305,6 @@ def _without_joints(faces: Standing, joined: Mask) -> tuple[Points, Points]:
 
 
 # ---- contours that do not close ----
-
-
-def _besides(curves: Curves, first: Rows, last: Rows, radius: Floats, pitch: float) -> tuple[Walls, Floats]:
-    """
-    Lines that close contours which end a little beside their start; for each line how far beside, or how far either
-    end is from the corner [mm].
-
-    At a corner the walls are extended to where they meet, along a wall its end is joined to what lies beside it. The
-    walls of a blade lie as near to each other, but run against each other.
-    """
-    begins, ends = directions(curves.start, curves.end, curves.center, curves.kind)
-    start, end, group = curves.start[first], curves.end[last], curves.loop[first]
-    begin, way = begins[first], ends[last]
-    until = np.append(0, np.cumsum(np.abs(curves.end - curves.start)))
-    total = until[last + 1] - until[first]
-    limit = np.minimum(_BESIDE * total, np.where(radius[group] > 0, radius[group], np.inf))
-    is_line = np.isnan(curves.center[first]) & np.isnan(curves.center[last])
-    turn = np.abs(np.angle(begin * way.conj()))
-    gap = start - end
-    length = np.abs(gap)
-    is_near = (length > CLOSED) & (last - first >= 2)
-
-    # At a corner: end + along * way is start - back * begin.
-    bends = (turn > _STRAIGHT) & (turn < np.pi - _STRAIGHT)
-    across = np.where(bends, (way.conj() * begin).imag, np.nan)
-    along = (gap.conj() * begin).imag / across
-    back = (way.conj() * gap).imag / across
-    meet = end + along * way
-    is_corner = is_near & is_line & (length <= limit) & bends
-    is_corner &= (np.abs(along) <= 3 * length) & (np.abs(back) <= 3 * length)
-
-    # Along a wall: over some of their length the two lie side by side.
-    over = -(gap * way.conj()).real
-    apart = np.abs((gap * way.conj()).imag)
-    is_wall = is_near & (turn <= _STRAIGHT) & (apart <= limit) & (apart > CLOSED)
-    lies_along = is_wall & is_line & (over > 0) & (length > limit)
-    lies_along &= over <= np.minimum(*(np.abs(curves.end[rows] - curves.start[rows]) for rows in (first, last)))
-    is_step = is_near & ~is_corner & (length <= limit) & (is_wall | (~is_line & (turn < np.pi - _STRAIGHT)))
-    foot_of_end = start + begin * ((end - start) * begin.conj()).real
-    foot_of_start = end + way * (gap * way.conj()).real
-    lines = [
-        (end, meet, is_corner),
-        (meet, start, is_corner),
-        (end, start, is_step),
-        (end, foot_of_end, lies_along),
-        (start, foot_of_start, lies_along),
-    ]
-    points = [np.concatenate([line[side][line[2]] for line in lines]) for side in (0, 1)]
-    loop = np.concatenate([np.flatnonzero(chosen) for _, _, chosen in lines])
-    size = np.where(is_corner, np.fmax(length, np.fmax(np.abs(along), np.abs(back))), np.where(is_step, length, apart))
-    return _lines(points[0], points[1], group[loop], pitch, joins=False), size[loop]
 
 
 def _bridges(plane: _Plane, contours: Contours) -> tuple[Walls, Floats]:

@@ -52,7 +52,8 @@ class Shape(NamedTuple):
     x_least, x_most, c_least, c_most, area, inside_radius of contours; least, most where sides differ;
     inside_corners: how many sharp ones the cutter cannot reach into; corner_reach: the largest R of a cutter that
     reaches each wall beside them; reach_beyond: the largest R that leaves nothing in the bar of a corner just outside;
-    regular_by_x: by what X is to be multiplied to make it regular.
+    stands_inside: how many pieces stand within what is cleared; regular_by_x: by what X is to be multiplied to make it
+    regular.
 
     odd: the sides that differ from the others. row: of its first block. is_regular: False where what has the name of a
     regular polygon is none. is_open: nobody knows what the part is like beyond its ends. mixed:
@@ -82,10 +83,11 @@ def turned_by(direction: complex, count: int) -> float:
 
 
 def each_flat(normal: Points, out: Floats) -> dict[str, float]:
-    """How far each of several uneven flats is from the middle, and its direction; as values of a shape."""
+    """How far each of several uneven flats is from the middle, and its direction from 0; as values of a shape."""
+    flats = sorted((turned_by(direction, 1), distance) for direction, distance in zip(normal, out, strict=True))
     values: dict[str, float] = {}
-    for number, (direction, distance) in enumerate(zip(normal.tolist(), out.tolist(), strict=True), 1):
-        values |= {f"distance_{number}": distance, f"turned_{number}": turned_by(direction, 1)}
+    for number, (turned, distance) in enumerate(flats, 1):
+        values |= {f"distance_{number}": float(distance), f"turned_{number}": turned}
     return values
 
 

@@ -65,7 +65,7 @@ def _entry(file: FileReport, made: MadeShape, units: str | None) -> dict[str, An
         entry = job_entry(made, bar, inch=units == "inch")
     except NoEntryError as error:
         return str(error)
-    if len(lines) > 1 and lines.count(made.line) == 1:
+    if len(lines) > 1 and len(made.sections) == 1 and lines.count(made.line) == 1:
         entry["section"] = lines.index(made.line) + 1
     return {**entry, "files": [_pattern(file.path.rpartition("/")[2])]}
 

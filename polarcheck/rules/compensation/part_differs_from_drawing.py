@@ -16,12 +16,14 @@ def part_differs_from_drawing(deviations: Deviations) -> Mask:
     """
     Part that is not the one of the drawing.
 
-    What the contours in offset mode leave standing differs from what the job asks for by more than its tolerance,
-    0.02 mm unless that says another one. The drawing (--drawing, or drawing in a [[part]] of polarcheck.toml) has its
-    origin on the spindle axis, and its x runs towards C0 as a radius; a [[part]] may also give a shape with its
-    numbers. Deviations are measured from the part to the drawing and back. The block that is named is the one whose
-    wall lies nearest to the largest of them. Where the part would fit if it were turned, mirrored, or had X as a
-    diameter, that is said as well. Correct the coordinates, or the drawing.
+    What the program makes differs from what the job asks for by more than its tolerance, 0.02 mm unless that or
+    --tolerance says another one. The drawing (--drawing, or drawing in a [[part]]) has its origin on the spindle
+    axis, and its x runs towards C0 as a radius; a [[part]] may also give a shape with its numbers. Contours in offset
+    mode are measured to the drawing and back. Then the metal that the cutters clear, in all sections and at each depth,
+    is laid over the part: metal that should be gone and still stands, as a wall that is never milled, and metal that is
+    cut away where the part must stand. C at G12.1 is added to each section. The block that is named is the one that
+    comes nearest to the largest difference. Where the part would fit if it were turned, mirrored, shifted, in other
+    units, or had X as a diameter, that is said as well. Correct the coordinates, or the drawing.
 
     Source: B-62764EN/01, p. 51-53 (X as a diameter, C as a length, and C0 where the mode begins).
 
@@ -38,6 +40,24 @@ def part_differs_from_drawing(deviations: Deviations) -> Mask:
         X40.
         C0
         G40 X80. C5.
+        G13.1
+
+    Bad, tool 1:radius=4, set job.part=[{shape = "flats", across_flats = 24.0, diameter = 30.0, turned = 0.0}]:
+
+        T0101
+        G98 G0 X60. C0
+        G12.1
+        G1 C-25. F500
+        G42 X24. C-20. F200
+        C20.
+        G40 X60. C25.
+        G13.1
+        G0 C170.
+        G12.1
+        G1 C-25. F500
+        G42 X24. C-20. F200
+        C20.              (expect: part-differs-from-drawing)
+        G40 X60. C25.
         G13.1
 
     Good, tool 1:radius=3, set job.part=[{shape = "square", across_flats = 40.0}]:

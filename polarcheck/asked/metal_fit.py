@@ -1,0 +1,62 @@
+"""Where no contour in offset mode is there: the change of a part of the job with which what is cleared would agree."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from polarcheck.asked.asked_parts import AskedParts
+from polarcheck.asked.comparison import SAME_Z, Comparison, Fit
+from polarcheck.table.milled import Milled
+from polarcheck.time_limit import keep_time
+
+if TYPE_CHECKING:
+    from polarcheck.geometry.comparison.deviation import Made
+
+#: So many outlines of what is cleared are compared with the part.
+_MOST = 4
+
+
+def metal_fit(result: Comparison, asked_parts: AskedParts, milled: Milled) -> Fit | None:
+    """The change with which an outline of what is cleared would agree, or nearly agree; None if there is none."""
+    from polarcheck.geometry.comparison.measured_path import way_of_curves
+    from polarcheck.geometry.comparison.placements import Freedom, better_placement
+
+    part, unit = result.part, asked_parts.unit(result.number, result.row)
+    curves = asked_parts.curves(result.number, unit)
+    rings = [number for number, curve in enumerate(curves) if len(curve) > 3 and curve[0] == curve[-1]]
+    ways = [way_of_curves([curves[number]]) for number in sorted(rings, key=lambda number: number != result.curve)]
+    freedom = Freedom(part.drawing is not None, not result.any_angle, part.shape == "circle")
+    fits = []
+    for made in _outlines(result, milled) if ways else ():
+        keep_time()
+        center = unit * complex(*part.center)
+        fit = better_placement(made, ways, center, result.difference, result.tolerance, freedom)
+        if fit is not None:
+            fits.append(Fit(*fit))
+    return min(fits, key=lambda fit: fit.largest, default=None)
+
+
+def _outlines(result: Comparison, milled: Milled) -> Iterator[Made]:
+    """The closed outlines of what the largest cutter clears at the depth of a part, the longest first."""
+    from polarcheck.geometry.comparison.deviation import made_of
+    from polarcheck.geometry.comparison.measured_path import way_of_outline
+    from polarcheck.geometry.comparison.metal import polygon_of
+    from polarcheck.geometry.polygons.cleared import cleared
+
+    cuts = milled.cuts
+    chosen = (cuts.frame == milled.frame_of_section[result.section]) & (cuts.low <= result.z + SAME_Z)
+    if result.part.section is not None:
+        chosen &= cuts.section == result.part.section - 1
+    if not chosen.any():
+        return
+    radius = float(cuts.radius[chosen].max())
+    outline = cleared(cuts.curves[chosen & (cuts.radius == radius)], radius).outline
+    chains = [outline[outline.chain == number] for number in np.flatnonzero(outline.closed).tolist()]
+    ways = [way_of_outline(chain) for chain in chains]
+    for index in sorted(range(len(chains)), key=lambda index: -ways[index].length)[:_MOST]:
+        polygon = polygon_of(np.append(ways[index].start, ways[index].start[0]))
+        yield made_of(chains[index], polygon, math.nan)
