@@ -177,6 +177,12 @@ def test_a_flat_of_several_that_is_off_is_told_with_its_line(control: str, inch:
     assert shape.sections[4].line < shape.odd[0].line < shape.sections[4].end_line
 
 
+def test_flats_at_uneven_angles_are_told_together_each_with_its_direction() -> None:
+    (shape,) = made([Section(flat(12.0, 22.0), angle) for angle in (0.0, 100.0, 240.0)])
+    assert [shape.values[f"turned_{number}"] for number in (1, 2, 3)] == pytest.approx([0.0, 100.0, 240.0])
+    assert shape.text.startswith("3 flats, 12.000 from the center at 0, 100 and 240 deg; to Z-5.000; by the sections")
+
+
 def test_roughing_and_finishing_of_one_shape_are_one() -> None:
     (shape,) = made([Section(polygon(6, 30.0)), Section(polygon(6, 30.0))])
     assert len(shape.sections) == 2
