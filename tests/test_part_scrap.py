@@ -89,7 +89,7 @@ CASES: dict[str, Case] = {
         4.0,
         {
             ("X0 C-17.321", "X0 C-7.321"): "too much is cut away",
-            (hexagon(-3.0), hexagon(-3.0).replace("X-30. C8.660", "X-29.9 C8.660")): "0.025",
+            (hexagon(-3.0), hexagon(-3.0).replace("X-30. C8.660", "X-29.9 C8.660")): "too much is cut away",
             ("G42", "G1"): "it makes: hexagon, 22.000 across flats",
             ("C0/G12.1", "C7./G12.1"): "would fit turned by -7 deg",
         },

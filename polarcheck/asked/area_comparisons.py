@@ -357,10 +357,13 @@ class AreaComparisons(Columns, frozen=True):
         best, least = feature, math.inf
         for z in depths[:_DEPTHS]:
             at_depth = cuts[np.abs(cuts.low - z) <= SAME_Z]
+            if not len(at_depth):
+                continue
             for place in places:
-                far = distance_of_wall(place, at_depth)
+                candidate = place._replace(z=z, radius=float(at_depth.radius.max()))
+                far = distance_of_wall(candidate, at_depth)
                 if far < least - _BETTER:
-                    best, least = place._replace(z=z), far
+                    best, least = candidate, far
         return best
 
     # ---- results ----
@@ -408,7 +411,7 @@ class AreaComparisons(Columns, frozen=True):
             entry=self.asked_parts.entry(row),
             any_angle=self.asked_parts.any_angle(feature.number, section),
             island=found.is_none and found.island.size > 0,
-            is_made=is_made,
+            is_made=is_made or not found.is_none,
             made=() if found.is_none and is_made else self._made(feature),
         )
 

@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 #: A contour that differs by more than this share of its size is another one.
 _OTHER = 0.1
+#: Of depths near the one that is stated the nearest counts, and what is so little farther away [mm].
+_LEAST_INCREMENT = 1e-3
 #: A contour is compared in full with this number of curves of a drawing, the nearest ones.
 _NEAREST = 4
 
@@ -120,9 +122,10 @@ class ContourComparisons(Columns, frozen=True):
         if not (contour.of_one_section if part.section == level.section + 1 else contour.of_all and not part.section):
             return False
         if not math.isnan(part.z):
-            row = int(level.walls.row[0])
-            allowed = max(SAME_Z, min(self.asked_parts.tolerance(number, row), TOLERANCE))
-            return abs(level.z - self.asked_parts.z(number, row)) <= allowed
+            stated = self.asked_parts.z(number, int(level.walls.row[0]))
+            off = [abs(other.z - stated) for other in self.finished.levels if not math.isnan(other.z)]
+            allowed = max(SAME_Z, min(self.asked_parts.tolerance(number, int(level.walls.row[0])), TOLERANCE))
+            return abs(level.z - stated) <= min(allowed, min(off, default=0.0) + _LEAST_INCREMENT)
         if part.drawing is not None:
             return True
         own = set(level.sections)

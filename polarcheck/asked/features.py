@@ -43,7 +43,7 @@ _CHORDS = 0.004
 _RIM = 0.1
 #: A program clears the middle of a pocket itself where it clears more than this share of it.
 _ROUGHED = 0.5
-#: A wall is made where cuts come nearer than R / 2 to more than this share of it.
+#: A wall is made where cuts come near to more than this share of it; the rest may be that of other features.
 _MADE = 0.05
 #: Areas are apart where they share no more than this of the smaller one.
 _SHARED = 0.01
@@ -85,7 +85,7 @@ class AreaDifference(NamedTuple):
     proud: metal that should be gone. deep: metal that is missing. proud_row, deep_row: the row of the cut that comes
     nearest, -1 for none. off: how far the wall that is made is off the one that is asked for [mm]. island: what stands
     in the middle of a pocket along whose walls alone the program mills: it may be gone before. is_made: cuts come near
-    to its wall.
+    to its wall, by the tolerance.
     """
 
     proud: Extreme
@@ -105,9 +105,7 @@ class AreaDifference(NamedTuple):
 def differences(features: Sequence[Feature], cuts: Cuts) -> list[AreaDifference]:
     """The difference of each feature. Raises TooHardError where areas are too many."""
     cleared = _Cleared(cuts)
-    present = [
-        feature for feature in features if not feature.may_be_absent or _is_made(_off_wall(feature, cleared), feature)
-    ]
+    present = [one for one in features if not one.may_be_absent or _is_made(_off_wall(one, cleared), one.radius / 2)]
     found = []
     for feature in features:
         keep_time()
@@ -135,7 +133,7 @@ def _difference(feature: Feature, features: Sequence[Feature], cleared: _Cleared
     deep = cuts.low <= feature.z + SAME_Z
     gone = cleared.by(deep)
     off = _off_wall(feature, cleared)
-    is_made = _is_made(off, feature)
+    is_made = _is_made(off, tolerance + _CHORDS)
     proud, proud_row, island = NOTHING, -1, NOTHING
     if feature.excess_is_judged:
         around = _parts_around(feature, features)
@@ -181,8 +179,8 @@ def _off_wall(feature: Feature, cleared: _Cleared) -> Floats:
     return off_wall(gone, feature.area, feature.radius, feature.certain - 2 * _CHORDS, feature.is_pocket)
 
 
-def _is_made(off: Floats, feature: Feature) -> bool:
-    return not len(off) or float((off <= feature.radius / 2).mean()) > _MADE
+def _is_made(off: Floats, by: float) -> bool:
+    return not len(off) or float((off <= by).mean()) > _MADE
 
 
 def _parts_around(feature: Feature, features: Sequence[Feature]) -> Any:
@@ -245,10 +243,10 @@ def nearest_row(cuts: Cuts, chosen: Mask, place: complex) -> int:
 
 
 def distance_of_wall(feature: Feature, cuts: Cuts) -> float:
-    """The mean distance from the wall of a feature to the edge of what cuts clear [mm]; inf where that is nothing."""
+    """The mean distance from the wall of a feature to the edge of what cuts clear [mm]; inf where they reach none."""
     gone = cleared_by(cuts.curves, cuts.radius) if len(cuts) else empty()
     off = off_wall(gone, feature.area, feature.radius, feature.certain - 2 * _CHORDS, feature.is_pocket)
-    return float(off.mean()) if len(off) else 0.0
+    return float(off.mean()) if len(off) else np.inf
 
 
 def directions_of(cuts: Cuts, chosen: Mask, most: int = 8) -> list[float]:

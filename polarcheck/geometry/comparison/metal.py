@@ -169,7 +169,10 @@ def farthest(found: Any, whole: Any, area: Any) -> Extreme:
         return NOTHING
     pieces = shapely.get_parts(whole)
     touching = pieces[shapely.intersects(pieces, found)]
-    points = shapely.get_coordinates(touching if len(touching) else found)
+    # A pocket that is not milled at all has its corners on the wall, and its middle far from it.
+    middles = [polygon for polygon in touching if shapely.get_dimensions(polygon) == _AREA]
+    lines = areas.maximum_inscribed_circle(np.array(middles, object)) if middles else np.zeros(0, object)
+    points = np.concatenate([shapely.get_coordinates(one) for one in (touching, found, shapely.get_point(lines, 0))])
     wall = shapely.boundary(area)
     shapely.prepare(wall)
     far = shapely.distance(shapely.points(points), wall)
