@@ -173,6 +173,8 @@ def section_missing(plan: Plan, draw: Draw) -> Program | None:
     places = [index for index, one in enumerate(plan.passes) if not one.offset or is_bar_known(plan)]
     if len(plan.passes) < 2 or not places:
         return None
+    if plan.features[0].is_drawn and not is_bar_known(plan):
+        return None  # the outermost curve may be that of the bar
     index = draw.choice(places)
     return _again(plan, [one for number, one in enumerate(plan.passes) if number != index])
 
