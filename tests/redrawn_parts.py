@@ -399,6 +399,8 @@ def _compared(
         yield told(f"cannot be drawn: {error}", 0.0)
         return
     if drawn is None:
+        if any(left.kind != "corner" for one in (shape, *beside) for left in one.left_standing):
+            return  # a rib joins what stands beside it
         yield from (told(what, size) for what, size in _measured(shape, sweep, bar))
         return
     limit = _disc(bar / 2) if not math.isnan(bar) else shapely.box(-FAR, -FAR, FAR, FAR)
@@ -499,9 +501,6 @@ def _measured(shape: MadeShape, sweep: Sweep, bar: float) -> Iterator[tuple[str,
     if "area" not in values:
         return
     told = np.array([values[name] for name in ("x_least", "c_least", "x_most", "c_most")])
-    ribs = any(left.kind != "corner" for left in shape.left_standing)
-    if ribs:
-        return
     candidates = _areas_left(shape, sweep, bar)
     if not candidates:
         yield "there is no such area", 0.0

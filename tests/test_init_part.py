@@ -132,7 +132,7 @@ def test_each_section_has_its_entry_and_each_file_its_name(tmp_path: Path) -> No
     paths = [tmp_path / "O1[a].NC", tmp_path / "O2.NC"]
     for path, text in zip(paths, (both, first), strict=True):
         path.write_text(text)
-    result = run("init", *(word for path in paths for word in ("--part", path)), "--tool", "1:radius=4")
+    result = run("init", *(word for path in paths for word in ("--part", path)), "--tool", "1:radius=8")
     assert [(entry["shape"], entry.get("section"), entry["files"]) for entry in entries(result.stdout)] == [
         ("hexagon", 1, ["O1[[]a].NC"]),
         ("square", 2, ["O1[[]a].NC"]),
@@ -140,7 +140,7 @@ def test_each_section_has_its_entry_and_each_file_its_name(tmp_path: Path) -> No
     ]
     (tmp_path / "polarcheck.toml").write_text(result.stdout)
     for path in paths:
-        agrees(path, "--tool", "1:radius=4")
+        agrees(path, "--tool", "1:radius=8")
 
 
 INDEXED = "G1 X80. C-40. F300/Z-3./G41 X24. C-32./C32./G40 X80. C40./Z5."

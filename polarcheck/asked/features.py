@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import shapely  # type: ignore[import-untyped]
 
-from polarcheck.arrays import Mask
+from polarcheck.arrays import Floats, Mask
 from polarcheck.asked.comparison import SAME_Z
 from polarcheck.geometry.comparison.metal import (
     NOTHING,
@@ -105,10 +105,13 @@ class AreaDifference(NamedTuple):
 def differences(features: Sequence[Feature], cuts: Cuts) -> list[AreaDifference]:
     """The difference of each feature. Raises TooHardError where areas are too many."""
     cleared = _Cleared(cuts)
+    present = [
+        feature for feature in features if not feature.may_be_absent or _is_made(_off_wall(feature, cleared), feature)
+    ]
     found = []
     for feature in features:
         keep_time()
-        found.append(_difference(feature, features, cleared))
+        found.append(_difference(feature, present, cleared))
     return found
 
 
@@ -131,11 +134,11 @@ def _difference(feature: Feature, features: Sequence[Feature], cleared: _Cleared
     cuts, tolerance = cleared.cuts, max(feature.tolerance, _CHORDS) + _CHORDS
     deep = cuts.low <= feature.z + SAME_Z
     gone = cleared.by(deep)
-    off = off_wall(gone, feature.area, feature.radius, feature.certain - 2 * _CHORDS, feature.is_pocket)
-    is_made = not len(off) or float((off <= feature.radius / 2).mean()) > _MADE
+    off = _off_wall(feature, cleared)
+    is_made = _is_made(off, feature)
     proud, proud_row, island = NOTHING, -1, NOTHING
     if feature.excess_is_judged:
-        around = joined([other.area for other in features if other is not feature and not other.is_pocket])
+        around = _parts_around(feature, features)
         metal = areas.union(disc(feature.certain), around)
         asked = areas.intersection(beside(feature.area, feature.radius, tolerance, feature.is_pocket), metal)
         stays = areas.difference(_cleared_of_others(asked, feature, features), gone)
@@ -171,6 +174,23 @@ def _difference(feature: Feature, features: Sequence[Feature], cleared: _Cleared
         if found.size > worst.size:
             worst, deep_row = found, nearest_row(cuts, chosen, found.place)
     return AreaDifference(proud, worst, proud_row, deep_row, float(off.max(initial=0.0)), island, is_made)
+
+
+def _off_wall(feature: Feature, cleared: _Cleared) -> Floats:
+    gone = cleared.by(cleared.cuts.low <= feature.z + SAME_Z)
+    return off_wall(gone, feature.area, feature.radius, feature.certain - 2 * _CHORDS, feature.is_pocket)
+
+
+def _is_made(off: Floats, feature: Feature) -> bool:
+    return not len(off) or float((off <= feature.radius / 2).mean()) > _MADE
+
+
+def _parts_around(feature: Feature, features: Sequence[Feature]) -> Any:
+    """Other parts, where there is metal for certain before milling; none around an island in a pocket."""
+    others = [other for other in features if other is not feature]
+    if any(other.is_pocket and is_inside(feature.area, other.area, feature.tolerance) for other in others):
+        return empty()
+    return joined([other.area for other in others if not other.is_pocket])
 
 
 def _are_apart(one: Any, other: Any) -> bool:

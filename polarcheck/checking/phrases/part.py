@@ -67,6 +67,8 @@ def shape_in_words(shape: Shape, line_of: Callable[[int], int], sizes: Sizes, ho
         is_turned = bool(value.get("turned")) and told[-1].startswith("turned")
         told = [*told[:-1], f"{told[-1]} {from_c}"] if is_turned else [*told, f"C at {how.switch} is not known"]
     text = ", ".join(told)
+    if "stands_inside" in value:
+        return f"cleared round it: {text}"
     return f"pocket: {text}" if shape.inside and not shape.is_open and shape.name != "groove" else text
 
 
@@ -148,8 +150,12 @@ def _each(value: Mapping[str, float], middle: str, sizes: Sizes) -> str:
     angles = [_degrees(value[f"turned_{number}"]) for number in numbers]
     if "distance" in value:
         return f"{_away(value['distance'], middle, sizes)} at {_and(angles)} deg"
-    distances = [sizes(value[f"distance_{number}"]) for number in numbers]
-    flats = [f"{distance} at {angle} deg" for distance, angle in zip(distances, angles, strict=True)]
+    distances = [value[f"distance_{number}"] for number in numbers]
+    beyond = ["" if distance >= 0 else f" beyond the {middle}" for distance in distances]
+    flats = [
+        f"{sizes(abs(distance))}{far} at {angle} deg"
+        for distance, far, angle in zip(distances, beyond, angles, strict=True)
+    ]
     return f"{_and(flats)} from the {middle}"
 
 

@@ -25,10 +25,18 @@ def shapes_of_cleared(outline: Outline, across: float, radius: float, bar: float
     found = list(rings(outline, 0.0, bar))
     around = [ring for ring in found if ring.inside]
     stands = shapes_of_rings((ring for ring in found if not ring.inside), bar)
+    inside = sum(ring.closed and not ring.inside for ring in found)
     if across < GROOVE:
-        return [*stands, *shapes_of_rings(around)]
+        return [*stands, *(_around(shape, inside, len(around)) for shape in shapes_of_rings(around))]
     inner = sum(ring.area for ring in found if ring.closed and not ring.inside)
     return [*stands, *(_groove(ring, radius, inner if len(around) == 1 or not inner else np.nan) for ring in around)]
+
+
+def _around(shape: Shape, inside: int, count: int) -> Shape:
+    """What has no name of its own, with the number of pieces that stand within it, if no other area may hold them."""
+    if shape.name != "contour" or not inside or count > 1:
+        return shape
+    return shape._replace(values={**shape.values, "stands_inside": float(inside)})
 
 
 def _groove(ring: Ring, radius: float, inner: float) -> Shape:

@@ -52,7 +52,8 @@ class Shape(NamedTuple):
     x_least, x_most, c_least, c_most, area, inside_radius of contours; least, most where sides differ;
     inside_corners: how many sharp ones the cutter cannot reach into; corner_reach: the largest R of a cutter that
     reaches each wall beside them; reach_beyond: the largest R that leaves nothing in the bar of a corner just outside;
-    regular_by_x: by what X is to be multiplied to make it regular.
+    stands_inside: how many pieces stand within what is cleared; regular_by_x: by what X is to be multiplied to make it
+    regular.
 
     odd: the sides that differ from the others. row: of its first block. is_regular: False where what has the name of a
     regular polygon is none. is_open: nobody knows what the part is like beyond its ends. mixed:
