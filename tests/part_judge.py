@@ -118,5 +118,6 @@ def _bar(plan: Plan) -> Any:
         elif feature.form.kind == "flat" and len(feature.angles) > 2:
             reach = max(reach, values["distance"] / math.cos(math.pi / len(feature.angles)))
         else:
-            reach = max(reach, plan.bar / 2)
+            wall = values.get("distance", 0.65 * values.get("width", 2 * abs(contour.start.imag)))
+            reach = max(reach, min(plan.bar / 2, 1.15 * wall))
     return shapely.Point(0, 0).buffer(reach, quad_segs=90)

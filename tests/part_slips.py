@@ -170,9 +170,16 @@ def _changed(change: Callable[[Contour, Draw], Contour | None]) -> Plant:
 
 
 def section_missing(plan: Plan, draw: Draw) -> Program | None:
-    places = [index for index, one in enumerate(plan.passes) if not one.offset or is_bar_known(plan)]
+    is_known = is_bar_known(plan)  # else what roughing clears may be gone before
+    places = [
+        index
+        for index, one in enumerate(plan.passes)
+        if is_known or (not one.offset and one.form == plan.features[one.feature].form)
+    ]
     if len(plan.passes) < 2 or not places:
         return None
+    if plan.features[0].is_drawn and not is_bar_known(plan):
+        return None  # the outermost curve may be that of the bar
     index = draw.choice(places)
     return _again(plan, [one for number, one in enumerate(plan.passes) if number != index])
 
@@ -300,7 +307,7 @@ def cutter_too_small(plan: Plan, draw: Draw) -> Program | None:
     """Something is left between passes, or in the middle."""
     index = draw.randrange(len(plan.passes))
     one = plan.passes[index]
-    if one.how == "center path" or not (plan.features[one.feature].is_pocket or is_bar_known(plan)):
+    if one.how == "center path" or not is_bar_known(plan):
         return None
     radius = round(one.radius * draw.choice((0.8, 0.6, 0.5, 0.4)), 2)
     return _again(plan, [old._replace(radius=radius) if old.tool == one.tool else old for old in plan.passes])

