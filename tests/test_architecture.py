@@ -27,7 +27,7 @@ ORDER = (
     ("parts", "feed_table"),
     ("checking",),
     ("silence",),
-    ("asked",),
+    ("inspection",),
     ("table",),
     ("columns",),
     ("execution",),

@@ -22,11 +22,11 @@ from contour_families import FAMILIES, Program, Twin, program_of
 from part_reference import along, judge, read_section
 from programs import job_of, report_of, tables_of
 
-from polarcheck.asked.comparison import Comparison
-from polarcheck.asked.deviations import Deviations
 from polarcheck.commands import main
 from polarcheck.geometry.comparison.deviation import turned_radius
 from polarcheck.geometry.comparison.measured_path import way_of_curves
+from polarcheck.inspection.comparison import Comparison
+from polarcheck.inspection.deviations import Deviations
 from polarcheck.machines import drawing
 from polarcheck.machines.job import Job, Stock
 from polarcheck.machines.part import DrawnPart

@@ -193,3 +193,11 @@ def test_a_pocket_along_whose_walls_alone_the_program_mills_is_not_evaluated() -
     assert "whether its middle is cleared before is not known" in missing.reason
     (found,) = checked(case._replace(stock=80.0), pocket, "as it is").findings
     assert "too much stays" in found.message
+
+
+def test_sections_whose_angles_to_each_other_are_not_known_are_compared_each_by_itself() -> None:
+    section = "G0 X10. Z2./G12.1/G1 C0 F300/Z{}/G41 X20./C10./X-20./C-10./X20./C0/G40 X10./Z2./G13.1/"
+    text = HEAD + (section.format("-4.") + section.format("-6.")).replace("/", "\n") + "M30\n"
+    part = {"shape": "square", "across_flats": 20.0, "inside": True, "turned": 45.0}
+    found = compared(tables_of(text, "fanuc", "3:radius=3", job={"units": "mm", "part": [part]}))
+    assert [(one.z, one.agrees) for one in found] == [(-6.0, True)]

@@ -296,7 +296,7 @@ def _parts_not_compared(tables: Tables, rule: Rule) -> Iterator[Missing]:
     if not deviations.parts:
         return
     crosses = f"crosses itself or others more than {CROSSINGS} times a block: no part can be told from it"
-    yield from _skipped_loops(tables, rule, deviations.asked & deviations.crosses, crosses)
+    yield from _skipped_loops(tables, rule, deviations.where & deviations.crosses, crosses)
     for comparison in deviations.comparisons:
         if comparison.is_partial and comparison.agrees:
             line = int(tables["trace"].blocks.line[comparison.row])
@@ -312,7 +312,7 @@ def _parts_not_compared(tables: Tables, rule: Rule) -> Iterator[Missing]:
             yield Missing(rule.name, SAID, reason, reason, 1)
     for number, cause in deviations.missing():
         reason = f"{compared_with(deviations, number)} was compared with nothing: {cause}"
-        rows = deviations.asked if deviations.asked.any() else tables["trace"].mode.in_polar
+        rows = deviations.where if deviations.where.any() else tables["trace"].mode.in_polar
         yield Missing(rule.name, SAID, reason, reason, int(np.count_nonzero(rows)))
 
 

@@ -28,7 +28,6 @@ if TYPE_CHECKING:
     from polarcheck.arrays import Floats as Floats
     from polarcheck.arrays import Mask as Mask
     from polarcheck.arrays import States
-    from polarcheck.asked.deviations import Deviations as Deviations
     from polarcheck.checking.macro_faults import Faults as Faults
     from polarcheck.checking.other_machine import OtherMachine as OtherMachine
     from polarcheck.columns.axes import PlaneAxes as PlaneAxes
@@ -45,6 +44,7 @@ if TYPE_CHECKING:
     from polarcheck.columns.tools import CalledTools as CalledTools
     from polarcheck.columns.trace import Trace as Trace
     from polarcheck.execution.run import Run as Run
+    from polarcheck.inspection.deviations import Deviations as Deviations
     from polarcheck.machines.job import Job as Job
     from polarcheck.machines.machine import Machine as Machine
     from polarcheck.reading.words import Text as Text

@@ -8,8 +8,6 @@ from collections.abc import Sequence
 
 import msgspec
 
-from polarcheck.asked.comparison import Comparison
-from polarcheck.asked.deviations import Deviations
 from polarcheck.checking.channels import first_runs
 from polarcheck.checking.phrases.drawing import told
 from polarcheck.checking.quantity import rounded
@@ -17,6 +15,8 @@ from polarcheck.checking.tables import Tables
 from polarcheck.columns.trace import Trace
 from polarcheck.errors import TooHardError
 from polarcheck.finding import FileReport, PartComparison
+from polarcheck.inspection.comparison import Comparison
+from polarcheck.inspection.deviations import Deviations
 
 
 def compared_in(report: FileReport, runs: Sequence[tuple[str, Tables]]) -> FileReport:

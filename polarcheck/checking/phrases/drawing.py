@@ -5,13 +5,13 @@ from __future__ import annotations
 import cmath
 import math
 
-from polarcheck.asked.comparison import Comparison, Fit, title_of
-from polarcheck.asked.deviations import Deviations
 from polarcheck.checking.phrases.common import short
 from polarcheck.checking.phrases.part import Sizes, shape_in_words
 from polarcheck.checking.quantity import Quantity, in_row
 from polarcheck.columns.blocks import ExecutedBlocks
 from polarcheck.columns.lengths import Lengths
+from polarcheck.inspection.comparison import Comparison, Fit, title_of
+from polarcheck.inspection.deviations import Deviations
 from polarcheck.machines.modal import MM_PER_INCH, Units
 
 #: A turn below this is none [rad].

@@ -9,7 +9,7 @@ from polarcheck.checking.rule import ERROR, Deviations, Mask, rule
     "the part differs from {drawing} by {deviations.largest:length/deviations.tolerance}, "
     "{deviations.tolerance:length} is allowed: {deviation}",
     needs=("compensation.radius",),
-    where="deviations.asked",
+    where="deviations.where",
     follows={"file": (*FAULTS_OF_CONTOUR, *FAULTS_OF_METAL)},
 )
 def part_differs_from_drawing(deviations: Deviations) -> Mask:

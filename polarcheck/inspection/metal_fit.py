@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from polarcheck.asked.asked_parts import AskedParts
-from polarcheck.asked.comparison import SAME_Z, Comparison, Fit
+from polarcheck.inspection.comparison import SAME_Z, Comparison, Fit
+from polarcheck.inspection.nominal_parts import NominalParts
 from polarcheck.table.milled import Milled
 from polarcheck.time_limit import keep_time
 
@@ -20,13 +20,13 @@ if TYPE_CHECKING:
 _MOST = 4
 
 
-def metal_fit(result: Comparison, asked_parts: AskedParts, milled: Milled) -> Fit | None:
+def metal_fit(result: Comparison, nominal_parts: NominalParts, milled: Milled) -> Fit | None:
     """The change with which an outline of what is cleared would agree, or nearly agree; None if there is none."""
     from polarcheck.geometry.comparison.measured_path import way_of_curves
     from polarcheck.geometry.comparison.placements import Freedom, better_placement
 
-    part, unit = result.part, asked_parts.unit(result.number, result.row)
-    curves = asked_parts.curves(result.number, unit)
+    part, unit = result.part, nominal_parts.unit(result.number, result.row)
+    curves = nominal_parts.curves(result.number, unit)
     rings = [number for number, curve in enumerate(curves) if len(curve) > 3 and curve[0] == curve[-1]]
     ways = [way_of_curves([curves[number]]) for number in sorted(rings, key=lambda number: number != result.curve)]
     freedom = Freedom(part.drawing is not None, not result.any_angle, part.shape == "circle")

@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 TOLERANCE = 0.02
 #: Depths nearer to each other than this are equal [mm]: the Z of a program in inch has four digits.
 SAME_Z = 5e-3
+#: Differences that are equal to so many digits are as large [mm].
+_DIGITS = 4
 
 
 class Fit(NamedTuple):
@@ -126,6 +128,11 @@ class Comparison(NamedTuple):
     def differs(self) -> bool:
         """The difference is reported."""
         return not self.agrees and not self.is_superseded
+
+    @property
+    def rank(self) -> tuple[bool, bool, float, float]:
+        """The comparison of the lowest rank is the nearest; of those that are as near, the deepest."""
+        return self.is_superseded, self.is_other_way_round, round(self.difference.largest, _DIGITS), self.z
 
     @property
     def title(self) -> str:

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from polarcheck.arrays import Columns
-from polarcheck.asked.asked_parts import AskedParts
-from polarcheck.asked.comparison import SAME_Z, TOLERANCE, Comparison, Contour, Fit, Target
 from polarcheck.columns.trace import Trace
+from polarcheck.inspection.comparison import SAME_Z, TOLERANCE, Comparison, Contour, Fit, Target
+from polarcheck.inspection.nominal_parts import NominalParts
 from polarcheck.table.bar import Bar
 from polarcheck.table.finished import Finished, Level
 from polarcheck.table.overcuts import Overcuts
@@ -36,25 +36,23 @@ class ContourComparisons(Columns, frozen=True):
     overcuts: Overcuts
     finished: Finished
     bar: Bar
-    asked_parts: AskedParts
+    nominal_parts: NominalParts
 
     @cached_property
     def all(self) -> list[Comparison]:
         """The comparison of each contour. Raises TooHardError if the faces of the contours cannot be computed."""
-        if not self.asked_parts.in_offset_mode.any():
+        if not self.nominal_parts.in_offset_mode.any():
             return []
         results = [comparison for contour in self.contours if (comparison := self._compared(contour)) is not None]
         groups: dict[tuple[int, int], list[int]] = {}
         for index, result in enumerate(results):
             groups.setdefault((result.number, result.curve), []).append(index)
         for members in groups.values():
-            best = min(
-                members, key=lambda index: (results[index].is_other_way_round, results[index].difference.largest)
-            )
+            best = min(members, key=lambda index: results[index].rank)
             for index in members:
                 if index != best and self._is_superseded(results[index], results[best]):
                     results[index] = results[index]._replace(is_superseded=True)
-        if np.isnan(self.trace.compensation.radius[self.asked_parts.in_offset_mode]).any():
+        if np.isnan(self.trace.compensation.radius[self.nominal_parts.in_offset_mode]).any():
             results = [
                 result._replace(is_superseded=result.is_superseded or self._only_leaves_more(result))
                 for result in results
@@ -66,7 +64,7 @@ class ContourComparisons(Columns, frozen=True):
         """
         Levels in the frame of the part: each by itself, for parts of one section; put together, for others.
         """
-        if all(part.section is None for part in self.asked_parts.parts):
+        if all(part.section is None for part in self.nominal_parts.parts):
             return [(level, False, True) for level in self.finished.of_part]
         together = [(level, len(level.sections) == 1, True) for level in self.finished.of_part]
         single = [(level, True, False) for level in self.finished.of_sections_put_together]
@@ -101,7 +99,7 @@ class ContourComparisons(Columns, frozen=True):
 
     def _targets(self, contour: Contour) -> list[Target]:
         """The curves that a contour may be meant for: those on its side, or if there are none, those on the other."""
-        applying = [number for number in range(len(self.asked_parts.parts)) if self._applies(number, contour)]
+        applying = [number for number in range(len(self.nominal_parts.parts)) if self._applies(number, contour)]
         row = int(contour.level.outline.row[0])
         targets = [target for number in applying for target in self._curves_of(number, row, contour.is_closed)]
         if contour.is_closed:
@@ -118,13 +116,13 @@ class ContourComparisons(Columns, frozen=True):
         return targets
 
     def _applies(self, number: int, contour: Contour) -> bool:
-        part, level = self.asked_parts.parts[number], contour.level
+        part, level = self.nominal_parts.parts[number], contour.level
         if not (contour.of_one_section if part.section == level.section + 1 else contour.of_all and not part.section):
             return False
         if not math.isnan(part.z):
-            stated = self.asked_parts.z(number, int(level.walls.row[0]))
+            stated = self.nominal_parts.z(number, int(level.walls.row[0]))
             off = [abs(other.z - stated) for other in self.finished.levels if not math.isnan(other.z)]
-            allowed = max(SAME_Z, min(self.asked_parts.tolerance(number, int(level.walls.row[0])), TOLERANCE))
+            allowed = max(SAME_Z, min(self.nominal_parts.tolerance(number, int(level.walls.row[0])), TOLERANCE))
             return abs(level.z - stated) <= min(allowed, min(off, default=0.0) + _LEAST_INCREMENT)
         if part.drawing is not None:
             return True
@@ -135,11 +133,11 @@ class ContourComparisons(Columns, frozen=True):
     def _curves_of(self, number: int, row: int, is_closed: bool) -> list[Target]:
         from polarcheck.geometry.comparison.measured_path import way_of_curves
 
-        part = self.asked_parts.parts[number]
-        scale = self.asked_parts.unit(number, row)
+        part = self.nominal_parts.parts[number]
+        scale = self.nominal_parts.unit(number, row)
         key = number, scale, is_closed
         if key not in self._known:
-            curves = self.asked_parts.curves(number, scale)
+            curves = self.nominal_parts.curves(number, scale)
             rings = [number for number, curve in enumerate(curves) if curve[0] == curve[-1]]
             if not is_closed or not rings:
                 way = way_of_curves(curves)
@@ -164,11 +162,11 @@ class ContourComparisons(Columns, frozen=True):
         for target in self._targets(contour):
             keep_time()
             part, angle, way = target.part, math.nan, target.way
-            any_angle = self.asked_parts.any_angle(target.number, contour.level.section)
+            any_angle = self.nominal_parts.any_angle(target.number, contour.level.section)
             if any_angle:
                 angle, way = self._turned(contour, target)
             both_ways = target.is_closed and contour.is_closed
-            metal = self.asked_parts.air(target.number, target.scale)
+            metal = self.nominal_parts.air(target.number, target.scale)
             deviation = difference(contour.made, way, both_ways=both_ways, metal=metal)
             row = int(contour.made.outline.row[max(deviation.of, 0)])
             is_other_way = (
@@ -186,7 +184,7 @@ class ContourComparisons(Columns, frozen=True):
                     curve=target.curve,
                     section=contour.level.section,
                     z=contour.level.z,
-                    tolerance=self.asked_parts.tolerance(target.number, row),
+                    tolerance=self.nominal_parts.tolerance(target.number, row),
                     difference=deviation,
                     row=row,
                     turned=angle,
@@ -195,7 +193,7 @@ class ContourComparisons(Columns, frozen=True):
                     any_angle=any_angle,
                     contour=contour,
                     target=target,
-                    entry=self.asked_parts.entry(row),
+                    entry=self.nominal_parts.entry(row),
                 )
             )
         results = [deviation for deviation in results if deviation.difference.length]
@@ -209,7 +207,7 @@ class ContourComparisons(Columns, frozen=True):
         is_known = bool(self.trace.path.knows_section_entry[contour.level.section])
         center = target.scale * complex(*target.part.center) if is_known else 0j
         way = contour.made.way
-        if math.isfinite(self.asked_parts.air(target.number, target.scale)):
+        if math.isfinite(self.nominal_parts.air(target.number, target.scale)):
             # Of flats and slots the walls say the angle, not what leads from one to the next.
             lines = ~contour.made.outline.is_arc[way.of]
             way = way_of(way.start[lines], way.end[lines], way.of[lines]) if lines.any() else way

@@ -1,26 +1,25 @@
-"""The closed shapes that a job asks for, each beside the metal that mills leave of it."""
+"""The shapes of a job as areas, each where its program makes it: what stands, its depth, and which cuts count."""
 
 from __future__ import annotations
 
 import math
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from polarcheck.arrays import Columns, Mask, Points, is_among
-from polarcheck.asked.asked_parts import BEYOND, AskedParts
-from polarcheck.asked.comparison import SAME_Z, TOLERANCE, Comparison
-from polarcheck.asked.contour_comparisons import ContourComparisons
 from polarcheck.columns.trace import Trace
+from polarcheck.inspection.comparison import SAME_Z, TOLERANCE
+from polarcheck.inspection.contour_comparisons import ContourComparisons
+from polarcheck.inspection.nominal_parts import BEYOND, NominalParts
 from polarcheck.machines.part import Part
 from polarcheck.table.bar import Bar
 from polarcheck.table.milled import Milled
 from polarcheck.table.overcuts import Overcuts
 
 if TYPE_CHECKING:
-    from polarcheck.asked.features import AreaDifference, Feature
-    from polarcheck.geometry.shapes.shape import Shape
+    from polarcheck.inspection.metal_differences import Feature
 
 #: How far from the axis flats and slots without an end reach, as a multiple of all that is cut.
 _ENDLESS = 4.0
@@ -30,78 +29,55 @@ _BETTER = 1e-3
 _DEPTHS = 8
 
 
-class AreaComparisons(Columns, frozen=True):
+class PlacedFeature(NamedTuple):
     """
-    The comparisons of one run, of contours and of areas.
+    A shape as an area.
 
-    A contour that differs says what is wrong: the areas of its curve are not looked at.
+    frame: of the cuts that it is compared with (table/milled.py). contour: the comparison of its contour, by its place
+    among all; -1 for none.
     """
+
+    frame: int
+    feature: Feature
+    contour: int
+
+
+class NominalFeatures(Columns, frozen=True):
+    """The shapes of the job of one run."""
 
     trace: Trace
     milled: Milled
     bar: Bar
     overcuts: Overcuts
-    asked_parts: AskedParts
+    nominal_parts: NominalParts
     contour_comparisons: ContourComparisons
 
     @cached_property
-    def all(self) -> list[Comparison]:
-        """
-        All comparisons: that of the nearest contour of each curve with the difference of its areas.
+    def all(self) -> list[PlacedFeature]:
+        """The features of all parts of which something is milled."""
+        return [one for number in range(len(self.nominal_parts.parts)) for one in self._features(number)]
 
-        Raises TooHardError where the areas cannot be computed.
-        """
-        results = list(self.contour_comparisons.all)
-        wanted = [one for number in range(len(self.asked_parts.parts)) for one in self._features(number)]
-        if not wanted:
-            return results
-        from polarcheck.asked.features import differences
-
-        for frame in sorted({frame for frame, _, _ in wanted}):
-            of_frame = self.milled.cuts.frame == frame
-            own = [
-                (feature._replace(cuts=feature.cuts[of_frame]), place) for at, feature, place in wanted if at == frame
-            ]
-            found = differences([feature for feature, _ in own], self.milled.cuts[of_frame])
-            for (feature, place), difference in zip(own, found, strict=True):
-                compared = self._comparison(feature, place, difference)
-                if compared is not None and place < 0:
-                    results.append(compared)
-                elif compared is not None:
-                    results[place] = compared
-        return results
-
-    def why_not(self, number: int) -> str:
-        """Why a part was compared with nothing; empty where another reason is given."""
-        part = self.asked_parts.parts[number]
-        own = ~np.isnan(self.trace.compensation.radius[self.asked_parts.in_offset_mode])
-        if not own.all():
-            return ""
-        unknown = np.flatnonzero(self.milled.is_unknown)
-        if len(unknown):
-            return f"R or a place of the cutter of line {int(self.trace.blocks.line[unknown[0]])} is not known"
-        if not self._cuts_of(part).any():
-            return "nothing is milled there"
-        return "its curves do not close, and no contour comes near to them"
-
-    # ---- what is asked for ----
+    def cuts_of(self, part: Part) -> Mask:
+        """The cuts in the sections of a part."""
+        section = self.milled.cuts.section
+        return np.ones(len(section), bool) if part.section is None else section == part.section - 1
 
     def _matched(self, number: int) -> dict[int, int]:
         """Of each curve of a part the contour that comes nearest, by its place among the comparisons."""
         results, best = self.contour_comparisons.all, dict[int, int]()
         for place, one in enumerate(results):
-            if one.number == number and (one.curve not in best or _rank(one) < _rank(results[best[one.curve]])):
+            if one.number == number and (one.curve not in best or one.rank < results[best[one.curve]].rank):
                 best[one.curve] = place
         return best
 
-    def _features(self, number: int) -> list[tuple[int, Feature, int]]:
+    def _features(self, number: int) -> list[PlacedFeature]:
         """The closed curves of a part: the frame of each, and the comparison of its contour, -1 for none."""
-        part, matched = self.asked_parts.parts[number], self._matched(number)
-        own = self._cuts_of(part)
+        part, matched = self.nominal_parts.parts[number], self._matched(number)
+        own = self.cuts_of(part)
         if not own.any():
             return []
         results = self.contour_comparisons.all
-        nearest = min(matched.values(), key=lambda place: _rank(results[place]), default=-1)
+        nearest = min(matched.values(), key=lambda place: results[place].rank, default=-1)
         section = results[nearest].section if nearest >= 0 else int(self.milled.cuts.section[own][0])
         frame = int(self.milled.frame_of_section[section])
         own = own & (self.milled.cuts.frame == frame)
@@ -110,13 +86,13 @@ class AreaComparisons(Columns, frozen=True):
             found = self._of_drawing(number, matched, 0.0 if math.isnan(angle) else angle, section, own)
         else:
             found = [(self._of_shape(number, nearest, section, own), nearest)]
-        return [(frame, feature, place) for feature, place in found]
+        return [PlacedFeature(frame, feature, contour) for feature, contour in found]
 
     def _of_shape(self, number: int, place: int, section: int, own: Mask) -> Feature:
-        part = self.asked_parts.parts[number]
+        part = self.nominal_parts.parts[number]
         row = int(self.trace.mode.sections.enter[section])
-        unit = self.asked_parts.unit(number, row)
-        results, curves = self.contour_comparisons.all, self.asked_parts.curves(number, unit)
+        unit = self.nominal_parts.unit(number, row)
+        results, curves = self.contour_comparisons.all, self.nominal_parts.curves(number, unit)
         angle = results[place].turned if place >= 0 else math.nan
         feature = self._feature(number, -1, place, section, own)._replace(
             area=self._area(part, curves, unit, 0.0 if math.isnan(angle) else angle),
@@ -137,7 +113,7 @@ class AreaComparisons(Columns, frozen=True):
         from polarcheck.geometry.comparison.metal import is_circle, is_inside, polygon_of
 
         row = int(self.trace.mode.sections.enter[section])
-        curves = self.asked_parts.curves(number, self.asked_parts.unit(number, row))
+        curves = self.nominal_parts.curves(number, self.nominal_parts.unit(number, row))
         curves = [curve * np.exp(1j * angle) for curve in curves]
         rings = {at: polygon_of(curve) for at, curve in enumerate(curves) if _is_closed(curve)}
         if not rings:
@@ -182,7 +158,7 @@ class AreaComparisons(Columns, frozen=True):
 
     def _as_boss_or_pocket(self, feature: Feature) -> Feature:
         """A ring that no contour is compared with: a part or a pocket, whichever differs less."""
-        from polarcheck.asked.features import differences
+        from polarcheck.inspection.metal_differences import differences
 
         cuts = self.milled.cuts[feature.cuts]
         tried = []
@@ -214,7 +190,7 @@ class AreaComparisons(Columns, frozen=True):
 
     def _feature(self, number: int, curve: int, place: int, section: int, own: Mask) -> Feature:
         """The feature without its area."""
-        from polarcheck.asked.features import Feature
+        from polarcheck.inspection.metal_differences import Feature
 
         contour = self.contour_comparisons.all[place].contour if place >= 0 else None
         radius = contour.level.radius if contour is not None else 0.0
@@ -227,7 +203,7 @@ class AreaComparisons(Columns, frozen=True):
             may_be_absent=False,
             z=self._depth(number, place, row, own),
             radius=float(radius or self.milled.cuts.radius[own].max()),
-            tolerance=self.asked_parts.tolerance(number, row),
+            tolerance=self.nominal_parts.tolerance(number, row),
             certain=math.nan,
             most=self._most_of_bar,
             excess_is_judged=self._is_all_known(section),
@@ -237,17 +213,12 @@ class AreaComparisons(Columns, frozen=True):
             own_cuts=own & ~self._of_other_contours(number),
         )
 
-    def _cuts_of(self, part: Part) -> Mask:
-        """The cuts in the sections of a part."""
-        section = self.milled.cuts.section
-        return np.ones(len(section), bool) if part.section is None else section == part.section - 1
-
     def _depth(self, number: int, place: int, row: int, own: Mask) -> float:
-        stated = self.asked_parts.z(number, row)
+        stated = self.nominal_parts.z(number, row)
         if not math.isnan(stated):
             low = self.milled.cuts.low[own]
             nearest = float(low[np.argmin(np.abs(low - stated))])
-            allowed = max(SAME_Z, min(self.asked_parts.tolerance(number, row), TOLERANCE))
+            allowed = max(SAME_Z, min(self.nominal_parts.tolerance(number, row), TOLERANCE))
             return nearest if abs(nearest - stated) <= allowed else stated
         of_contour = self.contour_comparisons.all[place].z if place >= 0 else math.nan
         return float(self.milled.cuts.low[own].min()) if math.isnan(of_contour) else of_contour
@@ -299,7 +270,7 @@ class AreaComparisons(Columns, frozen=True):
 
     def _certain(self, number: int, curves: list[Points], unit: float) -> float:
         """How far from the axis there is metal for certain before milling."""
-        part = self.asked_parts.parts[number]
+        part = self.nominal_parts.parts[number]
         bar, round_ = self._bar_radius, part.diameter / 2 * unit
         if part.shape in ("flat", "flats") and not math.isnan(round_):
             return float(np.fmin(bar, round_))
@@ -307,7 +278,7 @@ class AreaComparisons(Columns, frozen=True):
             return bar
         if len(curves) == 1 and _is_closed(curves[0]):
             return BEYOND * float(np.abs(curves[0]).max())
-        return self.asked_parts.certain_metal(number, unit)
+        return self.nominal_parts.certain_metal(number, unit)
 
     @property
     def _most_of_bar(self) -> float:
@@ -316,7 +287,7 @@ class AreaComparisons(Columns, frozen=True):
 
     def _most(self, number: int, curves: list[Points], unit: float) -> float:
         """The same; where flats and slots end is known where the bar is."""
-        part = self.asked_parts.parts[number]
+        part = self.nominal_parts.parts[number]
         if len(curves) == 1 and _is_closed(curves[0]) and part.shape not in ("flat", "flats"):
             return self._most_of_bar
         return float(np.fmin(self._most_of_bar, self._certain(number, curves, unit)))
@@ -326,13 +297,13 @@ class AreaComparisons(Columns, frozen=True):
         The feature where its wall is nearest to that of what is cleared: at the depth of some section, and, where its
         angle is not compared, at an angle at which one of its walls runs as some straight cut does.
         """
-        from polarcheck.asked.features import directions_of
+        from polarcheck.inspection.metal_differences import directions_of
 
-        part = self.asked_parts.parts[feature.number]
+        part = self.nominal_parts.parts[feature.number]
         cuts = self.milled.cuts[feature.cuts]
         period = 360.0 / (part.count_of_sides or 2)
         tried = [0.0]
-        if self.asked_parts.any_angle(feature.number, section):
+        if self.nominal_parts.any_angle(feature.number, section):
             for angle in directions_of(cuts, cuts.low <= cuts.low.max()):
                 for quarter in (0.0, 90.0, 180.0, 270.0):
                     turn = (angle + quarter) % period
@@ -346,11 +317,11 @@ class AreaComparisons(Columns, frozen=True):
         """
         Of the places of a feature, each at the depth of some section, that which is nearest to what is cleared there.
         """
-        from polarcheck.asked.features import distance_of_wall
+        from polarcheck.inspection.metal_differences import distance_of_wall
 
         feature, cuts = places[0], self.milled.cuts[places[0].cuts]
         depths = [feature.z]
-        if math.isnan(self.asked_parts.parts[feature.number].z):
+        if math.isnan(self.nominal_parts.parts[feature.number].z):
             depths = sorted(
                 {round(float(cuts.low[cuts.section == one].min()), 6) for one in set(cuts.section.tolist())}
             )
@@ -365,73 +336,6 @@ class AreaComparisons(Columns, frozen=True):
                 if far < least - _BETTER:
                     best, least = candidate, far
         return best
-
-    # ---- results ----
-
-    def _comparison(self, feature: Feature, place: int, found: AreaDifference) -> Comparison | None:
-        """What is changed of the comparison of the contour, or what stands in for it; None for nothing."""
-        from polarcheck.geometry.comparison.deviation import Difference
-
-        results = self.contour_comparisons.all
-        own = [one for one in results if one.number == feature.number]
-        if any(one.differs and (place < 0 or one.curve in (-1, feature.curve) or feature.curve < 0) for one in own):
-            return None
-        if feature.may_be_absent and not found.is_made:
-            return None
-        base = results[place] if place >= 0 else None
-        if found.is_none and base is not None:
-            is_partial = base.is_partial and not feature.excess_is_judged
-            changed = is_partial != base.is_partial or found.island.size > 0
-            return base._replace(is_partial=is_partial, island=found.island.size > 0) if changed else None
-        if found.is_none and not feature.excess_is_judged:
-            return None
-        proud, deep, is_made = found.proud.size, found.deep.size, found.is_made or base is not None
-        if found.is_none:
-            proud = min(found.off, feature.tolerance) if is_made else found.off
-        difference = Difference(
-            proud=proud, proud_at=found.proud.place, deep=deep, deep_at=found.deep.place, mean=0.0, length=1.0
-        )
-        row = found.proud_row if proud >= deep else found.deep_row
-        if row < 0:
-            row = int(self.milled.cuts.curves.row[self._cuts_of(self.asked_parts.parts[feature.number])][0])
-        if base is not None:
-            return base._replace(
-                difference=difference, row=row, is_partial=False, contour=None, entry=self.asked_parts.entry(row)
-            )
-        section = int(self.trace.mode.section[row])
-        return Comparison(
-            number=feature.number,
-            part=self.asked_parts.parts[feature.number],
-            curve=feature.curve,
-            section=section,
-            z=feature.z,
-            tolerance=feature.tolerance,
-            difference=difference,
-            row=row,
-            entry=self.asked_parts.entry(row),
-            any_angle=self.asked_parts.any_angle(feature.number, section),
-            island=found.is_none and found.island.size > 0,
-            is_made=is_made or not found.is_none,
-            made=() if found.is_none and is_made else self._made(feature),
-        )
-
-    def _made(self, feature: Feature) -> tuple[Shape, ...]:
-        """What stands, or is cleared, in the place of a feature."""
-        from polarcheck.geometry.polygons.cleared import cleared
-        from polarcheck.geometry.shapes.grooves import shapes_of_cleared
-
-        cuts = self.milled.cuts
-        chosen = (cuts.low <= feature.z + SAME_Z) & self._cuts_of(self.asked_parts.parts[feature.number])
-        if not chosen.any():
-            return ()
-        radius = float(cuts.radius[chosen].max())
-        _, outline, across = cleared(cuts.curves[chosen & (cuts.radius == radius)], radius)
-        shapes = shapes_of_cleared(outline, across, radius, self.bar.known.smallest)
-        return tuple(shape for shape in shapes if shape.inside == feature.is_pocket)[:1]
-
-
-def _rank(one: Comparison) -> tuple[bool, bool, float]:
-    return one.is_superseded, one.is_other_way_round, one.difference.largest
 
 
 def _is_closed(curve: Points) -> bool:

@@ -8,8 +8,8 @@ from functools import cached_property
 import numpy as np
 
 from polarcheck.arrays import Columns, Mask, Points, is_among
-from polarcheck.asked.comparison import TOLERANCE
 from polarcheck.columns.trace import Trace
+from polarcheck.inspection.comparison import TOLERANCE
 from polarcheck.machines.job import Job
 from polarcheck.machines.part import DrawnPart, Part
 
@@ -19,7 +19,7 @@ BEYOND = 1.02
 ON_ROUND = 0.1
 
 
-class AskedParts(Columns, frozen=True):
+class NominalParts(Columns, frozen=True):
     """The parts of the job of one run."""
 
     trace: Trace

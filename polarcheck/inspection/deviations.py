@@ -8,11 +8,11 @@ from functools import cached_property
 import numpy as np
 
 from polarcheck.arrays import Columns, Floats, Mask
-from polarcheck.asked.area_comparisons import AreaComparisons
-from polarcheck.asked.asked_parts import AskedParts
-from polarcheck.asked.comparison import Comparison, Fit
-from polarcheck.asked.contour_comparisons import ContourComparisons
 from polarcheck.columns.trace import Trace
+from polarcheck.inspection.area_comparisons import AreaComparisons
+from polarcheck.inspection.comparison import Comparison, Fit
+from polarcheck.inspection.contour_comparisons import ContourComparisons
+from polarcheck.inspection.nominal_parts import NominalParts
 from polarcheck.machines.part import Part
 from polarcheck.table.overcuts import Overcuts
 from polarcheck.table.skipped_loops import SkipReason
@@ -23,19 +23,19 @@ class Deviations(Columns, frozen=True):
 
     trace: Trace
     overcuts: Overcuts
-    asked_parts: AskedParts
+    nominal_parts: NominalParts
     contour_comparisons: ContourComparisons
     area_comparisons: AreaComparisons
 
     @property
     def parts(self) -> tuple[Part, ...]:
         """What the job asks for."""
-        return tuple(self.asked_parts.job.part)
+        return tuple(self.nominal_parts.job.part)
 
     @property
-    def asked(self) -> Mask:
+    def where(self) -> Mask:
         """Rows in offset mode in the sections for which the job states a part."""
-        return self.asked_parts.in_offset_mode
+        return self.nominal_parts.in_offset_mode
 
     @cached_property
     def crosses(self) -> Mask:
@@ -49,7 +49,7 @@ class Deviations(Columns, frozen=True):
 
         Raises TooHardError if the faces of the contours or their areas cannot be computed.
         """
-        if not self.asked_parts.parts:
+        if not self.nominal_parts.parts:
             return []
         results = sorted(self.area_comparisons.all, key=lambda result: result.section)
         return [result._replace(fit=self._fit(result)) if result.differs else result for result in results]
@@ -57,9 +57,9 @@ class Deviations(Columns, frozen=True):
     def _fit(self, result: Comparison) -> Fit | None:
         """The change with which the part would agree, or nearly agree; None if there is none."""
         if result.target is None:
-            from polarcheck.asked.metal_fit import metal_fit  # imported late: most programs agree
+            from polarcheck.inspection.metal_fit import metal_fit  # imported late: most programs agree
 
-            return metal_fit(result, self.asked_parts, self.area_comparisons.milled)
+            return metal_fit(result, self.nominal_parts, self.area_comparisons.milled)
         return self.contour_comparisons.fit(result)
 
     @cached_property

@@ -15,7 +15,6 @@ import numpy as np
 import shapely  # type: ignore[import-untyped]
 
 from polarcheck.arrays import Floats, Mask
-from polarcheck.asked.comparison import SAME_Z
 from polarcheck.geometry.comparison.metal import (
     NOTHING,
     Extreme,
@@ -34,6 +33,7 @@ from polarcheck.geometry.comparison.metal import (
 from polarcheck.geometry.polygons import areas
 from polarcheck.geometry.polygons.faces import coordinates
 from polarcheck.geometry.segments import segments
+from polarcheck.inspection.comparison import SAME_Z
 from polarcheck.table.milled import Cuts
 from polarcheck.time_limit import keep_time
 
@@ -130,38 +130,50 @@ class _Cleared:
 
 def _difference(feature: Feature, features: Sequence[Feature], cleared: _Cleared) -> AreaDifference:
     cuts, tolerance = cleared.cuts, max(feature.tolerance, _CHORDS) + _CHORDS
-    deep = cuts.low <= feature.z + SAME_Z
-    gone = cleared.by(deep)
     off = _off_wall(feature, cleared)
-    is_made = _is_made(off, tolerance + _CHORDS)
-    proud, proud_row, island = NOTHING, -1, NOTHING
+    proud, island = NOTHING, NOTHING
     if feature.excess_is_judged:
-        around = _parts_around(feature, features)
-        metal = areas.union(disc(feature.certain), around)
-        asked = areas.intersection(beside(feature.area, feature.radius, tolerance, feature.is_pocket), metal)
-        stays = areas.difference(_cleared_of_others(asked, feature, features), gone)
-        side = areas.intersection(feature.area, metal) if feature.is_pocket else areas.difference(metal, feature.area)
-        whole = areas.difference(_cleared_of_others(side, feature, features), gone)
-        if feature.is_solid:
-            far = areas.intersection(whole, areas.union(disc(feature.certain - _RIM), grown(around, -_RIM)))
-            far = grown(grown(far, -_RIM), _RIM)
-            middle = grown(feature.area, -2 * feature.radius - tolerance)
-            roughed = shapely.area(areas.intersection(gone, middle)) > _ROUGHED * shapely.area(middle)
-            if feature.is_bar_known or (feature.is_pocket and roughed):
-                stays = joined([stays, far])
-            elif not feature.is_pocket:
-                stays = joined([stays, areas.intersection(far, grown(around, -_RIM))])
-            else:
-                island = farthest(far, far, feature.area)
-        proud = farthest(stays, whole, feature.area)
-        if proud.size:
-            proud_row = nearest_row(cuts, deep if deep.any() else np.ones(len(cuts), bool), proud.place)
-    worst, deep_row = NOTHING, -1
-    heights = sorted({one.z for one in features if one.z >= feature.z - SAME_Z})
-    for number, z in enumerate(heights):
-        top = number == len(heights) - 1
-        own = feature.own_cuts if feature.is_pocket else feature.cuts
-        chosen = own if top else own & (cuts.low <= z + SAME_Z) & (cuts.high <= z + SAME_Z)
+        proud, island = _excess(feature, features, cleared, tolerance)
+    deep, deep_row = _lack(feature, features, cleared, tolerance)
+    at_depth = cuts.low <= feature.z + SAME_Z
+    proud_row = nearest_row(cuts, at_depth if at_depth.any() else cuts.low < np.inf, proud.place) if proud.size else -1
+    is_made = _is_made(off, tolerance + _CHORDS)
+    return AreaDifference(proud, deep, proud_row, deep_row, float(off.max(initial=0.0)), island, is_made)
+
+
+def _excess(
+    feature: Feature, features: Sequence[Feature], cleared: _Cleared, tolerance: float
+) -> tuple[Extreme, Extreme]:
+    """Metal at the depth of a feature that should be gone; and what stands in a pocket that is not cleared here."""
+    gone = cleared.by(cleared.cuts.low <= feature.z + SAME_Z)
+    around = _parts_around(feature, features)
+    metal = areas.union(disc(feature.certain), around)
+    near = areas.intersection(beside(feature.area, feature.radius, tolerance, feature.is_pocket), metal)
+    stays = areas.difference(_cleared_of_others(near, feature, features), gone)
+    side = areas.intersection(feature.area, metal) if feature.is_pocket else areas.difference(metal, feature.area)
+    whole = areas.difference(_cleared_of_others(side, feature, features), gone)
+    if not feature.is_solid:
+        return farthest(stays, whole, feature.area), NOTHING
+    far = areas.intersection(whole, areas.union(disc(feature.certain - _RIM), grown(around, -_RIM)))
+    far = grown(grown(far, -_RIM), _RIM)
+    middle = grown(feature.area, -2 * feature.radius - tolerance)
+    is_roughed = shapely.area(areas.intersection(gone, middle)) > _ROUGHED * shapely.area(middle)
+    if feature.is_bar_known or (feature.is_pocket and is_roughed):
+        return farthest(joined([stays, far]), whole, feature.area), NOTHING
+    if not feature.is_pocket:
+        far = areas.intersection(far, grown(around, -_RIM))
+        return farthest(joined([stays, far]), whole, feature.area), NOTHING
+    return farthest(stays, whole, feature.area), farthest(far, far, feature.area)
+
+
+def _lack(feature: Feature, features: Sequence[Feature], cleared: _Cleared, tolerance: float) -> tuple[Extreme, int]:
+    """Metal of a part, or around a pocket, that is cut away at its depth or above; and the row that cuts it, or -1."""
+    cuts, worst, row = cleared.cuts, NOTHING, -1
+    own = feature.own_cuts if feature.is_pocket else feature.cuts
+    heights = sorted({other.z for other in features if other.z >= feature.z - SAME_Z})
+    for z in heights:
+        # Above the highest of them all that is cut counts, below it what is cut no higher.
+        chosen = own if z == heights[-1] else own & (cuts.high <= z + SAME_Z)
         if not chosen.any():
             continue
         stands = _must_stand(feature, features, z, tolerance)
@@ -170,8 +182,8 @@ def _difference(feature: Feature, features: Sequence[Feature], cleared: _Cleared
         lacks = areas.intersection(stands, cleared.by(chosen))
         found = farthest(lacks, lacks, feature.area)
         if found.size > worst.size:
-            worst, deep_row = found, nearest_row(cuts, chosen, found.place)
-    return AreaDifference(proud, worst, proud_row, deep_row, float(off.max(initial=0.0)), island, is_made)
+            worst, row = found, nearest_row(cuts, chosen, found.place)
+    return worst, row
 
 
 def _off_wall(feature: Feature, cleared: _Cleared) -> Floats:

@@ -1,0 +1,142 @@
+"""The closed shapes that a job asks for, each beside the metal that mills leave of it."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from polarcheck.arrays import Columns
+from polarcheck.columns.trace import Trace
+from polarcheck.inspection.comparison import SAME_Z, Comparison
+from polarcheck.inspection.contour_comparisons import ContourComparisons
+from polarcheck.inspection.nominal_features import NominalFeatures
+from polarcheck.inspection.nominal_parts import NominalParts
+from polarcheck.table.bar import Bar
+from polarcheck.table.milled import Milled
+
+if TYPE_CHECKING:
+    from polarcheck.geometry.shapes.shape import Shape
+    from polarcheck.inspection.metal_differences import AreaDifference, Feature
+
+
+class AreaComparisons(Columns, frozen=True):
+    """
+    The comparisons of one run, of contours and of areas.
+
+    A contour that differs says what is wrong: the areas of its curve are not looked at.
+    """
+
+    trace: Trace
+    milled: Milled
+    bar: Bar
+    nominal_parts: NominalParts
+    nominal_features: NominalFeatures
+    contour_comparisons: ContourComparisons
+
+    @cached_property
+    def all(self) -> list[Comparison]:
+        """
+        All comparisons: that of the nearest contour of each curve with the difference of its areas.
+
+        Raises TooHardError where the areas cannot be computed.
+        """
+        results = list(self.contour_comparisons.all)
+        placed = self.nominal_features.all
+        if not placed:
+            return results
+        from polarcheck.inspection.metal_differences import differences
+
+        for frame in sorted({one.frame for one in placed}):
+            of_frame = self.milled.cuts.frame == frame
+            features = [one for one in placed if one.frame == frame]
+            chosen = [
+                one.feature._replace(cuts=one.feature.cuts[of_frame], own_cuts=one.feature.own_cuts[of_frame])
+                for one in features
+            ]
+            for one, difference in zip(features, differences(chosen, self.milled.cuts[of_frame]), strict=True):
+                compared = self._comparison(one.feature, one.contour, difference)
+                if compared is not None and one.contour < 0:
+                    results.append(compared)
+                elif compared is not None:
+                    results[one.contour] = compared
+        return results
+
+    def why_not(self, number: int) -> str:
+        """Why a part was compared with nothing; empty where another reason is given."""
+        part = self.nominal_parts.parts[number]
+        own = ~np.isnan(self.trace.compensation.radius[self.nominal_parts.in_offset_mode])
+        if not own.all():
+            return ""
+        unknown = np.flatnonzero(self.milled.is_unknown)
+        if len(unknown):
+            return f"R or a place of the cutter of line {int(self.trace.blocks.line[unknown[0]])} is not known"
+        if not self.nominal_features.cuts_of(part).any():
+            return "nothing is milled there"
+        return "its curves do not close, and no contour comes near to them"
+
+    def _comparison(self, feature: Feature, place: int, found: AreaDifference) -> Comparison | None:
+        """What is changed of the comparison of the contour, or what stands in for it; None for nothing."""
+        from polarcheck.geometry.comparison.deviation import Difference
+
+        results = self.contour_comparisons.all
+        own = [one for one in results if one.number == feature.number]
+        if any(one.differs and (place < 0 or one.curve in (-1, feature.curve) or feature.curve < 0) for one in own):
+            return None
+        if feature.may_be_absent and not found.is_made:
+            return None
+        base = results[place] if place >= 0 else None
+        if found.is_none and base is not None:
+            is_partial = base.is_partial and not feature.excess_is_judged
+            changed = is_partial != base.is_partial or found.island.size > 0
+            return base._replace(is_partial=is_partial, island=found.island.size > 0) if changed else None
+        if found.is_none and not feature.excess_is_judged:
+            return None
+        proud, deep, is_made = found.proud.size, found.deep.size, found.is_made or base is not None
+        if found.is_none:
+            proud = min(found.off, feature.tolerance) if is_made else found.off
+        difference = Difference(
+            proud=proud, proud_at=found.proud.place, deep=deep, deep_at=found.deep.place, mean=0.0, length=1.0
+        )
+        row = found.proud_row if proud >= deep else found.deep_row
+        if row < 0:
+            row = int(
+                self.milled.cuts.curves.row[self.nominal_features.cuts_of(self.nominal_parts.parts[feature.number])][0]
+            )
+        if base is not None:
+            return base._replace(
+                difference=difference, row=row, is_partial=False, contour=None, entry=self.nominal_parts.entry(row)
+            )
+        section = int(self.trace.mode.section[row])
+        return Comparison(
+            number=feature.number,
+            part=self.nominal_parts.parts[feature.number],
+            curve=feature.curve,
+            section=section,
+            z=feature.z,
+            tolerance=feature.tolerance,
+            difference=difference,
+            row=row,
+            entry=self.nominal_parts.entry(row),
+            any_angle=self.nominal_parts.any_angle(feature.number, section),
+            island=found.is_none and found.island.size > 0,
+            is_made=is_made or not found.is_none,
+            made=() if found.is_none and is_made else self._made(feature),
+        )
+
+    def _made(self, feature: Feature) -> tuple[Shape, ...]:
+        """What stands, or is cleared, in the place of a feature."""
+        from polarcheck.geometry.polygons.cleared import cleared
+        from polarcheck.geometry.shapes.grooves import shapes_of_cleared
+
+        cuts = self.milled.cuts
+        chosen = (cuts.low <= feature.z + SAME_Z) & self.nominal_features.cuts_of(
+            self.nominal_parts.parts[feature.number]
+        )
+        if not chosen.any():
+            return ()
+        radius = float(cuts.radius[chosen].max())
+        _, outline, across = cleared(cuts.curves[chosen & (cuts.radius == radius)], radius)
+        shapes = shapes_of_cleared(outline, across, radius, self.bar.known.smallest)
+        return tuple(shape for shape in shapes if shape.inside == feature.is_pocket)[:1]
