@@ -31,6 +31,7 @@ OF_PACKAGE = {
     "columns": "columns",
     "table": "columns",
     "silence": "rules",
+    "inspection": "faces",
     "checking": "rules",
     "parts": "report",
     "feed_table": "report",
@@ -43,7 +44,7 @@ OF_TABLE = {
     **dict.fromkeys(("tool_center", "moves", "ramps", "trial", "travel"), "tool path"),
     **dict.fromkeys(("dynamics", "feed_curve", "highest_feeds", "feed_ranges"), "tool path"),
     **dict.fromkeys(("overcuts", "slots", "uncompensated_cuts", "fitting", "finished"), "faces"),
-    **dict.fromkeys(("deviations", "coverage", "mirrored"), "faces"),
+    **dict.fromkeys(("coverage", "mirrored"), "faces"),
 }
 #: Calls lead through fewer functions of libraries, one in the other, than this.
 DEEPEST = 200

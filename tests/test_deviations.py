@@ -25,6 +25,7 @@ from programs import job_of, report_of, tables_of
 from polarcheck.commands import main
 from polarcheck.geometry.comparison.deviation import turned_radius
 from polarcheck.geometry.comparison.measured_path import way_of_curves
+from polarcheck.geometry.tolerances import ADJUSTMENT
 from polarcheck.inspection.comparison import Comparison
 from polarcheck.inspection.deviations import Deviations
 from polarcheck.machines import drawing
@@ -127,7 +128,7 @@ def test_programs_of_all_families_agree_with_their_parts(seed: int) -> None:
 @pytest.mark.parametrize("seed", sound_seeds(4))
 def test_metal_that_stays_or_is_missing_is_found_where_shapely_finds_it(seed: int) -> None:
     one = program_of(seed)
-    if not is_sound(one) or one.radius <= 0.2:  # so small an R may adjust a path
+    if not is_sound(one) or one.radius <= ADJUSTMENT + 0.01:
         return
     job = drawn(one.part)
     reach = float(np.abs(shapely.get_coordinates(one.part) @ np.array([1, 1j])).max())

@@ -45,6 +45,7 @@ VARIANTS = pytest.mark.parametrize(
 )
 
 
+@pytest.mark.one_in(4)
 @VARIANTS
 @pytest.mark.parametrize("command", ["check", "part"])
 def test_several_drawings_are_several_parts(
@@ -55,7 +56,7 @@ def test_several_drawings_are_several_parts(
     hexagon = dxf(tmp_path / "hexagon.dxf", {"0": polygon(6, 13.5, turn=turn)}, scale)
     square = dxf(tmp_path / "square.dxf", {"0": polygon(4, 20.0, turn=turn)})
     other = dxf(tmp_path / "other.dxf", {"0": polygon(4, 20.1, turn=turn)})
-    words = [command, "--machine", machine, "--tool", f"1:radius={4 / scale:.6f}", path]
+    words = [command, "--machine", machine, "--tool", f"1:radius={8 / scale:.6f}", path]
     words += ["--select", RULE] if command == "check" else []
     assert run(*words, "--drawing", hexagon, "--drawing", square).exit_code == 0
     result = run(*words, "--drawing", hexagon, "--drawing", other)
@@ -64,12 +65,13 @@ def test_several_drawings_are_several_parts(
     assert "differs from hexagon.dxf" not in result.stdout
 
 
+@pytest.mark.one_in(2)
 @VARIANTS
 def test_the_tolerance_of_the_command_line(tmp_path: Path, scale: float, turn: float, machine: str) -> None:
     path = tmp_path / "O1.NC"
     path.write_text(on(machine, program(polygon(6, 13.5, {2: 0.05}, turn), scale=scale)))
     drawing = dxf(tmp_path / "hexagon.dxf", {"0": polygon(6, 13.5, turn=turn)})
-    words = ["check", "--machine", machine, "--tool", f"1:radius={4 / scale:.6f}", path, "--select", RULE]
+    words = ["check", "--machine", machine, "--tool", f"1:radius={8 / scale:.6f}", path, "--select", RULE]
     job = tmp_path / "polarcheck.toml"
     part = f'[[part]]\nshape = "hexagon"\nacross_flats = {27 / scale}\n'
     for asked in ((job, part), (None, "")):
@@ -91,7 +93,7 @@ def test_layers_by_name(tmp_path: Path, scale: float, turn: float, machine: str)
     path.write_text(on(machine, program(polygon(6, 13.5, turn=turn), scale=scale)))
     contours = {"Contour": polygon(6, 13.5, turn=turn), "Rough": polygon(6, 13.6, turn=turn)}
     drawing = dxf(tmp_path / "part.dxf", contours, scale)
-    words = ["check", "--machine", machine, "--tool", f"1:radius={4 / scale:.6f}", path, "--select", RULE]
+    words = ["check", "--machine", machine, "--tool", f"1:radius={8 / scale:.6f}", path, "--select", RULE]
     assert run(*words, "--drawing", drawing, "--drawing-layer", "CONTOUR").exit_code == 0
     assert run(*words, "--drawing", drawing, "--drawing-layer", "rough").exit_code == 1
     result = run(*words, "--drawing", drawing, "--drawing-layer", "outline")
@@ -140,7 +142,7 @@ def test_one_file_with_two_layers_is_two_parts(tmp_path: Path) -> None:
     path.write_text(two_contours())
     dxf(tmp_path / "part.dxf", {"Six": polygon(6, 13.5), "Four": polygon(4, 20.1), "Old": polygon(5, 20.0)})
     entries = "".join(f'[[part]]\ndrawing = "part.dxf"\nlayers = ["{layer}"]\n' for layer in ("SIX", "FOUR"))
-    (tmp_path / "polarcheck.toml").write_text(f"[tools.1]\nradius = 4.0\n{entries}")
+    (tmp_path / "polarcheck.toml").write_text(f"[tools.1]\nradius = 8.0\n{entries}")
     result = run("part", path)
     assert "agrees with part.dxf (SIX) within" in result.stdout
     assert "differs from part.dxf (FOUR) by" in result.stdout.replace("\n             ", " ")

@@ -71,6 +71,7 @@ CASES: dict[str, tuple[str, dict[str, Any]]] = {
 }
 
 
+@pytest.mark.one_in(3)
 @pytest.mark.parametrize("machine", ["fanuc-30i", "siemens-iso", "haas-lathe"])
 @pytest.mark.parametrize("name", CASES)
 def test_the_entry_of_a_shape_and_its_program_agree(tmp_path: Path, name: str, machine: str) -> None:
@@ -153,6 +154,7 @@ def indexed(angles: list[float]) -> str:
     return head + "".join(f"G0 X160. C{angle:g}\nG12.1\n{blocks}\nG13.1\n" for angle in angles) + end
 
 
+@pytest.mark.one_in(3)
 @pytest.mark.parametrize(
     ("angles", "expected"),
     [
@@ -288,6 +290,7 @@ INCOMPLETE = ("feed_from_per_revolution",)
 SAMPLES = sorted((ROOT / "sample_programs").rglob("*.nc"))
 
 
+@pytest.mark.one_in(4)
 @pytest.mark.parametrize("path", SAMPLES, ids=lambda path: f"{path.parent.name}/{path.stem}")
 def test_each_sample_agrees_with_what_it_makes(tmp_path: Path, path: Path) -> None:
     result = run("init", "--part", path)

@@ -33,6 +33,7 @@ def flats(count: int, distance: float = 12.0, half: float = 22.0, first: float =
     return [Section(flat(distance, half), (first + number * 360 / count) % 360) for number in range(count)]
 
 
+@pytest.mark.one_in(4)
 @pytest.mark.parametrize(("control", "inch"), VARIATIONS)
 @pytest.mark.parametrize("first", [0.0, 15.0])
 @pytest.mark.parametrize(("count", "name"), [(3, "triangle"), (4, "square"), (6, "hexagon"), (8, "octagon")])
@@ -267,6 +268,7 @@ def of_init(sections: list[Section], control: str = "fanuc", inch: bool = False)
     return call("init", "--part", "a.nc", "--machine", control, "--tool", tool(3, inch)).stdout
 
 
+@pytest.mark.one_in(3)
 @pytest.mark.parametrize(("control", "inch"), VARIATIONS)
 @pytest.mark.parametrize("first", [0.0, 15.0])
 def test_what_sections_make_together_agrees_with_the_part_that_is_written_of_it(

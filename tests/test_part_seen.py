@@ -81,6 +81,7 @@ def test_two_contours_of_one_level_that_end_past_their_start() -> None:
 # ---- contours that end beside their start ----
 
 
+@pytest.mark.one_in(3)
 @pytest.mark.parametrize("control", BY_MACHINE)
 def test_a_contour_that_ends_beside_its_start_keeps_its_last_wall(control: str) -> None:
     for number in range(24):
@@ -94,6 +95,7 @@ def test_a_contour_that_ends_beside_its_start_keeps_its_last_wall(control: str) 
     assert is_seen(pocket, 0.05)
 
 
+@pytest.mark.one_in(6)
 @pytest.mark.parametrize("turned", [0.0, 17.0])
 @pytest.mark.parametrize("control", BY_MACHINE)
 @pytest.mark.parametrize("drift", [0.05, -0.05, 0.3, -0.3, 0.05j, -0.05j, 0.1 + 0.1j])
@@ -244,6 +246,7 @@ def at_depths(control: str, off: dict[int, complex], turned: float = 0, count: i
     return made("\n".join(blocks), *drawn.tools, machine=drawn.machine)
 
 
+@pytest.mark.one_in(3)
 @pytest.mark.parametrize("turned", [0.0, 20.0])
 @pytest.mark.parametrize("control", BY_MACHINE)
 def test_a_pass_that_differs_is_told_apart_with_how_much(control: str, turned: float) -> None:

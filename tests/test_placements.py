@@ -83,6 +83,7 @@ CHANGES = {
 }
 
 
+@pytest.mark.one_in(4)
 @pytest.mark.parametrize("name", CHANGES)
 @pytest.mark.parametrize("machine", ["fanuc-30i", "haas-lathe", "siemens-iso"])
 def test_a_drawing_that_lies_or_measures_otherwise_is_told_as_that(name: str, machine: str) -> None:
@@ -159,6 +160,7 @@ def center_path(corners: list[complex]) -> str:
     return HEAD + "\n".join(blocks) + "\n" + TAIL
 
 
+@pytest.mark.one_in(5)
 @pytest.mark.parametrize(
     ("change", "expected"),
     [

@@ -38,6 +38,7 @@ def differences(tables: Tables, made: list[MadeShape], bar: float = np.nan, all_
     return list(mismatches(tables, made, bar, all_moves))
 
 
+@pytest.mark.one_in(4)
 @pytest.mark.parametrize("path", SAMPLES, ids=NAMES)
 def test_words_of_a_sample_are_what_its_cutters_leave(path: Path) -> None:
     work: dict[str, Any] = settings(path)
@@ -59,6 +60,7 @@ def of_family(family: str, seed: int) -> list[Mismatch]:
     return differences(tables, made_by(tables), bar, all_moves=False)
 
 
+@pytest.mark.one_in(4)
 @pytest.mark.parametrize("family", FAMILIES)
 def test_words_of_a_family_are_what_its_cutters_leave(family: str) -> None:
     assert [(seed, found) for seed in range(SHARE) if (found := of_family(family, seed))] == []

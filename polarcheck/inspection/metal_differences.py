@@ -42,7 +42,7 @@ _CHORDS = 0.004
 #: Far from the walls metal counts that is twice as thick as this, and that lies no nearer to the round of the bar [mm].
 _RIM = 0.1
 #: A program clears the middle of a pocket itself where it clears more than this share of it.
-_ROUGHED = 0.5
+_ROUGHED = 0.75
 #: A wall is made where cuts come near to more than this share of it; the rest may be that of other features.
 _MADE = 0.05
 #: Areas are apart where they share no more than this of the smaller one.
