@@ -174,8 +174,7 @@ def center_path(corners: list[complex]) -> str:
     ],
     ids=["shifted", "mm", "turned", "both"],
 )
-@pytest.mark.parametrize("machine", ["fanuc-30i", "haas-lathe", "siemens-iso"])
-@pytest.mark.parametrize("turn", [0.0, 0.25])
+@pytest.mark.parametrize(("machine", "turn"), [("fanuc-30i", 0.25), ("haas-lathe", 0.0), ("siemens-iso", 0.25)])
 def test_so_it_is_without_compensation(change: Any, expected: str, machine: str, turn: float) -> None:
     text = on(machine, center_path(polygon(6, 17.5, turn=turn)))
     assert expected in said(text, drawing([change(corner) for corner in polygon(6, 13.5, turn=turn)]), 4.0, machine)
