@@ -119,7 +119,7 @@ class AreaComparisons(Columns, frozen=True):
             difference=difference,
             row=row,
             entry=self.nominal_parts.entry(row),
-            any_angle=self.nominal_parts.any_angle(feature.number, section),
+            angle_not_compared=self.nominal_parts.angle_not_compared(feature.number, section),
             island=found.is_none and found.island.size > 0,
             is_made=is_made or not found.is_none,
             made=() if found.is_none and is_made else self._made(feature),
@@ -127,7 +127,6 @@ class AreaComparisons(Columns, frozen=True):
 
     def _made(self, feature: Feature) -> tuple[Shape, ...]:
         """What stands, or is cleared, in the place of a feature."""
-        from polarcheck.geometry.polygons.cleared import cleared
         from polarcheck.geometry.shapes.grooves import shapes_of_cleared
 
         cuts = self.milled.cuts
@@ -136,7 +135,6 @@ class AreaComparisons(Columns, frozen=True):
         )
         if not chosen.any():
             return ()
-        radius = float(cuts.radius[chosen].max())
-        _, outline, across = cleared(cuts.curves[chosen & (cuts.radius == radius)], radius)
-        shapes = shapes_of_cleared(outline, across, radius, self.bar.known.smallest)
+        cleared, radius = self.milled.cleared(chosen)
+        shapes = shapes_of_cleared(cleared.outline, cleared.across, radius, self.bar.known.smallest)
         return tuple(shape for shape in shapes if shape.inside == feature.is_pocket)[:1]

@@ -87,7 +87,7 @@ class Comparison(NamedTuple):
     row: the row where the difference is largest.
     entry: C at G12.1 of the section of that row [rad], 0 where it is not known: places are written less this angle.
     turned: angle of a shape whose angle is not compared [rad], NaN for other shapes.
-    any_angle: why the angle is not compared; empty where it is, or where the shape has none.
+    angle_not_compared: why the angle is not compared; empty where it is, or where the shape has none.
     is_other_way_round: a boss where a pocket should be, or the reverse.
     is_partial: the contour is open though all drawn curves are closed; only its walls are compared.
     island: the program mills along the walls of a pocket alone: whether something stands in its middle is not known.
@@ -108,7 +108,7 @@ class Comparison(NamedTuple):
     row: int
     entry: float = 0.0
     turned: float = float("nan")
-    any_angle: str = ""
+    angle_not_compared: str = ""
     is_other_way_round: bool = False
     is_partial: bool = False
     island: bool = False

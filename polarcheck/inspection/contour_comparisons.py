@@ -11,7 +11,7 @@ import numpy as np
 
 from polarcheck.arrays import Columns
 from polarcheck.columns.trace import Trace
-from polarcheck.inspection.comparison import SAME_Z, TOLERANCE, Comparison, Contour, Fit, Target
+from polarcheck.inspection.comparison import SAME_Z, Comparison, Contour, Fit, Target
 from polarcheck.inspection.nominal_parts import NominalParts
 from polarcheck.table.bar import Bar
 from polarcheck.table.finished import Finished, Level
@@ -122,7 +122,7 @@ class ContourComparisons(Columns, frozen=True):
         if not math.isnan(part.z):
             stated = self.nominal_parts.z(number, int(level.walls.row[0]))
             off = [abs(other.z - stated) for other in self.finished.levels if not math.isnan(other.z)]
-            allowed = max(SAME_Z, min(self.nominal_parts.tolerance(number, int(level.walls.row[0])), TOLERANCE))
+            allowed = self.nominal_parts.z_tolerance(number, int(level.walls.row[0]))
             return abs(level.z - stated) <= min(allowed, min(off, default=0.0) + _LEAST_INCREMENT)
         if part.drawing is not None:
             return True
@@ -162,8 +162,8 @@ class ContourComparisons(Columns, frozen=True):
         for target in self._targets(contour):
             keep_time()
             part, angle, way = target.part, math.nan, target.way
-            any_angle = self.nominal_parts.any_angle(target.number, contour.level.section)
-            if any_angle:
+            angle_not_compared = self.nominal_parts.angle_not_compared(target.number, contour.level.section)
+            if angle_not_compared:
                 angle, way = self._turned(contour, target)
             both_ways = target.is_closed and contour.is_closed
             metal = self.nominal_parts.air(target.number, target.scale)
@@ -190,7 +190,7 @@ class ContourComparisons(Columns, frozen=True):
                     turned=angle,
                     is_other_way_round=is_other_way,
                     is_partial=partial,
-                    any_angle=any_angle,
+                    angle_not_compared=angle_not_compared,
                     contour=contour,
                     target=target,
                     entry=self.nominal_parts.entry(row),

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from polarcheck.inspection.comparison import SAME_Z, Comparison, Fit
-from polarcheck.inspection.nominal_parts import NominalParts
+from polarcheck.inspection.nominal_parts import NominalParts, is_closed
 from polarcheck.table.milled import Milled
 from polarcheck.time_limit import keep_time
 
@@ -27,9 +27,9 @@ def metal_fit(result: Comparison, nominal_parts: NominalParts, milled: Milled) -
 
     part, unit = result.part, nominal_parts.unit(result.number, result.row)
     curves = nominal_parts.curves(result.number, unit)
-    rings = [number for number, curve in enumerate(curves) if len(curve) > 3 and curve[0] == curve[-1]]
+    rings = [number for number, curve in enumerate(curves) if is_closed(curve)]
     ways = [way_of_curves([curves[number]]) for number in sorted(rings, key=lambda number: number != result.curve)]
-    freedom = Freedom(part.drawing is not None, not result.any_angle, part.shape == "circle")
+    freedom = Freedom(part.drawing is not None, not result.angle_not_compared, part.shape == "circle")
     fits = []
     for made in _outlines(result, milled) if ways else ():
         keep_time()
@@ -45,7 +45,6 @@ def _outlines(result: Comparison, milled: Milled) -> Iterator[Made]:
     from polarcheck.geometry.comparison.deviation import made_of
     from polarcheck.geometry.comparison.measured_path import way_of_outline
     from polarcheck.geometry.comparison.metal import polygon_of
-    from polarcheck.geometry.polygons.cleared import cleared
 
     cuts = milled.cuts
     chosen = (cuts.frame == milled.frame_of_section[result.section]) & (cuts.low <= result.z + SAME_Z)
@@ -53,8 +52,7 @@ def _outlines(result: Comparison, milled: Milled) -> Iterator[Made]:
         chosen &= cuts.section == result.part.section - 1
     if not chosen.any():
         return
-    radius = float(cuts.radius[chosen].max())
-    outline = cleared(cuts.curves[chosen & (cuts.radius == radius)], radius).outline
+    outline = milled.cleared(chosen)[0].outline
     chains = [outline[outline.chain == number] for number in np.flatnonzero(outline.closed).tolist()]
     ways = [way_of_outline(chain) for chain in chains]
     for index in sorted(range(len(chains)), key=lambda index: -ways[index].length)[:_MOST]:

@@ -10,9 +10,9 @@ import numpy as np
 
 from polarcheck.arrays import Columns, Mask, Points, is_among
 from polarcheck.columns.trace import Trace
-from polarcheck.inspection.comparison import SAME_Z, TOLERANCE
+from polarcheck.inspection.comparison import SAME_Z
 from polarcheck.inspection.contour_comparisons import ContourComparisons
-from polarcheck.inspection.nominal_parts import BEYOND, NominalParts
+from polarcheck.inspection.nominal_parts import BEYOND, NominalParts, is_closed
 from polarcheck.machines.part import Part
 from polarcheck.table.bar import Bar
 from polarcheck.table.milled import Milled
@@ -115,7 +115,7 @@ class NominalFeatures(Columns, frozen=True):
         row = int(self.trace.mode.sections.enter[section])
         curves = self.nominal_parts.curves(number, self.nominal_parts.unit(number, row))
         curves = [curve * np.exp(1j * angle) for curve in curves]
-        rings = {at: polygon_of(curve) for at, curve in enumerate(curves) if _is_closed(curve)}
+        rings = {at: polygon_of(curve) for at, curve in enumerate(curves) if is_closed(curve)}
         if not rings:
             return self._of_open_curves(number, curves, matched.get(-1, -1), section, own)
         depth = {
@@ -218,8 +218,7 @@ class NominalFeatures(Columns, frozen=True):
         if not math.isnan(stated):
             low = self.milled.cuts.low[own]
             nearest = float(low[np.argmin(np.abs(low - stated))])
-            allowed = max(SAME_Z, min(self.nominal_parts.tolerance(number, row), TOLERANCE))
-            return nearest if abs(nearest - stated) <= allowed else stated
+            return nearest if abs(nearest - stated) <= self.nominal_parts.z_tolerance(number, row) else stated
         of_contour = self.contour_comparisons.all[place].z if place >= 0 else math.nan
         return float(self.milled.cuts.low[own].min()) if math.isnan(of_contour) else of_contour
 
@@ -251,7 +250,7 @@ class NominalFeatures(Columns, frozen=True):
 
         center = complex(*part.center) * unit
         curves = [center + (curve - center) * np.exp(1j * turned) for curve in curves]
-        if len(curves) == 1 and _is_closed(curves[0]):
+        if len(curves) == 1 and is_closed(curves[0]):
             return polygon_of(curves[0])
         far = disc(_ENDLESS * self._reach)
         if part.shape == "slot":
@@ -276,7 +275,7 @@ class NominalFeatures(Columns, frozen=True):
             return float(np.fmin(bar, round_))
         if not math.isnan(bar):
             return bar
-        if len(curves) == 1 and _is_closed(curves[0]):
+        if len(curves) == 1 and is_closed(curves[0]):
             return BEYOND * float(np.abs(curves[0]).max())
         return self.nominal_parts.certain_metal(number, unit)
 
@@ -288,7 +287,7 @@ class NominalFeatures(Columns, frozen=True):
     def _most(self, number: int, curves: list[Points], unit: float) -> float:
         """The same; where flats and slots end is known where the bar is."""
         part = self.nominal_parts.parts[number]
-        if len(curves) == 1 and _is_closed(curves[0]) and part.shape not in ("flat", "flats"):
+        if len(curves) == 1 and is_closed(curves[0]) and part.shape not in ("flat", "flats"):
             return self._most_of_bar
         return float(np.fmin(self._most_of_bar, self._certain(number, curves, unit)))
 
@@ -303,7 +302,7 @@ class NominalFeatures(Columns, frozen=True):
         cuts = self.milled.cuts[feature.cuts]
         period = 360.0 / (part.count_of_sides or 2)
         tried = [0.0]
-        if self.nominal_parts.any_angle(feature.number, section):
+        if self.nominal_parts.angle_not_compared(feature.number, section):
             for angle in directions_of(cuts, cuts.low <= cuts.low.max()):
                 for quarter in (0.0, 90.0, 180.0, 270.0):
                     turn = (angle + quarter) % period
@@ -336,7 +335,3 @@ class NominalFeatures(Columns, frozen=True):
                 if far < least - _BETTER:
                     best, least = candidate, far
         return best
-
-
-def _is_closed(curve: Points) -> bool:
-    return len(curve) > 3 and bool(curve[0] == curve[-1])

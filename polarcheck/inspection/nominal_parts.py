@@ -9,7 +9,7 @@ import numpy as np
 
 from polarcheck.arrays import Columns, Mask, Points, is_among
 from polarcheck.columns.trace import Trace
-from polarcheck.inspection.comparison import TOLERANCE
+from polarcheck.inspection.comparison import SAME_Z, TOLERANCE
 from polarcheck.machines.job import Job
 from polarcheck.machines.part import DrawnPart, Part
 
@@ -61,6 +61,10 @@ class NominalParts(Columns, frozen=True):
         """The Z that is stated [mm], NaN for none."""
         return self.job.part[number].z * self.job_unit(row)
 
+    def z_tolerance(self, number: int, row: int) -> float:
+        """How far a depth may lie from the Z that is stated [mm]: the tolerance of the part, TOLERANCE at most."""
+        return max(SAME_Z, min(self.tolerance(number, row), TOLERANCE))
+
     def curves(self, number: int, unit: float) -> list[Points]:
         """The curves of a part [mm], closed ones with their first point once more at the end."""
         part = self.job.part[number]
@@ -96,7 +100,7 @@ class NominalParts(Columns, frozen=True):
         known = section >= 0 and self.trace.path.knows_section_entry[section]
         return math.radians(float(self.trace.path.section_entry[section])) if known else 0.0
 
-    def any_angle(self, number: int, section: int) -> str:
+    def angle_not_compared(self, number: int, section: int) -> str:
         """Why the angle of a part is not compared in a section; empty where it is, or where the part has none."""
         part = self.job.part[number]
         if part.shape == "circle":
@@ -107,3 +111,8 @@ class NominalParts(Columns, frozen=True):
             line = int(self.trace.blocks.line[self.trace.mode.sections.enter[section]])
             return f"C at line {line} is not known"
         return ""
+
+
+def is_closed(curve: Points) -> bool:
+    """A curve ends where it begins, and encloses an area."""
+    return len(curve) > 3 and bool(curve[0] == curve[-1])

@@ -48,7 +48,7 @@ def compared(tables: Tables) -> list[PartComparison]:
             at=_at(one),
             line=int(trace.blocks.line[one.row]),
             turned=rounded(math.degrees(one.turned)),
-            angle_not_compared=one.any_angle or None,
+            angle_not_compared=one.angle_not_compared or None,
             text=told(trace.blocks, trace.lengths, one),
         )
         for one in deviations.comparisons

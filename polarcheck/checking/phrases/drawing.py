@@ -27,7 +27,7 @@ def drawing(deviations: Deviations, row: int) -> str:
 
 def deviation(lengths: Lengths, deviations: Deviations, row: int) -> str:
     """How the part of a row differs from what it should be, where, and how it would fit."""
-    return _deviation(lengths, deviations.of_row(row))
+    return _deviation(deviations.trace.blocks, lengths, deviations.of_row(row))
 
 
 def told(blocks: ExecutedBlocks, lengths: Lengths, one: Comparison) -> str:
@@ -36,34 +36,35 @@ def told(blocks: ExecutedBlocks, lengths: Lengths, one: Comparison) -> str:
     largest, tolerance = in_row(found.largest, lengths, one.row), in_row(one.tolerance, lengths, one.row)
     if not one.agrees:
         by = f"by {largest.beside(tolerance, 'length')}, {tolerance:length} is allowed"
-        return f"differs from {title} {by}: {_deviation(lengths, one)}"
+        return f"differs from {title} {by}: {_deviation(blocks, lengths, one)}"
     least, shown = _LEAST[largest.inch], _least(lengths, one, found.largest)
     where = ""
     if found.largest > least and not cmath.isnan(found.at):
         where = f", largest at {_where(lengths, one, found.at)} by line {int(blocks.line[one.row])}"
-    angle = f"; its angle was not compared: {one.any_angle}" if one.any_angle else ""
+    angle = f"; its angle was not compared: {one.angle_not_compared}" if one.angle_not_compared else ""
     return f"agrees with {title} within {shown:length} (tolerance {tolerance:length}){where}{angle}"
 
 
-def _deviation(lengths: Lengths, one: Comparison) -> str:
+def _deviation(blocks: ExecutedBlocks, lengths: Lengths, one: Comparison) -> str:
     found = one.difference
     if one.is_other_way_round:
         does, should = ("a boss", "a pocket") if one.part.is_pocket else ("a pocket", "a boss")
         return f"it is {does}, and {should} is asked for: the tool is on the wrong side"
     if not one.is_made:
-        return f"nothing mills its walls{_fit(lengths, one, one.fit)}{_made(lengths, one)}"
+        return f"nothing mills its walls{_fit(lengths, one, one.fit)}{_made(blocks, lengths, one)}"
     sides = [(found.proud, found.proud_at, "too much stays"), (found.deep, found.deep_at, "too much is cut away")]
     (_, worst, what), (size, place, other) = sorted(sides, key=lambda side: -side[0])
     more = ""
     if size > one.tolerance:
         more = f", and {in_row(size, lengths, one.row):length} {other} at {_where(lengths, one, place)}"
-    return f"{what} at {_where(lengths, one, worst)}{more}{_fit(lengths, one, one.fit)}{_made(lengths, one)}"
+    return f"{what} at {_where(lengths, one, worst)}{more}{_fit(lengths, one, one.fit)}{_made(blocks, lengths, one)}"
 
 
-def _made(lengths: Lengths, one: Comparison) -> str:
+def _made(blocks: ExecutedBlocks, lengths: Lengths, one: Comparison) -> str:
     """What is made in the place of the part."""
     sizes = Sizes(bool(lengths.units[one.row] == Units.INCH))
-    return "".join(f"; it makes: {shape_in_words(shape, lambda row: row + 1, sizes)}" for shape in one.made)
+    shapes = (shape_in_words(shape, lambda row: int(blocks.line_in_file[row]), sizes) for shape in one.made)
+    return "".join(f"; it makes: {shape}" for shape in shapes)
 
 
 def _least(lengths: Lengths, one: Comparison, size: float) -> Quantity:
