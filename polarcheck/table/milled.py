@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from polarcheck.arrays import Columns, Floats, Mask, Rows, Table
+from polarcheck.arrays import Columns, Floats, Mask, Rows, Table, is_among
 from polarcheck.columns.trace import Trace
 from polarcheck.geometry.segments import Curves
 from polarcheck.geometry.tolerances import ADJUSTMENT, ROUNDING
@@ -14,6 +15,9 @@ from polarcheck.machines.modal import Motion
 from polarcheck.table.bar import Bar
 from polarcheck.table.moves import z_along
 from polarcheck.table.tool_center import ToolCenter
+
+if TYPE_CHECKING:
+    from polarcheck.geometry.polygons.cleared import Cleared
 
 #: A tip less far below the face than this cuts nothing [mm].
 _CLEARANCE = 0.01
@@ -68,19 +72,18 @@ class Milled(Columns, frozen=True):
         return np.asarray((face[:, None] == frames).sum(axis=1) == 1)
 
     @cached_property
-    def _followed(self) -> Mask:
-        """Rows of tools along Z."""
+    def is_along_z(self) -> Mask:
+        """Rows of tools along Z, in planes that are followed."""
         trace = self.trace
         radial = [number for number, tool in trace.tools.of_job.items() if tool.mount == "radial"]
-        return np.asarray(
-            trace.mode.is_followed & ~trace.mode.on_cylinder & ~np.isin(trace.tools.offset_number, radial)
-        )
+        is_followed = trace.mode.is_followed & ~trace.mode.on_cylinder
+        return np.asarray(is_followed & ~is_among(trace.tools.offset_number, radial))
 
     @cached_property
     def is_unknown(self) -> Mask:
         """Rows that cut, and whose R or place is not known."""
         trace, moves = self.trace, self.tool_center.moves
-        cuts = trace.mode.in_polar & trace.path.cuts & self._followed
+        cuts = trace.mode.in_polar & trace.path.cuts & self.is_along_z
         known = np.zeros(len(trace), bool)
         known[moves.row[moves.is_of_tool & ~np.isnan(moves.start + moves.end)]] = True
         return np.asarray(cuts & (np.isnan(self.radius) | ~known))
@@ -108,7 +111,7 @@ class Milled(Columns, frozen=True):
         turn = np.exp(1j * np.radians(np.where(trace.path.knows_section_entry, trace.path.section_entry, 0.0)))
         z_from, z_to = z_along(trace, moves)
         low, high = np.fmin(z_from, z_to), np.fmax(z_from, z_to)
-        at_feed = trace.path.cuts & self._followed & ~np.isnan(self.radius)
+        at_feed = trace.path.cuts & self.is_along_z & ~np.isnan(self.radius)
         chosen = at_feed[moves.row] & moves.is_of_tool & ~np.isnan(moves.start + moves.end)
         if np.isnan(low[chosen]).all():
             low, high = np.zeros(len(moves)), np.zeros(len(moves))
@@ -131,3 +134,10 @@ class Milled(Columns, frozen=True):
             section=section,
             frame=self.frame_of_section[section],
         )
+
+    def cleared(self, chosen: Mask) -> tuple[Cleared, float]:
+        """What the largest cutter of these cuts clears, and its R [mm]. Raises TooHardError as `cleared` does."""
+        from polarcheck.geometry.polygons.cleared import cleared
+
+        radius = float(self.cuts.radius[chosen].max())
+        return cleared(self.cuts.curves[chosen & (self.cuts.radius == radius)], radius), radius

@@ -19,10 +19,11 @@ from polarcheck.columns.trace import Trace
 from polarcheck.errors import TooHardError
 from polarcheck.geometry import polar
 from polarcheck.geometry.plane import arc_sweep
-from polarcheck.geometry.tolerances import ADJUSTMENT, ROUNDING
+from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.machines.modal import Motion
 from polarcheck.table.bar import Bar
 from polarcheck.table.finished import Finished, Level
+from polarcheck.table.milled import Milled
 from polarcheck.table.moves import z_along
 from polarcheck.table.overcuts import Overcuts
 from polarcheck.table.tool_center import ToolCenter
@@ -99,6 +100,7 @@ class Workpiece(Columns, frozen=True):
     overcuts: Overcuts
     finished: Finished
     bar: Bar
+    milled: Milled
 
     # ---- the tools ----
 
@@ -109,16 +111,12 @@ class Workpiece(Columns, frozen=True):
         call = self.bar.tool_call
         has_section = np.zeros(int(call.max(initial=0)) + 1, bool)
         has_section[call[trace.mode.sections.enter]] = True
-        radial = [number for number, tool in trace.tools.of_job.items() if tool.mount == "radial"]
-        followed = ~trace.modal.on_sub_spindle & trace.mode.is_followed & ~trace.mode.on_cylinder
-        return np.asarray(has_section[call] & followed & ~is_among(trace.tools.offset_number, radial))
+        return np.asarray(has_section[call] & self.milled.is_along_z & ~trace.modal.on_sub_spindle)
 
     @cached_property
     def radius(self) -> Floats:
-        """R of the cutter in force [mm], NaN where it is not known or only adjusts a path."""
-        trace = self.trace
-        radius = np.fmax(np.abs(trace.offsets.radius_of_offset), trace.offsets.cutter_diameter / 2)
-        return np.where(self.is_mill & (radius > ADJUSTMENT + ROUNDING), radius, np.nan)
+        """R of the mill in force [mm], NaN where it is not known or only adjusts a path."""
+        return np.where(self.is_mill, self.milled.radius, np.nan)
 
     # ---- where they go ----
 
