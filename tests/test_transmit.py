@@ -1,0 +1,87 @@
+"""TRANSMIT of Siemens controls: the sense of C, and where a section begins that no C word stands before."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from programs import moves_of, trace_of
+
+from polarcheck.table.moves import Moves
+
+MACHINE = "siemens-transmit"
+HEAD = "G94 S2=1000\nDIAMOF\nG0 X40 {c} Z5\n"
+#: A quarter of a turn and back, without compensation.
+SECTION = "TRANSMIT\nG17\nG1 X20 Y0 F300\nX0 Y20\nTRAFOOF\n"
+SECOND = "{between}\nTRANSMIT\nG1 X30 Y0\nTRAFOOF\nM30\n"
+OTHER_SENSE = {"polar": {"zero_angle": "at-c0"}}
+
+
+def run(program: str, **more: Any) -> Moves:
+    return moves_of(program, MACHINE, **more)
+
+
+@pytest.mark.parametrize(
+    ("word", "start", "angles"),
+    [
+        ("C90", -40j, [90, 0, -90]),
+        ("C=DC(90)", -40j, [90, 0, -90]),
+        ("SPOS=90", -40j, [90, 0, -90]),
+        ("C0", 40, [0, 0, -90]),
+        ("C-270", -40j, [-270, -360, -450]),
+    ],
+)
+def test_c_runs_against_the_plane(word: str, start: complex, angles: list[float]) -> None:
+    """Machine data 24910 = 1: at C90 the tool stands at -90 deg of the plane, and X20 Y0 is at C0."""
+    moves = run(HEAD.format(c=word) + SECTION + "M30\n")
+    np.testing.assert_allclose(moves.start[0], start, atol=1e-9)
+    np.testing.assert_allclose([moves.c_angles[0][0], *moves.c_angles[1]], angles, atol=1e-9)
+    trace = trace_of(HEAD.format(c=word) + SECTION + "M30\n", MACHINE)
+    np.testing.assert_allclose(trace.path.c_angle[-1], angles[-1], atol=1e-9)
+
+
+@pytest.mark.parametrize("changes", [OTHER_SENSE, {"parameters": {"24910": 0}}])
+def test_the_owner_says_the_sense_of_c(changes: dict[str, Any]) -> None:
+    moves = run(HEAD.format(c="C90") + SECTION + "M30\n", changes=changes)
+    np.testing.assert_allclose(moves.start[0], 40j, atol=1e-9)
+    np.testing.assert_allclose([moves.c_angles[0][0], *moves.c_angles[1]], [90, 0, 90], atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("between", "of_plane", "angle", "angle_of_other_sense"),
+    [
+        ("", 90, -90, 90),
+        ("G0 X20", 90, -90, 90),
+        ("M70", 90, -90, 90),
+        ("G0 C=IC(90)", 0, 0, 180),
+        ("G91 G0 C45\nG90", 45, -45, 135),
+        ("G0 C0", 0, 0, 0),
+        ("SPOS=180", 180, 180, 180),
+    ],
+)
+def test_a_second_section_begins_where_c_stands(
+    between: str, of_plane: float, angle: float, angle_of_other_sense: float
+) -> None:
+    program = HEAD.format(c="C0") + SECTION + SECOND.format(between=between)
+    for changes, of_tool, of_c in (
+        ({}, of_plane, angle),
+        (OTHER_SENSE, angle_of_other_sense, angle_of_other_sense),
+    ):
+        moves = run(program, changes=changes)
+        np.testing.assert_allclose(moves.start[-1], 20 * np.exp(1j * np.radians(of_tool)), atol=1e-9)
+        np.testing.assert_allclose(moves.c_angles[0][-1], of_c, atol=1e-9)
+        # Both sections lie on the part alike, whatever C was before them.
+        assert not (trace_of(program, MACHINE, changes=changes).path.section_entry % 360).any()
+
+
+def test_where_c_was_never_said_the_second_section_goes_on_from_the_first() -> None:
+    program = HEAD.format(c="") + SECTION + SECOND.format(between="G0 Z50")
+    assert run(program).start[-1] == pytest.approx(20j)
+
+
+def test_a_fanuc_begins_its_plane_at_g12_1() -> None:
+    program = "G98 G0 X80. C90. Z5.\nG12.1\nG1 X40. C0 F300.\nX0 C20.\nG13.1\nG12.1\nG1 X60. C0\nG13.1\nM30\n"
+    moves = moves_of(program, "fanuc")
+    assert moves.start[-1] == pytest.approx(20)
+    np.testing.assert_allclose(moves.c_angles[1], [90, 180, 180], atol=1e-9)
