@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from programs import moves_of, trace_of
+from programs import moves_of, report_of, trace_of
 
 from polarcheck.table.moves import Moves
 
@@ -85,3 +85,43 @@ def test_a_fanuc_begins_its_plane_at_g12_1() -> None:
     moves = moves_of(program, "fanuc")
     assert moves.start[-1] == pytest.approx(20)
     np.testing.assert_allclose(moves.c_angles[1], [90, 180, 180], atol=1e-9)
+
+
+# ---- F and the units of lengths ----
+
+
+@pytest.mark.parametrize(
+    ("units", "lengths", "feed"),
+    [
+        ("G70", 25.4, 300),
+        ("G71", 1, 300),
+        ("G700", 25.4, 7620),
+        ("G710", 1, 300),
+        ("", 1, 300),
+        ("G700 F300\nG70", 25.4, 7620),  # F was read in inch, and stays in force
+        ("G70\nG700", 25.4, 7620),
+    ],
+)
+def test_g70_leaves_f_alone(units: str, lengths: float, feed: float) -> None:
+    """802D sl BP-N p. 8-139: G70 and G71 do not influence F, G700 and G710 do; the basic system is metric."""
+    written = "" if "F" in units else " F300"
+    program = f"G94 S2=1000\nDIAMOF\n{units}\nG0 X40 C0 Z5\nTRANSMIT\nG17\nG1 X20{written}\nY1\nTRAFOOF\nM30\n"
+    moves = run(program)
+    assert moves.end[0] == pytest.approx(20 * lengths)
+    assert moves.feed == pytest.approx(feed)
+
+
+@pytest.mark.parametrize(("units", "feed"), [("G70", 7620), ("G71", 7620), ("G710", 300), ("", 7620)])
+@pytest.mark.parametrize("changes", [{"parameters": {"10240": 0}}, {"control": {"units": "inch"}}])
+def test_on_an_inch_basic_system_f_is_in_inch(units: str, feed: float, changes: dict[str, Any]) -> None:
+    program = f"G94 S2=1000\nDIAMOF\n{units}\nG0 X2 C0 Z1\nTRANSMIT\nG17\nG1 X1 F300\nY1\nTRAFOOF\nM30\n"
+    assert run(program, changes=changes).feed == pytest.approx(feed)
+
+
+def test_messages_and_fixes_have_f_in_its_own_units() -> None:
+    """F3000 under G70 is 3000 mm/min: so it is said, and so is the F that is low enough."""
+    program = "G94 S2=1000\nDIAMOF\nG70\nG0 X2 C0 Z1\nTRANSMIT\nG17\nG1 X1 F3000\nX.05 Y.1\nX1\nTRAFOOF\nM30\n"
+    report = report_of(program, MACHINE, changes={"limits": {"c_feed": 7200}})
+    (finding,) = [finding for finding in report.findings if finding.rule == "c-feed-above-limit"]
+    assert " mm/min" in finding.message
+    assert "inch/min" not in finding.message

@@ -47,7 +47,8 @@ class Control(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     How the control reads a program.
 
     g_code_system: A, B or C: which of the tables [g_code_system_a] to [g_code_system_c] counts
-    units: mm or inch: of a program that selects neither
+    units: mm or inch: of a program that selects neither; the basic system, where codes leave F in it
+    units_of_lengths_alone: codes of units that change lengths alone: F stays in the units of the basic system
     least_increment: least input increment [mm, deg]
     least_increment_inch: least input increment of lengths [inch]
     number_without_point: whether X10 is ten least increments (least-increment) or ten mm, inch or deg (whole-unit)
@@ -74,6 +75,7 @@ class Control(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
 
     g_code_system: Literal["A", "B", "C"]
     units: Literal["mm", "inch"]
+    units_of_lengths_alone: list[str] = []
     least_increment: Positive
     least_increment_inch: Positive
     number_without_point: Literal["least-increment", "whole-unit"]
