@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from functools import cached_property
 
 import numpy as np
@@ -20,9 +21,9 @@ class Moves(Table, frozen=True, dict=True):
 
     row: the row of the trace that it belongs to. section: its polar section. kind: int16, Motion. start, end, center:
     plane points [mm]. feed: along the path [mm/min]. known: False where the radius or a position is unknown. phase:
-    compensation.Phase. corner: a line that the control adds. allowance: what a pass of an infeed cycle leaves on the
-    contour [mm], 0 elsewhere. entry: float64[sections], C angle of the linear axis of each section [deg]. c_axis: how C
-    stands to the angles of the plane.
+    compensation.Phase. corner: a line or an arc that the control adds. allowance: what a pass of an infeed cycle leaves
+    on the contour [mm], 0 elsewhere. entry: float64[sections], C angle of the linear axis of each section [deg].
+    c_axis: how C stands to the angles of the plane.
     """
 
     _shared = ("entry", "c_axis")
@@ -179,6 +180,7 @@ def compensation_path(trace: Trace, row: Rows) -> compensation.Path:
         side_written=trace.compensation.writes_side[row],
         radius=trace.compensation.radius[row],
         cancel_vector=_cancel_vector(trace, row),
+        corner=trace.compensation.corner[row],
         stops_reading=trace.blocks.codes(*trace.machine.m_codes.stops_reading_ahead)[row],
     )
 
@@ -194,6 +196,8 @@ def tool_center_path(trace: Trace, path: compensation.Path) -> compensation.Tool
             read_ahead=settings.read_ahead,
             interference=settings.interference,
             tangent_tolerance=settings.tangent_tolerance,
+            arc_above=math.radians(settings.corner_arc_above),
+            arc_from=math.radians(settings.corner_arc_from),
         ),
     )
 
