@@ -1,15 +1,15 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Mask, Procedure, rule
+from polarcheck.checking.rule import WARNING, Hits, Machine, Procedure, rule
 
 
 @rule(
     WARNING,
-    "{S} is above the highest speed of the live tool, {machine.limits.live_tool_speed:whole}: the control holds it there or stops, and each "
-    "tooth takes more of F than meant; write S{machine.limits.live_tool_speed:whole}, and lower F with it",
+    "{S} is above the highest speed of the live tool, {limit:whole}: the control holds it there or stops, and each "
+    "tooth takes more of F than meant; write S{limit:whole}, and lower F with it",
     at=("S",),
 )
-def live_tool_above_highest_speed(procedure: Procedure) -> Mask:
+def live_tool_above_highest_speed(procedure: Procedure, machine: Machine) -> Hits:
     """
     S above the highest speed of the live tool.
 
@@ -48,4 +48,4 @@ def live_tool_above_highest_speed(procedure: Procedure) -> Mask:
         G13.1
     """
     # Compares nothing: for which of two spindles an S is hangs on codes before and behind it.
-    return procedure.live_tool_above_highest_speed
+    return Hits(procedure.live_tool_above_highest_speed, values={"limit": machine.limits.live_tool_speed})
