@@ -112,7 +112,8 @@ class HighestFeeds(Columns, frozen=True):
         S of the live tool in force [1/min]; NaN where none is known.
 
         Where the profile names codes of the live tool, S counts that stands in a block with one, or while it runs and
-        no code of the main spindle is beside it; else any S but a surface speed and the limit of G50.
+        no code of the main spindle is beside it; else any S but a surface speed and the limit of G50. A live tool may
+        have a word of its own, as S3=.
         """
         trace, codes = self.trace, self.trace.machine.m_codes
         takes = trace.blocks.has("S") & ~trace.modal.sets_coordinates & ~trace.blocks.listed("dwell")
@@ -123,9 +124,11 @@ class HighestFeeds(Columns, frozen=True):
                 takes & ~trace.blocks.codes(*codes.spindle_on) & (trace.modal.live_tool | self._next_starts_live_tool)
             )
             is_speed = np.where(starts, takes, waits & is_speed)
-        return fill_down(
-            np.where(takes & is_speed, trace.blocks.word("S"), np.nan), takes | trace.blocks.starts, np.nan
-        )
+        speed = np.where(takes & is_speed, trace.blocks.word("S"), np.nan)
+        for name in trace.machine.live_tool_speeds:
+            named = trace.blocks.has(name)
+            takes, speed = takes | named, np.where(named, trace.blocks.word(name), speed)
+        return fill_down(speed, takes | trace.blocks.starts, np.nan)
 
     @property
     def _next_starts_live_tool(self) -> Mask:
