@@ -253,6 +253,7 @@ USES = {
     "g_code_system_a.feed_is_lead": Use([], before("G76 X50. F100").replace(" F200", "")),
     "control.axes": Use(["Y", "X", "C"], FLAT),
     "control.named_axes": Use({"C1": ""}, inside("C1=5.")),
+    "control.spindle_words": Use({"S3": "live"}, inside("S3=500")),
     "polar.on": Use(["G112"], FLAT),
     "polar.off": Use(["G113"], FLAT),
     "polar.ended_by": Use(["G18"], FLAT.replace("G13.1", "G18")),
@@ -269,6 +270,7 @@ USES = {
     "polar.contours_outside": Use(["G1"], before("G1 X50. C10. F100")),
     "polar.direction_word": Use("C", FLAT),
     "polar.words_beside_switch": Use(["X"], FLAT.replace("G12.1", "G12.1 X0")),
+    "polar.planes_not_simulated": Use(["G16"], inside("G16 C9.")),
     "polar.not_simulated_beside": Use(
         ["K"], FLAT.replace("G12.1", "G12.1 K1"), also={"polar": {"words_beside_switch": ["K"]}}
     ),

@@ -303,7 +303,8 @@ class ProgrammedPath(Columns, frozen=True):
     @cached_property
     def is_arc(self) -> Mask:
         """An arc on the polar plane."""
-        return self.mode.in_polar & self.axes.moves_plane & is_among(self.axes.motion, (Motion.CW, Motion.CCW))
+        of_plane = self.mode.in_polar & self.axes.moves_plane & self.axes.is_simulated
+        return of_plane & is_among(self.axes.motion, (Motion.CW, Motion.CCW))
 
     @cached_property
     def travels(self) -> Mask:
@@ -349,7 +350,8 @@ class ProgrammedPath(Columns, frozen=True):
     @cached_property
     def judged_z(self) -> Mask:
         """Z words that count beside a line of the plane: those that move Z, or all, where the block is forbidden."""
-        return self.axes.commands_z if self.machine.polar.repeated_z == "forbidden" else self.moves_z
+        moves = self.axes.commands_z if self.machine.polar.repeated_z == "forbidden" else self.moves_z
+        return moves & self.axes.is_simulated
 
     @cached_property
     def judged_z_of_arc(self) -> Mask:

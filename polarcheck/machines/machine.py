@@ -32,6 +32,7 @@ from polarcheck.machines.values import (
     NotNegative,
     Plain,
     Positive,
+    SpindleWord,
     SwitchWord,
     ascend,
 )
@@ -63,6 +64,7 @@ class Control(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     x: diameter or radius: what X words are outside the polar mode
     axes: names of the axes in the order of their numbers, which P, Q and parameters count; none where it is not known
     named_axes: axes that are written with = (C2=10.), by the address that each is here; empty where it is not followed
+    spindle_words: speeds that are written with = (S3=2000), by the spindle: main, sub, live, or empty if not known
     known_codes: G codes of the control, from the whole list of it; G27-G80 is a range of whole numbers
     motion_codes: codes that move but have another number here, by what they mean: G101 = "G1"
     native_words: words of the control's own language, by the code or address that they are read as: TRANSMIT = "G12.1"
@@ -89,6 +91,7 @@ class Control(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     x: Literal["diameter", "radius"]
     axes: list[AxisAddress] = []
     named_axes: dict[AxisName, AxisLetterOrNone] = {}
+    spindle_words: dict[SpindleWord, Literal["", "main", "sub", "live"]] = {}
     known_codes: list[str]
     motion_codes: dict[str, str] = {}
     native_words: dict[Plain, Plain] = {}
@@ -103,8 +106,8 @@ class Control(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
                 raise ValueError(f"native_words: {text!r} has no room in the place of {word!r}")
         if self.channel_mark and self.channel_mark == self.wait_mark:
             raise ValueError(f"channel_mark and wait_mark are both {self.channel_mark}; expected two characters")
-        if len(self.named_axes) > MOST_NAMED:
-            raise ValueError(f"named_axes: expected {MOST_NAMED} names at most")
+        if len(self.named_axes) + len(self.spindle_words) > MOST_NAMED:
+            raise ValueError(f"named_axes, spindle_words: expected {MOST_NAMED} names at most")
         for name, meant in self.motion_codes.items():
             if not is_code(name) or "-" in name or meant not in ("G0", "G1", "G2", "G3"):
                 raise ValueError(f"motion_codes: {name} = {meant!r}: expected a G code and one of G0, G1, G2, G3")
@@ -293,12 +296,18 @@ class Machine(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     def address_number(self, address: str) -> int:
         """
         What the table of executed words has for an address, be it the name of an axis that is written with =: that of
-        the address that the axis is here, NOT_NAMED or NO_AXIS for a name that control.named_axes does not have.
+        the address that the axis is here, NOT_NAMED or NO_AXIS for a name that control.named_axes does not have. The
+        speeds of control.spindle_words stand behind the axes.
         """
         if len(address) == 1:
             return ord(address)
         named = self.control.named_axes
-        return address_number(named.get(address) or address, sorted(named))
+        return address_number(named.get(address) or address, [*sorted(named), *sorted(self.control.spindle_words)])
+
+    @property
+    def live_tool_speeds(self) -> tuple[str, ...]:
+        """The speeds of live tools that are written with =, as S3."""
+        return tuple(word for word, spindle in self.control.spindle_words.items() if spindle == "live")
 
     @property
     def has_edges(self) -> bool:

@@ -34,6 +34,7 @@ class Polar(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     sub_spindle_plane: as on the main spindle (as-main), sides not known (unknown), axes not followed (not-followed)
     words_beside_switch: addresses and codes that may stand in one block with those that switch; N may always
     not_simulated_beside: those of these addresses that make another mode of it, which is not simulated
+    planes_not_simulated: codes that select another plane in the mode, as that of a cylinder, which is not simulated
     rotary_address: address of the rotary axis outside the mode: A, B, C, H, or a name that is written with =, as C2
     rotary_incremental: address of its incremental words; empty where it has none
     off_of_other_modes: codes that begin another mode which those of `off` end as well, as that of a Y axis
@@ -68,6 +69,7 @@ class Polar(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     sub_spindle_plane: Literal["as-main", "unknown", "not-followed"]
     words_beside_switch: list[str]
     not_simulated_beside: list[Address] = []
+    planes_not_simulated: list[str] = []
     rotary_address: RotaryAddress
     rotary_incremental: AddressOrNone
     off_of_other_modes: list[str] = []
