@@ -102,6 +102,7 @@ def outcome(use: Use, changes: dict[str, Any]) -> tuple[Any, ...]:
 
 FLAT = "O1\nG98 G0 X60. C0\nG12.1\nG1 X40. F200\nC10.\nX60.\nG13.1\nM30\n"
 ARC = "O1\nG98 G0 X60. C0\nG12.1\nG1 X40. F200\nG3 X20. C10. {}\nG1 X60.\nG13.1\nM30\n"
+LARGER_ARC = "O1\nG94 G0 X60. C0\nG137 C0\nG101 X20. Y0 F200\nG103 X0 Y-20. L20. CALRG\nG136\nM2\n"
 RAMPS = "O1\nT0101\nG98 G0 X100. C0\nG12.1\n{}G1 G42 X40. F200\n{}C20.\nX10.\nC-20.\nX60.\n{}G40 X100.\nG13.1\nM30\n"
 CUTTER = ("1:radius=4",)
 SETS = "O1\n{}\nT0101\nG98 G0 X100. C0\nG12.1\nG1 G42 X60. F200\nC20.\nG40 X100.\nG13.1\nM30\n"
@@ -298,6 +299,8 @@ USES = {
     "arcs.radius_word": Use("L", ARC.format("R10.")),
     "arcs.corner_words": Use(["R"], CORNERS.format(20, "G40 X60. R1.\nX50. R1.\nC30.\nG13.1"), tools=CUTTER),
     "arcs.sweep_limit": Use(45, ARC.format("I-10. J0")),
+    "arcs.takes_sweep_limit": Use(False, ARC.format("R7.0711"), also={"arcs": {"sweep_limit": 180}}),
+    "arcs.larger_arc_word": Use("", LARGER_ARC, "okuma-osp"),
     "compensation.start_up": Use("B", OUTSIDE, tools=CUTTER),
     "compensation.start_up_with_move": Use("B", OUTSIDE, tools=CUTTER, also={"compensation": {"start_up": "C"}}),
     "compensation.read_ahead": Use(5, RAMPS.format("", "M8\nM9\n", ""), tools=CUTTER),

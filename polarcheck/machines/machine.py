@@ -119,13 +119,17 @@ class CircularInterpolation(msgspec.Struct, frozen=True, kw_only=True, forbid_un
 
     tolerance: how much the radius at the end of an arc may differ from that at its start [mm]
     radius_word: address of the radius of an arc
+    larger_arc_word: word of a user task beside the radius of an arc of more than 180 deg; empty without one
     sweep_limit: largest angle of one arc [deg]
+    takes_sweep_limit: an arc by radius through exactly that angle is certain
     corner_words: words of arcs that in a straight move are the corner at its end
     """
 
     tolerance: NotNegative
     radius_word: Address
+    larger_arc_word: Plain = ""
     sweep_limit: Annotated[float, msgspec.Meta(gt=0, le=360)]
+    takes_sweep_limit: bool = True
     corner_words: list[Address]
 
 
