@@ -48,7 +48,8 @@ class Control(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     How the control reads a program.
 
     g_code_system: A, B or C: which of the tables [g_code_system_a] to [g_code_system_c] counts
-    units: mm or inch: of a program that selects neither
+    units: mm or inch: of a program that selects neither; the basic system, where codes leave F in it
+    units_of_lengths_alone: codes of units that change lengths alone: F stays in the units of the basic system
     least_increment: least input increment [mm, deg]
     least_increment_inch: least input increment of lengths [inch]
     number_without_point: whether X10 is ten least increments (least-increment) or ten mm, inch or deg (whole-unit)
@@ -76,6 +77,7 @@ class Control(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
 
     g_code_system: Literal["A", "B", "C"]
     units: Literal["mm", "inch"]
+    units_of_lengths_alone: list[str] = []
     least_increment: Positive
     least_increment_inch: Positive
     number_without_point: Literal["least-increment", "whole-unit"]
@@ -142,6 +144,9 @@ class Compensation(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fie
     read_ahead: blocks that the control knows in advance; all but two of them may be without a move
     interference: alarm or erase: what the control does about interference
     tangent_tolerance: turn up to which two blocks are tangent to each other [rad]
+    corner: lines, intersection or arc: the way round outer corners where no code says it; lines: as FANUC controls
+    corner_arc_above: turn of the contour above which a corner by intersection becomes an arc [deg]; 180: none does
+    corner_arc_from: turn of the contour below which a corner by an arc becomes an intersection [deg]
     leaving_cancels: whether G13.1 takes back an offset after whose G40 nothing has moved
     nose_types: nose types, T of the offset table, of a tool whose center is programmed
     overcut_tolerance: how deep the tool may cut into the contour before it is reported [mm]
@@ -152,6 +157,9 @@ class Compensation(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fie
     read_ahead: Annotated[int, msgspec.Meta(ge=2, le=MOST)]
     interference: Literal["alarm", "erase"]
     tangent_tolerance: Annotated[float, msgspec.Meta(ge=0, le=math.pi / 2)]
+    corner: Literal["lines", "intersection", "arc"]
+    corner_arc_above: Annotated[float, msgspec.Meta(ge=0, le=180)]
+    corner_arc_from: Annotated[float, msgspec.Meta(ge=0, le=180)]
     leaving_cancels: bool
     nose_types: Annotated[list[Annotated[int, msgspec.Meta(ge=0, le=9)]], msgspec.Meta(min_length=1)]
     # Arcs become chords that differ from them by less: at 0 there is no end of them.
