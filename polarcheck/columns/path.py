@@ -391,6 +391,16 @@ class ProgrammedPath(Columns, frozen=True):
         length[moving] = polar.length(*self._move(moving))
         return length
 
+    @cached_property
+    def rise(self) -> Floats:
+        """
+        Way of Z beside a move on the polar plane, where F measures it, too [mm]; 0 elsewhere, NaN while Z is not known.
+        """
+        if self.machine.polar.feed_measures == "plane":
+            return repeated(np.float64(0), len(self.run))
+        beside = self.mode.in_polar & self.axes.moves_plane & self.moves_z
+        return np.where(beside, np.abs(self.z - self.z_before), 0.0)
+
     def _move(self, rows: Mask) -> tuple[Points, Points, Points, States]:
         return self.start[rows], self.end[rows], self.center[rows], self.axes.motion[rows]
 

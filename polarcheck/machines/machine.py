@@ -6,7 +6,7 @@ What a key means stands in the docstring of its class and, in the same words, at
 
 import math
 import re
-from typing import Annotated, Literal
+from typing import Annotated, Literal, TypeAlias
 
 import msgspec
 
@@ -217,6 +217,12 @@ class Limits(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
         ascend(self, ("x_minimum", "x_maximum"), ("z_minimum", "z_maximum"))
 
 
+#: What a word of a dwell counts. seconds, hundredths: with a point and without. thousandths: without a point; with one
+#: it is not known. thousandths-or-seconds: seconds with a point. as-lengths: seconds with a point; without one least
+#: increments, 0.001 s, or seconds, as control.number_without_point says. turns: of the spindle.
+DwellUnit: TypeAlias = Literal["seconds", "hundredths", "thousandths", "thousandths-or-seconds", "as-lengths", "turns"]
+
+
 class Feed(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """
     Feeds; NaN where the builder recommends none.
@@ -226,6 +232,8 @@ class Feed(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     positioning_minimum: lowest F that the builder recommends for positioning in the polar mode [mm/min]
     positioning_maximum: highest F that the builder recommends for positioning in the polar mode [mm/min]
     carried_into_polar: F from before G12.1 that holds behind it: any (modal) or none per revolution (per-minute-only)
+    dwell_words: word of a dwell -> seconds, hundredths, thousandths, thousandths-or-seconds, as-lengths or turns
+    dwell_per_revolution: what these words count where feed per revolution is in force: times, or turns of the spindle
     """
 
     cutting_minimum: NotNegative = math.nan
@@ -233,6 +241,8 @@ class Feed(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     positioning_minimum: NotNegative = math.nan
     positioning_maximum: Positive = math.nan
     carried_into_polar: Literal["modal", "per-minute-only"] = "modal"
+    dwell_words: dict[Address, DwellUnit]
+    dwell_per_revolution: Literal["times", "turns"]
 
     def __post_init__(self) -> None:
         ascend(self, ("cutting_minimum", "cutting_maximum"), ("positioning_minimum", "positioning_maximum"))

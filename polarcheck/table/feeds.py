@@ -118,8 +118,10 @@ class Feeds(Columns, frozen=True):
         trace = self.trace
         rows = np.flatnonzero(trace.path.moves_at_feed & (trace.feedrate.feed_number > 0))
         time = np.zeros(len(trace))
-        depth = np.where(trace.path.moves_z[rows], trace.path.z[rows] - trace.path.z_before[rows], 0.0)
-        time[rows] = 60 * np.hypot(trace.path.length[rows], depth) / trace.feedrate.feed_number[rows]
+        depth = np.where(trace.path.moves_z[rows], np.abs(trace.path.z[rows] - trace.path.z_before[rows]), 0.0)
+        length = trace.path.length[rows]
+        way = np.where(length == 0, depth, np.hypot(length, trace.path.rise[rows]))
+        time[rows] = 60 * way / trace.feedrate.feed_number[rows]
         return time
 
     @cached_property

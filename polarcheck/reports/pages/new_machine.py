@@ -71,12 +71,16 @@ _QUESTIONS: dict[str, dict[str, Any]] = {
         "positioning_minimum": 750,
         "positioning_maximum": 1500,
         "carried_into_polar": "modal",
+        **dict.fromkeys(("dwell_words", "dwell_per_revolution")),
     },
     "polar": {
         **dict.fromkeys(("on", "off", "virtual_axis", "virtual_axis_incremental", "x", "virtual_axis_programming")),
         "allowed_codes": ["+G93", "-G80"],
         **dict.fromkeys(
-            ("words_beside_switch", "plane_before", "other_axes", "repeated_z", "linear_axis", "rotary_axis")
+            (
+                *("words_beside_switch", "plane_before", "other_axes", "feed_measures", "repeated_z"),
+                *("linear_axis", "rotary_axis"),
+            )
         ),
         "main_spindle_must_stop": None,
     },
