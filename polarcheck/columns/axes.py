@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from polarcheck.arrays import Columns, Floats, Mask, Rows, States, computed, different, is_among, repeated
 from polarcheck.columns.blocks import ExecutedBlocks
 from polarcheck.columns.coordinates import Coordinates
-from polarcheck.columns.filling import fill_down
+from polarcheck.columns.filling import fill_down, happened
 from polarcheck.columns.modal import ModalStates
 from polarcheck.execution.run import Run
 from polarcheck.machines.axes import AXES, INCREMENTS, axis_of, numbers_of
@@ -350,10 +350,19 @@ class PlaneAxes(Columns, frozen=True):
     @cached_property
     def is_simulated(self) -> Mask:
         """What the row does in the mode is simulated; True outside the mode."""
-        if not self.words_not_simulated.any():
+        ends = self.switches_on | self.ends_mode | self.blocks.starts
+        if not (self.words_not_simulated.any() or self.selects_plane_not_simulated.any()):
             return np.ones(len(self.run), bool)
         begins = self.blocks.with_words(self.words_not_simulated)
-        return ~fill_down(begins, self.switches_on | self.ends_mode | self.blocks.starts, False).astype(bool)
+        is_other_mode = fill_down(begins, ends, False).astype(bool)
+        other_plane = self.selects_plane_not_simulated
+        return ~(is_other_mode | happened(other_plane, ends | (self.blocks.listed("plane_xy") & ~other_plane)))
+
+    @cached_property
+    def selects_plane_not_simulated(self) -> Mask:
+        """Rows of the mode that select a plane which is not simulated, as that of a cylinder."""
+        selects = self.blocks.codes(*self.machine.polar.planes_not_simulated)
+        return selects & happened(self.switches_on, self.ends_mode | self.blocks.starts) if selects.any() else selects
 
     @cached_property
     def moves_plane(self) -> Mask:

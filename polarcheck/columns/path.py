@@ -320,7 +320,8 @@ class ProgrammedPath(Columns, frozen=True):
     @cached_property
     def is_arc(self) -> Mask:
         """An arc on the polar plane."""
-        return self.mode.in_polar & self.axes.moves_plane & is_among(self.axes.motion, (Motion.CW, Motion.CCW))
+        of_plane = self.mode.in_polar & self.axes.moves_plane & self.axes.is_simulated
+        return of_plane & is_among(self.axes.motion, (Motion.CW, Motion.CCW))
 
     @cached_property
     def travels(self) -> Mask:
@@ -366,7 +367,8 @@ class ProgrammedPath(Columns, frozen=True):
     @cached_property
     def judged_z(self) -> Mask:
         """Z words that count beside a line of the plane: those that move Z, or all, where the block is forbidden."""
-        return self.axes.commands_z if self.machine.polar.repeated_z == "forbidden" else self.moves_z
+        moves = self.axes.commands_z if self.machine.polar.repeated_z == "forbidden" else self.moves_z
+        return moves & self.axes.is_simulated
 
     @cached_property
     def judged_z_of_arc(self) -> Mask:
@@ -388,6 +390,16 @@ class ProgrammedPath(Columns, frozen=True):
         length = np.zeros(len(self.run))
         length[moving] = polar.length(*self._move(moving))
         return length
+
+    @cached_property
+    def rise(self) -> Floats:
+        """
+        Way of Z beside a move on the polar plane, where F measures it, too [mm]; 0 elsewhere, NaN while Z is not known.
+        """
+        if self.machine.polar.feed_measures == "plane":
+            return repeated(np.float64(0), len(self.run))
+        beside = self.mode.in_polar & self.axes.moves_plane & self.moves_z
+        return np.where(beside, np.abs(self.z - self.z_before), 0.0)
 
     def _move(self, rows: Mask) -> tuple[Points, Points, Points, States]:
         return self.start[rows], self.end[rows], self.center[rows], self.axes.motion[rows]

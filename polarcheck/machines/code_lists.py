@@ -44,7 +44,7 @@ class GCodes(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     frame_not_simulated: frames whose way is not simulated: scaling, mirror image
     tool_length_offset: tool length offset; H beside it is an offset number
     tool_length_offset_off: tool length offset cancel
-    dwell: dwell; X, P and F beside it are a time
+    dwell: dwell; which words beside it are a time is feed.dwell_words
     data_input: data input by the program, of what L says
     data_input_work_offset: numbers of L by which data input sets work offsets
     data_input_tool_offset: numbers of L by which data input sets tool offsets

@@ -166,6 +166,7 @@ def _with_standing(trace: Trace, dynamics: Dynamics) -> tuple[Moves, Rows]:
         "end": place,
         "center": nowhere,
         "feed": trace.feedrate.feed[row],
+        "rise": 0.0,
         "known": np.where(follows, known, True) & ~np.isnan(place),
         "phase": off,
         "corner": False,
