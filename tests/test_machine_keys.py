@@ -183,6 +183,8 @@ USES = {
     "control.known_codes": Use(["G0-G119"], before("G160")),
     "control.motion_codes": Use({"G101": "G1"}, inside("G101 C5.")),
     "control.native_words": Use({"POLAR": "G12.1"}, FLAT.replace("G12.1", "POLAR")),
+    "control.parentheses_are_comments": Use(False, FLAT.replace("C0", "C0 (APPROACH)")),
+    "g_codes.constant_surface_speed_ended_by": Use(["G98"], before("G96 S100", "G98")),
     "control.units_of_lengths_alone": Use(["G20"], before("G20")),
     "control.x_radius_words": Use(["G7"], before("G7", "X50.")),
     "control.x_diameter_words": Use(["G8"], before("G8", "X50."), also={"control": {"x": "radius"}}),

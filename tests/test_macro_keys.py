@@ -15,6 +15,8 @@ _SUB = "M30\nO2\nG0 X#24 Z#4 U#7\nM99\n"
 #: Key -> what it is changed to, and the program; X, Z and U of its rows, or what is said, are no longer the same.
 KEYS: dict[str, tuple[Any, str]] = {
     "language": ("high-level", "R1=5\nG0 X=R1\nM30\n"),
+    "parameter_letter": ("R", "G98 G0 X60. C0\nG12.1\nG1 X40. F200\nG3 X20. C10. R20.\nG1 X60.\nG13.1\nM30\n"),
+    "master_spindle_word": ("SETMS", "SETMS(3)\nM3\nG0 X60. C0\nG12.1\nG1 X40. F200\nC10.\nX60.\nG13.1\nM30\n"),
     "named_words": ({"QX": "X"}, "G0 QX=5.\nM30\n"),
     "other_language": ("G290", "G290 X=5.\nG0 X5.\nM30\n"),
     "statements": ({"DWELL": "none"}, "DWELL\nG0 X5.\nM30\n"),
@@ -64,7 +66,8 @@ def test_no_key_is_forgotten() -> None:
 @pytest.mark.parametrize("key", KEYS)
 def test_changing_a_key_changes_a_result(key: str) -> None:
     value, program = KEYS[key]
-    language = {"named_words": "user-task", "other_language": "high-level", "statements": "high-level"}.get(key)
+    high_level = ("other_language", "statements", "master_spindle_word")
+    language = {"named_words": "user-task", **dict.fromkeys(high_level, "high-level")}.get(key)
     others = {"language": language} if language else {}
     assert outcome(program, {"macro": others}) != outcome(program, {"macro": {**others, key: value}})
 

@@ -174,3 +174,91 @@ def test_arguments_have_their_values(call: str, head: str, end: complex, tmp_pat
 
 def test_a_head_with_a_letter_is_read() -> None:
     assert rules(report_of("PROC X(REAL A)\n" + PROGRAM.format(before="", inside=""), MACHINE, "8:radius=4")) == []
+
+
+# ---- what stands before and behind the sections of a whole program ----
+
+
+@pytest.mark.parametrize(
+    "before",
+    [
+        "G0 SUPA X300 Z400",
+        "SUPA G0 Z=R1",
+        "G96 S150\nG94 S2=796 M2=3",
+        "G96 S150 LIMS=3000\nG97",
+        "POS[C]=0",
+        "POSA[C]=30",
+        'CYCLE95("CONTOUR",2,0.1,0.1,0,0.3,0.2,0.1,9)',
+        "CYCLE97(2,1,0,-20,30,30,0,0,1.2,0.1,30,0,5,1,3,1)",
+        "MCALL CYCLE83(5,0,2,-20)\nX30 C0\nX30 C90\nMCALL",
+        "MCALL",
+        "HOLES2(0,0,20,0,60,6)",
+    ],
+)
+def test_what_stands_outside_the_mode_leaves_the_section_alone(before: str) -> None:
+    found = report(before)
+    assert (rules(found), found.verdict) == ([], "pass")
+
+
+@pytest.mark.parametrize("block", ["CYCLE81(5,0,2,-20)", "HOLES1(0,0,20,0,60,6)"])
+def test_a_cycle_matters_where_nothing_says_the_position_behind_it(block: str) -> None:
+    text = PROGRAM.format(before="", inside="").replace("TRANSMIT", f"{block}\nTRANSMIT")
+    assert report_of(text, MACHINE, "8:radius=4,nose=0").verdict == "unverified"
+    assert report(inside=block).verdict == "unverified"
+
+
+def test_g96_alone_is_still_in_force() -> None:
+    assert rules(report("G94\nG96 S150")) == ["modal-state-wrong-at-entry"]
+
+
+def test_x_may_be_open_at_transmit() -> None:
+    """The first move in the mode positions both axes: public post, `T= D1`, `TRANSMIT`, `G0 X40 Y10`."""
+    text = PROGRAM.format(before="", inside="G0 X40 Y0 Z5\n").replace("G0 X40 C0 Z5\nTRANSMIT", "G0 Z5\nTRANSMIT")
+    found = report_of(text, MACHINE, "8:radius=4,nose=0")
+    assert found.verdict == "pass"
+    assert {finding.severity for finding in found.findings} <= {"note"}
+
+
+@pytest.mark.parametrize("block", ["G110 X0 Y0", "G53 G0 Z50", "SUPA G0 Z50"])
+def test_poles_and_z_of_the_machine_may_stand_in_the_mode(block: str) -> None:
+    assert rules(report(inside=f"{block}\nG0 Z5")) == []
+
+
+def test_a_helix_is_an_ordinary_move() -> None:
+    text = (
+        "T8 D1\nG94\nDIAMOF\nG0 X20 C0 Z5\nTRANSMIT\nG17\nG1 X20 Y0 F300\nG3 X20 Y0 Z-5 I-20 J0\nG0 Z20\nTRAFOOF\nM30\n"
+    )
+    assert rules(report_of(text, MACHINE, "8:radius=4,nose=0")) == []
+
+
+def test_call_block_runs_the_blocks_between_two_labels() -> None:
+    contour = "LABEL1:\nG1 G42 X20 Y1 F300\nY10\nX-10\nY-10\nX20\nY1\nG40 X40\nLABEL0:\n"
+    head, foot = "T8 D1\nG94\nDIAMOF\nG0 X40 C0 Z5\nTRANSMIT\nG17\n", "TRAFOOF\nM30\n"
+    called = head + "CALL BLOCK LABEL1 TO LABEL0\n" + foot + contour + "M17\n"
+    ours, theirs = (trace_of(text, MACHINE, "8:radius=4") for text in (called, head + contour + foot))
+    assert ours.path.end[ours.path.on_plane].tolist() == theirs.path.end[theirs.path.on_plane].tolist()
+
+
+# ---- messages ----
+
+
+@pytest.mark.parametrize(
+    "block",
+    [
+        "WHILE R1<5",
+        "IF R1==1",
+        "ENDIF",
+        "LOOP",
+        "FOR R1=1 TO 5",
+        "X=R1+",
+        "R[-1]=5",
+        "R99999999=5",
+        "X=(R1",
+        "G0 X=R99",
+    ],
+)
+def test_no_message_has_words_of_custom_macro(block: str) -> None:
+    found = report(block)
+    texts = [finding.message for finding in found.findings] + [missing.reason for missing in found.not_evaluated]
+    for word in ("#", "custom macro", "macro statement", "500 = 1.5", "run.variables", "END of its own number", " DO "):
+        assert not [text for text in texts if word in text]

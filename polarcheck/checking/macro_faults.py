@@ -223,10 +223,12 @@ class Faults:
     def reason(self, index: int) -> str:
         """What is wrong, in words."""
         values = self.values(index).items()
-        told = {name: shortened(one, _LONGEST) if isinstance(one, str) else one for name, one in values}
-        return _REASONS[self.run.faults[index].kind].format_map(told)
+        shown = {name: shortened(one, _LONGEST) if isinstance(one, str) else one for name, one in values}
+        text = _REASONS[self.run.faults[index].kind].format_map(shown)
+        return text if self._macro.language == "custom-macro" else text.replace("macro statement", "statement")
 
 
-def reason_of(remark: Remark) -> str:
+def reason_of(remark: Remark, machine: Machine) -> str:
     """Why something was not executed, in words."""
-    return _REMARKS[remark.kind].format_map({"variables": _VARIABLES, **remark.values})
+    variables = _VARIABLES if machine.macro.language == "custom-macro" else ""
+    return _REMARKS[remark.kind].format_map({"variables": variables, **remark.values})

@@ -11,7 +11,7 @@ import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Rows
 from polarcheck.checking.macro_faults import ENDLESS_LOOP, Faults, reason_of
-from polarcheck.checking.not_known import OF_MOVES, OF_VARIABLES, cause_of, why
+from polarcheck.checking.not_known import OF_MOVES, cause_of, of_variables, why
 from polarcheck.checking.phrases.common import block_and_line
 from polarcheck.checking.phrases.drawing import compared_with
 from polarcheck.checking.phrases.offsets import offset, to_give
@@ -32,6 +32,7 @@ from polarcheck.checking.tables import Tables
 from polarcheck.columns.filling import before
 from polarcheck.columns.trace import Trace
 from polarcheck.errors import TooHardError
+from polarcheck.execution.run import Remark
 from polarcheck.finding import Finding, NotEvaluated, Undecided
 from polarcheck.geometry.tolerances import CHORDS, CROSSINGS, FARTHEST
 from polarcheck.machines.machine import Machine, OwnMachine
@@ -118,6 +119,18 @@ def told(missing: Iterable[Missing], machine: Machine) -> Iterator[NotEvaluated]
         yield NotEvaluated(rule=rule, reason=reason, blocks=count, matters=matters)
 
 
+def _is_done_before(trace: Trace, remark: Remark) -> bool:
+    """A cycle outside the mode, behind which the positions are known again before the next section begins."""
+    if not remark.values.get("is_cycle"):
+        return False
+    rows = np.flatnonzero(trace.run.block == remark.block)
+    enter = trace.mode.sections.enter
+    next_ = enter[np.minimum(np.searchsorted(enter, rows), max(len(enter) - 1, 0))] if len(enter) else rows
+    follows = next_ > rows
+    place = trace.path.x_before[next_] + trace.path.z[next_] + trace.path.c_angle[next_]
+    return len(rows) > 0 and not bool(np.any((trace.mode.section[rows] >= 0) | (follows & np.isnan(place))))
+
+
 def unexecuted(tables: Tables) -> Iterator[NotEvaluated]:
     """Report the blocks that were not executed, and those that were executed without full knowledge."""
     trace: Trace = tables["trace"]
@@ -127,7 +140,13 @@ def unexecuted(tables: Tables) -> Iterator[NotEvaluated]:
             rule="all", reason=f"the file is written for {language.title}: convert it for this lathe", blocks=len(trace)
         )
         return
-    remarks = Counter((reason_of(remark), bool(remark.values.get("matters", True))) for remark in trace.run.remarks)
+    remarks = Counter(
+        (
+            reason_of(remark, trace.machine),
+            bool(remark.values.get("matters", True)) and not _is_done_before(trace, remark),
+        )
+        for remark in trace.run.remarks
+    )
     for (reason, matters), count in remarks.items():
         yield NotEvaluated(rule="all", reason=reason, blocks=count, matters=matters)
     for reason, count in (
@@ -174,7 +193,7 @@ def offsets_not_known(trace: Trace) -> tuple[str, int]:
     if not len(rows):
         return "", 0
     setting = f"which offset {block_and_line(trace.blocks, trace.run, int(rows[0]))} sets is not known"
-    return f"{setting}, those in force are taken as given: {OF_VARIABLES}", len(rows)
+    return f"{setting}, those in force are taken as given: {of_variables(trace.machine)}", len(rows)
 
 
 def unevaluated(tables: Tables, rule: Rule) -> Iterator[Missing]:

@@ -13,6 +13,7 @@ from polarcheck.checking.phrases.offsets import called_tool, example, offset, to
 from polarcheck.checking.places import block_in_line
 from polarcheck.checking.tables import Tables
 from polarcheck.columns.trace import Trace
+from polarcheck.machines.machine import Machine
 
 #: Why a column is not known in a row.
 _Reason: TypeAlias = Callable[[Tables, int], str]
@@ -21,7 +22,9 @@ _Reason: TypeAlias = Callable[[Tables, int], str]
 _OF_OFFSETS = ("compensation.radius", "offsets.cutter_diameter", "offsets.nose")
 OF_MOVES = ("tool_center.c_feed", "tool_center.c_acceleration", "tool_center.x_acceleration")
 #: What to give where a value of the program is not known.
-OF_VARIABLES = "give its variables as [run.variables] in polarcheck.toml, or write the number"
+_OF_VARIABLES = "give its variables as [run.variables] in polarcheck.toml, or write the number"
+#: Variables of other languages have names, and no number for the job.
+_OF_NAMED = "give its variables a value in the program, or write the number"
 #: Causes, beside the offset numbers, for which a move is not known.
 _DEPTH, _POSITION, _NO_FEED, _FEED_OF_SPINDLE = -4, -3, -2, -1
 #: Of a block that is named; more is cut off [characters].
@@ -62,6 +65,11 @@ def _of_move(tables: Tables, row: int) -> str:
     return _position(tables, row) if cause == _POSITION else _feed(tables, row)
 
 
+def of_variables(machine: Machine) -> str:
+    """What to do where a value is not known."""
+    return _OF_VARIABLES if machine.macro.language == "custom-macro" else _OF_NAMED
+
+
 def _no_offset(what: str, key: str, of_program: Callable[[Trace], Rows] | None = None) -> _Reason:
     """of_program: gives the row in which the program has set it, -1 where it has not."""
 
@@ -84,7 +92,8 @@ def _not_known_from_program(trace: Trace, row: int, setter: int, what: str, key:
     unknown = trace.offsets.row_of_unknown_setting(int(trace.tools.offset_number[row]), setter, key)
     missing = f"no {what} for offset {offset(trace.tools, row)}"
     if unknown >= 0:
-        return f"{missing}: {block_and_line(trace.blocks, trace.run, unknown)} sets what is not known; {OF_VARIABLES}"
+        block = block_and_line(trace.blocks, trace.run, unknown)
+        return f"{missing}: {block} sets what is not known; {of_variables(trace.machine)}"
     setting = block_and_line(trace.blocks, trace.run, setter)
     return f"{missing}: {setting} sets wear or a difference alone; {to_give(trace.tools, trace.machine, row, key)}"
 
@@ -101,7 +110,7 @@ def _position(tables: Tables, row: int) -> str:
         row = int(at_or_before[-1])
     if row in open_ends and not trace.run.unknown[row]:
         block = block_and_line(trace.blocks, trace.run, row)
-        return f"the position is not known: {block} leaves open where the tool goes; {OF_VARIABLES}"
+        return f"the position is not known: {block} leaves open where the tool goes; {of_variables(trace.machine)}"
     lost = np.flatnonzero((trace.run.unknown & (trace.blocks.program == trace.blocks.program[row]))[: row + 1])
     if not len(lost):
         axis = linear(trace.axes, row)
@@ -124,7 +133,8 @@ def _position(tables: Tables, row: int) -> str:
 
 def _origin(tables: Tables, row: int) -> str:
     causes = " and ".join(tables["entry"].origin.unknown_causes(row))
-    return f"where X0 lies is not known: {causes} sets X to what is not known; {OF_VARIABLES}"
+    remedy = of_variables(tables["trace"].machine)
+    return f"where X0 lies is not known: {causes} sets X to what is not known; {remedy}"
 
 
 def _feed(tables: Tables, row: int) -> str:

@@ -63,6 +63,11 @@ class ModalStates(Lookups):
             rows = self.run.row[self.blocks.g_words[chosen]]
             values[rows] = state_of[self.blocks.g_codes[chosen]]
             written[rows] = True
+        if group == "speed":
+            # Where G94 is of one group with G96 it has the feed mode for its own state, and ends this one.
+            ended = self.blocks.listed("constant_surface_speed_ended_by") & ~written
+            values[ended] = 0
+            written |= ended
         state = fill_down(values, written | self.blocks.starts, _BEFORE.get(group, 0))
         self._columns[f"sets {group}"] = written
         self._columns[f"state {group}"] = state

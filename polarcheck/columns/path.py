@@ -27,6 +27,7 @@ from polarcheck.geometry import polar
 from polarcheck.geometry.plane import angle_between
 from polarcheck.geometry.tolerances import ZERO
 from polarcheck.machines.axes import INCREMENTS
+from polarcheck.machines.code_lists import numbers
 from polarcheck.machines.machine import Machine
 from polarcheck.machines.modal import Distance, Motion
 
@@ -98,7 +99,17 @@ class ProgrammedPath(Columns, frozen=True):
         if axis in "XZ":
             cycle = (self.axes.motion == Motion.CYCLE) | self.blocks.listed("repetitive_cycle")
             lost |= cycle | self.tools.changes_tool
-        return (lost & (self.mode.section < 0)) | self.run.unknown | self.blocks.starts
+        outside = self.mode.section < 0
+        if (allowed := self._machine_coordinates_in_mode).any():
+            outside |= allowed
+        return (lost & outside) | self.run.unknown | self.blocks.starts
+
+    @property
+    def _machine_coordinates_in_mode(self) -> Mask:
+        """Moves in machine coordinates in the mode, where the profile allows them there."""
+        allowed = set(numbers(self.machine.polar.allowed_codes))
+        codes = [code for code in self.machine.codes("machine_coordinates") if allowed.issuperset(numbers([code]))]
+        return self.blocks.codes(*codes) & self.mode.in_polar
 
     def _set_by(self, axis: str) -> Floats:
         """What G50 (G92) or G28 make the coordinate of an axis; NaN where that is not known."""

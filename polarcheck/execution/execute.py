@@ -140,7 +140,7 @@ def _execute_block(state: State, block: int) -> int:
     if state.skip and any(skip.start < statement.start for skip in statement.skips):
         return block + 1
     for unread in statement.unread:
-        state.add_remark("not-simulated", block, name=unread.name, matters=unread.matters)
+        state.add_remark("not-simulated", block, name=unread.name, matters=unread.matters, is_cycle=unread.is_cycle)
     state.jumped = False
     for part in (statement, *statement.more):
         next_block = _execute(state, part, block)

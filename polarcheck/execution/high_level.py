@@ -154,10 +154,12 @@ class _Reader(SpokenBlock):
         elif self.takes_value():
             self.assignment(first)
         elif (effect := self.effect(first.text)) is not None:
-            self.arguments()
-            if effect == "words" or (effect == "moves" and self.token.kind == "name"):
+            given = self.arguments()
+            if effect == "words" or (effect in ("moves", "cycle", "calls") and self.token.kind == "name"):
                 self.at = len(self.tokens) - 1
-            self.leave_unread(first.text, first, effect)
+            elif effect == "calls" and not given:  # MCALL alone takes back what was called
+                return
+            self.leave_unread(first.text, first, "cycle" if effect == "calls" else effect)
         else:
             call_by_name(self, first.text, first)
 

@@ -237,12 +237,25 @@ def call_by_name(block: SpokenBlock, name: str, first: Token) -> None:
 
 def _call(block: SpokenBlock, first: Token) -> None:
     """CALL "NAME", also with a path before it."""
+    if block.token.text == "BLOCK":
+        _call_block(block, first)
+        return
     if block.token.kind != "string":
         block.leave_rest(first)
         return
     name = block.token.text.rpartition("/")[2].upper().removeprefix("_N_")
     block.at += 1
     call_by_name(block, name.removesuffix("_SPF").removesuffix("_MPF"), first)
+
+
+def _call_block(block: SpokenBlock, first: Token) -> None:
+    """CALL BLOCK ONE TO TWO: the blocks between two labels of this program."""
+    names = block.tokens[block.at + 1 : block.at + 5]
+    if [token.kind for token in names] != ["name", "name", "name", "end"] or names[1].text != "TO":
+        block.leave_rest(first)
+        return
+    block.at += 4
+    block.add(Statement(Kind.REPEAT, first.start, end_of(block), label=names[0].text, until=names[2].text))
 
 
 def _return(block: SpokenBlock, first: Token) -> None:

@@ -84,7 +84,8 @@ class SpokenBlock(Tokens):
         """Name what is not simulated, by its effect (macro.statements); nothing is said of what has none."""
         if effect != "none":
             shown = shortened(name, _SHOWN)
-            self.unread.append(Unread(shown, first.start, (last or first).end, effect in ("words", "moves"), matters))
+            moves, is_cycle = effect in ("words", "moves", "cycle"), effect == "cycle"
+            self.unread.append(Unread(shown, first.start, (last or first).end, moves, matters, is_cycle))
 
     def leave_rest(self, first: Token) -> None:
         """Name all from a token on as not simulated."""

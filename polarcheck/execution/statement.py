@@ -121,6 +121,7 @@ class Unread(msgspec.Struct, frozen=True):
     start, end: its characters within the block, end exclusive.
     moves: the positions of the axes are unknown after it.
     matters: a finding may be missing because of it.
+    is_cycle: only the positions are unknown after it, until they are programmed again.
     """
 
     name: str
@@ -128,6 +129,7 @@ class Unread(msgspec.Struct, frozen=True):
     end: int
     moves: bool = False
     matters: bool = True
+    is_cycle: bool = False
 
 
 class Statement(msgspec.Struct, frozen=True):

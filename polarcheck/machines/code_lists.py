@@ -27,6 +27,7 @@ class GCodes(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     feed_inverse_time: F is the inverse of the time that the block takes
     constant_surface_speed: S is a surface speed, so that the spindle turns faster near the center
     constant_surface_speed_off: S is a spindle speed
+    constant_surface_speed_ended_by: codes of feed that end it, too, where all are one group
     work_offset: work coordinate systems; the first is in force where the program selects none
     work_offset_extended: further work coordinate systems, selected by P
     drilling_cycle: canned cycles for drilling, boring and tapping
@@ -75,6 +76,7 @@ class GCodes(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     feed_inverse_time: list[str]
     constant_surface_speed: list[str]
     constant_surface_speed_off: list[str]
+    constant_surface_speed_ended_by: list[str]
     work_offset: list[str]
     work_offset_extended: list[str]
     drilling_cycle: list[str]

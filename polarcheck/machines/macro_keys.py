@@ -29,7 +29,7 @@ class Macro(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     master_spindle_word: word that makes another spindle than 1 that of M3, M4, M5 and S, as SETMS(3); empty: none does
     named_words: words of several letters with = in such a language, by the address that each is read as; empty: none
     other_language: code that begins the other language of a control that has two; empty where it has one
-    statements: statement (* for any rest) or first word of one -> what is not followed: none, path, words, moves
+    statements: statement (* for any rest) or first word of one -> what is not followed, as below
     local_variables: ranges, first and last number, of local variables, of which each macro call has its own
     common_variables: ranges of common variables that are vacant at power-on
     retained_variables: ranges of common variables that outlive the power-off: not known until a program assigns them
@@ -61,7 +61,9 @@ class Macro(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     given: variable -> its value, as the job or the machine knows it
 
     Of a statement, none: it moves nothing and changes no path. path: the path or the feed changes, and the positions
-    stay. moves: nobody knows where the axes stand after it. words: the same, and the words behind it are its own.
+    stay. moves: nobody knows where the axes stand after it. words: the same, and the words behind it are its own. Then
+    there are cycle, which is as moves, but outside the mode the positions alone are open until they are programmed
+    again, and calls, which is the same of what it names, and nothing without a name.
     """
 
     language: Literal["custom-macro", "high-level", "user-task"]
@@ -69,7 +71,7 @@ class Macro(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     master_spindle_word: Plain = ""
     named_words: dict[Plain, AddressOrNone] = {}
     other_language: LanguageCode = ""
-    statements: dict[Plain, Literal["none", "path", "words", "moves"]] = {}
+    statements: dict[Plain, Literal["none", "path", "words", "moves", "cycle", "calls"]] = {}
     local_variables: Ranges
     common_variables: Ranges
     retained_variables: Ranges

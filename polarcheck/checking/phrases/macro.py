@@ -26,6 +26,13 @@ def reason(faults: Faults, index: int) -> str:
     return faults.reason(index)
 
 
+def closing_loops(machine: Machine) -> str:
+    """How loops are closed in the language of the control."""
+    if machine.macro.language == "custom-macro":
+        return "close each loop with an END of its own number"
+    return "close each IF, WHILE, FOR and LOOP with its own word"
+
+
 def number(faults: Faults, index: int) -> int:
     """The N number or the variable of a fault."""
     return round(float(faults.values(index)["number"]))
@@ -57,6 +64,8 @@ def who_writes(faults: Faults, index: int) -> str:
 def ranges(machine: Machine) -> str:
     """The variables that there are."""
     macro = machine.macro
+    if macro.language == "high-level":
+        return "parameters from R0 on"
     kinds = {
         "local": macro.local_variables,
         "common": [*macro.common_variables, *macro.retained_variables],
@@ -67,4 +76,4 @@ def ranges(machine: Machine) -> str:
         for name, numbers in kinds.items()
         if numbers
     )
-    return ", ".join((*(["parameters from R0 on"] if macro.language == "high-level" else []), *parts))
+    return ", ".join(parts)

@@ -5,7 +5,7 @@ from polarcheck.checking.rule import ERROR, Faults, Mask, rule
 
 @rule(
     ERROR,
-    "{reason}; the control stops here: close each loop with an END of its own number, the inner loop first",
+    "{reason}; the control stops here: {closing_loops}, the inner one first",
     over="faults",
     once="structure",
     follows={"block": ("loop-number-out-of-range",)},

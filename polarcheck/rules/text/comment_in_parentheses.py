@@ -20,7 +20,7 @@ def comment_in_parentheses(written: Written) -> Hits:
 
     Bad, machine siemens-transmit:
 
-        (HEXAGON, 24 ACROSS)
+        (HEXAGON, 24 ACROSS)   (expect: comment-in-parentheses)
         G94 S2=1000
         G0 X60 C0
         M30
