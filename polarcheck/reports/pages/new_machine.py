@@ -76,12 +76,21 @@ _QUESTIONS: dict[str, dict[str, Any]] = {
         **dict.fromkeys(("on", "off", "virtual_axis", "virtual_axis_incremental", "x", "virtual_axis_programming")),
         "allowed_codes": ["+G93", "-G80"],
         **dict.fromkeys(
-            ("words_beside_switch", "plane_before", "other_axes", "repeated_z", "linear_axis", "rotary_axis")
+            (
+                "words_beside_switch",
+                "plane_before",
+                "other_axes",
+                "repeated_z",
+                "center_error",
+                "linear_axis",
+                "rotary_axis",
+            )
         ),
         "main_spindle_must_stop": None,
     },
     "control": {
         **dict.fromkeys(("g_code_system", "units", "x", "number_without_point", "m_code_limit", "offset_digits")),
+        "rotary_rolls_over": None,
         "axes": [],
         "known_codes": ["+G150"],
     },
