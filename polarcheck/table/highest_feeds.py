@@ -50,9 +50,8 @@ class HighestFeeds(Columns, frozen=True):
     def limits(self) -> Floats:
         """Highest F by each of LIMITS [mm/min], a row of the array each; inf without a limit, NaN unknown."""
         trace, moves, limits = self.trace, self.dynamics.moves, self.trace.machine.limits
-        ones = np.ones(len(moves))
         c_bend, x_share, x_bend = (
-            np.where(moves.known, of(*moves.shape, ones), np.nan)
+            np.where(moves.known, of(*moves.shape, moves.plane_share), np.nan)
             for of in (rates.c_acceleration, rates.x_feed, rates.x_acceleration)
         )
         found = np.full((len(LIMITS), len(trace)), np.inf)

@@ -71,19 +71,15 @@ _QUESTIONS: dict[str, dict[str, Any]] = {
         "positioning_minimum": 750,
         "positioning_maximum": 1500,
         "carried_into_polar": "modal",
+        **dict.fromkeys(("dwell_words", "dwell_per_revolution")),
     },
     "polar": {
         **dict.fromkeys(("on", "off", "virtual_axis", "virtual_axis_incremental", "x", "virtual_axis_programming")),
         "allowed_codes": ["+G93", "-G80"],
         **dict.fromkeys(
             (
-                "words_beside_switch",
-                "plane_before",
-                "other_axes",
-                "repeated_z",
-                "center_error",
-                "linear_axis",
-                "rotary_axis",
+                *("words_beside_switch", "plane_before", "other_axes", "feed_measures", "repeated_z"),
+                *("center_error", "linear_axis", "rotary_axis"),
             )
         ),
         "main_spindle_must_stop": None,
@@ -95,7 +91,10 @@ _QUESTIONS: dict[str, dict[str, Any]] = {
         "known_codes": ["+G150"],
     },
     "arcs": dict.fromkeys(("tolerance", "sweep_limit")),
-    "compensation": dict.fromkeys(("start_up", "start_up_with_move", "read_ahead", "interference", "leaving_cancels")),
+    "compensation": {
+        **dict.fromkeys(("start_up", "start_up_with_move", "corner", "corner_arc_above", "corner_arc_from")),
+        **dict.fromkeys(("read_ahead", "interference", "leaving_cancels")),
+    },
 }
 #: Lists that are written as differences from the inherited list.
 _DIFFERING = ("allowed_codes", "known_codes")
