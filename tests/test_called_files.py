@@ -256,3 +256,13 @@ def test_a_folder_that_is_not_there_holds_nothing(tmp_path: Path) -> None:
     for name in ("nowhere", "file"):
         report = report_of("O1\nM98 P2\nM30\n", job=with_folder(tmp_path / name))
         assert said(report) == [(2, "subprogram-missing")]
+
+
+def test_many_missing_programs_are_one_finding_with_their_numbers() -> None:
+    """38 calls and no folder are one mistake; a few are each looked at."""
+    calls = "".join(f"M98 P{number}\n" for number in [7001, *range(7010, 7046), 8000])
+    report = report_of(f"O1\n{calls}M30\n")
+    assert said(report) == [(2, "subprogram-missing")]
+    assert report.findings[0].message.endswith("; O7010 to O7045, O8000 are missing as well")
+    few = report_of("O1\nM98 P2\nM98 P3\nM98 P2\nM30\n")
+    assert said(few) == [(2, "subprogram-missing"), (3, "subprogram-missing")]
