@@ -15,7 +15,8 @@ class Marks(msgspec.Struct, frozen=True):
     on, off: the switching codes. starts: a program begins. outside: codes that can only stand outside (reference
     return). tool_ends: tool change, program end. stops: M1, between two tools or in the work of one. rapid: G0 is
     written. cuts: a cutting move with a word of the virtual axis. moves: any cutting move in the plane.
-    returns: M99 of a program that nothing here calls. broken_off: the last row of a program that a bound has ended.
+    returns: M99 of a program that something elsewhere may call. broken_off: the last row of a program that a bound has
+    ended.
     """
 
     on: Mask
