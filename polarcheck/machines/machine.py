@@ -6,7 +6,7 @@ What a key means stands in the docstring of its class and, in the same words, at
 
 import math
 import re
-from typing import Annotated, Literal
+from typing import Annotated, Literal, TypeAlias
 
 import msgspec
 
@@ -48,7 +48,8 @@ class Control(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     How the control reads a program.
 
     g_code_system: A, B or C: which of the tables [g_code_system_a] to [g_code_system_c] counts
-    units: mm or inch: of a program that selects neither
+    units: mm or inch: of a program that selects neither; the basic system, where codes leave F in it
+    units_of_lengths_alone: codes of units that change lengths alone: F stays in the units of the basic system
     least_increment: least input increment [mm, deg]
     least_increment_inch: least input increment of lengths [inch]
     number_without_point: whether X10 is ten least increments (least-increment) or ten mm, inch or deg (whole-unit)
@@ -76,6 +77,7 @@ class Control(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
 
     g_code_system: Literal["A", "B", "C"]
     units: Literal["mm", "inch"]
+    units_of_lengths_alone: list[str] = []
     least_increment: Positive
     least_increment_inch: Positive
     number_without_point: Literal["least-increment", "whole-unit"]
@@ -119,13 +121,17 @@ class CircularInterpolation(msgspec.Struct, frozen=True, kw_only=True, forbid_un
 
     tolerance: how much the radius at the end of an arc may differ from that at its start [mm]
     radius_word: address of the radius of an arc
+    larger_arc_word: word of a user task beside the radius of an arc of more than 180 deg; empty without one
     sweep_limit: largest angle of one arc [deg]
+    takes_sweep_limit: an arc by radius through exactly that angle is certain
     corner_words: words of arcs that in a straight move are the corner at its end
     """
 
     tolerance: NotNegative
     radius_word: Address
+    larger_arc_word: Plain = ""
     sweep_limit: Annotated[float, msgspec.Meta(gt=0, le=360)]
+    takes_sweep_limit: bool = True
     corner_words: list[Address]
 
 
@@ -138,6 +144,9 @@ class Compensation(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fie
     read_ahead: blocks that the control knows in advance; all but two of them may be without a move
     interference: alarm or erase: what the control does about interference
     tangent_tolerance: turn up to which two blocks are tangent to each other [rad]
+    corner: lines, intersection or arc: the way round outer corners where no code says it; lines: as FANUC controls
+    corner_arc_above: turn of the contour above which a corner by intersection becomes an arc [deg]; 180: none does
+    corner_arc_from: turn of the contour below which a corner by an arc becomes an intersection [deg]
     leaving_cancels: whether G13.1 takes back an offset after whose G40 nothing has moved
     nose_types: nose types, T of the offset table, of a tool whose center is programmed
     overcut_tolerance: how deep the tool may cut into the contour before it is reported [mm]
@@ -148,6 +157,9 @@ class Compensation(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fie
     read_ahead: Annotated[int, msgspec.Meta(ge=2, le=MOST)]
     interference: Literal["alarm", "erase"]
     tangent_tolerance: Annotated[float, msgspec.Meta(ge=0, le=math.pi / 2)]
+    corner: Literal["lines", "intersection", "arc"]
+    corner_arc_above: Annotated[float, msgspec.Meta(ge=0, le=180)]
+    corner_arc_from: Annotated[float, msgspec.Meta(ge=0, le=180)]
     leaving_cancels: bool
     nose_types: Annotated[list[Annotated[int, msgspec.Meta(ge=0, le=9)]], msgspec.Meta(min_length=1)]
     # Arcs become chords that differ from them by less: at 0 there is no end of them.
@@ -163,6 +175,7 @@ class Limits(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     c_feed_suspicious: feed of the C axis that is suspicious where its limit is not known [deg/min]
     c_acceleration: largest acceleration of the C axis [deg/s2]
     x_feed: largest cutting feed of X, as a radius [mm/min]
+    x_acceleration: largest acceleration of X, as a radius [mm/s2]
     x_rapid: rapid traverse of X, as a radius [mm/min]
     z_rapid: rapid traverse of Z [mm/min]
     c_rapid: rapid traverse of the C axis [deg/min]
@@ -170,6 +183,8 @@ class Limits(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     polar_feed_clamps: whether the control clamps a higher F at it; else it runs as programmed
     automatic_override: whether the control slows down by itself where C would turn too fast
     override_share: share of the limit of C above which it does so, and which it leaves [%]
+    live_tool_speed: highest speed of the live tool [1/min]
+    block_time: shortest time of a block; F falls where a series of blocks is shorter [s]
     keep_out: how far the tool center should stay away from the center of C [mm]
     x_minimum: travel limit of X, as a radius [mm]
     x_maximum: travel limit of X, as a radius [mm]
@@ -182,6 +197,7 @@ class Limits(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     c_feed_suspicious: Positive
     c_acceleration: NotNegative = math.nan
     x_feed: Positive = math.nan
+    x_acceleration: Positive = math.nan
     x_rapid: Positive = math.nan
     z_rapid: Positive = math.nan
     c_rapid: Positive = math.nan
@@ -189,6 +205,8 @@ class Limits(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     polar_feed_clamps: bool = True
     automatic_override: bool = False
     override_share: Positive
+    live_tool_speed: Positive = math.nan
+    block_time: Positive = math.nan
     keep_out: NotNegative = math.nan
     x_minimum: Length = math.nan
     x_maximum: Positive = math.nan
@@ -197,6 +215,12 @@ class Limits(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
 
     def __post_init__(self) -> None:
         ascend(self, ("x_minimum", "x_maximum"), ("z_minimum", "z_maximum"))
+
+
+#: What a word of a dwell counts. seconds, hundredths: with a point and without. thousandths: without a point; with one
+#: it is not known. thousandths-or-seconds: seconds with a point. as-lengths: seconds with a point; without one least
+#: increments, 0.001 s, or seconds, as control.number_without_point says. turns: of the spindle.
+DwellUnit: TypeAlias = Literal["seconds", "hundredths", "thousandths", "thousandths-or-seconds", "as-lengths", "turns"]
 
 
 class Feed(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -208,6 +232,8 @@ class Feed(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     positioning_minimum: lowest F that the builder recommends for positioning in the polar mode [mm/min]
     positioning_maximum: highest F that the builder recommends for positioning in the polar mode [mm/min]
     carried_into_polar: F from before G12.1 that holds behind it: any (modal) or none per revolution (per-minute-only)
+    dwell_words: word of a dwell -> seconds, hundredths, thousandths, thousandths-or-seconds, as-lengths or turns
+    dwell_per_revolution: what these words count where feed per revolution is in force: times, or turns of the spindle
     """
 
     cutting_minimum: NotNegative = math.nan
@@ -215,6 +241,8 @@ class Feed(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     positioning_minimum: NotNegative = math.nan
     positioning_maximum: Positive = math.nan
     carried_into_polar: Literal["modal", "per-minute-only"] = "modal"
+    dwell_words: dict[Address, DwellUnit]
+    dwell_per_revolution: Literal["times", "turns"]
 
     def __post_init__(self) -> None:
         ascend(self, ("cutting_minimum", "cutting_maximum"), ("positioning_minimum", "positioning_maximum"))
@@ -319,9 +347,14 @@ class Machine(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
         system: GCodeSystem = getattr(self, self.system_table)
         return system
 
+    @property
+    def code_tables(self) -> tuple[str, ...]:
+        """The tables with lists of G codes: those of the G-code system in force among them."""
+        return ("g_codes", "macro", self.system_table)
+
     def table_of(self, key: str) -> str:
         """The table of a list of codes: that of the G-code system in force where it differs between systems."""
-        for table in ("g_codes", "macro", self.system_table):
+        for table in self.code_tables:
             if key in getattr(self, table).__struct_fields__:
                 return table
         raise RuleError(f"there is no list of G codes {key!r}: see [g_codes], [g_code_system_a] and [macro]")

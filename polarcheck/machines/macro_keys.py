@@ -27,7 +27,7 @@ class Macro(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     language: of statements: custom-macro (#1), high-level (R1, X=R1, IF .. GOTOF NAME) or user-task (VC1, IF [..] NAME)
     named_words: words of several letters with = in such a language, by the address that each is read as; empty: none
     other_language: code that begins the other language of a control that has two; empty where it has one
-    statements: statement of a high-level language (* for any rest) -> what is not followed: none, path, words, moves
+    statements: statement (* for any rest) or first word of one -> what is not followed: none, path, words, moves
     local_variables: ranges, first and last number, of local variables, of which each macro call has its own
     common_variables: ranges of common variables that are vacant at power-on
     retained_variables: ranges of common variables that outlive the power-off: not known until a program assigns them
