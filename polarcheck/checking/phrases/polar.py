@@ -207,7 +207,7 @@ def axes_not_followed(
     remedy = "look at it on the control" if names_of_axes else f"give their names in order, as {names}"
     for rows, what in (
         (named, f"P beside {polar.on[0]}"),
-        (unknown & ~named, f"{polar.linear_axis}, the number in polar.linear_axis,"),
+        (unknown & ~named, f"{polar.linear_axis}, the number in {_linear_axis_key(machine)},"),
     ):
         yield f"{what} is a linear axis that is not known, nothing of the section is judged: {remedy}", int(rows.sum())
     beside = [int(index) for index in axes.words_not_simulated.nonzero()[0] if mode.enters[run.row[index]]]
@@ -221,6 +221,14 @@ def axes_not_followed(
     other = mode.enters & (axes.rotary_number != polar.rotary_axis)
     effect = "its angle at the switch and its limits are not followed: look at them on the control"
     yield f"Q names another rotary axis than {polar.rotary_axis}; {effect}", int(other.sum())
+
+
+def _linear_axis_key(machine: Machine) -> str:
+    """Where the number of the linear axis was given: `parameter 5460`, else the key of the profile."""
+    key, number = "polar.linear_axis", machine.polar.linear_axis
+    given = [name for name, value in machine.parameters.items() if value == number]
+    names = [name for name in given if name in machine.known_parameters and machine.known_parameters[name].key == key]
+    return f"parameter {names[0]}" if names else key
 
 
 def names_not_known(blocks: ExecutedBlocks, run: Run) -> Iterator[tuple[str, int]]:
