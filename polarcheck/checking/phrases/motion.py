@@ -5,11 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from polarcheck.checking.other_machine import OtherMachine
-from polarcheck.checking.phrases.common import linear
+from polarcheck.checking.phrases.common import centers, executed_word, linear
 from polarcheck.checking.quantity import in_row
 from polarcheck.columns.axes import PlaneAxes
+from polarcheck.columns.blocks import ExecutedBlocks
 from polarcheck.columns.lengths import Lengths
 from polarcheck.columns.mode import PolarMode
+from polarcheck.columns.path import ProgrammedPath
 from polarcheck.execution.run import Run
 from polarcheck.geometry.shapes.shape import polygon_name
 from polarcheck.geometry.tolerances import ROUNDING
@@ -22,6 +24,29 @@ from polarcheck.table.unpointed import Unpointed
 
 #: F without a point in an inch program [inch/min], parameter 1403#0 MIF = 0; in mm it is whole mm/min.
 _FEED_INCREMENT_INCH = 0.01
+
+
+def of_full_circle(axes: PlaneAxes, path: ProgrammedPath, run: Run, row: int) -> str:
+    """What an arc by R needs to be a full circle; of a block that repeats the one before, that it stands twice."""
+    before = np.flatnonzero(path.travels[:row])
+    if len(before) and _words(run, int(before[-1])) == _words(run, row):
+        return "the block stands twice, delete one"
+    return f"a full circle needs {centers(axes, row)}"
+
+
+def _words(run: Run, row: int) -> list[str]:
+    """The words of a row as they are written, without its N word."""
+    at = range(*np.searchsorted(run.row, (row, row + 1)).tolist())
+    return [executed_word(run, index) for index in at if chr(int(run.words.address[index])) != "N"]
+
+
+def or_short_arc(arcs: Arcs, blocks: ExecutedBlocks, machine: Machine, row: int) -> str:
+    """The other reading of an arc by a negative R: without its sign it is the short one."""
+    value = blocks.word(machine.arcs.radius_word)[row]
+    if not (arcs.by_radius[row] and value < 0):
+        return ""
+    rest = 360 - float(arcs.sweep[row])
+    return f", or without the sign of {machine.arcs.radius_word}, which makes it one of {rest:.0f} deg"
 
 
 def least_radius(lengths: Lengths, arcs: Arcs, row: int) -> str:

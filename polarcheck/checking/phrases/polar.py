@@ -12,6 +12,7 @@ from polarcheck.checking.phrases.common import (
     codes,
     executed_word,
     linear,
+    move_code,
     outside,
     switch_off,
     written,
@@ -61,6 +62,14 @@ _NAMES = 20
 _BLOCK_LENGTH = 60
 #: Modal groups that must have ended at G12.1, by the list of the codes that begin them.
 _ENDED = {"scaling": "scaling", "rotation": "rotation", "mirror_image": "mirror", "constant_surface_speed": "speed"}
+
+
+def instead_of_rapid(compensation: CutterCompensation, machine: Machine, row: int) -> str:
+    """What to write for G0 in the mode: within a contour G1 with its F, else a high one."""
+    line = move_code(machine, "line")
+    if compensation.compensates[row] and not compensation.starts_up[row]:
+        return f"this block lies in a contour with G{compensation.side[row]}: write {line} and leave F as it is"
+    return f"write {line} with a high F"
 
 
 def missing_before(blocks: ExecutedBlocks, mode: PolarMode, run: Run, machine: Machine, index: int) -> str:
