@@ -144,3 +144,8 @@ def travel(lengths: Lengths, machine: Machine, travel: Travel, row: int) -> str:
             goes, ends_at = (in_row(length, lengths, row) for length in (value, limit))
             return f"{axis} would go to {goes.beside(ends_at, form)}, its travel ends at {ends_at.beside(goes, form)}"
     return ""
+
+
+def more_arcs(count: int) -> str:
+    """How many further arcs the finding stands for; empty for none."""
+    return f"; so {'is' if count == 2 else 'are'} {count - 1} more up to the next code of motion" if count > 1 else ""
