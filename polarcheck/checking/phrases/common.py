@@ -78,6 +78,11 @@ def virtual(axes: PlaneAxes, row: int) -> str:
     return axes.virtual_axis_of(row)
 
 
+def line_code(machine: Machine) -> str:
+    """The code of a straight move at feed in the mode: G1, or G101 on a lathe that has codes of its own there."""
+    return next((code for code, meant in machine.control.motion_codes.items() if meant == "G1"), "G1")
+
+
 def rotary(machine: Machine) -> str:
     """The address of the rotary axis: C."""
     return machine.polar.rotary_address
