@@ -148,6 +148,7 @@ def test_a_clamped_feed_is_the_one_that_runs() -> None:
         ("G4 X2.5", 2.5),
         ("G4 U.5", 0.5),
         ("G4", 0),
+        ("G4 X1500", 1.5),
         ("M8", 0),
         # C turns by 45 deg and X goes out from 20 to 28.28.
         ("G0 C20.", max(60 * 45 / 18000, 60 * (math.hypot(20, 20) - 20) / 6000)),
@@ -162,8 +163,8 @@ def test_the_time_of_a_block(block: str, seconds: float) -> None:
 @pytest.mark.parametrize(
     ("block", "reason"),
     [
-        ("G4 X1500", "dwell"),
         ("G4 P1.5", "dwell"),
+        ("G4 X1. P500", "dwell"),
         ("G4 F2.", "dwell"),
         ("G0 C20.", "rapid traverse"),
         ("G99 G1 C20.", "feed per revolution"),

@@ -289,6 +289,8 @@ def _worse(one: PolarSection, other: PolarSection) -> PolarSection:
         nearest=_fold(min, one.nearest, other.nearest),
         ramp_used=max((used for used in (one.ramp_used, other.ramp_used) if used is not None), default=None),
         time=_fold(max, one.time, other.time),
+        time_not_known=list(dict.fromkeys([*(one.time_not_known or ()), *(other.time_not_known or ())]))
+        or msgspec.UNSET,
     )
 
 

@@ -178,4 +178,5 @@ class PolarMode(Columns, frozen=True):
             return np.zeros(len(self.run), bool)
         is_straight = is_among(self.modal.state("motion"), (Motion.RAPID, Motion.LINE))
         moves = is_straight & self.modal.uses_axes & ~self.modal.in_cycle
-        return np.asarray(self.blocks.with_words(e) & moves & ~self.axes.switches_on)
+        calls_tool = self.blocks.has("T")  # E beside it is an angle on Citizen lathes
+        return np.asarray(self.blocks.with_words(e) & moves & ~self.axes.switches_on & ~calls_tool)

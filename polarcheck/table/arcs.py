@@ -30,9 +30,8 @@ class Arcs(Columns, frozen=True):
     def in_force(self) -> Mask:
         """G2 or G3 is in force in the polar mode, so that axis words would be those of an arc."""
         trace = self.trace
-        return np.asarray(
-            trace.mode.in_polar & trace.modal.uses_axes & is_among(trace.modal.state("motion"), (Motion.CW, Motion.CCW))
-        )
+        in_plane = trace.mode.in_polar & trace.axes.is_simulated & trace.modal.uses_axes
+        return np.asarray(in_plane & is_among(trace.modal.state("motion"), (Motion.CW, Motion.CCW)))
 
     @cached_property
     def by_radius(self) -> Mask:

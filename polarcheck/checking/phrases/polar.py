@@ -7,7 +7,15 @@ from collections.abc import Iterator
 
 from polarcheck.arrays import Floats, Rows
 from polarcheck.checking.other_machine import NAMED, OtherMachine
-from polarcheck.checking.phrases.common import codes, executed_word, linear, outside, switch_off, written
+from polarcheck.checking.phrases.common import (
+    block_and_line,
+    codes,
+    executed_word,
+    linear,
+    outside,
+    switch_off,
+    written,
+)
 from polarcheck.checking.places import block_in_line
 from polarcheck.checking.quantity import in_row
 from polarcheck.checking.remedies import enumerated, is_chosen, place
@@ -205,6 +213,10 @@ def axes_not_followed(
     for name, indices in itertools.groupby(beside, lambda index: executed_word(run, index)):
         effect = "makes another mode of it, which is not simulated: look at the section on the control"
         yield f"{name} beside {polar.on[0]} {effect}", len(list(indices))
+    planes = (axes.selects_plane_not_simulated & mode.in_polar).nonzero()[0]
+    if len(planes):
+        where = block_and_line(blocks, run, int(planes[0]))
+        yield f"the plane of {where} is not simulated: look at the section on the control", len(planes)
     other = mode.enters & (axes.rotary_number != polar.rotary_axis)
     effect = "its angle at the switch and its limits are not followed: look at them on the control"
     yield f"Q names another rotary axis than {polar.rotary_axis}; {effect}", int(other.sum())
