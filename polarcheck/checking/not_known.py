@@ -19,7 +19,7 @@ _Reason: TypeAlias = Callable[[Tables, int], str]
 
 #: Columns that hang on the offset in force, and those that hang on the whole move.
 _OF_OFFSETS = ("compensation.radius", "offsets.cutter_diameter", "offsets.nose")
-OF_MOVES = ("tool_center.c_feed", "tool_center.c_acceleration")
+OF_MOVES = ("tool_center.c_feed", "tool_center.c_acceleration", "tool_center.x_acceleration")
 #: What to give where a value of the program is not known.
 OF_VARIABLES = "give its variables as [run.variables] in polarcheck.toml, or write the number"
 #: Causes, beside the offset numbers, for which a move is not known.
@@ -151,6 +151,7 @@ _REASONS: dict[str, _Reason] = {
     "travel.most_x": _of_move,
     "tool_center.c_feed": _of_move,
     "tool_center.c_acceleration": _of_move,
+    "tool_center.x_acceleration": _of_move,
     "feedrate.feed": _feed,
     "entry.origin_shift": _origin,
 }

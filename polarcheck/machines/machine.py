@@ -160,6 +160,7 @@ class Limits(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     c_feed_suspicious: feed of the C axis that is suspicious where its limit is not known [deg/min]
     c_acceleration: largest acceleration of the C axis [deg/s2]
     x_feed: largest cutting feed of X, as a radius [mm/min]
+    x_acceleration: largest acceleration of X, as a radius [mm/s2]
     x_rapid: rapid traverse of X, as a radius [mm/min]
     z_rapid: rapid traverse of Z [mm/min]
     c_rapid: rapid traverse of the C axis [deg/min]
@@ -167,6 +168,8 @@ class Limits(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     polar_feed_clamps: whether the control clamps a higher F at it; else it runs as programmed
     automatic_override: whether the control slows down by itself where C would turn too fast
     override_share: share of the limit of C above which it does so, and which it leaves [%]
+    live_tool_speed: highest speed of the live tool [1/min]
+    block_time: shortest time of a block; F falls where a series of blocks is shorter [s]
     keep_out: how far the tool center should stay away from the center of C [mm]
     x_minimum: travel limit of X, as a radius [mm]
     x_maximum: travel limit of X, as a radius [mm]
@@ -179,6 +182,7 @@ class Limits(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     c_feed_suspicious: Positive
     c_acceleration: NotNegative = math.nan
     x_feed: Positive = math.nan
+    x_acceleration: Positive = math.nan
     x_rapid: Positive = math.nan
     z_rapid: Positive = math.nan
     c_rapid: Positive = math.nan
@@ -186,6 +190,8 @@ class Limits(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     polar_feed_clamps: bool = True
     automatic_override: bool = False
     override_share: Positive
+    live_tool_speed: Positive = math.nan
+    block_time: Positive = math.nan
     keep_out: NotNegative = math.nan
     x_minimum: Length = math.nan
     x_maximum: Positive = math.nan
@@ -320,9 +326,14 @@ class Machine(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
         system: GCodeSystem = getattr(self, self.system_table)
         return system
 
+    @property
+    def code_tables(self) -> tuple[str, ...]:
+        """The tables with lists of G codes: those of the G-code system in force among them."""
+        return ("g_codes", "macro", self.system_table)
+
     def table_of(self, key: str) -> str:
         """The table of a list of codes: that of the G-code system in force where it differs between systems."""
-        for table in ("g_codes", "macro", self.system_table):
+        for table in self.code_tables:
             if key in getattr(self, table).__struct_fields__:
                 return table
         raise RuleError(f"there is no list of G codes {key!r}: see [g_codes], [g_code_system_a] and [macro]")

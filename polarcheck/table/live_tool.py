@@ -1,0 +1,55 @@
+"""The speed of the live tool."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from polarcheck.arrays import Floats, Mask
+from polarcheck.columns.filling import fill_down
+from polarcheck.columns.trace import Trace
+from polarcheck.geometry.tolerances import SHARE
+
+
+def speed(trace: Trace) -> Floats:
+    """
+    S of the live tool in force per row [1/min]; NaN where none is known.
+
+    Where the profile names codes of the live tool, S counts that stands in a block with one, or while it runs and
+    no code of the main spindle is beside it; else any S but a surface speed and the limit of G50.
+    """
+    codes, takes = trace.machine.m_codes, _takes(trace)
+    is_speed = trace.modal.state("speed") == 0
+    if codes.live_tool_on:
+        starts = trace.blocks.codes(*codes.live_tool_on)
+        waits = takes & ~trace.blocks.codes(*codes.spindle_on) & (trace.modal.live_tool | _next_starts_live_tool(trace))
+        is_speed = np.where(starts, takes, waits & is_speed)
+    return fill_down(np.where(takes & is_speed, trace.blocks.word("S"), np.nan), takes | trace.blocks.starts, np.nan)
+
+
+def exceeds_highest_speed(trace: Trace) -> Mask:
+    """
+    Rows with an S for the live tool above its highest speed.
+
+    Where the profile names no codes of the live tool, an S is for it if a section cuts with it.
+    """
+    limit, none = trace.machine.limits.live_tool_speed, np.zeros(len(trace), bool)
+    if np.isnan(limit) or not trace.blocks.has("S").any():
+        return none
+    above = _takes(trace) & (speed(trace) > limit * (1 + SHARE))
+    if trace.machine.m_codes.live_tool_on:
+        return above
+    last = np.maximum.accumulate(np.where(_takes(trace) | trace.blocks.starts, np.arange(len(trace)), 0))
+    none[last[trace.path.cuts]] = True
+    return above & none
+
+
+def _takes(trace: Trace) -> Mask:
+    return trace.blocks.has("S") & ~trace.modal.sets_coordinates & ~trace.blocks.listed("dwell")
+
+
+def _next_starts_live_tool(trace: Trace) -> Mask:
+    """Of the spindles the live tool is the one that starts next."""
+    codes = trace.machine.m_codes
+    started = trace.blocks.codes(*codes.live_tool_on)
+    begins = np.flatnonzero(started | trace.blocks.codes(*codes.spindle_on))
+    return np.asarray(np.append(started[begins], False)[np.searchsorted(begins, np.arange(len(trace)))])
