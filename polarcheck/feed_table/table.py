@@ -130,12 +130,12 @@ def rounded_down(trace: Trace, feed: Floats, left_out: Mask) -> Floats:
     left_out: where the result must not be F itself. NaN where no F above 0 is left.
     """
     with np.errstate(all="ignore"):
-        value = np.where((feed > 0) & np.isfinite(feed), feed / trace.lengths.scale, np.nan)
+        value = np.where((feed > 0) & np.isfinite(feed), feed / trace.lengths.feed_scale, np.nan)
         factor = 10.0 ** (_DIGITS - 1 - np.floor(np.log10(value)))
         whole = value * factor
         found = np.where(left_out, np.ceil(whole - 1e-6) - 1, np.floor(whole + 1e-9)) / factor
         is_whole = ~writes_points(trace.blocks, trace.lengths, trace.run) & (found >= LEAST_WHOLE)
-        return np.where(is_whole, np.floor(found), found) * trace.lengths.scale
+        return np.where(is_whole, np.floor(found), found) * trace.lengths.feed_scale
 
 
 def highest(trace: Trace, feeds: HighestFeeds) -> Floats:
@@ -153,7 +153,7 @@ def feed_table(tables: Tables) -> FeedTable:
     found = _Columns(trace, feeds, dynamics)
     sections = [found.total(number, enter) for number, enter in enumerate(trace.mode.sections.enter.tolist())]
     limits = trace.machine.limits
-    inch = bool(len(trace) and np.all(trace.lengths.units[feeds.cuts] == Units.INCH) and feeds.cuts.any())
+    inch = bool(len(trace) and np.all(trace.lengths.feed_units[feeds.cuts] == Units.INCH) and feeds.cuts.any())
     return FeedTable(
         units="inch" if inch else "mm",
         limits=FeedLimits(

@@ -34,6 +34,7 @@ class Polar(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     sub_spindle_plane: as on the main spindle (as-main), sides not known (unknown), axes not followed (not-followed)
     words_beside_switch: addresses and codes that may stand in one block with those that switch; N may always
     not_simulated_beside: those of these addresses that make another mode of it, which is not simulated
+    planes_not_simulated: codes that select another plane in the mode, as that of a cylinder, which is not simulated
     rotary_address: address of the rotary axis outside the mode: A, B, C, H, or a name that is written with =, as C2
     rotary_incremental: address of its incremental words; empty where it has none
     off_of_other_modes: codes that begin another mode which those of `off` end as well, as that of a Y axis
@@ -46,7 +47,7 @@ class Polar(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     other_controls: the controls on which it has those addresses, as a message names them
     x: diameter or radius: what X words are in the mode
     virtual_axis_programming: radius or diameter: what words of the virtual axis are
-    zero_angle: where the linear axis points: to C as it is at G12.1 (at-switch) or to C0 (at-c0, or at-c0-reversed)
+    zero_angle: where the linear axis points: to C at G12.1 (at-switch) or C0 (at-c0, at-c0-reversed: C turns back)
     other_axes: what Z does in one block with X or C: independent of them, together with them, or forbidden
     feed_measures: what F is along where Z moves beside X or C: the way on the plane, or that of X, C and Z in space
     repeated_z: Z beside X or C that names the present Z: allowed, forbidden-in-arcs, or forbidden as any other
@@ -69,6 +70,7 @@ class Polar(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     sub_spindle_plane: Literal["as-main", "unknown", "not-followed"]
     words_beside_switch: list[str]
     not_simulated_beside: list[Address] = []
+    planes_not_simulated: list[str] = []
     rotary_address: RotaryAddress
     rotary_incremental: AddressOrNone
     off_of_other_modes: list[str] = []
@@ -93,6 +95,16 @@ class Polar(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     allowed_codes: list[str]
     plane_before: list[str]
     main_spindle_must_stop: bool
+
+    @property
+    def plane_is_fixed(self) -> bool:
+        """The polar plane stands still on the part, whatever the angle of C at G12.1."""
+        return self.zero_angle != "at-switch"
+
+    @property
+    def c_sense(self) -> int:
+        """1 where C grows with the angle of the tool on the polar plane, -1 where it falls with it."""
+        return -1 if self.zero_angle == "at-c0-reversed" else 1
 
     @property
     def rotary_words(self) -> tuple[str, str]:

@@ -24,7 +24,7 @@ DEFAULT = "fanuc"
 #: Files that may stand behind each other by `inherits`; the built-in ones have four.
 _LONGEST_CHAIN = 10
 #: Tables by name, of which a nearer profile says what differs or is new.
-MERGED = ("control.named_axes", "macro.statements")
+MERGED = ("control.named_axes", "control.spindle_words", "macro.statements")
 #: Tables that a profile can leave behind.
 _REPLACED = ("alarms", "alarm_codes", "known_parameters", "severities", "notes")
 

@@ -173,7 +173,7 @@ def _with_standing(trace: Trace, dynamics: Dynamics) -> tuple[Moves, Rows]:
         "allowance": 0.0,
     }
     columns = {name: np.insert(getattr(moves, name), at, values) for name, values in still.items()}
-    return Moves(entry=moves.entry, **columns), np.insert(np.arange(len(moves)), at, -1)
+    return Moves(entry=moves.entry, c_axis=moves.c_axis, **columns), np.insert(np.arange(len(moves)), at, -1)
 
 
 def _sequence_numbers(trace: Trace) -> dict[int, str]:

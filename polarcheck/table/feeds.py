@@ -76,8 +76,8 @@ class Feeds(Columns, frozen=True):
 
     def _is_at_least(self, least: Mapping[Units, float]) -> Mask:
         trace = self.trace
-        in_units = np.where(trace.lengths.units == Units.INCH, least[Units.INCH], least[Units.MM])
-        return np.asarray(trace.feedrate.feed_number / trace.lengths.scale >= in_units)
+        in_units = np.where(trace.lengths.feed_units == Units.INCH, least[Units.INCH], least[Units.MM])
+        return np.asarray(trace.feedrate.feed_number / trace.lengths.feed_scale >= in_units)
 
     @cached_property
     def is_left_per_revolution(self) -> Mask:
@@ -134,7 +134,7 @@ class Feeds(Columns, frozen=True):
         trace = self.trace
         # Where neither G20 nor G21 stands, the number may be one of inch.
         is_inch = ~happened(trace.modal.sets("units"), trace.blocks.starts)
-        may_do = is_inch & (trace.feedrate.feed_number / trace.lengths.scale >= _NOT_PER_MINUTE[Units.INCH])
+        may_do = is_inch & (trace.feedrate.feed_number / trace.lengths.feed_scale >= _NOT_PER_MINUTE[Units.INCH])
         is_small = ~self._is_at_least(_NOT_PER_MINUTE) & ~may_do & (trace.feedrate.feed_number > 0)
         takes_long = is_small & (self.block_time > _MINUTES)
         hours = trace.feedrate.per_minute & (self.block_time > _HOURS)

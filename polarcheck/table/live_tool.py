@@ -15,7 +15,8 @@ def speed(trace: Trace) -> Floats:
     S of the live tool in force per row [1/min]; NaN where none is known.
 
     Where the profile names codes of the live tool, S counts that stands in a block with one, or while it runs and
-    no code of the main spindle is beside it; else any S but a surface speed and the limit of G50.
+    no code of the main spindle is beside it; else any S but a surface speed and the limit of G50. A live tool may have
+    a word of its own, as S3=.
     """
     codes, takes = trace.machine.m_codes, _takes(trace)
     is_speed = trace.modal.state("speed") == 0
@@ -23,7 +24,10 @@ def speed(trace: Trace) -> Floats:
         starts = trace.blocks.codes(*codes.live_tool_on)
         waits = takes & ~trace.blocks.codes(*codes.spindle_on) & (trace.modal.live_tool | _next_starts_live_tool(trace))
         is_speed = np.where(starts, takes, waits & is_speed)
-    return fill_down(np.where(takes & is_speed, trace.blocks.word("S"), np.nan), takes | trace.blocks.starts, np.nan)
+    values = np.where(takes & is_speed, trace.blocks.word("S"), np.nan)
+    for name in trace.machine.live_tool_speeds:
+        values = np.where(trace.blocks.has(name), trace.blocks.word(name), values)
+    return fill_down(values, takes | _named(trace) | trace.blocks.starts, np.nan)
 
 
 def exceeds_highest_speed(trace: Trace) -> Mask:
@@ -33,18 +37,27 @@ def exceeds_highest_speed(trace: Trace) -> Mask:
     Where the profile names no codes of the live tool, an S is for it if a section cuts with it.
     """
     limit, none = trace.machine.limits.live_tool_speed, np.zeros(len(trace), bool)
-    if np.isnan(limit) or not trace.blocks.has("S").any():
+    if np.isnan(limit):
         return none
-    above = _takes(trace) & (speed(trace) > limit * (1 + SHARE))
+    written = _takes(trace) | _named(trace)
+    above = written & (speed(trace) > limit * (1 + SHARE))
     if trace.machine.m_codes.live_tool_on:
         return above
-    last = np.maximum.accumulate(np.where(_takes(trace) | trace.blocks.starts, np.arange(len(trace)), 0))
+    last = np.maximum.accumulate(np.where(written | trace.blocks.starts, np.arange(len(trace)), 0))
     none[last[trace.path.cuts]] = True
     return above & none
 
 
 def _takes(trace: Trace) -> Mask:
     return trace.blocks.has("S") & ~trace.modal.sets_coordinates & ~trace.blocks.listed("dwell")
+
+
+def _named(trace: Trace) -> Mask:
+    """Rows with a word for the speed of the live tool alone."""
+    named = np.zeros(len(trace), bool)
+    for name in trace.machine.live_tool_speeds:
+        named |= trace.blocks.has(name)
+    return named
 
 
 def _next_starts_live_tool(trace: Trace) -> Mask:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from functools import cached_property
 
 import numpy as np
@@ -21,11 +22,12 @@ class Moves(Table, frozen=True, dict=True):
     row: the row of the trace that it belongs to. section: its polar section. kind: int16, Motion. start, end, center:
     plane points [mm]. feed: F in force [mm/min]. rise: way of Z beside that on the plane, where F measures both [mm];
     0 where F measures the plane alone. known: False where the radius or a position is unknown. phase:
-    compensation.Phase. corner: a line that the control adds. allowance: what a pass of an infeed cycle leaves on the
-    contour [mm], 0 elsewhere. entry: float64[sections], C angle at which each section begins [deg].
+    compensation.Phase. corner: a line or an arc that the control adds. allowance: what a pass of an infeed cycle leaves
+    on the contour [mm], 0 elsewhere. entry: float64[sections], C angle of the linear axis of each section [deg].
+    c_axis: how C stands to the angles of the plane.
     """
 
-    _shared = ("entry",)
+    _shared = ("entry", "c_axis")
 
     row: Rows
     section: Rows
@@ -40,6 +42,7 @@ class Moves(Table, frozen=True, dict=True):
     corner: Mask
     allowance: Floats
     entry: Floats
+    c_axis: polar.CAxis
 
     @property
     def shape(self) -> tuple[Points, Points, Points, States]:
@@ -109,7 +112,7 @@ class Moves(Table, frozen=True, dict=True):
     @cached_property
     def c_angles(self) -> tuple[Floats, Floats]:
         """C before and after the move [deg], continuous along the section."""
-        return polar.c_angles(*self.shape, self.section, self.entry)
+        return polar.c_angles(*self.shape, self.section, self.entry, self.c_axis)
 
     def feed_allowed(self, limit: float | Floats) -> Floats:
         """Highest F that keeps C at or below the limit [mm/min]."""
@@ -198,6 +201,7 @@ def programmed_moves(trace: Trace) -> Moves:
         corner=np.zeros(len(row), bool),
         allowance=np.zeros(len(row)),
         entry=trace.path.section_entry,
+        c_axis=trace.path.c_axis,
     )
 
 
@@ -220,6 +224,7 @@ def compensation_path(trace: Trace, row: Rows) -> compensation.Path:
         side_written=trace.compensation.writes_side[row],
         radius=trace.compensation.radius[row],
         cancel_vector=_cancel_vector(trace, row),
+        corner=trace.compensation.corner[row],
         stops_reading=trace.blocks.codes(*trace.machine.m_codes.stops_reading_ahead)[row],
     )
 
@@ -235,6 +240,8 @@ def tool_center_path(trace: Trace, path: compensation.Path) -> compensation.Tool
             read_ahead=settings.read_ahead,
             interference=settings.interference,
             tangent_tolerance=settings.tangent_tolerance,
+            arc_above=math.radians(settings.corner_arc_above),
+            arc_from=math.radians(settings.corner_arc_from),
         ),
     )
 
@@ -257,6 +264,7 @@ def of_tool(trace: Trace, tool: compensation.ToolPath, row: Rows) -> Moves:
         corner=tool.corner,
         allowance=np.zeros(len(at)),
         entry=trace.path.section_entry,
+        c_axis=trace.path.c_axis,
     )
 
 

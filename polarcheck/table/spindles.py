@@ -107,7 +107,7 @@ class Spindles:
     @cached_property
     def runs(self) -> Mask:
         """The spindle whose C axis it is runs as a spindle; on many lathes M3 and M4 start the live tool, too."""
-        sub = self.trace.modal.switched(self._codes.sub_spindle_on, self._codes.sub_spindle_off)
+        sub = self.trace.modal.switched(self._codes.sub_spindle_on, self._codes.sub_spindle_off, "sub")
         return np.where(self.on_sub_spindle, sub, self.trace.modal.spindle)
 
     @property

@@ -38,6 +38,11 @@ def center(axes: PlaneAxes, row: int) -> str:
     return f"{along} along {linear(axes, row)} and {across} along {axes.virtual_axis_of(row)}"
 
 
+def fewer(machine: Machine) -> str:
+    """Whether an arc must be smaller than the largest angle of one arc."""
+    return "" if machine.arcs.takes_sweep_limit else "less than "
+
+
 def reading(lengths: Lengths, row: int) -> str:
     """What X is in a row."""
     return "diameter" if lengths.x_factor[row] < 1 else "radius"

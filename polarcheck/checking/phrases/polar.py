@@ -7,10 +7,18 @@ from collections.abc import Iterator
 
 from polarcheck.arrays import Floats, Rows
 from polarcheck.checking.other_machine import NAMED, OtherMachine
-from polarcheck.checking.phrases.common import codes, executed_word, linear, outside, switch_off, written
+from polarcheck.checking.phrases.common import (
+    block_and_line,
+    codes,
+    executed_word,
+    linear,
+    outside,
+    switch_off,
+    written,
+)
 from polarcheck.checking.places import block_in_line
 from polarcheck.checking.quantity import in_row
-from polarcheck.checking.remedies import place
+from polarcheck.checking.remedies import enumerated, is_chosen, place
 from polarcheck.columns.axes import PlaneAxes
 from polarcheck.columns.blocks import ExecutedBlocks
 from polarcheck.columns.compensation import CutterCompensation
@@ -20,6 +28,7 @@ from polarcheck.columns.mode import PolarMode
 from polarcheck.execution.run import Run
 from polarcheck.machines.axes import NOT_NAMED, listed
 from polarcheck.machines.codes import spelled
+from polarcheck.machines.job import Job
 from polarcheck.machines.machine import Machine
 from polarcheck.machines.modal import Motion, Side
 from polarcheck.machines.own_language import shown
@@ -129,8 +138,14 @@ def meaning(run: Run, machine: Machine, at: list[int]) -> str:
     return f"{name} is no incremental word of G-code system {system}, where G91 makes {axes} incremental"
 
 
-def taken_by(run: Run, machine: Machine, other_machine: OtherMachine, at: list[int], row: int) -> str:
-    """Which machines read the whole program well; where none does, which word beside G12.1 or controls take it."""
+def taken_by(
+    run: Run, axes: PlaneAxes, machine: Machine, job: Job, other_machine: OtherMachine, at: list[int], row: int
+) -> str:
+    """
+    Which machines read the whole program well; where none does, which word beside G12.1 or controls take it.
+
+    Where somebody has chosen the machine, what to write on it.
+    """
     mode = machine.polar
     number, of_address = int(run.words.address[at[0]]), machine.address_number
     choosing = next(
@@ -138,6 +153,8 @@ def taken_by(run: Run, machine: Machine, other_machine: OtherMachine, at: list[i
     )
     if choosing:
         return f"; beside {choosing} it would be"
+    if is_chosen(machine, job):
+        return f"; write {axes.virtual_axis_of(row)}"
     controls = mode.other_controls
     return other_machine.text or (f"; {controls} would take it" if controls else "")
 
@@ -152,10 +169,24 @@ def on_of_this(machine: Machine) -> str:
     return " or ".join(shown(machine.control.native_words, code) for code in machine.polar.on)
 
 
-def with_machines(other_mode: OtherMode, row: int) -> str:
-    """The machines that know the code, or the first of them, as in `--machine fanuc or gsk-988`."""
-    *others, last = [profile.name for profile in other_mode.machines(row)[:NAMED]]
-    return f"--machine {', '.join(others)} or {last}" if others else f"--machine {last}"
+def instead(other_mode: OtherMode, machine: Machine, job: Job, row: int) -> str:
+    """
+    What is to be written for the code of another control: `write G112 for G12.1, G113 for G13.1 and Y for C`.
+
+    Where nobody has chosen the machine, the machines that know the code: `check it with --machine fanuc or gsk-988`.
+    """
+    machines = other_mode.machines(row)
+    if not is_chosen(machine, job):
+        return f"check it with --machine {enumerated([profile.name for profile in machines[:NAMED]], 'or')}"
+    polar, native = machine.polar, machine.control.native_words
+    angle = f" {polar.direction_word}0" if polar.direction_word else ""
+    words = [f"{shown(native, polar.on[0])}{angle} for {other_mode.switch(row).name}"]
+    words += [f"{shown(native, polar.off[0])} for {name}" for name in other_mode.ends_written(row)]
+    axes = other_mode.other_axes_written(row)
+    words += [f"{polar.virtual_axis} for {axis}" for axis in axes]
+    if axes and all(profile.machine.polar.x != polar.x for profile in machines):
+        words.append(f"X as a {polar.x}")
+    return f"write {enumerated(words, 'and')}"
 
 
 def else_a_macro(other_mode: OtherMode, row: int) -> str:
@@ -182,6 +213,10 @@ def axes_not_followed(
     for name, indices in itertools.groupby(beside, lambda index: executed_word(run, index)):
         effect = "makes another mode of it, which is not simulated: look at the section on the control"
         yield f"{name} beside {polar.on[0]} {effect}", len(list(indices))
+    planes = (axes.selects_plane_not_simulated & mode.in_polar).nonzero()[0]
+    if len(planes):
+        where = block_and_line(blocks, run, int(planes[0]))
+        yield f"the plane of {where} is not simulated: look at the section on the control", len(planes)
     other = mode.enters & (axes.rotary_number != polar.rotary_axis)
     effect = "its angle at the switch and its limits are not followed: look at them on the control"
     yield f"Q names another rotary axis than {polar.rotary_axis}; {effect}", int(other.sum())

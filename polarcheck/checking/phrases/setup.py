@@ -142,7 +142,7 @@ def started(blocks: ExecutedBlocks, run: Run, machine: Machine, procedure: Proce
 
 def stop(machine: Machine) -> str:
     """The code that stops the live tool."""
-    return next(iter(machine.m_codes.live_tool_off), "the code")
+    return " or ".join(machine.m_codes.live_tool_off) or "the code"
 
 
 def or_engaged_by(blocks: ExecutedBlocks, run: Run, spindles: Spindles, machine: Machine, row: int) -> str:
