@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import pytest
-from programs import Changes, report_of, said, tables_of
+from programs import Changes, report_of, said, trace_of
 
 from polarcheck.finding import FileReport
+from polarcheck.table import live_tool
 
 CONTOUR = """G1 X10. Y0 F200
 G42 X6. Y0
@@ -65,8 +66,8 @@ def test_blanks_stand_anywhere(switch: str) -> None:
     ],
 )
 def test_the_chip_load_is_that_of_the_live_tool(spindle: str, speed: float | None) -> None:
-    tables = tables_of(program(spindle), "citizen")
-    found = tables["highest_feeds"].speed[tables["trace"].mode.in_polar]
+    trace = trace_of(program(spindle), "citizen")
+    found = live_tool.speed(trace)[trace.mode.in_polar]
     assert all(found == speed) if speed else all(found != found)
 
 
