@@ -79,6 +79,7 @@ if TYPE_CHECKING:
     from polarcheck.table.passes import Passes as Passes
     from polarcheck.table.procedure import Procedure as Procedure
     from polarcheck.table.ramps import Ramps as Ramps
+    from polarcheck.table.rapid_contours import RapidContours as RapidContours
     from polarcheck.table.regularity import Regularity as Regularity
     from polarcheck.table.same_circle import SameCircle as SameCircle
     from polarcheck.table.senses import Senses as Senses

@@ -54,6 +54,7 @@ MAKERS = {
     "milled": "polarcheck.table.milled:Milled",
     "workpiece": "polarcheck.table.workpiece:Workpiece",
     "air_cuts": "polarcheck.table.air_cuts:AirCuts",
+    "rapid_contours": "polarcheck.table.rapid_contours:RapidContours",
     "pass_ends": "polarcheck.table.pass_ends:PassEnds",
     "pass_depths": "polarcheck.table.pass_depths:PassDepths",
     "nominal_parts": "polarcheck.inspection.nominal_parts:NominalParts",

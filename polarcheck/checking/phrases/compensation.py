@@ -192,27 +192,35 @@ def ramp_at_rest(trace: Trace, row: int) -> str:
     return f"; {side(trace.compensation, row)} of line {line} moves nowhere, so that this block is the ramp"
 
 
-def why(
-    blocks: ExecutedBlocks, axes: PlaneAxes, mode: PolarMode, path: ProgrammedPath, machine: Machine, row: int
-) -> str:
-    """What keeps the control from knowing the move after this one in time."""
-    following = row + 1
-    while following < len(blocks) and mode.in_polar[following] and not path.length[following] > 0:
+def why(trace: Trace, row: int) -> str:
+    """What keeps the control from knowing the move behind the one that ends perpendicular in time."""
+    blocks, path, machine = trace.blocks, trace.path, trace.machine
+    move = _move(path, row)
+    following = move + 1
+    while following < len(blocks) and trace.mode.in_polar[following] and not path.length[following] > 0:
         following += 1
     stops = blocks.codes(*machine.m_codes.stops_reading_ahead)
-    for at in range(row, following):
+    for at in range(move, following):
         if stops[at]:
             return f"line {blocks.line[at]} stops reading ahead"
-    count = following - row - 1
-    written = np.flatnonzero(axes.moves_plane[row + 1 : following] & ~path.moves_z[row + 1 : following]) + row + 1
-    if len(written):
-        lines = blocks.line[written].tolist()
-        many = f"line {lines[0]} moves" if len(lines) == 1 else f"lines {' and '.join(map(str, lines[:2]))} move"
-        rest = "" if len(written) == count else f", and {count} blocks in all make no move on the plane"
-        return f"{many} nowhere, its point is that of the block before{rest}"
+    count = following - move - 1
     least = machine.compensation.read_ahead - 2
+    if move != row:
+        rest = f", and {count} blocks behind that move make none on the plane" if count > 1 else ""
+        return f"this block moves nowhere, its point is that of the block before{rest}: delete it or correct its words"
     many = f"{count} blocks" if count > 1 else "a block"
     return f"{many} without a move on the plane follow{'' if count > 1 else 's'}, this control reads past {least}"
+
+
+def move_before(trace: Trace, row: int) -> str:
+    """The block that ends perpendicular: this one, or one before it."""
+    move = _move(trace.path, row)
+    return "this block" if move == row else f"line {int(trace.blocks.line[move])}"
+
+
+def _move(path: ProgrammedPath, row: int) -> int:
+    """The last row with a move on the plane, up to a row."""
+    return int(np.flatnonzero(path.travels[: row + 1])[-1])
 
 
 def place(blocks: ExecutedBlocks, axes: PlaneAxes, lengths: Lengths, overcuts: Overcuts, row: int) -> str:

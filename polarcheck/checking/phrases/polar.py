@@ -11,8 +11,8 @@ from polarcheck.checking.phrases.common import (
     block_and_line,
     codes,
     executed_word,
+    line_code,
     linear,
-    move_code,
     outside,
     switch_off,
     written,
@@ -66,7 +66,7 @@ _ENDED = {"scaling": "scaling", "rotation": "rotation", "mirror_image": "mirror"
 
 def instead_of_rapid(compensation: CutterCompensation, machine: Machine, row: int) -> str:
     """What to write for G0 in the mode: within a contour G1 with its F, else a high one."""
-    line = move_code(machine, "line")
+    line = line_code(machine)
     if compensation.compensates[row] and not compensation.starts_up[row]:
         return f"this block lies in a contour with G{compensation.side[row]}: write {line} and leave F as it is"
     return f"write {line} with a high F"
