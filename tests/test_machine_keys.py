@@ -363,6 +363,7 @@ USES = {
     "m_codes.sub_c_axis_unclamp": Use(["M312"], before("M135", "M310", "M312"), also=CLAMPED_SUB),
     "m_codes.sub_spindle_on": Use(["M103"], before("M135", "M103"), also=TWO_SPINDLES),
     "m_codes.sub_spindle_off": Use(["M105"], before("M135", "M103", "M105"), also=RUNNING_SUB),
+    "m_codes.spindle_orientation": Use([], inside("M19")),
     "m_codes.tool_change": Use([], ENDED.format("M6")),
     "m_codes.optional_stop": Use([], ENDED.format("G28 U0\nM1")),
     "m_codes.program_end": Use(["M30"], FLAT.replace("M30", "M2")),
