@@ -86,6 +86,7 @@ if TYPE_CHECKING:
     from polarcheck.table.slots import Slots as Slots
     from polarcheck.table.spindles import Spindles as Spindles
     from polarcheck.table.stock_comments import StockComments as StockComments
+    from polarcheck.table.switch_slips import SwitchSlips as SwitchSlips
     from polarcheck.table.switch_words import SwitchWords as SwitchWords
     from polarcheck.table.tangency import Tangency as Tangency
     from polarcheck.table.tool_center import ToolCenter as ToolCenter

@@ -35,6 +35,7 @@ MAKERS = {
     "mode_words": "polarcheck.table.mode_words:ModeWords",
     "switch_words": "polarcheck.table.switch_words:SwitchWords",
     "other_mode": "polarcheck.table.other_mode:OtherMode",
+    "switch_slips": "polarcheck.table.switch_slips:SwitchSlips",
     "bar": "polarcheck.table.bar:Bar",
     "angles": "polarcheck.table.angles:Angles",
     "entry": "polarcheck.table.entry:Entry",

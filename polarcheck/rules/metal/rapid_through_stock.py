@@ -5,7 +5,7 @@ from polarcheck.checking.rule import ERROR, Hits, Workpiece, graded, rule
 
 @rule(
     ERROR,
-    "{way} takes the cutter, R {cutter}, {height} {through} what stands of the bar ({bar}); retract Z first",
+    "{way} takes the cutter, R {cutter}, {height} {through} what stands of the bar ({bar}); {at_depth}",
     where="workpiece.is_mill",
     once="tool call",
     follows={
