@@ -144,6 +144,7 @@ class PolarSection(msgspec.Struct, frozen=True, kw_only=True):
     ramp_used: share of a start-up or offset cancel that its radius needs, the largest of the section; 1 at the limit.
     time: of its moves at the F in force, Z moves and dwells included [s].
     time_not_known: where there is no time, why, by reason, as `dwell in line 12`.
+    rotary: address of the rotary axis, which all of C are rates and places of, where it is not C.
     channel: of a file with several channels, as `$2`.
     """
 
@@ -160,6 +161,7 @@ class PolarSection(msgspec.Struct, frozen=True, kw_only=True):
     ramp_used: float | None
     time: float | None
     time_not_known: list[str] | UnsetType = UNSET
+    rotary: str | UnsetType = UNSET
     channel: str | UnsetType = UNSET
 
 

@@ -61,7 +61,7 @@ def _polar_sections(trace: Trace, dynamics: Dynamics, center: Center, ramps: Ram
     at_entry = _offset_rows(trace)
     nearest = _of_sections(sections, np.where(trace.path.cuts, tool_center.nearest, np.inf), np.minimum, np.inf)
     ramp = _ramp_used(trace, ramps)
-    limit = rounded(trace.machine.limits.c_feed)
+    limit, rotary = rounded(trace.machine.limits.c_feed), trace.machine.polar.rotary_address
     found = []
     for index, (enter, end, row, fast) in enumerate(
         zip(sections.enter.tolist(), sections.last.tolist(), at_entry.tolist(), fastest.tolist(), strict=True)
@@ -81,6 +81,7 @@ def _polar_sections(trace: Trace, dynamics: Dynamics, center: Center, ramps: Ram
                 c_feed_limit=limit,
                 ramp_used=rounded(ramp[index]),
                 time=rounded(time),
+                rotary=msgspec.UNSET if rotary == "C" else rotary,
                 time_not_known=_not_known(dynamics, index) if np.isnan(time) else msgspec.UNSET,
             )
         )

@@ -1,6 +1,16 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, ExecutedBlocks, Hits, Machine, PolarMode, Spindles, graded, rule
+from polarcheck.checking.rule import (
+    WARNING,
+    ExecutedBlocks,
+    Hits,
+    Machine,
+    PlaneAxes,
+    PolarMode,
+    Spindles,
+    graded,
+    rule,
+)
 
 
 @rule(
@@ -8,7 +18,9 @@ from polarcheck.checking.rule import WARNING, ExecutedBlocks, Hits, Machine, Pol
     "{codes} in the polar mode; the spindle is the {rotary} axis here",
     follows={"section": ("polar-never-left",)},
 )
-def spindle_code_in_polar(blocks: ExecutedBlocks, mode: PolarMode, spindles: Spindles, machine: Machine) -> Hits:
+def spindle_code_in_polar(
+    blocks: ExecutedBlocks, axes: PlaneAxes, mode: PolarMode, spindles: Spindles, machine: Machine
+) -> Hits:
     """
     Main spindle started or stopped, or the C axis released, in the polar mode.
 
@@ -66,6 +78,8 @@ def spindle_code_in_polar(blocks: ExecutedBlocks, mode: PolarMode, spindles: Spi
     """
     codes = machine.m_codes
     in_mode = mode.in_polar & spindles.has_code
+    if machine.polar.engaged_behind:
+        in_mode &= ~blocks.codes(*codes.c_axis_on) | mode.given_in_section(axes.moves_plane)
     of_axis = blocks.codes(*codes.c_axis_on, *codes.c_axis_off, *codes.spindle_orientation)
     is_known = spindles.are_no_live_tool | of_axis
     return graded(warning=in_mode & is_known, note=in_mode & ~is_known, at=spindles.words)
