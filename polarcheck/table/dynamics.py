@@ -196,7 +196,7 @@ class Dynamics:
         z = np.where(
             trace.path.moves_z[rows], (trace.path.z - before(trace.path.z, trace.blocks.starts, np.nan))[rows], 0.0
         )
-        c = (trace.path.c_angle - before(trace.path.c_angle, trace.blocks.starts, np.nan))[rows]
+        c = trace.path.c_turn[rows]
         c = np.where(on_plane | trace.blocks.has(*trace.machine.polar.rotary_words)[rows], c, 0.0)
         return np.abs(x), np.abs(z), np.abs(c)
 

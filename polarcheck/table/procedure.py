@@ -11,7 +11,6 @@ from polarcheck.columns.filling import before, fill_down, happened, last_row
 from polarcheck.columns.trace import Trace
 from polarcheck.machines.code_lists import is_code
 from polarcheck.machines.modal import FeedMode, Motion, Side
-from polarcheck.table.live_tool import exceeds_highest_speed
 
 #: Least number of C moves at feed, with a move of X among them, of a contour; one alone is a groove or a position.
 _MOVES_OF_CONTOUR = 2
@@ -199,6 +198,10 @@ class Procedure(Columns, frozen=True):
     @cached_property
     def live_tool_above_highest_speed(self) -> Mask:
         """Rows with an S for the live tool above its highest speed."""
+        if np.isnan(self.trace.machine.limits.live_tool_speed):
+            return np.zeros(len(self.trace), bool)
+        from polarcheck.table.live_tool import exceeds_highest_speed
+
         return exceeds_highest_speed(self.trace)
 
     @cached_property

@@ -5,8 +5,8 @@ from polarcheck.checking.rule import WARNING, EntryAngles, Mask, rule
 
 @rule(
     WARNING,
-    "{rotary} stands where the section before has left it, {turned} from its {switch}: nobody has positioned it, and this "
-    "section comes out turned by as much; write {rotary} with the approach before {switch}",
+    "{rotary} stands where the section before has left it, {turned} from its {switch}: nobody has positioned it, and "
+    "this section comes out turned by as much; write {rotary} with the approach before {switch}",
     over="sections",
     at=("on",),
     once="program",
