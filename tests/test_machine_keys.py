@@ -165,6 +165,7 @@ TWO_SPINDLES = {
 }
 CLAMPED_SUB = {"m_codes": {"sub_c_axis_on": ["M135"], "sub_c_axis_clamp": ["M310"]}}
 RUNNING_SUB = {"m_codes": {"sub_c_axis_on": ["M135"], "sub_spindle_on": ["M103"]}}
+RAMP_IN_SPACE = inside("G451 G450 X50. Z1.")
 USES = {
     "title": Use("lathe of ours", FLAT.replace("F200", "F9000"), also={"limits": {"c_feed": 100}}),
     "control.g_code_system": Use("B", FLAT.replace("G98", "G99")),
@@ -204,6 +205,9 @@ USES = {
     "g_codes.compensation_left": Use([], OUTSIDE, tools=CUTTER),
     "g_codes.compensation_right": Use([], RAMPS.format("", "", ""), tools=CUTTER),
     "g_codes.feed_inverse_time": Use([], before("G93")),
+    "g_codes.feed_on_plane": Use(["G450"], RAMP_IN_SPACE, also={"polar": {"feed_measures": "space"}}),
+    "g_codes.feed_in_space": Use(["G450"], RAMP_IN_SPACE),
+    "g_codes.feed_as_machine": Use(["G450"], RAMP_IN_SPACE, also={"g_codes": {"feed_in_space": ["G451"]}}),
     "g_codes.constant_surface_speed": Use([], before("G96 S100")),
     "g_codes.constant_surface_speed_off": Use([], before("G96 S100", "G97")),
     "g_codes.work_offset": Use(["G54-G58"], before("G59")),

@@ -28,7 +28,7 @@ from polarcheck.geometry.plane import angle_between
 from polarcheck.geometry.tolerances import ZERO
 from polarcheck.machines.axes import INCREMENTS
 from polarcheck.machines.machine import Machine
-from polarcheck.machines.modal import Distance, Motion
+from polarcheck.machines.modal import Distance, FeedAxes, Motion
 
 #: The point of a row of which none is known.
 NOWHERE = complex("nan+nanj")
@@ -414,9 +414,11 @@ class ProgrammedPath(Columns, frozen=True):
         """
         Way of Z beside a move on the polar plane, where F measures it, too [mm]; 0 elsewhere, NaN while Z is not known.
         """
-        if self.machine.polar.feed_measures == "plane":
+        axes, in_space = self.modal.state("feed_axes"), self.machine.polar.feed_measures == "space"
+        if not in_space and not axes.any():
             return repeated(np.float64(0), len(self.run))
-        beside = self.mode.in_polar & self.axes.moves_plane & self.moves_z
+        measured = (axes == FeedAxes.SPACE) | ((axes == FeedAxes.AS_MACHINE) & in_space)
+        beside = self.mode.in_polar & self.axes.moves_plane & measured & self.moves_z
         return np.where(beside, np.abs(self.z - self.z_before), 0.0)
 
     def _move(self, rows: Mask) -> tuple[Points, Points, Points, States]:
