@@ -40,7 +40,15 @@ class OutputError(PolarcheckError):
 
 
 class MachineError(PolarcheckError):
-    """A machine profile that cannot be used."""
+    """
+    A machine profile that cannot be used.
+
+    others: further faults that were seen together with it, each in one line of the same form.
+    """
+
+    def __init__(self, text: str, others: Iterable[str] = ()) -> None:
+        super().__init__(text)
+        self.others = tuple(others)
 
 
 class JobError(PolarcheckError):

@@ -9,16 +9,17 @@ from typing import Any
 import numpy as np
 
 from polarcheck.geometry.cutter_compensation.compensation import Path
-from polarcheck.machines.modal import Motion
+from polarcheck.machines.modal import Corner, Motion
 
-#: In the order of the fields of Path.
+#: In the order of the fields of Path, without the last.
 PATH_TYPES = (np.int64, np.int16, np.bool_, *[complex] * 3, np.int16, np.bool_, np.float64, complex, np.bool_)
 
 
-def path_of_rows(rows: Iterable[tuple[Any, ...]]) -> Path:
-    """The columns of a path, each row as the fields of Path."""
+def path_of_rows(rows: Iterable[tuple[Any, ...]], corner: Corner = Corner.LINES) -> Path:
+    """The columns of a path, each row as the fields of Path but the last, which all have."""
     columns = list(zip(*rows, strict=True)) or [()] * len(PATH_TYPES)
-    return Path(*(np.array(column, dtype=kind) for column, kind in zip(columns, PATH_TYPES, strict=True)))
+    arrays = [np.array(column, dtype=kind) for column, kind in zip(columns, PATH_TYPES, strict=True)]
+    return Path(*arrays, np.full(len(arrays[0]), corner, np.int16))
 
 
 def turn_of(start: complex, end: complex, center: complex, kind: int) -> float:

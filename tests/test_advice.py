@@ -125,9 +125,9 @@ def test_a_way_that_strays_to_the_center_is_no_matter_of_f(lead: str) -> None:
 @pytest.mark.parametrize(
     ("behind", "says"),
     [
-        ("M39", "write M35 on the retract, in place of M39 of line 18 if that is meant for it"),
-        ("M8", "write M35 on the retract"),
-        ("", "write M35 on the retract"),
+        ("M39", "write M35 or M5 on the retract, in place of M39 of line 18 if that is meant for it"),
+        ("M8", "write M35 or M5 on the retract"),
+        ("", "write M35 or M5 on the retract"),
     ],
 )
 def test_what_stops_the_live_tool(behind: str, says: str) -> None:
@@ -195,7 +195,7 @@ def test_a_ramp_that_would_be_long_enough_in_inch() -> None:
     program = SOUND.replace("X60.", "X2.").replace("X40.", "X1.5").replace("X-40.", "X-1.5").replace("20.", ".75")
     found = messages(program, tool="1:radius=3.175")["start-up-shorter-than-radius"]
     assert found.endswith("; neither G20 nor G21 stands above it: in inch it would be long enough")
-    found = messages("G21 / " + program, tool="1:radius=3.175")["start-up-shorter-than-radius"]
+    found = messages(program.replace("O1 / ", "O1 / G21 / "), tool="1:radius=3.175")["start-up-shorter-than-radius"]
     assert "G20" not in found
 
 

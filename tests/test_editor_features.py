@@ -219,7 +219,7 @@ def test_each_section_tells_what_it_asks_of_the_lathe() -> None:
     assert second.command.title.endswith(" | R 4.000 mm (offset 1, command line)")
     unknown = outline.code_lenses(judged_of(COMPENSATED))[0].command
     assert unknown is not None
-    assert unknown.title == "time not known | rate of C not known | R of offset 1 not known"
+    assert unknown.title == "time not known: no radius in line 4 | rate of C not known | R of offset 1 not known"
 
 
 def test_programs_and_their_sections_are_the_outline() -> None:

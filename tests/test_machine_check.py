@@ -136,6 +136,82 @@ def test_a_file_that_is_not_sound_is_one_line_in_every_command(values: str, told
     assert not Path("other.toml").exists()
 
 
+#: A file with a fault in nearly every line, and what is said of each.
+_FAULTS = (
+    ('inherits = "fanuc30i"', ["inherits: unknown machine 'fanuc30i'; did you mean fanuc-30i?"]),
+    ('colour = "red"', ["unknown key colour"]),
+    ("[limits]", []),
+    ("c_fed = 3600", ["unknown key limits.c_fed; did you mean c_feed?"]),
+    ("x_maximum = 1,5  # from the plate", ["Expected newline", "write 1.5, with a decimal point"]),
+    ("z_minimum = 8.0", ["limits: z_minimum is 8, above z_maximum, 3"]),
+    ("z_maximum = 3.0", []),
+    ("c_feed = 0", ["limits.c_feed: expected a number above 0, found 0"]),
+    ("c_acceleration = { value = 100, doubtful = 'no' }", ["limits.c_acceleration.doubtful: expected true or false"]),
+    ("[m_codes]", []),
+    ('c_axis_on = ["M35"]', ["m_codes.c_axis_on: M35 is in m_codes.c_axis_off, too"]),
+    ('c_axis_off = ["M35", "35"]', ["m_codes.c_axis_off: '35' is no code"]),
+    ("live_tool_on = [M33]", ["Invalid value", 'write "M33", in quotes']),
+    ("[power_on]", []),
+    ('feed_mode = "G17"', ["power_on.feed_mode: G17 selects no feed_mode; codes are"]),
+    ("[parameters]", []),
+    ("9999 = 1", ["parameters: no meaning is known for 9999"]),
+    ('1430 = "x"', ["parameters.1430: expected a number, not x"]),
+    ("3401#6 = 1", ['write "3401#6" in quotes']),
+    ("[alarm_codes]", []),
+    (
+        'PS0146 = ["thread_cuting", "G0", "rapidd"]',
+        ["'thread_cuting' is neither a code nor a list of codes; did you mean thread_cutting?", "mean rapid?"],
+    ),
+    ("[severities]", []),
+    ('overcut = "of"', ["severities.overcut: expected error, warning, note or off, found 'of'"]),
+    ('rapid-in-pola = "off"', ["severities.rapid-in-pola: unknown rule 'rapid-in-pola'; did you mean rapid-in-polar?"]),
+    ("[limit]", ["unknown table [limit]; did you mean limits?"]),
+    ("c_feed = 3", []),
+)
+
+
+def test_all_faults_of_a_file_are_said_in_one_run_each_with_its_line() -> None:
+    Path("own.toml").write_text("\n".join(line for line, _ in _FAULTS), "utf-8")
+    result = call("machines", "check", "own.toml")
+    assert (result.exit_code, result.stdout) == (2, "")
+    said: dict[int, str] = {}
+    for line in result.stderr.splitlines():
+        number = int(line.split(":")[2])
+        said[number] = said.get(number, "") + line
+    # Of two keys that contradict each other, and of two lists with one code, either may be named.
+    assert [bool(faults) for _, faults in _FAULTS] == [number in said for number in range(1, len(_FAULTS) + 1)]
+    for number, (_, faults) in enumerate(_FAULTS, 1):
+        for fault in faults:
+            assert fault in said[number]
+
+
+@pytest.mark.parametrize(
+    ("values", "lines"),
+    [
+        # Behind a table that cannot be read nobody knows where a key belongs; a line that is no key may be anything.
+        ("[limits\nc_fed = 3\n", [2]),
+        ("[limits]\nc_fed = 3\n[limits]\nc_feed = 0\n", [4]),
+        ("what is this\n", [2]),
+        # A list that does not end is said at the line behind it.
+        ('[m_codes]\nc_axis_on = ["M35"\nlive_tool_on = ["33"]\n', [4, 4]),
+        ("[limits]\nc_feed = 3\nc_feed = 0\nx_feed = 0\n", [4, 5]),
+        ('[alarm_codes]\nPS0146 = ["a1", "b2"]\n[m_codes]\nlive_tool_on = ["M1"]\nlive_tool_off = ["M1"]\n', [3, 3, 5]),
+    ],
+)
+def test_faults_that_hide_others_are_said_without_guessing(values: str, lines: list[int]) -> None:
+    Path("own.toml").write_text(f"inherits = 'fanuc-30i'\n{values}", "utf-8")
+    result = call("machines", "check", "own.toml")
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert [int(line.split(":")[2]) for line in result.stderr.splitlines()] == lines
+
+
+def test_a_fault_in_the_file_that_a_file_inherits_from_is_said_beside_its_own() -> None:
+    Path("shop.toml").write_text("inherits = 'fanuc-30i'\n[limits]\nc_fed = 3\n", "utf-8")
+    Path("own.toml").write_text("inherits = 'shop.toml'\n[limits]\nx_fed = 3\n", "utf-8")
+    lines = call("machines", "check", "own.toml").stderr.splitlines()
+    assert any("shop.toml:3: unknown key limits.c_fed" in line for line in lines)
+
+
 @pytest.mark.parametrize("name", names())
 def test_every_machine_of_ours_and_a_new_file_for_it_are_sound(name: str) -> None:
     assert call("machines", "check", name).stdout.startswith(f"{name}: sound, ")
@@ -144,6 +220,20 @@ def test_every_machine_of_ours_and_a_new_file_for_it_are_sound(name: str) -> Non
     assert f"inherits {name}" in told
     assert ", 0 values of its own; " in told
     assert "to look at" not in told
+
+
+@pytest.mark.parametrize("name", names())
+def test_the_short_file_has_ten_questions_whose_answers_count(name: str) -> None:
+    result = call("machines", "new", "own", "--from", name, "--short")
+    assert (result.exit_code, result.stderr) == (0, "")
+    text = Path("own.toml").read_text("utf-8")
+    assert re.findall(r"^# (\d+)\. ", text, re.MULTILINE) == [str(number) for number in range(1, 11)]
+    assert max(map(len, text.splitlines())) <= 100
+    answered = re.sub(r"^#(?=\w+ = )", "", text, flags=re.MULTILINE)
+    Path("own.toml").write_text(answered, "utf-8")
+    result = call("machines", "check", "own.toml")
+    assert result.exit_code == 0
+    assert f"{len(re.findall('^[a-z_]+ = ', answered, re.MULTILINE)) - 2} values of its own" in result.stdout
 
 
 @pytest.mark.parametrize(

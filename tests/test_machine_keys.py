@@ -102,6 +102,7 @@ def outcome(use: Use, changes: dict[str, Any]) -> tuple[Any, ...]:
 
 FLAT = "O1\nG98 G0 X60. C0\nG12.1\nG1 X40. F200\nC10.\nX60.\nG13.1\nM30\n"
 ARC = "O1\nG98 G0 X60. C0\nG12.1\nG1 X40. F200\nG3 X20. C10. {}\nG1 X60.\nG13.1\nM30\n"
+LARGER_ARC = "O1\nG94 G0 X60. C0\nG137 C0\nG101 X20. Y0 F200\nG103 X0 Y-20. L20. CALRG\nG136\nM2\n"
 RAMPS = "O1\nT0101\nG98 G0 X100. C0\nG12.1\n{}G1 G42 X40. F200\n{}C20.\nX10.\nC-20.\nX60.\n{}G40 X100.\nG13.1\nM30\n"
 CUTTER = ("1:radius=4",)
 SETS = "O1\n{}\nT0101\nG98 G0 X100. C0\nG12.1\nG1 G42 X60. F200\nC20.\nG40 X100.\nG13.1\nM30\n"
@@ -182,6 +183,7 @@ USES = {
     "control.known_codes": Use(["G0-G119"], before("G160")),
     "control.motion_codes": Use({"G101": "G1"}, inside("G101 C5.")),
     "control.native_words": Use({"POLAR": "G12.1"}, FLAT.replace("G12.1", "POLAR")),
+    "control.units_of_lengths_alone": Use(["G20"], before("G20")),
     "control.x_radius_words": Use(["G7"], before("G7", "X50.")),
     "control.x_diameter_words": Use(["G8"], before("G8", "X50."), also={"control": {"x": "radius"}}),
     "control.x_absolute_diameter_words": Use(["G8"], before("G8", "X50."), also={"control": {"x": "radius"}}),
@@ -194,6 +196,8 @@ USES = {
     "g_codes.plane_xy": Use([], before("G17"), also={"polar": {"plane_before": ["G18"]}}),
     "g_codes.plane_zx": Use([], before("G18"), also={"polar": {"plane_before": ["G17"]}}),
     "g_codes.plane_yz": Use([], before("G19"), also={"polar": {"plane_before": ["G17"]}}),
+    "g_codes.corner_by_arc": Use(["G450"], OUTSIDE.replace("G41", "G450 G41"), tools=CUTTER),
+    "g_codes.corner_by_intersection": Use(["G451"], OUTSIDE.replace("G41", "G451 G41"), tools=CUTTER),
     "g_codes.compensation_off": Use([], OUTSIDE, tools=CUTTER),
     "g_codes.compensation_left": Use([], OUTSIDE, tools=CUTTER),
     "g_codes.compensation_right": Use([], RAMPS.format("", "", ""), tools=CUTTER),
@@ -251,8 +255,10 @@ USES = {
     "g_code_system_a.coordinate_setting": Use([], before("G50 X0")),
     "g_code_system_a.coordinate_preset": Use([], before("G52 X1.", "G50.3 X0")),
     "g_code_system_a.feed_is_lead": Use([], before("G76 X50. F100").replace(" F200", "")),
+    "control.rotary_rolls_over": Use(True, FLAT.replace("M30", "G0 C350.\nM30"), also={"limits": {"c_rapid": 9000}}),
     "control.axes": Use(["Y", "X", "C"], FLAT),
     "control.named_axes": Use({"C1": ""}, inside("C1=5.")),
+    "control.spindle_words": Use({"S3": "live"}, inside("S3=500")),
     "polar.on": Use(["G112"], FLAT),
     "polar.off": Use(["G113"], FLAT),
     "polar.ended_by": Use(["G18"], FLAT.replace("G13.1", "G18")),
@@ -269,6 +275,7 @@ USES = {
     "polar.contours_outside": Use(["G1"], before("G1 X50. C10. F100")),
     "polar.direction_word": Use("C", FLAT),
     "polar.words_beside_switch": Use(["X"], FLAT.replace("G12.1", "G12.1 X0")),
+    "polar.planes_not_simulated": Use(["G16"], inside("G16 C9.")),
     "polar.not_simulated_beside": Use(
         ["K"], FLAT.replace("G12.1", "G12.1 K1"), also={"polar": {"words_beside_switch": ["K"]}}
     ),
@@ -283,9 +290,11 @@ USES = {
     "polar.virtual_axis_programming": Use("diameter", FLAT),
     "polar.zero_angle": Use("at-c0", FLAT.replace("C0", "C30.")),
     "polar.other_axes": Use("forbidden", inside("X50. Z1.")),
+    "polar.feed_measures": Use("space", inside("X50. Z1.")),
     "polar.repeated_z": Use("forbidden", inside("G1 Z1.\nX50. Z1.")),
     "polar.center_words": Use({"X": ["J", "K"], "Y": ["J", "K"], "Z": ["K", "I"]}, ARC.format("I-10. J0")),
     "polar.linear_address": Use("Y", FLAT),
+    "polar.center_error": Use(-5, FLAT.replace("X40.", "X4.").replace("C10.", "C3.")),
     "polar.linear_axis": Use(2, FLAT, "gsk-988"),
     "polar.rotary_axis": Use(4, FLAT.replace("G12.1", "G12.1 Q3"), "gsk-988"),
     "polar.infeed_word": Use("", INFEED, "gsk-988", ("2:radius=10",)),
@@ -296,11 +305,16 @@ USES = {
     "arcs.radius_word": Use("L", ARC.format("R10.")),
     "arcs.corner_words": Use(["R"], CORNERS.format(20, "G40 X60. R1.\nX50. R1.\nC30.\nG13.1"), tools=CUTTER),
     "arcs.sweep_limit": Use(45, ARC.format("I-10. J0")),
+    "arcs.takes_sweep_limit": Use(False, ARC.format("R7.0711"), also={"arcs": {"sweep_limit": 180}}),
+    "arcs.larger_arc_word": Use("", LARGER_ARC, "okuma-osp"),
     "compensation.start_up": Use("B", OUTSIDE, tools=CUTTER),
     "compensation.start_up_with_move": Use("B", OUTSIDE, tools=CUTTER, also={"compensation": {"start_up": "C"}}),
     "compensation.read_ahead": Use(5, RAMPS.format("", "M8\nM9\n", ""), tools=CUTTER),
     "compensation.interference": Use("erase", REVERSED, tools=CUTTER),
     "compensation.tangent_tolerance": Use(0.5, APART, tools=CUTTER),
+    "compensation.corner": Use("arc", OUTSIDE, tools=CUTTER),
+    "compensation.corner_arc_above": Use(10, OUTSIDE, tools=CUTTER, also={"compensation": {"corner": "intersection"}}),
+    "compensation.corner_arc_from": Use(170, OUTSIDE, tools=CUTTER, also={"compensation": {"corner": "arc"}}),
     "compensation.leaving_cancels": Use(True, CORNERS.format(20, "X60. F200\nC5.\nG40\nG13.1\nG12.1"), tools=CUTTER),
     "compensation.nose_types": Use([0], RAMPS.format("", "", ""), tools=("1:radius=4,nose=9",)),
     "compensation.overcut_tolerance": Use(20, GOUGE, tools=CUTTER),
@@ -309,6 +323,7 @@ USES = {
     "limits.c_feed_suspicious": Use(100, FLAT),
     "limits.c_acceleration": Use(0.01, FLAT),
     "limits.x_feed": Use(100, FLAT),
+    "limits.x_acceleration": Use(0.01, FLAT),
     "limits.x_rapid": Use(5000, inside("G0 X50.\nG1"), also={"limits": {"c_rapid": 9000}}),
     "limits.z_rapid": Use(5000, inside("G0 Z6.\nG1")),
     "limits.c_rapid": Use(9000, inside("G0 C10.\nG1"), also={"limits": {"x_rapid": 5000}}),
@@ -316,6 +331,8 @@ USES = {
     "limits.polar_feed_clamps": Use(False, FLAT, also={"limits": {"polar_feed": 100}}),
     "limits.automatic_override": Use(True, FLAT, also={"limits": {"c_feed": 100}}),
     "limits.override_share": Use(50, FLAT, also={"limits": {"c_feed": 100, "automatic_override": True}}),
+    "limits.live_tool_speed": Use(1000, FLAT.replace("G1", "S2000\nG1")),
+    "limits.block_time": Use(0.1, inside("\n".join(f"C{n / 100:.2f}" for n in range(12)) + "\nC10.")),
     "limits.keep_out": Use(5, FLAT.replace("X40.", "X4.").replace("C10.", "C3.")),
     "limits.x_minimum": Use(25, FLAT),
     "limits.x_maximum": Use(25, FLAT),
@@ -326,6 +343,8 @@ USES = {
     "feed.positioning_minimum": Use(700, FLAT, also={"feed": {"cutting_maximum": 100}}),
     "feed.positioning_maximum": Use(150, FLAT, also={"feed": {"cutting_maximum": 100}}),
     "feed.carried_into_polar": Use("per-minute-only", FLAT.replace("G98", "G99").replace("F200", "F.2")),
+    "feed.dwell_words": Use({"P": "hundredths"}, inside("G4 P50")),
+    "feed.dwell_per_revolution": Use("turns", inside("G99 G4 P50\nG98")),
     "power_on.motion": Use("G1", "O1\nG98 X60. C0 F200\nG12.1\nX40.\nC10.\nG13.1\nM30\n"),
     "power_on.plane": Use("G18", FLAT, also={"polar": {"plane_before": ["G17"]}}),
     "power_on.feed_mode": Use("G99", FLAT.replace("G98 ", "")),

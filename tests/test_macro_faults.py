@@ -37,6 +37,7 @@ _ONE_STATEMENT = {
     "word-vacant": "G0 X#1",
     "program-number": "M98 P0",
     "program-not-found": "M98 P3",
+    "call-target-not-found": "M98 Q20",
     "sequence-number-not-found": "GOTO 20",
     "sequence-number-vacant": "GOTO #1",
     "loop-without-end": "WHILE[1 EQ 2]DO1",

@@ -29,6 +29,8 @@ KEYS: dict[str, tuple[Any, str]] = {
     "tool_offset_variables": ([], "G98 G0 X60. C0\nG12.1\n#2001=.5\nG1 X40. F200\nX60.\nG13.1\nM30\n"),
     "work_offset_variables": ([], "G98 G0 X60. C0\nG12.1\n#5221=.5\nG1 X40. F200\nX60.\nG13.1\nM30\n"),
     "subprogram_calls": (["M198"], "M98 P2\n" + _SUB),
+    "sequence_word": ("", "M98 Q10\nM30\nN10 G0 X5.\nM99\n"),
+    "local_calls": (["M97"], "M97 P10\nM30\nN10 G0 X5.\nM99\n"),
     "macro_calls": ([], "G65 P2 X5.\n" + _SUB),
     "modal_macro_calls": ([], "G66 P2 X5.\nG0 Z1.\n" + _SUB),
     "modal_macro_calls_each_block": ([], "G66.1 P2 G1 X5.\nG0 Z1.\n" + _SUB),

@@ -9,6 +9,7 @@ from collections.abc import Iterator
 import pytest
 from programs import ROOT, machine_of, report_of, said, tables_of
 
+from polarcheck.checking.remedies import enumerated
 from polarcheck.finding import FileReport, Finding
 from polarcheck.machines import profiles
 from polarcheck.table import other_mode
@@ -104,7 +105,9 @@ def test_a_program_full_of_faults_does_not_pass_under_the_wrong_machine(program:
     assert report.verdict == "fail"
     assert the_one(report).severity == "error"
     assert the_one(report).line == line
-    assert "--machine fanuc" in the_one(report).message
+    polar = machine_of(name).polar
+    assert f"; write {polar.on[0]}" in the_one(report).message
+    assert f"{polar.off[0]} for G13.1" in the_one(report).message or program == "polar_never_left"
 
 
 @pytest.mark.parametrize(
@@ -122,18 +125,58 @@ def test_a_program_full_of_faults_does_not_pass_under_the_wrong_machine(program:
         ("G0 X60 Y0\nDIAMOF\ntransmit(1)\nG3 X40 Y5 CR=9\nTRAFOOF\nDIAMON\nM30\n", "haas-lathe", "siemens-transmit"),
     ],
 )
-def test_the_one_finding_names_the_machines_that_know_the_code(program: str, name: str, machines: str) -> None:
+def test_the_machines_that_know_the_code_are_named(program: str, name: str, machines: str) -> None:
+    """Only where nobody has chosen a machine: the code is to be changed on a lathe that is there."""
     found = the_one(report_of(program, name))
     assert found.severity == "error"
-    assert f"--machine {machines}" in found.message
+    assert ("--machine" in found.message) == (name == "fanuc")
+    assert enumerated(known(program, name)[:3], "or").startswith(machines)
+
+
+def known(program: str, name: str) -> list[str]:
+    """The machines that know the code with which a program begins the mode of another control."""
+    table = tables_of(program, name)["other_mode"]
+    return [profile.name for profile in table.machines(int(table.begins.argmax()))]
 
 
 def test_no_machine_is_named_for_a_code_that_its_own_files_do_not_have() -> None:
-    """On siemens-transmit G12.1 is what TRANSMIT is read as; no more than three machines are named."""
-    alone = the_one(report_of(TURNING.format("G12.1\n"), "haas-lathe")).message
-    assert "--machine fanuc, gsk-988 or mazak-eia, unless" in alone
-    turned = the_one(report_of("O1\nG98 G0 X50. C0\nG12.1\nG1 X40. Y5. F200\nG13.1\nM30\n", "haas-lathe")).message
-    assert "siemens" not in turned
+    """On siemens-transmit G12.1 is what TRANSMIT is read as."""
+    assert known(TURNING.format("G12.1\n"), "haas-lathe")[:3] == ["fanuc", "gsk-988", "mazak-eia"]
+    turned = known("O1\nG98 G0 X50. C0\nG12.1\nG1 X40. Y5. F200\nG13.1\nM30\n", "haas-lathe")
+    assert "siemens-transmit" not in turned
+
+
+WRITTEN = "O1\nG0 X50. C0\n{}\nG1 X40. {}5. F200\n{}\nM30\n"
+
+
+@pytest.mark.parametrize(
+    ("words", "name", "remedy"),
+    [
+        (("G12.1", "Y", "G13.1"), "haas-lathe", "G112 for G12.1 and G113 for G13.1"),
+        (("G12.1", "C", "G13.1"), "haas-lathe", "G112 for G12.1, G113 for G13.1 and Y for C"),
+        (("G12.1", "Y", "G113"), "haas-lathe", "G112 for G12.1"),
+        (("G137 C0", "Y", "G136"), "haas-lathe", "G112 for G137 and G113 for G136"),
+        (("G112", "Y", "G113"), "okuma-osp", "G137 C0 for G112 and G136 for G113"),
+        (("G112", "Y", "G113"), "siemens-transmit", "TRANSMIT for G112 and TRAFOOF for G113"),
+        (("TRANSMIT", "Y", "TRAFOOF"), "haas-lathe", "G112 for TRANSMIT and G113 for TRAFOOF"),
+        (("G112", "Y", "G113"), "mazak-quick-turn", "G12.1 for G112, G13.1 for G113, C for Y and X as a diameter"),
+        (("G137 C0", "Y", "G136"), "citizen", "G12.1 for G137 and G13.1 for G136"),
+    ],
+)
+def test_on_a_lathe_that_is_chosen_the_code_is_to_be_changed(
+    words: tuple[str, str, str], name: str, remedy: str
+) -> None:
+    """As on the command line, where the job holds the machine, too; on FANUC that alone tells that it was chosen."""
+    program = WRITTEN.format(*words)
+    found = [one for one in report_of(program, name, "1:radius=4").findings if one.rule == RULE]
+    assert [one.message.partition("; write ")[2] for one in found] == [remedy]
+
+
+def test_a_default_machine_that_somebody_names_is_chosen_all_the_same() -> None:
+    program = WRITTEN.format("G137 C0", "Y", "G136")
+    assert "check it with --machine okuma-osp" in the_one(report_of(program)).message
+    chosen = the_one(report_of(program, job={"machine": "fanuc"})).message
+    assert chosen.endswith("; write G12.1 for G137, G13.1 for G136, C for Y and X as a diameter")
 
 
 @pytest.mark.parametrize(
@@ -159,7 +202,8 @@ def test_a_word_that_stands_alone_is_no_macro(name: str) -> None:
     report = report_of(TURNING.format("TRANSMIT\n"), name)
     assert report.verdict == "fail"
     assert the_one(report).severity == "error"
-    assert the_one(report).message.endswith("check it with --machine siemens-transmit")
+    remedy = {"fanuc": "check it with --machine siemens-transmit", "haas-lathe": "write G112 for TRANSMIT"}
+    assert the_one(report).message.endswith(remedy.get(name, "write G12.1 for TRANSMIT"))
     assert report.not_evaluated == []
 
 
@@ -261,7 +305,7 @@ def test_a_map_with_its_moves_and_its_end_is_the_mode_of_another_control(on: str
         assert not told
     else:
         assert [found.severity for found in told] == ["error"]
-        assert "--machine hurco" in told[0].message
+        assert known(MAPPED.format(on, off), name) == ["hurco"]
 
 
 @pytest.mark.parametrize("name", ["fanuc", "haas-lathe", "doosan"])

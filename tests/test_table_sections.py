@@ -5,7 +5,7 @@ from __future__ import annotations
 import msgspec
 import numpy as np
 import pytest
-from programs import trace_of
+from programs import machine_of, report_of, said, trace_of
 
 from polarcheck.arrays import Mask
 from polarcheck.columns.sections import Marks, Sections, find_sections, section_column
@@ -65,6 +65,45 @@ def test_sections_end_where_they_were_meant_to(program: str, expected: list[tupl
     assert sections(program) == expected
 
 
+CHOSEN_BACK = "O1\nT0101\nG98 G0 X60. C0 Z5.\n{}\n{}\nG1 X20. F200\n{}10.\nX60.\n{}{}\nG0 Z100.\nM30\n"
+
+
+@pytest.mark.parametrize(
+    ("machine", "on", "axis", "off", "back"),
+    [
+        ("haas-lathe", "G112", "Y", "G113", "G18"),
+        ("citizen", "G12.1 D0 E=C", "Y", "G13.1", "G18"),
+        ("hurco", "G101", "Y", "G109", "G18"),
+        ("mazak-integrex", "G12.1", "C", "G13.1", "G18"),
+        ("siemens-transmit", "TRANSMIT", "Y", "TRAFOOF", "G18"),
+        ("okuma-osp", "G137 C0", "Y", "G136", "G18"),
+        ("turning-center", "G12.1", "C", "G13.1", "G17"),
+    ],
+)
+@pytest.mark.parametrize("retract", ["", "Z5. F500\n", "G0 X70. {}0\n"])
+def test_a_plane_chosen_back_ends_a_section_that_nobody_has_left(
+    machine: str, on: str, axis: str, off: str, back: str, retract: str
+) -> None:
+    """The code that ends the mode is missing before it, and it stays: else the lathe stays in the plane of the mode."""
+    retract = retract.format(axis)
+    if "G0" in retract and "G0" not in machine_of(machine).polar.allowed_codes:
+        return
+    plane = {"haas-lathe": "G17", "turning-center": "G18"}.get(machine, "")
+    program = CHOSEN_BACK.format(on, plane, axis, retract, back)
+    findings = [one for one in report_of(program, machine, "1:radius=4").findings if one.severity == "error"]
+    (left,) = [one for one in findings if one.rule == "polar-never-left"]
+    assert left.message.endswith(f"{off} is missing before line {9 + bool(retract)}, {back}")
+    assert left.fix is not None
+    assert [(edit.line, edit.text) for edit in left.fix.edits] == [(8 + bool(retract), f"\n{off}")]
+    assert "plane-selected-in-polar" not in {one.rule for one in findings}
+
+
+def test_a_plane_between_two_cuts_is_a_fault_of_its_own() -> None:
+    report = report_of(CHOSEN_BACK.format("G112", "G17", "Y", "", "G18\nG1 Y5.\nG113"), "haas-lathe", "1:radius=4")
+    assert (9, "plane-selected-in-polar") in said(report)
+    assert "polar-never-left" not in {rule for _, rule in said(report)}
+
+
 def test_the_rows_of_a_section_are_those_from_its_entry_to_its_exit() -> None:
     trace = trace_of(HEAD + "G12.1\nG1 X40. F100\nG13.1\nG0 X60.\nG112\nG1 X40.\nG113\nM30\n")
     assert trace.mode.section.tolist() == [-1] * 4 + [0, 0, -1, -1, 1, 1, -1, -1]
@@ -100,6 +139,7 @@ def marks(generator: np.random.Generator, count: int) -> Marks:
         off=off,
         starts=starts,
         outside=some(0.05),
+        planes=some(0.05),
         tool_ends=some(0.05),
         stops=some(0.05),
         rapid=some(0.2),

@@ -58,6 +58,12 @@ SIMULATED = {
     "X=SIN[30]*40": [(20, 0)],
     "X=COS[60]*40": [(20, 0)],
     "X=TAN[45]*20": [(20, 0)],
+    "X=BIN[32]": [(20, 0)],
+    "VC1=BCD[20]\nX=VC1-12": [(20, 0)],
+    "X=[12 AND 5]+16": [(20, 0)],
+    "CLEAR\nDEF WORK\nPS LC,[-400,0],[400,19]\nEND\nDRAW\nX20.": [(20, 0)],
+    "N1 CLEAR\nN2 DEF WORK\nN3 PS LC, [0,0], [26,30]\nN4 PS RC,[0,0],[26,9],0\nN5 END\nN6 DRAW\nX20.": [(20, 0)],
+    "V1=NOT[0] V2=DROUND[20.12]\nX20.": [(20, 0)],
     "X=ATAN[1]": [(45, 0)],
     "Y=ATAN2[-1,1]": [(40, -45)],
     "GOTO NEND\nX99.\nNEND X20.": [(20, 0)],
@@ -107,10 +113,6 @@ NAMED = {
     "VTOFX[5]=VTOFX[5]+.2": ("VTOFX[5]=VTOFX[5]+.2", True),
     "VZSHZ=VZSHZ+1": ("VZSHZ=VZSHZ+1", False),
     "VRSTT=1": ("VRSTT=1", True),
-    "X=DROUND[20.12]": ("DROUND", True),
-    "X=DFIX[20.12] Y3.": ("DFIX", True),
-    "X=BIN[20]": ("BIN", True),
-    "VC1=1\nIF [NOT[VC1] EQ 0] NEND\nNEND": ("NOT", True),
     "CALL O=VC1": ("CALL O=VC1", True),
     "GET VC1": ("GET VC1", True),
     "PUT 'A'": ("PUT 'A'", True),
@@ -120,7 +122,6 @@ NAMED = {
     "WHILE [VC1 LT 2]": ("WHILE", True),
     "TURN": ("TURN", True),
     "X20. TURN": ("TURN", True),
-    "CALRG X20. Y5. L30.": ("CALRG", True),
     "SB2000": ("SB2000", True),
     "X=": ("X=", True),
     "X==2": ("X=", True),
@@ -153,13 +154,40 @@ def test_it_is_harmless(body: str) -> None:
 
 @pytest.mark.parametrize(
     "body",
-    ["X=VC1", "X=VZOFX", "VC1=VTOFX[2]\nX=VC1", "X=V5+1", "VC1=1\nX=VC1*VSIOZ"],
+    [
+        *("X=VC1", "X=VZOFX", "VC1=VTOFX[2]\nX=VC1", "X=V5+1", "VC1=1\nX=VC1*VSIOZ"),
+        *("X=NOT[20]", "V1=NOT VC1\nX=V1+1", "X=DROUND[20.12]", "X=DFIX[20.12] Y3."),
+    ],
 )
 def test_what_is_not_known_is_not_evaluated(body: str) -> None:
     report, trace = run(body)
     assert said(report) == []
     assert report.verdict == "unverified"
     assert re.search("nan", str(path(trace)))
+
+
+def test_a_condition_with_a_value_that_is_not_known_is_said_to_be_open() -> None:
+    report, trace = run("VC1=1\nIF [NOT[VC1] EQ 0] NEND\nX20.\nNEND")
+    assert path(trace) == [(20, 0)]
+    assert ["depends on a value that is not known" in entry.reason for entry in report.not_evaluated] == [True]
+
+
+@pytest.mark.parametrize(
+    ("arc", "sweep"),
+    [
+        ("G103 X0 Y20. L20.", 90),
+        ("G103 X0 Y20. L20. CALRG", 270),
+        ("CALRG G103 X=0 Y20. L=VC1", 270),
+        ("G103 X-20. L20.", 180),
+    ],
+)
+def test_a_word_takes_the_larger_of_two_arcs(arc: str, sweep: int) -> None:
+    """An arc of 180 deg by L is a warning, one of more by the word for it is none."""
+    program = HEAD + f"VC1=20\nX20.\n{arc}" + TAIL
+    arcs = tables_of(program, LATHE, CUTTER)["arcs"]
+    assert arcs.sweep[~np.isnan(arcs.sweep)].round(6).tolist() == [sweep]
+    told = [one.severity for one in report_of(program, LATHE, CUTTER).findings if "arc" in one.rule]
+    assert told == ["warning"] * (sweep == 180)
 
 
 @pytest.mark.parametrize(

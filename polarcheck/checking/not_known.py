@@ -19,11 +19,11 @@ _Reason: TypeAlias = Callable[[Tables, int], str]
 
 #: Columns that hang on the offset in force, and those that hang on the whole move.
 _OF_OFFSETS = ("compensation.radius", "offsets.cutter_diameter", "offsets.nose")
-OF_MOVES = ("tool_center.c_feed", "tool_center.c_acceleration")
+OF_MOVES = ("tool_center.c_feed", "tool_center.c_acceleration", "tool_center.x_acceleration")
 #: What to give where a value of the program is not known.
 OF_VARIABLES = "give its variables as [run.variables] in polarcheck.toml, or write the number"
 #: Causes, beside the offset numbers, for which a move is not known.
-_POSITION, _NO_FEED, _FEED_OF_SPINDLE = -3, -2, -1
+_DEPTH, _POSITION, _NO_FEED, _FEED_OF_SPINDLE = -4, -3, -2, -1
 #: Of a block that is named; more is cut off [characters].
 _BLOCK_LENGTH = 40
 
@@ -43,7 +43,8 @@ def cause_of(trace: Trace, name: str, rows: Any) -> Any:
             ~np.isnan(trace.feedrate.feed[rows]),
         )
         of_feed = np.where(trace.feedrate.per_minute[rows], _NO_FEED, _FEED_OF_SPINDLE)
-        of_tool = np.where(np.isnan(trace.compensation.radius[rows]), trace.tools.offset_number[rows], _POSITION)
+        of_place = np.where(np.isnan(trace.path.rise[rows]), _DEPTH, _POSITION)
+        of_tool = np.where(np.isnan(trace.compensation.radius[rows]), trace.tools.offset_number[rows], of_place)
         return np.where(stands_nowhere, _POSITION, np.where(has_feed, of_tool, of_feed))
     return np.zeros(len(rows), np.int64)
 
@@ -53,6 +54,11 @@ def _of_move(tables: Tables, row: int) -> str:
     cause = int(cause_of(tables["trace"], "tool_center.c_feed", np.array([row]))[0])
     if cause >= 0:
         return _REASONS["compensation.radius"](tables, row)
+    if cause == _DEPTH:
+        return (
+            "the feed on the plane is not known: F is along the way with Z, and where Z stands before is not known; "
+            "write G0 Z... before the polar mode"
+        )
     return _position(tables, row) if cause == _POSITION else _feed(tables, row)
 
 
@@ -145,6 +151,7 @@ _REASONS: dict[str, _Reason] = {
     "travel.most_x": _of_move,
     "tool_center.c_feed": _of_move,
     "tool_center.c_acceleration": _of_move,
+    "tool_center.x_acceleration": _of_move,
     "feedrate.feed": _feed,
     "entry.origin_shift": _origin,
 }

@@ -8,6 +8,7 @@ import msgspec
 import numpy as np
 
 from polarcheck.arrays import Mask
+from polarcheck.checking.remedies import is_chosen
 from polarcheck.checking.tables import Tables
 from polarcheck.columns.trace import Trace
 from polarcheck.execution.run import straight
@@ -49,8 +50,10 @@ class OtherMachine:
 
     @property
     def text(self) -> str:
-        """`; it reads well on ...`: which machines, and why; empty where none does."""
-        return f"; it reads well on {self._fit.text()}" if self._fit else ""
+        """`; it reads well on ...`: which machines, and why; empty if none does, or somebody has chosen the machine."""
+        if is_chosen(self.trace.machine, self.trace.job) or not self._fit:
+            return ""
+        return f"; it reads well on {self._fit.text()}"
 
 
 def _find(tables: Tables) -> Fit | None:

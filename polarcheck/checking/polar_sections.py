@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import msgspec
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Rows
@@ -65,6 +66,7 @@ def _polar_sections(trace: Trace, dynamics: Dynamics, center: Center, ramps: Ram
     for index, (enter, end, row, fast) in enumerate(
         zip(sections.enter.tolist(), sections.last.tolist(), at_entry.tolist(), fastest.tolist(), strict=True)
     ):
+        time = float(dynamics.section_time[index])
         found.append(
             PolarSection(
                 line=int(trace.blocks.line_in_file[enter]),
@@ -78,10 +80,18 @@ def _polar_sections(trace: Trace, dynamics: Dynamics, center: Center, ramps: Ram
                 c_feed_line=int(trace.blocks.line_in_file[fast]) if fast >= 0 else None,
                 c_feed_limit=limit,
                 ramp_used=rounded(ramp[index]),
-                time=rounded(dynamics.section_time[index]),
+                time=rounded(time),
+                time_not_known=_not_known(dynamics, index) if np.isnan(time) else msgspec.UNSET,
             )
         )
     return found
+
+
+def _not_known(dynamics: Dynamics, section: int) -> list[str]:
+    """Why the time of a section is not known, each reason with its first line."""
+    trace = dynamics.trace
+    rows = np.flatnonzero(trace.mode.section == section)
+    return [f"{reason} in line {trace.blocks.line_in_file[first]}" for reason, _, first in dynamics.times(rows).unknown]
 
 
 def _offset_rows(trace: Trace) -> Rows:

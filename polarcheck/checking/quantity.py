@@ -24,12 +24,13 @@ class Quantity:
     Formats beyond Python's: `length` and `feed` turn mm and mm/min to the program's units, `diameter` doubles a radius
     where the program writes diameters, `highest` is a feed of three digits that is never above the value, `below` one
     that is not equal to it either, `whole` has no digits behind the point, `point` shows a plane point as X and C
-    words, `blocks` tells a number of blocks above one.
+    words, `blocks` tells a number of blocks above one. feed_inch: what F counts, where that is another unit.
     """
 
-    def __init__(self, value: Any, inch: bool, diameter: bool) -> None:
+    def __init__(self, value: Any, inch: bool, diameter: bool, feed_inch: bool | None = None) -> None:
         self.value = value
         self.inch = inch
+        self.feed_inch = inch if feed_inch is None else feed_inch
         self.diameter = diameter
 
     def __format__(self, form: str) -> str:
@@ -37,7 +38,8 @@ class Quantity:
             return self.shown(form)
         value = self.value
         if form in ("highest", "below"):
-            return f"{_rounded_down(self.length(value), form == 'below')} {self.unit}/min"
+            feed = self.as_feed
+            return f"{_rounded_down(feed.length(value), form == 'below')} {feed.unit}/min"
         if form == "point":
             x, c = self.length(value.real) * (2 if self.diameter else 1), self.length(value.imag)
             digits = _DIGITS["length"][self.inch]
@@ -48,6 +50,8 @@ class Quantity:
 
     def shown(self, form: str, more: int = 0) -> str:
         """In the form `length`, `diameter`, `feed` or `whole`; more: digits beyond those that a program writes."""
+        if form == "feed" and self.feed_inch != self.inch:
+            return self.as_feed.shown(form, more)
         digits = _DIGITS[form][self.inch] + more
         if form == "whole":
             return _short(self.value, digits)
@@ -58,6 +62,11 @@ class Quantity:
         """With as many digits as it takes to tell it from another value that is shown in the same form."""
         texts = ((self.shown(form, more), other.shown(form, more)) for more in range(_MOST_DIGITS))
         return next((text for text, of_other in texts if text != of_other), self.shown(form))
+
+    @property
+    def as_feed(self) -> Quantity:
+        """The same in the unit that F counts."""
+        return self if self.feed_inch == self.inch else Quantity(self.value, self.feed_inch, self.diameter)
 
     def length(self, value: float) -> float:
         """mm to the program's unit."""
@@ -109,4 +118,5 @@ def in_row(value: Any, lengths: Lengths, row: int) -> Quantity:
     """A value [mm, mm/min, radius] as the program of a row of the trace would write it; row -1: in mm and diameters."""
     if row < 0:
         return Quantity(value, False, True)
-    return Quantity(value, bool(lengths.units[row] == Units.INCH), bool(lengths.x_factor[row] < 1))
+    inch, feed_inch = (bool(units[row] == Units.INCH) for units in (lengths.units, lengths.feed_units))
+    return Quantity(value, inch, bool(lengths.x_factor[row] < 1), feed_inch)

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from polarcheck.columns.blocks import ExecutedBlocks
 from polarcheck.execution.run import Run
+from polarcheck.machines import profiles
+from polarcheck.machines.job import Job
 from polarcheck.machines.machine import Machine, OwnMachine
 from polarcheck.table.spindles import Spindles
 
@@ -17,6 +21,17 @@ def place(machine: Machine, key: str) -> str:
     """`m_codes.c_axis_on in lathe.toml`; for a machine of ours, in a file that is still to be made."""
     file = machine.file if isinstance(machine, OwnMachine) else "a file of your own (polarcheck machines new)"
     return f"{key} in {file}"
+
+
+def is_chosen(machine: Machine, job: Job) -> bool:
+    """Return True if somebody has chosen the machine: it is not the one that is taken where nobody does."""
+    return job.machine is not None or machine.title != profiles.load(profiles.DEFAULT).machine.title
+
+
+def enumerated(names: Sequence[str], last: str) -> str:
+    """Join names: `G1, G2 or G3`. last: the word before the last one."""
+    *others, final = names
+    return f"{', '.join(others)} {last} {final}" if others else final
 
 
 def option_or_place(machine: Machine, key: str) -> str:

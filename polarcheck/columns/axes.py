@@ -16,13 +16,12 @@ from typing import TypeVar, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from polarcheck.arrays import Columns, Floats, Mask, Points, Rows, States, computed, different, is_among, repeated
+from polarcheck.arrays import Columns, Floats, Mask, Rows, States, computed, different, is_among, repeated
 from polarcheck.columns.blocks import ExecutedBlocks
 from polarcheck.columns.coordinates import Coordinates
-from polarcheck.columns.filling import fill_down
+from polarcheck.columns.filling import fill_down, happened
 from polarcheck.columns.modal import ModalStates
 from polarcheck.execution.run import Run
-from polarcheck.geometry import polar
 from polarcheck.machines.axes import AXES, INCREMENTS, axis_of, numbers_of
 from polarcheck.machines.machine import Machine
 from polarcheck.machines.modal import Motion
@@ -31,8 +30,6 @@ from polarcheck.machines.values import MOST_AXES
 
 _X = ord("X")
 _UNKNOWN = 0
-#: So that a quarter of a turn is one.
-_DIGITS = 15
 
 #: The addresses of an axis, absolute and incremental.
 Pair = tuple[str, str]
@@ -67,36 +64,6 @@ class PlaneAxes(Columns, frozen=True):
         """G13.1, or what ends the mode beside what it does elsewhere: the code of another plane."""
         mode = self.machine.polar
         return self.switches_off | self.blocks.codes(*mode.ended_by) if mode.ended_by else self.switches_off
-
-    @cached_property
-    def c_direction(self) -> Points:
-        """
-        Where the tool stands on the polar plane in the row of a switch, X being positive, as a number of length 1.
-
-        1, on the linear axis, where C turns the plane with it, where C is not known, and along another axis than X.
-        """
-        if self.machine.polar.zero_angle == "at-switch" or not self.switches_on.any():
-            return repeated(np.complex128(1), len(self.run))
-        axis, words = self.machine.polar.rotary_address, self.machine.polar.rotary_words
-        referenced = self.blocks.listed("c_axis_reference") & self.blocks.has(*words)
-        positioned = self.blocks.has(axis) & self.modal.uses_axes & ~self.modal.is_step(axis)
-        angle = np.where(referenced, 0.0, np.where(positioned, self.coordinates.angle_of(axis), np.nan))
-        resets = self.blocks.has(*words) | self.ends_mode | self.run.unknown | self.blocks.starts
-        angle = fill_down(angle, resets, np.nan)
-        angle = np.where(self.linear_axis == _X, np.nan_to_num(angle), 0.0)
-        sense = -1 if self.machine.polar.zero_angle == "at-c0-reversed" else 1
-        return np.round(polar.to_plane(np.ones(len(self.run)), sense * angle, 0.0), _DIGITS)
-
-    @cached_property
-    def kept_angle(self) -> Floats:
-        """
-        How far C stands from where the linear axis of the plane points in the row of a switch [deg].
-
-        0 on its negative side, too, where a section begins with C as it is (polar.c_angles).
-        """
-        return computed(
-            lambda direction: np.where(direction.imag == 0, 0.0, np.degrees(np.angle(direction))), self.c_direction
-        )
 
     @cached_property
     def enters_other_axes(self) -> Mask:
@@ -334,13 +301,17 @@ class PlaneAxes(Columns, frozen=True):
     def virtual_words(self) -> Rows:
         """The words of the virtual axis, be it under the address of another form or control."""
         if self._by_number:
-            every = [self._words_of_pair(pair, rows) for pair, rows in self.virtual_pairs]
-            words = np.sort(np.concatenate(every))
+            words = self.followed_virtual_words
         else:
             words = self.blocks.word_indices(
                 *dict.fromkeys(address for pair in (*self._forms, *self._foreign) for address in pair)
             )
         return words[~self.linear_words[words]] if self.other_linear_axes else words
+
+    @property
+    def followed_virtual_words(self) -> Rows:
+        """Of the words of the virtual axis those that count: of Y and C in one block the one that it has there."""
+        return np.sort(np.concatenate([self._words_of_pair(pair, rows) for pair, rows in self.virtual_pairs]))
 
     def _moves_itself(self, pair: Pair) -> Mask:
         """Rows of sections on another rotary axis, in which an axis of the lathe of these addresses moves by itself."""
@@ -383,10 +354,19 @@ class PlaneAxes(Columns, frozen=True):
     @cached_property
     def is_simulated(self) -> Mask:
         """What the row does in the mode is simulated; True outside the mode."""
-        if not self.words_not_simulated.any():
+        ends = self.switches_on | self.ends_mode | self.blocks.starts
+        if not (self.words_not_simulated.any() or self.selects_plane_not_simulated.any()):
             return np.ones(len(self.run), bool)
         begins = self.blocks.with_words(self.words_not_simulated)
-        return ~fill_down(begins, self.switches_on | self.ends_mode | self.blocks.starts, False).astype(bool)
+        is_other_mode = fill_down(begins, ends, False).astype(bool)
+        other_plane = self.selects_plane_not_simulated
+        return ~(is_other_mode | happened(other_plane, ends | (self.blocks.listed("plane_xy") & ~other_plane)))
+
+    @cached_property
+    def selects_plane_not_simulated(self) -> Mask:
+        """Rows of the mode that select a plane which is not simulated, as that of a cylinder."""
+        selects = self.blocks.codes(*self.machine.polar.planes_not_simulated)
+        return selects & happened(self.switches_on, self.ends_mode | self.blocks.starts) if selects.any() else selects
 
     @cached_property
     def moves_plane(self) -> Mask:

@@ -58,8 +58,7 @@ class ExecutedBlocks(Lookups):
             return order[:0]
         number = self.machine.address_number(address)
         words = order[ends[number - 1] : ends[number]]
-        # H beside G43 is the number of an offset, and no increment of C.
-        return words[~self.switches_length_offset[self.run.row[words]]] if address == "H" and len(words) else words
+        return words[~self.numbers_by_h[self.run.row[words]]] if address == "H" and len(words) else words
 
     @cached_property
     def words_not_named(self) -> Rows:
@@ -80,7 +79,8 @@ class ExecutedBlocks(Lookups):
     def words_not_followed(self) -> Rows:
         """The words of axes that are not followed, by control.named_axes or since it does not have them, in order."""
         address = self.run.words.address
-        named = np.flatnonzero((address >= FIRST_NAMED) & (address != NO_AXIS))
+        end = FIRST_NAMED + len(self.machine.control.named_axes)
+        named = np.flatnonzero(((address >= FIRST_NAMED) & (address < end)) | (address == NOT_NAMED))
         of_plane = [*map(self.machine.address_number, self.machine.polar.axis_addresses)]
         return named[~np.isin(address[named], of_plane)] if len(named) else named
 
@@ -246,6 +246,12 @@ class ExecutedBlocks(Lookups):
     def switches_length_offset(self) -> Mask:
         """G43, G44, G49."""
         return self.listed("tool_length_offset", "tool_length_offset_off")
+
+    @cached_property
+    def numbers_by_h(self) -> Mask:
+        """H is no increment of C: the number of an offset beside G43, or the N number that M98 H100 calls."""
+        calls = self.machine.macro.subprogram_calls if self.machine.macro.sequence_word == "H" else ()
+        return self.switches_length_offset | self.codes(*calls)
 
     @property
     def starts(self) -> Mask:

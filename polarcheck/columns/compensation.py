@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from polarcheck.arrays import Columns, Floats, Mask, States, repeated
+from polarcheck.arrays import Columns, Floats, Mask, States, computed, repeated
 from polarcheck.columns.axes import PlaneAxes
 from polarcheck.columns.blocks import ExecutedBlocks
 from polarcheck.columns.filling import before, fill_down
@@ -19,7 +19,7 @@ from polarcheck.columns.tools import CalledTools
 from polarcheck.execution.run import Run
 from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.machines.machine import Machine
-from polarcheck.machines.modal import Side
+from polarcheck.machines.modal import Corner, Side
 
 
 class CutterCompensation(Columns, frozen=True):
@@ -58,6 +58,12 @@ class CutterCompensation(Columns, frozen=True):
         state = np.where(written, self.modal.state("side"), Side.OFF)
         switched = self.blocks.mask_of(self.mode.sections.leave) | self.mode.enters
         return fill_down(state, written | switched | self.blocks.starts, Side.OFF).astype(np.int16)
+
+    @cached_property
+    def corner(self) -> States:
+        """How the control goes round outer corners (Corner), by the code in force or as the machine does without."""
+        without = Corner[self.machine.compensation.corner.upper()]
+        return computed(lambda state: np.where(state == 0, without, state).astype(np.int16), self.modal.state("corner"))
 
     @cached_property
     def side_before(self) -> States:

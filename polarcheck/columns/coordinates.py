@@ -42,7 +42,7 @@ class Coordinates(Lookups):
         words = self.run.words
         mode = self.machine.polar
         is_length = is_among(words.address, [*b"XYZUVWIJKR", *map(self.machine.address_number, mode.axis_addresses)])
-        is_offset_number = (words.address == ord("H")) & self.blocks.switches_length_offset[self.run.row]
+        is_offset_number = (words.address == ord("H")) & self.blocks.numbers_by_h[self.run.row]
         moves = self.modal.uses_axes & ~self.modal.in_cycle
         is_axis_word = np.asarray(is_length & ~is_offset_number & moves[self.run.row])
         if mode.infeed_word:

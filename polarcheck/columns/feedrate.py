@@ -36,7 +36,7 @@ class Feedrate(Columns, frozen=True):
     def written_feed(self) -> Floats:
         """The last F as a number [mm per min or per revolution]; NaN before the first."""
         written = self.blocks.has("F") & self._takes_feed
-        value = np.where(written, self.blocks.word("F") * self.lengths.scale, np.nan)
+        value = np.where(written, self.blocks.word("F") * self.lengths.feed_scale, np.nan)
         return fill_down(value, written | self.blocks.starts, np.nan)
 
     @cached_property

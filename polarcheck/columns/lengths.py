@@ -24,6 +24,11 @@ from polarcheck.machines.modal import MM_PER_INCH, Units
 RADIUS_FACTOR = {"diameter": 0.5, "radius": 1.0}
 
 
+def _scale(units: States) -> Floats:
+    """mm per unit of length."""
+    return computed(lambda units: np.where(units == Units.INCH, MM_PER_INCH, 1.0), units)
+
+
 class Lengths(Lookups):
     """
     What the words are as lengths. The units in force and those written differ where a section refuses a code of units.
@@ -69,7 +74,24 @@ class Lengths(Lookups):
     @cached_property
     def scale(self) -> Floats:
         """mm per unit of length."""
-        return computed(lambda units: np.where(units == Units.INCH, MM_PER_INCH, 1.0), self.units)
+        return _scale(self.units)
+
+    @cached_property
+    def feed_units(self) -> States:
+        """Units.INCH or Units.MM of F: those in force, or those of the lathe where the code of units leaves F alone."""
+        codes = self.machine.control.units_of_lengths_alone
+        alone = self.blocks.codes(*codes) if codes else None
+        if alone is None or not alone.any():
+            return self.units
+        basic = Units.INCH if (self.job.program_units or self.machine.control.units) == "inch" else Units.MM
+        changes = self.modal.sets("units") & (self.units == self.modal.written_units)
+        is_alone = fill_down(alone, changes | self.blocks.starts, False).astype(bool)
+        return np.where(is_alone, basic, self.units).astype(np.int16)
+
+    @cached_property
+    def feed_scale(self) -> Floats:
+        """mm per unit of length that F counts."""
+        return self.scale if self.feed_units is self.units else _scale(self.feed_units)
 
     @cached_property
     def job_scale(self) -> Floats | float:

@@ -91,23 +91,28 @@ class ModalStates(Lookups):
         at[self.run.row[words]] = self.run.words.start[words]
         return fill_down(at, self.sets("motion") | self.blocks.starts, -1)
 
-    def switched(self, on: list[str], off: list[str]) -> Mask:
-        """What M codes have switched on, in each row after its own."""
-        return self._column(f"switched {on} {off}", lambda: self._switched(on, off))
+    def switched(self, on: list[str], off: list[str], spindle: str = "") -> Mask:
+        """What M codes have switched on, in each row after its own; spindle: of which a speed of 0 (S1=0) stops it."""
+        return self._column(f"switched {on} {off}", lambda: self._switched(on, off, spindle))
 
-    def _switched(self, on: list[str], off: list[str]) -> Mask:
-        return happened(self.blocks.codes(*on), self.blocks.codes(*off) | self.blocks.starts)
+    def _switched(self, on: list[str], off: list[str], spindle: str) -> Mask:
+        ends = self.blocks.codes(*off) | self.blocks.starts
+        for name, of_spindle in self.machine.control.spindle_words.items():
+            if of_spindle == spindle:
+                ends = ends | (self.blocks.word(name) == 0)
+        return happened(self.blocks.codes(*on), ends)
 
     @cached_property
     def spindle(self) -> Mask:
         """The main spindle (on many lathes the live tool too) runs: M3, M4; not by a code listed for the live tool."""
         codes = self.machine.m_codes
-        return self.switched([word for word in codes.spindle_on if word not in codes.live_tool_on], codes.spindle_off)
+        on = [word for word in codes.spindle_on if word not in codes.live_tool_on]
+        return self.switched(on, codes.spindle_off, "main")
 
     @cached_property
     def live_tool(self) -> Mask:
         """The live tool runs; always False where the profile names no code."""
-        return self.switched(self.machine.m_codes.live_tool_on, self.machine.m_codes.live_tool_off)
+        return self.switched(self.machine.m_codes.live_tool_on, self.machine.m_codes.live_tool_off, "live")
 
     @cached_property
     def on_sub_spindle(self) -> Mask:

@@ -38,21 +38,35 @@ class PolarMode(Columns, frozen=True):
         """The polar sections."""
         m_codes = self.machine.m_codes
         cutting = is_among(self.axes.motion, (Motion.LINE, Motion.CW, Motion.CCW))
+        polar = self.machine.polar
+        planes = {code for key in ("plane_xy", "plane_zx", "plane_yz") for code in self.machine.codes(key)}
+        # Where G0 can stand in the mode, one with the second axis does.
+        in_rapid = (self.axes.motion == Motion.RAPID) & self.axes.programs_virtual_axis
+        in_rapid &= ("G0" in polar.allowed_codes) & (polar.virtual_axis != polar.rotary_address)
         marks = Marks(
             on=self.axes.switches_on & ~self.axes.ends_mode,
             off=self.axes.ends_mode,
             starts=self.blocks.starts,
             outside=self.blocks.listed("reference_check", "reference_return", "machine_coordinates")
             | self.blocks.codes(*m_codes.c_axis_off),
+            planes=self.blocks.codes(*planes.difference(polar.plane_before, polar.allowed_codes)),
             tool_ends=self.tools.changes_tool | self.blocks.ends_program | self.blocks.codes(*m_codes.tool_change),
             stops=self.blocks.codes(*m_codes.optional_stop),
             rapid=self.blocks.listed("rapid"),
             cuts=cutting & self.axes.programs_virtual_axis,
-            moves=cutting & self.axes.moves_plane,
-            returns=self.blocks.codes(*self.machine.macro.program_returns) & (self.run.depth == 0),
+            moves=(cutting | in_rapid) & self.axes.moves_plane,
+            returns=self._returns,
             broken_off=np.zeros(len(self.run), bool) if self.run.broken_off is None else self.run.broken_off,
         )
         return find_sections(marks)
+
+    @property
+    def _returns(self) -> Mask:
+        """M99 of a program that nothing here calls; at the end of the main program of a channel it begins it again."""
+        returns = self.blocks.codes(*self.machine.macro.program_returns) & (self.run.depth == 0)
+        if self.run.text.source.channel and returns.any():
+            returns = returns & (self.blocks.program != self.blocks.program[np.argmin(self.run.block)])
+        return np.asarray(returns)
 
     @cached_property
     def section(self) -> Rows:
@@ -87,6 +101,12 @@ class PolarMode(Columns, frozen=True):
     def leaves(self) -> Mask:
         """The G13.1 that ends a section."""
         return self.blocks.mask_of(self.sections.leave[self.sections.left & ~self.sections.returned])
+
+    @cached_property
+    def enters_with_direction(self) -> Mask:
+        """A G12.1 with the word that gives its plane the direction: C need not be positioned before it."""
+        word = self.machine.polar.direction_word
+        return np.asarray(self.enters & self.blocks.has(word)) if word else np.zeros(len(self.run), bool)
 
     @cached_property
     def enters_again(self) -> Mask:
@@ -166,4 +186,5 @@ class PolarMode(Columns, frozen=True):
             return np.zeros(len(self.run), bool)
         is_straight = is_among(self.modal.state("motion"), (Motion.RAPID, Motion.LINE))
         moves = is_straight & self.modal.uses_axes & ~self.modal.in_cycle
-        return np.asarray(self.blocks.with_words(e) & moves & ~self.axes.switches_on)
+        calls_tool = self.blocks.has("T")  # E beside it is an angle on Citizen lathes
+        return np.asarray(self.blocks.with_words(e) & moves & ~self.axes.switches_on & ~calls_tool)

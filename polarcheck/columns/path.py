@@ -11,10 +11,11 @@ from functools import cached_property
 
 import numpy as np
 
-from polarcheck.arrays import Columns, Floats, Mask, Points, States, is_among, repeated
+from polarcheck.arrays import Columns, Floats, Mask, Points, Rows, States, is_among, repeated
 from polarcheck.columns.axes import PlaneAxes
 from polarcheck.columns.blocks import ExecutedBlocks
 from polarcheck.columns.coordinates import Coordinates
+from polarcheck.columns.entry_places import EntryPlaces, entry_places
 from polarcheck.columns.filling import before, fill_down, positions
 from polarcheck.columns.frames import Frames, Way, along, find_frames, in_frame
 from polarcheck.columns.lengths import RADIUS_FACTOR, Lengths
@@ -23,6 +24,7 @@ from polarcheck.columns.mode import PolarMode
 from polarcheck.columns.tools import CalledTools
 from polarcheck.execution.run import Run
 from polarcheck.geometry import polar
+from polarcheck.geometry.plane import angle_between
 from polarcheck.geometry.tolerances import ZERO
 from polarcheck.machines.axes import INCREMENTS
 from polarcheck.machines.machine import Machine
@@ -160,10 +162,17 @@ class ProgrammedPath(Columns, frozen=True):
     @cached_property
     def _after(self) -> Points:
         """Plane point after each row; the virtual coordinate is NaN outside the mode."""
-        shift, turn = self.center_shift, self.axes.c_direction
+        return self._way[0]
+
+    @cached_property
+    def _way(self) -> tuple[Points, Points]:
+        """Plane point after each row, and per section where the tool stands at its G12.1, X being positive."""
+        shift = self.center_shift
         leave = self.mode.sections.leave[self.mode.sections.leave < len(self.run)]
-        # Where C does not turn the plane, the tool stands at its angle there, and not on the linear axis.
-        enter = self.mode.sections.enter[turn[self.mode.sections.enter] != 1]
+        # On a plane that C does not turn the tool stands at its angle there, and not on the linear axis.
+        places = self._entry_places
+        direction = places.by_words
+        enter = self.mode.sections.enter[places.off_axis]
         resets = self._forgets("X", "U") | self.blocks.mask_of(leave) | self.blocks.mask_of(enter)
         values, virtual = self._set_by("X") * self.lengths.x_factor, shift.imag.copy()
         # Outside its section nobody asks where another linear axis is but at G12.1, and X is not followed within.
@@ -179,7 +188,8 @@ class ProgrammedPath(Columns, frozen=True):
             # The control leaves the mode with X where the machine stands: never negative (B-62764EN/01 p. 51).
             last = leave - 1
             x_left = np.hypot(x[last] - shift.real[last], c[last] - shift.imag[last]) + shift.real[last]
-            entry = before(x, self.blocks.starts, np.nan)[enter] * turn[enter]
+            direction = places.directions((x - shift.real) + 1j * (c - shift.imag))
+            entry = before(x, self.blocks.starts, np.nan)[enter] * direction[places.off_axis]
             assumed = np.concatenate((values[leave], values[enter], virtual[enter]))
             if np.array_equal(assumed, np.concatenate((x_left, entry.real, entry.imag)), equal_nan=True):
                 break
@@ -190,7 +200,14 @@ class ProgrammedPath(Columns, frozen=True):
         end = np.empty(len(self.run), np.complex128)
         end.real, end.imag = np.where(self.mode.is_followed, x, np.nan), c
         end -= shift
-        return end
+        return end, direction
+
+    @property
+    def _entry_places(self) -> EntryPlaces:
+        """Where the tool stands where sections begin; along another axis than X on that."""
+        referenced = self.blocks.listed("c_axis_reference") & self.blocks.has(*self.machine.polar.rotary_words)
+        lost = self.run.unknown | self.blocks.starts | (self.axes.linear_axis != ord("X"))
+        return entry_places(self.mode.sections, self.c_axis, self.c_words, referenced, lost)
 
     def _virtual(self, words: Way) -> Floats:
         """The virtual axis after each row where no frame turns it; NaN outside the mode."""
@@ -218,7 +235,7 @@ class ProgrammedPath(Columns, frozen=True):
         """X after the row as a radius [mm]; the programmed one, so that it may be negative in the mode."""
         after = self._after.real
         # A plane that does not turn with C has another X there than the lathe, which has not moved.
-        turns = self.machine.polar.zero_angle == "at-switch"
+        turns = not self.machine.polar.plane_is_fixed
         return after if turns else np.where(self.mode.enters, self.x_before, after)
 
     @cached_property
@@ -303,7 +320,8 @@ class ProgrammedPath(Columns, frozen=True):
     @cached_property
     def is_arc(self) -> Mask:
         """An arc on the polar plane."""
-        return self.mode.in_polar & self.axes.moves_plane & is_among(self.axes.motion, (Motion.CW, Motion.CCW))
+        of_plane = self.mode.in_polar & self.axes.moves_plane & self.axes.is_simulated
+        return of_plane & is_among(self.axes.motion, (Motion.CW, Motion.CCW))
 
     @cached_property
     def travels(self) -> Mask:
@@ -344,12 +362,31 @@ class ProgrammedPath(Columns, frozen=True):
     def moves_c(self) -> Mask:
         """The rotary axis moves likewise outside the mode."""
         commands = self.modal.uses_axes & self.blocks.has(*self.machine.polar.rotary_words) & (self.mode.section < 0)
-        return _differs(commands, lambda: (self.c_angle_before, self.c_angle))
+        return _differs(commands, lambda: (np.zeros(len(self.run)), self.c_turn))
+
+    @cached_property
+    def c_turn(self) -> Floats:
+        """What C turns by in the row [deg]; NaN while unknown."""
+        return self.c_turn_from(self.c_angle_before, np.arange(len(self.run)))
+
+    def c_turn_from(self, before: Floats, rows: Rows) -> Floats:
+        """
+        What C turns by in rows, from the angle at which it stands before each of them [deg].
+
+        Where C rolls over, an angle outside the mode is reached the shorter way (B-63534EN/02 p. 531).
+        """
+        turn = self.c_angle[rows] - before
+        if not self.machine.control.rotary_rolls_over:
+            return turn
+        axis = self.machine.polar.rotary_address
+        is_angle = self.blocks.has(axis) & self.modal.uses_axes & (self.mode.section < 0) & ~self.modal.is_step(axis)
+        return np.where(is_angle[rows], turn - 360 * np.ceil(turn / 360 - 0.5), turn)
 
     @cached_property
     def judged_z(self) -> Mask:
         """Z words that count beside a line of the plane: those that move Z, or all, where the block is forbidden."""
-        return self.axes.commands_z if self.machine.polar.repeated_z == "forbidden" else self.moves_z
+        moves = self.axes.commands_z if self.machine.polar.repeated_z == "forbidden" else self.moves_z
+        return moves & self.axes.is_simulated
 
     @cached_property
     def judged_z_of_arc(self) -> Mask:
@@ -372,21 +409,40 @@ class ProgrammedPath(Columns, frozen=True):
         length[moving] = polar.length(*self._move(moving))
         return length
 
+    @cached_property
+    def rise(self) -> Floats:
+        """
+        Way of Z beside a move on the polar plane, where F measures it, too [mm]; 0 elsewhere, NaN while Z is not known.
+        """
+        if self.machine.polar.feed_measures == "plane":
+            return repeated(np.float64(0), len(self.run))
+        beside = self.mode.in_polar & self.axes.moves_plane & self.moves_z
+        return np.where(beside, np.abs(self.z - self.z_before), 0.0)
+
     def _move(self, rows: Mask) -> tuple[Points, Points, Points, States]:
         return self.start[rows], self.end[rows], self.center[rows], self.axes.motion[rows]
+
+    @cached_property
+    def c_words(self) -> tuple[Floats, Floats]:
+        """C of the words outside the mode [deg]: coordinates, NaN where none, and increments, 0 where none."""
+        axis, increment = self.machine.polar.rotary_words
+        moving = self.modal.uses_axes & (self.mode.section < 0)
+        if self.machine.polar.plane_is_fixed:
+            moving |= self.modal.uses_axes & self.mode.enters
+        written, stepped = self.blocks.has(axis) & moving, self.blocks.has(increment) & moving
+        is_step = self.modal.is_step(axis)
+        absolute = np.where(written & ~is_step, self.coordinates.angle_of(axis), np.nan)
+        turn = np.where(written & is_step, self.coordinates.angle_of(axis), 0.0)
+        return absolute, turn + np.where(stepped, self.coordinates.angle_of(increment), 0.0)
 
     @cached_property
     def c_angle(self) -> Floats:
         """C angle of the machine after the row [deg], continuous along a section; NaN while unknown."""
         axis, increment = self.machine.polar.rotary_words
-        moving = self.modal.uses_axes & (self.mode.section < 0)
-        written, stepped = self.blocks.has(axis) & moving, self.blocks.has(increment) & moving
-        is_step = self.modal.is_step(axis)
-        absolute = np.where(written & ~is_step, self.coordinates.angle_of(axis), np.nan)
-        turn = np.where(written & is_step, self.coordinates.angle_of(axis), 0.0)
-        turn += np.where(stepped, self.coordinates.angle_of(increment), 0.0)
+        absolute, turn = self.c_words
         on_plane = self.mode.in_polar & self.axes.moves_plane
-        turn[on_plane] = polar.c_sweep(*self._move(on_plane))
+        turn = turn.copy()
+        turn[on_plane] = self.c_axis.sense * polar.c_sweep(*self._move(on_plane))
         # G28 H0 takes C to its reference point, the zero of its angle (builder's guide: "zero return C-axis").
         referenced = self.blocks.listed("c_axis_reference") & self.blocks.has(axis, increment)
         set_to = np.where(self.modal.sets_coordinates, self.coordinates.angle_of(axis), np.nan)
@@ -398,15 +454,28 @@ class ProgrammedPath(Columns, frozen=True):
             resets, values = resets | turns_plane, np.where(turns_plane, self.coordinates.angle_of(direction), values)
         return positions(absolute, turn, resets, values)
 
+    @property
+    def c_axis(self) -> polar.CAxis:
+        """How C stands to the angles of the polar plane."""
+        return polar.CAxis(self.machine.polar.c_sense, self.machine.polar.plane_is_fixed)
+
     @cached_property
     def section_entry(self) -> Floats:
-        """C angle [deg] of the linear axis of each section's plane: that at its G12.1, or C0; 0 where not known."""
-        return np.nan_to_num(self.c_angle[self.mode.sections.enter]) - self.axes.kept_angle[self.mode.sections.enter]
+        """
+        C angle [deg] of the linear axis of each section's plane: that at its G12.1, 0 where not known; of a plane that
+        stands still on the part full turns.
+        """
+        angle = np.nan_to_num(self.c_angle[self.mode.sections.enter])
+        if not self.c_axis.is_fixed:
+            return angle
+        direction = self._way[1]
+        turned = np.degrees(angle_between(np.ones_like(direction), direction))
+        return np.asarray(360 * np.round((angle - self.c_axis.sense * turned) / 360))
 
     @cached_property
     def knows_section_entry(self) -> Mask:
-        """Sections at whose beginning C is known; a boolean per section."""
-        return ~np.isnan(self.c_angle[self.mode.sections.enter])
+        """Sections of which it is known how their plane lies on the part; a boolean per section."""
+        return ~np.isnan(self.c_angle[self.mode.sections.enter]) | self.c_axis.is_fixed
 
     @cached_property
     def on_plane(self) -> Mask:

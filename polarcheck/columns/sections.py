@@ -13,15 +13,17 @@ class Marks(msgspec.Struct, frozen=True):
     Per row, what tells where the mode can and cannot be on.
 
     on, off: the switching codes. starts: a program begins. outside: codes that can only stand outside (reference
-    return). tool_ends: tool change, program end. stops: M1, between two tools or in the work of one. rapid: G0 is
-    written. cuts: a cutting move with a word of the virtual axis. moves: any cutting move in the plane.
-    returns: M99 of a program that nothing here calls. broken_off: the last row of a program that a bound has ended.
+    return). planes: a plane is selected that cannot be selected in the mode. tool_ends: tool change, program end.
+    stops: M1, between two tools or in the work of one. rapid: G0 is written. cuts: a cutting move with a word of the
+    virtual axis. moves: any move in the plane that can stand in the mode. returns: M99 of a program that something
+    elsewhere may call. broken_off: the last row of a program that a bound has ended.
     """
 
     on: Mask
     off: Mask
     starts: Mask
     outside: Mask
+    planes: Mask
     tool_ends: Mask
     stops: Mask
     rapid: Mask
@@ -60,12 +62,12 @@ def find_sections(marks: Marks) -> Sections:
     """
     A section reaches from a G12.1 to its G13.1.
 
-    Where that was forgotten, the section ends as it was meant: before the first G0, reference return or tool change
-    after the last cut, so that one missing word is one fault. But G0 before any cut was meant to stand in the section:
-    nobody leaves what he has just begun. Whether the G13.1 was forgotten is seen by what follows the last move of the
-    virtual axis: a tool change, the end of the program, or rapid traverse before another G12.1. M1 says so only behind
-    a reference return: it then stands between two tools, and the G13.1 after it is one for safety. A caller can leave
-    what M99 returns with, but not before a G0 that stands above it.
+    Where that was forgotten, the section ends as it was meant: before the first G0, reference return, choice of a plane
+    or tool change after the last cut, so that one missing word is one fault. But G0 before any cut was meant to stand
+    in the section: nobody leaves what he has just begun. Whether the G13.1 was forgotten is seen by what follows the
+    last move of the virtual axis: a tool change, the end of the program, or rapid traverse before another G12.1. M1
+    says so only behind a reference return: it then stands between two tools, and the G13.1 after it is one for safety.
+    A caller can leave what M99 returns with, but not before a G0 that stands above it.
     """
     count = len(marks.on)
     enter = np.flatnonzero(marks.on)
@@ -83,9 +85,12 @@ def find_sections(marks: Marks) -> Sections:
     tool_end = _first_after(np.flatnonzero(marks.tool_ends), last_cut, count)
     outside = _first_after(np.flatnonzero(marks.tool_ends | marks.outside), last_cut, count)
     rapid = _first_after(np.flatnonzero(marks.tool_ends | marks.outside | marks.rapid), last_cut, count)
+    # Before any cut a plane is that of the section.
+    plane = np.where(last_cut > enter, _first_after(np.flatnonzero(marks.planes), last_cut, count), count)
     stop = _first_after(np.flatnonzero(marks.stops), outside, count)
-    forgotten = ((by_off | by_bound) & (np.minimum(tool_end, stop) < end)) | (by_on & (rapid < end)) | by_end
-    limit = np.minimum(np.where(by_on, rapid, outside), end)
+    forgotten = ((by_off | by_bound) & (np.minimum(tool_end, stop) < end)) | by_end
+    forgotten |= by_on & (np.minimum(rapid, plane) < end)
+    limit = np.minimum(np.minimum(np.where(by_on, rapid, outside), plane), end)
     last_move = np.maximum(enter, _last_before(np.flatnonzero(marks.moves), limit))
     repeated = np.zeros(len(enter), bool)
     repeated[1:] = (by_on & ~forgotten)[:-1]

@@ -31,10 +31,10 @@ def feeds(path: str, form: str, diff: bool, no_config: bool, max_size: int, **ar
     Show for each cutting block of the polar sections of FILE the highest F, up to the programmed one, that keeps C and
     X within their limits; what limits it; what F the limits would allow; and the time that this costs.
 
-    The limits are limits.c_feed, limits.c_acceleration, limits.x_feed and limits.polar_feed of the machine. With teeth
-    of the tool, `--tool 8:radius=4,teeth=3`, and S in the program the chip load is told, too. --diff shows the program
-    with these F; it writes nothing. Where the program is for another control, so that nothing of the table can be
-    believed, standard error says so.
+    The limits are limits.c_feed, limits.c_acceleration, limits.x_feed, limits.x_acceleration and limits.polar_feed of
+    the machine. With teeth of the tool, `--tool 8:radius=4,teeth=3`, and S in the program the chip load is told, too.
+    --diff shows the program with these F; it writes nothing. Where the program is for another control, so that nothing
+    of the table can be believed, standard error says so.
     """
     from polarcheck.checking import check
     from polarcheck.checking.causes import READ_OTHERWISE

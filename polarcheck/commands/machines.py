@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING
 import click
 
 from polarcheck.commands import options
+from polarcheck.commands.exit_codes import CLEAN, COULD_NOT_RUN
 from polarcheck.commands.options import option
-from polarcheck.commands.output import show
-from polarcheck.errors import UsageError
+from polarcheck.commands.output import say, show
+from polarcheck.errors import MachineError, UsageError
 
 if TYPE_CHECKING:
     from polarcheck.machines.profiles import Profile
@@ -21,8 +22,9 @@ if TYPE_CHECKING:
 @click.argument("name", required=False)
 @click.argument("lathe", required=False, metavar="[LATHE]")
 @option("--from", "inherits", metavar="NAME|FILE", help="What the new one inherits from.")
+@option("--short", is_flag=True, help="Of the new one only the ten answers that a setter can give.")
 @options.debug
-def machines(name: str | None, lathe: str | None, inherits: str | None) -> None:
+def machines(name: str | None, lathe: str | None, inherits: str | None, *, short: bool) -> int:
     """
     List the machines; with the NAME or TOML file of one, show its values and where each comes from.
 
@@ -30,6 +32,7 @@ def machines(name: str | None, lathe: str | None, inherits: str | None) -> None:
     polarcheck machines fanuc-30i
     polarcheck machines check NL2000.toml              whether the file is sound, and what is still to be answered
     polarcheck machines new NL2000 --from fanuc-30i    write NL2000.toml for a lathe of your own
+    polarcheck machines new NL2000 --from fanuc-30i --short    the same in ten answers
     """
     from polarcheck.machines import profiles
     from polarcheck.reports.pages import manual
@@ -38,16 +41,21 @@ def machines(name: str | None, lathe: str | None, inherits: str | None) -> None:
         raise click.UsageError(f"machines {name}: expected the {'NAME of the new lathe' if name == 'new' else 'FILE'}")
     if inherits and name != "new":
         raise click.UsageError("--from is for `machines new LATHE`")
+    if short and name != "new":
+        raise click.UsageError("--short is for `machines new LATHE`")
     if name == "check":
-        show(_checked(str(lathe)))
-        return
+        return _check(str(lathe))
     if name == "new":
-        path = _write(str(lathe), inherits or profiles.DEFAULT)
-        show(f"{path} written; check with --machine {path}\n")
-        return
+        path = _write(str(lathe), inherits or profiles.DEFAULT, short=short)
+        show(
+            f"{path} written; take the # from what you answer, then `polarcheck machines check {path}`;"
+            f" check programs with --machine {path}\n"
+        )
+        return CLEAN
     if lathe:
         raise click.UsageError(f"{lathe}: a second name is for `machines new LATHE` and `machines check FILE`")
     show(_profile(name) if name else manual.machine_list())
+    return CLEAN
 
 
 def _profile(name: str) -> str:
@@ -56,11 +64,24 @@ def _profile(name: str) -> str:
     return manual.profile_text(_loaded(name))
 
 
-def _checked(name: str) -> str:
+def _check(name: str) -> int:
+    """Show what is to say about a sound file, or all faults of one that is not; return the exit code."""
     from polarcheck.checking.rule import load_all
+    from polarcheck.commands import selection
+    from polarcheck.machines import faults, profiles
     from polarcheck.reports.pages import machine_check
 
-    return machine_check.text(_loaded(name), load_all())
+    rules = load_all()
+    try:
+        show(machine_check.text(_loaded(name), rules))
+    except profiles.UnknownMachineError:
+        raise
+    except MachineError as first:
+        lines = faults.faults(name, lambda profile: selection.check_names(profile, rules))
+        for line in lines or [str(first)]:
+            say(line)
+        return COULD_NOT_RUN
+    return CLEAN
 
 
 def _loaded(name: str) -> Profile:
@@ -70,7 +91,7 @@ def _loaded(name: str) -> Profile:
     return settings.profile_of(name)
 
 
-def _write(name: str, inherits: str) -> Path:
+def _write(name: str, inherits: str, *, short: bool) -> Path:
     """Write NAME.toml into the working folder; an existing file is not overwritten."""
     from polarcheck.reading import files
     from polarcheck.reports.pages import new_machine
@@ -79,5 +100,6 @@ def _write(name: str, inherits: str) -> Path:
     path = Path(name if name.endswith(".toml") else f"{name}.toml")
     if os.path.lexists(path):
         raise UsageError(f"{path} is there already")
-    files.write(path, new_machine.text(path.stem, inherits))
+    write = new_machine.short_text if short else new_machine.text
+    files.write(path, write(path.stem, inherits))
     return path

@@ -113,12 +113,15 @@ def severities(
 
 def check_names(profile: Profile, known: Rules) -> None:
     """Raise MachineError, with the file and the key, if a machine names an unknown rule."""
+    faults = []
     for table, names in (("alarms", profile.machine.alarms), ("severities", profile.machine.severities)):
         for name in names:
             if name not in known:
                 key = f"{table}.{name}"
                 near = suggestion(name, known) or "; `polarcheck rules` lists them"
-                raise MachineError(f"{profile.origins[key].profile}: {key}: unknown rule {name!r}{near}")
+                faults.append(f"{profile.origins[key].profile}: {key}: unknown rule {name!r}{near}")
+    if faults:
+        raise MachineError(faults[0], faults[1:])
 
 
 def _levels(pairs: Iterable[tuple[str, str]], known: Rules, machine: Machine) -> dict[str, str]:

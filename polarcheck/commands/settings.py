@@ -290,7 +290,7 @@ def _parts(parts: Sequence[Part], options: Options) -> list[Part]:
 
 
 #: Options with the name of the key of a job that they set.
-_OVER_JOB = ("radius_from_comments", "fail_on", "strict", "encoding", "inline")
+_OVER_JOB = ("machine", "radius_from_comments", "fail_on", "strict", "encoding", "inline")
 
 
 def _files_read(options: Options, job: Job, profile: profiles.Profile, file: JobFile) -> list[Path]:

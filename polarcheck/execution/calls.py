@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from msgspec.structs import replace
+
 from polarcheck.execution.expression import evaluate
 from polarcheck.execution.macro import assign_arguments, called_program
 from polarcheck.execution.programs import Program, ProgramName
@@ -29,12 +31,16 @@ def execute_call(state: State, statement: Statement, block: int) -> int:
         assigned = assign_arguments(statement, state.variables, macro, state.listing.arithmetic)
         state.add(assigned.fault, block)
         arguments = assigned.values
-    program = find_program(state, called.program)
+    program = state.listing.programs.around(block) if called.is_own else find_program(state, called.program)
     if program is not None and statement.parameters is not None:
         arguments = parameters_of(state, statement, program, block)
     if program is None:
         report_missing(state, statement, block, called.program)
         return block + 1
+    if called.begin is not None:
+        program = part_from(state, statement, program, called.begin, block)
+        if program is None:
+            return block + 1
     if called.repeats is None:
         state.add_remark("condition-unknown", block)
     repeats = 1 if called.repeats is None else called.repeats
@@ -100,6 +106,25 @@ def report_missing(state: State, statement: Statement, block: int, called: Progr
     else:
         state.add_fault("program-not-found", block, statement, program=str(called))
     state.rows.mark_unknown()
+
+
+def part_from(state: State, statement: Statement, program: Program, begin: float, block: int) -> Program | None:
+    """The part of a program from an N number on, as M98 Q100 calls it; None, and reported, where there is none."""
+    if begin != begin:
+        state.add_remark("program-unknown", block)
+        state.rows.mark_unknown()
+        return None
+    first = state.listing.programs.jump(program, round(begin), program.first - 1)
+    if first is None:
+        macro = state.listing.macro
+        address = "P" if statement.call in macro.local_calls else macro.sequence_word
+        word = next(word for word in statement.words if word.address == address)
+        own = state.listing.programs.around(block)
+        name = "this program" if program == own else str(ProgramName(program.number, program.name))
+        state.add_fault("call-target-not-found", block, word, number=round(begin), called=name)
+        state.rows.mark_unknown()
+        return None
+    return replace(program, first=first)
 
 
 def enter_program(

@@ -42,6 +42,7 @@ FaultKind: TypeAlias = Literal[
     "argument-sets",  # PS1095
     "program-number",  # 076: no P, or no program number
     "program-not-found",  # 078
+    "call-target-not-found",  # 078: M98 with the N number of a block that is not there
     "call-levels",  # 077 for subprograms, 122 for macros
     # ---- jumps and loops ----
     "sequence-number-not-found",  # 128

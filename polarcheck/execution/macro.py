@@ -284,11 +284,15 @@ class ProgramCall(msgspec.Struct, frozen=True):
     program: its number or name.
     repeats: how often it runs; None where that is unknown.
     fault: the first one, if any.
+    begin: the N number at which it begins, UNKNOWN where that is computed and not known; None for its head.
+    is_own: the call names no program but a part of the one that calls.
     """
 
     program: ProgramName
     repeats: int | None
     fault: Fault | None
+    begin: float | None = None
+    is_own: bool = False
 
 
 _UNKNOWN_PROGRAM: Final = ProgramName(None, None)
@@ -302,17 +306,28 @@ def called_program(
 
     Where the control has `repeats_in_p`, P of a subprogram call with five to eight digits has the repeats before the
     last four: P68003 is six times O8003. Else, and in macro calls, P is the number alone. Where P has no repeats, L has
-    them.
+    them. Where the control has a `sequence_word`, that of a subprogram call is the N number at which the program
+    begins; without P and a name it is one of the program that calls. P of `local_calls` is such an N number.
     """
-    is_subprogram = statement.call in macro.subprogram_calls
+    is_local = statement.call in macro.local_calls
+    is_subprogram = is_local or statement.call in macro.subprogram_calls
     words = {word.address: word for word in reversed(statement.words if is_subprogram else _after_call(statement))}
     repeats: int | None = 1
     fault: Fault | None = None
     if "L" in words:
         value, fault = evaluate(words["L"].value, variables, arithmetic)
         repeats = None if value != value else 1 if value is None else max(_whole(value), 0)
+    begin: float | None = None
+    of_begin = "P" if is_local else macro.sequence_word if is_subprogram else ""
+    if of_begin in words:
+        begin, fault_of_begin = evaluate(words[of_begin].value, variables, arithmetic)
+        fault = fault or fault_of_begin
+    if is_local and begin is not None:
+        return ProgramCall(_UNKNOWN_PROGRAM, repeats, fault, begin, is_own=True)
     if "<" in words:
-        return ProgramCall(ProgramName(None, words["<"].written), repeats, fault)
+        return ProgramCall(ProgramName(None, words["<"].written), repeats, fault, begin)
+    if "P" not in words and begin is not None:
+        return ProgramCall(_UNKNOWN_PROGRAM, repeats, fault, begin, is_own=True)
     if "P" not in words:
         return ProgramCall(_UNKNOWN_PROGRAM, repeats, Fault("program-number", statement.start, statement.end))
     value, fault_of_number = evaluate(words["P"].value, variables, arithmetic)
@@ -325,4 +340,4 @@ def called_program(
         repeats = times
     if not 0 < number <= 99_999_999:
         return ProgramCall(_UNKNOWN_PROGRAM, repeats, Fault("program-number", words["P"].start, words["P"].end))
-    return ProgramCall(ProgramName(number, None), repeats, fault)
+    return ProgramCall(ProgramName(number, None), repeats, fault, begin)

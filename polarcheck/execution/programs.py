@@ -25,6 +25,7 @@ from polarcheck.reading.words import Text, read_words
 
 #: No control has a program or sequence number of so many digits; beyond it, values are only about right.
 _NUMBER_LIMIT = 1e15
+_DECIMAL_COMMA = re.compile(r"(?<=[0-9]),(?=[0-9])")
 #: Compiled where they are looked for, since most programs jump nowhere.
 _SEQUENCE_NUMBER = r"[\s/]*(?:/\s*\d\s*)?(?:[O:]\s*\d+\s*)?N\s*(\d+)"
 #: A label: ANF: at the head of a block or behind its number, or a sequence name, N with letters.
@@ -237,7 +238,10 @@ def needs_flow(text: Text, codes: Iterable[str]) -> bool:
 
 
 def block_text(text: Text, block: int) -> str:
-    """A block as the control would read it: comments, other text and stray characters blanked, digits for letters."""
+    """
+    A block as the control would read it: comments, other text and stray characters blanked, digits for letters, points
+    for decimal commas.
+    """
     start, end = int(text.blocks.start[block]), int(text.blocks.end[block])
     written = text.source.excerpt(start, end)
     strays = text.strays.start[slice(*stretch(text.strays.block, block, block + 1))].tolist()
@@ -250,7 +254,9 @@ def block_text(text: Text, block: int) -> str:
         return written
     found = list(written)  # a text would be copied for each of them
     for at in strays:
-        if written[at - start] != "%":  # ends what is read
+        if written[at - start] == "," and _DECIMAL_COMMA.match(written, at - start):
+            found[at - start] = "."
+        elif written[at - start] != "%":  # ends what is read
             found[at - start] = " "
     for at in letters:
         found[at - start] = "0" if written[at - start] in "oO" else "1"

@@ -36,12 +36,12 @@ _TOKEN: Final = re.compile(
 _COMPARISONS: Final = frozenset(("EQ", "NE", "GT", "LT", "GE", "LE"))
 _JOINS: Final = {"AND": "AND", "OR": "OR", "EOR": "XOR"}
 _FUNCTIONS: Final = {
-    **{name: name for name in ("SIN", "COS", "TAN", "ASIN", "ACOS", "ATAN", "SQRT", "ABS", "FIX", "FUP")},
+    **{name: name for name in ("SIN", "COS", "TAN", "ASIN", "ACOS", "ATAN", "SQRT", "ABS", "FIX", "FUP", "BIN", "BCD")},
     "ATAN2": "ATAN",
     "ROUND": "@ROUND",
 }
-#: Functions that are not calculated: what DROUND rounds to hangs on the unit that the machine is set to.
-_NOT_CALCULATED: Final = frozenset(("NOT", "DROUND", "DFIX", "DFUP", "BIN", "BCD"))
+#: Functions whose value is not known: DROUND rounds to the unit of the machine, NOT depends on the bits of a number.
+_NOT_CALCULATED: Final = frozenset(("NOT", "DROUND", "DFIX", "DFUP"))
 _NO_VALUES: Final = _COMPARISONS | {*_JOINS, "MOD", "IF", "GOTO", "CALL", "MODIN", "MODOUT", "RTS", "NOEX"}
 #: VZOFX, VTOFX[5]: a variable of the system.
 SYSTEM: Final = re.compile(r"V(?!C[0-9])[A-Z][A-Z0-9]*+")
@@ -208,6 +208,10 @@ class Values:
             return False
         if token.kind != "name":
             return None
+        if token.text == "NOT" and not self.is_sign("[", 1):
+            self.at += 1
+            pieces.append((f"#{UNKNOWN}+0*", token.start, token.end))
+            return True
         if self.is_sign("[", 1) and token.text in (*_FUNCTIONS, *_NOT_CALCULATED, "MOD"):
             self.function(pieces, opens)
             return True
@@ -233,14 +237,13 @@ class Values:
         self.begin_part(pieces, opens[-1])
 
     def function(self, pieces: list[Piece], opens: list[_Open]) -> None:
-        """A name with its opening bracket. MOD[a,b] is a MOD b; what is not calculated is not known, by name."""
+        """A name with its opening bracket. MOD[a,b] is a MOD b; what is not calculated has no known value."""
         first, name = self.at, self.take().text
         if name == "MOD":
             self.open(pieces, opens, "[[", "MOD]]")
             opens[-1].comma = "]MOD["
             return
         if name in _NOT_CALCULATED:
-            self.leave(first, moves=False)
             self.open(pieces, opens, f"#[{UNKNOWN}+0*[", "]]")
             return
         pieces.append((_FUNCTIONS[name], self.tokens[first].start, self.tokens[first].end))

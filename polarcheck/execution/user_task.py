@@ -64,6 +64,8 @@ class _Block(Values):
     ) -> None:
         super().__init__(block, names)
         self.macro, self.read_macro = machine.macro, read_macro
+        self.arcs = machine.arcs
+        self.is_larger_arc = any(token.text == self.arcs.larger_arc_word for token in self.tokens)
         self.head = Rewriting()
         self.assignments: list[Statement] = []
         self.words = Rewriting()
@@ -128,9 +130,13 @@ class _Block(Values):
             self.at += 1
             known = {"IF": self.after_if, "GOTO": self.go_to, "CALL": self.call, "MODIN": self.call}
             known.get(token.text, self.returning)(first)
+        elif token.text == self.arcs.larger_arc_word:
+            self.at += 1
         elif token.text in _NO_MOVE:
             self.at = len(self.tokens)
             self.leave(first, moves=False)
+        elif self.macro.statements.get(token.text) == "none":
+            self.at = len(self.tokens)
         elif SYSTEM.fullmatch(token.text):
             self.system_assignment()
         elif self.is_sign("=", 1):
@@ -159,6 +165,8 @@ class _Block(Values):
             self.computed(letter.text, first)
         elif (sign := self.sign_of_number()) is not None:
             number = self.take()
+            if self.is_larger_arc and letter.text == self.arcs.radius_word:
+                sign = "-"
             self.put_token(self.words, letter)
             self.words.put(sign + number.text, number.start - len(sign), number.end)
             self.has_words = True
@@ -180,9 +188,10 @@ class _Block(Values):
             self.leave(first, moves=bool(address))
         elif address:
             start = self.tokens[first].start
-            self.words.put(f"{address}[", start, start + 1)
+            is_turned = self.is_larger_arc and address == self.arcs.radius_word
+            self.words.put(f"{address}[" + "-[" * is_turned, start, start + 1)
             self.put_pieces(self.words, pieces)
-            self.words.put("]", self.tokens[self.at - 1].end - 1, self.tokens[self.at - 1].end)
+            self.words.put("]" * (1 + is_turned), self.tokens[self.at - 1].end - 1, self.tokens[self.at - 1].end)
             self.has_words = True
 
     @staticmethod

@@ -40,7 +40,7 @@ def feed_below(blocks: ExecutedBlocks, lengths: Lengths, run: Run, row: int, fee
 
     None where no feed is left.
     """
-    shown = in_row(feed, lengths, row)
+    shown = in_row(feed, lengths, row).as_feed
     text = f"{shown:below}".split()[0]
     if not float(text) > 0 or "e" in text:
         return None
@@ -54,14 +54,14 @@ def feed_below(blocks: ExecutedBlocks, lengths: Lengths, run: Run, row: int, fee
 
 def feed_text(blocks: ExecutedBlocks, lengths: Lengths, run: Run, row: int, feed: float) -> str:
     """The F word of a feed [mm/min] in whole units of the program."""
-    shown = in_row(feed, lengths, row)
+    shown = in_row(feed, lengths, row).as_feed
     return f"F{round(shown.length(feed))}{'.' * bool(writes_points(blocks, lengths, run)[row])}"
 
 
 def writes_points(blocks: ExecutedBlocks, lengths: Lengths, run: Run) -> Mask:
     """Rows in which F is written with a point: in inch, and where one of the program is."""
     words = blocks.word_indices("F")
-    return np.asarray((lengths.units == Units.INCH) | bool(run.words.has_point[words].any()))
+    return np.asarray((lengths.feed_units == Units.INCH) | bool(run.words.has_point[words].any()))
 
 
 def restored(trace: Trace, row: int) -> list[Replace] | None:

@@ -145,7 +145,7 @@ class _Plan:
         found = self.word_at.get(int(trace.feedrate.feed_word[row]))
         if value == trace.feedrate.written_feed[row] and found is not None and _is_number(trace, found):
             return written_word(trace.run, found)
-        return f"F{feed_number(round(value / float(trace.lengths.scale[row]), 6), bool(self.writes_points[row]))}"
+        return f"F{feed_number(round(value / float(trace.lengths.feed_scale[row]), 6), bool(self.writes_points[row]))}"
 
 
 def _is_as_written(trace: Trace, row: int) -> bool:

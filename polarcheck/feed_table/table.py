@@ -32,11 +32,11 @@ class FeedRow(msgspec.Struct, frozen=True, kw_only=True):
 
     line, block: where it stands, and its text. section: from 0. runs: how often it is run there. feed: F as programmed,
     the highest of the runs [mm/min]. highest: the highest F up to that which keeps the limits, rounded down; null where
-    it is not known, or no F is low enough. limited_by: C, acceleration of C, X, limit of F in the mode; programmed
-    where F may stay; center where the tool center meets the center of C; not known. allowed: F that the limits allow,
-    beyond the programmed one, too [mm/min]; null where nothing limits it. c_feed: rate of C at F as programmed
-    [deg/min]. time: of all runs at the F that runs today, highest_time: at the highest [s]. chip_load: what a tooth
-    takes at the highest F [mm], null without S or teeth. several: its runs have different F, or need it.
+    it is not known, or no F is low enough. limited_by: C, acceleration of C, X, acceleration of X, limit of F in the
+    mode; programmed where F may stay; center where the tool center meets the center of C; not known. allowed: F that
+    the limits allow, beyond the programmed one, too [mm/min]; null where nothing limits it. c_feed: rate of C at F as
+    programmed [deg/min]. time: of all runs at the F that runs today, highest_time: at the highest [s]. chip_load: what
+    a tooth takes at the highest F [mm], null without S or teeth. several: its runs have different F, or need it.
     """
 
     line: int
@@ -87,7 +87,7 @@ class FeedTotal(msgspec.Struct, frozen=True, kw_only=True):
 
 class FeedLimits(msgspec.Struct, frozen=True, kw_only=True):
     """
-    The limits that were applied [deg/min, deg/s2, mm/min with X as a radius, mm/min]; null where none is known.
+    The limits that were applied [deg/min, deg/s2; X as a radius mm/min, mm/s2; mm/min]; null where none is known.
 
     c_feed_given: False where c_feed is no limit of the lathe, but a rate that no C axis cuts with.
     """
@@ -96,6 +96,7 @@ class FeedLimits(msgspec.Struct, frozen=True, kw_only=True):
     c_feed_given: bool
     c_acceleration: float | None
     x_feed: float | None
+    x_acceleration: float | None
     polar_feed: float | None
 
 
@@ -129,12 +130,12 @@ def rounded_down(trace: Trace, feed: Floats, left_out: Mask) -> Floats:
     left_out: where the result must not be F itself. NaN where no F above 0 is left.
     """
     with np.errstate(all="ignore"):
-        value = np.where((feed > 0) & np.isfinite(feed), feed / trace.lengths.scale, np.nan)
+        value = np.where((feed > 0) & np.isfinite(feed), feed / trace.lengths.feed_scale, np.nan)
         factor = 10.0 ** (_DIGITS - 1 - np.floor(np.log10(value)))
         whole = value * factor
         found = np.where(left_out, np.ceil(whole - 1e-6) - 1, np.floor(whole + 1e-9)) / factor
         is_whole = ~writes_points(trace.blocks, trace.lengths, trace.run) & (found >= LEAST_WHOLE)
-        return np.where(is_whole, np.floor(found), found) * trace.lengths.scale
+        return np.where(is_whole, np.floor(found), found) * trace.lengths.feed_scale
 
 
 def highest(trace: Trace, feeds: HighestFeeds) -> Floats:
@@ -152,7 +153,7 @@ def feed_table(tables: Tables) -> FeedTable:
     found = _Columns(trace, feeds, dynamics)
     sections = [found.total(number, enter) for number, enter in enumerate(trace.mode.sections.enter.tolist())]
     limits = trace.machine.limits
-    inch = bool(len(trace) and np.all(trace.lengths.units[feeds.cuts] == Units.INCH) and feeds.cuts.any())
+    inch = bool(len(trace) and np.all(trace.lengths.feed_units[feeds.cuts] == Units.INCH) and feeds.cuts.any())
     return FeedTable(
         units="inch" if inch else "mm",
         limits=FeedLimits(
@@ -160,6 +161,7 @@ def feed_table(tables: Tables) -> FeedTable:
             c_feed_given=not np.isnan(limits.c_feed),
             c_acceleration=rounded(limits.c_acceleration),
             x_feed=rounded(limits.x_feed),
+            x_acceleration=rounded(limits.x_acceleration),
             polar_feed=rounded(limits.polar_feed),
         ),
         rows=found.rows(),

@@ -17,6 +17,8 @@ way, and what C must turn at the center between two moves belongs to neither.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -33,6 +35,21 @@ from polarcheck.geometry.plane import (
 )
 from polarcheck.geometry.tolerances import ZERO
 from polarcheck.machines.modal import Motion
+
+
+class CAxis(NamedTuple):
+    """
+    How C stands to the angle of plane points.
+
+    sense: 1 where it grows with that angle, -1 where it falls. is_fixed: the plane stands still on the part; else it
+    begins at each G12.1 anew, with the tool on the linear axis.
+    """
+
+    sense: int = 1
+    is_fixed: bool = False
+
+
+_AS_PLANE = CAxis()
 
 
 @quiet
@@ -134,15 +151,22 @@ def to_plane(x: Floats, c_angle: Floats, entry: Floats | float) -> Points:
 
 @quiet
 def c_angles(
-    start: Points, end: Points, center: Points, kind: States, section: NDArray[np.integer], entry: Floats
+    start: Points,
+    end: Points,
+    center: Points,
+    kind: States,
+    section: NDArray[np.integer],
+    entry: Floats,
+    axis: CAxis = _AS_PLANE,
 ) -> tuple[Floats, Floats]:
     """
     C at the start and at the end of each move [deg], continuous along each section.
 
     section: int[n], number of the section, moves of one section together; below 0 outside, which gives NaN.
-    entry: float64[sections] [deg], C at the G12.1 of each section.
-    The position at G12.1 counts as angle 0 (B-62764EN/01 p. 51), and C does not jump there: a section that begins on
-    the negative side of X has entry there, and the plane lies turned by 180 deg against the machine.
+    entry: float64[sections] [deg], C at the G12.1 of each section; of a fixed plane C of its linear axis.
+    Where the plane is not fixed, the position at G12.1 counts as angle 0 (B-62764EN/01 p. 51), and C does not jump
+    there: a section that begins on the negative side of X has entry there, and the plane lies turned by 180 deg against
+    the machine.
     After an unknown move C goes on the shorter way from where it was last known: right but for whole turns.
     """
     count = len(section)
@@ -152,7 +176,7 @@ def c_angles(
     row = np.arange(count)
     begins = np.append(True, section[1:] != section[:-1])[:count]
     first = np.maximum.accumulate(np.where(begins, row, 0))
-    turned = ((start.imag == 0) & (start.real < 0))[first]
+    turned = ((start.imag == 0) & (start.real < 0))[first] & (not axis.is_fixed)
     seen = known & (leaving != 0)
     last = np.maximum.accumulate(np.where(seen, row, -1))
     before = np.append(-1, last[:-1])[:count]
@@ -166,8 +190,8 @@ def c_angles(
     turns = total - sweep - earlier[first]
     # The sum knows the whole turns, the point itself the rest; so no rounding piles up.
     turns = np.where(seen, here + 360 * np.round((turns - here) / 360), turns)
-    c_from = np.where(known, entry[np.where(section >= 0, section, 0)] + turns, np.nan)
-    return c_from, c_from + sweep
+    c_from = np.where(known, entry[np.where(section >= 0, section, 0)] + axis.sense * turns, np.nan)
+    return c_from, c_from + axis.sense * sweep
 
 
 def _directions(start: Points, end: Points, center: Points, kind: States) -> tuple[Points, Points]:

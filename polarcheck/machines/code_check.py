@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 
-from polarcheck.errors import MachineError, RuleError
+from polarcheck.errors import MachineError, RuleError, suggestion
 from polarcheck.machines import code_keys
 from polarcheck.machines.code_lists import is_code, numbers
 from polarcheck.machines.m_codes import SWITCHED, PowerOn
@@ -18,22 +18,34 @@ def check_codes(machine: Machine, origins: Mapping[str, Origin], chain: Sequence
     """
     Raises MachineError, naming the profile and the key, for what is no code and for a code of two states.
 
-    chain: the profiles, the nearest first; of two lists with the same code that of the nearer one is named.
+    chain: the profiles, the nearest first; of two lists with the same code that of the nearer one is named. The error
+    is the first one and has the others of its kind.
     """
+    for kind in (_no_codes, _wrong_at_power_on, _wrong_in_alarm_codes, _of_two_states):
+        first, *others = [*kind(machine, origins, chain), ""]
+        if first:
+            raise MachineError(first, filter(None, others))
+
+
+def _no_codes(machine: Machine, origins: Mapping[str, Origin], _: Sequence[str]) -> Iterator[str]:
     for lists, is_one in _FORMS:
         for table, keys in lists.items():
             for key in keys:
                 for code in getattr(getattr(machine, table), key):
                     if isinstance(code, str) and not is_one(code):
-                        raise MachineError(f"{origins[f'{table}.{key}'].profile}: {table}.{key}: {code!r} is no code")
+                        yield f"{origins[f'{table}.{key}'].profile}: {table}.{key}: {code!r} is no code"
 
-    _check_power_on(machine, origins)
+
+def _wrong_in_alarm_codes(machine: Machine, origins: Mapping[str, Origin], _: Sequence[str]) -> Iterator[str]:
     for alarm, names in machine.alarm_codes.items():
         for name in names:
             if not is_code(name) and not _is_list(machine, name):
                 key = f"alarm_codes.{alarm}"
-                raise MachineError(f"{origins[key].profile}: {key}: {name!r} is neither a code nor a list of codes")
+                near = suggestion(name, _lists(machine))
+                yield f"{origins[key].profile}: {key}: {name!r} is neither a code nor a list of codes{near}"
 
+
+def _of_two_states(machine: Machine, origins: Mapping[str, Origin], chain: Sequence[str]) -> Iterator[str]:
     def distance(key: str) -> int:
         profile = origins[key].profile
         return chain.index(profile) if profile in chain else -1
@@ -42,7 +54,7 @@ def check_codes(machine: Machine, origins: Mapping[str, Origin], chain: Sequence
         both = [word for word in getattr(machine.m_codes, on) if word in getattr(machine.m_codes, off)]
         if both:
             nearer, other = sorted((f"m_codes.{on}", f"m_codes.{off}"), key=distance)
-            raise MachineError(f"{origins[nearer].profile}: {nearer}: {both[0]} is in {other}, too")
+            yield f"{origins[nearer].profile}: {nearer}: {both[0]} is in {other}, too"
     list_of: dict[int, str] = {}
     for states in STATES.values():
         for key in states:
@@ -51,17 +63,17 @@ def check_codes(machine: Machine, origins: Mapping[str, Origin], chain: Sequence
                 if list_of.setdefault(number, full) != full:
                     nearer, other = sorted((full, list_of[number]), key=distance)
                     code = f"G{number / 10:g}"
-                    raise MachineError(f"{origins[nearer].profile}: {nearer}: {code} is in {other}, too")
+                    yield f"{origins[nearer].profile}: {nearer}: {code} is in {other}, too"
 
 
-def _check_power_on(machine: Machine, origins: Mapping[str, Origin]) -> None:
+def _wrong_at_power_on(machine: Machine, origins: Mapping[str, Origin], _: Sequence[str]) -> Iterator[str]:
     for group in PowerOn.__struct_fields__:
         selected = getattr(machine.power_on, group)
         listed = [code for key in STATES[group] for code in machine.codes(key)]
         if selected and selected not in listed:
             has = ", ".join(listed) or "none"
             key = f"power_on.{group}"
-            raise MachineError(f"{origins[key].profile}: {key}: {selected} selects no {group}; codes are {has}")
+            yield f"{origins[key].profile}: {key}: {selected} selects no {group}; codes are {has}"
 
 
 def _is_single(text: str) -> bool:
@@ -94,6 +106,10 @@ _FORMS: tuple[tuple[Mapping[str, Sequence[str]], Callable[[str], bool]], ...] = 
     (code_keys.MIXED, _is_address_or_code),
     (code_keys.WORDS, _is_word),
 )
+
+
+def _lists(machine: Machine) -> list[str]:
+    return [key for table in machine.code_tables for key in getattr(machine, table).__struct_fields__]
 
 
 def _is_list(machine: Machine, name: str) -> bool:

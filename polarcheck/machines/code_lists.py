@@ -22,6 +22,8 @@ class GCodes(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     compensation_off: cutter compensation cancel
     compensation_left: cutter compensation, tool to the left of the programmed path
     compensation_right: cutter compensation, tool to the right of the programmed path
+    corner_by_arc: cutter compensation goes round outer corners by an arc of R
+    corner_by_intersection: cutter compensation goes round outer corners by the point where both ways meet
     feed_inverse_time: F is the inverse of the time that the block takes
     constant_surface_speed: S is a surface speed, so that the spindle turns faster near the center
     constant_surface_speed_off: S is a spindle speed
@@ -42,7 +44,7 @@ class GCodes(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     frame_not_simulated: frames whose way is not simulated: scaling, mirror image
     tool_length_offset: tool length offset; H beside it is an offset number
     tool_length_offset_off: tool length offset cancel
-    dwell: dwell; X, P and F beside it are a time
+    dwell: dwell; which words beside it are a time is feed.dwell_words
     data_input: data input by the program, of what L says
     data_input_work_offset: numbers of L by which data input sets work offsets
     data_input_tool_offset: numbers of L by which data input sets tool offsets
@@ -68,6 +70,8 @@ class GCodes(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     compensation_off: list[str]
     compensation_left: list[str]
     compensation_right: list[str]
+    corner_by_arc: list[str]
+    corner_by_intersection: list[str]
     feed_inverse_time: list[str]
     constant_surface_speed: list[str]
     constant_surface_speed_off: list[str]

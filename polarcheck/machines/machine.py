@@ -6,7 +6,7 @@ What a key means stands in the docstring of its class and, in the same words, at
 
 import math
 import re
-from typing import Annotated, Literal
+from typing import Annotated, Literal, TypeAlias
 
 import msgspec
 
@@ -32,6 +32,7 @@ from polarcheck.machines.values import (
     NotNegative,
     Plain,
     Positive,
+    SpindleWord,
     SwitchWord,
     ascend,
 )
@@ -47,7 +48,8 @@ class Control(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     How the control reads a program.
 
     g_code_system: A, B or C: which of the tables [g_code_system_a] to [g_code_system_c] counts
-    units: mm or inch: of a program that selects neither
+    units: mm or inch: of a program that selects neither; the basic system, where codes leave F in it
+    units_of_lengths_alone: codes of units that change lengths alone: F stays in the units of the basic system
     least_increment: least input increment [mm, deg]
     least_increment_inch: least input increment of lengths [inch]
     number_without_point: whether X10 is ten least increments (least-increment) or ten mm, inch or deg (whole-unit)
@@ -61,8 +63,10 @@ class Control(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     radius_offset_digits: digits of T before those of the tool that number the offset with R; 0: the tool offset has it
     unknown_codes_are_errors: whether the control stops at a G code that is not among the known codes
     x: diameter or radius: what X words are outside the polar mode
+    rotary_rolls_over: whether an angle of the rotary axis outside the mode is reached the shorter way: C350. by -10
     axes: names of the axes in the order of their numbers, which P, Q and parameters count; none where it is not known
     named_axes: axes that are written with = (C2=10.), by the address that each is here; empty where it is not followed
+    spindle_words: speeds that are written with = (S3=2000), by the spindle: main, sub, live, or empty if not known
     known_codes: G codes of the control, from the whole list of it; G27-G80 is a range of whole numbers
     motion_codes: codes that move but have another number here, by what they mean: G101 = "G1"
     native_words: words of the control's own language, by the code or address that they are read as: TRANSMIT = "G12.1"
@@ -74,6 +78,7 @@ class Control(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
 
     g_code_system: Literal["A", "B", "C"]
     units: Literal["mm", "inch"]
+    units_of_lengths_alone: list[str] = []
     least_increment: Positive
     least_increment_inch: Positive
     number_without_point: Literal["least-increment", "whole-unit"]
@@ -87,8 +92,10 @@ class Control(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     radius_offset_digits: Annotated[int, msgspec.Meta(ge=0, le=3)]
     unknown_codes_are_errors: bool
     x: Literal["diameter", "radius"]
+    rotary_rolls_over: bool = False
     axes: list[AxisAddress] = []
     named_axes: dict[AxisName, AxisLetterOrNone] = {}
+    spindle_words: dict[SpindleWord, Literal["", "main", "sub", "live"]] = {}
     known_codes: list[str]
     motion_codes: dict[str, str] = {}
     native_words: dict[Plain, Plain] = {}
@@ -103,8 +110,8 @@ class Control(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
                 raise ValueError(f"native_words: {text!r} has no room in the place of {word!r}")
         if self.channel_mark and self.channel_mark == self.wait_mark:
             raise ValueError(f"channel_mark and wait_mark are both {self.channel_mark}; expected two characters")
-        if len(self.named_axes) > MOST_NAMED:
-            raise ValueError(f"named_axes: expected {MOST_NAMED} names at most")
+        if len(self.named_axes) + len(self.spindle_words) > MOST_NAMED:
+            raise ValueError(f"named_axes, spindle_words: expected {MOST_NAMED} names at most")
         for name, meant in self.motion_codes.items():
             if not is_code(name) or "-" in name or meant not in ("G0", "G1", "G2", "G3"):
                 raise ValueError(f"motion_codes: {name} = {meant!r}: expected a G code and one of G0, G1, G2, G3")
@@ -116,13 +123,17 @@ class CircularInterpolation(msgspec.Struct, frozen=True, kw_only=True, forbid_un
 
     tolerance: how much the radius at the end of an arc may differ from that at its start [mm]
     radius_word: address of the radius of an arc
+    larger_arc_word: word of a user task beside the radius of an arc of more than 180 deg; empty without one
     sweep_limit: largest angle of one arc [deg]
+    takes_sweep_limit: an arc by radius through exactly that angle is certain
     corner_words: words of arcs that in a straight move are the corner at its end
     """
 
     tolerance: NotNegative
     radius_word: Address
+    larger_arc_word: Plain = ""
     sweep_limit: Annotated[float, msgspec.Meta(gt=0, le=360)]
+    takes_sweep_limit: bool = True
     corner_words: list[Address]
 
 
@@ -135,6 +146,9 @@ class Compensation(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fie
     read_ahead: blocks that the control knows in advance; all but two of them may be without a move
     interference: alarm or erase: what the control does about interference
     tangent_tolerance: turn up to which two blocks are tangent to each other [rad]
+    corner: lines, intersection or arc: the way round outer corners where no code says it; lines: as FANUC controls
+    corner_arc_above: turn of the contour above which a corner by intersection becomes an arc [deg]; 180: none does
+    corner_arc_from: turn of the contour below which a corner by an arc becomes an intersection [deg]
     leaving_cancels: whether G13.1 takes back an offset after whose G40 nothing has moved
     nose_types: nose types, T of the offset table, of a tool whose center is programmed
     overcut_tolerance: how deep the tool may cut into the contour before it is reported [mm]
@@ -145,6 +159,9 @@ class Compensation(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fie
     read_ahead: Annotated[int, msgspec.Meta(ge=2, le=MOST)]
     interference: Literal["alarm", "erase"]
     tangent_tolerance: Annotated[float, msgspec.Meta(ge=0, le=math.pi / 2)]
+    corner: Literal["lines", "intersection", "arc"]
+    corner_arc_above: Annotated[float, msgspec.Meta(ge=0, le=180)]
+    corner_arc_from: Annotated[float, msgspec.Meta(ge=0, le=180)]
     leaving_cancels: bool
     nose_types: Annotated[list[Annotated[int, msgspec.Meta(ge=0, le=9)]], msgspec.Meta(min_length=1)]
     # Arcs become chords that differ from them by less: at 0 there is no end of them.
@@ -160,6 +177,7 @@ class Limits(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     c_feed_suspicious: feed of the C axis that is suspicious where its limit is not known [deg/min]
     c_acceleration: largest acceleration of the C axis [deg/s2]
     x_feed: largest cutting feed of X, as a radius [mm/min]
+    x_acceleration: largest acceleration of X, as a radius [mm/s2]
     x_rapid: rapid traverse of X, as a radius [mm/min]
     z_rapid: rapid traverse of Z [mm/min]
     c_rapid: rapid traverse of the C axis [deg/min]
@@ -167,6 +185,8 @@ class Limits(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     polar_feed_clamps: whether the control clamps a higher F at it; else it runs as programmed
     automatic_override: whether the control slows down by itself where C would turn too fast
     override_share: share of the limit of C above which it does so, and which it leaves [%]
+    live_tool_speed: highest speed of the live tool [1/min]
+    block_time: shortest time of a block; F falls where a series of blocks is shorter [s]
     keep_out: how far the tool center should stay away from the center of C [mm]
     x_minimum: travel limit of X, as a radius [mm]
     x_maximum: travel limit of X, as a radius [mm]
@@ -179,6 +199,7 @@ class Limits(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     c_feed_suspicious: Positive
     c_acceleration: NotNegative = math.nan
     x_feed: Positive = math.nan
+    x_acceleration: Positive = math.nan
     x_rapid: Positive = math.nan
     z_rapid: Positive = math.nan
     c_rapid: Positive = math.nan
@@ -186,6 +207,8 @@ class Limits(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     polar_feed_clamps: bool = True
     automatic_override: bool = False
     override_share: Positive
+    live_tool_speed: Positive = math.nan
+    block_time: Positive = math.nan
     keep_out: NotNegative = math.nan
     x_minimum: Length = math.nan
     x_maximum: Positive = math.nan
@@ -194,6 +217,12 @@ class Limits(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
 
     def __post_init__(self) -> None:
         ascend(self, ("x_minimum", "x_maximum"), ("z_minimum", "z_maximum"))
+
+
+#: What a word of a dwell counts. seconds, hundredths: with a point and without. thousandths: without a point; with one
+#: it is not known. thousandths-or-seconds: seconds with a point. as-lengths: seconds with a point; without one least
+#: increments, 0.001 s, or seconds, as control.number_without_point says. turns: of the spindle.
+DwellUnit: TypeAlias = Literal["seconds", "hundredths", "thousandths", "thousandths-or-seconds", "as-lengths", "turns"]
 
 
 class Feed(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -205,6 +234,8 @@ class Feed(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     positioning_minimum: lowest F that the builder recommends for positioning in the polar mode [mm/min]
     positioning_maximum: highest F that the builder recommends for positioning in the polar mode [mm/min]
     carried_into_polar: F from before G12.1 that holds behind it: any (modal) or none per revolution (per-minute-only)
+    dwell_words: word of a dwell -> seconds, hundredths, thousandths, thousandths-or-seconds, as-lengths or turns
+    dwell_per_revolution: what these words count where feed per revolution is in force: times, or turns of the spindle
     """
 
     cutting_minimum: NotNegative = math.nan
@@ -212,6 +243,8 @@ class Feed(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     positioning_minimum: NotNegative = math.nan
     positioning_maximum: Positive = math.nan
     carried_into_polar: Literal["modal", "per-minute-only"] = "modal"
+    dwell_words: dict[Address, DwellUnit]
+    dwell_per_revolution: Literal["times", "turns"]
 
     def __post_init__(self) -> None:
         ascend(self, ("cutting_minimum", "cutting_maximum"), ("positioning_minimum", "positioning_maximum"))
@@ -287,12 +320,18 @@ class Machine(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     def address_number(self, address: str) -> int:
         """
         What the table of executed words has for an address, be it the name of an axis that is written with =: that of
-        the address that the axis is here, NOT_NAMED or NO_AXIS for a name that control.named_axes does not have.
+        the address that the axis is here, NOT_NAMED or NO_AXIS for a name that control.named_axes does not have. The
+        speeds of control.spindle_words stand behind the axes.
         """
         if len(address) == 1:
             return ord(address)
         named = self.control.named_axes
-        return address_number(named.get(address) or address, sorted(named))
+        return address_number(named.get(address) or address, [*sorted(named), *sorted(self.control.spindle_words)])
+
+    @property
+    def live_tool_speeds(self) -> tuple[str, ...]:
+        """The speeds of live tools that are written with =, as S3."""
+        return tuple(word for word, spindle in self.control.spindle_words.items() if spindle == "live")
 
     @property
     def has_edges(self) -> bool:
@@ -310,9 +349,14 @@ class Machine(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
         system: GCodeSystem = getattr(self, self.system_table)
         return system
 
+    @property
+    def code_tables(self) -> tuple[str, ...]:
+        """The tables with lists of G codes: those of the G-code system in force among them."""
+        return ("g_codes", "macro", self.system_table)
+
     def table_of(self, key: str) -> str:
         """The table of a list of codes: that of the G-code system in force where it differs between systems."""
-        for table in ("g_codes", "macro", self.system_table):
+        for table in self.code_tables:
             if key in getattr(self, table).__struct_fields__:
                 return table
         raise RuleError(f"there is no list of G codes {key!r}: see [g_codes], [g_code_system_a] and [macro]")

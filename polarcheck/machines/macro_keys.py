@@ -10,6 +10,7 @@ from polarcheck.machines.values import Address, AddressOrNone, Count, LanguageCo
 #: The lists of codes among the keys.
 CODE_LISTS = (
     "subprogram_calls",
+    "local_calls",
     "macro_calls",
     "modal_macro_calls",
     "modal_macro_calls_each_block",
@@ -26,7 +27,7 @@ class Macro(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     language: of statements: custom-macro (#1), high-level (R1, X=R1, IF .. GOTOF NAME) or user-task (VC1, IF [..] NAME)
     named_words: words of several letters with = in such a language, by the address that each is read as; empty: none
     other_language: code that begins the other language of a control that has two; empty where it has one
-    statements: statement of a high-level language (* for any rest) -> what is not followed: none, path, words, moves
+    statements: statement (* for any rest) or first word of one -> what is not followed: none, path, words, moves
     local_variables: ranges, first and last number, of local variables, of which each macro call has its own
     common_variables: ranges of common variables that are vacant at power-on
     retained_variables: ranges of common variables that outlive the power-off: not known until a program assigns them
@@ -38,6 +39,8 @@ class Macro(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     tool_offset_variables: ranges of system variables that are tool offsets, so that an assignment changes one
     work_offset_variables: ranges of system variables that are work offsets
     subprogram_calls: codes that call a subprogram by its number in P or its <NAME>; M198 that of another device
+    sequence_word: address beside such a call of the N number at which it begins, without P in its program; or empty
+    local_calls: codes that call the blocks of the same program from the N number in P on
     macro_calls: codes that call a macro once; the other words of the block are its arguments
     modal_macro_calls: codes after which each block that moves an axis calls the macro
     modal_macro_calls_each_block: modal calls that take the words of each block as arguments, G codes too
@@ -74,6 +77,8 @@ class Macro(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     tool_offset_variables: Ranges
     work_offset_variables: Ranges
     subprogram_calls: list[str]
+    sequence_word: AddressOrNone
+    local_calls: list[str]
     macro_calls: list[str]
     modal_macro_calls: list[str]
     modal_macro_calls_each_block: list[str]
@@ -108,7 +113,7 @@ class Macro(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     @property
     def call_codes(self) -> frozenset[str]:
         """The codes that call a program."""
-        return self.macro_call_codes | frozenset(self.subprogram_calls)
+        return self.macro_call_codes | frozenset((*self.subprogram_calls, *self.local_calls))
 
     @property
     def flow_codes(self) -> frozenset[str]:

@@ -26,6 +26,14 @@ class Side(enum.IntEnum):
     RIGHT = 42
 
 
+class Corner(enum.IntEnum):
+    """How cutter compensation goes round an outer corner; where codes say it, valued like those."""
+
+    LINES = 0
+    ARC = 450
+    INTERSECTION = 451
+
+
 class Units(enum.IntEnum):
     """Of lengths and feeds in the program."""
 
@@ -66,6 +74,7 @@ STATES: dict[str, dict[str, int]] = {
     },
     "plane": {"plane_xy": OF_CODE, "plane_zx": OF_CODE, "plane_yz": OF_CODE},
     "side": {"compensation_off": Side.OFF, "compensation_left": Side.LEFT, "compensation_right": Side.RIGHT},
+    "corner": {"corner_by_arc": Corner.ARC, "corner_by_intersection": Corner.INTERSECTION},
     "units": {"inch": Units.INCH, "mm": Units.MM},
     "feed_mode": {
         "feed_inverse_time": FeedMode.INVERSE_TIME,

@@ -12,6 +12,7 @@ from polarcheck.machines.values import (
     AxisAddressOrNone,
     AxisNumber,
     Codes,
+    Length,
     NumberedWord,
     Plain,
     RotaryAddress,
@@ -34,6 +35,7 @@ class Polar(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     sub_spindle_plane: as on the main spindle (as-main), sides not known (unknown), axes not followed (not-followed)
     words_beside_switch: addresses and codes that may stand in one block with those that switch; N may always
     not_simulated_beside: those of these addresses that make another mode of it, which is not simulated
+    planes_not_simulated: codes that select another plane in the mode, as that of a cylinder, which is not simulated
     rotary_address: address of the rotary axis outside the mode: A, B, C, H, or a name that is written with =, as C2
     rotary_incremental: address of its incremental words; empty where it has none
     off_of_other_modes: codes that begin another mode which those of `off` end as well, as that of a Y axis
@@ -46,11 +48,13 @@ class Polar(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     other_controls: the controls on which it has those addresses, as a message names them
     x: diameter or radius: what X words are in the mode
     virtual_axis_programming: radius or diameter: what words of the virtual axis are
-    zero_angle: where the linear axis points: to C as it is at G12.1 (at-switch) or to C0 (at-c0, or at-c0-reversed)
+    zero_angle: where the linear axis points: to C at G12.1 (at-switch) or C0 (at-c0, at-c0-reversed: C turns back)
     other_axes: what Z does in one block with X or C: independent of them, together with them, or forbidden
+    feed_measures: what F is along where Z moves beside X or C: the way on the plane, or that of X, C and Z in space
     repeated_z: Z beside X or C that names the present Z: allowed, forbidden-in-arcs, or forbidden as any other
     center_words: addresses of arc centers, along the linear and along the virtual axis, by the linear axis
     linear_address: address of the axis with the number 1, where control.axes does not say it: the linear axis
+    center_error: way of the tool beside the center of C, along the virtual axis, which the control makes up for [mm]
     linear_axis: number of the linear axis, as P beside G12.1 names it
     rotary_axis: number of the rotary axis, as Q beside G12.1 names it
     infeed_word: address beside G12.1 of the infeed of a cycle that goes round the contour; empty without such a cycle
@@ -68,6 +72,7 @@ class Polar(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     sub_spindle_plane: Literal["as-main", "unknown", "not-followed"]
     words_beside_switch: list[str]
     not_simulated_beside: list[Address] = []
+    planes_not_simulated: list[str] = []
     rotary_address: RotaryAddress
     rotary_incremental: AddressOrNone
     off_of_other_modes: list[str] = []
@@ -82,15 +87,27 @@ class Polar(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     virtual_axis_programming: Literal["radius", "diameter"]
     zero_angle: Literal["at-switch", "at-c0", "at-c0-reversed"]
     other_axes: Literal["independent", "together", "forbidden"]
+    feed_measures: Literal["plane", "space"]
     repeated_z: Literal["allowed", "forbidden-in-arcs", "forbidden"]
     center_words: dict[LinearAddress, tuple[Address, Address]]
     linear_address: LinearAddress
+    center_error: Length
     linear_axis: AxisNumber
     rotary_axis: AxisNumber
     infeed_word: AddressOrNone
     allowed_codes: list[str]
     plane_before: list[str]
     main_spindle_must_stop: bool
+
+    @property
+    def plane_is_fixed(self) -> bool:
+        """The polar plane stands still on the part, whatever the angle of C at G12.1."""
+        return self.zero_angle != "at-switch"
+
+    @property
+    def c_sense(self) -> int:
+        """1 where C grows with the angle of the tool on the polar plane, -1 where it falls with it."""
+        return -1 if self.zero_angle == "at-c0-reversed" else 1
 
     @property
     def rotary_words(self) -> tuple[str, str]:

@@ -24,7 +24,7 @@ DEFAULT = "fanuc"
 #: Files that may stand behind each other by `inherits`; the built-in ones have four.
 _LONGEST_CHAIN = 10
 #: Tables by name, of which a nearer profile says what differs or is new.
-MERGED = ("control.named_axes", "macro.statements")
+MERGED = ("control.named_axes", "control.spindle_words", "macro.statements")
 #: Tables that a profile can leave behind.
 _REPLACED = ("alarms", "alarm_codes", "known_parameters", "severities", "notes")
 
@@ -73,12 +73,15 @@ def built_in() -> tuple[Profile, ...]:
 Change = tuple[str, Mapping[str, Any]]
 
 
-def load(name: str, changes: Mapping[str, Any] | Sequence[Change] | None = None) -> Profile:
+def load(
+    name: str, changes: Mapping[str, Any] | Sequence[Change] | None = None, *, contents: dict[str, Any] | None = None
+) -> Profile:
     """
     The profile of a built-in machine or of a TOML file of the user's own.
 
-    changes: merged over it; one table, or several with what told each, the nearest first. Raises MachineError, naming
-    the file or option and the key, for an unknown machine or key, a value that does not fit, a circle of inheritance.
+    changes: merged over it; one table, or several with what told each, the nearest first. contents: taken as those of
+    the file. Raises MachineError, naming the file or option and the key, for an unknown machine or key, a value that
+    does not fit, a circle of inheritance.
     """
     over = [("the command line or job", changes)] if isinstance(changes, Mapping) else changes or []
     over = [(title, table) for title, table in over if table]
@@ -87,7 +90,7 @@ def load(name: str, changes: Mapping[str, Any] | Sequence[Change] | None = None)
     folder = Path()
     seen: set[str] = set()
     ours: set[str] = set()
-    own = any(group != "limits" for _, table in over for group in table)
+    checks_codes = any(group != "limits" for _, table in over for group in table)
     while asked is not None:
         try:
             path, title = _find(asked, folder)
@@ -105,10 +108,10 @@ def load(name: str, changes: Mapping[str, Any] | Sequence[Change] | None = None)
             table = dict(_built_in(path))
             ours.add(title)
         else:
-            table = _read_file(path, title)
+            table = _read_file(path, title) if contents is None or tables else contents
         tables.append((title, table))
         folder = path.parent
-        own |= folder != FOLDER
+        checks_codes |= folder != FOLDER
         asked = table.pop("inherits", None)
         if asked is not None and not isinstance(asked, str):
             raise MachineError(f"{title}: inherits: expected the name of a machine")
@@ -146,7 +149,7 @@ def load(name: str, changes: Mapping[str, Any] | Sequence[Change] | None = None)
             machine = own_language.numbered(written)
         except ValueError as error:
             raise MachineError(f"{chain[0]}: control: {error}") from None
-    if own:
+    if checks_codes:
         from polarcheck.machines.code_check import check_codes
 
         check_codes(machine, origins, chain)
@@ -225,7 +228,7 @@ def _merge(
         target = into.setdefault(group, {})
         if not isinstance(target, dict):
             raise MachineError(f"{profile}: {group}: expected a text, found a table")
-        origin = _origin(values, Origin(profile, ""))
+        origin = _origin(values, Origin(profile, ""), group)
         for key, value in values.items():
             if key not in ("source", "doubtful"):
                 dotted = f"{group}.{key}"
@@ -273,14 +276,14 @@ def _unwrapped(value: Any, key: str, origin: Origin, origins: dict[str, Origin])
     if wrong or "value" not in value:
         said = ", ".join(sorted(value))
         raise MachineError(f"{origin.profile}: {key}: expected value, source and doubtful, not {said}")
-    origins[key] = _origin(value, origin)
+    origins[key] = _origin(value, origin, key)
     return value["value"]
 
 
-def _origin(said: Mapping[str, Any], of_table: Origin) -> Origin:
+def _origin(said: Mapping[str, Any], of_table: Origin, key: str) -> Origin:
     source, doubtful = said.get("source", of_table.source), said.get("doubtful", of_table.doubtful)
     if not isinstance(doubtful, bool):
-        raise MachineError(f"{of_table.profile}: doubtful: expected true or false, found {doubtful!r}")
+        raise MachineError(f"{of_table.profile}: {key}.doubtful: expected true or false, found {doubtful!r}")
     return Origin(of_table.profile, str(source), bool(doubtful))
 
 

@@ -67,16 +67,32 @@ def placed(title: str, said: str) -> str:
     return f"{title}:{match[1]}: {said[: match.start()]} at column {match[2]}{said[match.end() :]}"
 
 
-def located(said: str) -> str:
-    """Return a message about a key of a machine file, with its line: `lathe.toml:12: limits.c_fed: ...`."""
+def located(said: str, lines: Mapping[str, int] | None = None) -> str:
+    """
+    Return a message about a key of a machine file, with its line: `lathe.toml:12: limits.c_fed: ...`.
+
+    lines: of_keys of its text, where that is known.
+    """
     match = _OF_FILE_AND_KEY.match(said)
     if match is None:
         return said
     try:
-        line = line_of(match[2].strip("\"'"), of_keys(toml_text.text_of(match[1], "machine file")))
+        known = of_keys(toml_text.text_of(match[1], "machine file")) if lines is None else lines
     except ValueError:
         return said
+    key = match[2].strip("\"'")
+    if "no meaning is known for" in said:
+        key = f"parameters.{key}"
+    elif (first := re.match(r": (\w+) ", said[match.end() :])) and f"{key}.{first[1]}" in known:
+        key = f"{key}.{first[1]}"  # of keys that do not go together
+    line = line_of(key, known)
     return f"{match[1]}:{line}{said[match.end(1) :]}" if line else said
+
+
+def key_of(said: str) -> str:
+    """Return the key that a message about a machine file names; empty where it names none."""
+    match = _OF_FILE_AND_KEY.match(said)
+    return match[2].strip("\"'") if match else ""
 
 
 #: The file, and the key as the different faults name it.

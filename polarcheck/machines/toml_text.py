@@ -30,6 +30,11 @@ _LONG_NUMBER = re.compile(r"(?<![\d_])\d[\d_]{1000,}+")
 #: 3401#0, the bit of a parameter, as a key without quotes.
 _BIT = r"^[ \t]*+(\w{1,20}#\w{1,20})[ \t]*+="
 
+#: 1,5 for 1.5.
+_COMMA = re.compile(r"=[ \t]*+([-+]?\d{1,9}+),(\d{1,9}+)[ \t]*+(?:#.*)?$")
+#: M35 without quotes.
+_UNQUOTED = re.compile(r"[=\[,][ \t]*+([A-Za-z][\w.-]{0,20}+)[ \t]*+(?:[,\]#]|$)")
+
 #: A key without its value, as a commented line of a written file is when only its # was taken away.
 _BARE = re.compile(r"[ \t]*+([\w.-]{1,40}+)[ \t]*+=[ \t]*+(?:#.*)?$")
 
@@ -70,15 +75,7 @@ def parsed(text: str) -> dict[str, Any]:
     except RecursionError:
         raise ValueError(_too_deep("")) from None
     except tomllib.TOMLDecodeError as error:
-        bit = re.search(_BIT, text, re.MULTILINE)
-        hint = f'; write "{bit[1]}" in quotes: # begins a comment' if bit else ""
-        line = re.search(r"\bline (\d+)", str(error))
-        bare = line and _BARE.match(text.splitlines()[min(int(line[1]), text.count("\n") + 1) - 1])
-        if bare:
-            hint = f'; "{bare[1]}" has no value behind the =: write one, or # before the line'
-        if "'\\'" in str(error):
-            hint = "; write / between folders, or the text in single quotes"
-        raise ValueError(f"{error}{hint}") from None
+        raise ValueError(f"{error}{_hint(text, str(error))}") from None
     except ValueError as error:  # a number that Python does not read: its own text means nothing to a setter
         raise ValueError(_long_number(text) or str(error)) from None
     for key, value, level in _values(table):
@@ -87,6 +84,23 @@ def parsed(text: str) -> dict[str, Any]:
         if isinstance(value, int) and abs(value) >= _LARGEST_NUMBER:
             raise ValueError(f"{key}: {_TOO_LONG}")
     return table
+
+
+def _hint(text: str, said: str) -> str:
+    """What to write in the line at fault."""
+    if "'\\'" in said:
+        return "; write / between folders, or the text in single quotes"
+    number = re.search(r"\bline (\d+)", said)
+    line = text.split("\n")[min(int(number[1]), text.count("\n") + 1) - 1] if number else ""
+    if bit := re.match(_BIT, line):
+        return f'; write "{bit[1]}" in quotes: # begins a comment'
+    if bare := _BARE.match(line):
+        return f'; "{bare[1]}" has no value behind the =: write one, or # before the line'
+    if comma := _COMMA.search(line):
+        return f"; write {comma[1]}.{comma[2]}, with a decimal point"
+    if code := _UNQUOTED.search(line):
+        return f'; write "{code[1]}", in quotes'
+    return ""
 
 
 def _blank(match: re.Match[str]) -> str:

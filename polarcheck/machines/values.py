@@ -52,6 +52,10 @@ AxisName: TypeAlias = Annotated[
     str,
     msgspec.Meta(pattern="^[A-Z][A-Z0-9]{1,7}$(?!\\n)", extra={EXPECTED: "the name of an axis with a number, as C2"}),
 ]
+#: The speed of a spindle that is written with `=`: S3=2000.
+SpindleWord: TypeAlias = Annotated[
+    str, msgspec.Meta(pattern="^S[0-9]{1,2}$(?!\\n)", extra={EXPECTED: "S with the number of a spindle, as S3"})
+]
 #: What such an axis is here: no letter of another meaning on every lathe, as F and G.
 AxisLetterOrNone: TypeAlias = Annotated[
     str, msgspec.Meta(pattern="^[ABCEHU-Z]?$(?!\\n)", extra={EXPECTED: "the address of an axis, one letter, or none"})

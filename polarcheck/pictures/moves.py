@@ -166,13 +166,14 @@ def _with_standing(trace: Trace, dynamics: Dynamics) -> tuple[Moves, Rows]:
         "end": place,
         "center": nowhere,
         "feed": trace.feedrate.feed[row],
+        "rise": 0.0,
         "known": np.where(follows, known, True) & ~np.isnan(place),
         "phase": off,
         "corner": False,
         "allowance": 0.0,
     }
     columns = {name: np.insert(getattr(moves, name), at, values) for name, values in still.items()}
-    return Moves(entry=moves.entry, **columns), np.insert(np.arange(len(moves)), at, -1)
+    return Moves(entry=moves.entry, c_axis=moves.c_axis, **columns), np.insert(np.arange(len(moves)), at, -1)
 
 
 def _sequence_numbers(trace: Trace) -> dict[int, str]:

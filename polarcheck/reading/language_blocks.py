@@ -47,6 +47,7 @@ class Extracted(msgspec.Struct, frozen=True):
     programs: names of programs (OFACE) alone in a block.
     heads: names in lines such as %_N_SHAFT_MPF, with one character on either side.
     is_joined: some line continues the block of the line above.
+    commas: positions of commas in statements that stand for a decimal point.
     """
 
     statements: Positions
@@ -54,6 +55,7 @@ class Extracted(msgspec.Struct, frozen=True):
     programs: Ranges
     heads: Ranges
     is_joined: bool
+    commas: Positions
 
 
 _SIGNS = {
@@ -82,6 +84,12 @@ _BEFORE_LABEL = re.compile(rb"[ \t\r\0]*+(?:/[ \t]*+\d?+[ \t\r\0]*+)?+")
 #: An opening parenthesis of arguments: behind a name or a sign. _NEAR: how far before it is looked [characters].
 _BEFORE_ARGUMENTS = re.compile(rb"(?:[=+\-*/,<>]|(?<![A-Z0-9_$])(?>[A-Z0-9_$]*?[A-Z_$][A-Z_])[A-Z0-9_$]*+)[ \t]*+\(\Z")
 _NEAR = 64
+#: A comma between digits; and what decides whether it is a decimal point: a string, the value of AC(..), brackets.
+_COMMA = re.compile(rb"(?<=[0-9]),(?=[0-9])")
+_OF_COMMAS = re.compile(
+    rb'"[^"\n]*+"?|(?<![A-Z_])(?:[AID]C|ACP|ACN)[ \t]*+\([-+ \t]*+[0-9]++(,)(?=[0-9]++[ \t]*+\))'
+    rb"|[()\[\]]|(?<=[0-9]),(?=[0-9])"
+)
 _FLAGS = re.IGNORECASE | re.MULTILINE
 #: The line before a program of an archive: %_N_SHAFT_MPF. The character before the name is _ or %.
 _HEAD = re.compile(rb"[ \t\0]*+%[ \t]*+(?:_N_)?([A-Z0-9_]{1,32}?)_(?:MPF|SPF)[ \t\r\0]*+\Z")
@@ -98,7 +106,7 @@ def extract_statements(code: Bytes, language: str) -> Extracted:
     none = np.zeros(0, np.int64)
     if signs is None or not len(code):
         nothing = Ranges(none, none)
-        return Extracted(none, nothing, nothing, nothing, False)
+        return Extracted(none, nothing, nothing, nothing, False, none)
     is_joined = signs.has_names and _join(code)
     is_name = _NAME_CHARACTERS[code]
     alone = b":" + signs.alone
@@ -114,6 +122,7 @@ def extract_statements(code: Bytes, language: str) -> Extracted:
     labels: list[tuple[int, int]] = []
     programs: list[tuple[int, int]] = []
     heads: list[tuple[int, int]] = []
+    commas: list[int] = []
     for start, end in zip(starts.tolist(), breaks[index].tolist(), strict=True):
         line = code[start:end].tobytes().upper()
         if line.lstrip(_BLANK)[:2] == b"O<":
@@ -145,11 +154,39 @@ def extract_statements(code: Bytes, language: str) -> Extracted:
                     code[start + first : start + end] = _BLANK[0]
                 continue
         statements.append(start + first)
+        if _COMMA.search(line):
+            commas += [start + at for at in _decimal_commas(_without(line, comments))]
         begin = 0
         for comment, after in [*comments, (len(line), len(line))]:
             code[start + begin : start + comment] = _BLANK[0]
             begin = after
-    return Extracted(np.array(statements, np.int64), _ranges(labels), _ranges(programs), _ranges(heads), is_joined)
+    return Extracted(
+        np.array(statements, np.int64),
+        _ranges(labels),
+        _ranges(programs),
+        _ranges(heads),
+        is_joined,
+        np.array(commas, np.int64),
+    )
+
+
+def _decimal_commas(line: bytes) -> list[int]:
+    """
+    The commas between two digits of a line without comments that are decimal points: in brackets and parentheses commas
+    separate arguments, but behind AC and its like one value stands.
+    """
+    found, depth = [], 0
+    for match in _OF_COMMAS.finditer(line):
+        if match[0] == b"," and depth == 0:
+            found.append(match.start())
+        elif match[0] in (b"(", b"["):
+            depth += 1
+        elif match[0] in (b")", b"]"):
+            depth = max(depth - 1, 0)
+        elif match[1] is not None:
+            found.append(match.start(1))
+            depth += 1
+    return found
 
 
 def _ranges(places: list[tuple[int, int]]) -> Ranges:

@@ -41,13 +41,16 @@ def _translation(
     def put(match: re.Match[bytes]) -> bytes:
         return _filled(meant[_BLANKS.sub(b"", match[0].upper())], len(match[0]))
 
-    return re.compile(_beginning(meant) + b"(?:" + b"|".join(patterns) + b")", re.IGNORECASE), put
+    return re.compile(_beginning(native) + b"(?:" + b"|".join(patterns) + b")", re.IGNORECASE), put
 
 
 def _beginning(words: Collection[bytes]) -> bytes:
     """A pattern of the first two characters, which alone rules out nearly every place of a program."""
-    first, second = (b"".join({re.escape(word[at : at + 1]) for word in words}) for at in (0, 1))
-    return b"(?=[" + first + b"][" + second + b"])" if all(len(word) > 1 for word in words) else b""
+    meant = [_BLANKS.sub(b"", word) for word in words]
+    first, second = (b"".join({re.escape(word[at : at + 1]) for word in meant}) for at in (0, 1))
+    if any(word[1:2] in (b" ", b"\t") for word in words):
+        second += rb" \t"
+    return b"(?=[" + first + b"][" + second + b"])" if all(len(word) > 1 for word in meant) else b""
 
 
 def spans(source: Source, word: str) -> tuple[Positions, Positions]:

@@ -22,7 +22,7 @@ from polarcheck.reading.surroundings import BLANKS, Ranges, foreign, narrow, rea
 __all__ = ["Blocks", "NumberFault", "Spans", "Text", "Words", "read_words"]
 
 
-_COMMA, _COLON, _SLASH, _STAR = b",:/*"
+_COMMA, _COLON, _SLASH, _STAR, _POINT = b",:/*."
 _UPPER = np.arange(256, dtype=np.uint8)
 _UPPER[97:123] -= 32
 _UPPER[_COLON] = ord("O")
@@ -176,7 +176,7 @@ def read_words(
         return Spans(ranges.start, ranges.end, _block_of(ranges.start, starts))
 
     strays = table.strays[_is_reported(table, code, is_macro, starts)]
-    strays = np.sort(np.append(strays, _outside_prose(around.strays, prose, starts)))
+    strays = np.sort(np.concatenate((strays, _outside_prose(around.strays, prose, starts), extracted.commas)))
     outside = around.outside
     names = united(united(around.names, extracted.heads), extracted.programs)
     if data[end_of_data + 1 :].translate(None, BLANKS + b"\n"):
@@ -211,11 +211,22 @@ def _outside_prose(strays: Positions, prose: Ranges, starts: Positions) -> Posit
 
 
 def _is_reported(table: _Piece, code: Bytes, is_macro: Mask, starts: Positions) -> Mask:
-    """True for stray characters outside of macro statements, or at the end of one, where * may be an operator."""
-    in_statement, is_star = is_macro[_block_of(table.strays, starts)], code[table.strays] == _STAR
-    return np.asarray(~in_statement | (table.is_last_stray & (~is_star | np.any(is_star & ~in_statement))))
+    """
+    True for stray characters outside of macro statements, or at the end of one, where * may be an operator; and for
+    decimal commas in statements, but not between the arguments in brackets.
+    """
+    block = _block_of(table.strays, starts)
+    in_statement, is_star = is_macro[block], code[table.strays] == _STAR
+    reported = ~in_statement | (table.is_last_stray & (~is_star | np.any(is_star & ~in_statement)))
+    for index in np.flatnonzero(in_statement & (code[table.strays] == _COMMA)).tolist():
+        at = int(table.strays[index])
+        before = code[int(starts[block[index]]) : at].tobytes()
+        is_argument = before.count(b"[") > before.count(b"]")
+        reported[index] |= not is_argument and _DECIMAL_COMMA.match(code[at - 1 : at + 2].tobytes(), 1) is not None
+    return np.asarray(reported)
 
 
+_DECIMAL_COMMA = re.compile(rb"(?<=[0-9]),(?=[0-9])")
 #: Size of the pieces of a text that are read at once [characters]: they fit into the cache, which is faster.
 _PIECE = 1 << 18
 #: Where a longer line may be cut: before a word, but not before a corner word (,C ,R ,A).
@@ -302,7 +313,11 @@ class _Marks(msgspec.Struct, frozen=True):
 
 
 def _without_others(marks: _Marks) -> tuple[_Marks, Positions, Mask, Positions]:
-    """Remove characters that are part of no word: strays, and signs of macro statements."""
+    """
+    Remove characters that are part of no word: strays, and signs of macro statements.
+
+    A comma between two digits is a stray that is read as the decimal point for which it stands.
+    """
     code, kind, start = marks.code, marks.kind.copy(), marks.start.copy()
     others = np.flatnonzero(kind > Character.COMMA)
     before, follower = kind[others - 1], code[others + 1]
@@ -312,12 +327,17 @@ def _without_others(marks: _Marks) -> tuple[_Marks, Positions, Mask, Positions]:
     kind[commas] = Character.COMMA
     start[commas + 1] = marks.at[commas]
     strays = np.flatnonzero(kind == Character.STRAY)
+    is_last = kind[strays + 1] == Character.BREAK
+    points = others[(code[others] == _COMMA) & (before == Character.DIGIT) & (kind[others + 1] == Character.DIGIT)]
+    if len(points):
+        code = code.copy()
+        code[points], kind[points] = _POINT, Character.POINT
     in_words = kind < Character.COMMA
     corners = np.cumsum(in_words)[commas + 1] - 1
     return (
         _Marks(code[in_words], kind[in_words], marks.at[in_words], start[in_words], corners),
         marks.at[strays],
-        kind[strays + 1] == Character.BREAK,
+        is_last,
         marks.at[kind == Character.MACRO],
     )
 

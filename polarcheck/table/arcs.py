@@ -11,6 +11,7 @@ from polarcheck.columns.trace import Trace
 from polarcheck.geometry import plane
 from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.machines.modal import Motion
+from polarcheck.reading.translation import spans
 
 #: One arc alone speaks for the other reading of X where it misses its circle by this many tolerances.
 _CLEARLY = 10
@@ -29,9 +30,8 @@ class Arcs(Columns, frozen=True):
     def in_force(self) -> Mask:
         """G2 or G3 is in force in the polar mode, so that axis words would be those of an arc."""
         trace = self.trace
-        return np.asarray(
-            trace.mode.in_polar & trace.modal.uses_axes & is_among(trace.modal.state("motion"), (Motion.CW, Motion.CCW))
-        )
+        in_plane = trace.mode.in_polar & trace.axes.is_simulated & trace.modal.uses_axes
+        return np.asarray(in_plane & is_among(trace.modal.state("motion"), (Motion.CW, Motion.CCW)))
 
     @cached_property
     def by_radius(self) -> Mask:
@@ -104,6 +104,17 @@ class Arcs(Columns, frozen=True):
         return self._of_arcs(rows, self.trace.lengths.length_of(self.trace.machine.arcs.radius_word)[rows])
 
     @cached_property
+    def is_larger_by_word(self) -> Mask:
+        """Arcs by R of which a word of the control's own language takes the larger one."""
+        word, run = self.trace.machine.arcs.larger_arc_word, self.trace.run
+        mask = np.zeros(len(self.trace), bool)
+        if word and np.any(self.radius < 0):
+            begins, _ = spans(run.text.source, word)
+            blocks = np.searchsorted(run.text.blocks.start, begins, side="right") - 1
+            mask = (self.radius < 0) & is_among(run.block, blocks.tolist())
+        return np.asarray(mask)
+
+    @cached_property
     def misfit_section(self) -> Rows:
         """
         The section of rows of which three arcs or more, and half of all, do not reach or do not end on their circle;
@@ -124,7 +135,7 @@ class Arcs(Columns, frozen=True):
     def negative_stops(self) -> Mask:
         """Arcs with a negative R where the control stops at it."""
         stops = self.trace.machine.severities.get("negative-arc-radius") == "error"
-        return np.asarray((self.radius < 0) & stops)
+        return np.asarray((self.radius < 0) & ~self.is_larger_by_word & stops)
 
     @cached_property
     def is_off_plane(self) -> Mask:

@@ -2,10 +2,10 @@
 What the axes do at the F that really runs: rates, accelerations and times of the moves, and the time of each row.
 
 F that runs is F in force, clamped in the mode where the control does so (Trace.feed), and slowed down where automatic
-override acts. A block that moves Z beside X or C takes the time of its way on the plane, along which
-F is; Z alone the time of its own. In rapid traverse each axis runs at its own rate, and the one that takes longest
-counts, be it with a straight way or without (B-63944EN/03, G00). Axes take no time to speed up and to slow down here:
-what the servo adds is not known. Neither are tool changes and M codes counted.
+override acts. A block that moves Z beside X or C takes the time of its way on the plane, or in space, by what F is
+along (polar.feed_measures); Z alone the time of its own. In rapid traverse each axis runs at its own rate, and the one
+that takes longest counts, be it with a straight way or without (B-63944EN/03, G00). Axes take no time to speed up and
+to slow down here: what the servo adds is not known. Neither are tool changes and M codes counted.
 """
 
 from __future__ import annotations
@@ -21,16 +21,18 @@ from polarcheck.columns.trace import Trace
 from polarcheck.geometry import automatic_override, polar
 from polarcheck.geometry.tolerances import SHARE, ZERO
 from polarcheck.machines.modal import FeedMode, Motion
+from polarcheck.table.dwells import dwells, in_turns, time_of_dwells
 from polarcheck.table.moves import Moves
 from polarcheck.table.tool_center import ToolCenter
 
 #: Why the time of a row is not known, in the order in which it is said: the first that holds.
-NOT_EXECUTED, PER_REVOLUTION, NO_FEED, RAPIDS, RADIUS, DWELL, CYCLE, POSITION = (
+NOT_EXECUTED, PER_REVOLUTION, NO_FEED, RAPIDS, RADIUS, DWELL_IN_TURNS, DWELL, CYCLE, POSITION = (
     "not executed",
     "feed per revolution",
     "no F",
     "rapid traverse",
     "no radius",
+    "dwell in turns of a spindle",
     "dwell",
     "cycle",
     "position not known",
@@ -84,7 +86,7 @@ class Dynamics:
     def pieces(self) -> automatic_override.Pieces:
         """The moves on which it acts, parted where it begins and ends; `move` is of all moves."""
         chosen = self.moves[self.is_slowed]
-        found = automatic_override.pieces(*chosen.shape, chosen.feed, self.c_limit)
+        found = automatic_override.pieces(*chosen.shape, chosen.plane_feed, self.c_limit)
         return msgspec.structs.replace(found, move=np.flatnonzero(self.is_slowed)[found.move])
 
     def _largest(self, plain: Floats, name: str) -> Floats:
@@ -141,7 +143,7 @@ class Dynamics:
     def time_without_override(self) -> Floats:
         """The same without override: the tool runs at F in force throughout."""
         is_known = self.at_feed & self.moves.is_of_tool
-        return np.where(is_known, polar.time(self.moves.length, self.moves.feed), np.nan)
+        return np.where(is_known, self.moves.time, np.nan)
 
     # ---- the rows ----
 
@@ -164,7 +166,7 @@ class Dynamics:
         time[rest] = np.where(at_feed, self._time_of_way(rest), np.nan)
         rapids = rest[trace.axes.motion[rest] == Motion.RAPID]
         time[rapids] = self._time_of_rapids(rapids)
-        time[rest] = np.where(self.dwells[rest], self._time_of_dwell[rest], time[rest])
+        time[rest] = np.where(self.dwells[rest], time_of_dwells(trace)[rest], time[rest])
         time[trace.run.unknown] = np.nan
         return time
 
@@ -195,7 +197,7 @@ class Dynamics:
         z = np.where(
             trace.path.moves_z[rows], (trace.path.z - before(trace.path.z, trace.blocks.starts, np.nan))[rows], 0.0
         )
-        c = (trace.path.c_angle - before(trace.path.c_angle, trace.blocks.starts, np.nan))[rows]
+        c = trace.path.c_turn[rows]
         c = np.where(on_plane | trace.blocks.has(*trace.machine.polar.rotary_words)[rows], c, 0.0)
         return np.abs(x), np.abs(z), np.abs(c)
 
@@ -204,7 +206,7 @@ class Dynamics:
     @cached_property
     def dwells(self) -> Mask:
         """Rows with a dwell."""
-        return self.trace.blocks.listed("dwell")
+        return dwells(self.trace)
 
     @cached_property
     def _returns(self) -> Mask:
@@ -212,21 +214,6 @@ class Dynamics:
         return self.trace.blocks.listed("reference_return", "machine_coordinates") & self.trace.blocks.has(
             "X", "U", "Z", "W"
         )
-
-    @cached_property
-    def _time_of_dwell(self) -> Floats:
-        """
-        X or U is seconds where it has a point, P is thousandths of a second without one (B-62764EN/01, G04 per second).
-
-        All else stands for another time on each control: NaN. Without such a word there is none, but an exact stop.
-        """
-        trace = self.trace
-        time = np.where(trace.blocks.has("X", "U", "P", "F", "K", "S"), np.nan, 0.0)
-        for address, pointed, factor in (("P", False, 0.001), ("U", True, 1.0), ("X", True, 1.0)):
-            words = trace.blocks.word_indices(address)
-            words = words[trace.run.words.has_point[words] == pointed]
-            time[trace.run.row[words]] = factor * trace.run.words.value[words]
-        return time
 
     @cached_property
     def unknown(self) -> tuple[tuple[str, Mask], ...]:
@@ -240,6 +227,7 @@ class Dynamics:
         reasons = []
         for reason, mask in (
             (NOT_EXECUTED, trace.run.unknown),
+            (DWELL_IN_TURNS, self.dwells & in_turns(trace)),
             (DWELL, self.dwells),
             (CYCLE, trace.modal.in_cycle),
             (RAPIDS, rapid | self._returns),

@@ -60,6 +60,7 @@ class EntryAngles(Columns, frozen=True):
             & cuts[:-1]
             & (sections.left & ~sections.returned)[:-1]
             & trace.mode.rotary_is_followed[enter[1:]]
+            & ~trace.mode.enters_with_direction[enter[1:]]
             & trace.mode.rotary_is_followed[enter[:-1]]
         )
         before = np.append(np.nan, angle[:-1])

@@ -11,7 +11,7 @@ from polarcheck.arrays import Columns, Floats, Mask, repeated
 from polarcheck.columns.filling import fill_down, happened
 from polarcheck.columns.trace import Trace
 from polarcheck.geometry.tolerances import SHARE
-from polarcheck.machines.modal import FeedMode, Units
+from polarcheck.machines.modal import FeedMode, Motion, Units
 from polarcheck.table.tool_center import ToolCenter
 
 #: From here on F is no feed per revolution [in the units of the program: mm, inch].
@@ -20,6 +20,8 @@ _NOT_PER_REVOLUTION = {Units.MM: 5.0, Units.INCH: 0.2}
 _NOT_PER_MINUTE = {Units.MM: 1.0, Units.INCH: 0.04}
 #: A block takes minutes, or hours [s].
 _MINUTES, _HOURS = 300.0, 7200.0
+#: Blocks of a series: more than a control without look-ahead reads in advance.
+_SERIES = 10
 
 #: A way that comes so much nearer to the center than the contour does, as a share of its distance, is none to it.
 _STRAYS = 0.5
@@ -92,8 +94,8 @@ class Feeds(Columns, frozen=True):
 
     def _is_at_least(self, least: Mapping[Units, float]) -> Mask:
         trace = self.trace
-        in_units = np.where(trace.lengths.units == Units.INCH, least[Units.INCH], least[Units.MM])
-        return np.asarray(trace.feedrate.feed_number / trace.lengths.scale >= in_units)
+        in_units = np.where(trace.lengths.feed_units == Units.INCH, least[Units.INCH], least[Units.MM])
+        return np.asarray(trace.feedrate.feed_number / trace.lengths.feed_scale >= in_units)
 
     @cached_property
     def is_left_per_revolution(self) -> Mask:
@@ -134,8 +136,10 @@ class Feeds(Columns, frozen=True):
         trace = self.trace
         rows = np.flatnonzero(trace.path.moves_at_feed & (trace.feedrate.feed_number > 0))
         time = np.zeros(len(trace))
-        depth = np.where(trace.path.moves_z[rows], trace.path.z[rows] - trace.path.z_before[rows], 0.0)
-        time[rows] = 60 * np.hypot(trace.path.length[rows], depth) / trace.feedrate.feed_number[rows]
+        depth = np.where(trace.path.moves_z[rows], np.abs(trace.path.z[rows] - trace.path.z_before[rows]), 0.0)
+        length = trace.path.length[rows]
+        way = np.where(length == 0, depth, np.hypot(length, trace.path.rise[rows]))
+        time[rows] = 60 * way / trace.feedrate.feed_number[rows]
         return time
 
     @cached_property
@@ -148,7 +152,7 @@ class Feeds(Columns, frozen=True):
         trace = self.trace
         # Where neither G20 nor G21 stands, the number may be one of inch.
         is_inch = ~happened(trace.modal.sets("units"), trace.blocks.starts)
-        may_do = is_inch & (trace.feedrate.feed_number / trace.lengths.scale >= _NOT_PER_MINUTE[Units.INCH])
+        may_do = is_inch & (trace.feedrate.feed_number / trace.lengths.feed_scale >= _NOT_PER_MINUTE[Units.INCH])
         is_small = ~self._is_at_least(_NOT_PER_MINUTE) & ~may_do & (trace.feedrate.feed_number > 0)
         takes_long = is_small & (self.block_time > _MINUTES)
         hours = trace.feedrate.per_minute & (self.block_time > _HOURS)
@@ -175,6 +179,43 @@ class Feeds(Columns, frozen=True):
             first[rows[np.unique(kinds, axis=1, return_index=True)[1]]] = True
         return first
 
+    @cached_property
+    def time_of_series(self) -> Floats:
+        """
+        The time of a block [s], as the mean of the fastest series of cutting blocks in which the row stands; inf where
+        there are too few of them one behind the other in the section, NaN unknown.
+
+        The control has read the blocks of a series in advance, so that single short ones among them cost nothing.
+        """
+        moves, motion = self.tool_center.moves, self.trace.axes.motion
+        at_feed = motion[moves.row] != Motion.RAPID
+        time = np.bincount(moves.row[at_feed], moves.time[at_feed], minlength=len(self.trace))
+        rows, mean = np.flatnonzero(self.trace.path.cuts), np.full(len(self.trace), np.inf)
+        if len(rows) < _SERIES:
+            return mean
+        windows = np.lib.stride_tricks.sliding_window_view
+        section = self.trace.mode.section[rows]
+        of_series = windows(time[rows], _SERIES).mean(axis=1)
+        of_series[section[_SERIES - 1 :] != section[: 1 - _SERIES]] = np.inf
+        around = np.pad(of_series, _SERIES - 1, constant_values=np.inf)
+        mean[rows] = windows(around, _SERIES).min(axis=1)
+        return mean
+
+    @cached_property
+    def blocks_too_fast(self) -> Floats:
+        """How many times as much time the control needs for the blocks of a series as F leaves it; 0 unknown."""
+        needed = self.trace.machine.limits.block_time
+        if np.isnan(needed):
+            return repeated(np.float64(0), len(self.trace))
+        with np.errstate(divide="ignore"):
+            return np.nan_to_num(needed / self.time_of_series, nan=0.0)
+
+    @cached_property
+    def feed_of_series(self) -> Floats:
+        """F that is left in such a series [mm/min]; inf or NaN elsewhere."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.asarray(self.trace.feedrate.feed / self.blocks_too_fast)
+
     # ---- the C axis ----
 
     @cached_property
@@ -189,9 +230,25 @@ class Feeds(Columns, frozen=True):
 
         The acceleration grows with the square of F. inf where the profile has no limit, NaN unknown.
         """
-        trace, limit = self.trace, self.trace.machine.limits.c_acceleration
+        limit = self.trace.machine.limits.c_acceleration
         if np.isnan(limit):
-            return repeated(np.float64(np.inf), len(trace))
-        asked = self.tool_center.c_acceleration
+            return repeated(np.float64(np.inf), len(self.trace))
+        return self._feed_within(self.tool_center.c_acceleration, limit)
+
+    @cached_property
+    def is_limited_in_x_acceleration(self) -> Mask:
+        """Cutting moves, if the profile limits the acceleration of X."""
+        return np.asarray(self.trace.path.cuts & (not np.isnan(self.trace.machine.limits.x_acceleration)))
+
+    @cached_property
+    def allowed_by_x_acceleration(self) -> Floats:
+        """The same of the acceleration of X [mm/min]."""
+        limit = self.trace.machine.limits.x_acceleration
+        if np.isnan(limit):
+            return repeated(np.float64(np.inf), len(self.trace))
+        return self._feed_within(self.tool_center.x_acceleration, limit)
+
+    def _feed_within(self, asked: Floats, limit: float) -> Floats:
+        trace = self.trace
         share = np.divide(limit, asked, out=np.ones(len(trace)), where=~(asked <= limit))
         return np.asarray(trace.feedrate.feed * np.sqrt(share))

@@ -7,24 +7,30 @@ from functools import cached_property
 import numpy as np
 
 from polarcheck.arrays import Columns, Floats, Mask, States
-from polarcheck.columns.filling import fill_down
 from polarcheck.columns.trace import Trace
 from polarcheck.geometry import rates
 from polarcheck.geometry.tolerances import SHARE
 from polarcheck.machines.modal import Motion
 from polarcheck.table.center import Center
 from polarcheck.table.dynamics import Dynamics
+from polarcheck.table.live_tool import speed
 from polarcheck.table.moves import per_row
 
 #: What limits F, in the order of the rows of `HighestFeeds.limits`; the first of equals counts.
-LIMITS = C_FEED, C_ACCELERATION, X_FEED, POLAR_FEED = ("C", "acceleration of C", "X", "limit of F in the mode")
+LIMITS = C_FEED, C_ACCELERATION, X_FEED, X_ACCELERATION, POLAR_FEED = (
+    "C",
+    "acceleration of C",
+    "X",
+    "acceleration of X",
+    "limit of F in the mode",
+)
 
 
 class HighestFeeds(Columns, frozen=True):
     """
     Columns of one trace, one value per row.
 
-    Along a move the rates of C and X are proportional to F, and the acceleration of C to its square; so each limit
+    Along a move the rates of C and X are proportional to F, and their accelerations to its square; so each limit
     gives an F in closed form. What is not limited by the machine limits nothing here.
     """
 
@@ -44,9 +50,9 @@ class HighestFeeds(Columns, frozen=True):
     def limits(self) -> Floats:
         """Highest F by each of LIMITS [mm/min], a row of the array each; inf without a limit, NaN unknown."""
         trace, moves, limits = self.trace, self.dynamics.moves, self.trace.machine.limits
-        ones = np.ones(len(moves))
-        c_bend, x_share = (
-            np.where(moves.known, of(*moves.shape, ones), np.nan) for of in (rates.c_acceleration, rates.x_feed)
+        c_bend, x_share, x_bend = (
+            np.where(moves.known, of(*moves.shape, moves.plane_share), np.nan)
+            for of in (rates.c_acceleration, rates.x_feed, rates.x_acceleration)
         )
         found = np.full((len(LIMITS), len(trace)), np.inf)
         found[0] = self.dynamics.tool_center.feed_allowed
@@ -55,8 +61,10 @@ class HighestFeeds(Columns, frozen=True):
                 found[1] = self._lowest(np.sqrt(limits.c_acceleration / c_bend))
             if not np.isnan(limits.x_feed):
                 found[2] = self._lowest(limits.x_feed / x_share)
+            if not np.isnan(limits.x_acceleration):
+                found[3] = self._lowest(np.sqrt(limits.x_acceleration / x_bend))
         if not np.isnan(limits.polar_feed):
-            found[3] = limits.polar_feed
+            found[4] = limits.polar_feed
         found[:, ~self.cuts] = np.inf
         return found
 
@@ -107,36 +115,11 @@ class HighestFeeds(Columns, frozen=True):
     # ---- the cutter ----
 
     @cached_property
-    def speed(self) -> Floats:
-        """
-        S of the live tool in force [1/min]; NaN where none is known.
-
-        Where the profile names codes of the live tool, S counts that stands in a block with one, or while it runs and
-        no code of the main spindle is beside it; else any S but a surface speed and the limit of G50.
-        """
-        trace, codes = self.trace, self.trace.machine.m_codes
-        takes = trace.blocks.has("S") & ~trace.modal.sets_coordinates & ~trace.blocks.listed("dwell")
-        is_speed = trace.modal.state("speed") == 0
-        if codes.live_tool_on:
-            starts = trace.blocks.codes(*codes.live_tool_on)
-            waits = (
-                takes & ~trace.blocks.codes(*codes.spindle_on) & (trace.modal.live_tool | self._next_starts_live_tool)
-            )
-            is_speed = np.where(starts, takes, waits & is_speed)
-        return fill_down(
-            np.where(takes & is_speed, trace.blocks.word("S"), np.nan), takes | trace.blocks.starts, np.nan
-        )
-
-    @property
-    def _next_starts_live_tool(self) -> Mask:
-        """Of the spindles the live tool is the one that starts next."""
-        codes = self.trace.machine.m_codes
-        started = self.trace.blocks.codes(*codes.live_tool_on)
-        begins = np.flatnonzero(started | self.trace.blocks.codes(*codes.spindle_on))
-        return np.append(started[begins], False)[np.searchsorted(begins, np.arange(len(self.trace)))]
-
-    @cached_property
     def cuts_of_teeth(self) -> Floats:
-        """Teeth that cut in a minute; NaN where S or the teeth are not known. F by this is the chip load."""
-        cuts = self.speed * self.trace.offsets.teeth
+        """
+        Teeth that cut in a minute, of S up to the highest speed of the live tool; NaN where S or the teeth are not
+        known. F by this is the chip load.
+        """
+        cuts = np.minimum(speed(self.trace), np.nan_to_num(self.trace.machine.limits.live_tool_speed, nan=np.inf))
+        cuts = cuts * self.trace.offsets.teeth
         return np.where(self.cuts & (self.trace.axes.motion != Motion.RAPID) & (cuts > 0), cuts, np.nan)

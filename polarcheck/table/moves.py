@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from functools import cached_property
 
 import numpy as np
@@ -19,12 +20,14 @@ class Moves(Table, frozen=True, dict=True):
     One element per move, in order.
 
     row: the row of the trace that it belongs to. section: its polar section. kind: int16, Motion. start, end, center:
-    plane points [mm]. feed: along the path [mm/min]. known: False where the radius or a position is unknown. phase:
-    compensation.Phase. corner: a line that the control adds. allowance: what a pass of an infeed cycle leaves on the
-    contour [mm], 0 elsewhere. entry: float64[sections], C angle at which each section begins [deg].
+    plane points [mm]. feed: F in force [mm/min]. rise: way of Z beside that on the plane, where F measures both [mm];
+    0 where F measures the plane alone. known: False where the radius or a position is unknown. phase:
+    compensation.Phase. corner: a line or an arc that the control adds. allowance: what a pass of an infeed cycle leaves
+    on the contour [mm], 0 elsewhere. entry: float64[sections], C angle of the linear axis of each section [deg].
+    c_axis: how C stands to the angles of the plane.
     """
 
-    _shared = ("entry",)
+    _shared = ("entry", "c_axis")
 
     row: Rows
     section: Rows
@@ -33,11 +36,13 @@ class Moves(Table, frozen=True, dict=True):
     end: Points
     center: Points
     feed: Floats
+    rise: Floats
     known: Mask
     phase: States
     corner: Mask
     allowance: Floats
     entry: Floats
+    c_axis: polar.CAxis
 
     @property
     def shape(self) -> tuple[Points, Points, Points, States]:
@@ -48,6 +53,21 @@ class Moves(Table, frozen=True, dict=True):
     def length(self) -> Floats:
         """Way on the plane [mm]."""
         return polar.length(*self.shape)
+
+    @cached_property
+    def way(self) -> Floats:
+        """Way along which F is measured [mm]: on the plane, or in space."""
+        return np.hypot(self.length, self.rise)
+
+    @cached_property
+    def plane_share(self) -> Floats:
+        """Share of F with which the tool moves on the plane: 1 unless F measures Z, too."""
+        return np.divide(self.length, self.way, out=np.ones(len(self)), where=self.rise != 0)
+
+    @cached_property
+    def plane_feed(self) -> Floats:
+        """Feed on the plane [mm/min]."""
+        return np.asarray(self.feed * self.plane_share)
 
     @cached_property
     def nearest(self) -> Floats:
@@ -62,22 +82,22 @@ class Moves(Table, frozen=True, dict=True):
     @cached_property
     def c_feed(self) -> Floats:
         """Highest rate of C on the way [deg/min]; NaN where feed, radius or position is not known."""
-        return np.where(self.known, rates.c_feed(*self.shape, self.feed), np.nan)
+        return np.where(self.known, rates.c_feed(*self.shape, self.plane_feed), np.nan)
 
     @cached_property
     def c_acceleration(self) -> Floats:
         """Highest acceleration of C on the way [deg/s2]."""
-        return np.where(self.known, rates.c_acceleration(*self.shape, self.feed), np.nan)
+        return np.where(self.known, rates.c_acceleration(*self.shape, self.plane_feed), np.nan)
 
     @cached_property
     def x_feed(self) -> Floats:
         """Highest rate of X on the way [mm/min, radius]; NaN where feed, radius or position is not known."""
-        return np.where(self.known, rates.x_feed(*self.shape, self.feed), np.nan)
+        return np.where(self.known, rates.x_feed(*self.shape, self.plane_feed), np.nan)
 
     @cached_property
     def x_acceleration(self) -> Floats:
         """Highest acceleration of X on the way [mm/s2, radius]."""
-        return np.where(self.known, rates.x_acceleration(*self.shape, self.feed), np.nan)
+        return np.where(self.known, rates.x_acceleration(*self.shape, self.plane_feed), np.nan)
 
     @cached_property
     def is_of_tool(self) -> Mask:
@@ -87,31 +107,57 @@ class Moves(Table, frozen=True, dict=True):
     @cached_property
     def time(self) -> Floats:
         """How long the move takes [s]."""
-        return polar.time(self.length, self.feed)
+        return polar.time(self.way, self.feed)
 
     @cached_property
     def c_angles(self) -> tuple[Floats, Floats]:
         """C before and after the move [deg], continuous along the section."""
-        return polar.c_angles(*self.shape, self.section, self.entry)
+        return polar.c_angles(*self.shape, self.section, self.entry, self.c_axis)
 
     def feed_allowed(self, limit: float | Floats) -> Floats:
         """Highest F that keeps C at or below the limit [mm/min]."""
-        return np.where(self.known, rates.feed_allowed(*self.shape, limit), np.nan)
+        with np.errstate(divide="ignore", invalid="ignore"):  # Z alone moves: nothing turns C
+            allowed = rates.feed_allowed(*self.shape, limit) / self.plane_share
+        return np.where(self.known, allowed, np.nan)
 
 
 def z_along(trace: Trace, moves: Moves) -> tuple[Floats, Floats]:
     """Z before and after each move [mm], NaN unknown; where a block is several moves, it goes as the way does."""
-    begins = np.ones(len(moves), bool)
-    begins[1:] = np.diff(moves.row) != 0
-    first, ends = np.flatnonzero(begins), np.append(begins[1:], True)[: len(moves)]
-    way = np.cumsum(np.nan_to_num(moves.length))
-    count = np.diff(np.append(first, len(moves)))
-    done = way - np.repeat((way - np.nan_to_num(moves.length))[first], count)
-    whole = np.repeat(done[ends], count)
-    share = np.divide(done, whole, out=np.zeros(len(moves)), where=whole > 0)
+    begins, _, after_move = _shares_of_block(moves.row, moves.length)
     z_from, z_to = before(trace.path.z, trace.blocks.starts, np.nan)[moves.row], trace.path.z[moves.row]
-    after = np.where(ends, z_to, z_from + share * (z_to - z_from))
+    ends = np.append(begins[1:], True)[: len(moves)]
+    after = np.where(ends, z_to, z_from + after_move * (z_to - z_from))
     return np.where(begins, z_from, np.append(np.nan, after[:-1])[: len(moves)]), after
+
+
+def _shares_of_block(row: Rows, length: Floats) -> tuple[Mask, Floats, Floats]:
+    """
+    The moves with which a block begins, and the share of the way of its block before and after each move.
+
+    The last move of a block without a way has all of it.
+    """
+    begins = np.ones(len(row), bool)
+    begins[1:] = np.diff(row) != 0
+    first, ends = np.flatnonzero(begins), np.append(begins[1:], True)[: len(row)]
+    way = np.cumsum(np.nan_to_num(length))
+    count = np.diff(np.append(first, len(row)))
+    done = way - np.repeat((way - np.nan_to_num(length))[first], count)
+    whole = np.repeat(done[ends], count)
+    after = np.where(ends, 1.0, np.divide(done, whole, out=np.zeros(len(row)), where=whole > 0))
+    return begins, np.where(begins, 0.0, np.append(0.0, after[:-1])[: len(row)]), after
+
+
+def rise_of(trace: Trace, row: Rows, length: Floats) -> Floats:
+    """
+    Way of Z beside moves of these rows [mm], where F measures it; 0 elsewhere, NaN where Z is not known.
+
+    length: their ways on the plane [mm]; a block of several moves shares its Z out by them, as z_along does.
+    """
+    rises = trace.path.rise[row]
+    if not rises.any():
+        return rises
+    _, from_share, to_share = _shares_of_block(row, length)
+    return np.asarray(rises * (to_share - from_share))
 
 
 def per_row(values: Floats, moves: Moves, count: int, none: float, largest: bool = True) -> Floats:
@@ -149,11 +195,13 @@ def programmed_moves(trace: Trace) -> Moves:
         end=end,
         center=center,
         feed=trace.feedrate.feed[row],
+        rise=trace.path.rise[row],
         known=~np.isnan(end - start),
         phase=np.zeros(len(row), np.int16),
         corner=np.zeros(len(row), bool),
         allowance=np.zeros(len(row)),
         entry=trace.path.section_entry,
+        c_axis=trace.path.c_axis,
     )
 
 
@@ -176,6 +224,7 @@ def compensation_path(trace: Trace, row: Rows) -> compensation.Path:
         side_written=trace.compensation.writes_side[row],
         radius=trace.compensation.radius[row],
         cancel_vector=_cancel_vector(trace, row),
+        corner=trace.compensation.corner[row],
         stops_reading=trace.blocks.codes(*trace.machine.m_codes.stops_reading_ahead)[row],
     )
 
@@ -191,6 +240,8 @@ def tool_center_path(trace: Trace, path: compensation.Path) -> compensation.Tool
             read_ahead=settings.read_ahead,
             interference=settings.interference,
             tangent_tolerance=settings.tangent_tolerance,
+            arc_above=math.radians(settings.corner_arc_above),
+            arc_from=math.radians(settings.corner_arc_from),
         ),
     )
 
@@ -198,6 +249,7 @@ def tool_center_path(trace: Trace, path: compensation.Path) -> compensation.Tool
 def of_tool(trace: Trace, tool: compensation.ToolPath, row: Rows) -> Moves:
     """The moves of a tool center path; row: the rows of the trace that it was given."""
     at = row[tool.row]
+    length = polar.length(tool.start, tool.end, tool.center, tool.kind)
     return Moves(
         row=at,
         section=trace.mode.section[at],
@@ -206,11 +258,13 @@ def of_tool(trace: Trace, tool: compensation.ToolPath, row: Rows) -> Moves:
         end=tool.end,
         center=tool.center,
         feed=trace.feedrate.feed[at],
+        rise=rise_of(trace, at, length),
         known=tool.known,
         phase=tool.phase,
         corner=tool.corner,
         allowance=np.zeros(len(at)),
         entry=trace.path.section_entry,
+        c_axis=trace.path.c_axis,
     )
 
 

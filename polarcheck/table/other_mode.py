@@ -156,6 +156,26 @@ class OtherMode(Columns, frozen=True):
         ends = ends | trace.tools.changes_tool | trace.blocks.ends_program | trace.mode.enters | trace.blocks.starts
         return happened(begins, ends)
 
+    def ends_written(self, row: int) -> list[str]:
+        """The codes and words of its own control with which the mode that a row begins ends, if they stand there."""
+        switch, trace = self.switch(row), self.trace
+        ends = dict.fromkeys(end for profile in switch.known_by for end in ends_of(profile, switch.name))
+        stops = trace.tools.changes_tool | trace.blocks.ends_program | trace.blocks.starts | self.begins
+        following = np.flatnonzero(stops)
+        last = int(np.append(following, len(trace))[np.searchsorted(following, row, "right")])
+        own = {*trace.machine.polar.off, *trace.machine.control.native_words}
+        return [name for name in ends if name not in own and self._has([name])[row:last].any()]
+
+    def other_axes_written(self, row: int) -> list[str]:
+        """The second axes of the moves in the mode that a row begins, where this control has another."""
+        polar, switch = self.trace.machine.polar, self.switch(row)
+        beginning = self.trace.blocks.mask_of(np.array([row]))
+        within = self._within(beginning, self._ends(switch)) & ~beginning
+        if np.any(within & self.trace.blocks.has(*polar.virtual_axes)):
+            return []
+        axes = dict.fromkeys(axis for profile in switch.known_by for axis in profile.machine.polar.virtual_axes)
+        return [axis for axis in axes if np.any(within & self.trace.blocks.has(axis))]
+
     def machines(self, row: int) -> tuple[Profile, ...]:
         """
         Of the machines that know the code in a row those that read it well: with the words beside it, and with the

@@ -166,9 +166,9 @@ class Procedure(Columns, frozen=True):
         """
         The live tool is started in a program with a section, and up to the first move at feed no S in force is for it.
 
-        S is for the live tool if that starts next or runs; one that the main spindle starts with is not, and takes the
-        place of what was, nor is a surface speed, or S0. The limit of G50 is no speed. What stands before an excerpt
-        without T may have given it.
+        S is for the live tool if that starts next or runs, and where it has a word of its own, as S3=; one that the
+        main spindle starts with is not, and takes the place of what was, nor is a surface speed, or S0. The limit of
+        G50 is no speed. What stands before an excerpt without T may have given it.
         """
         trace, codes = self.trace, self.trace.machine.m_codes
         started = trace.blocks.codes(*codes.live_tool_on)
@@ -182,6 +182,9 @@ class Procedure(Columns, frozen=True):
         is_speed = ~(trace.blocks.word("S") == 0) & (started | (trace.modal.state("speed") == 0))
         takes = (trace.blocks.has("S") & ~trace.modal.sets_coordinates) | trace.run.unknown
         is_own = (is_speed & (following | running)) | trace.run.unknown
+        for name in trace.machine.live_tool_speeds:
+            named = trace.blocks.has(name)
+            takes, is_own = takes | named, np.where(named, ~(trace.blocks.word(name) == 0), is_own)
         has_speed = fill_down(takes & is_own, takes | trace.blocks.starts, False).astype(bool)
         ends = (
             is_among(trace.axes.motion, _AT_FEED) | trace.blocks.codes(*codes.live_tool_off) | trace.blocks.ends_program
@@ -191,6 +194,15 @@ class Procedure(Columns, frozen=True):
             trace.mode.enters
         )
         return np.asarray(started & ~has_speed[until] & known)
+
+    @cached_property
+    def live_tool_above_highest_speed(self) -> Mask:
+        """Rows with an S for the live tool above its highest speed."""
+        if np.isnan(self.trace.machine.limits.live_tool_speed):
+            return np.zeros(len(self.trace), bool)
+        from polarcheck.table.live_tool import exceeds_highest_speed
+
+        return exceeds_highest_speed(self.trace)
 
     @cached_property
     def live_tool_runs_on(self) -> Rows:

@@ -199,6 +199,11 @@ class ToolCenter:
         return self._of_moves(self.moves.c_acceleration, 0.0)
 
     @cached_property
+    def x_acceleration(self) -> Floats:
+        """Highest acceleration of X [mm/s2, radius]; 0 without movement, NaN unknown."""
+        return self._of_moves(self.moves.x_acceleration, 0.0)
+
+    @cached_property
     def c_feed_limit(self) -> float:
         """Limit of C [deg/min]: the machine's own, of which automatic override takes a share; else a suspicious one."""
         limits = self.trace.machine.limits

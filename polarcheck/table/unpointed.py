@@ -51,7 +51,7 @@ class Unpointed(Columns, frozen=True):
         if words.fault.any():
             slips &= ~trace.blocks.with_words(words.is_unreadable)[trace.run.row]
         inch_feed = (words.address == ord("F")) & ~words.has_point & (words.value > 0) & slips
-        inch_feed &= ((trace.lengths.units == Units.INCH) & (trace.feedrate.feed_mode == FeedMode.PER_MINUTE))[
+        inch_feed &= ((trace.lengths.feed_units == Units.INCH) & (trace.feedrate.feed_mode == FeedMode.PER_MINUTE))[
             trace.run.row
         ]
         self._add(reported, inch_feed, section, np.zeros(count, bool))

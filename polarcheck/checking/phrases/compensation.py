@@ -205,7 +205,7 @@ def _in_inch(trace: Trace, row: int) -> str:
         return ""
     if trace.lengths.scale[row] != 1.0 or np.any(trace.modal.sets("units")[: row + 1]):
         return ""
-    metric = code_of(trace.machine, "metric")
+    metric = code_of(trace.machine, "mm")
     return f"; neither {inch} nor {metric} stands above it: in inch it would be long enough"
 
 

@@ -34,7 +34,7 @@ def recommended(lengths: Lengths, machine: Machine, row: int) -> str:
 
 def _range(lengths: Lengths, row: int, least: float, most: float) -> str:
     """Rounded to what lies within."""
-    shown = in_row(least, lengths, row)
+    shown = in_row(least, lengths, row).as_feed
     places = 10.0 ** (4 if shown.inch else 3)
     low = np.ceil(shown.length(least) * places * (1 - SHARE)) / places
     high = np.floor(shown.length(most) * places * (1 + SHARE)) / places
@@ -206,4 +206,4 @@ def of_turns(lengths: Lengths, trace: Trace, feeds: Feeds, row: int) -> str:
     """Feed per revolution; F as one, where it is none."""
     if not feeds.is_too_high_per_revolution[row]:
         return "feed per revolution"
-    return f"{in_row(float(trace.feedrate.feed_number[row]), lengths, row):length} for each turn"
+    return f"{in_row(float(trace.feedrate.feed_number[row]), lengths, row).as_feed:length} for each turn"

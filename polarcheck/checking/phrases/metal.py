@@ -141,6 +141,16 @@ def in_step(pass_depths: PassDepths, lengths: Lengths, row: int) -> str:
     return f"{in_row(float(pass_depths.expected[row]), lengths, row):length}".partition(" ")[0]
 
 
+def tip(trace: Trace, row: int) -> str:
+    """Z of the tip, in the units of the program."""
+    return depth(trace.path, trace.lengths, row)
+
+
+def more(count: int) -> str:
+    """How many moves of a contour there are beside the first one."""
+    return f", and in {count - 1} more moves" if count > 1 else ""
+
+
 def in_air(air_cuts: AirCuts, bar: Bar, trace: Trace, row: int) -> str:
     """What is cut in air, and the witness."""
     z = f"Z{depth(trace.path, trace.lengths, row)}"

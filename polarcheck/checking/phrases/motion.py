@@ -63,6 +63,11 @@ def center(axes: PlaneAxes, row: int) -> str:
     return f"{along} along {linear(axes, row)} and {across} along {axes.virtual_axis_of(row)}"
 
 
+def fewer(machine: Machine) -> str:
+    """Whether an arc must be smaller than the largest angle of one arc."""
+    return "" if machine.arcs.takes_sweep_limit else "less than "
+
+
 def reading(lengths: Lengths, row: int) -> str:
     """What X is in a row."""
     return "diameter" if lengths.x_factor[row] < 1 else "radius"
@@ -146,3 +151,8 @@ def travel(lengths: Lengths, machine: Machine, travel: Travel, row: int) -> str:
             goes, ends_at = (in_row(length, lengths, row) for length in (value, limit))
             return f"{axis} would go to {goes.beside(ends_at, form)}, its travel ends at {ends_at.beside(goes, form)}"
     return ""
+
+
+def more_arcs(count: int) -> str:
+    """How many further arcs the finding stands for; empty for none."""
+    return f"; so {'is' if count == 2 else 'are'} {count - 1} more up to the next code of motion" if count > 1 else ""

@@ -7,10 +7,19 @@ from collections.abc import Iterator
 
 from polarcheck.arrays import Floats, Rows
 from polarcheck.checking.other_machine import NAMED, OtherMachine
-from polarcheck.checking.phrases.common import codes, executed_word, linear, move_code, outside, switch_off, written
+from polarcheck.checking.phrases.common import (
+    block_and_line,
+    codes,
+    executed_word,
+    line_code,
+    linear,
+    outside,
+    switch_off,
+    written,
+)
 from polarcheck.checking.places import block_in_line
 from polarcheck.checking.quantity import in_row
-from polarcheck.checking.remedies import place
+from polarcheck.checking.remedies import enumerated, is_chosen, place
 from polarcheck.columns.axes import PlaneAxes
 from polarcheck.columns.blocks import ExecutedBlocks
 from polarcheck.columns.compensation import CutterCompensation
@@ -20,6 +29,7 @@ from polarcheck.columns.mode import PolarMode
 from polarcheck.execution.run import Run
 from polarcheck.machines.axes import NOT_NAMED, listed
 from polarcheck.machines.codes import spelled
+from polarcheck.machines.job import Job
 from polarcheck.machines.machine import Machine
 from polarcheck.machines.modal import Motion, Side
 from polarcheck.machines.own_language import shown
@@ -28,6 +38,7 @@ from polarcheck.table.arcs import Arcs
 from polarcheck.table.infeed import Infeed
 from polarcheck.table.other_mode import OtherMode
 from polarcheck.table.procedure import Procedure
+from polarcheck.table.switch_slips import SwitchSlips
 from polarcheck.table.switch_words import SwitchWords
 
 #: What the codes of a list of G-code system B are in system A, and what stands for them there.
@@ -55,7 +66,7 @@ _ENDED = {"scaling": "scaling", "rotation": "rotation", "mirror_image": "mirror"
 
 def instead_of_rapid(compensation: CutterCompensation, machine: Machine, row: int) -> str:
     """What to write for G0 in the mode: within a contour G1 with its F, else a high one."""
-    line = move_code(machine, "line")
+    line = line_code(machine)
     if compensation.compensates[row] and not compensation.starts_up[row]:
         return f"this block lies in a contour with G{compensation.side[row]}: write {line} and leave F as it is"
     return f"write {line} with a high F"
@@ -137,8 +148,14 @@ def meaning(run: Run, machine: Machine, at: list[int]) -> str:
     return f"{name} is no incremental word of G-code system {system}, where G91 makes {axes} incremental"
 
 
-def taken_by(run: Run, machine: Machine, other_machine: OtherMachine, at: list[int], row: int) -> str:
-    """Which machines read the whole program well; where none does, which word beside G12.1 or controls take it."""
+def taken_by(
+    run: Run, axes: PlaneAxes, machine: Machine, job: Job, other_machine: OtherMachine, at: list[int], row: int
+) -> str:
+    """
+    Which machines read the whole program well; where none does, which word beside G12.1 or controls take it.
+
+    Where somebody has chosen the machine, what to write on it.
+    """
     mode = machine.polar
     number, of_address = int(run.words.address[at[0]]), machine.address_number
     choosing = next(
@@ -146,6 +163,8 @@ def taken_by(run: Run, machine: Machine, other_machine: OtherMachine, at: list[i
     )
     if choosing:
         return f"; beside {choosing} it would be"
+    if is_chosen(machine, job):
+        return f"; write {axes.virtual_axis_of(row)}"
     controls = mode.other_controls
     return other_machine.text or (f"; {controls} would take it" if controls else "")
 
@@ -160,10 +179,24 @@ def on_of_this(machine: Machine) -> str:
     return " or ".join(shown(machine.control.native_words, code) for code in machine.polar.on)
 
 
-def with_machines(other_mode: OtherMode, row: int) -> str:
-    """The machines that know the code, or the first of them, as in `--machine fanuc or gsk-988`."""
-    *others, last = [profile.name for profile in other_mode.machines(row)[:NAMED]]
-    return f"--machine {', '.join(others)} or {last}" if others else f"--machine {last}"
+def instead(other_mode: OtherMode, machine: Machine, job: Job, row: int) -> str:
+    """
+    What is to be written for the code of another control: `write G112 for G12.1, G113 for G13.1 and Y for C`.
+
+    Where nobody has chosen the machine, the machines that know the code: `check it with --machine fanuc or gsk-988`.
+    """
+    machines = other_mode.machines(row)
+    if not is_chosen(machine, job):
+        return f"check it with --machine {enumerated([profile.name for profile in machines[:NAMED]], 'or')}"
+    polar, native = machine.polar, machine.control.native_words
+    angle = f" {polar.direction_word}0" if polar.direction_word else ""
+    words = [f"{shown(native, polar.on[0])}{angle} for {other_mode.switch(row).name}"]
+    words += [f"{shown(native, polar.off[0])} for {name}" for name in other_mode.ends_written(row)]
+    axes = other_mode.other_axes_written(row)
+    words += [f"{polar.virtual_axis} for {axis}" for axis in axes]
+    if axes and all(profile.machine.polar.x != polar.x for profile in machines):
+        words.append(f"X as a {polar.x}")
+    return f"write {enumerated(words, 'and')}"
 
 
 def else_a_macro(other_mode: OtherMode, row: int) -> str:
@@ -183,16 +216,28 @@ def axes_not_followed(
     remedy = "look at it on the control" if names_of_axes else f"give their names in order, as {names}"
     for rows, what in (
         (named, f"P beside {polar.on[0]}"),
-        (unknown & ~named, f"{polar.linear_axis}, the number in polar.linear_axis,"),
+        (unknown & ~named, f"{polar.linear_axis}, the number in {_linear_axis_key(machine)},"),
     ):
         yield f"{what} is a linear axis that is not known, nothing of the section is judged: {remedy}", int(rows.sum())
     beside = [int(index) for index in axes.words_not_simulated.nonzero()[0] if mode.enters[run.row[index]]]
     for name, indices in itertools.groupby(beside, lambda index: executed_word(run, index)):
         effect = "makes another mode of it, which is not simulated: look at the section on the control"
         yield f"{name} beside {polar.on[0]} {effect}", len(list(indices))
+    planes = (axes.selects_plane_not_simulated & mode.in_polar).nonzero()[0]
+    if len(planes):
+        where = block_and_line(blocks, run, int(planes[0]))
+        yield f"the plane of {where} is not simulated: look at the section on the control", len(planes)
     other = mode.enters & (axes.rotary_number != polar.rotary_axis)
     effect = "its angle at the switch and its limits are not followed: look at them on the control"
     yield f"Q names another rotary axis than {polar.rotary_axis}; {effect}", int(other.sum())
+
+
+def _linear_axis_key(machine: Machine) -> str:
+    """Where the number of the linear axis was given: `parameter 5460`, else the key of the profile."""
+    key, number = "polar.linear_axis", machine.polar.linear_axis
+    given = [name for name, value in machine.parameters.items() if value == number]
+    names = [name for name in given if name in machine.known_parameters and machine.known_parameters[name].key == key]
+    return f"parameter {names[0]}" if names else key
 
 
 def names_not_known(blocks: ExecutedBlocks, run: Run) -> Iterator[tuple[str, int]]:
@@ -319,6 +364,26 @@ def what(mode: PolarMode, machine: Machine, arcs: Arcs, index: int) -> str:
         if off > 1
         else f"through the center of the {machine.polar.rotary_address} axis"
     )
+
+
+def slip(switch_slips: SwitchSlips, blocks: ExecutedBlocks, run: Run, machine: Machine, row: int) -> str:
+    """What a misspelled switch of the mode does, and what to write; or where the codes of the builder belong."""
+    found = switch_slips.slips[row]
+    words = [index for index in switch_slips.words.nonzero()[0].tolist() if run.row[index] in (row, found.answer)]
+    names = [executed_word(run, index) for index in words]
+    mode, line = machine.polar, int(blocks.line[found.answer])
+    if found.is_of_builder:
+        on, off = (
+            ", ".join(f'"{one}"' for one in (*known, code))
+            for known, code in ((mode.on[:1], names[0]), (mode.off[:1], names[-1]))
+        )
+        keys = place(machine, f"polar.on = [{on}] and polar.off = [{off}]")
+        effect = f"begins and {names[-1]} ends no polar mode that {machine.title} has"
+        return f"{names[0]} {effect}: if they do on this lathe, write {keys}; the contour is not looked at till then"
+    if found.meant in mode.off:
+        return f"{names[0]} does not end the polar mode; write {found.meant}"
+    answer = f", and {switch_slips.meant_in(found.answer)} for {names[-1]} in line {line}" if found.answer >= 0 else ""
+    return f"{names[0]} begins no polar mode, and the contour behind it is not looked at; write {found.meant}{answer}"
 
 
 def not_understood(blocks: ExecutedBlocks, other_mode: OtherMode) -> tuple[str, int]:

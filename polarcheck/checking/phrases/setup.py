@@ -173,7 +173,7 @@ def to_stop(trace: Trace, spindles: Spindles, procedure: Procedure, row: int) ->
     It may stand there already, but behind the tool change; or an M code that is in no list stands in its place.
     """
     blocks, run, codes = trace.blocks, trace.run, trace.machine.m_codes
-    stop = next(iter(codes.live_tool_off), "the code that stops it")
+    stop = " or ".join(codes.live_tool_off) or "the code that stops it"
     stops = np.flatnonzero(blocks.codes(*codes.live_tool_off))
     late = stops[stops >= row]
     starts = np.flatnonzero(blocks.codes(*codes.live_tool_on) & (np.arange(len(blocks)) > row))

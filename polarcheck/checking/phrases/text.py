@@ -34,6 +34,9 @@ _NUMBER_FAULTS = {
 _SIGN_LENGTH = 40
 #: Of a text so much is looked at for its first words [characters].
 _LOOKED_AT = 200
+#: Digits on either side of a decimal comma, and most of them that are named.
+_LAST_DIGITS, _FIRST_DIGITS = re.compile(r"[0-9]+\Z"), re.compile(r"[0-9]+")
+_DIGITS = 12
 _LINES_AND_BLANKS = " \t-|=:*#"
 _TAG = re.compile(r"</?\w[^<>\n]*+>")
 _TWO_LETTERS = re.compile(r"[^\W\d_]{2}")
@@ -119,6 +122,10 @@ def stray(text: Text, index: int) -> str:
     character = text.source.excerpt(at, at + 1)
     if character == "%":
         return "% inside a block: for the control the program ends here"
+    whole = _LAST_DIGITS.search(text.source.excerpt(max(at - _DIGITS, 0), at))
+    decimals = _FIRST_DIGITS.match(text.source.excerpt(at + 1, at + 1 + _DIGITS))
+    if character == "," and whole and decimals:
+        return f", is no decimal point: write {whole[0]}.{decimals[0]}"
     return f"{character} is no character of a word"
 
 

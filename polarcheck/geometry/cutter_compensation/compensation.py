@@ -42,8 +42,9 @@ class ToolPath(Table, frozen=True):
 
     Per move, k of them. row: int[k], into Path; the block whose F applies: a line across a corner belongs to the latter
     block. kind: int16[k], Motion LINE, CW or CCW. start, end, center: complex128[k] [mm], center NaN for lines; an arc
-    that ends where it starts is a full circle. phase: int16[k]. corner: bool[k], a line that the control adds between
-    two blocks. known: bool[k], False where a position or R is unknown and the move is therefore the programmed one.
+    that ends where it starts is a full circle. phase: int16[k]. corner: bool[k], a line or an arc that the control
+    adds between two blocks. known: bool[k], False where a position or R is unknown and the move is therefore the
+    programmed one.
 
     Per row of the Path, n of them, bool[n]. inside_arc_too_small: arc radius not above R on its inner side (PS0041).
     interferes: tool center would run against the program (PS0041). no_intersection: the offset curves do not meet at
@@ -283,14 +284,20 @@ def _trails(programmed: Programmed, blocks: _Blocks) -> _Ways:
 
 
 def _across_corners(programmed: Programmed, vectors: Vectors) -> _Ways:
-    """The lines between the vectors of one corner; they belong to the latter block (M700V p. 193)."""
+    """The ways between the vectors of one corner; they belong to the latter block (M700V p. 193)."""
     several = np.flatnonzero((vectors.used.sum(axis=0) > 1) & vectors.known)
     corner, place = np.nonzero(vectors.used.T[several])
     vector = vectors.point[place, several[corner]]
     goes_on = corner[1:] == corner[:-1]
-    after = several[corner[1:][goes_on]] + 1
-    phase = np.full(len(after), Phase.OFFSET)
-    return _lines(after * 4 + _CORNER, programmed.row[after], vector[:-1][goes_on], vector[1:][goes_on], phase)
+    at = several[corner[1:][goes_on]]
+    phase = np.full(len(at), Phase.OFFSET)
+    ways = _lines((at + 1) * 4 + _CORNER, programmed.row[at + 1], vector[:-1][goes_on], vector[1:][goes_on], phase)
+    at = ways.order // 4 - 1
+    rows = np.flatnonzero(vectors.round[at])
+    # On the outside of a corner the tool goes round it as the contour does: to the right where it is on the left.
+    ways.kind[rows] = np.where(programmed.side[at[rows]] > 0, Motion.CW, Motion.CCW)
+    ways.center[rows] = programmed.end[at[rows]]
+    return ways
 
 
 def _along(programmed: Programmed, blocks: _Blocks) -> _Ways:

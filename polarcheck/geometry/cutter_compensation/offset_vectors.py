@@ -1,4 +1,7 @@
-"""Which offset vectors cutter compensation sets up at the end of each move; FANUC type C, lines at outside corners."""
+"""
+Which offset vectors cutter compensation sets up at the end of each move: FANUC type C, with lines at outside corners,
+or with arcs or intersections there, as other controls have them.
+"""
 
 from __future__ import annotations
 
@@ -6,8 +9,18 @@ import msgspec
 import numpy as np
 
 from polarcheck.arrays import Mask, Points, Rows
-from polarcheck.geometry.cutter_compensation.corner import Corners, is_inner, is_straight, meeting, squared_off, turn
+from polarcheck.geometry.cutter_compensation.corner import (
+    STRAIGHT,
+    Corners,
+    is_inner,
+    is_straight,
+    meeting,
+    squared_off,
+    turn,
+)
 from polarcheck.geometry.cutter_compensation.programmed_path import Method, Programmed, fits
+from polarcheck.geometry.tolerances import ROUNDING
+from polarcheck.machines.modal import Corner
 
 #: The places that a vector can take at the end of a move, in the order in which the tool center passes them.
 BEFORE, CORNER, ACROSS, AFTER = range(4)
@@ -18,12 +31,14 @@ class Vectors(msgspec.Struct, frozen=True):
     Ends of the offset vectors at the end of each of m moves.
 
     point: complex128[4, m] [mm], by place. used: bool[4, m]; the columns of moves outside compensation have none.
+    round: bool[m], the way from the first to the last vector is an arc about the corner.
     known: bool[m], False where a point or R is unknown. missing: bool[m], perpendicular only since the control does not
     know the next move in time. apart: bool[m], the two curves at an inside corner do not meet.
     """
 
     point: Points
     used: Mask
+    round: Mask
     known: Mask
     missing: Mask
     apart: Mask
@@ -51,6 +66,7 @@ def end_vectors(programmed: Programmed, method: Method) -> Vectors:
     vectors = Vectors(
         point=np.zeros((4, count), dtype=np.complex128),
         used=np.zeros((4, count), dtype=np.bool_),
+        round=np.zeros(count, dtype=np.bool_),
         known=_known(programmed),
         missing=np.zeros(count, dtype=np.bool_),
         apart=np.zeros(count, dtype=np.bool_),
@@ -95,13 +111,19 @@ def _join(vectors: Vectors, programmed: Programmed, method: Method) -> None:
     turned = turn(corners)
     joints = _joints(programmed, corners, turned, slanted, method)
 
-    point = meeting(corners, turned, joints.meets)
+    by_arc, by_curves = _other_corners(programmed, turned, joints, method)
+    point = meeting(corners, turned, joints.meets | by_curves)
+    by_arc |= by_curves & ~_leads_on(corners, point)
+    by_curves &= ~by_arc
+    by_lines = joints.outer & ~by_arc & ~by_curves
     meets = joints.meets & np.isfinite(point)
     # Without a common point G40 I J begins perpendicular; at an inside corner both vectors come nearest to the program.
     apart = joints.meets & ~meets & ~joints.ramps_off
-    acute = joints.outer & (turned.real < 0)
-    before = apart | joints.changes | (joints.outer & (joints.ramps_on | (corners.turning_before != 0)))
-    after = apart | joints.changes | joints.to_next | (joints.outer & (joints.ramps_off | (corners.turning_after != 0)))
+    acute = by_lines & (turned.real < 0)
+    before = by_arc | (joints.outer & joints.ramps_on) | (by_lines & (corners.turning_before != 0))
+    before |= apart | joints.changes
+    after = by_arc | (joints.outer & joints.ramps_off) | (by_lines & (corners.turning_after != 0))
+    after |= apart | joints.changes | joints.to_next
 
     needs_next = joints.to_next | meets | joints.outer | apart
     read = programmed.read[:-1]
@@ -111,7 +133,8 @@ def _join(vectors: Vectors, programmed: Programmed, method: Method) -> None:
 
     set_up = read | joints.changes
     vectors.used[BEFORE, :-1] &= before | ~needs_next | ~read
-    vectors.used[CORNER, :-1] = (meets | joints.outer) & set_up
+    vectors.used[CORNER, :-1] = (meets | by_lines | by_curves) & set_up
+    vectors.round[:-1] = by_arc & set_up
     vectors.used[ACROSS, :-1] = acute & set_up
     vectors.used[AFTER, :-1] = after & set_up
 
@@ -120,6 +143,27 @@ def _join(vectors: Vectors, programmed: Programmed, method: Method) -> None:
     vectors.point[CORNER, rows], vectors.point[ACROSS, rows] = squared_off(corners[rows])
     rows = np.flatnonzero(after)
     vectors.point[AFTER, rows] = _after(programmed, rows)
+
+
+def _other_corners(programmed: Programmed, turned: Points, joints: _Joints, method: Method) -> tuple[Mask, Mask]:
+    """
+    Which outside corners are passed by an arc of R about the corner, and which where the two paths meet.
+
+    A corner by intersection that is too sharp becomes an arc, one by an arc that is too flat an intersection
+    (Siemens, function manual W1, machine data 20210 and 20230).
+    """
+    chosen = programmed.corner[1:]
+    angle = np.abs(np.angle(turned))
+    by_arc = joints.outer & (chosen == Corner.ARC) & (angle >= method.arc_from)
+    by_arc |= joints.outer & (chosen == Corner.INTERSECTION) & (angle > method.arc_above + STRAIGHT)
+    return by_arc, joints.outer & (chosen != Corner.LINES) & ~by_arc
+
+
+def _leads_on(corners: Corners, point: Points) -> Mask:
+    """Which meeting points lie ahead of the end of the move before and behind the start of the one after."""
+    ahead = (point - corners.point - corners.vector_before) * corners.arriving.conj()
+    behind = (corners.point + corners.vector_after - point) * corners.leaving.conj()
+    return np.asarray(np.isfinite(point) & (ahead.real >= -ROUNDING) & (behind.real >= -ROUNDING))
 
 
 def _joints(programmed: Programmed, corners: Corners, turned: Points, slanted: Mask, method: Method) -> _Joints:

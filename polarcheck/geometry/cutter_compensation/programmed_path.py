@@ -24,6 +24,10 @@ class Method(msgspec.Struct, frozen=True):
     read_ahead: int = 3
     #: After a pair of vectors that interferes, No. 5008: "alarm", "erase" (drop vectors, else alarm), "ignore".
     interference: str = "alarm"
+    #: Turn [rad] above which an outer corner by intersection becomes an arc.
+    arc_above: float = np.pi
+    #: Turn [rad] below which an outer corner by an arc becomes an intersection.
+    arc_from: float = 0.0
     #: Turn [rad] below which curves that do not meet raise no alarm; rounding to 0.001 mm turns tangents by 1e-4.
     tangent_tolerance: float = 1e-3
 
@@ -50,6 +54,7 @@ class Path(Table, frozen=True):
     radius: float64[n] [mm], R of the offset in force, signed; NaN = unknown.
     cancel_vector: complex128[n], I + jJ beside G40, else NaN.
     stops_reading: bool[n], the control reads no further (M00, M01, M30, ...) before the row is done.
+    corner: int16[n], Corner: how an outer corner at the start of the row is passed.
     """
 
     section: Rows
@@ -63,6 +68,7 @@ class Path(Table, frozen=True):
     radius: Floats
     cancel_vector: Points
     stops_reading: Mask
+    corner: States
 
 
 class Programmed(msgspec.Struct, frozen=True):
@@ -71,7 +77,7 @@ class Programmed(msgspec.Struct, frozen=True):
 
     row: into Path. turning: 1 CCW, -1 CW, 0 line. leaving, arriving: unit tangents at start and end.
     full: a full circle. known: points, and R where it counts. side: 1 left, -1 right, with the sign of R. radius: |R|.
-    on: G41 or G42 in force. cancel_vector: unit vector of I, J, else NaN.
+    on: G41 or G42 in force. cancel_vector: unit vector of I, J, else NaN. corner: Corner, of the junction before it.
 
     Of the way to the next row: has_next, in the same section. cancelled: a G40 without movement lies between.
     read: the control knows the next row in time. written: G41 or G42 written again.
@@ -94,6 +100,7 @@ class Programmed(msgspec.Struct, frozen=True):
     side: Floats
     radius: Floats
     cancel_vector: Points
+    corner: States
     has_next: Mask
     cancelled: Mask
     read: Mask
@@ -143,6 +150,7 @@ def moving_rows(path: Path, method: Method) -> tuple[Programmed, Mask]:
         side=np.where((path.side[row] == Side.LEFT) ^ (radius < 0), 1.0, -1.0),
         radius=np.abs(radius),
         cancel_vector=_directions_given(path.cancel_vector[row]),
+        corner=path.corner[row],
         **_ways(path, row, on, method),
     )
     return programmed, center_on_path & path.moves

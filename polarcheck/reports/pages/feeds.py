@@ -46,6 +46,8 @@ def _limits(table: FeedTable) -> str:
         facts.append(f"{_number(limits.c_acceleration, 0)} deg/s2")
     if limits.x_feed is not None:
         facts.append(f"X {_feed(limits.x_feed, table)} {table.units}/min as a radius")
+    if limits.x_acceleration is not None:
+        facts.append(f"{_number(limits.x_acceleration, 0)} mm/s2")
     if limits.polar_feed is not None:
         facts.append(f"F in the mode {_feed(limits.polar_feed, table)} {table.units}/min")
     return ", ".join(facts)

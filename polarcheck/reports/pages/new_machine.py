@@ -21,6 +21,13 @@ _QUESTIONS: dict[str, dict[str, Any]] = {
     "limits": {
         "c_feed": 3600,
         "c_acceleration": 7200,
+        "x_feed": 5000,
+        "x_acceleration": 2000,
+        "x_rapid": 12000,
+        "z_rapid": 24000,
+        "c_rapid": 72000,
+        "live_tool_speed": 6000,
+        "block_time": 0.004,
         "polar_feed": 2000,
         "polar_feed_clamps": True,
         "automatic_override": True,
@@ -64,22 +71,30 @@ _QUESTIONS: dict[str, dict[str, Any]] = {
         "positioning_minimum": 750,
         "positioning_maximum": 1500,
         "carried_into_polar": "modal",
+        **dict.fromkeys(("dwell_words", "dwell_per_revolution")),
     },
     "polar": {
         **dict.fromkeys(("on", "off", "virtual_axis", "virtual_axis_incremental", "x", "virtual_axis_programming")),
         "allowed_codes": ["+G93", "-G80"],
         **dict.fromkeys(
-            ("words_beside_switch", "plane_before", "other_axes", "repeated_z", "linear_axis", "rotary_axis")
+            (
+                *("words_beside_switch", "plane_before", "other_axes", "feed_measures", "repeated_z"),
+                *("center_error", "linear_axis", "rotary_axis"),
+            )
         ),
         "main_spindle_must_stop": None,
     },
     "control": {
         **dict.fromkeys(("g_code_system", "units", "x", "number_without_point", "m_code_limit", "offset_digits")),
+        "rotary_rolls_over": None,
         "axes": [],
         "known_codes": ["+G150"],
     },
     "arcs": dict.fromkeys(("tolerance", "sweep_limit")),
-    "compensation": dict.fromkeys(("start_up", "start_up_with_move", "read_ahead", "interference", "leaving_cancels")),
+    "compensation": {
+        **dict.fromkeys(("start_up", "start_up_with_move", "corner", "corner_arc_above", "corner_arc_from")),
+        **dict.fromkeys(("read_ahead", "interference", "leaving_cancels")),
+    },
 }
 #: Lists that are written as differences from the inherited list.
 _DIFFERING = ("allowed_codes", "known_codes")
@@ -90,6 +105,37 @@ _HEADS = {
     "power_on": "G codes that are in force when a program begins and selects none",
     "polar": 'Lists of codes may say what differs from the inherited one, + or - before each code: ["+G93", "-G80"].',
 }
+#: What a setter knows without a manual of the builder: table, question, and the keys that answer it. The first question
+#: is the control, which the file inherits from.
+_SHORT: tuple[tuple[str, str, tuple[str, ...]], ...] = (
+    (
+        "control",
+        "Is feed per minute G98 and per revolution G99 (A), or G94 and G95 beside G90 and G91 (B)?",
+        ("g_code_system",),
+    ),
+    ("control", "Is X60. a diameter of 60, or a radius?", ("x",)),
+    (
+        "polar",
+        "Between the codes of the mode: which address has the second axis, and is X60. a diameter there?",
+        ("virtual_axis", "x"),
+    ),
+    ("limits", "How fast may C turn while it cuts? Turns in a minute times 360.", ("c_feed",)),
+    ("limits", "How fast does the live tool turn at most?", ("live_tool_speed",)),
+    (
+        "m_codes",
+        "Which M codes make the spindle the C axis, and the C axis the spindle again?",
+        ("c_axis_on", "c_axis_off"),
+    ),
+    ("m_codes", "Which M codes clamp C for drilling, and release it?", ("c_axis_clamp", "c_axis_unclamp")),
+    ("m_codes", "Which M codes start and stop the live tool?", ("live_tool_on", "live_tool_off")),
+    ("power_on", "Which feed is in force when the lathe is switched on?", ("feed_mode",)),
+)
+_TABLE_OF_RADII = (
+    "R of the tools is not the lathe's, but that of the job: punch out the offset table of the control, and write"
+    ' offsets = "FILE" into polarcheck.toml beside the programs, or [tools.8] with radius = 4.0, and'
+    ' machine = "{file}.toml". `polarcheck init` writes that file. All that can be said of a lathe is in the file'
+    " that `polarcheck machines new {file} --from {inherits}` writes without --short."
+)
 _TOOLS = (
     "The tools of the turret, and which are radial or axial, flat or ball, belong to the job: [tools.8] with radius,"
     " mount and shape in polarcheck.toml beside the programs, where machine = names this file. Lists of G codes by what"
@@ -126,6 +172,45 @@ def text(name: str, inherits: str) -> str:
     return "\n".join(map(visible, lines)) + "\n"
 
 
+def short_text(name: str, inherits: str) -> str:
+    """
+    Return a TOML file with the ten answers that a setter can give, commented out but for the control.
+
+    Raises MachineError for an unknown machine.
+    """
+    profile = load(inherits)
+    lines = [
+        *_prose(
+            f"{name}: a lathe of our own, in ten answers. Behind each # stands what {profile.machine.title} has or,"
+            " where that is not known, an example. Take the # away from a line that you can answer, and write what"
+            " your lathe has. Then `polarcheck machines check` with"
+            " this file tells what is wrong in it.",
+        ),
+        "",
+        *_prose("1. Which control? `polarcheck machines` lists them."),
+        f"inherits = {_toml(inherits)}",
+        f"title = {_toml(name)}",
+    ]
+    group = ""
+    for number, (table, question, keys) in enumerate(_SHORT, 2):
+        lines += ["", *([f"[{table}]"] if table != group else []), *_prose(f"{number}. {question}")]
+        group = table
+        meaning = meanings(type(getattr(profile.written, table)))
+        for key in keys:
+            lines += _answer(key, _example(profile, table, key, _QUESTIONS[table].get(key)), meaning[key])
+    lines += ["", *_prose(_TABLE_OF_RADII.format(file=name, inherits=inherits))]
+    return "\n".join(map(visible, lines)) + "\n"
+
+
+def _example(profile: Profile, group: str, key: str, answer: Any) -> Any:
+    """The value of the machine or, where that is not known, an example."""
+    if group == "power_on":
+        answer = next(iter(profile.machine.codes(answer)), "")
+    value = getattr(getattr(profile.written, group), key)
+    is_known = value not in ([], "") and value == value and key not in _DIFFERING
+    return value if is_known or answer is None else answer
+
+
 def _questions(profile: Profile) -> Iterator[str]:
     for group, keys in _QUESTIONS.items():
         yield from ("", f"[{group}]", *_prose(_HEADS.get(group, "")))
@@ -133,15 +218,11 @@ def _questions(profile: Profile) -> Iterator[str]:
         meaning = meanings(type(table))
         doubt = ""
         for key, answer in keys.items():
-            if group == "power_on":
-                answer = next(iter(profile.machine.codes(answer)), "")
-            value = getattr(table, key)
-            is_known = value not in ([], "") and value == value and key not in _DIFFERING
             origin = profile.origins.get(f"{group}.{key}")
             if origin and origin.doubtful and origin.source != doubt:
                 doubt = origin.source
                 yield from _prose(f"in doubt: {doubt}")
-            yield from _answer(key, value if is_known or answer is None else answer, meaning[key])
+            yield from _answer(key, _example(profile, group, key, answer), meaning[key])
         yield from _in_doubt(profile, group, set(keys))
 
 
@@ -231,7 +312,7 @@ def _present(profile: Profile, meaning: Meaning) -> str:
 
 
 def _prose(text: str) -> list[str]:
-    return [f"# {line}" for line in textwrap.wrap(text, _COLUMNS - 2)]
+    return [f"# {line}" for line in textwrap.wrap(text, _COLUMNS - 2, break_on_hyphens=False)]
 
 
 def _toml_key(key: str) -> str:

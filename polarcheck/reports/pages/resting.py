@@ -45,6 +45,8 @@ def _section(section: PolarSection) -> str:
         facts.append(f"ramps used up to {100 * section.ramp_used:.0f} %")
     if section.time is not None:
         facts.append(f"{section.time:.0f} s")
+    elif section.time_not_known and section.c_feed is not None:
+        facts.append(f"time not known: {', '.join(section.time_not_known)}")
     channel = f" in channel {section.channel}" if section.channel else ""
     return f"section of line {section.line}{channel}: {', '.join(fact for fact in facts if fact)}"
 

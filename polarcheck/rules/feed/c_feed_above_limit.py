@@ -18,7 +18,8 @@ def c_feed_above_limit(center: Center, tool_center: ToolCenter, machine: Machine
     """
     Feed too high for the distance from the center.
 
-    F is the speed of the tool center on the plane. The nearer the tool center comes to the center of the C axis, the
+    F is the speed of the tool center on the plane; where it is the speed in space (polar.feed_measures), a move with Z
+    leaves a part of it for the plane. The nearer the tool center comes to the center of the C axis, the
     faster C must turn for it: F / L, where L is their smallest distance. Above the limit the control stops with an
     alarm or, with automatic override, slows down. Use F < L * R * pi / 180, with R the limit of C in deg/min, or keep
     away from the center; exactly at the limit it is a warning. limits.c_feed of the profile is R; without it only a

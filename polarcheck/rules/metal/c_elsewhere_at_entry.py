@@ -5,8 +5,8 @@ from polarcheck.checking.rule import WARNING, EntryAngles, Mask, rule
 
 @rule(
     WARNING,
-    "{rotary} stands where the section before has left it, {turned} from its G12.1: nobody has positioned it, and this "
-    "section comes out turned by as much; {to_position}",
+    "{rotary} stands where the section before has left it, {turned} from its {switch}: nobody has positioned it, and "
+    "this section comes out turned by as much; {to_position}",
     over="sections",
     at=("on",),
     once="program",

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Arcs, Machine, Mask, rule
+from polarcheck.checking.rule import WARNING, Arcs, Hits, Machine, graded, rule
 
 #: What the last digit of the coordinates may turn an arc by [deg].
 LAST_DIGIT = 0.1
@@ -9,17 +9,19 @@ LAST_DIGIT = 0.1
 @rule(
     WARNING,
     "arc of {arcs.sweep:whole/machine.arcs.sweep_limit} deg; {machine.title} takes "
-    "{machine.arcs.sweep_limit:whole/arcs.sweep} deg in one block; write it as several arcs{or_short_arc}",
+    "{fewer}{machine.arcs.sweep_limit:whole/arcs.sweep} deg in one block; write it as several arcs{or_short_arc}",
     at=("X", "U", "C", "H", "I", "J", "R"),
     subject="move",
     follows={"block": ("arc-sense-reversed",)},
 )
-def arc_sweep_above_limit(arcs: Arcs, machine: Machine) -> Mask:
+def arc_sweep_above_limit(arcs: Arcs, machine: Machine) -> Hits:
     """
     Arc through more degrees than this control takes in one block.
 
     Some controls take the shorter of two arcs for a longer one, or go wrong about its center; posts for them cut arcs
-    at 180, 120 or 90 degrees. Cut the arc into two. arcs.sweep_limit of the profile says where; 360 is no limit.
+    at 180, 120 or 90 degrees. Cut the arc into two. arcs.sweep_limit of the profile says where; 360 is no limit. Where
+    an arc by radius must be smaller than that (arcs.takes_sweep_limit), one of exactly 180 degrees is a warning: the
+    last digit decides which of two arcs it is. A word that chooses the larger arc (arcs.larger_arc_word) is taken.
 
     Source: OSP-P200L programming manual 5238-E, p. 93; Autodesk turn-mill posts.
 
@@ -41,6 +43,23 @@ def arc_sweep_above_limit(arcs: Arcs, machine: Machine) -> Mask:
         G1 X60.
         G13.1
 
+    Bad, machine okuma-osp:
+
+        G94 G0 X60. C0
+        G137 C0
+        G101 X20. Y0 F200
+        G103 X-20. L20.   (expect: arc-sweep-above-limit)
+        G103 X0 Y20. I20. J0   (expect: arc-sweep-above-limit)
+        G136
+
+    Good, machine okuma-osp:
+
+        G94 G0 X60. C0
+        G137 C0
+        G101 X20. Y0 F200
+        G103 X0 Y-20. L20. CALRG
+        G136
+
     Good, set arcs.sweep_limit=180:
 
         G98 G0 X60. C0
@@ -51,4 +70,7 @@ def arc_sweep_above_limit(arcs: Arcs, machine: Machine) -> Mask:
         G1 X60.
         G13.1
     """
-    return arcs.sweep > machine.arcs.sweep_limit + LAST_DIGIT
+    limit, is_taken = machine.arcs.sweep_limit, machine.arcs.takes_sweep_limit
+    above = (arcs.sweep > limit + LAST_DIGIT) & ~arcs.is_larger_by_word
+    exactly = arcs.by_radius & (arcs.sweep > limit - LAST_DIGIT) & ~arcs.is_larger_by_word
+    return graded(error=above & (not is_taken), warning=above | (exactly & (not is_taken)))

@@ -48,4 +48,5 @@ def negative_arc_radius(arcs: Arcs, tangency: Tangency) -> Mask:
         G1 X60.
         G13.1
     """
-    return arcs.negative_stops | ((arcs.radius < 0) & ~tangency.is_tangent & ~tangency.misfits)
+    negative = (arcs.radius < 0) & ~arcs.is_larger_by_word
+    return arcs.negative_stops | (negative & ~tangency.is_tangent & ~tangency.misfits)

@@ -5,8 +5,7 @@ from polarcheck.checking.rule import ERROR, Hits, OtherMode, graded, rule
 
 @rule(
     ERROR,
-    "{begun_by} begins no polar mode on {machine.title}, where {on_of_this} does; check it with {with_machines}"
-    "{else_a_macro}",
+    "{begun_by} begins no polar mode on {machine.title}, where {on_of_this} does; {instead}{else_a_macro}",
     once="program",
 )
 def polar_code_of_another_control(other_mode: OtherMode) -> Hits:
@@ -15,8 +14,9 @@ def polar_code_of_another_control(other_mode: OtherMode) -> Hits:
 
     The codes that switch the polar mode differ from control to control: G12.1, G112, G137, TRANSMIT, G16 XC. A control
     that does not know the code stops at it or, worse, takes it for something else, and turns C by degrees where a
-    length is meant. Nothing of such a section is looked at here. Check the program with the machine that it is for, or
-    have it written for this one. Standing alone, without the code that ends the mode and without a move of the second
+    length is meant. Nothing of such a section is looked at here. Write the codes of this
+    lathe and, where the section has another second axis or another X, its words; or check the program with the machine
+    that it is for. Standing alone, without the code that ends the mode and without a move of the second
     axis at feed behind it, a G code may be a macro of the builder and is a warning; a word as TRANSMIT is none. G101
     and G105, the polar maps of one builder, are macros of so many others that nothing is said without both. One finding
     stands for the program.

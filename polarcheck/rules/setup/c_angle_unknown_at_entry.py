@@ -17,6 +17,7 @@ def c_angle_unknown_at_entry(
 
     The angle of C at G12.1 becomes the direction of X on the plane: after G0 C60. the whole shape is turned by 60 deg.
     Where the program has not positioned C at all, the shape comes out at a chance angle. Write G0 C0 with the approach.
+    A word beside the switch that gives the direction, as in G137 C0 (polar.direction_word), does as well.
 
     Source: builder's guide to G12.1, angular orientation of the plane.
 
@@ -44,6 +45,21 @@ def c_angle_unknown_at_entry(
         G13.1
         M30
 
+    Good, machine okuma-osp:
+
+        O1
+        T0101
+        M110
+        G94 G0 X60. Z2.
+        SB=1000 M13
+        G137 C0
+        G101 X20. Y0 F200
+        Y10.
+        X60.
+        G136
+        M12
+        M2
+
     Good:
 
         O0001
@@ -60,6 +76,7 @@ def c_angle_unknown_at_entry(
     positioned = (blocks.has(*machine.polar.rotary_words) & (mode.section < 0)) | blocks.moves_unnamed
     return (
         mode.enters
+        & ~mode.enters_with_direction
         & mode.rotary_is_followed
         & blocks.whole_program
         & ~entry.happened(positioned, since=spindles.engages_c_axis)

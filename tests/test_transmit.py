@@ -1,0 +1,127 @@
+"""TRANSMIT of Siemens controls: the sense of C, and where a section begins that no C word stands before."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from programs import moves_of, report_of, trace_of
+
+from polarcheck.table.moves import Moves
+
+MACHINE = "siemens-transmit"
+HEAD = "G94 S2=1000\nDIAMOF\nG0 X40 {c} Z5\n"
+#: A quarter of a turn and back, without compensation.
+SECTION = "TRANSMIT\nG17\nG1 X20 Y0 F300\nX0 Y20\nTRAFOOF\n"
+SECOND = "{between}\nTRANSMIT\nG1 X30 Y0\nTRAFOOF\nM30\n"
+OTHER_SENSE = {"polar": {"zero_angle": "at-c0"}}
+
+
+def run(program: str, **more: Any) -> Moves:
+    return moves_of(program, MACHINE, **more)
+
+
+@pytest.mark.parametrize(
+    ("word", "start", "angles"),
+    [
+        ("C90", -40j, [90, 0, -90]),
+        ("C=DC(90)", -40j, [90, 0, -90]),
+        ("SPOS=90", -40j, [90, 0, -90]),
+        ("C0", 40, [0, 0, -90]),
+        ("C-270", -40j, [-270, -360, -450]),
+    ],
+)
+def test_c_runs_against_the_plane(word: str, start: complex, angles: list[float]) -> None:
+    """Machine data 24910 = 1: at C90 the tool stands at -90 deg of the plane, and X20 Y0 is at C0."""
+    moves = run(HEAD.format(c=word) + SECTION + "M30\n")
+    np.testing.assert_allclose(moves.start[0], start, atol=1e-9)
+    np.testing.assert_allclose([moves.c_angles[0][0], *moves.c_angles[1]], angles, atol=1e-9)
+    trace = trace_of(HEAD.format(c=word) + SECTION + "M30\n", MACHINE)
+    np.testing.assert_allclose(trace.path.c_angle[-1], angles[-1], atol=1e-9)
+
+
+@pytest.mark.parametrize("changes", [OTHER_SENSE, {"parameters": {"24910": 0}}])
+def test_the_owner_says_the_sense_of_c(changes: dict[str, Any]) -> None:
+    moves = run(HEAD.format(c="C90") + SECTION + "M30\n", changes=changes)
+    np.testing.assert_allclose(moves.start[0], 40j, atol=1e-9)
+    np.testing.assert_allclose([moves.c_angles[0][0], *moves.c_angles[1]], [90, 0, 90], atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("between", "of_plane", "angle", "angle_of_other_sense"),
+    [
+        ("", 90, -90, 90),
+        ("G0 X20", 90, -90, 90),
+        ("M70", 90, -90, 90),
+        ("G0 C=IC(90)", 0, 0, 180),
+        ("G91 G0 C45\nG90", 45, -45, 135),
+        ("G0 C0", 0, 0, 0),
+        ("SPOS=180", 180, 180, 180),
+    ],
+)
+def test_a_second_section_begins_where_c_stands(
+    between: str, of_plane: float, angle: float, angle_of_other_sense: float
+) -> None:
+    program = HEAD.format(c="C0") + SECTION + SECOND.format(between=between)
+    for changes, of_tool, of_c in (
+        ({}, of_plane, angle),
+        (OTHER_SENSE, angle_of_other_sense, angle_of_other_sense),
+    ):
+        moves = run(program, changes=changes)
+        np.testing.assert_allclose(moves.start[-1], 20 * np.exp(1j * np.radians(of_tool)), atol=1e-9)
+        np.testing.assert_allclose(moves.c_angles[0][-1], of_c, atol=1e-9)
+        # Both sections lie on the part alike, whatever C was before them.
+        assert not (trace_of(program, MACHINE, changes=changes).path.section_entry % 360).any()
+
+
+def test_where_c_was_never_said_the_second_section_goes_on_from_the_first() -> None:
+    program = HEAD.format(c="") + SECTION + SECOND.format(between="G0 Z50")
+    assert run(program).start[-1] == pytest.approx(20j)
+
+
+def test_a_fanuc_begins_its_plane_at_g12_1() -> None:
+    program = "G98 G0 X80. C90. Z5.\nG12.1\nG1 X40. C0 F300.\nX0 C20.\nG13.1\nG12.1\nG1 X60. C0\nG13.1\nM30\n"
+    moves = moves_of(program, "fanuc")
+    assert moves.start[-1] == pytest.approx(20)
+    np.testing.assert_allclose(moves.c_angles[1], [90, 180, 180], atol=1e-9)
+
+
+# ---- F and the units of lengths ----
+
+
+@pytest.mark.parametrize(
+    ("units", "lengths", "feed"),
+    [
+        ("G70", 25.4, 300),
+        ("G71", 1, 300),
+        ("G700", 25.4, 7620),
+        ("G710", 1, 300),
+        ("", 1, 300),
+        ("G700 F300\nG70", 25.4, 7620),  # F was read in inch, and stays in force
+        ("G70\nG700", 25.4, 7620),
+    ],
+)
+def test_g70_leaves_f_alone(units: str, lengths: float, feed: float) -> None:
+    """802D sl BP-N p. 8-139: G70 and G71 do not influence F, G700 and G710 do; the basic system is metric."""
+    written = "" if "F" in units else " F300"
+    program = f"G94 S2=1000\nDIAMOF\n{units}\nG0 X40 C0 Z5\nTRANSMIT\nG17\nG1 X20{written}\nY1\nTRAFOOF\nM30\n"
+    moves = run(program)
+    assert moves.end[0] == pytest.approx(20 * lengths)
+    assert moves.feed == pytest.approx(feed)
+
+
+@pytest.mark.parametrize(("units", "feed"), [("G70", 7620), ("G71", 7620), ("G710", 300), ("", 7620)])
+@pytest.mark.parametrize("changes", [{"parameters": {"10240": 0}}, {"control": {"units": "inch"}}])
+def test_on_an_inch_basic_system_f_is_in_inch(units: str, feed: float, changes: dict[str, Any]) -> None:
+    program = f"G94 S2=1000\nDIAMOF\n{units}\nG0 X2 C0 Z1\nTRANSMIT\nG17\nG1 X1 F300\nY1\nTRAFOOF\nM30\n"
+    assert run(program, changes=changes).feed == pytest.approx(feed)
+
+
+def test_messages_and_fixes_have_f_in_its_own_units() -> None:
+    """F3000 under G70 is 3000 mm/min: so it is said, and so is the F that is low enough."""
+    program = "G94 S2=1000\nDIAMOF\nG70\nG0 X2 C0 Z1\nTRANSMIT\nG17\nG1 X1 F3000\nX.05 Y.1\nX1\nTRAFOOF\nM30\n"
+    report = report_of(program, MACHINE, changes={"limits": {"c_feed": 7200}})
+    (finding,) = [finding for finding in report.findings if finding.rule == "c-feed-above-limit"]
+    assert " mm/min" in finding.message
+    assert "inch/min" not in finding.message
