@@ -30,6 +30,9 @@ _HABIT = 5
 _UNSURE_GROUPS = ("scaling", "rotation", "mirror")
 #: Cycles whose codes in system A other systems and mills write beside G0 and G1, in another meaning.
 _OF_OTHER_SYSTEMS = ("turning_cycle", "threading_cycle", "facing_cycle")
+#: The two languages of a Siemens control.
+_LANGUAGES = re.compile(r"(?<![A-Z0-9])G29[01](?![0-9.])", re.IGNORECASE)
+_PARAMETER = re.compile(r"[A-Z]\s?[-+]?[.\d]", re.IGNORECASE)
 _COMMENT = re.compile(rb"\([^)\n]*+\)?")
 _LETTER_OR_DIGIT = re.compile(rb"[0-9A-Za-z\x80-\xff]")
 #: RTS returns in user tasks.
@@ -72,6 +75,47 @@ class Written:
         count = np.where(is_habit, np.bincount(of_kind, in_new_block)[of_kind], 1)
         counts[index[order]] = np.where(begins | ~is_habit, count, 0)
         return counts
+
+    # ---- the own language of a control that reads another one, too ----
+
+    def _in_other_language(self, at: NDArray[np.integer]) -> Mask:
+        """Positions behind the code of the other language, and before the one that takes it back: G291, G290."""
+        code = self.machine.macro.other_language
+        if not code:
+            return np.zeros(len(at), bool)
+        changes = [
+            (match.start(), match[0].upper() == code)
+            for match in _LANGUAGES.finditer(self.text.source.code.tobytes().decode("latin-1"))
+        ]
+        if not changes:
+            return np.zeros(len(at), bool)
+        places, is_other = zip(*changes, strict=True)
+        return np.array((False, *is_other), bool)[np.searchsorted(np.array(places), at)]
+
+    @cached_property
+    def parentheses_count(self) -> Rows:
+        """At the first comment in parentheses that the control does not read as one the number of them, else 0."""
+        counts = np.zeros(len(self.text.comments), np.int64)
+        if self.machine.control.parentheses_are_comments or not len(counts):
+            return counts
+        start = self.text.comments.start
+        at = np.flatnonzero((self.text.source.code[start] == ord("(")) & ~self._in_other_language(start))
+        if len(at):
+            counts[at[0]] = len(at)
+        return counts
+
+    @cached_property
+    def lacks_equal_sign(self) -> Mask:
+        """Words with the letter of arithmetic parameters, and a number right behind it: R10."""
+        letter, words = self.machine.macro.parameter_letter, self.words
+        if not letter:
+            return np.zeros(len(words), bool)
+        at = np.flatnonzero(words.address == ord(letter))
+        mask = np.zeros(len(words), bool)
+        # CR= and RPL= are read as R, too: what is written tells them apart.
+        excerpt = self.text.source.excerpt
+        mask[at] = [_PARAMETER.match(excerpt(start, start + 4)) is not None for start in words.start[at].tolist()]
+        return np.asarray(mask & ~words.is_unreadable & ~self._in_other_language(words.start))
 
     # ---- words of a block ----
 
