@@ -187,11 +187,18 @@ def grade(finding: Finding, lines: list[int], written: list[str], meant: list[st
     """How good the advice of a finding is; see benchmarks/remedies.py."""
     if fix == "sound":
         return "right"
-    old = {word for text in written for word in _words(text)}
-    wanted = {word for text in meant for word in _words(text)} - old
-    advised = [part for part in re.split(r"; |: ", finding.message)[1:] if _ADVICE.search(part)]
-    words = {word for part in (advised or [finding.message]) for word in _words(part)}
-    if wanted & words:
+    pairs = zip(written, meant, strict=True) if len(written) == len(meant) else [(" ".join(written), " ".join(meant))]
+    changed = [(_words(one), _words(two)) for one, two in pairs]
+    wanted = {word for one, two in changed for word in two - one}
+    surplus = {word for one, two in changed for word in one - two} if not wanted else set()
+    has_advice = bool(_ADVICE.search(finding.message) or finding.fix)
+    letters = {word[0] for one, two in changed for word in one ^ two}
+    bare = set(re.findall(r"\b(?:write|retract|delete|or|a|sign of) ([A-Z])\b", finding.message))
+    names_word = bool(wanted & _words(finding.message)) or bool(letters & bare)
+    deletes = "delete" in finding.message and bool(
+        surplus & _words(finding.message) or "stands twice" in finding.message
+    )
+    if has_advice and (names_word or deletes):
         return "right"
     numbers = {
         int(number)
@@ -204,7 +211,6 @@ def grade(finding: Finding, lines: list[int], written: list[str], meant: list[st
         or bool(numbers & set(lines))
         or any(len(text) > 4 and text in finding.message for text in written)
     )
-    has_advice = bool(advised or _ADVICE.search(finding.message) or finding.fix)
     if is_there:
         return "else there" if has_advice else "place"
     return "elsewhere" if has_advice else "no advice"

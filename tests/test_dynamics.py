@@ -34,6 +34,23 @@ def row_of(dynamics: Dynamics, line: int) -> int:
     return int(np.flatnonzero(dynamics.trace.blocks.line == line)[0])
 
 
+@pytest.mark.parametrize("rolls_over", [False, True])
+def test_an_angle_of_c_is_reached_the_shorter_way_where_c_rolls_over(rolls_over: bool) -> None:
+    """The example of B-63534EN/02 p. 531: distances are turned as they are written."""
+    blocks = {"C-150.": 150, "C540.": 30, "C-620.": 80, "H380.": 380, "H-840.": 840}
+    as_written = (150, 690, 1160, 380, 840)
+    program = "\n".join(["O1", "G28 H0", "G0 C0", *(f"G0 {block}" for block in blocks), "M30", ""])
+    changes = {**RAPIDS, "parameters": {"1008#0": int(rolls_over)}}
+    dynamics = dynamics_of(program, changes=changes)
+    way = [dynamics.time[row_of(dynamics, line)] * RAPIDS["limits"]["c_rapid"] / 60 for line in range(4, 9)]
+    assert way == pytest.approx(list(blocks.values()) if rolls_over else as_written)
+    # Behind three turns in the mode C0 is where C stands.
+    around = inside(*["G1 X40. F900", "G3 I-20. J0", "I-20. J0", "I-20. J0"]).replace("M30", "G0 C0\nM30")
+    dynamics = dynamics_of(around, changes=changes)
+    turned = dynamics.time[row_of(dynamics, 10)] * RAPIDS["limits"]["c_rapid"] / 60
+    assert turned == pytest.approx(0 if rolls_over else 1080)
+
+
 # ---- the moves ----
 
 coordinates = st.integers(-200, 200).map(lambda number: number / 10)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from polarcheck.arrays import Columns, Floats, Mask, Points, States, is_among, repeated
+from polarcheck.arrays import Columns, Floats, Mask, Points, Rows, States, is_among, repeated
 from polarcheck.columns.axes import PlaneAxes
 from polarcheck.columns.blocks import ExecutedBlocks
 from polarcheck.columns.coordinates import Coordinates
@@ -29,7 +29,7 @@ from polarcheck.geometry.tolerances import ZERO
 from polarcheck.machines.axes import INCREMENTS
 from polarcheck.machines.code_lists import numbers
 from polarcheck.machines.machine import Machine
-from polarcheck.machines.modal import Distance, Motion
+from polarcheck.machines.modal import Distance, FeedAxes, Motion
 
 if TYPE_CHECKING:
     from polarcheck.columns.entry_places import EntryPlaces
@@ -382,7 +382,25 @@ class ProgrammedPath(Columns, frozen=True):
     def moves_c(self) -> Mask:
         """The rotary axis moves likewise outside the mode."""
         commands = self.modal.uses_axes & self.blocks.has(*self.machine.polar.rotary_words) & (self.mode.section < 0)
-        return _differs(commands, lambda: (self.c_angle_before, self.c_angle))
+        return _differs(commands, lambda: (np.zeros(len(self.run)), self.c_turn))
+
+    @cached_property
+    def c_turn(self) -> Floats:
+        """What C turns by in the row [deg]; NaN while unknown."""
+        return self.c_turn_from(self.c_angle_before, np.arange(len(self.run)))
+
+    def c_turn_from(self, before: Floats, rows: Rows) -> Floats:
+        """
+        What C turns by in rows, from the angle at which it stands before each of them [deg].
+
+        Where C rolls over, an angle outside the mode is reached the shorter way (B-63534EN/02 p. 531).
+        """
+        turn = self.c_angle[rows] - before
+        if not self.machine.control.rotary_rolls_over:
+            return turn
+        axis = self.machine.polar.rotary_address
+        is_angle = self.blocks.has(axis) & self.modal.uses_axes & (self.mode.section < 0) & ~self.modal.is_step(axis)
+        return np.where(is_angle[rows], turn - 360 * np.ceil(turn / 360 - 0.5), turn)
 
     @cached_property
     def judged_z(self) -> Mask:
@@ -416,9 +434,11 @@ class ProgrammedPath(Columns, frozen=True):
         """
         Way of Z beside a move on the polar plane, where F measures it, too [mm]; 0 elsewhere, NaN while Z is not known.
         """
-        if self.machine.polar.feed_measures == "plane":
+        axes, in_space = self.modal.state("feed_axes"), self.machine.polar.feed_measures == "space"
+        if not in_space and not axes.any():
             return repeated(np.float64(0), len(self.run))
-        beside = self.mode.in_polar & self.axes.moves_plane & self.moves_z
+        measured = (axes == FeedAxes.SPACE) | ((axes == FeedAxes.AS_MACHINE) & in_space)
+        beside = self.mode.in_polar & self.axes.moves_plane & measured & self.moves_z
         return np.where(beside, np.abs(self.z - self.z_before), 0.0)
 
     def _move(self, rows: Mask) -> tuple[Points, Points, Points, States]:

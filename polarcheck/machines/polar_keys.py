@@ -12,6 +12,7 @@ from polarcheck.machines.values import (
     AxisAddressOrNone,
     AxisNumber,
     Codes,
+    Length,
     NumberedWord,
     Plain,
     RotaryAddress,
@@ -53,11 +54,13 @@ class Polar(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     repeated_z: Z beside X or C that names the present Z: allowed, forbidden-in-arcs, or forbidden as any other
     center_words: addresses of arc centers, along the linear and along the virtual axis, by the linear axis
     linear_address: address of the axis with the number 1, where control.axes does not say it: the linear axis
+    center_error: way of the tool beside the center of C, along the virtual axis, which the control makes up for [mm]
     linear_axis: number of the linear axis, as P beside G12.1 names it
     rotary_axis: number of the rotary axis, as Q beside G12.1 names it
     infeed_word: address beside G12.1 of the infeed of a cycle that goes round the contour; empty without such a cycle
     allowed_codes: G codes that can be used in the mode, no others
     plane_before: planes of which one must be selected before G12.1 or right behind it; none where it does not matter
+    engaged_behind: the C axis may be engaged behind G12.1, before the first move there
     main_spindle_must_stop: whether a main spindle that turns at G12.1 is a fault
     """
 
@@ -89,11 +92,13 @@ class Polar(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     repeated_z: Literal["allowed", "forbidden-in-arcs", "forbidden"]
     center_words: dict[LinearAddress, tuple[Address, Address]]
     linear_address: LinearAddress
+    center_error: Length
     linear_axis: AxisNumber
     rotary_axis: AxisNumber
     infeed_word: AddressOrNone
     allowed_codes: list[str]
     plane_before: list[str]
+    engaged_behind: bool = False
     main_spindle_must_stop: bool
 
     @property

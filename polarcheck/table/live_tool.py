@@ -36,16 +36,14 @@ def exceeds_highest_speed(trace: Trace) -> Mask:
 
     Where the profile names no codes of the live tool, an S is for it if a section cuts with it.
     """
-    limit, none = trace.machine.limits.live_tool_speed, np.zeros(len(trace), bool)
-    if np.isnan(limit):
-        return none
     written = _takes(trace) | _named(trace)
-    above = written & (speed(trace) > limit * (1 + SHARE))
+    above = written & (speed(trace) > trace.machine.limits.live_tool_speed * (1 + SHARE))
     if trace.machine.m_codes.live_tool_on:
         return above
     last = np.maximum.accumulate(np.where(written | trace.blocks.starts, np.arange(len(trace)), 0))
-    none[last[trace.path.cuts]] = True
-    return above & none
+    cuts = np.zeros(len(trace), bool)
+    cuts[last[trace.path.cuts]] = True
+    return above & cuts
 
 
 def _takes(trace: Trace) -> Mask:

@@ -136,7 +136,7 @@ class Workpiece(Columns, frozen=True):
         z_to = np.where(returns & ~trace.blocks.has("Z", "W")[row], z_from, z_to)
         # Controls show the angle of C from 0 to 360 deg, however far a section has turned it.
         c_from = np.where((c_from < 0) | (c_from > 360), np.mod(c_from, 360), c_from)
-        c_to = np.where(returns | ~path.moves_c[row], c_from, path.c_angle[row])
+        c_to = c_from + np.where(returns | ~path.moves_c[row], 0.0, path.c_turn_from(c_from, row))
         c_from, c_to = (path.c_axis.sense * c for c in (c_from, c_to))
         with np.errstate(invalid="ignore"):
             begin, end = (x * np.exp(1j * np.radians(c)) for x, c in ((x_from, c_from), (x_to, c_to)))

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from polarcheck.arrays import Mask, Rows, repeated
+from polarcheck.arrays import Mask, Rows, is_among, repeated
 from polarcheck.execution.programs import block_text, find_programs
 from polarcheck.machines.code_lists import is_code
 from polarcheck.machines.codes import NO_CODE, code_numbers, code_set, modal_tables
@@ -290,7 +290,10 @@ class Written:
 
     @cached_property
     def lacks_end(self) -> Mask:
-        """The last word of a program with a head, or between %, that has no code for its end or for a return."""
+        """
+        The last word of a program with a head, or between %, that has no code for its end or for a return, or none
+        behind a part that it calls itself.
+        """
         m_words = np.flatnonzero(self.words.address == ord("M"))
         ends = code_set([*self.machine.m_codes.program_end, *self.machine.macro.program_returns])
         ending = self.words.block[m_words[ends[code_numbers(self.words.value[m_words])]]]
@@ -298,6 +301,9 @@ class Written:
         first = np.array([program.first for program in programs], np.int64)
         end = np.array([program.end for program in programs], np.int64)
         has_end = np.searchsorted(ending, first) < np.searchsorted(ending, end)
+        called = self._called_parts
+        behind = np.searchsorted(first, called, side="right") - 1
+        has_end[behind[np.searchsorted(ending, called) == np.searchsorted(ending, end[behind])]] = False
         in_tape = len(self.text.tape_marks) > 0
         lacking = ~has_end & (np.array([program.has_head for program in programs], bool) | in_tape)
         # A head alone is no program.
@@ -307,6 +313,24 @@ class Written:
         for index in np.flatnonzero(lacking).tolist():
             mask[words_before[1, index] - 1] = not self._ends_in_macro(int(first[index]), int(end[index]))
         return mask
+
+    @property
+    def _called_parts(self) -> Rows:
+        """The blocks with the N numbers at which calls of a part of the own program begin: M98 Q100, M97 P100."""
+        words, macro = self.words, self.machine.macro
+        m_words = np.flatnonzero(words.address == ord("M"))
+        numbers = code_numbers(words.value[m_words])
+        called = []
+        for codes, address in ((macro.subprogram_calls, macro.sequence_word), (macro.local_calls, "P")):
+            calls = words.block[m_words[code_set(codes)[numbers]]]
+            if address and len(calls):
+                of_number = (words.address == ord(address)) & is_among(words.block, calls.tolist())
+                if address != "P":
+                    of_number &= ~is_among(words.block, words.block[words.address == ord("P")].tolist())
+                called += words.value[of_number].tolist()
+        if not called:
+            return words.block[:0]
+        return np.asarray(words.block[(words.address == ord("N")) & is_among(words.value, called)])
 
     def _ends_in_macro(self, first: int, end: int) -> bool:
         """True if a macro block ends the program, returns or jumps."""

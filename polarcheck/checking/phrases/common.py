@@ -69,6 +69,11 @@ def move_code(machine: Machine, key: str) -> str:
     return next((name for name, meant in machine.control.motion_codes.items() if meant == code), code)
 
 
+def line_code(machine: Machine) -> str:
+    """The code of a straight move at feed in the mode."""
+    return move_code(machine, "line")
+
+
 def centers(axes: PlaneAxes, row: int) -> str:
     """The addresses of arc centers: I or J."""
     return " or ".join(axes.center_words(row))

@@ -29,8 +29,8 @@ def reason(faults: Faults, index: int) -> str:
 def closing_loops(machine: Machine) -> str:
     """How loops are closed in the language of the control."""
     if machine.macro.language == "custom-macro":
-        return "close each loop with an END of its own number"
-    return "close each IF, WHILE, FOR and LOOP with its own word"
+        return "close each loop with an END of its own number, the inner loop first"
+    return "close each IF, WHILE, FOR and LOOP with its own word, the inner one first"
 
 
 def number(faults: Faults, index: int) -> int:

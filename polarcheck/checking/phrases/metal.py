@@ -18,8 +18,10 @@ from polarcheck.checking.phrases.misplaced import left_or_right as left_or_right
 from polarcheck.checking.phrases.misplaced import line_of_end as line_of_end
 from polarcheck.checking.phrases.misplaced import ramp_end as ramp_end
 from polarcheck.checking.phrases.misplaced import side as side
+from polarcheck.checking.phrases.misplaced import to_position as to_position
 from polarcheck.checking.phrases.misplaced import turned as turned
 from polarcheck.checking.phrases.misplaced import where_ramps_belong as where_ramps_belong
+from polarcheck.checking.phrases.misplaced import where_to_begin as where_to_begin
 from polarcheck.checking.phrases.misplaced import wrong_by as wrong_by
 from polarcheck.checking.phrases.misplaced import x_meant as x_meant
 from polarcheck.checking.phrases.misplaced import x_of_ramp as x_of_ramp
@@ -137,6 +139,16 @@ def bar_there(bar: Bar, workpiece: Workpiece, lengths: Lengths, row: int) -> str
 def in_step(pass_depths: PassDepths, lengths: Lengths, row: int) -> str:
     """Z of a pass in step with the others, as it would be written."""
     return f"{in_row(float(pass_depths.expected[row]), lengths, row):length}".partition(" ")[0]
+
+
+def tip(trace: Trace, row: int) -> str:
+    """Z of the tip, in the units of the program."""
+    return depth(trace.path, trace.lengths, row)
+
+
+def more(count: int) -> str:
+    """How many moves of a contour there are beside the first one."""
+    return f", and in {count - 1} more moves" if count > 1 else ""
 
 
 def in_air(air_cuts: AirCuts, bar: Bar, trace: Trace, row: int) -> str:

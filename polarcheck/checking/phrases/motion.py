@@ -31,7 +31,7 @@ def of_full_circle(axes: PlaneAxes, path: ProgrammedPath, run: Run, row: int) ->
     before = np.flatnonzero(path.travels[:row])
     if len(before) and _words(run, int(before[-1])) == _words(run, row):
         return "the block stands twice, delete one"
-    return f"a full circle needs {centers(axes, row)}"
+    return f"a full circle needs {centers(axes, row)}, another arc another end"
 
 
 def _words(run: Run, row: int) -> list[str]:
@@ -74,7 +74,13 @@ def reading(lengths: Lengths, row: int) -> str:
 
 
 def misfit_of_x(
-    arcs: Arcs, regularity: Regularity, mode: PolarMode, lengths: Lengths, other_machine: OtherMachine, row: int
+    arcs: Arcs,
+    regularity: Regularity,
+    mode: PolarMode,
+    axes: PlaneAxes,
+    lengths: Lengths,
+    other_machine: OtherMachine,
+    row: int,
 ) -> str:
     """How the section does not fit as X is read, how it would, and what to write."""
     read, meant = reading(lengths, row), other(lengths, row)
@@ -82,6 +88,7 @@ def misfit_of_x(
     if found is None:
         text = f"no arc of this section fits with X read as a {read}, all fit with X as a {meant}"
         return f"{text}{_written_for(lengths, other_machine, row)}"
+    axis = axes.virtual_axis_of(row)
     as_large = ("twice", "half") if found.factor > 1 else ("half", "twice")
     if found.becomes is None:
         text = f"no arc of this section is tangent as it is written, all are with X {as_large[0]} as large"
@@ -92,8 +99,8 @@ def misfit_of_x(
         turn = f"{360 / found.becomes.order:g} deg"
         text = f"with all X {as_large[0]} as large the contour would be the same after each {turn}, now it is not"
     if (found.factor > 1) == (read == "diameter"):
-        return f"{text}{_written_for(lengths, other_machine, row)}, or C {as_large[1]} as large"
-    return f"{text}; write X {as_large[0]} or C {as_large[1]} as large"
+        return f"{text}{_written_for(lengths, other_machine, row)}, or {axis} {as_large[1]} as large"
+    return f"{text}; write X {as_large[0]} or {axis} {as_large[1]} as large"
 
 
 def _written_for(lengths: Lengths, other_machine: OtherMachine, row: int) -> str:
@@ -144,3 +151,8 @@ def travel(lengths: Lengths, machine: Machine, travel: Travel, row: int) -> str:
             goes, ends_at = (in_row(length, lengths, row) for length in (value, limit))
             return f"{axis} would go to {goes.beside(ends_at, form)}, its travel ends at {ends_at.beside(goes, form)}"
     return ""
+
+
+def more_arcs(count: int) -> str:
+    """How many further arcs the finding stands for; empty for none."""
+    return f"; so {'is' if count == 2 else 'are'} {count - 1} more up to the next code of motion" if count > 1 else ""

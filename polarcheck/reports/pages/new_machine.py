@@ -79,18 +79,22 @@ _QUESTIONS: dict[str, dict[str, Any]] = {
         **dict.fromkeys(
             (
                 *("words_beside_switch", "plane_before", "other_axes", "feed_measures", "repeated_z"),
-                *("linear_axis", "rotary_axis"),
+                *("center_error", "linear_axis", "rotary_axis"),
             )
         ),
         "main_spindle_must_stop": None,
     },
     "control": {
         **dict.fromkeys(("g_code_system", "units", "x", "number_without_point", "m_code_limit", "offset_digits")),
+        "rotary_rolls_over": None,
         "axes": [],
         "known_codes": ["+G150"],
     },
     "arcs": dict.fromkeys(("tolerance", "sweep_limit")),
-    "compensation": dict.fromkeys(("start_up", "start_up_with_move", "read_ahead", "interference", "leaving_cancels")),
+    "compensation": {
+        **dict.fromkeys(("start_up", "start_up_with_move", "corner", "corner_arc_above", "corner_arc_from")),
+        **dict.fromkeys(("read_ahead", "interference", "leaving_cancels")),
+    },
 }
 #: Lists that are written as differences from the inherited list.
 _DIFFERING = ("allowed_codes", "known_codes")

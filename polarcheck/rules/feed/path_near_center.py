@@ -17,9 +17,10 @@ def path_near_center(center: Center, tool_center: ToolCenter, machine: Machine) 
 
     Half of a half turn of C falls on a way of twice the distance from the center. So close to it C turns at once, the
     servo lags behind and leaves a mark on the part. Lead the path around, or through no closer than limits.keep_out of
-    the profile.
+    the profile. Where the tool stands beside the center and the control makes up for it, polar.center_error, it comes
+    no nearer than that.
 
-    Source: FANUC B-62764EN/01, p. 52.
+    Source: FANUC B-62764EN/01, p. 52; parameter 5464.
 
     Bad:
 
@@ -38,6 +39,15 @@ def path_near_center(center: Center, tool_center: ToolCenter, machine: Machine) 
         X-40.             (expect: path-near-center)
         G13.1
 
+    Bad, machine fanuc-30i, set parameters.5464=-0.5:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. F5.
+        C.3
+        X-40.             (expect: path-near-center)
+        G13.1
+
     Good, set limits.keep_out=2:
 
         G98 G0 X60. C0
@@ -46,5 +56,5 @@ def path_near_center(center: Center, tool_center: ToolCenter, machine: Machine) 
         X-40.
         G13.1
     """
-    keep_out = machine.limits.keep_out
+    keep_out = max(abs(machine.polar.center_error), machine.limits.keep_out)
     return Hits(center.cuts_off_center & (tool_center.nearest < keep_out), values={"keep_out": keep_out})

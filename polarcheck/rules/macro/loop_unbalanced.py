@@ -5,7 +5,7 @@ from polarcheck.checking.rule import ERROR, Faults, Mask, rule
 
 @rule(
     ERROR,
-    "{reason}; the control stops here: {closing_loops}, the inner one first",
+    "{reason}; the control stops here: {closing_loops}",
     over="faults",
     once="structure",
     follows={"block": ("loop-number-out-of-range",)},

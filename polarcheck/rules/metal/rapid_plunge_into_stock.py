@@ -9,7 +9,7 @@ from polarcheck.checking.rule import ERROR, Hits, Workpiece, graded, rule
     where="workpiece.is_mill",
     once="tool call",
     follows={
-        "motion": ("rapid-in-polar",),
+        "motion": ("rapid-in-polar", "rapid-along-contour"),
         "tool call": ("approach-inside-stock",),
     },
 )

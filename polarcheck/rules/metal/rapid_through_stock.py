@@ -10,7 +10,7 @@ from polarcheck.checking.rule import ERROR, Hits, Workpiece, graded, rule
     once="tool call",
     follows={
         "block": ("uncompensated-cut-into-part", "rapid-through-part"),
-        "motion": ("rapid-in-polar",),
+        "motion": ("rapid-in-polar", "rapid-along-contour"),
         "tool call": ("approach-inside-stock", "rapid-plunge-into-stock"),
     },
 )

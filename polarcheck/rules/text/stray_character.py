@@ -52,4 +52,8 @@ def stray_character(written: Written, other_mode: OtherMode) -> Hits:
         M30 %
     """
     count = written.stray_count
-    return Hits(count > 0, values={"count": count}, follows={"file": other_mode.explained_strays})
+    return Hits(
+        count > 0,
+        values={"count": count},
+        follows={"file": other_mode.explained_strays},
+    )
