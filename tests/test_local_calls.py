@@ -38,6 +38,7 @@ def test_the_part_runs_and_returns(machine: str, program: str, moves: list[float
     ("machine", "program", "finding"),
     [
         ("doosan", "M98 Q100\nM30\n", (4, "jump-target-missing")),
+        ("doosan", "M98 Q100\nM98 Q100 L2\nM30\n", (4, "jump-target-missing")),
         ("citizen", "M98 H100\nM30\n", (4, "jump-target-missing")),
         ("haas-lathe", "M97 P100\nM30\n", (4, "jump-target-missing")),
         ("doosan", "M98 P2 Q200\nM30\nO2\n" + PART, (4, "jump-target-missing")),

@@ -180,7 +180,9 @@ class Faults:
             if rule == ENDLESS_LOOP and self._program(fault.block) in self._undecided:
                 rules.append("")  # what is not known may end it: that is told as not evaluated
                 continue
-            program = fault.values.get("program", fault.start)
+            program: object = fault.values.get("program", fault.start)
+            if "called" in fault.values:  # several calls of a part that is missing
+                program = fault.values["called"], fault.values["number"]
             key = rule, _MANY if one_reason and "program" in fault.values else program
             rules.append("" if key in said else rule)
             said.add(key)
