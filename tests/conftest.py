@@ -35,6 +35,9 @@ os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 #: Characters of one value in the name of a test.
 LONGEST = 50
 
+#: Of a test of more cases than these, one in so many runs by default.
+MANY_CASES, SHARE = 8, 4
+
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption(
@@ -45,16 +48,23 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Before pytest deselects by markers: `one_in(5)` makes every case of a test slow, except each fifth."""
+    """
+    Before pytest deselects by markers: where all files run, all cases but a share are slow of a test of many.
+
+    `one_in(5)` says which share of a test runs by default, `one_in(1)` that all cases do.
+    """
+    everything = [Path(argument).name for argument in config.args] == config.getini("testpaths")
+    count = Counter(item.nodeid.partition("[")[0] for item in items)
     cases: Counter[str] = Counter()
     for item in items:
         if item.get_closest_marker("installs") and not config.getoption("--installs"):
             item.add_marker(pytest.mark.skip(reason="--installs runs what installs packages"))
-        if share := item.get_closest_marker("one_in"):
-            test = item.nodeid.partition("[")[0]
-            if cases[test] % share.args[0]:
-                item.add_marker("slow")
-            cases[test] += 1
+        test = item.nodeid.partition("[")[0]
+        share = item.get_closest_marker("one_in")
+        if cases[test] % (share.args[0] if share else SHARE if everything and count[test] > MANY_CASES else 1):
+            item.add_marker("slow")
+            item.add_marker("left_out")
+        cases[test] += 1
 
 
 @pytest.hookimpl(tryfirst=True)
@@ -66,9 +76,9 @@ def pytest_cmdline_main(config: pytest.Config) -> None:
 
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_call(item: pytest.Item) -> Generator[None, Any, Any]:
-    """Cases that `one_in` leaves out do not count for the coverage: measuring doubles the time of a test."""
+    """Cases that the default run leaves out do not count for the coverage: measuring doubles the time of a test."""
     tracer = sys.gettrace()
-    if item.get_closest_marker("one_in") and item.get_closest_marker("slow"):
+    if item.get_closest_marker("left_out"):
         sys.settrace(None)
     try:
         return (yield)

@@ -256,3 +256,46 @@ def test_a_folder_that_is_not_there_holds_nothing(tmp_path: Path) -> None:
     for name in ("nowhere", "file"):
         report = report_of("O1\nM98 P2\nM30\n", job=with_folder(tmp_path / name))
         assert said(report) == [(2, "subprogram-missing")]
+
+
+def test_many_missing_programs_are_one_finding_with_their_numbers() -> None:
+    """38 calls and no folder are one mistake; a few are each looked at."""
+    calls = "".join(f"M98 P{number}\n" for number in [7001, *range(7010, 7046), 8000])
+    report = report_of(f"O1\n{calls}M30\n")
+    assert said(report) == [(2, "subprogram-missing")]
+    assert report.findings[0].message.endswith("; O7010 to O7045, O8000 are missing as well")
+    few = report_of("O1\nM98 P2\nM98 P3\nM98 P2\nM30\n")
+    assert said(few) == [(2, "subprogram-missing"), (3, "subprogram-missing")]
+
+
+RAMP = "G12.1\nG1 G42 X40. F200\nC10.\nX-40.\nC-10.\nX40.\nC0\nG40 X60.\nG13.1\nM99\n"
+"""Its start-up needs 4 mm in X: too short where X is 41 before it."""
+
+
+@pytest.mark.parametrize(
+    ("starts", "ends"),
+    [
+        ([60, 41], " (in the call of line 7)"),
+        ([41, 60], " (in the call of line 5)"),
+        ([41, 60, 41], " (in the call of line 5 and 1 more)"),
+        ([41, 41], "on the diameter"),
+    ],
+)
+def test_a_finding_of_one_call_says_of_which(folder: Path, starts: list[int], ends: str) -> None:
+    calls = "".join(f"G0 X{x}. C0\n{{}}\n" for x in starts)
+    head = "O1\nG98 G40 T0101\nG0 Z5.\n" + calls + "M30\n"
+    for call, more in (("M98 P2", "O2\n"), ("M98 Q2", "N2")):
+        report = report_of(head.replace("{}", call) + more + RAMP, "fanuc", "1:radius=2,nose=0")
+        assert [one.rule for one in report.findings] == ["start-up-shorter-than-radius"]
+        assert report.findings[0].message.endswith(ends)
+    write(folder, O0002="O2\n" + RAMP)
+    program = head.replace("{}", "M98 P2")
+    report = report_of(program, "fanuc", "1:radius=2,nose=0", job=with_folder(folder))
+    assert [one.line for one in report.findings] == [5 + 2 * starts.index(41)]
+    assert "(in the call" not in report.findings[0].message
+
+
+def test_the_call_may_stand_in_a_called_program() -> None:
+    main = "O1\nG98 G40 T0101\nM98 P3\nM30\nO3\nG0 Z5. X60. C0\nM98 P2\nG0 X41. C0\nM98 P2\nM99\n"
+    report = report_of(main + "O2\n" + RAMP, "fanuc", "1:radius=2,nose=0")
+    assert [one.message.partition("(")[2] for one in report.findings] == ["in the call of line 9)"]

@@ -434,3 +434,13 @@ def test_a_finding_and_what_follows_from_it_are_of_one_channel() -> None:
 
     assert report.findings
     assert all(channels_of(found) == {"$2"} for found in report.findings)
+
+
+@pytest.mark.parametrize("ends", ["M99", "M30"])
+def test_the_mode_is_open_where_the_main_program_of_a_channel_ends(ends: str) -> None:
+    """M99 begins the program of a channel again; of a file of its own it may return to a caller that has the G13.1."""
+    section = "G98 G0 X60. C0\nG12.1\nG1 X10. F200\nC5.\nX60. C0\n"
+    report = report_of(f"O1\n$1\nT0101\n{section}{ends}\n$2\nT0202\n{ends}\n")
+    assert said(report) == [(5, "polar-never-left")]
+    called = f"O1\n$1\nT0101\nM98 P9\nG13.1\n{ends}\nO9\n{section}M99\n$2\nT0202\n{ends}\n"
+    assert said(report_of(called)) == []

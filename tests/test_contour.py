@@ -553,6 +553,7 @@ def is_simple(of: Loop) -> bool:
     return bool(shapely.LinearRing(np.concatenate(points)).is_simple)
 
 
+@pytest.mark.slow
 @settings(max_examples=120, deadline=None)
 @given(contours())
 def test_random_contours_of_one_turn(drawn: tuple[list[Block], Side, float]) -> None:

@@ -239,3 +239,20 @@ def test_a_loop_that_waits_for_what_is_not_known_is_not_evaluated() -> None:
     assert said(report_of(waits.replace("IF[#1005EQ1]GOTO20\n", ""))) != []
     other = report_of(waits + "O2\nN10 G0 X50.\nGOTO10\nM30\n")
     assert [found.rule for found in other.findings if found.severity == "error"] == ["endless-loop"]
+
+
+@pytest.mark.parametrize(
+    ("machine", "program", "line"),
+    [
+        ("fanuc", "O1\nIF[#500 EQ 1]GOTO 99\nG0 X5.\nN9 M30\n", 2),
+        ("siemens-transmit", "G0 X5\nIF R1==1 GOTOF MISSING\nM30\n", 2),
+        ("okuma-osp", "G0 X5.\nIF [VC1 EQ 1] NMISS\nM2\n", 2),
+    ],
+)
+def test_a_target_is_looked_for_where_nobody_knows_the_condition(machine: str, program: str, line: int) -> None:
+    assert said(report_of(program, machine)) == [(line, "jump-target-missing")]
+
+
+@pytest.mark.parametrize("jump", ["GOTO #1", "GOTO #501", "GOTO 9"])
+def test_a_target_that_may_be_there_is_none(jump: str) -> None:
+    assert said(report_of(f"O1\nIF[#500 EQ 1]{jump}\nG0 X5.\nN9 M30\n")) == []

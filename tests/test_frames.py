@@ -18,7 +18,7 @@ HEAD = "T8 D1\nG94 G0 X{x} {c}Z20\n{before}DIAMOF\nTRANSMIT\nG17\n"
 FOOT = "G40 G1 X60 Y0\nTRAFOOF\nDIAMON\nM30\n"
 #: The example of the programming manual to TRANSMIT, its square with an allowance and without.
 SQUARE = "G1 X10 Y-10 G41 OFFN={0} F300\nX-10\nY10\nX10\nY-10\nG0 Z20 G40 OFFN=0\n"
-MANUAL = HEAD.format(x=40, c="C45 ", before="") + "ROT RPL=-45\nATRANS X-2 Y10\n" + SQUARE + "TRAFOOF\nM30\n"
+MANUAL = HEAD.format(x=40, c="C45 ", before="G451\n") + "ROT RPL=-45\nATRANS X-2 Y10\n" + SQUARE + "TRAFOOF\nM30\n"
 
 
 def face(body: str, *, x: float = 120, c: str = "", before: str = "") -> str:
@@ -111,7 +111,7 @@ def test_a_section_with_frames_has_the_tool_center_path_of_its_twin_without(angl
     outside = 50 - 20j
     blocks = [("G1", outside), ("G1 G42", contour[0]), *(("G1", point) for point in contour[1:]), ("G1 G40", 30 - 45j)]
     body = "".join(f"{code} X{point.real:g} Y{point.imag:g} F200\n" for code, point in blocks)
-    own = HEAD.format(x=120, c="", before="") + frames + body + "TRAFOOF\nDIAMON\nM30\n"
+    own = HEAD.format(x=120, c="", before="G451\n") + frames + body + "TRAFOOF\nDIAMON\nM30\n"
     turned = [(code, turn * (point + shift)) for code, point in blocks]
     words = "".join(f"{code} X{2 * point.real:.9f} C{point.imag:.9f} F200\n" for code, point in turned)
     twin = f"T0808\nG98 G0 X120. C0 Z20.\nG12.1\n{words}G13.1\nM30\n"
@@ -128,7 +128,7 @@ def test_the_example_of_the_manual_runs_round_its_square(allowance: float) -> No
     report = report_of(program, MACHINE, "8:radius=2", changes={"limits": {"c_feed": 100_000}})
     # Nothing on the plane follows G40, which is good here, and good to know.
     assert [(one.line, one.rule, one.severity) for one in report.findings] == [
-        (13, "cancel-shorter-than-radius", "note")
+        (14, "cancel-shorter-than-radius", "note")
     ]
     assert report.verdict == "pass"
     assert report.polar_sections[0].radius == 2

@@ -118,6 +118,7 @@ def test_center_words_follow_the_linear_axis(axis: str, own: str, other: str) ->
     [
         (SQUARE.replace("G12.1", "G12.1 P2"), {}, "P beside G12.1 is a linear axis that is not known"),
         (SQUARE, {"polar": {"linear_axis": 2}}, "2, the number in polar.linear_axis, is a linear axis that is not"),
+        (SQUARE, {"parameters": {"5460": 2}}, "2, the number in parameter 5460, is a linear axis that is not"),
         (SQUARE, {"control": {"axes": ["U", "Z", "C"]}}, "1, the number in polar.linear_axis, is a linear axis"),
     ],
 )

@@ -108,14 +108,14 @@ def test_a_length_and_its_limit_are_told_apart() -> None:
     assert said == "X would go to 60.0002 mm, its travel ends at 60 mm"
     program = polar("G1 X40. F200", "C10.", "X70.", head=HEAD.replace("X50.", "X75.9998"))
     said = message(program, "approach-inside-stock", "fanuc", "1:diameter=16", job={"stock": {"diameter": 60}})
-    assert said == "X stands at 75.9998 mm at G12.1; stock 60 mm and cutter 16 mm need 76 mm or more"
+    assert said == "X stands at 75.9998 mm at G12.1, since line 4; stock 60 mm and cutter 16 mm need 76 mm or more"
 
 
 def test_the_clearance_is_named() -> None:
     program = polar("G1 X40. F200", "C10.", "X77.", head=HEAD.replace("X50.", "X77."))
     job = {"stock": {"diameter": 60, "clearance": 2}}
     assert message(program, "approach-inside-stock", "fanuc", "1:diameter=16", job=job) == (
-        "X stands at 77 mm at G12.1; stock 60 mm, cutter 16 mm and clearance 2 mm need 78 mm or more"
+        "X stands at 77 mm at G12.1, since line 4; stock 60 mm, cutter 16 mm and clearance 2 mm need 78 mm or more"
     )
 
 

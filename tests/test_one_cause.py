@@ -415,7 +415,7 @@ MISTAKES = [
     Mistake("G13.1 forgotten", SQUARE, {"/G13.1": ""}, "G12.1", "polar-never-left"),
     Mistake("G12.1 for G13.1", SQUARE, {"G13.1": "G12.1"}, "G12.1", "polar-never-left", ("polar-entered-twice",)),
     Mistake("G12.1 forgotten", SQUARE, {"/G12.1": ""}, "G13.1", "polar-never-entered"),
-    Mistake("G12 for G12.1", SQUARE, {"G12.1": "G12"}, "G13.1", "polar-never-entered"),
+    Mistake("G12 for G12.1", SQUARE, {"G12.1": "G12"}, "G12", "polar-switch-unknown"),
     Mistake("G12.1 twice", SQUARE, {"G12.1": "G12.1/G12.1"}, "G12.1", "polar-entered-twice"),
     Mistake(
         "X beside G12.1",
@@ -751,8 +751,8 @@ def called_three_times(section: str) -> str:
                 "G13",
                 "/".join([*HEAD, SQUARE.replace("G13.1", "G13"), *END]),
                 "fanuc",
-                "polar-never-left",
-                "G13 stands where the G13.1 is missing",
+                "polar-switch-unknown",
+                None,
             ),
             (
                 "scaling first",

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from programs import tables_of
+from programs import report_of, tables_of
 
 from polarcheck.table.angles import Angles
 
@@ -150,3 +150,10 @@ def test_a_steady_way_to_a_full_turn(blocks: list[str], count: int) -> None:
 )
 def test_a_contour_is_no_steady_way_to_a_full_turn(blocks: list[str]) -> None:
     assert moved(*blocks) == []
+
+
+@pytest.mark.parametrize("words", ["Y5. C30.", "C30. Y5.", "C30."])
+def test_the_word_that_looks_like_an_angle_is_named(words: str) -> None:
+    report = report_of(f"G98\nG12.1\nG1 X10. {words} F100\nG13.1\n")
+    angle = next(found for found in report.findings if found.rule == "degrees-in-polar")
+    assert angle.message.startswith("C30. is a length of 30 mm")

@@ -233,13 +233,19 @@ def test_a_gap_with_leads_side_by_side(gap: float, side: str, turn: float) -> No
 def test_the_message_of_a_gap() -> None:
     [finding] = found("G1 X80. F300/Z-2./G42 X40. C0./C20./X-40./C-20./X40./C-1./G40 X80./Z2.")
     assert finding.block == "C-1."
-    assert finding.message == "the contour ends at X40 C-1, 1 mm before it is closed: write X40 C0 there"
+    assert finding.message == (
+        "the contour ends at X40 C-1, 1 mm before it is closed: write X40 C0 here, or X40 C-1 in line 8, where it "
+        "begins"
+    )
 
 
 def test_a_gap_in_inch() -> None:
     head = HEAD.replace("G21", "G20").replace("X200. ", "X8. ")
     [finding] = found("G1 X3. F12./Z-.1/G42 X1.6 C0/C.8/X-1.6/C-.8/X1.6/C-.04/G40 X3./Z.1", "1:radius=.125", head=head)
-    assert finding.message == "the contour ends at X1.6 C-0.04, 0.04 inch before it is closed: write X1.6 C0 there"
+    assert finding.message == (
+        "the contour ends at X1.6 C-0.04, 0.04 inch before it is closed: write X1.6 C0 here, or X1.6 C-0.04 in line 8, "
+        "where it begins"
+    )
 
 
 @pytest.mark.parametrize(

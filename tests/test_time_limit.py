@@ -220,6 +220,7 @@ def test_a_pass_that_is_written_once_more_deeper_sweeps_nothing_else(monkeypatch
 # ---- the same, with less ----
 
 
+@pytest.mark.one_in(3)
 @pytest.mark.parametrize("family", ["pockets", "bosses", "passes"])
 def test_rings_by_what_they_lie_in_or_one_by_one(family: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Parts of many rings are the same, however they are put together."""

@@ -302,7 +302,7 @@ def test_a_comment_that_contradicts(first: bool, tools: tuple[str, ...]) -> None
     [found] = report_of(guide(*places, comment=' (3/4" DIA. CUTTER)'), "turning-center", *tools).findings
     assert found.message == (
         f"R 0.25 inch is set for offset 8 by G10 P8 R.25 in line {3 if first else 8}, the comment tells 0.375 inch: "
-        '3/4" DIA. CUTTER; measure the cutter'
+        '3/4" DIA. CUTTER; measure the cutter, and correct the one that is wrong'
     )
 
 

@@ -1,14 +1,16 @@
 """
-Findings in a called program of another file, shown at the block of this file that calls it; those in a program of
-another channel of this file, where they are.
+Findings in called programs: those of another file are shown at the block of this file that calls it, those of another
+channel of this file where they are. A finding of some of the calls of a program says of which.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import msgspec
+import numpy as np
 
+from polarcheck.arrays import Rows
 from polarcheck.columns.trace import Trace
 from polarcheck.finding import Finding, Silenced
 
@@ -16,7 +18,42 @@ from polarcheck.finding import Finding, Silenced
 Answered = Callable[[Finding, int], Finding]
 
 
-def in_the_file(findings: Sequence[Finding], trace: Trace, answered: Answered) -> list[Finding]:
+#: The row of a finding by its rule, line and column.
+RowsOfFindings = Mapping[tuple[str, int, int], int]
+
+
+def in_call(trace: Trace, rows: Rows, row: int) -> str:
+    """
+    Of which calls a finding in a called program is, where the program is called several times and only some have it.
+
+    rows: all that the rule has hit. row: where the finding stands. Calls are those of the main program; where one of
+    them runs the block several times, those of the program that calls it.
+    """
+    depth, line = trace.run.depth, trace.blocks.line
+    if not depth[row] or trace.text.source.part_of(int(line[row])):
+        return ""
+    runs = np.flatnonzero(trace.run.block == trace.run.block[row])
+    for level in range(int(depth[runs].min())):
+        calls = _calls(depth, runs, level)
+        if len(set(line[calls].tolist())) > 1 and not np.any(calls < 0):
+            has = set(line[_calls(depth, rows[trace.run.block[rows] == trace.run.block[row]], level)].tolist())
+            if has == set(line[calls].tolist()):
+                return ""
+            of_one = int(line[_calls(depth, np.array([row]), level)[0]])
+            more = f" and {len(has) - 1} more" if len(has) > 1 else ""
+            return f" (in the call of line {of_one}{more})"
+    return ""
+
+
+def _calls(depth: Rows, rows: Rows, level: int) -> Rows:
+    """Per row the last row above it at a level of calls; -1 for none."""
+    above = np.append(-1, np.flatnonzero(depth <= level))
+    return above[np.searchsorted(above, rows) - 1]
+
+
+def in_the_file(
+    findings: Sequence[Finding], trace: Trace, answered: Answered, rows: RowsOfFindings | None = None
+) -> list[Finding]:
     """
     Findings in a called program that lies in another file are shown at the block that calls it.
 
@@ -27,8 +64,9 @@ def in_the_file(findings: Sequence[Finding], trace: Trace, answered: Answered) -
         return list(findings)
     found: list[Finding] = []
     for finding in findings:
-        following = in_the_file(finding.follows, trace, answered)
-        shown = _shown(finding, trace, answered)
+        following = in_the_file(finding.follows, trace, answered, rows)
+        row = (rows or {}).get((finding.rule, finding.line, finding.column))
+        shown = _shown(finding, trace, answered, row)
         if shown is not None and isinstance(shown, Silenced):
             found += [msgspec.structs.replace(shown, follows=[]), *following]
         elif shown is None:
@@ -38,12 +76,12 @@ def in_the_file(findings: Sequence[Finding], trace: Trace, answered: Answered) -
     return found
 
 
-def _shown(finding: Finding, trace: Trace, answered: Answered) -> Finding | None:
+def _shown(finding: Finding, trace: Trace, answered: Answered, row: int | None) -> Finding | None:
     source = trace.text.source
     part = source.part_of(finding.line)
     if part is None:
         return finding
-    call = _call_of(trace, finding.line)
+    call = _call_of(trace, finding.line, row)
     if call is None:
         return None
     line, block, text_of_block = call
@@ -72,13 +110,13 @@ def _at(finding: Finding, line: int, section: tuple[str, int] | None) -> Finding
     return msgspec.structs.replace(finding, line=line, end_line=end_line, section_line=section_line, fix=None)
 
 
-def _call_of(trace: Trace, line: int) -> tuple[int, int, str] | None:
+def _call_of(trace: Trace, line: int, row: int | None) -> tuple[int, int, str] | None:
     """
     The line, number and text of the block of this file that ran last before a line of a called program.
 
-    None where none did.
+    row: where the finding stands; without it the first run of the line counts. None where no block ran before it.
     """
-    rows = (trace.blocks.line == line).nonzero()[0]
+    rows = (trace.blocks.line == line).nonzero()[0] if row is None else np.array([row])
     if not len(rows):
         return None
     first_part = trace.text.source.parts[0].first_line

@@ -179,7 +179,7 @@ def engine_of(
 def report_of(engine: Engine) -> FileReport:
     """Report the findings of one run, and what could not be evaluated."""
     tables, trace = engine.tables, engine.trace
-    findings, silenced = divided(in_order(in_the_file(engine.findings(), trace, engine.answered)))
+    findings, silenced = divided(in_order(in_the_file(engine.findings(), trace, engine.answered, engine.rows_in_calls)))
     unevaluated = (*bounds_not_reported(tables, _all(findings)), *all_unevaluated(tables, engine.rules.values()))
     not_evaluated = list(dict.fromkeys((*unevaluated, *engine.unlisted)))
     text = trace.text

@@ -14,6 +14,7 @@ import numpy as np
 
 from polarcheck.arrays import Mask, Rows, is_uniform, repeated
 from polarcheck.checking import places
+from polarcheck.checking.called_files import in_call
 from polarcheck.checking.places import PLACES, Place
 from polarcheck.checking.rule import Hits, Rule
 from polarcheck.checking.tables import OF_CAUSE, Tables
@@ -71,6 +72,7 @@ class Engine:
     used: the names of allow comments that silenced a hit, each with the position of its comment.
     unlisted: rules that were given up, and findings beyond LISTED.
     heads: the block and the name of each program.
+    rows_in_calls: the row of each finding in a called program, by its rule, line and column.
     """
 
     def __init__(
@@ -95,6 +97,7 @@ class Engine:
         self._listed_by_rule: dict[str, _Listed | None] = {}
         self._in_progress: set[str] = set()
         self.heads = program_heads(self.trace)
+        self.rows_in_calls: dict[tuple[str, int, int], int] = {}
 
     def hits(self, rule: Rule) -> Hits:
         """Run the rule and cache its hits; empty if one of its tables exceeds its bounds."""
@@ -340,6 +343,9 @@ class Engine:
         severity = _severity(rule, hits, place).name.lower()
         is_note = trace.machine.severities.get(rule.name, severity) == NOTE.name.lower()
         text, values = fill(rule, hits, self.tables, place, at, count)
+        if place.row >= 0 and trace.run.depth[place.row]:
+            self.rows_in_calls[rule.name, line, start - int(source.line_starts[line - 1]) + 1] = place.row
+            text += in_call(trace, places.rows(rule.over, self.tables)[hits.mask], place.row)
         block = places.block_text(trace.text, place.block)
         section = int(trace.mode.section[place.row]) if place.row >= 0 else -1
         kind = Undecided if hits.undecided is not None and hits.undecided[place.index] else Finding

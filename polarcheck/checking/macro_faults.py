@@ -7,7 +7,7 @@ One table maps each kind of fault to its rule; two more have the reasons, of fau
 from __future__ import annotations
 
 import bisect
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import cached_property
 from typing import Final
 
@@ -79,6 +79,11 @@ RULES: Final[Mapping[FaultKind, str]] = {
 #: The rule that reports a program that never ends, and one that was broken off at a bound.
 ENDLESS_LOOP = "endless-loop"
 _BOUNDS = ("too-many-blocks", "too-many-statements", "runs-too-long", "too-many-repeats")
+#: So many missing programs are reported one by one: more are missing for one reason, as a folder that nobody has given.
+_ONE_BY_ONE = 5
+#: Spans of their numbers in a message.
+_NAMED = 8
+_MANY = "many programs"
 #: Of a name in a reason [characters].
 _LONGEST = 40
 
@@ -108,7 +113,7 @@ _REASONS: Final[Mapping[FaultKind, str]] = {
     "program-number": "names no program: P takes a number from 1 to 99999999",
     "program-not-found": (
         "calls {program}{times}, which is not in this file and in no folder of the job (--subprograms FOLDER); "
-        "positions after it are not known"
+        "positions after it are not known{others}"
     ),
     "sequence-number-not-found": "there is no N{number:.15g} in this program",
     "sequence-number-vacant": "the number to go to is a vacant variable",
@@ -169,12 +174,14 @@ class Faults:
         """
         said: set[tuple[str, object]] = set()
         rules = []
+        one_reason = len(self._missing) > _ONE_BY_ONE
         for fault in self.run.faults:
             rule = RULES[fault.kind]
             if rule == ENDLESS_LOOP and self._program(fault.block) in self._undecided:
                 rules.append("")  # what is not known may end it: that is told as not evaluated
                 continue
-            key = rule, fault.values.get("program", fault.start)
+            program = fault.values.get("program", fault.start)
+            key = rule, _MANY if one_reason and "program" in fault.values else program
             rules.append("" if key in said else rule)
             said.add(key)
         return np.array(rules, np.str_)
@@ -209,7 +216,13 @@ class Faults:
         written, values = self.run.text.source.excerpt(fault.start, fault.end), fault.values
         closing = ")" if "(" in written and "[" not in written else "]"
         blocks = self._calling_blocks.get(values.get("program"), ())
-        return {**limits, "closing": closing, "times": f" in {len(blocks)} blocks" if len(blocks) > 1 else "", **values}
+        return {
+            **limits,
+            "closing": closing,
+            "times": f" in {len(blocks)} blocks" if len(blocks) > 1 else "",
+            "others": self._others(values.get("program")),
+            **values,
+        }
 
     @cached_property
     def _calling_blocks(self) -> dict[object, set[int]]:
@@ -220,13 +233,44 @@ class Faults:
                 found.setdefault(fault.values["program"], set()).add(fault.start)
         return found
 
+    @property
+    def _missing(self) -> list[str]:
+        """The programs that are missing, in the order of the calls."""
+        return [str(program) for program in self._calling_blocks]
+
+    def _others(self, program: object) -> str:
+        """The other missing programs that a finding stands for: `; O7002 to O7038 are missing as well`; else empty."""
+        if program is None or len(self._missing) <= _ONE_BY_ONE:
+            return ""
+        spans = _spans([name for name in self._missing if name != program])
+        more = f" and {len(spans) - _NAMED} more" if len(spans) > _NAMED else ""
+        return f"; {', '.join(spans[:_NAMED])}{more} are missing as well"
+
     def reason(self, index: int) -> str:
         """What is wrong, in words."""
         values = self.values(index).items()
-        told = {name: shortened(one, _LONGEST) if isinstance(one, str) else one for name, one in values}
+        told = {
+            name: shortened(one, _LONGEST) if isinstance(one, str) and name != "others" else one for name, one in values
+        }
         return _REASONS[self.run.faults[index].kind].format_map(told)
 
 
 def reason_of(remark: Remark) -> str:
     """Why something was not executed, in words."""
     return _REMARKS[remark.kind].format_map({"variables": _VARIABLES, **remark.values})
+
+
+def _spans(names: Sequence[str]) -> list[str]:
+    """Names of programs, numbers that follow each other in one span: `O7002 to O7038`, `<SUB>`."""
+    numbers = sorted(int(name[1:]) for name in names if name[1:].isdigit())
+    spans: list[list[int]] = []
+    for number in numbers:
+        if spans and number == spans[-1][-1] + 1:
+            spans[-1].append(number)
+        else:
+            spans.append([number])
+    shown = [
+        f"O{span[0]:04d} to O{span[-1]:04d}" if len(span) > 2 else ", ".join(f"O{one:04d}" for one in span)
+        for span in spans
+    ]
+    return [*shown, *(name for name in names if not name[1:].isdigit())]

@@ -79,12 +79,14 @@ if TYPE_CHECKING:
     from polarcheck.table.passes import Passes as Passes
     from polarcheck.table.procedure import Procedure as Procedure
     from polarcheck.table.ramps import Ramps as Ramps
+    from polarcheck.table.rapid_contours import RapidContours as RapidContours
     from polarcheck.table.regularity import Regularity as Regularity
     from polarcheck.table.same_circle import SameCircle as SameCircle
     from polarcheck.table.senses import Senses as Senses
     from polarcheck.table.slots import Slots as Slots
     from polarcheck.table.spindles import Spindles as Spindles
     from polarcheck.table.stock_comments import StockComments as StockComments
+    from polarcheck.table.switch_slips import SwitchSlips as SwitchSlips
     from polarcheck.table.switch_words import SwitchWords as SwitchWords
     from polarcheck.table.tangency import Tangency as Tangency
     from polarcheck.table.tool_center import ToolCenter as ToolCenter

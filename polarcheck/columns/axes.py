@@ -301,13 +301,17 @@ class PlaneAxes(Columns, frozen=True):
     def virtual_words(self) -> Rows:
         """The words of the virtual axis, be it under the address of another form or control."""
         if self._by_number:
-            every = [self._words_of_pair(pair, rows) for pair, rows in self.virtual_pairs]
-            words = np.sort(np.concatenate(every))
+            words = self.followed_virtual_words
         else:
             words = self.blocks.word_indices(
                 *dict.fromkeys(address for pair in (*self._forms, *self._foreign) for address in pair)
             )
         return words[~self.linear_words[words]] if self.other_linear_axes else words
+
+    @property
+    def followed_virtual_words(self) -> Rows:
+        """Of the words of the virtual axis those that count: of Y and C in one block the one that it has there."""
+        return np.sort(np.concatenate([self._words_of_pair(pair, rows) for pair, rows in self.virtual_pairs]))
 
     def _moves_itself(self, pair: Pair) -> Mask:
         """Rows of sections on another rotary axis, in which an axis of the lathe of these addresses moves by itself."""

@@ -55,10 +55,18 @@ class PolarMode(Columns, frozen=True):
             rapid=self.blocks.listed("rapid"),
             cuts=cutting & self.axes.programs_virtual_axis,
             moves=(cutting | in_rapid) & self.axes.moves_plane,
-            returns=self.blocks.codes(*self.machine.macro.program_returns) & (self.run.depth == 0),
+            returns=self._returns,
             broken_off=np.zeros(len(self.run), bool) if self.run.broken_off is None else self.run.broken_off,
         )
         return find_sections(marks)
+
+    @property
+    def _returns(self) -> Mask:
+        """M99 of a program that nothing here calls; at the end of the main program of a channel it begins it again."""
+        returns = self.blocks.codes(*self.machine.macro.program_returns) & (self.run.depth == 0)
+        if self.run.text.source.channel and returns.any():
+            returns = returns & (self.blocks.program != self.blocks.program[np.argmin(self.run.block)])
+        return np.asarray(returns)
 
     @cached_property
     def section(self) -> Rows:

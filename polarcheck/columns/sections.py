@@ -15,8 +15,8 @@ class Marks(msgspec.Struct, frozen=True):
     on, off: the switching codes. starts: a program begins. outside: codes that can only stand outside (reference
     return). planes: a plane is selected that cannot be selected in the mode. tool_ends: tool change, program end.
     stops: M1, between two tools or in the work of one. rapid: G0 is written. cuts: a cutting move with a word of the
-    virtual axis. moves: any move in the plane that can stand in the mode. returns: M99 of a program that nothing here
-    calls. broken_off: the last row of a program that a bound has ended.
+    virtual axis. moves: any move in the plane that can stand in the mode. returns: M99 of a program that something
+    elsewhere may call. broken_off: the last row of a program that a bound has ended.
     """
 
     on: Mask

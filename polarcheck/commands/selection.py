@@ -38,6 +38,19 @@ def select(names: Iterable[str], known: Rules, machine: Machine) -> Rules:
     return {name: rule for name, rule in known.items() if name in selected}
 
 
+def of_alarm(name: str, known: Rules, machine: Machine) -> list[Rule]:
+    """
+    Return the rules with an alarm (PS0146, 146) of a machine, in the order of its profile; none for another name.
+
+    Raises UsageError for an alarm that no rule gives.
+    """
+    alarm = _ALARM.fullmatch(name.strip())
+    if alarm is None:
+        return []
+    select([name], known, machine)
+    return _of_alarm(alarm, known, machine)
+
+
 def _of_alarm(alarm: re.Match[str], known: Rules, machine: Machine) -> list[Rule]:
     """Return the rules with an alarm on this machine; its letters and leading zeros may be left out."""
     letters, number = alarm[1].upper(), int(alarm[2])

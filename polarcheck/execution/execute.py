@@ -9,7 +9,7 @@ from collections.abc import Set as AbstractSet
 import numpy as np
 
 from polarcheck.execution.arithmetic import UNKNOWN
-from polarcheck.execution.branches import execute_structure, is_true, leave_parts, repeat_part
+from polarcheck.execution.branches import execute_structure, is_true, is_unknown, leave_parts, repeat_part
 from polarcheck.execution.calls import enter_program, execute_call, leave_program, modal_call
 from polarcheck.execution.expression import decide, evaluate
 from polarcheck.execution.library import Shelf
@@ -161,6 +161,8 @@ def _execute(state: State, statement: Statement, block: int) -> int:
         case Kind.IF_GOTO:
             if is_true(state, statement.condition, block):
                 return _go_to(state, statement, block)
+            if _names_target(statement) and is_unknown(state, statement.condition):
+                _find_target(state, statement, block)
         case Kind.IF_THEN:
             if statement.then is not None and is_true(state, statement.condition, block):
                 return _execute(state, statement.then, block)
@@ -206,10 +208,22 @@ def _assign(state: State, statement: Statement, block: int) -> None:
 
 
 def _go_to(state: State, statement: Statement, block: int) -> int:
+    target = _find_target(state, statement, block)
+    return block + 1 if target is None else _jump(state, target, block)
+
+
+def _names_target(statement: Statement) -> bool:
+    """True for a jump to a label, or to a number as it is written: another way may assign a variable."""
+    jump = statement.jump
+    return bool(statement.label) or (jump is not None and [step.name for step in jump.steps] == ["number"])
+
+
+def _find_target(state: State, statement: Statement, block: int) -> int | None:
+    """The block to which a statement jumps; None, and reported, where there is none, be the jump taken or not."""
     if statement.label:
-        return _go_to_label(state, statement, block)
+        return _find_label(state, statement, block)
     if statement.jump is None:
-        return block + 1
+        return None
     number, fault = evaluate(statement.jump, state.variables, state.listing.arithmetic)
     state.add(fault, block)
     if number is None or number != number:
@@ -217,13 +231,11 @@ def _go_to(state: State, statement: Statement, block: int) -> int:
             state.add_fault("sequence-number-vacant", block, statement.jump)
         else:
             state.add_remark("condition-unknown", block)
-        return block + 1
+        return None
     target = state.listing.programs.jump(state.stack[-1].program, round(number), block, statement.search)
-    if target is None:
-        if statement.search is not Search.IF_THERE:
-            state.add_fault("sequence-number-not-found", block, statement.jump, number=round(number))
-        return block + 1
-    return _jump(state, target, block)
+    if target is None and statement.search is not Search.IF_THERE:
+        state.add_fault("sequence-number-not-found", block, statement.jump, number=round(number))
+    return target
 
 
 def _jump(state: State, target: int, block: int) -> int:
@@ -235,15 +247,13 @@ def _jump(state: State, target: int, block: int) -> int:
     return target
 
 
-def _go_to_label(state: State, statement: Statement, block: int) -> int:
+def _find_label(state: State, statement: Statement, block: int) -> int | None:
     program, search = state.stack[-1].program, statement.search
     target = state.listing.programs.labelled(program, statement.label, block, search)
-    if target is None:
-        if search is not Search.IF_THERE:
-            where = {Search.FORWARD: "behind", Search.BACKWARD: "before"}.get(search, "beside")
-            state.add_fault("label-not-found", block, statement, label=statement.label, where=where)
-        return block + 1
-    return _jump(state, target, block)
+    if target is None and search is not Search.IF_THERE:
+        where = {Search.FORWARD: "behind", Search.BACKWARD: "before"}.get(search, "beside")
+        state.add_fault("label-not-found", block, statement, label=statement.label, where=where)
+    return target
 
 
 def _loop(state: State, statement: Statement, block: int) -> int:

@@ -56,6 +56,7 @@ class MCodes(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     sub_c_axis_unclamp: the clamp of the C axis of the sub-spindle is released
     sub_spindle_on: the sub-spindle turns
     sub_spindle_off: the sub-spindle stops
+    spindle_orientation: the main spindle turns to an angle and stops there
     tool_change: tool change, beside T
     optional_stop: optional stop, as it stands between two tools
     program_end: end of program
@@ -76,6 +77,7 @@ class MCodes(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     sub_c_axis_unclamp: list[str] = []
     sub_spindle_on: list[str] = []
     sub_spindle_off: list[str] = []
+    spindle_orientation: list[str] = []
     tool_change: list[str]
     optional_stop: list[str]
     program_end: list[str]

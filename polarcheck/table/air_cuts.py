@@ -162,6 +162,14 @@ class AirCuts(Columns, frozen=True):
         return np.asarray(stays & below)
 
     @property
+    def is_cut_below(self) -> Mask:
+        """Rows at whose Z with the other sign the program cuts elsewhere."""
+        depths = np.sort(self.trace.path.z[self.walls])
+        wanted = -self.trace.path.z
+        near = [np.searchsorted(depths, wanted + way * ROUNDING) for way in (-1, 1)]
+        return np.asarray((near[1] > near[0]) & (self.trace.path.z > ROUNDING))
+
+    @property
     def _outside_bar(self) -> Mask:
         """All cuts of the section run outside the circle that holds the bar."""
         trace, largest = self.trace, self.bar.known.largest

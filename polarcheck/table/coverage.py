@@ -144,11 +144,16 @@ class Coverage(Columns, frozen=True):
         """In rows with a gap: the start of the contour [mm], plane point; NaN for other rows."""
         return self._gaps[1]
 
+    @property
+    def begins_in(self) -> Rows:
+        """In rows with a gap: the row of the first move of the contour; -1 for other rows."""
+        return self._gaps[2]
+
     @cached_property
-    def _gaps(self) -> tuple[Floats, Points]:
+    def _gaps(self) -> tuple[Floats, Points, Rows]:
         if self._parts is None:
             nothing = _nothing_left(len(self.trace))
-            return nothing.height, nothing.place
+            return nothing.height, nothing.place, np.full(len(self.trace), -1)
         from polarcheck.geometry.contour_ends import CLOSED, gaps_of
 
         checked, part, _ = self._parts
@@ -157,7 +162,9 @@ class Coverage(Columns, frozen=True):
         length, begins = np.zeros(len(self.trace)), np.full(len(self.trace), NOWHERE)
         row = checked.loops.curves.row[last]
         length[row], begins[row] = part.gap[is_open], checked.loops.curves.start[first]
-        return length, begins
+        begins_in = np.full(len(self.trace), -1)
+        begins_in[row] = checked.loops.curves.row[first]
+        return length, begins, begins_in
 
     # ---- ribs ----
 

@@ -23,6 +23,9 @@ _MINUTES, _HOURS = 300.0, 7200.0
 #: Blocks of a series: more than a control without look-ahead reads in advance.
 _SERIES = 10
 
+#: A way that comes so much nearer to the center than the contour does, as a share of its distance, is none to it.
+_STRAYS = 0.5
+
 
 class Feeds(Columns, frozen=True):
     """Columns of one trace, one value per row."""
@@ -54,6 +57,21 @@ class Feeds(Columns, frozen=True):
         trace = self.trace
         given = trace.mode.given_in_section(trace.blocks.has("F"))
         return np.asarray(trace.feedrate.entered_per_revolution & ~given & trace.feedrate.takes_over_per_minute_only)
+
+    @cached_property
+    def strays_to_center(self) -> Mask:
+        """
+        Ramps and ways that come nearer to the center than half of what the contour of their section does.
+
+        A coordinate of them is wrong, rather than F.
+        """
+        trace, nearest = self.trace, self.tool_center.nearest
+        of_contour = trace.compensation.compensates & ~trace.compensation.starts_up & trace.path.travels
+        of_contour &= trace.mode.in_polar & ~np.isnan(nearest)
+        least = np.full(len(trace.mode.sections) + 1, np.nan)
+        np.fmin.at(least, trace.mode.section[of_contour], nearest[of_contour])
+        least[-1] = np.nan
+        return np.asarray(~of_contour & (nearest < _STRAYS * least[trace.mode.section]))
 
     @cached_property
     def mode_is_unknown(self) -> Mask:

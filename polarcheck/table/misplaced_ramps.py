@@ -229,9 +229,9 @@ class MisplacedRamps(Columns, frozen=True):
         halved = (np.abs(begin.imag - end.imag) <= _SAME) & (np.abs(begin.real) > _SAME)
         halved &= (np.abs(begin.real * 2 - end.real) <= _SAME) | (np.abs(begin.real - end.real * 2) <= _SAME)
         halved &= np.abs(moves.start[starts] - moves.end[leave]) <= _SAME
-        # The arc that begins at this X is no circle; several tell of another mistake.
+        # The arc that begins at this X is no circle; another one tells of another mistake.
         wrong = np.append(0, np.cumsum(self.arcs.is_no_circle[moves.row]))
-        halved &= wrong[leave] - wrong[starts] <= 1
+        halved &= wrong[leave] == wrong[np.minimum(starts + 2, leave)]
         column[moves.row[starts[halved]]] = end.real[halved]
         return column
 

@@ -119,7 +119,13 @@ class Spindles:
     def words(self) -> Mask:
         """Per executed word: a code of the spindle whose C axis it is, or of that axis, and not of the live tool."""
         trace, codes = self.trace, self._codes
-        of_main = (*codes.spindle_on, *codes.spindle_off, *codes.c_axis_on, *codes.c_axis_off)
+        of_main = (
+            *codes.spindle_on,
+            *codes.spindle_off,
+            *codes.spindle_orientation,
+            *codes.c_axis_on,
+            *codes.c_axis_off,
+        )
         of_sub = (*codes.sub_spindle_on, *codes.sub_spindle_off, *codes.sub_c_axis_on, *codes.sub_c_axis_off)
         main, sub, live = (
             trace.blocks.words_at(trace.blocks.code_indices(*of_one))

@@ -153,6 +153,22 @@ class ToolCenter:
         return self._found(self._path.movement_missing)
 
     @cached_property
+    def waits_for_movement(self) -> Mask:
+        """
+        movement_missing, in the block that is the reason where there is one: the first behind it whose words for the
+        plane move nothing.
+        """
+        trace, missing = self.trace, self.movement_missing
+        if not missing.any():
+            return missing
+        idle = trace.axes.moves_plane & ~trace.path.travels & ~trace.path.moves_z & trace.mode.in_polar
+        moved, at = np.cumsum(trace.path.travels), np.flatnonzero(idle)
+        rows = np.flatnonzero(missing)
+        behind = np.append(at, -1)[np.searchsorted(at, rows)]
+        own = (behind >= 0) & (moved[behind] == moved[rows])
+        return trace.blocks.mask_of(np.where(own, behind, rows))
+
+    @cached_property
     def arc_center_on_path(self) -> Mask:
         """An arc whose center is its start or its end."""
         return self._found(self._path.arc_center_on_path)

@@ -63,6 +63,17 @@ def code_of(machine: Machine, key: str) -> str:
     return next(iter(machine.codes(key)), key.replace("_", " "))
 
 
+def move_code(machine: Machine, key: str) -> str:
+    """The code of a move in the mode as the control has it: G1, or G101."""
+    code = code_of(machine, key)
+    return next((name for name, meant in machine.control.motion_codes.items() if meant == code), code)
+
+
+def line_code(machine: Machine) -> str:
+    """The code of a straight move at feed in the mode."""
+    return move_code(machine, "line")
+
+
 def centers(axes: PlaneAxes, row: int) -> str:
     """The addresses of arc centers: I or J."""
     return " or ".join(axes.center_words(row))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from polarcheck.checking.phrases.common import block_and_line, code_of
+from polarcheck.checking.phrases.common import block_and_line, code_of, move_code
 from polarcheck.checking.phrases.drawing import deviation as deviation
 from polarcheck.checking.phrases.drawing import drawing as drawing
 from polarcheck.checking.phrases.offsets import called_tool
@@ -13,6 +13,7 @@ from polarcheck.checking.quantity import in_row
 from polarcheck.columns.axes import PlaneAxes
 from polarcheck.columns.blocks import ExecutedBlocks
 from polarcheck.columns.compensation import CutterCompensation
+from polarcheck.columns.filling import last_row
 from polarcheck.columns.lengths import Lengths
 from polarcheck.columns.mode import PolarMode
 from polarcheck.columns.offsets import ToolOffsets
@@ -54,6 +55,26 @@ def remedy(lengths: Lengths, compensation: CutterCompensation, machine: Machine,
     radius = float(compensation.radius[row])
     shown = f", or R {in_row(-radius, lengths, row):length} in the tool offset" if radius < 0 else ""
     return f"write {code_of(machine, other)}{shown}"
+
+
+def or_other_sense(trace: Trace, row: int) -> str:
+    """`, or G2 for G3 of line 18`, where one code of arcs is in force in all blocks of the contour."""
+    moves = np.flatnonzero(trace.path.travels)
+    moves = moves[moves > row]
+    leave = np.flatnonzero(~trace.compensation.compensates[moves])
+    moves = moves[: leave[0]] if len(leave) else moves
+    codes = trace.modal.motion_word[moves]
+    if not len(moves) or trace.axes.motion[moves[0]] not in (Motion.CW, Motion.CCW) or np.any(codes != codes[0]):
+        return ""
+    line = int(trace.blocks.line[moves[0]])
+    first = int(moves[0])
+    written, other = written_sense(trace.axes, trace.machine, first), other_sense(trace.axes, trace.machine, first)
+    return f", or {other} for {written} of line {line}"
+
+
+def cancel(machine: Machine) -> str:
+    """G40."""
+    return code_of(machine, "compensation_off")
 
 
 def before(compensation: CutterCompensation, row: int) -> str:
@@ -100,12 +121,12 @@ def misfit(lengths: Lengths, compensation: CutterCompensation, tool_center: Tool
 
 def written_sense(axes: PlaneAxes, machine: Machine, row: int) -> str:
     """G2 or G3, whichever is in force."""
-    return machine.codes("arc_clockwise" if axes.motion[row] == Motion.CW else "arc_counterclockwise")[0]
+    return move_code(machine, "arc_clockwise" if axes.motion[row] == Motion.CW else "arc_counterclockwise")
 
 
 def other_sense(axes: PlaneAxes, machine: Machine, row: int) -> str:
     """The other one."""
-    return code_of(machine, "arc_counterclockwise" if axes.motion[row] == Motion.CW else "arc_clockwise")
+    return move_code(machine, "arc_counterclockwise" if axes.motion[row] == Motion.CW else "arc_clockwise")
 
 
 def corner_of_sense(senses: Senses, passes: Passes, row: int) -> str:
@@ -160,19 +181,46 @@ def fault(trace: Trace, row: int) -> str:
     return f"moves {moved}; with R {given}{of_program} it needs {needed}"
 
 
-def why(blocks: ExecutedBlocks, mode: PolarMode, path: ProgrammedPath, machine: Machine, row: int) -> str:
-    """What keeps the control from knowing the move after this one in time."""
-    following = row + 1
-    while following < len(blocks) and mode.in_polar[following] and not path.length[following] > 0:
+def ramp_at_rest(trace: Trace, row: int) -> str:
+    """What is said of a start-up whose G41 or G42 stands in a block before it that moves nowhere; empty for others."""
+    writes = np.flatnonzero(trace.compensation.writes_side[: row + 1])
+    at = int(writes[-1]) if len(writes) else row
+    is_idle = trace.axes.moves_plane[at] and not trace.path.travels[at] and trace.mode.in_polar[at]
+    if at == row or not is_idle or not trace.compensation.starts_up[row]:
+        return ""
+    line = int(trace.blocks.line[at])
+    return f"; {side(trace.compensation, row)} of line {line} moves nowhere, so that this block is the ramp"
+
+
+def why(trace: Trace, row: int) -> str:
+    """What keeps the control from knowing the move behind the one that ends perpendicular in time."""
+    blocks, path, machine = trace.blocks, trace.path, trace.machine
+    move = _move(path, row)
+    following = move + 1
+    while following < len(blocks) and trace.mode.in_polar[following] and not path.length[following] > 0:
         following += 1
     stops = blocks.codes(*machine.m_codes.stops_reading_ahead)
-    for at in range(row, following):
+    for at in range(move, following):
         if stops[at]:
             return f"line {blocks.line[at]} stops reading ahead"
-    count = following - row - 1
+    count = following - move - 1
     least = machine.compensation.read_ahead - 2
+    if move != row:
+        rest = f", and {count} blocks behind that move make none on the plane" if count > 1 else ""
+        return f"this block moves nowhere, its point is that of the block before{rest}: delete it or correct its words"
     many = f"{count} blocks" if count > 1 else "a block"
     return f"{many} without a move on the plane follow{'' if count > 1 else 's'}, this control reads past {least}"
+
+
+def move_before(trace: Trace, row: int) -> str:
+    """The block that ends perpendicular: this one, or one before it."""
+    move = _move(trace.path, row)
+    return "this block" if move == row else f"line {int(trace.blocks.line[move])}"
+
+
+def _move(path: ProgrammedPath, row: int) -> int:
+    """The last row with a move on the plane, up to a row."""
+    return int(np.flatnonzero(path.travels[: row + 1])[-1])
 
 
 def place(blocks: ExecutedBlocks, axes: PlaneAxes, lengths: Lengths, overcuts: Overcuts, row: int) -> str:
@@ -235,6 +283,25 @@ def bare(axes: PlaneAxes, machine: Machine, row: int) -> str:
     return f"{machine.codes(key[Motion(int(axes.motion[row]))])[0]} without compensation"
 
 
+def from_point(
+    blocks: ExecutedBlocks, axes: PlaneAxes, lengths: Lengths, path: ProgrammedPath, mode: PolarMode, row: int
+) -> str:
+    """` from X32. C0 of line 7`, where a move begins whose start is not that of a cut in the mode."""
+    at = int(last_row(blocks.has("X", "U"), blocks.starts)[row - 1]) if row else -1
+    if at < 0 or mode.in_polar[at] or not mode.in_polar[row] or not path.travels[row]:
+        return ""
+    return f" from {point(axes, lengths, complex(path.start[row]), row)} (line {int(blocks.line[at])})"
+
+
+def way_round(blocks: ExecutedBlocks, axes: PlaneAxes, machine: Machine, row: int) -> str:
+    """What to write where a move without compensation leads through the part."""
+    if axes.motion[row] == Motion.RAPID and not blocks.listed("rapid")[row] and blocks.has("F")[row]:
+        return (
+            f"{machine.codes('rapid')[0]} is still in force: write {machine.codes('line')[0]} here, or retract Z first"
+        )
+    return "retract Z above the part first, or go round it"
+
+
 def goes(
     mode: PolarMode,
     lengths: Lengths,
@@ -273,6 +340,13 @@ def contour_end(axes: PlaneAxes, lengths: Lengths, path: ProgrammedPath, row: in
 def contour_start(axes: PlaneAxes, lengths: Lengths, coverage: Coverage, row: int) -> str:
     """The point at which the contour that ends in the row began."""
     return point(axes, lengths, complex(coverage.begins[row]), row)
+
+
+def line_of_start(blocks: ExecutedBlocks, path: ProgrammedPath, coverage: Coverage, row: int) -> int:
+    """The line of the move that leads to the start of the contour that ends in the row."""
+    first = int(coverage.begins_in[row])
+    before = np.flatnonzero(path.travels[:first])
+    return int(blocks.line[before[-1] if len(before) else first])
 
 
 def left(axes: PlaneAxes, lengths: Lengths, compensation: CutterCompensation, coverage: Coverage, row: int) -> str:

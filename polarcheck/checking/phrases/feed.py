@@ -8,6 +8,7 @@ from polarcheck.checking.phrases.common import code_of, executed_word
 from polarcheck.checking.quantity import in_row
 from polarcheck.checking.remedies import option_or_place
 from polarcheck.columns.blocks import ExecutedBlocks
+from polarcheck.columns.filling import last_row
 from polarcheck.columns.lengths import Lengths
 from polarcheck.columns.trace import Trace
 from polarcheck.geometry.tolerances import SHARE
@@ -119,8 +120,12 @@ def verdict(lengths: Lengths, machine: Machine, tool_center: ToolCenter, row: in
     return f"{allows} and slows the feed down to {tool_center.override[row]:.2g} %, {slowed:highest}"
 
 
-def advice(lengths: Lengths, machine: Machine, tool_center: ToolCenter, row: int, count: int) -> str:
-    """The highest F, or what to give to learn it."""
+def advice(lengths: Lengths, machine: Machine, tool_center: ToolCenter, feeds: Feeds, row: int, count: int) -> str:
+    """The highest F, or what to give to learn it; of a way that strays from its contour that X or C may be wrong."""
+    if feeds.strays_to_center[row]:
+        return (
+            "the contour of this section lies farther out: look for a wrong coordinate of this move or the one before"
+        )
     where = (f"for its {count} blocks" if count > 1 else "here") + _on_pass(tool_center, row)
     if np.isnan(machine.limits.c_feed):
         return f"{option_or_place(machine, 'limits.c_feed')} would give the highest F {where}"
@@ -161,17 +166,40 @@ def slow_feed(lengths: Lengths, trace: Trace, row: int) -> str:
     return f"{in_row(float(trace.feedrate.feed_number[row]), lengths, row):feed}"
 
 
+def of_f_word(trace: Trace, row: int) -> str:
+    """`, by F0.1 of line 24`, where the F in force stands in another block."""
+    written = _feed_word(trace, row)
+    return f", by {written}" if " of line " in written else ""
+
+
 def long_time(feeds: Feeds, row: int) -> str:
     """How long the block takes."""
     minutes = float(feeds.block_time[row]) / 60
     return f"{minutes:.0f} minutes" if minutes < 120 else f"{minutes / 60:.0f} hours"
 
 
-def instead(machine: Machine, feeds: Feeds, row: int) -> str:
+def instead(trace: Trace, machine: Machine, feeds: Feeds, row: int) -> str:
     """What to write."""
     if feeds.mode_is_unknown[row]:
         return f"no code has said what F is: write {per_minute(machine)} and an F per minute"
-    return "write an F per minute"
+    return f"write an F per minute{' there' if of_f_word(trace, row) else ''}"
+
+
+def to_per_minute(trace: Trace, machine: Machine, row: int) -> str:
+    """What has put feed per revolution in force, and what to write for feed per minute."""
+    wanted = per_minute(machine)
+    if not machine.codes("feed_per_minute"):
+        return "write feed per minute"
+    since = int(last_row(trace.modal.sets("feed_mode"), trace.blocks.starts)[row])
+    words = trace.blocks.code_indices(*machine.codes("feed_per_revolution"))
+    words = words[trace.run.row[words] == since]
+    if since < 0 or not len(words):
+        return f"no code of feed per minute stands before it: write {wanted}"
+    code = executed_word(trace.run, int(words[0]))
+    if since == row:
+        return f"write {wanted} for {code}"
+    line = int(trace.blocks.line[since])
+    return f"{code} of line {line} is in force: write {wanted} in its place, or behind it before the polar mode"
 
 
 def of_turns(lengths: Lengths, trace: Trace, feeds: Feeds, row: int) -> str:

@@ -4,19 +4,25 @@ from __future__ import annotations
 
 import numpy as np
 
+from polarcheck.arrays import Mask
 from polarcheck.checking.phrases.comments import comment_on_part as comment_on_part
 from polarcheck.checking.phrases.comments import quoted as quoted
 from polarcheck.checking.phrases.comments import what_is_made as what_is_made
+from polarcheck.checking.phrases.common import code_of
 from polarcheck.checking.phrases.misplaced import block_before as block_before
 from polarcheck.checking.phrases.misplaced import cancel as cancel
 from polarcheck.checking.phrases.misplaced import contour_end_there as contour_end_there
+from polarcheck.checking.phrases.misplaced import early_cancel as early_cancel
 from polarcheck.checking.phrases.misplaced import leads_where as leads_where
 from polarcheck.checking.phrases.misplaced import left_or_right as left_or_right
+from polarcheck.checking.phrases.misplaced import line_of_end as line_of_end
 from polarcheck.checking.phrases.misplaced import ramp_end as ramp_end
 from polarcheck.checking.phrases.misplaced import side as side
 from polarcheck.checking.phrases.misplaced import turned as turned
+from polarcheck.checking.phrases.misplaced import where_ramps_belong as where_ramps_belong
 from polarcheck.checking.phrases.misplaced import wrong_by as wrong_by
 from polarcheck.checking.phrases.misplaced import x_meant as x_meant
+from polarcheck.checking.phrases.misplaced import x_of_ramp as x_of_ramp
 from polarcheck.checking.phrases.passes import crosses_line as crosses_line
 from polarcheck.checking.phrases.passes import drift as drift
 from polarcheck.checking.phrases.passes import fit_of_arc as fit_of_arc
@@ -31,10 +37,14 @@ from polarcheck.checking.phrases.regularity import misfit as misfit
 from polarcheck.checking.phrases.regularity import remedy as remedy
 from polarcheck.checking.places import block_in_line
 from polarcheck.checking.quantity import in_row
+from polarcheck.columns.axes import PlaneAxes
+from polarcheck.columns.blocks import ExecutedBlocks
+from polarcheck.columns.filling import last_row
 from polarcheck.columns.lengths import Lengths
 from polarcheck.columns.path import ProgrammedPath
 from polarcheck.columns.trace import Trace
 from polarcheck.execution.run import Run
+from polarcheck.machines.modal import Motion
 from polarcheck.table.air_cuts import AirCuts, Reason
 from polarcheck.table.bar import Bar
 from polarcheck.table.pass_depths import PassDepths
@@ -58,11 +68,43 @@ def depth(path: ProgrammedPath, lengths: Lengths, row: int) -> str:
     return f"{in_row(float(path.z[row]), lengths, row):length}".partition(" ")[0]
 
 
-def height(path: ProgrammedPath, lengths: Lengths, row: int) -> str:
-    """Z at which the cutter is in the way: `at Z-4.`, and on a way up `up from Z-4.`."""
+def height(blocks: ExecutedBlocks, axes: PlaneAxes, path: ProgrammedPath, lengths: Lengths, row: int) -> str:
+    """Z at which the cutter is in the way, and the line that says so: `at Z-4 of line 7`, on a way up `up from Z-4`."""
     rises = path.z[row] > path.z_before[row]
-    z = f"{in_row(float(path.z_before[row] if rises or np.isnan(path.z[row]) else path.z[row]), lengths, row):length}"
-    return f"{'up from' if rises else 'at'} Z{z.partition(' ')[0]}"
+    is_before = bool(rises or np.isnan(path.z[row]))
+    z = f"{in_row(float(path.z_before[row] if is_before else path.z[row]), lengths, row):length}"
+    where = _of_line(blocks, axes.commands_z, row - is_before, row)
+    return f"{'up from' if rises else 'at'} Z{z.partition(' ')[0]}{where}"
+
+
+def _of_line(blocks: ExecutedBlocks, writes: Mask, until: int, row: int) -> str:
+    """` of line 7`: the last row up to `until` that writes something, where that is not `row` itself."""
+    at = int(last_row(writes, blocks.starts)[until]) if until >= 0 else -1
+    return f" of line {int(blocks.line[at])}" if 0 <= at != row else ""
+
+
+def at_depth(trace: Trace, row: int) -> str:
+    """What to write where rapid traverse leads through metal: a feed where G0 is still in force, or a retract."""
+    axes, blocks = trace.axes, trace.blocks
+    if trace.mode.in_polar[row] and axes.motion[row] == Motion.RAPID and not blocks.listed("rapid")[row]:
+        where = _of_line(blocks, blocks.listed("rapid"), row, row)
+        line = code_of(trace.machine, "line")
+        return f"{code_of(trace.machine, 'rapid')}{where} is still in force: write {line} here, or retract Z first"
+    return "retract Z first"
+
+
+def way_down(trace: Trace, bar: Bar, workpiece: Workpiece, row: int) -> str:
+    """What to write where rapid traverse leads down into the bar."""
+    path, line = trace.path, code_of(trace.machine, "line")
+    if trace.axes.moves_plane[row] or path.x[row] != path.x_before[row]:
+        return (
+            f"write a Z above the metal here, and go down to Z{depth(path, trace.lengths, row)} with {line} and a feed"
+        )
+    if not workpiece.hits_bar[row] or np.isnan(workpiece.radius[row]):
+        return f"write {line} with a feed"
+    clear = in_row(bar.known.largest / 2 + float(workpiece.radius[row]), trace.lengths, row)
+    where = _of_line(trace.blocks, trace.blocks.has("X", "U"), row, row)
+    return f"write {line} with a feed, or stand outside the bar: {clear:diameter} or more in X{where}"
 
 
 def through(workpiece: Workpiece, row: int) -> str:
@@ -97,6 +139,16 @@ def in_step(pass_depths: PassDepths, lengths: Lengths, row: int) -> str:
     return f"{in_row(float(pass_depths.expected[row]), lengths, row):length}".partition(" ")[0]
 
 
+def tip(trace: Trace, row: int) -> str:
+    """Z of the tip, in the units of the program."""
+    return depth(trace.path, trace.lengths, row)
+
+
+def more(count: int) -> str:
+    """How many moves of a contour there are beside the first one."""
+    return f", and in {count - 1} more moves" if count > 1 else ""
+
+
 def in_air(air_cuts: AirCuts, bar: Bar, trace: Trace, row: int) -> str:
     """What is cut in air, and the witness."""
     z = f"Z{depth(trace.path, trace.lengths, row)}"
@@ -115,8 +167,11 @@ def in_air(air_cuts: AirCuts, bar: Bar, trace: Trace, row: int) -> str:
             source = f"turned in {lines}" if first else "[stock]"
             return f"cuts at {z}, above the face at Z{face} ({source}): the section takes nothing off"
         case Reason.OTHERS_BELOW:
+            written = _of_line(trace.blocks, trace.axes.commands_z, row, -1)
+            if air_cuts.is_cut_below[row]:
+                return f"cuts at {z}{written}, and other cuts are at Z-{z[1:]}: the sign of Z is missing"
             why = "and the program cuts below Z0 elsewhere: a Z word for the depth is missing"
-            return f"cuts at {z}, where the section begins, {why}"
+            return f"cuts at {z}{written}, where the section begins, {why}"
         case Reason.OUTSIDE_BAR:
             largest = f"{in_row(bar.known.largest, trace.lengths, row):length}"
             return f"runs outside the bar of {largest} all the way: check the units and X"

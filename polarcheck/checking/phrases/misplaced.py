@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from polarcheck.arrays import Mask
 from polarcheck.checking.phrases.common import block_and_line, code_of
 from polarcheck.checking.phrases.compensation import point
 from polarcheck.checking.phrases.compensation import side as side
@@ -19,10 +20,43 @@ from polarcheck.machines.machine import Machine
 from polarcheck.table.entry_angles import EntryAngles
 from polarcheck.table.misplaced_ramps import MisplacedRamps
 
+#: Least number of blocks that cut between two offset cancels, for the first to be the one too many.
+_LEAST_BLOCKS = 2
+
 
 def cancel(machine: Machine) -> str:
     """G40."""
     return code_of(machine, "compensation_off")
+
+
+def early_cancel(trace: Trace, row: int) -> str:
+    """The offset cancel that follows a start-up at once, with its line."""
+    return f"{cancel(trace.machine)} of line {int(trace.blocks.line[_next(trace.compensation.cancels, row)])}"
+
+
+def where_ramps_belong(trace: Trace, row: int) -> str:
+    """
+    What to write where an offset cancel follows a start-up at once.
+
+    A second G40 behind blocks that cut shows that the first stands there by mistake.
+    """
+    of_section = trace.mode.section == trace.mode.section[row]
+    first = _next(trace.compensation.cancels, row)
+    again = _next((trace.compensation.writes_cancel & of_section) | trace.compensation.starts_up, first)
+    is_second = again > first and not trace.compensation.starts_up[again]
+    if is_second and np.count_nonzero(trace.path.cuts[first:again]) >= _LEAST_BLOCKS:
+        line = int(trace.blocks.line[again])
+        return f"the contour behind it is left by {cancel(trace.machine)} of line {line}, so delete the earlier one"
+    return (
+        f"write {side(trace.compensation, row)} into the block that leads to the contour, and {cancel(trace.machine)} "
+        "into the one that leaves it"
+    )
+
+
+def _next(mask: Mask, row: int) -> int:
+    """The first row of a mask behind a row; the row itself where there is none."""
+    behind = mask[row + 1 :]
+    return row + 1 + int(behind.argmax()) if behind.any() else row
 
 
 def turned(trace: Trace, entry_angles: EntryAngles, index: int) -> str:
@@ -64,6 +98,18 @@ def contour_end_there(
 def x_meant(axes: PlaneAxes, lengths: Lengths, misplaced_ramps: MisplacedRamps, row: int) -> str:
     """The X with which the contour would be closed."""
     return point(axes, lengths, complex(misplaced_ramps.x_of_contour[row], 0.0), row).split()[0]
+
+
+def x_of_ramp(axes: PlaneAxes, lengths: Lengths, path: ProgrammedPath, row: int) -> str:
+    """The X at which the start-up ends."""
+    return point(axes, lengths, complex(path.end[row].real, 0.0), row).split()[0]
+
+
+def line_of_end(trace: Trace, row: int) -> int:
+    """The line that has written the X with which the contour of a start-up ends."""
+    end = _next(trace.compensation.cancels, row)
+    writes = trace.blocks.has("X", "U")[:end]
+    return int(trace.blocks.line[int(np.flatnonzero(writes)[-1])]) if writes.any() else int(trace.blocks.line[row])
 
 
 def leads_where(path: ProgrammedPath, misplaced_ramps: MisplacedRamps, row: int) -> str:

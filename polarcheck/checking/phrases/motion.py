@@ -5,11 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from polarcheck.checking.other_machine import OtherMachine
-from polarcheck.checking.phrases.common import linear
+from polarcheck.checking.phrases.common import centers, executed_word, linear
 from polarcheck.checking.quantity import in_row
 from polarcheck.columns.axes import PlaneAxes
+from polarcheck.columns.blocks import ExecutedBlocks
 from polarcheck.columns.lengths import Lengths
 from polarcheck.columns.mode import PolarMode
+from polarcheck.columns.path import ProgrammedPath
 from polarcheck.execution.run import Run
 from polarcheck.geometry.shapes.shape import polygon_name
 from polarcheck.geometry.tolerances import ROUNDING
@@ -22,6 +24,29 @@ from polarcheck.table.unpointed import Unpointed
 
 #: F without a point in an inch program [inch/min], parameter 1403#0 MIF = 0; in mm it is whole mm/min.
 _FEED_INCREMENT_INCH = 0.01
+
+
+def of_full_circle(axes: PlaneAxes, path: ProgrammedPath, run: Run, row: int) -> str:
+    """What an arc by R needs to be a full circle; of a block that repeats the one before, that it stands twice."""
+    before = np.flatnonzero(path.travels[:row])
+    if len(before) and _words(run, int(before[-1])) == _words(run, row):
+        return "the block stands twice, delete one"
+    return f"a full circle needs {centers(axes, row)}"
+
+
+def _words(run: Run, row: int) -> list[str]:
+    """The words of a row as they are written, without its N word."""
+    at = range(*np.searchsorted(run.row, (row, row + 1)).tolist())
+    return [executed_word(run, index) for index in at if chr(int(run.words.address[index])) != "N"]
+
+
+def or_short_arc(arcs: Arcs, blocks: ExecutedBlocks, machine: Machine, row: int) -> str:
+    """The other reading of an arc by a negative R: without its sign it is the short one."""
+    value = blocks.word(machine.arcs.radius_word)[row]
+    if not (arcs.by_radius[row] and value < 0):
+        return ""
+    rest = 360 - float(arcs.sweep[row])
+    return f", or without the sign of {machine.arcs.radius_word}, which makes it one of {rest:.0f} deg"
 
 
 def least_radius(lengths: Lengths, arcs: Arcs, row: int) -> str:
@@ -49,7 +74,13 @@ def reading(lengths: Lengths, row: int) -> str:
 
 
 def misfit_of_x(
-    arcs: Arcs, regularity: Regularity, mode: PolarMode, lengths: Lengths, other_machine: OtherMachine, row: int
+    arcs: Arcs,
+    regularity: Regularity,
+    mode: PolarMode,
+    axes: PlaneAxes,
+    lengths: Lengths,
+    other_machine: OtherMachine,
+    row: int,
 ) -> str:
     """How the section does not fit as X is read, how it would, and what to write."""
     read, meant = reading(lengths, row), other(lengths, row)
@@ -57,6 +88,7 @@ def misfit_of_x(
     if found is None:
         text = f"no arc of this section fits with X read as a {read}, all fit with X as a {meant}"
         return f"{text}{_written_for(lengths, other_machine, row)}"
+    axis = axes.virtual_axis_of(row)
     as_large = ("twice", "half") if found.factor > 1 else ("half", "twice")
     if found.becomes is None:
         text = f"no arc of this section is tangent as it is written, all are with X {as_large[0]} as large"
@@ -67,8 +99,8 @@ def misfit_of_x(
         turn = f"{360 / found.becomes.order:g} deg"
         text = f"with all X {as_large[0]} as large the contour would be the same after each {turn}, now it is not"
     if (found.factor > 1) == (read == "diameter"):
-        return f"{text}{_written_for(lengths, other_machine, row)}, or C {as_large[1]} as large"
-    return f"{text}; write X {as_large[0]} or C {as_large[1]} as large"
+        return f"{text}{_written_for(lengths, other_machine, row)}, or {axis} {as_large[1]} as large"
+    return f"{text}; write X {as_large[0]} or {axis} {as_large[1]} as large"
 
 
 def _written_for(lengths: Lengths, other_machine: OtherMachine, row: int) -> str:
@@ -119,3 +151,8 @@ def travel(lengths: Lengths, machine: Machine, travel: Travel, row: int) -> str:
             goes, ends_at = (in_row(length, lengths, row) for length in (value, limit))
             return f"{axis} would go to {goes.beside(ends_at, form)}, its travel ends at {ends_at.beside(goes, form)}"
     return ""
+
+
+def more_arcs(count: int) -> str:
+    """How many further arcs the finding stands for; empty for none."""
+    return f"; so {'is' if count == 2 else 'are'} {count - 1} more up to the next code of motion" if count > 1 else ""

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from polarcheck.checking.phrases.common import executed_word, written
+from polarcheck.checking.phrases.common import executed_word, move_code, written
 from polarcheck.checking.quantity import in_row
 from polarcheck.columns.trace import Trace
 from polarcheck.execution.run import Run
 from polarcheck.machines.machine import Machine
 from polarcheck.machines.modal import Motion, Units
+from polarcheck.machines.own_language import shown
 from polarcheck.table.arc_words import ArcWords
 from polarcheck.table.arcs import Arcs
 from polarcheck.table.crossings import Crossings
@@ -27,11 +28,17 @@ _ARC_LISTS = {int(Motion.CW): "arc_clockwise", int(Motion.CCW): "arc_countercloc
 def written_arc(trace: Trace, arcs: Arcs, row: int) -> str:
     """The words of an arc that say where its center is: `R8.`, or `I-4. J0`."""
     if arcs.by_radius[row]:
-        return written(trace.blocks, trace.run, row, trace.machine.arcs.radius_word)
+        of_row = written(trace.blocks, trace.run, row, trace.machine.arcs.radius_word)
+        return f"{_radius_word(trace.machine)}{of_row[1:]}" if of_row.startswith("=") else of_row
     words = [
         written(trace.blocks, trace.run, row, word) for word in trace.axes.center_words(row) if _has(trace, row, word)
     ]
     return " ".join(words)
+
+
+def _radius_word(machine: Machine) -> str:
+    """The address of R as the control's own language has it: R, or CR=."""
+    return shown(machine.control.native_words, machine.arcs.radius_word)
 
 
 def _has(trace: Trace, row: int, word: str) -> bool:
@@ -43,7 +50,7 @@ def needed_arc(trace: Trace, arcs: Arcs, tangency: Tangency, row: int) -> str:
     inch = bool(trace.lengths.units[row] == Units.INCH)
     scale, near = float(trace.lengths.scale[row]), float(tangency.radius_tolerance[row])
     if arcs.by_radius[row]:
-        return trace.machine.arcs.radius_word + plain(float(tangency.radius_needed[row]) / scale, near / scale, inch)
+        return _radius_word(trace.machine) + plain(float(tangency.radius_needed[row]) / scale, near / scale, inch)
     to_center = complex(tangency.center_needed[row] - trace.path.start[row])
     if trace.path.frames is not None:
         to_center /= complex(trace.path.frames.turn[row])
@@ -66,7 +73,7 @@ def words_of_arc(run: Run, at: list[int]) -> str:
 
 def forgotten_arc(arc_words: ArcWords, machine: Machine, row: int, count: int) -> str:
     """G2 or G3, whichever the moves beside the row speak for; both where they do not, and how many blocks want it."""
-    codes = {Motion.CW: machine.codes("arc_clockwise")[0], Motion.CCW: machine.codes("arc_counterclockwise")[0]}
+    codes = {Motion.CW: move_code(machine, "arc_clockwise"), Motion.CCW: move_code(machine, "arc_counterclockwise")}
     sense = arc_words.sense(row)
     code = " or ".join(codes.values()) if sense is None else codes[sense]
     return f"{code} is missing" + (f", here and in {count - 1} more blocks" if count > 1 else "")

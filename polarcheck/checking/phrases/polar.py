@@ -11,6 +11,7 @@ from polarcheck.checking.phrases.common import (
     block_and_line,
     codes,
     executed_word,
+    line_code,
     linear,
     outside,
     switch_off,
@@ -37,6 +38,7 @@ from polarcheck.table.arcs import Arcs
 from polarcheck.table.infeed import Infeed
 from polarcheck.table.other_mode import OtherMode
 from polarcheck.table.procedure import Procedure
+from polarcheck.table.switch_slips import SwitchSlips
 from polarcheck.table.switch_words import SwitchWords
 
 #: What the codes of a list of G-code system B are in system A, and what stands for them there.
@@ -60,6 +62,14 @@ _NAMES = 20
 _BLOCK_LENGTH = 60
 #: Modal groups that must have ended at G12.1, by the list of the codes that begin them.
 _ENDED = {"scaling": "scaling", "rotation": "rotation", "mirror_image": "mirror", "constant_surface_speed": "speed"}
+
+
+def instead_of_rapid(compensation: CutterCompensation, machine: Machine, row: int) -> str:
+    """What to write for G0 in the mode: within a contour G1 with its F, else a high one."""
+    line = line_code(machine)
+    if compensation.compensates[row] and not compensation.starts_up[row]:
+        return f"this block lies in a contour with G{compensation.side[row]}: write {line} and leave F as it is"
+    return f"write {line} with a high F"
 
 
 def missing_before(blocks: ExecutedBlocks, mode: PolarMode, run: Run, machine: Machine, index: int) -> str:
@@ -206,7 +216,7 @@ def axes_not_followed(
     remedy = "look at it on the control" if names_of_axes else f"give their names in order, as {names}"
     for rows, what in (
         (named, f"P beside {polar.on[0]}"),
-        (unknown & ~named, f"{polar.linear_axis}, the number in polar.linear_axis,"),
+        (unknown & ~named, f"{polar.linear_axis}, the number in {_linear_axis_key(machine)},"),
     ):
         yield f"{what} is a linear axis that is not known, nothing of the section is judged: {remedy}", int(rows.sum())
     beside = [int(index) for index in axes.words_not_simulated.nonzero()[0] if mode.enters[run.row[index]]]
@@ -220,6 +230,14 @@ def axes_not_followed(
     other = mode.enters & (axes.rotary_number != polar.rotary_axis)
     effect = "its angle at the switch and its limits are not followed: look at them on the control"
     yield f"Q names another rotary axis than {polar.rotary_axis}; {effect}", int(other.sum())
+
+
+def _linear_axis_key(machine: Machine) -> str:
+    """Where the number of the linear axis was given: `parameter 5460`, else the key of the profile."""
+    key, number = "polar.linear_axis", machine.polar.linear_axis
+    given = [name for name, value in machine.parameters.items() if value == number]
+    names = [name for name in given if name in machine.known_parameters and machine.known_parameters[name].key == key]
+    return f"parameter {names[0]}" if names else key
 
 
 def names_not_known(blocks: ExecutedBlocks, run: Run) -> Iterator[tuple[str, int]]:
@@ -346,6 +364,26 @@ def what(mode: PolarMode, machine: Machine, arcs: Arcs, index: int) -> str:
         if off > 1
         else f"through the center of the {machine.polar.rotary_address} axis"
     )
+
+
+def slip(switch_slips: SwitchSlips, blocks: ExecutedBlocks, run: Run, machine: Machine, row: int) -> str:
+    """What a misspelled switch of the mode does, and what to write; or where the codes of the builder belong."""
+    found = switch_slips.slips[row]
+    words = [index for index in switch_slips.words.nonzero()[0].tolist() if run.row[index] in (row, found.answer)]
+    names = [executed_word(run, index) for index in words]
+    mode, line = machine.polar, int(blocks.line[found.answer])
+    if found.is_of_builder:
+        on, off = (
+            ", ".join(f'"{one}"' for one in (*known, code))
+            for known, code in ((mode.on[:1], names[0]), (mode.off[:1], names[-1]))
+        )
+        keys = place(machine, f"polar.on = [{on}] and polar.off = [{off}]")
+        effect = f"begins and {names[-1]} ends no polar mode that {machine.title} has"
+        return f"{names[0]} {effect}: if they do on this lathe, write {keys}; the contour is not looked at till then"
+    if found.meant in mode.off:
+        return f"{names[0]} does not end the polar mode; write {found.meant}"
+    answer = f", and {switch_slips.meant_in(found.answer)} for {names[-1]} in line {line}" if found.answer >= 0 else ""
+    return f"{names[0]} begins no polar mode, and the contour behind it is not looked at; write {found.meant}{answer}"
 
 
 def not_understood(blocks: ExecutedBlocks, other_mode: OtherMode) -> tuple[str, int]:

@@ -11,6 +11,7 @@ from polarcheck.checking.phrases.offsets import option, shown_offset
 from polarcheck.checking.quantity import in_row
 from polarcheck.checking.remedies import place, unlisted_codes
 from polarcheck.columns.blocks import ExecutedBlocks
+from polarcheck.columns.filling import last_row
 from polarcheck.columns.lengths import Lengths
 from polarcheck.columns.modal import ModalStates
 from polarcheck.columns.offsets import ToolOffsets
@@ -19,9 +20,13 @@ from polarcheck.columns.tools import CalledTools
 from polarcheck.columns.trace import Trace
 from polarcheck.execution.run import Run
 from polarcheck.machines.machine import Machine
+from polarcheck.machines.modal import MM_PER_INCH
 from polarcheck.table.entry import Entry
 from polarcheck.table.procedure import Procedure
 from polarcheck.table.spindles import Spindles
+
+#: Radii that differ by less than this share are one.
+_SAME_SHARE = 0.02
 
 
 def name(entry: Entry, row: int) -> str:
@@ -78,6 +83,21 @@ def is_given(blocks: ExecutedBlocks, tools: CalledTools, offsets: ToolOffsets, r
     )
 
 
+def which_radius(tools: CalledTools, lengths: Lengths, machine: Machine, entry: Entry, row: int) -> str:
+    """What may be wrong where R and the comment of an offset differ: the unit, the offset number, or one of both."""
+    given, told = float(entry.radius_in_mode[row]), float(entry.radius_told[row])
+    if abs(given / told - MM_PER_INCH) < _SAME_SHARE * MM_PER_INCH and lengths.scale[row] == 1.0:
+        return f"in inch the comment fits: {code_of(machine, 'inch')} is missing"
+    other = int(tools.tool[row])
+    radius = tools.of_job[other].radius if other in tools.of_job else None
+    scale = float(np.broadcast_to(lengths.job_scale, len(tools.tool))[row])
+    if other != tools.offset_number[row] and radius and abs(radius * scale - told) < _SAME_SHARE * told:
+        return f"offset {shown_offset(tools, other)} has the R of the comment"
+    if abs(given / told - 2) < _SAME_SHARE:
+        return "R may be given as the diameter: measure the cutter"
+    return "measure the cutter, and correct the one that is wrong"
+
+
 def x_changed_by(blocks: ExecutedBlocks, tools: CalledTools, lengths: Lengths, run: Run, row: int) -> str:
     """The word or the variable that sets X of a tool offset; else the wear of the job's table."""
     if row in run.assigned:
@@ -110,6 +130,12 @@ def as_diameter(entry: Entry, lengths: Lengths, row: int) -> str:
     """`, X1 as a diameter`: what puts X0 off the spindle axis as it is written; empty where that is the distance."""
     written, distance = float(entry.origin_shift[row]), float(entry.origin_distance[row])
     return "" if written == distance else f", X {in_row(written, lengths, row):length} as a diameter,"
+
+
+def since_x(blocks: ExecutedBlocks, row: int) -> str:
+    """`, since line 7`, where X was programmed."""
+    at = int(last_row(blocks.has("X", "U"), blocks.starts)[row])
+    return f", since line {int(blocks.line[at])}" if at >= 0 else ""
 
 
 def to_reference(machine: Machine) -> str:
@@ -146,9 +172,28 @@ def started(blocks: ExecutedBlocks, run: Run, machine: Machine, procedure: Proce
     return f"{code} of line {int(blocks.line[at])}"
 
 
-def stop(machine: Machine) -> str:
-    """The code that stops the live tool."""
-    return " or ".join(machine.m_codes.live_tool_off) or "the code"
+def to_stop(trace: Trace, spindles: Spindles, procedure: Procedure, row: int) -> str:
+    """
+    Where to write the code that stops the live tool.
+
+    It may stand there already, but behind the tool change; or an M code that is in no list stands in its place.
+    """
+    blocks, run, codes = trace.blocks, trace.run, trace.machine.m_codes
+    stop = " or ".join(codes.live_tool_off) or "the code that stops it"
+    stops = np.flatnonzero(blocks.codes(*codes.live_tool_off))
+    late = stops[stops >= row]
+    starts = np.flatnonzero(blocks.codes(*codes.live_tool_on) & (np.arange(len(blocks)) > row))
+    if len(late) and blocks.program[late[0]] == blocks.program[row] and not np.any(starts < late[0]):
+        words = blocks.code_indices(*codes.live_tool_off)
+        written = executed_word(run, int(words[run.row[words] == late[0]][0]))
+        where = "stands beside it" if late[0] == row else f"of line {int(blocks.line[late[0]])} comes behind it"
+        return f"{written} {where}: write it before the tool change"
+    since = max(int(procedure.section_before[row]), int(procedure.live_tool_runs_on[row]))
+    others = spindles.unlisted[(run.row[spindles.unlisted] > since) & (run.row[spindles.unlisted] <= row)]
+    if not len(others):
+        return f"write {stop} on the retract"
+    code = f"{executed_word(run, int(others[0]))} of line {int(blocks.line[run.row[others[0]]])}"
+    return f"write {stop} on the retract, in place of {code} if that is meant for it"
 
 
 def or_engaged_by(blocks: ExecutedBlocks, run: Run, spindles: Spindles, machine: Machine, row: int) -> str:

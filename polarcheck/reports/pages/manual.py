@@ -6,7 +6,7 @@ import importlib
 import math
 import re
 import textwrap
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import msgspec
@@ -29,6 +29,18 @@ _COMMENT = 36
 def pages(rules: Iterable[Rule], machine: Machine) -> str:
     """Return the manual pages of rules, each under a line with its name, group, severity, and alarm on this machine."""
     return "\n\n".join(_page(rule, machine) for rule in rules) + "\n"
+
+
+def alarm_pages(rules: Sequence[Rule], count: int, machine: Machine) -> str:
+    """Return the manual pages of the first rules of an alarm, and a list of the others that give it."""
+    text = pages(rules[:count], machine)
+    others = rules[count:]
+    if not others:
+        return text
+    width = max(len(rule.name) for rule in others)
+    alarm = visible(machine.alarms[others[0].name])
+    listed = "".join(f"  {rule.name:<{width}}  {rule.title}\n" for rule in others)
+    return f"{text}\n{alarm} also stands for, each with a page of its own (polarcheck explain NAME):\n\n{listed}"
 
 
 def _page(rule: Rule, machine: Machine) -> str:

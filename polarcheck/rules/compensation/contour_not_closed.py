@@ -5,7 +5,8 @@ from polarcheck.checking.rule import WARNING, Coverage, Mask, rule
 
 @rule(
     WARNING,
-    "the contour ends at {contour_end}, {coverage.gap:length} before it is closed: write {contour_start} there",
+    "the contour ends at {contour_end}, {coverage.gap:length} before it is closed: write {contour_start} here, or "
+    "{contour_end} in line {line_of_start}, where it begins",
     once="loop",
     worst="coverage.gap",
     subject="compensation",

@@ -6,7 +6,7 @@ from polarcheck.checking.rule import WARNING, Mask, ToolCenter, rule
 
 @rule(
     WARNING,
-    "{why}; the tool center ends perpendicular to this block, not where the next one needs it",
+    "{why}; the tool center ends perpendicular to {move_before}, not where the next one needs it",
     needs=("compensation.radius",),
     where="ramps.compensated",
     doubts=(("metal", "pause"),),
@@ -64,4 +64,4 @@ def movement_missing_in_offset_mode(tool_center: ToolCenter) -> Mask:
         G13.1
     """
     # Compares nothing: which moves the control knows in time, and needs to know, shows only while it compensates.
-    return tool_center.movement_missing
+    return tool_center.waits_for_movement

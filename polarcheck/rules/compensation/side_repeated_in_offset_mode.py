@@ -6,7 +6,8 @@ from polarcheck.checking.rule import WARNING, CutterCompensation, Mask, Ramps, r
 
 @rule(
     WARNING,
-    "{side} again: it is in force already, and the tool center does not turn into the corner before it",
+    "{side} again: it is in force already, and the tool center does not turn into the corner before "
+    "it; delete it, or write {cancel} into the block that leaves the contour before it",
     at=("compensation_left", "compensation_right"),
     once="section",
     subject="",

@@ -5,7 +5,7 @@ from polarcheck.checking.rule import ERROR, CutterCompensation, Mask, Programmed
 
 @rule(
     ERROR,
-    "start-up {fault}",
+    "start-up {fault}{ramp_at_rest}",
     at=("compensation_left", "compensation_right"),
     needs=("compensation.radius", "path.length"),
     where="ramps.start_up_judged_by_radius",

@@ -5,7 +5,7 @@ from polarcheck.checking.rule import ERROR, Hits, Slots, rule
 
 @rule(
     ERROR,
-    "the ramp goes {depth:length} deep into {swept}",
+    "the ramp goes {depth:length} deep into {swept}{ramp_at_rest}",
     at=("compensation_off", "compensation_left", "compensation_right"),
     once="loop",
     worst="slots.ramp_depth",

@@ -5,13 +5,13 @@ from polarcheck.checking.rule import ERROR, Hits, UncompensatedCuts, graded, rul
 
 @rule(
     ERROR,
-    "{bare} {goes} {cut_part}; retract Z above the part first, or go round it",
+    "{bare}{from_point} {goes} {cut_part}; {way_round}",
     worst="uncompensated_cuts.graveness",
     once="loop",
     follows={
         "motion": ("rapid-in-polar",),
         "loop": ("x-not-positive-at-entry",),
-        "section": ("start-up-on-arc",),
+        "section": ("start-up-on-arc", "nearly-regular-contour", "no-offset-intersection"),
         "tool call": ("rapid-plunge-into-stock",),
     },
 )

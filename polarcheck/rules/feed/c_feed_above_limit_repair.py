@@ -9,15 +9,17 @@ from polarcheck.checking.editing import Replace, in_place_of, is_plain, with_wor
 from polarcheck.checking.repair import FEED, Mended, repair
 from polarcheck.columns.trace import Trace
 from polarcheck.feed_table.edits import feed_below, feed_in_force, takes_feed
+from polarcheck.table.feeds import Feeds
 from polarcheck.table.tool_center import ToolCenter
 
 
 @repair(FEED)
-def c_feed_above_limit(trace: Trace, tool_center: ToolCenter, row: int, hit: Mask) -> Mended | None:
+def c_feed_above_limit(trace: Trace, tool_center: ToolCenter, feeds: Feeds, row: int, hit: Mask) -> Mended | None:
     """
     F is lowered to the highest that the message names, rounded down, and restored behind the blocks that need it.
 
-    Only with the machine's own limit of C. Unsafe: another feed cuts otherwise.
+    Only with the machine's own limit of C, and not for a ramp that strays to the center from a contour farther out, of
+    which a coordinate may be wrong. Unsafe: another feed cuts otherwise.
 
     Bad, set limits.c_feed=3600:
 
@@ -42,7 +44,7 @@ def c_feed_above_limit(trace: Trace, tool_center: ToolCenter, row: int, hit: Mas
         G13.1
     """
     feed = feed_in_force(trace.blocks, trace.feedrate, trace.run, row)
-    if feed is None or math.isnan(trace.machine.limits.c_feed):
+    if feed is None or math.isnan(trace.machine.limits.c_feed) or feeds.strays_to_center[row]:
         return None
     low = feed_below(trace.blocks, trace.lengths, trace.run, row, float(tool_center.feed_allowed[row]))
     if low is None:

@@ -5,7 +5,7 @@ from polarcheck.checking.rule import WARNING, Feeds, Mask, rule
 
 @rule(
     WARNING,
-    "{slow_feed} here: this block alone takes {long_time}; {instead}",
+    "{slow_feed} here{of_f_word}: this block alone takes {long_time}; {instead}",
     at=("F", "feed_per_minute", "line", "arc_clockwise", "arc_counterclockwise"),
     once="program",
     worst="feeds.block_time",

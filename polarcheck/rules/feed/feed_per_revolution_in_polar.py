@@ -6,7 +6,7 @@ from polarcheck.machines.modal import FeedMode
 
 @rule(
     NOTE,
-    "{of_turns} of a spindle that turns as the {rotary} axis now; write feed per minute",
+    "{of_turns} of a spindle that turns as the {rotary} axis now; {to_per_minute}",
     at=("feed_per_revolution", "line", "arc_clockwise", "arc_counterclockwise"),
     follows={"block": ("feed-missing-in-polar",)},
 )

@@ -5,8 +5,8 @@ from polarcheck.checking.rule import WARNING, Mask, MisplacedRamps, rule
 
 @rule(
     WARNING,
-    "{side} of this block is taken back by the next move: no block of a contour is cut with compensation; write {side} "
-    "into the block that leads to the contour, and G40 into the one that leaves it",
+    "{side} of this block is taken back by {early_cancel}: no block of a contour is cut with compensation; "
+    "{where_ramps_belong}",
     at=("compensation_left", "compensation_right"),
     once="section",
     subject="",

@@ -15,6 +15,7 @@ from polarcheck.checking.rule import WARNING, AirCuts, Hits, rule
             "contour-at-two-depths",
             "z-with-plane-axis",
             "helical-arc-in-polar",
+            "side-repeated-in-offset-mode",
             "polar-switch-not-alone",
             "degrees-in-polar",
             "number-without-point",

@@ -5,11 +5,11 @@ from polarcheck.checking.rule import ERROR, Hits, Workpiece, graded, rule
 
 @rule(
     ERROR,
-    "{way} takes the cutter, R {cutter}, in rapid traverse into {bar_there} down to Z{depth}; write G1 with a feed",
+    "{way} takes the cutter, R {cutter}, in rapid traverse into {bar_there} down to Z{depth}; {way_down}",
     where="workpiece.is_mill",
     once="tool call",
     follows={
-        "motion": ("rapid-in-polar",),
+        "motion": ("rapid-in-polar", "rapid-along-contour"),
         "tool call": ("approach-inside-stock",),
     },
 )

@@ -5,12 +5,12 @@ from polarcheck.checking.rule import ERROR, Hits, Workpiece, graded, rule
 
 @rule(
     ERROR,
-    "{way} takes the cutter, R {cutter}, {height} {through} what stands of the bar ({bar}); retract Z first",
+    "{way} takes the cutter, R {cutter}, {height} {through} what stands of the bar ({bar}); {at_depth}",
     where="workpiece.is_mill",
     once="tool call",
     follows={
         "block": ("uncompensated-cut-into-part", "rapid-through-part"),
-        "motion": ("rapid-in-polar",),
+        "motion": ("rapid-in-polar", "rapid-along-contour"),
         "tool call": ("approach-inside-stock", "rapid-plunge-into-stock"),
     },
 )

@@ -5,8 +5,8 @@ from polarcheck.checking.rule import WARNING, Mask, MisplacedRamps, rule
 
 @rule(
     WARNING,
-    "the start-up ends at {ramp_end}, and the contour at {contour_end_there}: with {x_meant} here the contour would be "
-    "closed; as it stands the ramp {leads_where}",
+    "the start-up ends at {ramp_end}, and the contour at {contour_end_there}: with {x_meant} here, or {x_of_ramp} in "
+    "line {line_of_end}, the contour would be closed; as it stands the ramp {leads_where}",
     at=("X", "U"),
     once="loop",
     subject="",

@@ -5,7 +5,7 @@ from polarcheck.checking.rule import WARNING, Arcs, ExecutedBlocks, Machine, Mas
 
 @rule(
     WARNING,
-    "arc by radius that ends where it starts: nothing moves; a full circle needs {centers}",
+    "arc by radius that ends where it starts: nothing moves; {of_full_circle}",
     at=("X", "C", "R"),
     subject="",
 )

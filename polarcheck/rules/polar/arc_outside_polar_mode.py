@@ -9,7 +9,7 @@ from polarcheck.checking.rule import WARNING, Mask, Procedure, rule
     "{switch_on} before the contour",
     at=("arc_clockwise", "arc_counterclockwise"),
     once="tool call",
-    follows={"program": ("polar-code-of-another-control",), "file": ("other-dialect",)},
+    follows={"program": ("polar-code-of-another-control", "polar-switch-unknown"), "file": ("other-dialect",)},
 )
 def arc_outside_polar_mode(procedure: Procedure) -> Mask:
     """

@@ -106,5 +106,5 @@ def degrees_in_polar(blocks: ExecutedBlocks, axes: PlaneAxes, angles: Angles, en
     far_out = (angles.reach > 0) & (angles.farthest > _FAR * angles.reach)
     far_out |= angles.is_positioning & (angles.reach > 0) & (angles.farthest > _FAR_IN_RAPID * angles.reach)
     in_stock = angles.farthest <= entry.stock_diameter / 2
-    words = blocks.words_at(axes.virtual_words)
+    words = blocks.words_at(axes.followed_virtual_words)
     return Hits(is_angle & far_out & ~in_stock & ~angles.in_misplaced_cycle, at=words)

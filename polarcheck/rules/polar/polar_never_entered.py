@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Mask, PlaneAxes, Procedure, rule
+from polarcheck.checking.rule import ERROR, Hits, PlaneAxes, Procedure, SwitchSlips, rule
 
 
 @rule(
@@ -8,8 +8,9 @@ from polarcheck.checking.rule import ERROR, Mask, PlaneAxes, Procedure, rule
     "{switch} ends a polar mode that was never entered: {turned} as outside the mode, not on the contour; "
     "write {switch_on} before it",
     at=("off",),
+    follows={"program": ("polar-switch-unknown",)},
 )
-def polar_never_entered(axes: PlaneAxes, procedure: Procedure) -> Mask:
+def polar_never_entered(axes: PlaneAxes, procedure: Procedure, switch_slips: SwitchSlips) -> Hits:
     """
     G13.1 after a contour that no G12.1 began.
 
@@ -129,4 +130,5 @@ def polar_never_entered(axes: PlaneAxes, procedure: Procedure) -> Mask:
         G40 G13.1
         M30
     """
-    return axes.switches_off & (procedure.contour_without_mode >= 0)
+    never_entered = axes.switches_off & (procedure.contour_without_mode >= 0)
+    return Hits(never_entered, follows={"program": switch_slips.within})

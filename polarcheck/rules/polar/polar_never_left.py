@@ -8,7 +8,7 @@ from polarcheck.checking.rule import ERROR, Mask, Sections, rule
     "polar mode is never left: {missing_before}",
     over="sections",
     at=("on",),
-    follows={"program": ("endless-loop", "nesting-too-deep")},
+    follows={"program": ("endless-loop", "nesting-too-deep"), "section": ("polar-switch-unknown",)},
 )
 def polar_never_left(sections: Sections) -> Mask:
     """

@@ -6,7 +6,7 @@ from polarcheck.machines.modal import Motion
 
 @rule(
     ERROR,
-    "G0 cannot be used in the polar mode; write G1 with a high F",
+    "G0 cannot be used in the polar mode; {instead_of_rapid}",
     at=("rapid",),
     follows={"block": ("code-not-allowed-in-polar", "polar-entered-twice"), "section": ("degrees-in-polar",)},
 )

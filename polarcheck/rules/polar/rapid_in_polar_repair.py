@@ -18,7 +18,8 @@ def rapid_in_polar(trace: Trace, tool_center: ToolCenter, row: int, at: list[int
     """
     G0 in the mode becomes G1 with the lowest F for positioning that the machine recommends.
 
-    That is feed.positioning_minimum; without it there is a fix only where the block has an F of its own. Where C would
+    That is feed.positioning_minimum; without it there is a fix only where the block has an F of its own. In a contour
+    with G41 or G42 the F of the contour stays in force. Where C would
     turn too fast for it, F is as high as its limit allows. The F from before is written again where cutting goes on.
     Unsafe: a feed that nobody has chosen.
 
@@ -73,7 +74,8 @@ def rapid_in_polar(trace: Trace, tool_center: ToolCenter, row: int, at: list[int
         body = [index for index in words_of(trace.run, row) if not is_head(trace.run, index)]
         start = int(trace.run.words.start[body[0]])
         edits.append((start, start, f"G1{separator(trace.run, row)}"))
-    if trace.blocks.has("F")[row]:
+    in_contour = trace.compensation.compensates[row] and not trace.compensation.starts_up[row]
+    if trace.blocks.has("F")[row] or (in_contour and trace.feedrate.feed[row] > 0):
         return Mended("Write G1", False, tuple(edits))
     feed = trace.machine.feed.positioning_minimum
     again = restored(trace, row)

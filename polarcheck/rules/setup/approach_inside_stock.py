@@ -6,14 +6,21 @@ from polarcheck.geometry.tolerances import ROUNDING
 
 @rule(
     ERROR,
-    "X stands at {path.x:diameter/needed} at {switch}; {to_clear} {needed:diameter/path.x} or more",
+    "X stands at {path.x:diameter/needed} at {switch}{since_x}; {to_clear} {needed:diameter/path.x} or more",
     at=("on",),
     needs=("offsets.cutter_diameter",),
     where="entry.approaches_stock",
     doubts=(("compensation", "first start-up"),),
     follows={
-        "misfitting arcs": ("arc-radius-too-small", "arc-end-off-circle"),
-        "section": ("degrees-in-polar", "number-without-point"),
+        "section": (
+            "degrees-in-polar",
+            "number-without-point",
+            "arc-radius-too-small",
+            "arc-end-off-circle",
+            "contour-crosses-itself",
+            "nearly-regular-contour",
+            "side-of-compensation-mirrored",
+        ),
     },
 )
 def approach_inside_stock(path: ProgrammedPath, entry: Entry) -> Hits:

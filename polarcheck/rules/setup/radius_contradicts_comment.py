@@ -8,7 +8,7 @@ _WEAR = 0.25
 
 @rule(
     WARNING,
-    "R {given:length} {is_given}, the comment tells {told:length}: {comment}; measure the cutter",
+    "R {given:length} {is_given}, the comment tells {told:length}: {comment}; {which_radius}",
     at=("T",),
     doubts=(("compensation", "tool call"),),
 )

@@ -14,8 +14,8 @@ def spindle_code_in_polar(blocks: ExecutedBlocks, mode: PolarMode, spindles: Spi
 
     In the mode the spindle is the C axis and the part of every move. A code that starts it as a spindle, or releases
     the C axis, takes it out of the control's hands in the middle of the contour. Such codes belong before G12.1 or
-    after G13.1. Many lathes use M3 and M5 for the live tool, too; where the machine profile does not name codes of its
-    own for the live tool, these are a note.
+    after G13.1. So does M19, which turns the spindle to an angle of its own. Many lathes use M3 and M5 for the live
+    tool, too; where the machine profile does not name codes of its own for the live tool, these are a note.
 
     Source: builder's guide to G12.1, sample program; FANUC B-62764EN/01, p. 50.
 
@@ -43,6 +43,16 @@ def spindle_code_in_polar(blocks: ExecutedBlocks, mode: PolarMode, spindles: Spi
         M5                (expect: spindle-code-in-polar)
         G13.1
 
+    Bad:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. F200
+        C10.
+        M19               (expect: spindle-code-in-polar)
+        X60.
+        G13.1
+
     Good:
 
         G98 G0 X60. C0
@@ -56,5 +66,6 @@ def spindle_code_in_polar(blocks: ExecutedBlocks, mode: PolarMode, spindles: Spi
     """
     codes = machine.m_codes
     in_mode = mode.in_polar & spindles.has_code
-    is_known = spindles.are_no_live_tool | blocks.codes(*codes.c_axis_on, *codes.c_axis_off)
+    of_axis = blocks.codes(*codes.c_axis_on, *codes.c_axis_off, *codes.spindle_orientation)
+    is_known = spindles.are_no_live_tool | of_axis
     return graded(warning=in_mode & is_known, note=in_mode & ~is_known, at=spindles.words)

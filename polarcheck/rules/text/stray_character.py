@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Hits, OtherMode, Written, rule
+from polarcheck.checking.rule import ERROR, Hits, OtherMode, SwitchSlips, Written, rule
 
 
 @rule(
@@ -8,11 +8,11 @@ from polarcheck.checking.rule import ERROR, Hits, OtherMode, Written, rule
     "{stray}{count:blocks}",
     over="strays",
     follows={
-        "file": ("polar-code-of-another-control",),
+        "file": ("polar-code-of-another-control", "polar-switch-unknown"),
         "block": ("comment-nested", "comment-not-closed"),
     },
 )
-def stray_character(written: Written, other_mode: OtherMode) -> Hits:
+def stray_character(written: Written, other_mode: OtherMode, switch_slips: SwitchSlips) -> Hits:
     """
     Character that is no part of a word.
 
@@ -52,4 +52,8 @@ def stray_character(written: Written, other_mode: OtherMode) -> Hits:
         M30 %
     """
     count = written.stray_count
-    return Hits(count > 0, values={"count": count}, follows={"file": other_mode.explained_strays})
+    return Hits(
+        count > 0,
+        values={"count": count},
+        follows={"file": other_mode.explained_strays | switch_slips.explained_strays},
+    )

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, NOTE, Hits, Machine, OtherMode, Words, Written, graded, rule
+from polarcheck.checking.rule import ERROR, NOTE, Hits, Machine, OtherMode, SwitchSlips, Words, Written, graded, rule
 
 #: From here on controls have few codes of their own, and programs call macros of the builder (parameter 6050).
 OWN_CODES_END = 100
@@ -10,9 +10,11 @@ OWN_CODES_END = 100
     ERROR,
     "{code} is no code of this control{times}{or_known}",
     over="words",
-    follows={"file": ("polar-code-of-another-control",)},
+    follows={"file": ("polar-code-of-another-control", "polar-switch-unknown")},
 )
-def unknown_code(words: Words, written: Written, machine: Machine, other_mode: OtherMode) -> Hits:
+def unknown_code(
+    words: Words, written: Written, machine: Machine, other_mode: OtherMode, switch_slips: SwitchSlips
+) -> Hits:
     """
     G code that the control does not have.
 
@@ -52,9 +54,8 @@ def unknown_code(words: Words, written: Written, machine: Machine, other_mode: O
         G13.10
     """
     unknown = written.unknown_code_count > 0
+    follows = {"file": other_mode.explained | switch_slips.explained}
     if not machine.control.unknown_codes_are_errors:
-        return Hits(unknown, NOTE, follows={"file": other_mode.explained})
+        return Hits(unknown, NOTE, follows=follows)
     may_call_macro = (words.value >= OWN_CODES_END) & (words.decimals == 0)
-    return graded(
-        error=unknown & ~may_call_macro, warning=unknown & may_call_macro, follows={"file": other_mode.explained}
-    )
+    return graded(error=unknown & ~may_call_macro, warning=unknown & may_call_macro, follows=follows)

@@ -1,0 +1,42 @@
+from __future__ import annotations
+
+from polarcheck.checking.editing import in_place_of, is_plain, written_word
+from polarcheck.checking.repair import Mended, repair
+from polarcheck.execution.run import Run
+from polarcheck.table.switch_slips import SwitchSlips
+
+
+@repair()
+def polar_switch_unknown(switch_slips: SwitchSlips, run: Run, row: int, at: list[int]) -> Mended | None:
+    """
+    G12.1 or G13.1 is written in the place of the code, and of the one that answers it.
+
+    Unsafe: the part is another one with it. Nothing is written where the codes may be those of the builder.
+
+    Bad:
+
+        G98 G0 X60. C0
+        G121
+        G1 X40. F200
+        C10.
+        X60.
+        G131
+
+    Good:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. F200
+        C10.
+        X60.
+        G13.1
+    """
+    slip = switch_slips.slips[row]
+    rows = [one for one in (row, slip.answer) if one >= 0]
+    if slip.is_of_builder or not all(is_plain(run, one) for one in rows):
+        return None
+    words = [index for index in switch_slips.words.nonzero()[0].tolist() if run.row[index] in rows]
+    edits = [in_place_of(run, index, switch_slips.meant_in(int(run.row[index]))) for index in words]
+    names = ", ".join(written_word(run, index) for index in words)
+    meant = ", ".join(text for *_, text in edits)
+    return Mended(f"Write {meant} for {names}", False, tuple(edits))

@@ -1,0 +1,67 @@
+"""G121, G12 and G12,1 in the place of G12.1, and the same of G13.1: one finding, with the code that makes it right."""
+
+from __future__ import annotations
+
+import pytest
+from programs import machine_of, report_of, said
+
+PROGRAM = "O1\nG98 G40 G97\nT0101\nG0 X60. C0\n{}\nG1 X10. C0 F200\nC5.\nG3 X0. C10. R5.\nG1 X60. C0\n{}\nG0 Z5.\nM30\n"
+DIAMETER = {"x": "diameter"}
+UNKNOWN = "polar-switch-unknown"
+
+
+@pytest.mark.parametrize(
+    ("on", "off", "line", "severity", "remedy"),
+    [
+        ("G121", "G13.1", 5, "error", "write G12.1"),
+        ("G121", "G131", 5, "error", "write G12.1, and G13.1 for G131 in line 10"),
+        ("G121", "G0 X70.", 5, "warning", "write G12.1"),
+        ("G12,1", "G13.1", 5, "error", "write G12.1"),
+        ("N10 G12", "G13.1", 5, "error", "write G12.1"),
+        ("G12", "G13", 5, "error", "write G12.1, and G13.1 for G13 in line 10"),
+        ("G12.1", "G131", 10, "error", "write G13.1"),
+        ("G12.1", "G13", 10, "error", "write G13.1"),
+        ("G12.1", "G13,1", 10, "error", "write G13.1"),
+        ("G12.1", "G013", 10, "error", "write G13.1"),
+    ],
+)
+@pytest.mark.parametrize("machine", ["fanuc", "mitsubishi-m700"])
+def test_a_slip_is_one_finding(machine: str, on: str, off: str, line: int, severity: str, remedy: str) -> None:
+    report = report_of(PROGRAM.format(on, off), machine, changes={"control": DIAMETER, "polar": DIAMETER})
+    assert [(one.line, one.rule, one.severity) for one in report.findings] == [(line, UNKNOWN, severity)]
+    assert report.findings[0].message.endswith(remedy)
+
+
+def test_codes_of_the_builder_are_named_with_their_keys() -> None:
+    report = report_of(PROGRAM.format("G121", "G120"))
+    assert [(one.line, one.rule, one.severity) for one in report.findings] == [(5, UNKNOWN, "warning")]
+    assert 'polar.on = ["G12.1", "G121"] and polar.off = ["G13.1", "G120"]' in report.findings[0].message
+    own = {"polar": {"on": ["G12.1", "G121"], "off": ["G13.1", "G120"]}}
+    assert said(report_of(PROGRAM.format("G121", "G120"), changes=own)) == []
+
+
+@pytest.mark.parametrize(
+    "blocks",
+    ["G121\nG0 X70. Z5.", "G121 X50. Z-5.\nG1 C5. F200", "G12\nG0 Z5.", "G13", "G131"],
+)
+def test_a_code_without_a_contour_is_no_slip(blocks: str) -> None:
+    report = report_of(f"O1\nG98\nT0101\nG0 X60. C0\n{blocks}\nG0 Z5.\nM30\n")
+    assert UNKNOWN not in {rule for _, rule in said(report)}
+
+
+def test_two_slips_are_two_findings() -> None:
+    one = "G0 X60. C0\n{}\nG1 X10. C0 F200\nC5.\nX60. C0\n{}\n"
+    report = report_of("O1\nG98\nT0101\n" + one.format("G121", "G13.1") + one.format("G12.1", "G131") + "M30\n")
+    assert said(report) == [(5, UNKNOWN), (15, UNKNOWN)]
+
+
+def test_a_contour_that_nothing_has_begun_is_told_beside_a_slip() -> None:
+    contour = "G0 X60. C0\n{}\nG1 X10. C0 F200\nC5.\nG3 X0. C10. R5.\nG1 X60. C0\n{}\n"
+    report = report_of("O1\nG98\nT0101\n" + contour.format("G121", "G13.1") + contour.format("", "G13.1") + "M30\n")
+    assert said(report) == [(5, UNKNOWN), (17, "polar-never-entered")]
+
+
+def test_words_of_another_language_have_no_such_slips() -> None:
+    assert "G12.1" in machine_of("siemens-transmit").polar.on
+    report = report_of("G94\nT1 D1\nG0 X60 Y0\nG121\nG1 X10 Y5 F200\nTRAFOOF\nM30\n", "siemens-transmit")
+    assert UNKNOWN not in {rule for _, rule in said(report)}
