@@ -414,6 +414,17 @@ class ProgrammedPath(Columns, frozen=True):
         return self.moves_z if self.machine.polar.repeated_z == "allowed" else self.axes.commands_z
 
     @cached_property
+    def ends_above_plunge(self) -> Mask:
+        """Moves above Z0, behind which Z alone goes down: they cut nothing, whichever way the tool takes."""
+        rows = np.flatnonzero(self.moves & self.mode.in_polar)
+        here, following = rows[:-1], rows[1:]
+        plunges = self.moves_z[following] & ~self.travels[following] & (self.z[following] < self.z[here])
+        plunges &= self.mode.section[here] == self.mode.section[following]
+        mask = np.zeros(len(self.run), bool)
+        mask[here[plunges & (self.z[here] > 0) & (self.z_before[here] > 0)]] = True
+        return mask
+
+    @cached_property
     def moves(self) -> Mask:
         """Moves any axis, or one that is not followed; words that name the present place of each are no move."""
         outside, rotary = self.mode.section < 0, self.blocks.has(*self.machine.polar.rotary_words)

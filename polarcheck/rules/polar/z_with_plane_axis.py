@@ -30,9 +30,10 @@ def z_with_plane_axis(
     do, or after them, and the tool does not follow the line in space from start to end. Some lathes cannot move them
     together at all. Where it works as posts write it, compensation may still take the block for one more corner. Move Z
     in a block of its own: in the plane first and then in on approach, out first and then in the plane on retract. A
-    block that repeats X and C as they are moves Z only, and one that repeats Z as it is moves X and C only, unless a
-    document forbids the words themselves (polar.repeated_z). The machine's profile says what Z does (polar.other_axes):
-    where that is forbidden this is an error, where Z moves along with the others a note.
+    block above Z0, from which Z alone goes down, is in the air: how Z runs there does not matter, unless the control
+    forbids it. A block that repeats X and C as they are moves Z only, and one that repeats Z as it is moves X and C
+    only, unless a document forbids the words themselves (polar.repeated_z). The machine's profile says what Z does
+    (polar.other_axes): where that is forbidden this is an error, where Z moves along with the others a note.
 
     Source: FANUC B-62764EN/01, p. 51, axes that are not in the plane; builder's guide to G12.1, linear interpolation.
 
@@ -105,8 +106,20 @@ def z_with_plane_axis(
         C10.
         X60.
         G13.1
+
+    Good:
+
+        G98 G0 X80. Z5. C0
+        G12.1
+        G1 X50. C10. Z2. F500
+        Z-3. F100
+        C-10.
+        X80.
+        G13.1
     """
     moves_both = mode.in_polar & axes.moves_plane & path.judged_z
+    if machine.polar.other_axes != "forbidden":
+        moves_both &= ~path.ends_above_plunge
     if machine.polar.other_axes == "together":
         # Without compensation no block can be taken for a corner.
         moves_both &= compensation.compensates
