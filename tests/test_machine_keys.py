@@ -165,6 +165,7 @@ TWO_SPINDLES = {
 }
 CLAMPED_SUB = {"m_codes": {"sub_c_axis_on": ["M135"], "sub_c_axis_clamp": ["M310"]}}
 RUNNING_SUB = {"m_codes": {"sub_c_axis_on": ["M135"], "sub_spindle_on": ["M103"]}}
+RAMP_IN_SPACE = inside("G451 G450 X50. Z1.")
 USES = {
     "title": Use("lathe of ours", FLAT.replace("F200", "F9000"), also={"limits": {"c_feed": 100}}),
     "control.g_code_system": Use("B", FLAT.replace("G98", "G99")),
@@ -204,6 +205,9 @@ USES = {
     "g_codes.compensation_left": Use([], OUTSIDE, tools=CUTTER),
     "g_codes.compensation_right": Use([], RAMPS.format("", "", ""), tools=CUTTER),
     "g_codes.feed_inverse_time": Use([], before("G93")),
+    "g_codes.feed_on_plane": Use(["G450"], RAMP_IN_SPACE, also={"polar": {"feed_measures": "space"}}),
+    "g_codes.feed_in_space": Use(["G450"], RAMP_IN_SPACE),
+    "g_codes.feed_as_machine": Use(["G450"], RAMP_IN_SPACE, also={"g_codes": {"feed_in_space": ["G451"]}}),
     "g_codes.constant_surface_speed": Use([], before("G96 S100")),
     "g_codes.constant_surface_speed_off": Use([], before("G96 S100", "G97")),
     "g_codes.work_offset": Use(["G54-G58"], before("G59")),
@@ -366,6 +370,7 @@ USES = {
     "m_codes.sub_c_axis_unclamp": Use(["M312"], before("M135", "M310", "M312"), also=CLAMPED_SUB),
     "m_codes.sub_spindle_on": Use(["M103"], before("M135", "M103"), also=TWO_SPINDLES),
     "m_codes.sub_spindle_off": Use(["M105"], before("M135", "M103", "M105"), also=RUNNING_SUB),
+    "m_codes.spindle_orientation": Use([], inside("M19")),
     "m_codes.tool_change": Use([], ENDED.format("M6")),
     "m_codes.optional_stop": Use([], ENDED.format("G28 U0\nM1")),
     "m_codes.program_end": Use(["M30"], FLAT.replace("M30", "M2")),

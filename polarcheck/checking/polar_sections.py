@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-import msgspec
+from typing import Any
+
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Rows
@@ -82,17 +83,18 @@ def _polar_sections(trace: Trace, dynamics: Dynamics, center: Center, ramps: Ram
                 ramp_used=rounded(ramp[index]),
                 time=rounded(time),
                 rotary=msgspec.UNSET if rotary == "C" else rotary,
-                time_not_known=_not_known(dynamics, index) if np.isnan(time) else msgspec.UNSET,
+                **(_of_known_blocks(dynamics, index) if np.isnan(time) else {}),
             )
         )
     return found
 
 
-def _not_known(dynamics: Dynamics, section: int) -> list[str]:
-    """Why the time of a section is not known, each reason with its first line."""
+def _of_known_blocks(dynamics: Dynamics, section: int) -> dict[str, Any]:
+    """Of a section whose time is not known that of the other blocks, and each reason with its first line."""
     trace = dynamics.trace
-    rows = np.flatnonzero(trace.mode.section == section)
-    return [f"{reason} in line {trace.blocks.line_in_file[first]}" for reason, _, first in dynamics.times(rows).unknown]
+    times = dynamics.times(np.flatnonzero(trace.mode.section == section))
+    reasons = [f"{reason} in line {trace.blocks.line_in_file[first]}" for reason, _, first in times.unknown]
+    return {"time_known": rounded(times.known), "time_not_known": reasons}
 
 
 def _offset_rows(trace: Trace) -> Rows:

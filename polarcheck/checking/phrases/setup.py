@@ -133,6 +133,12 @@ def since_x(blocks: ExecutedBlocks, row: int) -> str:
     return f", since line {int(blocks.line[at])}" if at >= 0 else ""
 
 
+def as_diameter(entry: Entry, lengths: Lengths, row: int) -> str:
+    """`, X1 as a diameter`: what puts X0 off the spindle axis as it is written; empty where that is the distance."""
+    written, distance = float(entry.origin_shift[row]), float(entry.origin_distance[row])
+    return "" if written == distance else f", X {in_row(written, lengths, row):length} as a diameter,"
+
+
 def to_reference(machine: Machine) -> str:
     """What takes the rotary axis to its reference point: G28 H0, G28 A0, or G28 C2=0."""
     mode = machine.polar

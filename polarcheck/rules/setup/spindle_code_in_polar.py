@@ -26,8 +26,8 @@ def spindle_code_in_polar(
 
     In the mode the spindle is the C axis and the part of every move. A code that starts it as a spindle, or releases
     the C axis, takes it out of the control's hands in the middle of the contour. Such codes belong before G12.1 or
-    after G13.1. So does M19, which turns the spindle to an angle of its own. Many lathes use M3 and M5 for the live
-    tool, too; where the machine profile does not name codes of its own for the live tool, these are a note.
+    after G13.1, and so does M19, which turns the spindle to an angle. Many lathes use M3 and M5 for the live tool, too;
+    where the machine profile does not name codes of its own for the live tool, these are a note.
 
     Source: builder's guide to G12.1, sample program; FANUC B-62764EN/01, p. 50.
 
