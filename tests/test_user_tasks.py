@@ -344,6 +344,16 @@ def test_a_jump_to_itself_is_one_endless_loop() -> None:
     assert said(report_of("O1\nNBAC GOTO NBAC\nM2\n", LATHE))[0] == (2, "endless-loop")
 
 
+@pytest.mark.parametrize("stop", ["M1", "M01", "M0", "/CALL OBAR\nM1"])
+def test_a_jump_back_over_a_stop_begins_the_next_part(stop: str) -> None:
+    """The frame of shop programs with a bar feeder: no loop that never ends, and no section that runs twice."""
+    frame = f"$A.MIN%\n{stop}\nNBAR\nCLEAR\nDEF WORK\nPS LC,[-400,0],[400,19]\nEND\nDRAW\n{stop}\n"
+    program = frame + "".join(HEAD.splitlines(keepends=True)[2:]) + "G101 X30.\nG136\nM12\nM109\nM5\nGOTO NBAR\n%\n"
+    report = report_of(program, LATHE, CUTTER)
+    assert {rule for _, rule in said(report)} <= {"subprogram-missing", "program-end-missing"}
+    assert report.sections == 1
+
+
 @pytest.mark.parametrize("jump", ["GOTO NCUT", "IF [1 EQ 1] NCUT", "IF [1 EQ 1] GOTO NCUT"])
 def test_a_jump_is_shown_with_the_name_that_it_goes_to(jump: str) -> None:
     (finding,) = (

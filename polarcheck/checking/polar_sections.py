@@ -6,6 +6,7 @@ from typing import Any
 
 import msgspec
 import numpy as np
+from msgspec import UNSET
 
 from polarcheck.arrays import Floats, Mask, Rows
 from polarcheck.checking.phrases.offsets import key_of
@@ -83,7 +84,7 @@ def _polar_sections(trace: Trace, dynamics: Dynamics, center: Center, ramps: Ram
                 c_feed_limit=limit,
                 ramp_used=rounded(ramp[index]),
                 time=rounded(time),
-                rotary=msgspec.UNSET if rotary == "C" else rotary,
+                rotary=UNSET if rotary == "C" else rotary,
                 **(_of_known_blocks(dynamics, index) if np.isnan(time) else {}),
             )
         )

@@ -241,7 +241,7 @@ def _find_target(state: State, statement: Statement, block: int) -> int | None:
 def _jump(state: State, target: int, block: int) -> int:
     """Jump to a block; return it."""
     if target <= block:
-        state.go_back(block)
+        state.go_back(block, target)
     leave_parts(state, target)
     state.jumped = True
     return target

@@ -15,7 +15,7 @@ from polarcheck.execution.kinds import FaultKind, RemarkKind
 from polarcheck.execution.listing import Listing
 from polarcheck.execution.macro import Variables
 from polarcheck.execution.programs import Program, ProgramName
-from polarcheck.execution.run import FlowFault, Remark
+from polarcheck.execution.run import FlowFault, Remark, is_code
 from polarcheck.machines.job import Running
 from polarcheck.time_limit import current_limit, keep_going, seconds_for
 
@@ -167,15 +167,29 @@ class State:
         self.stopped = True
         raise Stop
 
-    def go_back(self, block: int) -> None:
-        """The flow goes back from a block: if no variable has changed since the last time, it never ends."""
+    def go_back(self, block: int, target: int | None = None) -> None:
+        """
+        The flow goes back from a block: if no variable has changed since the last time, it never ends.
+
+        target: of a jump. Where the program stops between both for the operator or the bar feeder, at M0 or M1, such a
+        jump begins the next part, as M99 at the end of a main program does.
+        """
         key = (block, len(self.stack))
+        if target is not None and self.changes == self._changes_at.get(key, 0) and self._stops_between(target, block):
+            raise Stop
         if self._changes_at.get(key) == self.changes:
             self.add_fault("nothing-changes", block, self.listing.statement(block))
             self.rows.shorten()
             self.stopped = True
             raise Stop
         self._changes_at[key] = self.changes
+
+    def _stops_between(self, first: int, last: int) -> bool:
+        """M0 or M1 stands in one of the blocks from the first to the last, alone in its program."""
+        words = self.listing.text.words
+        low, high = np.searchsorted(words.block, (first, last + 1))
+        stops = ["M0", *self.listing.machine.m_codes.optional_stop]
+        return len(self.stack) == 1 and bool(is_code(words[low:high], stops).any())
 
     # ---- faults and remarks ----
 
