@@ -1,4 +1,4 @@
-"""What F is along where Z moves beside X and C: the way on the plane, or that in space (polar.feed_measures)."""
+"""What F is along: the way on the plane or that in space (polar.feed_measures), of tool center or contour (CFC)."""
 
 from __future__ import annotations
 
@@ -206,3 +206,48 @@ def test_z_that_is_not_known_leaves_the_rate_open() -> None:
     reasons = {one.reason for one in report.not_evaluated if one.rule == "c-feed-above-limit"}
     assert any("where Z stands before is not known" in reason for reason in reasons)
     assert report.polar_sections[0].time_not_known == ["position not known in line 6"]
+
+
+ROUND = """G71 G94 G0 X120 Z5 C0
+T1 D1
+TRANSMIT
+G17
+{} G1 G42 X30 Y0 F200
+{}
+Y25
+G3 X25 Y30 CR=5
+{}
+G40 X0 Y80
+TRAFOOF
+M30
+"""
+
+
+@pytest.mark.parametrize(
+    ("before", "between", "share"),
+    [
+        ("", "", 1),
+        # 808D advanced 01/2014 p. 79: F (R of the contour + R of the tool) / R of the contour.
+        ("CFC", "", 11 / 5),
+        ("cfc", "CFTCP", 1),
+        ("", "CFC", 11 / 5),
+        # On the outer side CFIN leaves F alone.
+        ("CFIN", "", 1),
+    ],
+)
+def test_cfc_is_the_feed_of_the_contour(before: str, between: str, share: float) -> None:
+    program = ROUND.format(before, between, "G1 X-30")
+    report = report_of(program, "siemens-transmit", "1/1:radius=6")
+    dynamics = dynamics_of(program, "siemens-transmit", "1/1:radius=6")
+    move = int(np.flatnonzero(dynamics.moves.kind == Motion.CCW)[0])
+    assert dynamics.move_time[move] == pytest.approx(60 * 11 * math.pi / 2 / (200 * share))
+    # The circle of 11 mm about (25, 25): C turns fastest where it is farthest from the center of C, at 11 + 25 sqrt 2.
+    assert dynamics.c_feed[move] == pytest.approx(math.degrees(200 * share / (11 + 25 * math.sqrt(2))))
+    assert not [one for one in report.not_evaluated if "CF" in one.reason]
+
+
+def test_inner_arcs_slow_the_tool_center_down() -> None:
+    program = ROUND.format("CFIN", "", "G1 X20\nG2 X10 Y40 CR=10\nG1 Y50")
+    moves = dynamics_of(program, "siemens-transmit", "1/1:radius=6").moves
+    inner = int(np.flatnonzero(moves.kind == Motion.CW)[0])
+    assert moves.time[inner] == pytest.approx(60 * 10 * math.pi / 2 / 200)

@@ -165,6 +165,7 @@ TWO_SPINDLES = {
 }
 CLAMPED_SUB = {"m_codes": {"sub_c_axis_on": ["M135"], "sub_c_axis_clamp": ["M310"]}}
 RUNNING_SUB = {"m_codes": {"sub_c_axis_on": ["M135"], "sub_spindle_on": ["M103"]}}
+FEED_ON_ARC = CORNERS.format(20, "G64 X60. F200\nG61 G3 X70. C25. R5.\nG1 X72. C30.")
 RAMP_IN_SPACE = inside("G451 G450 X50. Z1.")
 USES = {
     "title": Use("lathe of ours", FLAT.replace("F200", "F9000"), also={"limits": {"c_feed": 100}}),
@@ -209,6 +210,9 @@ USES = {
     "g_codes.feed_inverse_time": Use([], before("G93")),
     "g_codes.feed_on_plane": Use(["G450"], RAMP_IN_SPACE, also={"polar": {"feed_measures": "space"}}),
     "g_codes.feed_in_space": Use(["G450"], RAMP_IN_SPACE),
+    "g_codes.feed_at_contour": Use(["G64"], FEED_ON_ARC, tools=CUTTER),
+    "g_codes.feed_at_inner_contour": Use(["G64"], FEED_ON_ARC, tools=CUTTER),
+    "g_codes.feed_at_center": Use(["G61"], FEED_ON_ARC, tools=CUTTER, also={"g_codes": {"feed_at_contour": ["G64"]}}),
     "g_codes.feed_as_machine": Use(["G450"], RAMP_IN_SPACE, also={"g_codes": {"feed_in_space": ["G451"]}}),
     "g_codes.constant_surface_speed": Use([], before("G96 S100")),
     "g_codes.constant_surface_speed_off": Use([], before("G96 S100", "G97")),

@@ -28,6 +28,9 @@ class GCodes(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     feed_on_plane: F is along the way on the plane, whatever polar.feed_measures says
     feed_in_space: F is along the way of X, C and Z in space
     feed_as_machine: F is along what polar.feed_measures says
+    feed_at_center: F is that of the tool center on arcs in cutter compensation, as without such codes
+    feed_at_contour: F is that of the contour on arcs in cutter compensation
+    feed_at_inner_contour: F is that of the contour on the inner side of arcs, that of the tool center elsewhere
     constant_surface_speed: S is a surface speed, so that the spindle turns faster near the center
     constant_surface_speed_off: S is a spindle speed
     constant_surface_speed_ended_by: codes of feed that end it, too, where all are one group
@@ -80,6 +83,9 @@ class GCodes(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     feed_on_plane: list[str]
     feed_in_space: list[str]
     feed_as_machine: list[str]
+    feed_at_center: list[str]
+    feed_at_contour: list[str]
+    feed_at_inner_contour: list[str]
     constant_surface_speed: list[str]
     constant_surface_speed_off: list[str]
     constant_surface_speed_ended_by: list[str]

@@ -57,6 +57,14 @@ class FeedAxes(enum.IntEnum):
     SPACE = 2
 
 
+class ArcFeed(enum.IntEnum):
+    """Where F is on arcs in cutter compensation."""
+
+    CENTER = 0
+    CONTOUR = 1
+    INNER_CONTOUR = 2
+
+
 class Distance(enum.IntEnum):
     """What axis words mean in systems B and C."""
 
@@ -86,6 +94,11 @@ STATES: dict[str, dict[str, int]] = {
         "feed_on_plane": FeedAxes.PLANE,
         "feed_in_space": FeedAxes.SPACE,
         "feed_as_machine": FeedAxes.AS_MACHINE,
+    },
+    "arc_feed": {
+        "feed_at_center": ArcFeed.CENTER,
+        "feed_at_contour": ArcFeed.CONTOUR,
+        "feed_at_inner_contour": ArcFeed.INNER_CONTOUR,
     },
     "corner": {"corner_by_arc": Corner.ARC, "corner_by_intersection": Corner.INTERSECTION},
     "units": {"inch": Units.INCH, "mm": Units.MM},

@@ -9,8 +9,8 @@ from msgspec.structs import replace
 from polarcheck.machines.code_lists import FRAME_LISTS, is_code
 from polarcheck.machines.machine import Machine
 
-#: G0.1 to G0.9.
-_FREE = [f"G0.{digit}" for digit in range(1, 10)]
+#: G0.1 to G0.9, which words of three letters have room for as G.1, and behind them G9.1 to G9.9.
+_FREE = [f"G{number}.{digit}" for number in (0, 9) for digit in range(1, 10)]
 #: Lists of [control] and of [g_codes] that may hold such words; those of one that is not simulated share a code.
 _OF_CONTROL = ("x_radius_words", "x_diameter_words", "x_absolute_diameter_words")
 *_FRAMES, _NOT_SIMULATED = FRAME_LISTS
@@ -31,9 +31,11 @@ def numbered(machine: Machine) -> Machine:
     wanted = list(dict.fromkeys(tuple(group) for group in native if group))
     if not wanted:
         return machine
-    if len(wanted) > len(_FREE):
-        raise ValueError(f"no more than {len(_FREE)} words of its own can stand in x_radius_words and lists like it")
-    code = {word: free for group, free in zip(wanted, _FREE, strict=False) for word in group}
+    taken = control.native_words.values()
+    unused = [code for code in _FREE if code not in taken and _short(code) not in taken]
+    if len(wanted) > len(unused):
+        raise ValueError(f"no more than {len(unused)} words of its own can stand in x_radius_words and lists like it")
+    code = {word: free for group, free in zip(wanted, unused, strict=False) for word in group}
 
     def coded(listed: list[str]) -> list[str]:
         return [code.get(word, word) for word in listed]

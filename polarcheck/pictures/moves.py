@@ -167,6 +167,7 @@ def _with_standing(trace: Trace, dynamics: Dynamics) -> tuple[Moves, Rows]:
         "center": nowhere,
         "feed": trace.feedrate.feed[row],
         "rise": 0.0,
+        "arc_share": 1.0,
         "known": np.where(follows, known, True) & ~np.isnan(place),
         "phase": off,
         "corner": False,

@@ -7,12 +7,13 @@ from functools import cached_property
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Points, Rows, States, Table
+from polarcheck.arrays import Floats, Mask, Points, Rows, States, Table, is_among
 from polarcheck.columns.filling import before
 from polarcheck.columns.trace import Trace
 from polarcheck.geometry import polar, rates
 from polarcheck.geometry.cutter_compensation import compensation
-from polarcheck.machines.modal import Motion
+from polarcheck.geometry.tolerances import ZERO
+from polarcheck.machines.modal import ArcFeed, Motion
 
 
 class Moves(Table, frozen=True, dict=True):
@@ -21,7 +22,8 @@ class Moves(Table, frozen=True, dict=True):
 
     row: the row of the trace that it belongs to. section: its polar section. kind: int16, Motion. start, end, center:
     plane points [mm]. feed: F in force [mm/min]. rise: way of Z beside that on the plane, where F measures both [mm];
-    0 where F measures the plane alone. known: False where the radius or a position is unknown. phase:
+    0 where F measures the plane alone. arc_share: share of F with which the tool center runs along an arc; 1 elsewhere,
+    and where F is that of the tool center. known: False where the radius or a position is unknown. phase:
     compensation.Phase. corner: a line or an arc that the control adds. allowance: what a pass of an infeed cycle leaves
     on the contour [mm], 0 elsewhere. entry: float64[sections], C angle of the linear axis of each section [deg].
     c_axis: how C stands to the angles of the plane.
@@ -37,6 +39,7 @@ class Moves(Table, frozen=True, dict=True):
     center: Points
     feed: Floats
     rise: Floats
+    arc_share: Floats
     known: Mask
     phase: States
     corner: Mask
@@ -61,8 +64,8 @@ class Moves(Table, frozen=True, dict=True):
 
     @cached_property
     def plane_share(self) -> Floats:
-        """Share of F with which the tool moves on the plane: 1 unless F measures Z, too."""
-        return np.divide(self.length, self.way, out=np.ones(len(self)), where=self.rise != 0)
+        """Share of F with which the tool center moves on the plane: 1 unless F measures Z, too, or the contour."""
+        return self.arc_share * np.divide(self.length, self.way, out=np.ones(len(self)), where=self.rise != 0)
 
     @cached_property
     def plane_feed(self) -> Floats:
@@ -107,7 +110,7 @@ class Moves(Table, frozen=True, dict=True):
     @cached_property
     def time(self) -> Floats:
         """How long the move takes [s]."""
-        return polar.time(self.way, self.feed)
+        return polar.time(self.way, self.feed * self.arc_share)
 
     @cached_property
     def c_angles(self) -> tuple[Floats, Floats]:
@@ -196,6 +199,7 @@ def programmed_moves(trace: Trace) -> Moves:
         center=center,
         feed=trace.feedrate.feed[row],
         rise=trace.path.rise[row],
+        arc_share=np.ones(len(row)),
         known=~np.isnan(end - start),
         phase=np.zeros(len(row), np.int16),
         corner=np.zeros(len(row), bool),
@@ -259,6 +263,7 @@ def of_tool(trace: Trace, tool: compensation.ToolPath, row: Rows) -> Moves:
         center=tool.center,
         feed=trace.feedrate.feed[at],
         rise=rise_of(trace, at, length),
+        arc_share=_arc_share(trace, tool, at),
         known=tool.known,
         phase=tool.phase,
         corner=tool.corner,
@@ -266,6 +271,19 @@ def of_tool(trace: Trace, tool: compensation.ToolPath, row: Rows) -> Moves:
         entry=trace.path.section_entry,
         c_axis=trace.path.c_axis,
     )
+
+
+def _arc_share(trace: Trace, tool: compensation.ToolPath, row: Rows) -> Floats:
+    """Share of F with which the tool center runs along arcs where F is that of the contour: R of its arc by that."""
+    where = trace.modal.state("arc_feed")[row]
+    share = np.ones(len(row))
+    if not where.any():
+        return share
+    of_contour = np.abs(trace.path.start - trace.path.center)[row]
+    of_center = np.abs(tool.start - tool.center)
+    arcs = (where != ArcFeed.CENTER) & is_among(tool.kind, (Motion.CW, Motion.CCW)) & ~tool.corner & (of_contour > ZERO)
+    np.divide(of_center, of_contour, out=share, where=arcs)
+    return np.where(where == ArcFeed.INNER_CONTOUR, np.minimum(share, 1.0), share)
 
 
 def _cancel_vector(trace: Trace, row: Rows) -> Points:
