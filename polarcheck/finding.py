@@ -143,7 +143,9 @@ class PolarSection(msgspec.Struct, frozen=True, kw_only=True):
     c_feed, c_feed_line, c_feed_limit: highest C rate, its line, the limit of the machine [deg/min].
     ramp_used: share of a start-up or offset cancel that its radius needs, the largest of the section; 1 at the limit.
     time: of its moves at the F in force, Z moves and dwells included [s].
-    time_not_known: where there is no time, why, by reason, as `dwell in line 12`.
+    time_known: where there is no time, that of the blocks of which it is known [s].
+    time_not_known: why it is not known of the others, by reason, as `dwell in line 12`.
+    rotary: address of the rotary axis, which all of C are rates and places of, where it is not C.
     channel: of a file with several channels, as `$2`.
     """
 
@@ -159,7 +161,9 @@ class PolarSection(msgspec.Struct, frozen=True, kw_only=True):
     c_feed_limit: float | None
     ramp_used: float | None
     time: float | None
+    time_known: float | UnsetType | None = UNSET
     time_not_known: list[str] | UnsetType = UNSET
+    rotary: str | UnsetType = UNSET
     channel: str | UnsetType = UNSET
 
 

@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 from typing import Any
 
+import msgspec
 import numpy as np
 import pytest
 from programs import report_of, tables_of
 
 from polarcheck.checking.tables import Tables
+from polarcheck.reports.pages import resting
 
 #: A section on each control, with room for a dwell between two moves at F100.
 SECTIONS = {
@@ -100,6 +102,16 @@ def test_a_dwell_that_is_not_known_is_the_reason(machine: str, words: str, reaso
     section = report_of(SECTIONS[machine].format(words), machine).polar_sections[0]
     assert section.time is None
     assert section.time_not_known == [reason]
+
+
+def test_the_time_of_the_other_blocks_is_there() -> None:
+    """Also where block skip takes the dwell out of one of two runs."""
+    report = report_of(SECTIONS["fanuc"].format("/G4 F2."), "fanuc")
+    (section,) = report.polar_sections
+    assert (section.time, section.time_known, section.time_not_known) == (None, 12, ["dwell in line 4"])
+    assert any("12 s and what is not known: dwell in line 4" in line for line in resting.resting(report))
+    whole = report_of(SECTIONS["fanuc"].format("/G4 X2."), "fanuc").polar_sections[0]
+    assert (whole.time, whole.time_known, whole.time_not_known) == (14, msgspec.UNSET, msgspec.UNSET)
 
 
 def test_feed_per_revolution_makes_turns_of_it_where_the_control_does() -> None:

@@ -174,6 +174,32 @@ def test_trace_and_curve_show_f_and_what_it_leaves() -> None:
     assert curve.c_feed[on_helix].max() == pytest.approx(helix.c_feed, rel=1e-3)
 
 
+@pytest.mark.parametrize(
+    ("before", "between", "in_space"),
+    [
+        ("", "", (True, True)),
+        ("FGROUP(X,Y)", "", (False, False)),
+        ("", "fgroup (y, x) M8", (True, False)),
+        ("FGROUP(X,Y)", "FGROUP()", (False, True)),
+        ("FGROUP(X,Y)", "N5 FGROUP(X, Y, Z)", (False, True)),
+    ],
+)
+def test_fgroup_names_the_axes_that_f_is_for(before: str, between: str, in_space: tuple[bool, bool]) -> None:
+    """NC programming 12/2019 p. 105."""
+    blocks = [before, "LINE X20. V10. Z-5. F200.", between, "LINE X20. V0. Z5."]
+    # What stands before them is in force there, too.
+    report = report_of(program := section("siemens-transmit", *blocks), "siemens-transmit")
+    found = dynamics_of(program, "siemens-transmit").move_time[-2:]
+    assert found == pytest.approx([60 * (math.hypot(10, 10) if each else 10) / 200 for each in in_space])
+    assert report.verdict == "pass"
+    assert not report.not_evaluated
+
+
+def test_fgroup_of_other_axes_is_not_simulated() -> None:
+    program = section("siemens-transmit", "FGROUP(X,C)", "LINE X20. V10. Z-5. F200.")
+    assert [one.reason for one in report_of(program, "siemens-transmit").not_evaluated] == ["FGROUP is not simulated"]
+
+
 def test_z_that_is_not_known_leaves_the_rate_open() -> None:
     program = "O1\nT0101\nG98 G0 X60. C0\nG12.1\nG1 X40. F200\nC10. Z-5.\nX60.\nG13.1\nM30\n"
     report = report_of(program, "fanuc", "1:radius=0", changes={**SPACE, "limits": {"c_feed": 3600}})

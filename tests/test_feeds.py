@@ -15,6 +15,7 @@ from hypothesis import strategies as st
 from programs import report_of, tables_of
 from test_cli import call, make
 from test_dynamics import contours, inside
+from test_feed_in_space import SPACE, helices
 
 from polarcheck.feed_table.edits import feed_below
 from polarcheck.feed_table.table import FeedRow, FeedTable, feed_number, feed_table, highest
@@ -171,12 +172,12 @@ def test_inch_and_mm_have_the_same_table() -> None:
 
 
 @settings(max_examples=15, deadline=None)
-@given(contours(), st.integers(0, 5), st.randoms(use_true_random=False))
+@given(st.one_of(contours(), helices()), st.integers(0, 5), st.randoms(use_true_random=False))
 def test_the_table_in_its_program_leaves_no_finding_and_no_block_slower_than_it_must_be(
     program: str, radius: int, random: Any
 ) -> None:
     tool, only = f"1:radius={radius}", ["c-feed-above-limit"]
-    limits = {"limits": {"c_feed": 2000}}
+    limits = {"limits": {"c_feed": 2000}, **SPACE}
     before = tables_of(program, "fanuc", tool, changes=limits)
     made = applied(program, tool, changes=limits)
     after = tables_of(made.data, "fanuc", tool, changes=limits)

@@ -284,13 +284,15 @@ def _worst(off: Sequence[PolarSection], on: Sequence[PolarSection]) -> list[Pola
 
 def _worse(one: PolarSection, other: PolarSection) -> PolarSection:
     fastest = max(one, other, key=lambda section: math.inf if section.c_feed is None else section.c_feed)
+    reasons = dict.fromkeys(reason for section in (one, other) for reason in section.time_not_known or ())
+    known = max(section.time_known or section.time or 0.0 for section in (one, other))
     return msgspec.structs.replace(
         fastest,
         nearest=_fold(min, one.nearest, other.nearest),
         ramp_used=max((used for used in (one.ramp_used, other.ramp_used) if used is not None), default=None),
         time=_fold(max, one.time, other.time),
-        time_not_known=list(dict.fromkeys([*(one.time_not_known or ()), *(other.time_not_known or ())]))
-        or msgspec.UNSET,
+        time_known=known if reasons else msgspec.UNSET,
+        time_not_known=list(reasons) or msgspec.UNSET,
     )
 
 

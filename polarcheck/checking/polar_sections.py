@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-import msgspec
+from typing import Any
+
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Rows
@@ -61,7 +62,7 @@ def _polar_sections(trace: Trace, dynamics: Dynamics, center: Center, ramps: Ram
     at_entry = _offset_rows(trace)
     nearest = _of_sections(sections, np.where(trace.path.cuts, tool_center.nearest, np.inf), np.minimum, np.inf)
     ramp = _ramp_used(trace, ramps)
-    limit = rounded(trace.machine.limits.c_feed)
+    limit, rotary = rounded(trace.machine.limits.c_feed), trace.machine.polar.rotary_address
     found = []
     for index, (enter, end, row, fast) in enumerate(
         zip(sections.enter.tolist(), sections.last.tolist(), at_entry.tolist(), fastest.tolist(), strict=True)
@@ -81,17 +82,19 @@ def _polar_sections(trace: Trace, dynamics: Dynamics, center: Center, ramps: Ram
                 c_feed_limit=limit,
                 ramp_used=rounded(ramp[index]),
                 time=rounded(time),
-                time_not_known=_not_known(dynamics, index) if np.isnan(time) else msgspec.UNSET,
+                rotary=msgspec.UNSET if rotary == "C" else rotary,
+                **(_of_known_blocks(dynamics, index) if np.isnan(time) else {}),
             )
         )
     return found
 
 
-def _not_known(dynamics: Dynamics, section: int) -> list[str]:
-    """Why the time of a section is not known, each reason with its first line."""
+def _of_known_blocks(dynamics: Dynamics, section: int) -> dict[str, Any]:
+    """Of a section whose time is not known that of the other blocks, and each reason with its first line."""
     trace = dynamics.trace
-    rows = np.flatnonzero(trace.mode.section == section)
-    return [f"{reason} in line {trace.blocks.line_in_file[first]}" for reason, _, first in dynamics.times(rows).unknown]
+    times = dynamics.times(np.flatnonzero(trace.mode.section == section))
+    reasons = [f"{reason} in line {trace.blocks.line_in_file[first]}" for reason, _, first in times.unknown]
+    return {"time_known": rounded(times.known), "time_not_known": reasons}
 
 
 def _offset_rows(trace: Trace) -> Rows:

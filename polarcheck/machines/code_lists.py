@@ -25,6 +25,9 @@ class GCodes(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     corner_by_arc: cutter compensation goes round outer corners by an arc of R
     corner_by_intersection: cutter compensation goes round outer corners by the point where both ways meet
     feed_inverse_time: F is the inverse of the time that the block takes
+    feed_on_plane: F is along the way on the plane, whatever polar.feed_measures says
+    feed_in_space: F is along the way of X, C and Z in space
+    feed_as_machine: F is along what polar.feed_measures says
     constant_surface_speed: S is a surface speed, so that the spindle turns faster near the center
     constant_surface_speed_off: S is a spindle speed
     work_offset: work coordinate systems; the first is in force where the program selects none
@@ -73,6 +76,9 @@ class GCodes(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     corner_by_arc: list[str]
     corner_by_intersection: list[str]
     feed_inverse_time: list[str]
+    feed_on_plane: list[str]
+    feed_in_space: list[str]
+    feed_as_machine: list[str]
     constant_surface_speed: list[str]
     constant_surface_speed_off: list[str]
     work_offset: list[str]

@@ -49,6 +49,14 @@ class FeedMode(enum.IntEnum):
     PER_REVOLUTION = 95
 
 
+class FeedAxes(enum.IntEnum):
+    """What F is along where Z moves beside X and C."""
+
+    AS_MACHINE = 0
+    PLANE = 1
+    SPACE = 2
+
+
 class Distance(enum.IntEnum):
     """What axis words mean in systems B and C."""
 
@@ -74,6 +82,11 @@ STATES: dict[str, dict[str, int]] = {
     },
     "plane": {"plane_xy": OF_CODE, "plane_zx": OF_CODE, "plane_yz": OF_CODE},
     "side": {"compensation_off": Side.OFF, "compensation_left": Side.LEFT, "compensation_right": Side.RIGHT},
+    "feed_axes": {
+        "feed_on_plane": FeedAxes.PLANE,
+        "feed_in_space": FeedAxes.SPACE,
+        "feed_as_machine": FeedAxes.AS_MACHINE,
+    },
     "corner": {"corner_by_arc": Corner.ARC, "corner_by_intersection": Corner.INTERSECTION},
     "units": {"inch": Units.INCH, "mm": Units.MM},
     "feed_mode": {

@@ -42,8 +42,6 @@ def time_of_dwells(trace: Trace) -> Floats:
 
     Without any word that is a time somewhere there is none, but an exact stop. Of other rows it means nothing.
     """
-    if not dwells(trace).any():
-        return np.zeros(len(trace))
     words = trace.machine.feed.dwell_words
     time, known = _sums(trace, words)
     _, foreign = _sums(trace, dict.fromkeys((word for word in _OF_ANY_CONTROL if word not in words), ""))

@@ -21,7 +21,6 @@ from polarcheck.columns.trace import Trace
 from polarcheck.geometry import automatic_override, polar
 from polarcheck.geometry.tolerances import SHARE, ZERO
 from polarcheck.machines.modal import FeedMode, Motion
-from polarcheck.table.dwells import dwells, in_turns, time_of_dwells
 from polarcheck.table.moves import Moves
 from polarcheck.table.tool_center import ToolCenter
 
@@ -166,7 +165,7 @@ class Dynamics:
         time[rest] = np.where(at_feed, self._time_of_way(rest), np.nan)
         rapids = rest[trace.axes.motion[rest] == Motion.RAPID]
         time[rapids] = self._time_of_rapids(rapids)
-        time[rest] = np.where(self.dwells[rest], time_of_dwells(trace)[rest], time[rest])
+        time[rest] = np.where(self.dwells[rest], self._dwell_times[0][rest], time[rest])
         time[trace.run.unknown] = np.nan
         return time
 
@@ -206,7 +205,17 @@ class Dynamics:
     @cached_property
     def dwells(self) -> Mask:
         """Rows with a dwell."""
-        return dwells(self.trace)
+        return self.trace.blocks.listed("dwell")
+
+    @cached_property
+    def _dwell_times(self) -> tuple[Floats, Mask]:
+        """How long each dwell takes [s], and those that count turns of a spindle."""
+        if not self.dwells.any():
+            return np.zeros(len(self.trace)), self.dwells
+        # Most programs have none.
+        from polarcheck.table.dwells import in_turns, time_of_dwells
+
+        return time_of_dwells(self.trace), in_turns(self.trace)
 
     @cached_property
     def _returns(self) -> Mask:
@@ -227,7 +236,7 @@ class Dynamics:
         reasons = []
         for reason, mask in (
             (NOT_EXECUTED, trace.run.unknown),
-            (DWELL_IN_TURNS, self.dwells & in_turns(trace)),
+            (DWELL_IN_TURNS, self._dwell_times[1]),
             (DWELL, self.dwells),
             (CYCLE, trace.modal.in_cycle),
             (RAPIDS, rapid | self._returns),

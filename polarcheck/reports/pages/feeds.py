@@ -25,6 +25,7 @@ _REMEDIES = {
     reasons.RAPIDS: "give limits.x_rapid, limits.z_rapid and limits.c_rapid, and where the tool stands before",
     reasons.RADIUS: "give the radius of the tool",
     reasons.PER_REVOLUTION: "the spindle that F depends on is the C axis, or its S is not known",
+    reasons.DWELL: "feed.dwell_words of the machine says which words are a dwell, and in which unit",
 }
 
 

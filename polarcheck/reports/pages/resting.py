@@ -46,7 +46,8 @@ def _section(section: PolarSection) -> str:
     if section.time is not None:
         facts.append(f"{section.time:.0f} s")
     elif section.time_not_known and section.c_feed is not None:
-        facts.append(f"time not known: {', '.join(section.time_not_known)}")
+        known = f"{section.time_known:.0f} s and " if section.time_known else ""
+        facts.append(f"{known}what is not known: {', '.join(section.time_not_known)}")
     channel = f" in channel {section.channel}" if section.channel else ""
     return f"section of line {section.line}{channel}: {', '.join(fact for fact in facts if fact)}"
 
@@ -86,11 +87,12 @@ def _radius(section: PolarSection) -> str:
 
 def _rate(section: PolarSection) -> str:
     limit = "no limit given" if section.c_feed_limit is None else f"limit {section.c_feed_limit:.0f}"
+    rotary = section.rotary or "C"
     if section.c_feed is None:
-        return f"rate of C not known ({limit})"
+        return f"rate of {rotary} not known ({limit})"
     if section.c_feed_line is None:
-        return f"C does not turn ({limit})"
-    return f"C at most {section.c_feed:.0f} deg/min in line {section.c_feed_line} ({limit})"
+        return f"{rotary} does not turn ({limit})"
+    return f"{rotary} at most {section.c_feed:.0f} deg/min in line {section.c_feed_line} ({limit})"
 
 
 def _length(value: float, section: PolarSection) -> str:
