@@ -746,7 +746,7 @@ def test_explain_says_how_the_mode_is_programmed_on_the_machine(machine: str, wo
 def test_explain_suggests_what_begins_with_the_word() -> None:
     assert (
         call("explain", "rapid").stderr == "polarcheck: unknown rule 'rapid'; did you mean "
-        "rapid-plunge-into-stock, rapid-through-part or rapid-through-stock?\n"
+        "rapid-along-contour, rapid-plunge-into-stock or rapid-through-part?\n"
     )
     assert call("explain", "start-up").stderr.endswith(
         "did you mean start-up-on-arc, start-up-shorter-than-radius or start-up-sweeps-contour?\n"
