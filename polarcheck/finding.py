@@ -145,6 +145,7 @@ class PolarSection(msgspec.Struct, frozen=True, kw_only=True):
     time: of its moves at the F in force, Z moves and dwells included [s].
     time_known: where there is no time, that of the blocks of which it is known [s].
     time_not_known: why it is not known of the others, by reason, as `dwell in line 12`.
+    rotary: address of the rotary axis, which all of C are rates and places of, where it is not C.
     channel: of a file with several channels, as `$2`.
     """
 
@@ -162,6 +163,7 @@ class PolarSection(msgspec.Struct, frozen=True, kw_only=True):
     time: float | None
     time_known: float | UnsetType | None = UNSET
     time_not_known: list[str] | UnsetType = UNSET
+    rotary: str | UnsetType = UNSET
     channel: str | UnsetType = UNSET
 
 

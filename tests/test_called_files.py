@@ -299,3 +299,9 @@ def test_the_call_may_stand_in_a_called_program() -> None:
     main = "O1\nG98 G40 T0101\nM98 P3\nM30\nO3\nG0 Z5. X60. C0\nM98 P2\nG0 X41. C0\nM98 P2\nM99\n"
     report = report_of(main + "O2\n" + RAMP, "fanuc", "1:radius=2,nose=0")
     assert [one.message.partition("(")[2] for one in report.findings] == ["in the call of line 9)"]
+
+
+def test_what_the_text_has_wrong_is_of_no_call() -> None:
+    report = report_of("O1\nM98 P2\n#1=5\nM98 P2\nM30\nO2\nIF[#1 EQ 5]#1=5\nM99\n")
+    assert [one.rule for one in report.findings] == ["macro-syntax"]
+    assert "(in the call" not in report.findings[0].message

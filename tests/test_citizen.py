@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import pytest
-from programs import Changes, report_of, said, tables_of
+from programs import Changes, report_of, said, trace_of
 
 from polarcheck.finding import FileReport
+from polarcheck.table import live_tool
 
 CONTOUR = """G1 X10. Y0 F200
 G42 X6. Y0
@@ -38,6 +39,7 @@ def citizen(text: str, changes: Changes | None = None) -> FileReport:
         "M23 S2=2000\nM83 S4=2000",
         "#100=2000\nM83 S3=#100",
         "M83 S3=[1000+500]",
+        "G114.1 H1 D-2 E0\nG610\nG600\nG44\nM58 S3=3000\nG113",
     ],
 )
 def test_a_sound_program_passes(spindle: str) -> None:
@@ -65,14 +67,23 @@ def test_blanks_stand_anywhere(switch: str) -> None:
     ],
 )
 def test_the_chip_load_is_that_of_the_live_tool(spindle: str, speed: float | None) -> None:
-    tables = tables_of(program(spindle), "citizen")
-    found = tables["highest_feeds"].speed[tables["trace"].mode.in_polar]
+    trace = trace_of(program(spindle), "citizen")
+    found = live_tool.speed(trace)[trace.mode.in_polar]
     assert all(found == speed) if speed else all(found != found)
 
 
 def test_a_main_spindle_that_turns_is_told() -> None:
     report = citizen(program("M3 S1=3000\nM83 S3=3000"))
     assert said(report) == [(9, "main-spindle-running-at-entry")]
+
+
+def test_the_head_of_a_post() -> None:
+    """M codes, spindle, tool and index angle in one block; G44 names a spindle, and M18 needs no reference return."""
+    head = "S1=0\nG97M58S3=4000T2700E0.\nG44\nG98 M18\nG0 Z1. T27\nG0 X16. C0\n"
+    report = report_of(
+        f"O1\n$1\n{head}G12.1D0E=C\nG17\n{CONTOUR}G13.1\nM20\nM60\nM99\n", "citizen", "27:radius=1,nose=0"
+    )
+    assert (said(report), report.not_evaluated) == ([], [])
 
 
 @pytest.mark.parametrize("plane", ["G16 C9.0", "G19", "G16C9."])

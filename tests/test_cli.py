@@ -662,6 +662,25 @@ def test_explain_knows_alarms_of_the_machine_that_is_chosen() -> None:
     assert result.stderr == "polarcheck: no rule is known to give alarm P62 on FANUC lathe control\n"
 
 
+def test_explain_of_an_alarm_shows_one_page_and_the_names_of_the_others() -> None:
+    page = call("explain", "PS0146").stdout
+    assert page.startswith("rapid-in-polar (polar")
+    assert page.count("\nSource: ") == 1
+    assert "PS0146 also stands for, each with a page of its own (polarcheck explain NAME):\n\n" in page
+    assert "\n  plane-selected-in-polar " in page
+    assert "also stands for" not in call("explain", "OT0512").stdout
+
+
+@pytest.mark.parametrize(
+    ("block", "first"), [("G17", "plane-selected-in-polar"), ("G28 U0", "code-not-allowed-in-polar")]
+)
+def test_explain_of_an_alarm_begins_with_what_a_program_does(block: str, first: str) -> None:
+    Path("O1.NC").write_text(f"G98 G0 X60. C0\nG12.1\nG1 X40. F200\n{block}\nC5.\nG13.1\n", "utf-8")
+    page = call("explain", "PS0146", "O1.NC").stdout
+    assert page.startswith(f"{first} (")
+    assert "\n  rapid-in-polar " in page
+
+
 def test_explain_suggests_the_nearest_name() -> None:
     result = call("explain", "rapid-in-poler")
     assert (result.exit_code, result.stdout) == (2, "")

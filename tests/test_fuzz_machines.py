@@ -266,8 +266,8 @@ def values_in_use(key: str) -> list[Any]:
     """The values that our machines have for a key."""
     table, _, name = key.partition(".")
     found = []
-    for base in profiles.names():
-        value = json.loads(msgspec.json.encode(getattr(profiles.load(base).machine, table, None)))
+    for profile in profiles.built_in():
+        value = json.loads(msgspec.json.encode(getattr(profile.machine, table, None)))
         found.append(value.get(name) if name and isinstance(value, dict) else value)
     return [value for value in found if value is not None] or [""]
 

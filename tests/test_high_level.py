@@ -127,7 +127,7 @@ NAMED = {
     'PCALL "/A/B"': "PCALL",
     "E_MI_CON(1)": "E_MI_CON",
     "F_MI_CON(1)": "F_MI_CON",
-    "ID=1 WHENEVER $AA_IM[X]>5 DO $AC_OVR=0": "ID=",
+    "ID=1 WHENEVER $AA_IM[X]>5 DO $AC_OVR=0": "synchronized action with $AC_OVR",
     "$TC_DP6[1,1]=4": "$TC_DP6[1,1]=",
     "$P_UIFR[1]=CTRANS(X,10)": "$P_UIFR[1]=",
     "$MN_ANY=1": "$MN_ANY=",
@@ -145,7 +145,7 @@ NAMED = {
     'GOTOF "ON"<<R1': 'GOTOF "ON"<<R1',
     "GOTOS": "GOTOS",
     "G291": "G291",
-    "WHEN $AC_TIME>1 DO M3": "WHEN",
+    "WHEN $AC_TIME>1 DO X=3": "synchronized action with X",
     "THIS IS A TEXT": "THIS IS A TEXT",
     "PROC ONE(VAR REAL AA)": "VAR",
     "SAVE": "SAVE",
@@ -411,8 +411,8 @@ def test_the_example_of_the_manual_has_no_false_error() -> None:
     """A square by TRANSMIT with frames, after the pattern of the manual."""
     report = report_of(EXAMPLE.replace("N120 T2 D1 X15 Y-15\n", ""), OWN, "1:radius=2")
     # F5000 two millimeters from the center: the control slows down there.
-    assert [one.rule for one in report.findings if one.severity != "note"] == ["c-feed-above-limit"]
-    assert not [one for one in report.findings if one.severity == "error"]
+    assert "c-feed-above-limit" in [one.rule for one in report.findings]
+    assert not [one for one in report.findings if one.severity != "note"]
 
 
 def test_the_dialect_keeps_its_own_words() -> None:
@@ -464,7 +464,7 @@ FANUC = f"O1\nG98 G40 T0101\nG0 X60. C0\nG12.1\n{FANUC_CONTOUR}{FANUC_CONTOUR}G1
 TWIN_OWN = """%_N_TWIN_MPF
 DEF REAL HALF=20
 R1=10 R2=R1*2 R5=0
-T1 D1
+T1 D1 G451
 G0 X60 Y0
 DIAMOF
 TRANSMIT

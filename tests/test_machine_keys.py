@@ -102,6 +102,8 @@ def outcome(use: Use, changes: dict[str, Any]) -> tuple[Any, ...]:
 
 FLAT = "O1\nG98 G0 X60. C0\nG12.1\nG1 X40. F200\nC10.\nX60.\nG13.1\nM30\n"
 ARC = "O1\nG98 G0 X60. C0\nG12.1\nG1 X40. F200\nG3 X20. C10. {}\nG1 X60.\nG13.1\nM30\n"
+ENGAGED_BEHIND = "O1\nG98 G0 X60. C0\nG12.1\nM35\nG1 X40. F200\nC10.\nX60.\nG13.1\nM30\n"
+HALF = "O1\nG98 G0 X60. C0\nG12.1\nG1 X40. F200\nG3 X-40. C0 R20.\nG1 X-60.\nG13.1\nM30\n"
 LARGER_ARC = "O1\nG94 G0 X60. C0\nG137 C0\nG101 X20. Y0 F200\nG103 X0 Y-20. L20. CALRG\nG136\nM2\n"
 RAMPS = "O1\nT0101\nG98 G0 X100. C0\nG12.1\n{}G1 G42 X40. F200\n{}C20.\nX10.\nC-20.\nX60.\n{}G40 X100.\nG13.1\nM30\n"
 CUTTER = ("1:radius=4",)
@@ -308,12 +310,13 @@ USES = {
     "polar.infeed_word": Use("", INFEED, "gsk-988", ("2:radius=10",)),
     "polar.allowed_codes": Use(["G1", "G64"], inside("G64")),
     "polar.plane_before": Use(["G17"], before("G18")),
+    "polar.engaged_behind": Use(True, ENGAGED_BEHIND, also={"m_codes": {"c_axis_on": ["M35"]}}),
     "polar.main_spindle_must_stop": Use(True, before("M3")),
     "arcs.tolerance": Use(1, ARC.format("I-10.1 J0")),
     "arcs.radius_word": Use("L", ARC.format("R10.")),
     "arcs.corner_words": Use(["R"], CORNERS.format(20, "G40 X60. R1.\nX50. R1.\nC30.\nG13.1"), tools=CUTTER),
     "arcs.sweep_limit": Use(45, ARC.format("I-10. J0")),
-    "arcs.takes_sweep_limit": Use(False, ARC.format("R7.0711"), also={"arcs": {"sweep_limit": 180}}),
+    "arcs.takes_sweep_limit": Use(False, HALF, also={"arcs": {"sweep_limit": 180}}),
     "arcs.larger_arc_word": Use("", LARGER_ARC, "okuma-osp"),
     "compensation.start_up": Use("B", OUTSIDE, tools=CUTTER),
     "compensation.start_up_with_move": Use("B", OUTSIDE, tools=CUTTER, also={"compensation": {"start_up": "C"}}),
@@ -371,6 +374,7 @@ USES = {
     "m_codes.sub_c_axis_unclamp": Use(["M312"], before("M135", "M310", "M312"), also=CLAMPED_SUB),
     "m_codes.sub_spindle_on": Use(["M103"], before("M135", "M103"), also=TWO_SPINDLES),
     "m_codes.sub_spindle_off": Use(["M105"], before("M135", "M103", "M105"), also=RUNNING_SUB),
+    "m_codes.spindle_orientation": Use([], inside("M19")),
     "m_codes.tool_change": Use([], ENDED.format("M6")),
     "m_codes.optional_stop": Use([], ENDED.format("G28 U0\nM1")),
     "m_codes.program_end": Use(["M30"], FLAT.replace("M30", "M2")),

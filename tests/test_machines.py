@@ -246,7 +246,10 @@ def test_tables_of_another_control_can_be_left_behind() -> None:
         ("inherits = 'fanuc'\n[known_parameters]\n1 = 1\n[parameters]\n1 = 1", "own.toml: known_parameters.1: expect"),
         ("inherits = 'fanuc'\n[control]\nnative_words = { AB = 'G12.1' }", "own.toml: control: native_words: 'G12"),
         ("inherits = 'fanuc'\n[control]\nx_radius_words = ['RA']", "own.toml: control: native_words: 'G.1' has no"),
-        (f"inherits = 'fanuc'\n[control]\nx_radius_words = {list('ABCDEFGHIJKLMNOPQRS')}", "own.toml: control: no more than 18"),
+        (
+            f"inherits = 'fanuc'\n[control]\nx_radius_words = {list('ABCDEFGHIJKLMNOPQRS')}",
+            "own.toml: control: no more than 18",
+        ),
         ("inherits = 'fanuc'\n[control]\nmotion_codes = { G101 = 'M3' }", "own.toml: control: motion_codes: G101 ="),
         ("inherits = 'fanuc'\n[g_codes]\nrapid = ['GO']", "own.toml: g_codes.rapid: 'GO' is no code"),
         ("inherits = 'fanuc'\n[g_codes]\nrapid = ['G0', 'G12.15']", "own.toml: g_codes.rapid: 'G12.15' is no code"),

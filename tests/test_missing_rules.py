@@ -368,7 +368,8 @@ G92 = "O1\nG21 G40 G97 G94 G18\nT0101\n"
 def test_an_origin_that_the_program_moves(blocks: str, name: str, shift: str, head: str, unit: str) -> None:
     *_, (block, rule, message) = found(SHIFTED.format(blocks), head=head)
     assert (block, rule) == ("G12.1", "origin-off-center")
-    assert message == f"{name} puts X0 {shift} {unit} off the spindle axis at G12.1"
+    distance = f"{float(shift) / 2:g} {unit} off the spindle axis, X {shift} {unit} as a diameter,"
+    assert message == f"{name} puts X0 {distance} at G12.1"
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""G121, G12 and G12,1 in the place of G12.1, and the same of G13.1: one finding, with the code that makes it right."""
+"""G121 and G12 in the place of G12.1, and the same of G13.1: one finding, with the code that makes it right."""
 
 from __future__ import annotations
 
@@ -16,12 +16,10 @@ UNKNOWN = "polar-switch-unknown"
         ("G121", "G13.1", 5, "error", "write G12.1"),
         ("G121", "G131", 5, "error", "write G12.1, and G13.1 for G131 in line 10"),
         ("G121", "G0 X70.", 5, "warning", "write G12.1"),
-        ("G12,1", "G13.1", 5, "error", "write G12.1"),
         ("N10 G12", "G13.1", 5, "error", "write G12.1"),
         ("G12", "G13", 5, "error", "write G12.1, and G13.1 for G13 in line 10"),
         ("G12.1", "G131", 10, "error", "write G13.1"),
         ("G12.1", "G13", 10, "error", "write G13.1"),
-        ("G12.1", "G13,1", 10, "error", "write G13.1"),
         ("G12.1", "G013", 10, "error", "write G13.1"),
     ],
 )
@@ -30,6 +28,14 @@ def test_a_slip_is_one_finding(machine: str, on: str, off: str, line: int, sever
     report = report_of(PROGRAM.format(on, off), machine, changes={"control": DIAMETER, "polar": DIAMETER})
     assert [(one.line, one.rule, one.severity) for one in report.findings] == [(line, UNKNOWN, severity)]
     assert report.findings[0].message.endswith(remedy)
+
+
+@pytest.mark.parametrize(("on", "off", "line"), [("G12,1", "G13.1", 5), ("G12.1", "G13,1", 10), ("G12,1", "G13,1", 5)])
+def test_a_comma_is_the_only_finding_of_its_kind(on: str, off: str, line: int) -> None:
+    report = report_of(PROGRAM.format(on, off))
+    assert {one.rule for one in report.findings} == {"stray-character"}
+    assert report.findings[0].line == line
+    assert report.findings[0].message.partition(" (")[0].endswith(("write 12.1", "write 13.1"))
 
 
 def test_codes_of_the_builder_are_named_with_their_keys() -> None:

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from programs import moves_of, report_of, trace_of
+from programs import moves_of, report_of, tables_of, trace_of
 
 from polarcheck.table.moves import Moves
 
@@ -125,3 +125,28 @@ def test_messages_and_fixes_have_f_in_its_own_units() -> None:
     (finding,) = [finding for finding in report.findings if finding.rule == "c-feed-above-limit"]
     assert " mm/min" in finding.message
     assert "inch/min" not in finding.message
+
+
+# ---- near the pole ----
+
+
+def test_near_the_pole_the_control_slows_down_by_itself() -> None:
+    """A note with the F that remains, limit of C times the distance, and the longer time."""
+    program = "G94 S2=1000\nDIAMOF\nG0 X30 C0 Z1\nTRANSMIT\nG17\nG1 X20 Y2 F600\nX-20\nX-30\nTRAFOOF\nM30\n"
+    changes = {"limits": {"c_feed": 7200}}
+    report = report_of(program, MACHINE, changes=changes)
+    (finding,) = report.findings
+    assert (finding.rule, finding.severity, report.verdict) == ("c-feed-above-limit", "note", "pass")
+    remains = 7200 * np.radians(1) * 2
+    assert f"{remains:.0f} mm/min" in finding.message
+    # On y = 2 C turns by atan; it is held at 7200 deg/min where it would be faster: 600 mm/min / (2 (1 + x^2 / 4)).
+    held = np.sqrt(600 / np.radians(7200) * 2 - 4)
+    slowed = np.degrees(2 * np.arctan(held / 2)) / 7200 * 60
+    whole = slowed + (40 - 2 * held) / 600 * 60
+    assert f"takes {whole:.3g} s instead of 4 s" in finding.message
+    assert moves_of(program, MACHINE, changes=changes).time.sum() < report_time(program, changes)
+
+
+def report_time(program: str, changes: dict[str, Any]) -> float:
+    dynamics = tables_of(program, MACHINE, changes=changes)["dynamics"]
+    return float(np.nansum(dynamics.move_time))

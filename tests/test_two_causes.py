@@ -36,10 +36,10 @@ def test_one_slip_is_one_finding(slip: Slip) -> None:
 
 @pytest.mark.slow
 def test_two_slips_are_two_findings() -> None:
-    found = [gives_two_findings(numbered) for numbered in enumerate(pairs(DRAWN, 60, 1))]
+    found = [gives_two_findings(numbered) for numbered in enumerate(pairs(DRAWN, 40, 1))]
     known = [one for one in found if one is not None]
-    assert len(known) > 50
-    assert sum(known) >= 0.98 * len(known)
+    assert len(known) > 33
+    assert sum(known) >= len(known) - 1
 
 
 @pytest.mark.parametrize("machine", ["fanuc", "gsk-988", "siemens-iso"])

@@ -343,7 +343,7 @@ class Engine:
         severity = _severity(rule, hits, place).name.lower()
         is_note = trace.machine.severities.get(rule.name, severity) == NOTE.name.lower()
         text, values = fill(rule, hits, self.tables, place, at, count)
-        if place.row >= 0 and trace.run.depth[place.row]:
+        if rule.over in ("rows", "sections") and place.row >= 0 and trace.run.depth[place.row]:
             self.rows_in_calls[rule.name, line, start - int(source.line_starts[line - 1]) + 1] = place.row
             text += in_call(trace, places.rows(rule.over, self.tables)[hits.mask], place.row)
         block = places.block_text(trace.text, place.block)

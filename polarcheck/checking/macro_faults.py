@@ -110,7 +110,7 @@ _REASONS: Final[Mapping[FaultKind, str]] = {
     "argument-out-of-range": "takes BIN, BCD or POW of {number:g}, which has no result",
     "argument-address": "hands over no argument: a macro call takes A to F, H to K, M and Q to Z",
     "argument-sets": "begins an eleventh set of I J K: a macro call takes ten",
-    "program-number": "names no program: P takes a number from 1 to 99999999",
+    "program-number": "names no program: P takes a number from 1 to 99999999{local_call}",
     "program-not-found": (
         "calls {program}{times}, which is not in this file and in no folder of the job (--subprograms FOLDER); "
         "positions after it are not known{others}"
@@ -207,10 +207,11 @@ class Faults:
     def values(self, index: int) -> dict[str, str | int | float]:
         """What is known of a fault, by name, the limits of the control among it."""
         macro = self._macro
-        limits = {
+        limits: dict[str, str | int | float] = {
             "bracket_levels": macro.bracket_levels,
             "loop_numbers": macro.loop_numbers,
             "largest_number": macro.largest_number,
+            "local_call": f"; {macro.local_calls[0]} P calls a part of the same program" if macro.local_calls else "",
         }
         fault = self.run.faults[index]
         written, values = self.run.text.source.excerpt(fault.start, fault.end), fault.values

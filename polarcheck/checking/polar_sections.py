@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+import msgspec
 import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Rows
@@ -62,7 +63,7 @@ def _polar_sections(trace: Trace, dynamics: Dynamics, center: Center, ramps: Ram
     at_entry = _offset_rows(trace)
     nearest = _of_sections(sections, np.where(trace.path.cuts, tool_center.nearest, np.inf), np.minimum, np.inf)
     ramp = _ramp_used(trace, ramps)
-    limit = rounded(trace.machine.limits.c_feed)
+    limit, rotary = rounded(trace.machine.limits.c_feed), trace.machine.polar.rotary_address
     found = []
     for index, (enter, end, row, fast) in enumerate(
         zip(sections.enter.tolist(), sections.last.tolist(), at_entry.tolist(), fastest.tolist(), strict=True)
@@ -82,6 +83,7 @@ def _polar_sections(trace: Trace, dynamics: Dynamics, center: Center, ramps: Ram
                 c_feed_limit=limit,
                 ramp_used=rounded(ramp[index]),
                 time=rounded(time),
+                rotary=msgspec.UNSET if rotary == "C" else rotary,
                 **(_of_known_blocks(dynamics, index) if np.isnan(time) else {}),
             )
         )

@@ -57,7 +57,7 @@ def entry_places(
     count = len(sections)
     last = np.append(0, sections.leave)[:count] - 1
     places = EntryPlaces(np.ones(count, np.complex128), np.full(count, np.nan), last, c_axis)
-    if not c_axis.is_fixed or not count:
+    if not count:
         return places
     absolute, turn = words
     ends = np.zeros(len(turn), bool)

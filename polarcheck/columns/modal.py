@@ -107,7 +107,22 @@ class ModalStates(Lookups):
         """The main spindle (on many lathes the live tool too) runs: M3, M4; not by a code listed for the live tool."""
         codes = self.machine.m_codes
         on = [word for word in codes.spindle_on if word not in codes.live_tool_on]
+        if not self._is_master.all():
+            is_main = self._is_master
+            return happened(
+                self.blocks.codes(*on) & is_main, self.blocks.codes(*codes.spindle_off) & is_main | self.blocks.starts
+            )
         return self.switched(on, codes.spindle_off, "main")
+
+    @cached_property
+    def _is_master(self) -> Mask:
+        """The main spindle is that of M3, M4, M5 and S: SETMS(3) makes another one that."""
+        number = self.blocks.word("@")
+        if not self.machine.macro.master_spindle_word or np.isnan(number).all():
+            return np.ones(len(self.run), bool)
+        written = ~np.isnan(number)
+        in_force = fill_down(np.where(written, number, 1.0), written | self.blocks.starts, 1.0)
+        return np.asarray(in_force == 1)
 
     @cached_property
     def live_tool(self) -> Mask:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,7 +16,6 @@ from polarcheck.arrays import Columns, Floats, Mask, Points, Rows, States, is_am
 from polarcheck.columns.axes import PlaneAxes
 from polarcheck.columns.blocks import ExecutedBlocks
 from polarcheck.columns.coordinates import Coordinates
-from polarcheck.columns.entry_places import EntryPlaces, entry_places
 from polarcheck.columns.filling import before, fill_down, positions
 from polarcheck.columns.frames import Frames, Way, along, find_frames, in_frame
 from polarcheck.columns.lengths import RADIUS_FACTOR, Lengths
@@ -29,6 +29,9 @@ from polarcheck.geometry.tolerances import ZERO
 from polarcheck.machines.axes import INCREMENTS
 from polarcheck.machines.machine import Machine
 from polarcheck.machines.modal import Distance, FeedAxes, Motion
+
+if TYPE_CHECKING:
+    from polarcheck.columns.entry_places import EntryPlaces
 
 #: The point of a row of which none is known.
 NOWHERE = complex("nan+nanj")
@@ -171,8 +174,9 @@ class ProgrammedPath(Columns, frozen=True):
         leave = self.mode.sections.leave[self.mode.sections.leave < len(self.run)]
         # On a plane that C does not turn the tool stands at its angle there, and not on the linear axis.
         places = self._entry_places
-        direction = places.by_words
-        enter = self.mode.sections.enter[places.off_axis]
+        direction = np.ones(len(self.mode.sections), np.complex128) if places is None else places.by_words
+        off_axis = np.zeros(len(direction), bool) if places is None else places.off_axis
+        enter = self.mode.sections.enter[off_axis]
         resets = self._forgets("X", "U") | self.blocks.mask_of(leave) | self.blocks.mask_of(enter)
         values, virtual = self._set_by("X") * self.lengths.x_factor, shift.imag.copy()
         # Outside its section nobody asks where another linear axis is but at G12.1, and X is not followed within.
@@ -188,8 +192,9 @@ class ProgrammedPath(Columns, frozen=True):
             # The control leaves the mode with X where the machine stands: never negative (B-62764EN/01 p. 51).
             last = leave - 1
             x_left = np.hypot(x[last] - shift.real[last], c[last] - shift.imag[last]) + shift.real[last]
-            direction = places.directions((x - shift.real) + 1j * (c - shift.imag))
-            entry = before(x, self.blocks.starts, np.nan)[enter] * direction[places.off_axis]
+            if places is not None:
+                direction = places.directions((x - shift.real) + 1j * (c - shift.imag))
+            entry = before(x, self.blocks.starts, np.nan)[enter] * direction[off_axis]
             assumed = np.concatenate((values[leave], values[enter], virtual[enter]))
             if np.array_equal(assumed, np.concatenate((x_left, entry.real, entry.imag)), equal_nan=True):
                 break
@@ -203,8 +208,12 @@ class ProgrammedPath(Columns, frozen=True):
         return end, direction
 
     @property
-    def _entry_places(self) -> EntryPlaces:
-        """Where the tool stands where sections begin; along another axis than X on that."""
+    def _entry_places(self) -> EntryPlaces | None:
+        """Where the tool stands where sections begin, along another axis than X on that; None where always there."""
+        if not self.c_axis.is_fixed:
+            return None
+        from polarcheck.columns.entry_places import entry_places
+
         referenced = self.blocks.listed("c_axis_reference") & self.blocks.has(*self.machine.polar.rotary_words)
         lost = self.run.unknown | self.blocks.starts | (self.axes.linear_axis != ord("X"))
         return entry_places(self.mode.sections, self.c_axis, self.c_words, referenced, lost)

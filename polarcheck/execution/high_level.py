@@ -8,7 +8,7 @@ from typing import Final
 
 from polarcheck.execution.expression import Expression, constant
 from polarcheck.execution.high_level_tokens import Token
-from polarcheck.execution.keywords import KEYWORDS, call_by_name
+from polarcheck.execution.keywords import KEYWORDS, call_by_name, end_of
 from polarcheck.execution.names import Names
 from polarcheck.execution.spoken_block import SpokenBlock
 from polarcheck.execution.statement import Number, Statement, Word, whole
@@ -84,8 +84,13 @@ class _Reader(SpokenBlock):
             number = self.tokens[self.at + 1]
             self.at += 2
             self.number(first, token.text + number.text, number)
+        elif self.is_sign("=") and self.names.is_declared(first.text):
+            self.at += 1
+            self.assign(self.variable(first), first)
         elif self.take_sign("="):
             self.behind_equal(first.text, first)
+        elif self.is_sign("(") and not self.words:
+            call_by_name(self, first.text, first)
         else:
             self.leave_rest(first)
 
@@ -116,7 +121,7 @@ class _Reader(SpokenBlock):
             self.add_word(native, first)
         elif (effect := self.effect(f"{name}=")) is not None or first.text in _FUNCTIONS:
             effect = effect or self.effect(f"{first.text}n=") or "path"
-            self.value()
+            self.pass_over_value()
             self.leave_unread(f"{name}=", first, effect, number)
         else:
             self.add_word(name, first)
@@ -130,7 +135,7 @@ class _Reader(SpokenBlock):
             value = constant(number, token.start, token.end)
             self.words.append(Word("T", value, f"{number:.0f}", first.start, token.end))
         elif (effect := self.effect(f"{address}=")) is not None:
-            self.value()
+            self.pass_over_value()
             self.leave_unread(f"{address}=", first, effect)
         else:
             self.add_word(address, first)
@@ -142,6 +147,8 @@ class _Reader(SpokenBlock):
         native = self.machine.control.native_words
         if first.text in KEYWORDS:
             KEYWORDS[first.text](self, first)
+        elif first.text == self.machine.macro.master_spindle_word:
+            self.master_spindle(first)
         elif first.text in native:
             self.native(native[first.text], first)
         elif self.takes_value():
@@ -153,6 +160,13 @@ class _Reader(SpokenBlock):
             self.leave_unread(first.text, first, effect)
         else:
             call_by_name(self, first.text, first)
+
+    def master_spindle(self, first: Token) -> None:
+        """SETMS(3): the spindle that M3, M4, M5 and S are for from here on; without a number, spindle 1."""
+        given = self.arguments()
+        if given == "" or given.isdigit():
+            number = float(given or 1)
+            self.words.append(Word("@", constant(number, first.start, end_of(self)), None, first.start, end_of(self)))
 
     def native(self, code: str, first: Token) -> None:
         """A word that stands for a code; what stands in its parentheses may choose another set of data."""
@@ -185,7 +199,7 @@ class _Reader(SpokenBlock):
         elif name in control.named_axes and index in ("", "1"):
             self.add_word(name, first)
         elif effect is not None:
-            self.value()
+            self.pass_over_value()
             self.leave_unread(f"{written}=", first, effect)
         elif index or name[0] == "$":
             self.value()

@@ -205,6 +205,8 @@ class Tokens:
                 return Operand("prefix", token.text, 0.0, token.start, token.end)
             case "name":
                 return self._variable(token)
+            case "letter" if self.names.is_declared(token.text):
+                return self._variable(token)
         self.at -= 1
         raise Unreadable(Fault("format", *self.span(token.start, token.end)))
 

@@ -20,6 +20,8 @@ _SEARCHES: Final = {
     "GOTOB": Search.BACKWARD,
     "GOTOC": Search.IF_THERE,
 }
+#: A variable or a program may have a name of one letter, where it is defined.
+_NAMES: Final = ("name", "letter")
 _SCOPES: Final = {"NCK", "CHAN", "SYNR", "SYNW", "SYNRW", "VAR"}
 #: Types of variables, and the value before the first assignment.
 _TYPES: Final = {
@@ -33,7 +35,7 @@ _TYPES: Final = {
 }
 
 
-def _end(block: SpokenBlock) -> int:
+def end_of(block: SpokenBlock) -> int:
     """The end of the token before the next one."""
     return block.tokens[max(block.at - 1, 0)].end
 
@@ -69,7 +71,7 @@ def _structure(
     block: SpokenBlock, first: Token, condition: Expression | None = None, **more: Expression | None
 ) -> None:
     block.add(
-        Statement(Kind.STRUCTURE, first.start, _end(block), structure=first.text, condition=condition, **more)  # type: ignore[arg-type]
+        Statement(Kind.STRUCTURE, first.start, end_of(block), structure=first.text, condition=condition, **more)  # type: ignore[arg-type]
     )
 
 
@@ -124,7 +126,7 @@ def _repeat(block: SpokenBlock, first: Token) -> None:
         block.leave_rest(first)
         return
     until = labels[-1] if len(labels) > 1 or first.text == "REPEATB" else ""
-    block.add(Statement(Kind.REPEAT, first.start, _end(block), label=labels[0], until=until, value=times))
+    block.add(Statement(Kind.REPEAT, first.start, end_of(block), label=labels[0], until=until, value=times))
 
 
 def _case(block: SpokenBlock, first: Token) -> None:
@@ -166,7 +168,7 @@ def _type(block: SpokenBlock) -> str:
 def _define(block: SpokenBlock, first: Token) -> None:
     """DEF REAL A, B=5: each variable takes its first value."""
     kind = _type(block)
-    while kind and block.token.kind == "name":
+    while kind and block.token.kind in _NAMES:
         token = block.token
         block.at += 1
         if block.is_sign("["):
@@ -188,12 +190,12 @@ def _define(block: SpokenBlock, first: Token) -> None:
 def _procedure(block: SpokenBlock, first: Token) -> None:
     """PROC NAME(REAL A, INT B=3): what a call hands over."""
     parameters = []
-    block.at += block.token.kind == "name"
+    block.at += block.token.kind in _NAMES
     if block.take_sign("("):
         while block.token.kind == "name":
             if block.token.text == "VAR":
                 block.leave_unread("VAR", block.token)
-            if not _type(block) or block.token.kind != "name":
+            if not _type(block) or block.token.kind not in _NAMES:
                 break
             token = block.token
             block.at += 1
@@ -203,7 +205,7 @@ def _procedure(block: SpokenBlock, first: Token) -> None:
             block.take_sign(",")
         if not block.take_sign(")"):
             block.leave_rest(first)
-    block.add(Statement(Kind.PROCEDURE, first.start, _end(block), parameters=tuple(parameters)))
+    block.add(Statement(Kind.PROCEDURE, first.start, end_of(block), parameters=tuple(parameters)))
 
 
 def call_by_name(block: SpokenBlock, name: str, first: Token) -> None:
@@ -217,7 +219,7 @@ def call_by_name(block: SpokenBlock, name: str, first: Token) -> None:
                 break
         if not block.take_sign(")"):
             block.wrong("missing-close-bracket", first, block.token)
-    place = first.start, _end(block)
+    place = first.start, end_of(block)
     words = [Word("<", Expression((), *place), name, *place)]
     if block.token.text == "P":
         token = block.token
@@ -250,6 +252,43 @@ def _return(block: SpokenBlock, first: Token) -> None:
     block.add(Statement(Kind.CALL, first.start, first.end, call=code))
 
 
+#: What an action sets that changes the feed on the path, or the path itself.
+_FEEDS: Final = ("F", "$AC_OVR", "$AC_VC", "$AC_PATHOVR", "$AC_PATHFEED", "OVR", "$AA_OFF", "$AA_TOFF")
+#: Independent moves of axes: POS[U]=10, MOV[X]=1.
+_AXIS_MOVES: Final = ("POS", "POSA", "MOV", "OS", "FXS", "MEAWA", "MEAC")
+
+
+def _synchronized(block: SpokenBlock, first: Token) -> None:
+    """WHENEVER condition DO actions: it runs beside the blocks, and no condition of it is evaluated here."""
+    tokens = block.tokens[block.at - 1 :]
+    do = next((at for at, token in enumerate(tokens) if token.text == "DO"), -1)
+    block.at = len(block.tokens) - 1
+    effects = {_action(block, tokens, at): tokens[at].text for at in range(len(tokens) - 2, do, -1)}
+    for effect in ("moves", "path"):
+        if effect in effects:
+            block.leave_unread(f"synchronized action with {effects[effect]}", first, effect, tokens[-1])
+            return
+
+
+def _action(block: SpokenBlock, tokens: list[Token], at: int) -> str:
+    """The effect of what begins with a token of the actions."""
+    token, following = tokens[at], tokens[at + 1]
+    is_set = following.text in ("=", "[") or following.kind == "number"
+    if token.text in _FEEDS and is_set:
+        return "path"
+    if token.kind == "letter":
+        axes = ("X", "Y", "Z", block.machine.polar.rotary_address)
+        inside = tokens[max(at - 2, 0)].text in _AXIS_MOVES and tokens[at - 1].text == "["
+        return "moves" if (token.text in axes and is_set) or (inside and token.text in axes) else "none"
+    if token.kind != "name" or token.text in _AXIS_MOVES:
+        return "none"
+    name = token.text
+    names = (f"{name}=", name, f"{name}[0]=")
+    if name.startswith("$"):
+        return "none"
+    return next((effect for one in names if (effect := block.effect(one)) is not None), "none")
+
+
 def _pass_over(block: SpokenBlock, first: Token) -> None:
     """EXTERN NAME(REAL): tells a name beforehand, and does nothing."""
     block.at = len(block.tokens) - 1
@@ -268,6 +307,7 @@ KEYWORDS: Final[Mapping[str, Callable[[SpokenBlock, Token], None]]] = {
     "DEF": _define,
     "PROC": _procedure,
     "EXTERN": _pass_over,
+    **dict.fromkeys(("WHEN", "WHENEVER", "EVERY", "FROM", "DO"), _synchronized),
     "CALL": _call,
     "RET": _return,
 }

@@ -128,6 +128,19 @@ class SpokenBlock(Tokens):
             return value, written, _DISTANCES[token.text]
         return (*self._number_or_more(), None)
 
+    def pass_over_value(self) -> None:
+        """The value behind the = of what is not simulated, be it a list: OSCTRL[Z]=(1+2,4)."""
+        depth, at = 0, self.at
+        while is_list := self.tokens[at].kind != "end":
+            depth += (self.tokens[at].text in "([") - (self.tokens[at].text in ")]")
+            if depth <= 0 or (depth == 1 and self.tokens[at].text == ","):
+                break
+            at += 1
+        if is_list and depth == 1 and self.is_sign("("):
+            self.skip_brackets()
+        else:
+            self.value()
+
     def _number_or_more(self) -> tuple[Expression | None, str | None]:
         first = self.at
         value = self.expression()

@@ -23,6 +23,9 @@ from polarcheck.machines.machine import Machine
 #: Zero offset, zero shift and tool offset of Z: they move nothing on the polar plane.
 _OF_Z: Final = re.compile(r"V(?:ZOF|ZSH|TOF)Z")
 _SEQUENCE_NAME: Final = re.compile(r"N[A-Z][A-Z0-9]{0,3}")
+#: What shifts or offsets an axis: zero offset, zero shift, tool offset, nose radius. Other values of the control, as
+#: those of the load monitor or of outputs, move nothing.
+_OF_POSITION: Final = re.compile(r"V(?:ZOF|ZSH|TOF|ETF|NSR)[A-Z0-9]*+")
 #: Input and output of data, and what a schedule program has.
 _NO_MOVE: Final = frozenset(("GET", "PUT", "READ", "WRITE", "PSELECT", "LPRINT"))
 
@@ -229,7 +232,8 @@ class _Block(Values):
             self.at += 1
             self.expression()
         of_z = _OF_Z.fullmatch(name.text) is not None
-        self.leave(first, moves=not of_z, matters=not of_z)
+        if _OF_POSITION.fullmatch(name.text):
+            self.leave(first, moves=not of_z, matters=not of_z)
 
     def index_of(self) -> list[Piece]:
         """Take the brackets behind the name of a system variable; what is in them, or nothing."""

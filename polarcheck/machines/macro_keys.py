@@ -25,6 +25,8 @@ class Macro(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     Custom macro and calls.
 
     language: of statements: custom-macro (#1), high-level (R1, X=R1, IF .. GOTOF NAME) or user-task (VC1, IF [..] NAME)
+    parameter_letter: letter of the parameters of such a language, which take a value by = (R1=5); empty: it is a word
+    master_spindle_word: word that makes another spindle than 1 that of M3, M4, M5 and S, as SETMS(3); empty: none does
     named_words: words of several letters with = in such a language, by the address that each is read as; empty: none
     other_language: code that begins the other language of a control that has two; empty where it has one
     statements: statement (* for any rest) or first word of one -> what is not followed: none, path, words, moves
@@ -63,6 +65,8 @@ class Macro(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     """
 
     language: Literal["custom-macro", "high-level", "user-task"]
+    parameter_letter: AddressOrNone = ""
+    master_spindle_word: Plain = ""
     named_words: dict[Plain, AddressOrNone] = {}
     other_language: LanguageCode = ""
     statements: dict[Plain, Literal["none", "path", "words", "moves"]] = {}

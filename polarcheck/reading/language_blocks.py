@@ -82,7 +82,9 @@ _PROGRAM = re.compile(rb"[ \t\r\0]*+(O[A-Z][A-Z0-9]{0,15}+)[ \t\r\0]*+")
 _SEQUENCE_NAME = re.compile(rb"(?<![A-Z0-9_$])N(?!OEX(?![A-Z0-9]))[A-Z][A-Z0-9]{0,3}+(?![A-Z0-9_.=\[])")
 _BEFORE_LABEL = re.compile(rb"[ \t\r\0]*+(?:/[ \t]*+\d?+[ \t\r\0]*+)?+")
 #: An opening parenthesis of arguments: behind a name or a sign. _NEAR: how far before it is looked [characters].
-_BEFORE_ARGUMENTS = re.compile(rb"(?:[=+\-*/,<>]|(?<![A-Z0-9_$])(?>[A-Z0-9_$]*?[A-Z_$][A-Z_])[A-Z0-9_$]*+)[ \t]*+\(\Z")
+_BEFORE_ARGUMENTS = re.compile(
+    rb"(?:[=+\-*/,<>]|(?<![A-Z0-9_$])(?:PROC[ \t]++[A-Z]|(?>[A-Z0-9_$]*?[A-Z_$][A-Z_])[A-Z0-9_$]*+))[ \t]*+\(\Z"
+)
 _NEAR = 64
 #: A comma between digits; and what decides whether it is a decimal point: a string, the value of AC(..), brackets.
 _COMMA = re.compile(rb"(?<=[0-9]),(?=[0-9])")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from functools import cached_property
 from itertools import islice
@@ -29,6 +30,12 @@ _MANY_CORNERS = 8
 _MOST_TRIALS, _ENDS, _GAPS = 80, 3, 3
 #: Halves of the last digit by which a number may differ from that of another block.
 _DIGITS = 5
+
+#: An angle in degrees is a multiple of this, from twice as much on.
+_PART_OF_TURN, _FULL_TURN = 15.0, 360.0
+#: Numbers that differ by less are one.
+_SAME_NUMBER = 1e-6
+_WORD = re.compile(r"([A-Z])([+-]?+(?:\d++\.?+\d*+|\.\d++))")
 
 
 class Correction(NamedTuple):
@@ -103,8 +110,19 @@ class _Search:
             symmetry = trial.loop.symmetry(trial.point)
             if symmetry is not None and self._is_better(symmetry, trial):
                 row, slip = self._row(trial.at), trial.slip
-                rank = number + _MOST_TRIALS * (not slip.plain)
+                rank = number + _MOST_TRIALS * (2 * (not slip.plain) + (not self._is_known(slip.text)))
                 yield symmetry.freedom, rank, Correction(row, trial.word, slip.text, slip.kind, symmetry)
+
+    def _is_known(self, text: str) -> bool:
+        """A word stands in a block of another loop, as another pass has it."""
+        word = _WORD.fullmatch(text)
+        if word is None:
+            return False
+        trace = self.trace
+        indices = trace.blocks.word_indices(word[1])
+        rows = trace.run.row[indices]
+        others = indices[(rows < self.loop.row[0]) | (rows > self.loop.row[-1])]
+        return bool(np.any(np.abs(trace.run.words.value[others] - float(word[2])) < _SAME_NUMBER))
 
     def _row(self, at: int) -> int:
         """The row of a block of the loop; behind the last one, that of the next move."""
@@ -212,6 +230,8 @@ class _Search:
         slip = slip_of(written[len(address) :], value + step, tolerance)
         if slip is None and value and self._is_of_neighbor(axis, at, tolerance):
             slip = Slip("", "it is that of the block beside it", False)
+        if slip is None and axis is self._axes[1] and self._looks_like_angle(value, value * axis.scale[at]):
+            slip = Slip("", "it looks like an angle", False)
         if slip is None:
             return None
         return slip._replace(text=f"{address}{self._as_elsewhere(axis, value + step, tolerance, slip.text)}")
@@ -220,6 +240,13 @@ class _Search:
         value = self.trace.run.words.value
         beside = [axis.word[other] for other in (at - 1, at + 1) if 0 <= other < len(axis.word)]
         return any(word >= 0 and abs(float(value[word] - value[axis.word[at]])) <= tolerance for word in beside)
+
+    def _looks_like_angle(self, value: float, length: float) -> bool:
+        """A number is one of the usual angles, and as a length twice as far out as any other point of the loop."""
+        point = self.loop.point
+        others = np.abs(point)[np.abs(np.abs(point.imag) - abs(length)) > self.tolerance]
+        is_usual = value % _PART_OF_TURN == 0 and 2 * _PART_OF_TURN <= abs(value) <= _FULL_TURN
+        return bool(is_usual and len(others) and abs(length) > 2 * others.max())
 
     def _as_elsewhere(self, axis: _Axis, value: float, tolerance: float, slip: str = "") -> str:
         """A value as another block of the loop has it, with the sign that it needs."""

@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from polarcheck.arrays import Columns, Floats, Mask, is_among
-from polarcheck.columns.filling import happened
+from polarcheck.columns.filling import before, happened
 from polarcheck.columns.trace import Trace
 from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.machines.modal import STATES
@@ -144,6 +144,13 @@ class Entry(Columns, frozen=True):
         """
         shift, named = self.origin.shift, self.trace.path.center_shift.real / self.trace.lengths.x_factor
         return np.where((named != 0) & (shift == 0), 0.0, shift + named)
+
+    @property
+    def origin_distance(self) -> Floats:
+        """The same as a distance, where X is written as a diameter half of it [mm]."""
+        factor = self.trace.lengths.x_factor
+        above = before(factor, self.trace.blocks.starts, np.nan)
+        return self.origin_shift * np.where(np.isnan(above), factor, above)
 
     # ---- stock and tool ----
 

@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from polarcheck.arrays import Columns, Mask, Rows, is_among, repeated
+from polarcheck.arrays import Columns, Floats, Mask, Rows, is_among, repeated
 from polarcheck.columns.filling import before, fill_down, happened, last_row
 from polarcheck.columns.trace import Trace
 from polarcheck.machines.code_lists import is_code
@@ -117,7 +117,40 @@ class Procedure(Columns, frozen=True):
         is_contour = (turning >= _MOVES_OF_CONTOUR) & (both_count > 0) & (with_z == 0) & ~self._is_angle(plane, stops)
         return np.where(is_contour, _first(plane, stops, trace.blocks.starts), -1)
 
-    # ---- an arc that no mode has begun ----
+    # ---- a contour outside, and an arc ----
+
+    @cached_property
+    def contour_outside(self) -> Mask:
+        """
+        The first row of each contour of X and C at feed outside the mode, and known to be so, whatever ends it.
+
+        C moves at least twice, may be a length there, and in between X goes below 0, as it does in the mode alone, or
+        G41 or G42 is in force. Rapid traverse ends it, and what may begin a mode; on a cylinder C is its angle.
+        """
+        trace = self.trace
+        none = np.zeros(len(trace), bool)
+        if not self._is_rotary:
+            return none
+        since = trace.tools.changes_tool | trace.axes.ends_mode | trace.blocks.starts
+        plane = self._turns & ~self._is_arc & ~trace.path.moves_z & ~trace.mode.on_cylinder
+        plane &= ~happened(self._may_begin, since) & (trace.blocks.whole_program | trace.tools.has_called_tool)
+        if np.count_nonzero(plane) < _MOVES_OF_CONTOUR:
+            return none
+        stops = since | self._may_begin | self._leaves_work
+        stretch: Rows = np.cumsum(stops)
+        at_feed = is_among(trace.axes.motion, _AT_FEED) & (trace.mode.section < 0)
+        turns, below, sides = (
+            np.bincount(stretch[mask], minlength=int(stretch[-1]) + 1)
+            for mask in (
+                plane,
+                at_feed & trace.path.moves_x & (trace.path.x < 0),
+                plane & (trace.compensation.side != Side.OFF),
+            )
+        )
+        is_contour = (turns >= _MOVES_OF_CONTOUR) & ((below > 0) | (sides >= _MOVES_OF_CONTOUR))
+        hits = plane & is_contour[stretch] & ~self._is_angle_beside(np.abs(trace.path.x), plane, stretch)[stretch]
+        hits[1:] &= ~happened(hits, stops)[:-1] | stops[1:]
+        return np.asarray(hits)
 
     @cached_property
     def arc_without_mode(self) -> Mask:
@@ -149,15 +182,19 @@ class Procedure(Columns, frozen=True):
 
         Not where X goes below 0, as it does in the mode alone.
         """
+        x, stretch = self.trace.path.x, np.asarray(np.cumsum(stops), np.int64)
+        is_angle = self._is_angle_beside(np.where(x < 0, np.inf, x), plane, stretch)
+        return before(is_angle[stretch], self.trace.blocks.starts, False)
+
+    def _is_angle_beside(self, x: Floats, plane: Mask, stretch: Rows) -> Mask:
+        """Per stretch: C would lie far outside these X [mm] as a length."""
         trace, mode = self.trace, self.trace.machine.polar
-        stretch = np.cumsum(stops)
         longest, farthest = np.zeros((2, len(trace) + 1))
         for address in (mode.virtual_axis, mode.virtual_axis_incremental):
             rows = np.flatnonzero(plane & trace.blocks.has(address))
             np.fmax.at(longest, stretch[rows], np.abs(trace.lengths.length_of(address)[rows]))
-        np.fmax.at(farthest, stretch, np.where(trace.path.x < 0, np.inf, trace.path.x))
-        is_angle = (farthest > 0) & (longest > _FARTHEST_C * farthest)
-        return before(is_angle[stretch], trace.blocks.starts, False)
+        np.fmax.at(farthest, stretch, x)
+        return (farthest > 0) & (longest > _FARTHEST_C * farthest)
 
     # ---- the live tool ----
 

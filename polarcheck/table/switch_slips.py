@@ -142,15 +142,6 @@ class SwitchSlips(Columns, frozen=True):
             mask |= np.isin(start, self._starts)
         return mask
 
-    @cached_property
-    def explained_strays(self) -> Mask:
-        """Per stray character of the file: the comma of such a code, as in G12,1."""
-        at, words = self.trace.text.strays.start, self.trace.run.words
-        mask = np.zeros(len(at), bool)
-        for index in np.flatnonzero(self.words).tolist():
-            mask |= (at >= words.start[index]) & (at < words.end[index])
-        return mask
-
     @property
     def _starts(self) -> Rows:
         return self.trace.run.words.start[self.words]

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from polarcheck.arrays import Mask, Rows, repeated
+from polarcheck.arrays import Mask, Rows, is_among, repeated
 from polarcheck.execution.programs import block_text, find_programs
 from polarcheck.machines.code_lists import is_code
 from polarcheck.machines.codes import NO_CODE, code_numbers, code_set, modal_tables
@@ -30,6 +30,9 @@ _HABIT = 5
 _UNSURE_GROUPS = ("scaling", "rotation", "mirror")
 #: Cycles whose codes in system A other systems and mills write beside G0 and G1, in another meaning.
 _OF_OTHER_SYSTEMS = ("turning_cycle", "threading_cycle", "facing_cycle")
+#: The two languages of a Siemens control.
+_LANGUAGES = re.compile(r"(?<![A-Z0-9])G29[01](?![0-9.])", re.IGNORECASE)
+_PARAMETER = re.compile(r"[A-Z]\s?[-+]?[.\d]", re.IGNORECASE)
 _COMMENT = re.compile(rb"\([^)\n]*+\)?")
 _LETTER_OR_DIGIT = re.compile(rb"[0-9A-Za-z\x80-\xff]")
 #: RTS returns in user tasks.
@@ -72,6 +75,47 @@ class Written:
         count = np.where(is_habit, np.bincount(of_kind, in_new_block)[of_kind], 1)
         counts[index[order]] = np.where(begins | ~is_habit, count, 0)
         return counts
+
+    # ---- the own language of a control that reads another one, too ----
+
+    def _in_other_language(self, at: NDArray[np.integer]) -> Mask:
+        """Positions behind the code of the other language, and before the one that takes it back: G291, G290."""
+        code = self.machine.macro.other_language
+        if not code:
+            return np.zeros(len(at), bool)
+        changes = [
+            (match.start(), match[0].upper() == code)
+            for match in _LANGUAGES.finditer(self.text.source.code.tobytes().decode("latin-1"))
+        ]
+        if not changes:
+            return np.zeros(len(at), bool)
+        places, is_other = zip(*changes, strict=True)
+        return np.array((False, *is_other), bool)[np.searchsorted(np.array(places), at)]
+
+    @cached_property
+    def parentheses_count(self) -> Rows:
+        """At the first comment in parentheses that the control does not read as one the number of them, else 0."""
+        counts = np.zeros(len(self.text.comments), np.int64)
+        if self.machine.control.parentheses_are_comments or not len(counts):
+            return counts
+        start = self.text.comments.start
+        at = np.flatnonzero((self.text.source.code[start] == ord("(")) & ~self._in_other_language(start))
+        if len(at):
+            counts[at[0]] = len(at)
+        return counts
+
+    @cached_property
+    def lacks_equal_sign(self) -> Mask:
+        """Words with the letter of arithmetic parameters, and a number right behind it: R10."""
+        letter, words = self.machine.macro.parameter_letter, self.words
+        if not letter:
+            return np.zeros(len(words), bool)
+        at = np.flatnonzero(words.address == ord(letter))
+        mask = np.zeros(len(words), bool)
+        # CR= and RPL= are read as R, too: what is written tells them apart.
+        excerpt = self.text.source.excerpt
+        mask[at] = [_PARAMETER.match(excerpt(start, start + 4)) is not None for start in words.start[at].tolist()]
+        return np.asarray(mask & ~words.is_unreadable & ~self._in_other_language(words.start))
 
     # ---- words of a block ----
 
@@ -246,7 +290,10 @@ class Written:
 
     @cached_property
     def lacks_end(self) -> Mask:
-        """The last word of a program with a head, or between %, that has no code for its end or for a return."""
+        """
+        The last word of a program with a head, or between %, that has no code for its end or for a return, or none
+        behind a part that it calls itself.
+        """
         m_words = np.flatnonzero(self.words.address == ord("M"))
         ends = code_set([*self.machine.m_codes.program_end, *self.machine.macro.program_returns])
         ending = self.words.block[m_words[ends[code_numbers(self.words.value[m_words])]]]
@@ -254,6 +301,9 @@ class Written:
         first = np.array([program.first for program in programs], np.int64)
         end = np.array([program.end for program in programs], np.int64)
         has_end = np.searchsorted(ending, first) < np.searchsorted(ending, end)
+        called = self._called_parts
+        behind = np.searchsorted(first, called, side="right") - 1
+        has_end[behind[np.searchsorted(ending, called) == np.searchsorted(ending, end[behind])]] = False
         in_tape = len(self.text.tape_marks) > 0
         lacking = ~has_end & (np.array([program.has_head for program in programs], bool) | in_tape)
         # A head alone is no program.
@@ -263,6 +313,24 @@ class Written:
         for index in np.flatnonzero(lacking).tolist():
             mask[words_before[1, index] - 1] = not self._ends_in_macro(int(first[index]), int(end[index]))
         return mask
+
+    @property
+    def _called_parts(self) -> Rows:
+        """The blocks with the N numbers at which calls of a part of the own program begin: M98 Q100, M97 P100."""
+        words, macro = self.words, self.machine.macro
+        m_words = np.flatnonzero(words.address == ord("M"))
+        numbers = code_numbers(words.value[m_words])
+        called = []
+        for codes, address in ((macro.subprogram_calls, macro.sequence_word), (macro.local_calls, "P")):
+            calls = words.block[m_words[code_set(codes)[numbers]]]
+            if address and len(calls):
+                of_number = (words.address == ord(address)) & is_among(words.block, calls.tolist())
+                if address != "P":
+                    of_number &= ~is_among(words.block, words.block[words.address == ord("P")].tolist())
+                called += words.value[of_number].tolist()
+        if not called:
+            return words.block[:0]
+        return np.asarray(words.block[(words.address == ord("N")) & is_among(words.value, called)])
 
     def _ends_in_macro(self, first: int, end: int) -> bool:
         """True if a macro block ends the program, returns or jumps."""

@@ -23,7 +23,7 @@ from polarcheck.columns.trace import Trace
 from polarcheck.errors import TooHardError
 from polarcheck.execution.run import Run
 from polarcheck.machines.machine import Machine
-from polarcheck.machines.modal import Motion, Side
+from polarcheck.machines.modal import MM_PER_INCH, Motion, Side
 from polarcheck.table.coverage import Coverage
 from polarcheck.table.fitting import Fitting
 from polarcheck.table.overcuts import Overcuts
@@ -32,6 +32,11 @@ from polarcheck.table.senses import Senses
 from polarcheck.table.slots import Slots
 from polarcheck.table.tool_center import ToolCenter
 from polarcheck.table.uncompensated_cuts import UncompensatedCuts
+
+#: Cutters in inch have radii of so many parts of an inch, to within a share of a part.
+_PARTS_OF_INCH, _NEAR_PART = 64, 0.01
+#: A ramp that is short by a mistake in it alone has more than R divided by this.
+_SHORT = 4.0
 
 
 def side(compensation: CutterCompensation, row: int) -> str:
@@ -176,9 +181,32 @@ def fault(trace: Trace, row: int) -> str:
         _along(trace.axes, trace.lengths, trace.path, row, radius, length),
     )
     setter = int(trace.offsets.radius_set_in[row])
-    of_program = f", set by {block_and_line(trace.blocks, trace.run, setter)}," if setter >= 0 else ""
+    of_program = (
+        f", set by {block_and_line(trace.blocks, trace.run, setter)}," if setter >= 0 else _of_offset(trace, row)
+    )
     given = shown.beside(in_row(length, trace.lengths, row), "length")
-    return f"moves {moved}; with R {given}{of_program} it needs {needed}"
+    return f"moves {moved}; with R {given}{of_program} it needs {needed}{_in_inch(trace, row)}"
+
+
+def _of_offset(trace: Trace, row: int) -> str:
+    """` of T0305 in line 7`, where the tool and its offset have two numbers."""
+    tools = trace.tools
+    if not 0 < tools.tool[row] != tools.offset_number[row] or tools.has_edges[row]:
+        return ""
+    calls = int(last_row(tools.calls_offset, trace.blocks.starts)[row])
+    return f" of {called_tool(tools, row)} in line {int(trace.blocks.line[calls])}" if calls >= 0 else ""
+
+
+def _in_inch(trace: Trace, row: int) -> str:
+    """That a ramp would be long enough in inch, where no code of the unit stands above it, and R is a size in inch."""
+    inch, radius = code_of(trace.machine, "inch"), abs(float(trace.compensation.radius[row]))
+    ratio, parts = radius / float(trace.path.length[row] or np.inf), radius / MM_PER_INCH * _PARTS_OF_INCH
+    if not _SHORT < ratio <= MM_PER_INCH or abs(parts - round(parts)) > _NEAR_PART:
+        return ""
+    if trace.lengths.scale[row] != 1.0 or np.any(trace.modal.sets("units")[: row + 1]):
+        return ""
+    metric = code_of(trace.machine, "mm")
+    return f"; neither {inch} nor {metric} stands above it: in inch it would be long enough"
 
 
 def ramp_at_rest(trace: Trace, row: int) -> str:

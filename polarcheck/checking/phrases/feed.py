@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from polarcheck.checking.phrases.common import code_of, executed_word
@@ -18,6 +20,9 @@ from polarcheck.table.center import Center
 from polarcheck.table.feed_ranges import FeedRanges
 from polarcheck.table.feeds import Feeds
 from polarcheck.table.tool_center import ToolCenter
+
+if TYPE_CHECKING:
+    from polarcheck.table.dynamics import Dynamics
 
 
 def recommended(lengths: Lengths, machine: Machine, row: int) -> str:
@@ -103,7 +108,7 @@ def left_over(trace: Trace, feeds: Feeds, row: int) -> str:
     return f"{written} is per minute now, and as small as one per revolution"
 
 
-def verdict(lengths: Lengths, machine: Machine, tool_center: ToolCenter, row: int) -> str:
+def verdict(lengths: Lengths, machine: Machine, tool_center: ToolCenter, dynamics: Dynamics, row: int) -> str:
     """What the machine allows of C, as far as the profile knows."""
     limits = machine.limits
     if np.isnan(limits.c_feed):
@@ -117,7 +122,10 @@ def verdict(lengths: Lengths, machine: Machine, tool_center: ToolCenter, row: in
     if not limits.automatic_override:
         return allows
     slowed = in_row(float(tool_center.true_feed[row]), lengths, row)
-    return f"{allows} and slows the feed down to {tool_center.override[row]:.2g} %, {slowed:highest}"
+    slows = f"{allows} and slows the feed down to {tool_center.override[row]:.2g} %, {slowed:highest}"
+    of_row = dynamics.moves.row == row
+    time, without = (float(times[of_row].sum()) for times in (dynamics.move_time, dynamics.time_without_override))
+    return f"{slows}, so that the block takes {time:.3g} s instead of {without:.3g} s" if time > without else slows
 
 
 def advice(lengths: Lengths, machine: Machine, tool_center: ToolCenter, feeds: Feeds, row: int, count: int) -> str:

@@ -18,8 +18,10 @@ from polarcheck.checking.phrases.misplaced import left_or_right as left_or_right
 from polarcheck.checking.phrases.misplaced import line_of_end as line_of_end
 from polarcheck.checking.phrases.misplaced import ramp_end as ramp_end
 from polarcheck.checking.phrases.misplaced import side as side
+from polarcheck.checking.phrases.misplaced import to_position as to_position
 from polarcheck.checking.phrases.misplaced import turned as turned
 from polarcheck.checking.phrases.misplaced import where_ramps_belong as where_ramps_belong
+from polarcheck.checking.phrases.misplaced import where_to_begin as where_to_begin
 from polarcheck.checking.phrases.misplaced import wrong_by as wrong_by
 from polarcheck.checking.phrases.misplaced import x_meant as x_meant
 from polarcheck.checking.phrases.misplaced import x_of_ramp as x_of_ramp

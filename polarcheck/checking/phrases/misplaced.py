@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from polarcheck.arrays import Mask
-from polarcheck.checking.phrases.common import block_and_line, code_of
-from polarcheck.checking.phrases.compensation import point
+from polarcheck.checking.phrases.common import block_and_line, code_of, switch
+from polarcheck.checking.phrases.compensation import point, ramp_at_rest
 from polarcheck.checking.phrases.compensation import side as side
 from polarcheck.checking.quantity import in_row
 from polarcheck.columns.axes import PlaneAxes
@@ -67,6 +67,18 @@ def turned(trace: Trace, entry_angles: EntryAngles, index: int) -> str:
     return by if np.isnan(here - before) else f"at {here % 360:.4g} deg, {by}"
 
 
+def to_position(trace: Trace, index: int) -> str:
+    """What to write where nobody has positioned C; of a mode that is left and entered again at once, what to delete."""
+    blocks, machine, sections = trace.blocks, trace.machine, trace.mode.sections
+    enter, last = int(sections.enter[index]), int(sections.last[index - 1])
+    begins = switch(blocks, machine, enter)
+    approach = f"write {machine.polar.rotary_address} with the approach before {begins}"
+    if last >= len(blocks) or trace.axes.moves[last:enter].any():
+        return approach
+    ends = f"{switch(blocks, machine, last)} of line {int(blocks.line[last])}"
+    return f"nothing moves between {ends} and {begins}: delete both, or {approach}"
+
+
 def left_or_right(machine: Machine) -> str:
     """G41 or G42."""
     return f"{code_of(machine, 'compensation_left')} or {code_of(machine, 'compensation_right')}"
@@ -81,6 +93,14 @@ def wrong_by(lengths: Lengths, offsets: ToolOffsets, row: int) -> str:
 def block_before(blocks: ExecutedBlocks, run: Run, misplaced_ramps: MisplacedRamps, row: int) -> str:
     """The block that has begun the contour."""
     return block_and_line(blocks, run, int(misplaced_ramps.begun_without[row]))
+
+
+def where_to_begin(trace: Trace, row: int) -> str:
+    """Where G41 or G42 belongs; where it stands in a block that moves nowhere, that."""
+    at_rest = ramp_at_rest(trace, row).removeprefix("; ")
+    if at_rest:
+        return f"{at_rest}: begin outside the contour"
+    return f"write {side(trace.compensation, row)} into the block that leads to the contour"
 
 
 def ramp_end(axes: PlaneAxes, lengths: Lengths, path: ProgrammedPath, row: int) -> str:

@@ -31,7 +31,7 @@ def of_full_circle(axes: PlaneAxes, path: ProgrammedPath, run: Run, row: int) ->
     before = np.flatnonzero(path.travels[:row])
     if len(before) and _words(run, int(before[-1])) == _words(run, row):
         return "the block stands twice, delete one"
-    return f"a full circle needs {centers(axes, row)}"
+    return f"a full circle needs {centers(axes, row)}, another arc another end"
 
 
 def _words(run: Run, row: int) -> list[str]:

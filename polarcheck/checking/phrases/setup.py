@@ -14,6 +14,7 @@ from polarcheck.columns.blocks import ExecutedBlocks
 from polarcheck.columns.filling import last_row
 from polarcheck.columns.lengths import Lengths
 from polarcheck.columns.modal import ModalStates
+from polarcheck.columns.mode import PolarMode
 from polarcheck.columns.offsets import ToolOffsets
 from polarcheck.columns.path import ProgrammedPath
 from polarcheck.columns.tools import CalledTools
@@ -132,6 +133,12 @@ def since_x(blocks: ExecutedBlocks, row: int) -> str:
     return f", since line {int(blocks.line[at])}" if at >= 0 else ""
 
 
+def as_diameter(entry: Entry, lengths: Lengths, row: int) -> str:
+    """`, X1 as a diameter`: what puts X0 off the spindle axis as it is written; empty where that is the distance."""
+    written, distance = float(entry.origin_shift[row]), float(entry.origin_distance[row])
+    return "" if written == distance else f", X {in_row(written, lengths, row):length} as a diameter,"
+
+
 def to_reference(machine: Machine) -> str:
     """What takes the rotary axis to its reference point: G28 H0, G28 A0, or G28 C2=0."""
     mode = machine.polar
@@ -210,15 +217,23 @@ def spindle_codes(spindles: Spindles, machine: Machine, row: int) -> str:
     return " or ".join(codes.sub_spindle_on if spindles.on_sub_spindle[row] else codes.spindle_on)
 
 
-def spindle_remedy(spindles: Spindles, machine: Machine, row: int) -> str:
-    """How that is stopped before a section; where it may be the live tool, that it is asked about."""
+def spindle_remedy(
+    mode: PolarMode, modal: ModalStates, path: ProgrammedPath, spindles: Spindles, machine: Machine, row: int
+) -> str:
+    """
+    How that is stopped before a section; where it may be the live tool, that it is asked about. Where that does
+    not run in the section, the code of the main spindle may stand in the place of that of the live tool.
+    """
     codes = machine.m_codes
     if not spindles.are_no_live_tool[row] and not machine.polar.main_spindle_must_stop:
         return ": if that is the main spindle, stop it"
     off = codes.sub_spindle_off if spindles.on_sub_spindle[row] else codes.spindle_off
-    return (
+    stop = (
         f"; write {next(iter(off), 'the code that stops it')} before the {machine.polar.rotary_address} axis is engaged"
     )
+    cuts = path.cuts & (mode.section == mode.section[row])
+    is_live_tool = bool(codes.live_tool_on) and cuts.any() and not np.any(cuts & modal.live_tool)
+    return f"{stop}, and {' or '.join(codes.live_tool_on)} for the live tool" if is_live_tool else stop
 
 
 def release(spindles: Spindles, machine: Machine, row: int) -> str:

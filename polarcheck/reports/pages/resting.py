@@ -87,11 +87,12 @@ def _radius(section: PolarSection) -> str:
 
 def _rate(section: PolarSection) -> str:
     limit = "no limit given" if section.c_feed_limit is None else f"limit {section.c_feed_limit:.0f}"
+    rotary = section.rotary or "C"
     if section.c_feed is None:
-        return f"rate of C not known ({limit})"
+        return f"rate of {rotary} not known ({limit})"
     if section.c_feed_line is None:
-        return f"C does not turn ({limit})"
-    return f"C at most {section.c_feed:.0f} deg/min in line {section.c_feed_line} ({limit})"
+        return f"{rotary} does not turn ({limit})"
+    return f"{rotary} at most {section.c_feed:.0f} deg/min in line {section.c_feed_line} ({limit})"
 
 
 def _length(value: float, section: PolarSection) -> str:

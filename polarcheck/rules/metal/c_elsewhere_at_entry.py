@@ -6,7 +6,7 @@ from polarcheck.checking.rule import WARNING, EntryAngles, Mask, rule
 @rule(
     WARNING,
     "{rotary} stands where the section before has left it, {turned} from its {switch}: nobody has positioned it, and "
-    "this section comes out turned by as much; write {rotary} with the approach before {switch}",
+    "this section comes out turned by as much; {to_position}",
     over="sections",
     at=("on",),
     once="program",

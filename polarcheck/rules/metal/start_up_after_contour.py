@@ -6,7 +6,7 @@ from polarcheck.checking.rule import WARNING, Mask, MisplacedRamps, ProgrammedPa
 @rule(
     WARNING,
     "{side} begins late: {block_before} cuts the contour without compensation, with the cutter center on the "
-    "programmed path, {wrong_by}; write {side} into the block that leads to the contour",
+    "programmed path, {wrong_by}; {where_to_begin}",
     at=("compensation_left", "compensation_right"),
     once="section",
     subject="",

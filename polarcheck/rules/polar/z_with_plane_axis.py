@@ -4,6 +4,7 @@ from polarcheck.checking.rule import (
     ERROR,
     NOTE,
     WARNING,
+    CutterCompensation,
     Hits,
     Machine,
     PlaneAxes,
@@ -19,7 +20,9 @@ from polarcheck.machines.modal import Motion
     "{others} in one block in the polar mode: {what_z_does}; write Z in a block of its own",
     at=("X", "U", "C", "H", "Y", "V", "Z", "W"),
 )
-def z_with_plane_axis(axes: PlaneAxes, mode: PolarMode, path: ProgrammedPath, machine: Machine) -> Hits:
+def z_with_plane_axis(
+    axes: PlaneAxes, mode: PolarMode, path: ProgrammedPath, compensation: CutterCompensation, machine: Machine
+) -> Hits:
     """
     Z in one block with X or C.
 
@@ -63,11 +66,22 @@ def z_with_plane_axis(axes: PlaneAxes, mode: PolarMode, path: ProgrammedPath, ma
         G40 X2.4
         G13.1
 
-    Bad, set polar.other_axes="together":
+    Bad, set polar.other_axes="together", tool 1:radius=4:
+
+        T0101
+        G98 G0 X60. Z2. C-20.
+        G12.1
+        G1 G42 X40. F200
+        C10. Z-5.         (expect: z-with-plane-axis)
+        C20.
+        G40 X60.
+        G13.1
+
+    Good, set polar.other_axes="together":
 
         G98 G0 X60. Z2. C0
         G12.1
-        G1 X40. C5. Z-5. F200   (expect: z-with-plane-axis)
+        G1 X40. C5. Z-5. F200
         C10.
         X60.
         G13.1
@@ -93,5 +107,8 @@ def z_with_plane_axis(axes: PlaneAxes, mode: PolarMode, path: ProgrammedPath, ma
         G13.1
     """
     moves_both = mode.in_polar & axes.moves_plane & path.judged_z
+    if machine.polar.other_axes == "together":
+        # Without compensation no block can be taken for a corner.
+        moves_both &= compensation.compensates
     severity = {"forbidden": ERROR, "independent": WARNING, "together": NOTE}[machine.polar.other_axes]
     return Hits(moves_both & (axes.motion == Motion.LINE) & (path.length > 0), severity)

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Entry, Hits, Machine, PolarMode, Spindles, rule
+from polarcheck.checking.rule import WARNING, Entry, Hits, Machine, PlaneAxes, PolarMode, Spindles, rule
 
 
 @rule(
@@ -9,14 +9,15 @@ from polarcheck.checking.rule import WARNING, Entry, Hits, Machine, PolarMode, S
     at=("on",),
     once="c axis code",
 )
-def c_axis_not_engaged(mode: PolarMode, entry: Entry, spindles: Spindles, machine: Machine) -> Hits:
+def c_axis_not_engaged(mode: PolarMode, axes: PlaneAxes, entry: Entry, spindles: Spindles, machine: Machine) -> Hits:
     """
     Polar mode without the spindle as C axis.
 
     The spindle has to be switched to C axis by an M code of the builder before it can be positioned. Without it the
     control stops at the first C, or the spindle is not held at all. Stop the spindle, engage the C axis, then go to its
     reference point: M5, M35, G28 H0. Nothing is said where the machine profile names no such code, nor in an excerpt
-    that has none. A sub-spindle with codes of its own is engaged by those.
+    that has none. A sub-spindle with codes of its own is engaged by those. On some lathes the code may stand behind the
+    switch, before the first move there (polar.engaged_behind).
 
     Source: builder's guide to G12.1, sample program.
 
@@ -58,6 +59,17 @@ def c_axis_not_engaged(mode: PolarMode, entry: Entry, spindles: Spindles, machin
         X60.
         G13.1
 
+    Good, machine haas-lathe:
+
+        G98 G17 G0 X2.4 Y0 C0
+        G112
+        M154
+        G1 X.8 F10.
+        Y.4
+        X2.4
+        G113
+        M155
+
     Good, set m_codes.c_axis_on=["M35"], set m_codes.sub_c_axis_on=["M135"]:
 
         M135
@@ -88,5 +100,8 @@ def c_axis_not_engaged(mode: PolarMode, entry: Entry, spindles: Spindles, machin
     codes, engaging = machine.m_codes, spindles.c_axis_codes
     # A sub-spindle alone does not tell by which code the main spindle is engaged.
     expected = entry.expects(codes.c_axis_on and [*engaging, *codes.c_axis_off, *codes.sub_c_axis_off])
-    missing = mode.enters & mode.rotary_is_followed & ~spindles.c_axis & expected
+    engaged = spindles.c_axis
+    if machine.polar.engaged_behind:
+        engaged = engaged | mode.anywhere_in_section(mode.first_in_section(mode.in_polar & axes.moves_plane) & engaged)
+    missing = mode.enters & mode.rotary_is_followed & ~engaged & expected
     return Hits(missing, values={"codes": " or ".join(engaging)})

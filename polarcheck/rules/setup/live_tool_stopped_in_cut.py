@@ -8,6 +8,7 @@ from polarcheck.checking.rule import ERROR, Entry, Hits, Machine, ModalStates, P
     "the live tool is not running in this cutting move; {codes} is missing{or_started_by}",
     at=("line", "arc_clockwise", "arc_counterclockwise"),
     once="live tool code",
+    follows={"section": ("main-spindle-running-at-entry",)},
 )
 def live_tool_stopped_in_cut(
     modal: ModalStates, mode: PolarMode, path: ProgrammedPath, entry: Entry, machine: Machine
@@ -61,4 +62,6 @@ def live_tool_stopped_in_cut(
     codes = machine.m_codes
     expected = entry.expects(codes.live_tool_on and [*codes.live_tool_on, *codes.live_tool_off])
     stopped = mode.first_in_section(path.cuts & ~modal.live_tool & expected)
-    return Hits(stopped, values={"codes": " or ".join(codes.live_tool_on)})
+    # Where the main spindle was started in its place, that is the fault; a tool that ran before is another.
+    ran = mode.anywhere_in_section(modal.live_tool & mode.in_polar)
+    return Hits(stopped, values={"codes": " or ".join(codes.live_tool_on)}, follows={"section": ~ran})

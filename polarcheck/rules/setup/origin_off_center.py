@@ -6,7 +6,7 @@ from polarcheck.geometry.tolerances import ROUNDING
 
 @rule(
     ERROR,
-    "{name} puts X0 {shift:length} off the spindle axis at {switch}",
+    "{name} puts X0 {shift:length} off the spindle axis{as_diameter} at {switch}",
     at=("on",),
     once="origin",
     needs=("entry.origin_shift",),
@@ -109,5 +109,4 @@ def origin_off_center(mode: PolarMode, entry: Entry) -> Hits:
         X60.
         G13.1
     """
-    shift = entry.origin_shift
-    return Hits(mode.enters & (abs(shift) > ROUNDING), values={"shift": shift})
+    return Hits(mode.enters & (abs(entry.origin_shift) > ROUNDING), values={"shift": entry.origin_distance})

@@ -1,6 +1,16 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, ExecutedBlocks, Hits, Machine, PolarMode, Spindles, graded, rule
+from polarcheck.checking.rule import (
+    WARNING,
+    ExecutedBlocks,
+    Hits,
+    Machine,
+    PlaneAxes,
+    PolarMode,
+    Spindles,
+    graded,
+    rule,
+)
 
 
 @rule(
@@ -8,14 +18,16 @@ from polarcheck.checking.rule import WARNING, ExecutedBlocks, Hits, Machine, Pol
     "{codes} in the polar mode; the spindle is the {rotary} axis here",
     follows={"section": ("polar-never-left",)},
 )
-def spindle_code_in_polar(blocks: ExecutedBlocks, mode: PolarMode, spindles: Spindles, machine: Machine) -> Hits:
+def spindle_code_in_polar(
+    blocks: ExecutedBlocks, axes: PlaneAxes, mode: PolarMode, spindles: Spindles, machine: Machine
+) -> Hits:
     """
     Main spindle started or stopped, or the C axis released, in the polar mode.
 
     In the mode the spindle is the C axis and the part of every move. A code that starts it as a spindle, or releases
     the C axis, takes it out of the control's hands in the middle of the contour. Such codes belong before G12.1 or
-    after G13.1. So does M19, which turns the spindle to an angle of its own. Many lathes use M3 and M5 for the live
-    tool, too; where the machine profile does not name codes of its own for the live tool, these are a note.
+    after G13.1, and so does M19, which turns the spindle to an angle. Many lathes use M3 and M5 for the live tool, too;
+    where the machine profile does not name codes of its own for the live tool, these are a note.
 
     Source: builder's guide to G12.1, sample program; FANUC B-62764EN/01, p. 50.
 
@@ -66,6 +78,8 @@ def spindle_code_in_polar(blocks: ExecutedBlocks, mode: PolarMode, spindles: Spi
     """
     codes = machine.m_codes
     in_mode = mode.in_polar & spindles.has_code
+    if machine.polar.engaged_behind:
+        in_mode &= ~blocks.codes(*codes.c_axis_on) | mode.given_in_section(axes.moves_plane)
     of_axis = blocks.codes(*codes.c_axis_on, *codes.c_axis_off, *codes.spindle_orientation)
     is_known = spindles.are_no_live_tool | of_axis
     return graded(warning=in_mode & is_known, note=in_mode & ~is_known, at=spindles.words)

@@ -9,8 +9,9 @@ def program_end_missing(written: Written) -> Mask:
     Program without an end.
 
     A main program ends with M30 or M02, a subprogram with M99. Without it the control runs on to the % and stops with
-    an alarm, or goes on with what it stores next. Often the rest of the file was lost on the way. Nothing is said of
-    excerpts, which have neither a program number nor %.
+    an alarm, or goes on with what it stores next. So it does where a part that M98 Q100 calls has no M99 behind it.
+    Often the rest of the file was lost on the way. Nothing is said of excerpts, which have neither a program number
+    nor %.
 
     Source: FANUC alarm 5010; B-62754EN/01, configuration of a program.
 

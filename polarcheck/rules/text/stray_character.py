@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Hits, OtherMode, SwitchSlips, Written, rule
+from polarcheck.checking.rule import ERROR, Hits, OtherMode, Written, rule
 
 
 @rule(
@@ -8,11 +8,11 @@ from polarcheck.checking.rule import ERROR, Hits, OtherMode, SwitchSlips, Writte
     "{stray}{count:blocks}",
     over="strays",
     follows={
-        "file": ("polar-code-of-another-control", "polar-switch-unknown"),
+        "file": ("polar-code-of-another-control",),
         "block": ("comment-nested", "comment-not-closed"),
     },
 )
-def stray_character(written: Written, other_mode: OtherMode, switch_slips: SwitchSlips) -> Hits:
+def stray_character(written: Written, other_mode: OtherMode) -> Hits:
     """
     Character that is no part of a word.
 
@@ -55,5 +55,5 @@ def stray_character(written: Written, other_mode: OtherMode, switch_slips: Switc
     return Hits(
         count > 0,
         values={"count": count},
-        follows={"file": other_mode.explained_strays | switch_slips.explained_strays},
+        follows={"file": other_mode.explained_strays},
     )

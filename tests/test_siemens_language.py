@@ -1,0 +1,176 @@
+"""Words of the language of Siemens controls: what is told as wrong, what moves nothing, and what is not evaluated."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+from programs import report_of, trace_of
+
+from polarcheck.finding import FileReport
+
+MACHINE = "siemens-transmit"
+PROGRAM = """T8 D1
+G94 S2=1000
+DIAMOF
+{before}G0 X40 C0 Z5
+TRANSMIT
+G17
+{inside}G1 G42 X20 Y1 F300
+Y10
+X-10
+Y-10
+X20
+Y1
+G40 X40
+TRAFOOF
+M30
+"""
+
+
+def report(before: str = "", inside: str = "", machine: str = MACHINE, **more: Any) -> FileReport:
+    text = PROGRAM.format(before=f"{before}\n" * bool(before), inside=f"{inside}\n" * bool(inside))
+    return report_of(text, machine, "8:radius=4,nose=0", **more)
+
+
+def rules(of: FileReport) -> list[str]:
+    return [finding.rule for finding in of.findings]
+
+
+# ---- habits of other languages ----
+
+
+@pytest.mark.parametrize("block", ["R1 5", "N20 R99 .5", "r12 7", "R5"])
+def test_a_parameter_takes_its_value_by_equal(block: str) -> None:
+    assert rules(report(block)) == ["equal-sign-missing"]
+
+
+@pytest.mark.parametrize("block", ["R1=5", "R1 = -5", "R[3]=5", "R1=R2", "ROT RPL=10\nROT"])
+def test_with_equal_nothing_is_told(block: str) -> None:
+    assert rules(report(block)) == []
+
+
+def test_the_radius_of_an_arc_is_no_r() -> None:
+    arc = "G1 X30 F300\nG3 X0 Y30 {}\nG1 X40 Y0"
+    assert rules(report(inside=arc.format("R30"))) == ["equal-sign-missing"]
+    assert rules(report(inside=arc.format("CR=30"))) == []
+    assert rules(report(inside=arc.format("CR=R1+30"), before="R1=0")) == []
+
+
+@pytest.mark.parametrize(
+    ("before", "count"),
+    [("(HEXAGON)", 1), ("(ONE)\nX50 (TWO)\n( THREE )", 3), ("N10 G0 X50 (RAPID)", 1)],
+)
+def test_text_in_parentheses_is_told_once(before: str, count: int) -> None:
+    (finding,) = report(before).findings
+    assert finding.rule == "comment-in-parentheses"
+    assert finding.line == 4
+    assert (f"in {count} blocks" in finding.message) == (count > 1)
+
+
+@pytest.mark.parametrize(
+    "before",
+    ["X=(R1+2)", "R1=(2+3)*4", 'MSG("(ROUGHING)")', "; (HEXAGON)", "CYCLE832(0.01,1)", "OSCTRL[Z]=(1+2,4)", "SETMS(2)"],
+)
+def test_parentheses_of_the_language_are_no_comment(before: str) -> None:
+    assert rules(report(before)) == []
+
+
+def test_behind_g291_and_in_the_iso_mode_it_is_a_comment() -> None:
+    assert rules(report("G291\n(TEXT)\nG290")) == []
+    assert rules(report("G291\n(TEXT)\nG290\n(MORE)")) == ["comment-in-parentheses"]
+    iso = "G94\n(TEXT)\nG0 X60. C0\nG12.1\nG1 X40. F200\nC10.\nX60.\nG13.1\nM30\n"
+    assert "comment-in-parentheses" not in rules(report_of(iso, "siemens-iso"))
+
+
+# ---- predefined procedures and synchronized actions ----
+
+
+@pytest.mark.parametrize(
+    "block",
+    [
+        'DELETE(RESULT,"/_N_WKS_DIR/_N_A_MPF")',
+        'WRITE(RESULT,"LOG","PART DONE")',
+        'READ(RESULT,"LOG",1,1,LINE)',
+        "OSCTRL[Z]=(1+2,4)",
+        "OSCTRL[Z] = (0, 16+32)",
+        "OSP1[Z]=10 OSP2[Z]=20",
+        "CANCEL(1,2)",
+        "FNORM",
+        "FPRAON(S1,S2)",
+        "NEWCONF",
+        "WHEN $AA_IW[X]>20 DO M8",
+        "IDS=1 EVERY $A_IN[1]==1 DO $A_OUT[2]=1 $AC_MARKER[1]=2",
+        "ID=2 FROM $A_IN[1]==1 DO POS[U]=100",
+        "DO $R5=$AA_IM[Z]",
+    ],
+)
+def test_what_moves_no_axis_of_the_plane_is_passed_over(block: str) -> None:
+    for before, inside in ((block, ""), ("", block)):
+        found = report(before, inside)
+        assert (rules(found), found.verdict) == ([], "pass")
+
+
+@pytest.mark.parametrize(
+    ("block", "reason"),
+    [
+        ("ID=1 WHENEVER ($R1==0) DO $AC_OVR=0", "synchronized action with $AC_OVR is not simulated"),
+        ("IDS=1 EVERY $A_IN[1]==1 DO F=100", "synchronized action with F is not simulated"),
+        ("WHEN TRUE DO POS[X]=3", "synchronized action with X is not simulated"),
+        ("ID=3 WHEN $A_IN[1]==1 DO MOV[C]=1", "synchronized action with C is not simulated"),
+        ("EVERY $A_IN[1]==1 DO DELDTG", "synchronized action with DELDTG is not simulated"),
+        ('EXECSTRING("X50")', "EXECSTRING is not simulated"),
+        ("GEOAX(2,Y)", "GEOAX is not simulated"),
+    ],
+)
+def test_what_moves_the_axes_or_sets_the_feed_is_not_evaluated(block: str, reason: str) -> None:
+    for before, inside in ((block, ""), ("", block)):
+        found = report(before, inside)
+        assert (rules(found), found.verdict) == ([], "unverified")
+        assert reason in [missing.reason for missing in found.not_evaluated]
+
+
+# ---- spindles ----
+
+
+@pytest.mark.parametrize(
+    ("before", "is_main"),
+    [
+        ("SETMS(3)\nM3 S2000", False),
+        ("N10 SETMS(2) M3", False),
+        ("SETMS(2)\nM3\nSETMS(1)", False),
+        ("M3 S2000", True),
+        ("SETMS(3)\nSETMS\nM3", True),
+        ("SETMS()\nM4 S500", True),
+        ("M3\nSETMS(3)\nM5", True),
+    ],
+)
+def test_m3_is_that_of_the_master_spindle(before: str, is_main: bool) -> None:
+    assert rules(report(before)) == ["main-spindle-running-at-entry"] * is_main
+
+
+# ---- programs with parameters ----
+
+
+@pytest.mark.parametrize(
+    ("call", "head", "end"),
+    [
+        ("CUT(20)", "PROC CUT(REAL A)", 20 + 3j),
+        ("CUT(20,5)", "PROC CUT(REAL A, REAL B) DISPLOF", 20 + 5j),
+        ("CUT(20)", "PROC CUT(REAL A, REAL B=7)", 20 + 7j),
+        ("R1=20\nCUT(R1)", "PROC CUT(REAL AA, INT BB=4)", 20 + 4j),
+    ],
+)
+def test_arguments_have_their_values(call: str, head: str, end: complex, tmp_path: Path) -> None:
+    names = head.partition("(")[2].replace(",", " ").replace("=", " ").replace(")", " ").split()
+    virtual = names[3] if len(names) > 3 else "3"
+    body = f"{head}\nG1 X={names[1]} Y={virtual} F300\nRET\n"
+    (tmp_path / "CUT.SPF").write_text(body)
+    text = f"T8 D1\nG94\nDIAMOF\nG0 X40 C0 Z5\nTRANSMIT\nG17\n{call}\nTRAFOOF\nM30\n"
+    trace = trace_of(text, MACHINE, job={"run": {"subprograms": [str(tmp_path)]}})
+    assert trace.path.end[trace.path.on_plane].tolist() == [end]
+
+
+def test_a_head_with_a_letter_is_read() -> None:
+    assert rules(report_of("PROC X(REAL A)\n" + PROGRAM.format(before="", inside=""), MACHINE, "8:radius=4")) == []
