@@ -220,10 +220,28 @@ CASES = [
         "G20 G98 G18 G0 X2.4 C0\nG12.1\nG18\nG1 X2.2 F30. (SLOW)\nG1 C.4 F8.\nG13.1\n",
     ),
     (
+        "polar-switch-unknown",
+        "fanuc",
+        "G98 G0 X60. C0\nG12\nG1 X40. F200\nC10.\nX60.\nG13.1\n",
+        "G98 G0 X60. C0\nG12.1\nG1 X40. F200\nC10.\nX60.\nG13.1\n",
+    ),
+    (
+        "polar-switch-unknown",
+        "mazak-quick-turn",
+        "G98 G0 X60. C0\nG17 XC\nG121\nG1 U-20. F200\nH10.\nX60.\nG131\n",
+        "G98 G0 X60. C0\nG17 XC\nG12.1\nG1 U-20. F200\nH10.\nX60.\nG13.1\n",
+    ),
+    (
+        "polar-switch-unknown",
+        "turning-center",
+        "G20 G98 G18 G0 X2.4 C0\nN5G121(ON)\nG18\nG1 X2. F20.\nC.5\nX2.4\nG131\n",
+        "G20 G98 G18 G0 X2.4 C0\nN5G12.1(ON)\nG18\nG1 X2. F20.\nC.5\nX2.4\nG13.1\n",
+    ),
+    (
         "z-with-plane-axis",
         "haas-lathe",
-        "G20 G98 G17 G0 X2.4 Y0 Z.1\nG112\nG1 X2. Z-.2 F15.\nY.5\nG1 X2.4 Z.1 M9\nG113\n",
-        "G20 G98 G17 G0 X2.4 Y0 Z.1\nG112\nG1 X2. F15.\nZ-.2\nY.5\nG1 Z.1 M9\nX2.4\nG113\n",
+        "T101\nG20 G98 G17 G0 X2.4 Y0 Z.1\nG112\nG1 G41 X2. Z-.2 F15.\nY.5\nX1.5 Z.1 M9\nG1 G40 X2.4\nG113\n",
+        "T101\nG20 G98 G17 G0 X2.4 Y0 Z.1\nG112\nG1 G41 X2. F15.\nZ-.2\nY.5\nZ.1 M9\nX1.5\nG1 G40 X2.4\nG113\n",
     ),
     (
         "z-with-plane-axis",
