@@ -150,3 +150,33 @@ def test_near_the_pole_the_control_slows_down_by_itself() -> None:
 def report_time(program: str, changes: dict[str, Any]) -> float:
     dynamics = tables_of(program, MACHINE, changes=changes)["dynamics"]
     return float(np.nansum(dynamics.move_time))
+
+
+#: As a post writes it: the tool change loses X, and C is nowhere.
+POSITIONED_IN_MODE = """%
+N1 G94 G17 DIAMOF
+T="FRAESER" D1
+M6
+G54 G0 Y0
+TRANSMIT
+{first}
+G1 X18 Y0 F250
+X0 Y20
+TRAFOOF
+M30
+"""
+
+
+@pytest.mark.parametrize(
+    ("first", "is_known"),
+    [
+        ("G0 Z5\nG0 X40 Y10", True),
+        ("G0 X40", False),
+        ("G0 X=IC(5) Y10", False),
+        ("G1 G41 X40 Y10 F200", False),
+    ],
+)
+def test_a_first_move_in_the_mode_positions_x_and_c(first: str, is_known: bool) -> None:
+    """Nothing hangs on the place of the tool at TRANSMIT where a G0 behind it writes both axes."""
+    found = report_of(POSITIONED_IN_MODE.format(first=first), MACHINE, only=("setup",)).findings
+    assert ["x-unknown-at-entry"] * (not is_known) == [finding.rule for finding in found]

@@ -150,6 +150,12 @@ class ProgrammedPath(Columns, frozen=True):
         return in_frame(self.frames, self.mode.in_polar, absolute, steps, along_virtual=False)
 
     @cached_property
+    def is_absolute_on_plane(self) -> Mask:
+        """Writes both axes of the plane, and neither in steps."""
+        axes = self._linear_coordinates, self._virtual_coordinates
+        return np.asarray(np.logical_and.reduce([~np.isnan(absolute) & (steps == 0) for absolute, steps in axes]))
+
+    @cached_property
     def local_shift(self) -> Floats:
         """X of the G52 in force, as written [mm], by which the coordinate of a place is less; NaN where not known."""
         if not self._shifts.any():

@@ -11,7 +11,7 @@ from polarcheck.arrays import Columns, Floats, Mask, is_among
 from polarcheck.columns.filling import before, happened
 from polarcheck.columns.trace import Trace
 from polarcheck.geometry.tolerances import ROUNDING
-from polarcheck.machines.modal import STATES
+from polarcheck.machines.modal import STATES, Motion
 from polarcheck.table.origin import Origin
 from polarcheck.table.tool_center import ToolCenter
 
@@ -40,6 +40,21 @@ class Entry(Columns, frozen=True):
         return np.asarray(
             trace.tools.changes_tool | (trace.blocks.listed("reference_return") & trace.blocks.has("X", "U"))
         )
+
+    @cached_property
+    def positions_in_mode(self) -> Mask:
+        """
+        Per G12.1: nothing depends on where the tool stands there, as the first move positions both axes of the plane.
+
+        That is so where C does not turn the plane, and G0 can stand in it: a G0 without compensation, both absolute.
+        """
+        trace = self.trace
+        polar = trace.machine.polar
+        if not polar.plane_is_fixed or "G0" not in polar.allowed_codes:
+            return np.zeros(len(trace), bool)
+        first = trace.mode.first_in_section(trace.axes.moves_plane & trace.mode.in_polar)
+        both = trace.path.is_absolute_on_plane & (trace.axes.motion == Motion.RAPID) & ~trace.compensation.compensates
+        return trace.blocks.mask_of(trace.mode.sections.enter[trace.mode.section[first & both]])
 
     @cached_property
     def _is_known(self) -> Mask:

@@ -151,6 +151,13 @@ def axes(path: ProgrammedPath, machine: Machine, row: int) -> str:
     return f"X and {machine.polar.rotary_address}" if np.isnan(path.c_angle[row]) else "it"
 
 
+def of_unknown_angle(machine: Machine) -> str:
+    """What comes of a section at an angle of C that is not known."""
+    if machine.polar.plane_is_fixed:
+        return f"where the first move begins is not known: begin with G0 that writes X and {machine.polar.virtual_axis}"
+    return "the shape stands wherever the spindle stopped"
+
+
 def unknown_since(blocks: ExecutedBlocks, run: Run, entry: Entry, row: int) -> str:
     """`is not known since T0404 in line 7`, or that X was never positioned."""
     first = int(np.flatnonzero(blocks.starts[: row + 1])[-1]) if blocks.starts[: row + 1].any() else 0

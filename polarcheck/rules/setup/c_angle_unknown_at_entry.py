@@ -5,7 +5,7 @@ from polarcheck.checking.rule import WARNING, Entry, ExecutedBlocks, Machine, Ma
 
 @rule(
     WARNING,
-    "{rotary} has not been positioned before {switch}; the shape stands wherever the spindle stopped",
+    "{rotary} has not been positioned before {switch}; {of_unknown_angle}",
     at=("on",),
     follows={"block": ("c-axis-not-engaged", "c-axis-not-referenced", "x-unknown-at-entry")},
 )
@@ -17,7 +17,8 @@ def c_angle_unknown_at_entry(
 
     The angle of C at G12.1 becomes the direction of X on the plane: after G0 C60. the whole shape is turned by 60 deg.
     Where the program has not positioned C at all, the shape comes out at a chance angle. Write G0 C0 with the approach.
-    A word beside the switch that gives the direction, as in G137 C0 (polar.direction_word), does as well.
+    A word beside the switch that gives the direction, as in G137 C0 (polar.direction_word), does as well. Where C does
+    not turn the plane (polar.zero_angle), a first G0 in the mode that writes both axes is enough.
 
     Source: builder's guide to G12.1, angular orientation of the plane.
 
@@ -80,4 +81,5 @@ def c_angle_unknown_at_entry(
         & mode.rotary_is_followed
         & blocks.whole_program
         & ~entry.happened(positioned, since=spindles.engages_c_axis)
+        & ~entry.positions_in_mode
     )

@@ -26,7 +26,8 @@ def x_unknown_at_entry(
 
     The plane begins at the present X. If X was not programmed since the head of the program, the last reference return
     or tool change, the first move starts from where the turret happens to be, and neither the ramp of the compensation
-    nor the speed of C can be foreseen. Position X outside the part first, then write G12.1.
+    nor the speed of C can be foreseen. Position X outside the part first, then write G12.1. Where C does not turn the
+    plane (polar.zero_angle), a first G0 in the mode that writes both axes does as well.
 
     Source: builder's guide to G12.1, programming the tool approach point.
 
@@ -69,6 +70,18 @@ def x_unknown_at_entry(
         G13.1
         M30
 
+    Good, machine siemens-transmit:
+
+        %
+        N1 G94 DIAMOF
+        N2 T1 D1
+        N3 TRANSMIT
+        N4 G0 X40 Y10
+        N5 G1 X30 Y10 F200
+        N6 Y0
+        N7 TRAFOOF
+        N8 M30
+
     Good:
 
         O0002
@@ -81,4 +94,5 @@ def x_unknown_at_entry(
     """
     positioned = (blocks.has("X", "U") & (modal.uses_axes | modal.sets_coordinates)) | blocks.moves_unnamed
     by_x = mode.is_followed & (axes.linear_axis == ord("X"))
-    return mode.enters & by_x & blocks.whole_program & ~entry.happened(positioned, since=entry.loses_x)
+    unknown = blocks.whole_program & ~entry.happened(positioned, since=entry.loses_x)
+    return mode.enters & by_x & unknown & ~entry.positions_in_mode
