@@ -147,6 +147,7 @@ def marks(generator: np.random.Generator, count: int) -> Marks:
         moves=cuts | some(0.2),
         returns=some(0.03),
         broken_off=np.append(starts[1:], True) & some(0.5),
+        rapid_stands=bool(generator.random() < 0.5),
     )
 
 

@@ -180,3 +180,21 @@ def test_a_first_move_in_the_mode_positions_x_and_c(first: str, is_known: bool) 
     """Nothing hangs on the place of the tool at TRANSMIT where a G0 behind it writes both axes."""
     found = report_of(POSITIONED_IN_MODE.format(first=first), MACHINE, only=("setup",)).findings
     assert ["x-unknown-at-entry"] * (not is_known) == [finding.rule for finding in found]
+
+
+@pytest.mark.parametrize(("machine", "on", "off"), [(MACHINE, "TRANSMIT", "TRAFOOF"), ("haas-lathe", "G112", "G113")])
+@pytest.mark.parametrize(
+    ("between", "behind", "rule"),
+    [
+        ("", "G0 X35. Y10.\n", "polar-entered-twice"),
+        ("G0 X35. Y10.\n", "", "polar-entered-twice"),
+        ("G0 X35. Y10.\nG1 X20. Y0 F300.\nX0 Y20.\nG0 Z50.\nG0 X80. C90.\n", "", "polar-never-left"),
+    ],
+)
+def test_the_mode_switched_on_again_before_the_first_cut_is_one_too_many(
+    machine: str, on: str, off: str, between: str, behind: str, rule: str
+) -> None:
+    """G0 can stand in the mode there: it does not say that the mode was left above it."""
+    cuts = f"{between}{on}\n{behind}G1 X20. Y0 F300.\nX0 Y20.\n{off}\n"
+    found = report_of(f"G94 G97\nG0 X80. C0 Z5.\n{on}\n{cuts}M30\n", machine, only=("polar",)).findings
+    assert [finding.rule for finding in found] == [rule]

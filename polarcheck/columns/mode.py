@@ -41,8 +41,8 @@ class PolarMode(Columns, frozen=True):
         polar = self.machine.polar
         planes = {code for key in ("plane_xy", "plane_zx", "plane_yz") for code in self.machine.codes(key)}
         # Where G0 can stand in the mode, one with the second axis does.
-        in_rapid = (self.axes.motion == Motion.RAPID) & self.axes.programs_virtual_axis
-        in_rapid &= ("G0" in polar.allowed_codes) & (polar.virtual_axis != polar.rotary_address)
+        rapid_stands = "G0" in polar.allowed_codes and polar.virtual_axis != polar.rotary_address
+        in_rapid = (self.axes.motion == Motion.RAPID) & self.axes.programs_virtual_axis & rapid_stands
         marks = Marks(
             on=self.axes.switches_on & ~self.axes.ends_mode,
             off=self.axes.ends_mode,
@@ -57,6 +57,7 @@ class PolarMode(Columns, frozen=True):
             moves=(cutting | in_rapid) & self.axes.moves_plane,
             returns=self._returns,
             broken_off=np.zeros(len(self.run), bool) if self.run.broken_off is None else self.run.broken_off,
+            rapid_stands=rapid_stands,
         )
         return find_sections(marks)
 

@@ -16,7 +16,8 @@ class Marks(msgspec.Struct, frozen=True):
     return). planes: a plane is selected that cannot be selected in the mode. tool_ends: tool change, program end.
     stops: M1, between two tools or in the work of one. rapid: G0 is written. cuts: a cutting move with a word of the
     virtual axis. moves: any move in the plane that can stand in the mode. returns: M99 of a program that something
-    elsewhere may call. broken_off: the last row of a program that a bound has ended.
+    elsewhere may call. broken_off: the last row of a program that a bound has ended. rapid_stands: G0 can stand in the
+    mode, whose axes have addresses of their own.
     """
 
     on: Mask
@@ -31,6 +32,7 @@ class Marks(msgspec.Struct, frozen=True):
     moves: Mask
     returns: Mask
     broken_off: Mask
+    rapid_stands: bool
 
 
 class Sections(msgspec.Struct, frozen=True):
@@ -67,6 +69,7 @@ def find_sections(marks: Marks) -> Sections:
     in the section: nobody leaves what he has just begun. Whether the G13.1 was forgotten is seen by what follows the
     last move of the virtual axis: a tool change, the end of the program, or rapid traverse before another G12.1. M1
     says so only behind a reference return: it then stands between two tools, and the G13.1 after it is one for safety.
+    Where G0 can stand in the mode, one above the first cut says nothing: the G12.1 behind it is one too many.
     A caller can leave what M99 returns with, but not before a G0 that stands above it.
     """
     count = len(marks.on)
@@ -85,6 +88,8 @@ def find_sections(marks: Marks) -> Sections:
     tool_end = _first_after(np.flatnonzero(marks.tool_ends), last_cut, count)
     outside = _first_after(np.flatnonzero(marks.tool_ends | marks.outside), last_cut, count)
     rapid = _first_after(np.flatnonzero(marks.tool_ends | marks.outside | marks.rapid), last_cut, count)
+    if marks.rapid_stands:
+        rapid = np.where(by_on & (last_cut <= enter), outside, rapid)
     # Before any cut a plane is that of the section.
     plane = np.where(last_cut > enter, _first_after(np.flatnonzero(marks.planes), last_cut, count), count)
     stop = _first_after(np.flatnonzero(marks.stops), outside, count)
