@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 from programs import Changes, report_of
 
@@ -180,6 +182,30 @@ def test_the_virtual_axis_has_the_address_of_the_machine(machine: str, on: str, 
     assert said["arc-off-polar-plane"].startswith(
         f"arc along Z; in the polar mode arcs lie in the plane of X and {axis}"
     )
+
+
+@pytest.mark.parametrize(
+    ("machine", "on", "off", "axis"),
+    [
+        ("fanuc", "G12.1", "G13.1", "C"),
+        ("haas-lathe", "G112", "G113", "Y"),
+        ("siemens-transmit", "TRANSMIT", "TRAFOOF", "Y"),
+    ],
+)
+def test_a_point_of_the_plane_has_the_words_of_the_machine(machine: str, on: str, off: str, axis: str) -> None:
+    ends = [
+        ("20.", "0"),
+        ("20.", "20."),
+        ("20.", "-20."),
+        ("-20.", "20."),
+        ("-20.", "-20."),
+        ("20.", "-20."),
+        ("20.", "0"),
+    ]
+    contour = "\n".join(f"G1 X{x} {axis}{y} F200." for x, y in ends)
+    program = f"T1 D1\nG94 G97\nG0 X100. C0 Z5.\n{on}\nG42\n{contour}\nG40 X100.\n{off}\nM30\n"
+    said = message(program, "contour-crosses-itself", machine, "1:radius=3")
+    assert re.search(rf" at X[0-9.]+ {axis}[0-9.]+", said), said
 
 
 @pytest.mark.parametrize(

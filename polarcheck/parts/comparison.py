@@ -49,7 +49,7 @@ def compared(tables: Tables) -> list[PartComparison]:
             line=int(trace.blocks.line[one.row]),
             turned=rounded(math.degrees(one.turned)),
             angle_not_compared=one.angle_not_compared or None,
-            text=told(trace.blocks, trace.lengths, one),
+            text=told(trace, one),
         )
         for one in deviations.comparisons
         if not one.is_superseded

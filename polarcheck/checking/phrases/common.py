@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from polarcheck.checking.places import Place, block_in_line, squeezed
+from polarcheck.checking.quantity import in_row
 from polarcheck.columns.axes import PlaneAxes
 from polarcheck.columns.blocks import ExecutedBlocks
+from polarcheck.columns.lengths import Lengths
 from polarcheck.columns.mode import PolarMode
 from polarcheck.execution.run import Run
 from polarcheck.machines.codes import code_numbers, spelled
@@ -87,6 +89,12 @@ def linear(axes: PlaneAxes, row: int) -> str:
 def virtual(axes: PlaneAxes, row: int) -> str:
     """The address of the virtual axis: C."""
     return axes.virtual_axis_of(row)
+
+
+def point(axes: PlaneAxes, lengths: Lengths, place: complex, row: int) -> str:
+    """A plane point as words of a row: X30 C15, or X30 Y15."""
+    axis = axes.virtual_axis_of(row)
+    return f"{in_row(place, lengths, row):point}".replace("C", f"{axis}=" if len(axis) > 1 else axis)
 
 
 def rotary(machine: Machine) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from polarcheck.checking.phrases.common import block_and_line, code_of, move_code
+from polarcheck.checking.phrases.common import block_and_line, code_of, move_code, point
 from polarcheck.checking.phrases.drawing import deviation as deviation
 from polarcheck.checking.phrases.drawing import drawing as drawing
 from polarcheck.checking.phrases.offsets import called_tool
@@ -396,8 +396,3 @@ def left(axes: PlaneAxes, lengths: Lengths, compensation: CutterCompensation, co
         f"where no tool touches it: let the contour go on {width:length} farther beyond its start before the tool "
         "leaves it"
     )
-
-
-def point(axes: PlaneAxes, lengths: Lengths, point: complex, row: int) -> str:
-    axis = axes.virtual_axis_of(row)
-    return f"{in_row(point, lengths, row):point}".replace("C", f"{axis}=" if len(axis) > 1 else axis)

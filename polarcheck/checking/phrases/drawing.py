@@ -5,11 +5,11 @@ from __future__ import annotations
 import cmath
 import math
 
-from polarcheck.checking.phrases.common import short
+from polarcheck.checking.phrases.common import point, short
 from polarcheck.checking.phrases.part import Sizes, shape_in_words
 from polarcheck.checking.quantity import Quantity, in_row
-from polarcheck.columns.blocks import ExecutedBlocks
 from polarcheck.columns.lengths import Lengths
+from polarcheck.columns.trace import Trace
 from polarcheck.inspection.comparison import Comparison, Fit, title_of
 from polarcheck.inspection.deviations import Deviations
 from polarcheck.machines.modal import MM_PER_INCH, Units
@@ -25,45 +25,45 @@ def drawing(deviations: Deviations, row: int) -> str:
     return short(deviations.of_row(row).title)
 
 
-def deviation(lengths: Lengths, deviations: Deviations, row: int) -> str:
+def deviation(deviations: Deviations, row: int) -> str:
     """How the part of a row differs from what it should be, where, and how it would fit."""
-    return _deviation(deviations.trace.blocks, lengths, deviations.of_row(row))
+    return _deviation(deviations.trace, deviations.of_row(row))
 
 
-def told(blocks: ExecutedBlocks, lengths: Lengths, one: Comparison) -> str:
+def told(trace: Trace, one: Comparison) -> str:
     """A comparison in words, in the units of the program; also one that agrees."""
     title, found = short(one.title), one.difference
-    largest, tolerance = in_row(found.largest, lengths, one.row), in_row(one.tolerance, lengths, one.row)
+    largest, tolerance = in_row(found.largest, trace.lengths, one.row), in_row(one.tolerance, trace.lengths, one.row)
     if not one.agrees:
         by = f"by {largest.beside(tolerance, 'length')}, {tolerance:length} is allowed"
-        return f"differs from {title} {by}: {_deviation(blocks, lengths, one)}"
-    least, shown = _LEAST[largest.inch], _least(lengths, one, found.largest)
+        return f"differs from {title} {by}: {_deviation(trace, one)}"
+    least, shown = _LEAST[largest.inch], _least(trace.lengths, one, found.largest)
     where = ""
     if found.largest > least and not cmath.isnan(found.at):
-        where = f", largest at {_where(lengths, one, found.at)} by line {int(blocks.line[one.row])}"
+        where = f", largest at {_where(trace, one, found.at)} by line {int(trace.blocks.line[one.row])}"
     angle = f"; its angle was not compared: {one.angle_not_compared}" if one.angle_not_compared else ""
     return f"agrees with {title} within {shown:length} (tolerance {tolerance:length}){where}{angle}"
 
 
-def _deviation(blocks: ExecutedBlocks, lengths: Lengths, one: Comparison) -> str:
+def _deviation(trace: Trace, one: Comparison) -> str:
     found = one.difference
     if one.is_other_way_round:
         does, should = ("a boss", "a pocket") if one.part.is_pocket else ("a pocket", "a boss")
         return f"it is {does}, and {should} is asked for: the tool is on the wrong side"
     if not one.is_made:
-        return f"nothing mills its walls{_fit(lengths, one, one.fit)}{_made(blocks, lengths, one)}"
+        return f"nothing mills its walls{_fit(trace.lengths, one, one.fit)}{_made(trace, one)}"
     sides = [(found.proud, found.proud_at, "too much stays"), (found.deep, found.deep_at, "too much is cut away")]
     (_, worst, what), (size, place, other) = sorted(sides, key=lambda side: -side[0])
     more = ""
     if size > one.tolerance:
-        more = f", and {in_row(size, lengths, one.row):length} {other} at {_where(lengths, one, place)}"
-    return f"{what} at {_where(lengths, one, worst)}{more}{_fit(lengths, one, one.fit)}{_made(blocks, lengths, one)}"
+        more = f", and {in_row(size, trace.lengths, one.row):length} {other} at {_where(trace, one, place)}"
+    return f"{what} at {_where(trace, one, worst)}{more}{_fit(trace.lengths, one, one.fit)}{_made(trace, one)}"
 
 
-def _made(blocks: ExecutedBlocks, lengths: Lengths, one: Comparison) -> str:
+def _made(trace: Trace, one: Comparison) -> str:
     """What is made in the place of the part."""
-    sizes = Sizes(bool(lengths.units[one.row] == Units.INCH))
-    shapes = (shape_in_words(shape, lambda row: int(blocks.line_in_file[row]), sizes) for shape in one.made)
+    sizes = Sizes(bool(trace.lengths.units[one.row] == Units.INCH))
+    shapes = (shape_in_words(shape, lambda row: int(trace.blocks.line_in_file[row]), sizes) for shape in one.made)
     return "".join(f"; it makes: {shape}" for shape in shapes)
 
 
@@ -72,8 +72,8 @@ def _least(lengths: Lengths, one: Comparison, size: float) -> Quantity:
     return in_row(max(size, _LEAST[in_row(size, lengths, one.row).inch]), lengths, one.row)
 
 
-def _where(lengths: Lengths, one: Comparison, point: complex) -> str:
-    return f"{in_row(one.written(point), lengths, one.row):point}"
+def _where(trace: Trace, one: Comparison, place: complex) -> str:
+    return point(trace.axes, trace.lengths, one.written(place), one.row)
 
 
 def _fit(lengths: Lengths, one: Comparison, fit: Fit | None) -> str:

@@ -27,6 +27,7 @@ from polarcheck.checking.phrases.misplaced import x_meant as x_meant
 from polarcheck.checking.phrases.misplaced import x_of_ramp as x_of_ramp
 from polarcheck.checking.phrases.passes import crosses_line as crosses_line
 from polarcheck.checking.phrases.passes import drift as drift
+from polarcheck.checking.phrases.passes import end_of_pass as end_of_pass
 from polarcheck.checking.phrases.passes import fit_of_arc as fit_of_arc
 from polarcheck.checking.phrases.passes import forgotten_arc as forgotten_arc
 from polarcheck.checking.phrases.passes import needed_arc as needed_arc

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from polarcheck.arrays import Mask
-from polarcheck.checking.phrases.common import block_and_line, code_of, switch
-from polarcheck.checking.phrases.compensation import point, ramp_at_rest
+from polarcheck.checking.phrases.common import block_and_line, code_of, point, switch
+from polarcheck.checking.phrases.compensation import ramp_at_rest
 from polarcheck.checking.phrases.compensation import side as side
 from polarcheck.checking.quantity import in_row
 from polarcheck.columns.axes import PlaneAxes

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from polarcheck.checking.phrases.common import executed_word, move_code, written
-from polarcheck.checking.quantity import in_row
+from polarcheck.checking.phrases.common import executed_word, move_code, point, written
 from polarcheck.columns.trace import Trace
 from polarcheck.execution.run import Run
 from polarcheck.machines.machine import Machine
@@ -88,7 +87,12 @@ def crosses_line(trace: Trace, crossings: Crossings, row: int) -> str:
 
 def _point(trace: Trace, row: int, place: complex) -> str:
     """A plane point as the program writes it in a row."""
-    return f"{in_row(place + complex(trace.path.center_shift[row]), trace.lengths, row):point}"
+    return point(trace.axes, trace.lengths, place + complex(trace.path.center_shift[row]), row)
+
+
+def end_of_pass(trace: Trace, row: int) -> str:
+    """Where a pass ends, as words."""
+    return _point(trace, row, complex(trace.path.end[row]))
 
 
 def pass_difference(trace: Trace, arcs: Arcs, pass_differences: PassDifferences, row: int) -> str:

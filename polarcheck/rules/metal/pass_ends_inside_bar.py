@@ -5,7 +5,7 @@ from polarcheck.checking.rule import WARNING, Mask, PassEnds, rule
 
 @rule(
     WARNING,
-    "the pass begins outside the bar ({bar}) and ends inside it, at {path.end:point}: metal stays beyond its end",
+    "the pass begins outside the bar ({bar}) and ends inside it, at {end_of_pass}: metal stays beyond its end",
     subject="metal",
     once="section",
     follows={"compensation": ("start-up-sweeps-contour", "nearly-regular-contour", "passes-differ")},
