@@ -198,3 +198,20 @@ def test_the_mode_switched_on_again_before_the_first_cut_is_one_too_many(
     cuts = f"{between}{on}\n{behind}G1 X20. Y0 F300.\nX0 Y20.\n{off}\n"
     found = report_of(f"G94 G97\nG0 X80. C0 Z5.\n{on}\n{cuts}M30\n", machine, only=("polar",)).findings
     assert [finding.rule for finding in found] == [rule]
+
+
+@pytest.mark.parametrize(
+    ("word", "what"),
+    [
+        ("SPOS=0", "SPOS positions the spindle, which is the C axis of the mode"),
+        ("POS[C]=0", "POS[C] positions the spindle, which is the C axis of the mode"),
+        ("SETMS(3) SPOS=0", "SPOS positions another spindle"),
+        ("C0", "write Y"),
+    ],
+)
+def test_a_spindle_that_is_positioned_in_the_mode_is_no_coordinate(word: str, what: str) -> None:
+    program = HEAD.format(c="C0") + "TRANSMIT\n" + word.replace(" ", "\n") + "\nG1 X20 Y0 F300\nX0 Y20\nTRAFOOF\nM30\n"
+    (found,) = report_of(program, MACHINE, only=("wrong-axis-address-in-polar",)).findings
+    assert found.message.startswith(word.partition(") ")[2] or word)
+    assert what in found.message
+    assert "dialect" not in found.message

@@ -112,15 +112,15 @@ class ModalStates(Lookups):
         """The main spindle (on many lathes the live tool too) runs: M3, M4; not by a code listed for the live tool."""
         codes = self.machine.m_codes
         on = [word for word in codes.spindle_on if word not in codes.live_tool_on]
-        if not self._is_master.all():
-            is_main = self._is_master
+        if not self.main_is_master.all():
+            is_main = self.main_is_master
             return happened(
                 self.blocks.codes(*on) & is_main, self.blocks.codes(*codes.spindle_off) & is_main | self.blocks.starts
             )
         return self.switched(on, codes.spindle_off, "main")
 
     @cached_property
-    def _is_master(self) -> Mask:
+    def main_is_master(self) -> Mask:
         """The main spindle is that of M3, M4, M5 and S: SETMS(3) makes another one that."""
         number = self.blocks.word("@")
         if not self.machine.macro.master_spindle_word or np.isnan(number).all():

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 from polarcheck.checking.places import Place, block_in_line, squeezed
 from polarcheck.checking.quantity import in_row
 from polarcheck.columns.axes import PlaneAxes
@@ -17,6 +19,8 @@ from polarcheck.reading.words import Text
 
 #: Of what is written [characters].
 _LONGEST = 40
+#: The name before = that is read as a letter: POS[C]=0 as C.
+_NAME = re.compile(r"[A-Za-z]+(?:\[\w{1,8}\])?$")
 
 
 def short(written: str) -> str:
@@ -49,7 +53,11 @@ def word(run: Run, at: list[int]) -> str:
 def executed_word(run: Run, index: int) -> str:
     """An executed word as it is written, without blanks; `:` is O."""
     table = run.words
-    return short(squeezed(run.text.source.excerpt(int(table.start[index]), int(table.end[index]))))
+    start, source = int(table.start[index]), run.text.source
+    found = source.excerpt(start, int(table.end[index]))
+    if found.startswith("=") and (name := _NAME.search(source.excerpt(max(start - _LONGEST, 0), start))):
+        found = name[0] + found
+    return short(squeezed(found))
 
 
 def codes(run: Run, at: list[int]) -> str:

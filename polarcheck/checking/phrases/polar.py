@@ -149,23 +149,39 @@ def meaning(run: Run, machine: Machine, at: list[int]) -> str:
 
 
 def taken_by(
-    run: Run, axes: PlaneAxes, machine: Machine, job: Job, other_machine: OtherMachine, at: list[int], row: int
+    blocks: ExecutedBlocks,
+    run: Run,
+    axes: PlaneAxes,
+    modal: ModalStates,
+    mode: PolarMode,
+    machine: Machine,
+    job: Job,
+    other_machine: OtherMachine,
+    at: list[int],
+    row: int,
 ) -> str:
     """
     Which machines read the whole program well; where none does, which word beside G12.1 or controls take it.
 
-    Where somebody has chosen the machine, what to write on it.
+    Where somebody has chosen the machine, what to write on it. A word that positions the rotary axis under another name
+    (SPOS=0) is none of the plane on any control.
     """
-    mode = machine.polar
+    polar = machine.polar
+    name, equals, _ = executed_word(run, at[0]).upper().partition("=")
+    if equals and not name.startswith(polar.rotary_address):
+        is_main = modal.main_is_master[row] or "[" in name
+        turned = f"the spindle, which is the {polar.rotary_address} axis of the mode" if is_main else "another spindle"
+        what = f"{name} positions {turned}"
+        return f"; {what}: write it {outside(blocks, mode, machine, row)}"
     number, of_address = int(run.words.address[at[0]]), machine.address_number
     choosing = next(
-        (word for word, pair in mode.virtual_axis_by_word.items() if number in map(of_address, filter(None, pair))), ""
+        (word for word, pair in polar.virtual_axis_by_word.items() if number in map(of_address, filter(None, pair))), ""
     )
     if choosing:
         return f"; beside {choosing} it would be"
     if is_chosen(machine, job):
         return f"; write {axes.virtual_axis_of(row)}"
-    controls = mode.other_controls
+    controls = polar.other_controls
     return other_machine.text or (f"; {controls} would take it" if controls else "")
 
 
