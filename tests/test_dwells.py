@@ -109,7 +109,7 @@ def test_the_time_of_the_other_blocks_is_there() -> None:
     report = report_of(SECTIONS["fanuc"].format("/G4 F2."), "fanuc")
     (section,) = report.polar_sections
     assert (section.time, section.time_known, section.time_not_known) == (None, 12, ["dwell in line 4"])
-    assert any("12 s and what is not known: dwell in line 4" in line for line in resting.resting(report))
+    assert any("12 s without dwell in line 4" in line for line in resting.resting(report))
     whole = report_of(SECTIONS["fanuc"].format("/G4 X2."), "fanuc").polar_sections[0]
     assert (whole.time, whole.time_known, whole.time_not_known) == (14, msgspec.UNSET, msgspec.UNSET)
 

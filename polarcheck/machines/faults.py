@@ -38,19 +38,20 @@ def faults(name: str, check: Callable[[profiles.Profile], None]) -> list[str]:
         try:
             check(profiles.load(name, contents=copy.deepcopy(table)))
         except MachineError as error:
-            said = (str(error), *error.others)
+            messages = (str(error), *error.others)
         else:
             break
-        lines += said
-        left_out = [_leave_out(table, toml_lines.key_of(fault), fault) for fault in said if fault.startswith(of_file)]
+        lines += messages
+        of_this = [message for message in messages if message.startswith(of_file)]
+        left_out = [_leave_out(table, toml_lines.key_of(message), message) for message in of_this]
         if not any(left_out):
             break
     located = (toml_lines.located(line, where if line.startswith(of_file) else None) for line in lines[:_MOST])
     return sorted(located, key=_line_number)
 
 
-def _line_number(said: str) -> int:
-    match = re.match(r".+?\.toml:(\d+): ", said)
+def _line_number(message: str) -> int:
+    match = re.match(r".+?\.toml:(\d+): ", message)
     return int(match[1]) if match else 0
 
 
@@ -60,28 +61,28 @@ def _table(text: str, title: str) -> tuple[dict[str, Any] | None, str, list[str]
     table where one of them is unclear.
     """
     lines: list[str] = []
-    kept = text.split("\n")
+    remaining = text.split("\n")
     while len(lines) < _MOST:
         try:
-            text = "\n".join(kept)
+            text = "\n".join(remaining)
             return toml_text.parsed(text), text, lines
         except ValueError as error:
-            said = str(error)
-        lines.append(toml_lines.placed(title, said))
-        wrong = _wrong_line(kept, said)
+            message = str(error)
+        lines.append(toml_lines.placed(title, message))
+        wrong = _wrong_line(remaining, message)
         if wrong is None:
             break
-        kept[wrong] = ""
+        remaining[wrong] = ""
     return None, text, lines
 
 
-def _wrong_line(lines: list[str], said: str) -> int | None:
+def _wrong_line(lines: list[str], message: str) -> int | None:
     """The index of the line at fault, if it can be left out: that of the message, or the one before it."""
-    match = _AT_LINE.search(said)
+    match = _AT_LINE.search(message)
     if match is None:
         return None
     at = min(int(match[1]), len(lines)) - 1
-    if said.startswith(_TWICE):
+    if message.startswith(_TWICE):
         return at
     before = next((line for line in range(at - 1, -1, -1) if lines[line].strip()), at)
     for line in (at, before):
@@ -98,7 +99,7 @@ def _is_toml(line: str) -> bool:
     return True
 
 
-def _leave_out(table: dict[str, Any], key: str, said: str) -> bool:
+def _leave_out(table: dict[str, Any], key: str, message: str) -> bool:
     """
     Leave a key out of the table of a file, the element of its list that is no code, or the keys of a group that do not
     go together. Return False where nothing is left out.
@@ -114,13 +115,13 @@ def _leave_out(table: dict[str, Any], key: str, said: str) -> bool:
     if not isinstance(values, dict):
         return table.pop(group, None) is not None
     if not inner:
-        named = [name for name in values if name in re.findall(r"\w+", said)]
+        named = [name for name in values if name in re.findall(r"\w+", message)]
         for name in named:
             del values[name]
         return bool(named) or table.pop(group, None) is not None
     # A key may have points, and a value may be a table: the longest that there is.
     name = max((name for name in values if f"{inner}.".startswith(f"{name}.")), key=len, default="")
-    element = re.search(r": '(.*?)' is ", said)
+    element = re.search(r": '(.*?)' is ", message)
     listed = values.get(name)
     if element and isinstance(listed, list) and element[1] in listed:
         listed.remove(element[1])

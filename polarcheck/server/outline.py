@@ -48,8 +48,8 @@ def summary(section: PolarSection, runs: int = 1) -> str:
     rate = "rate of C not known" if section.c_feed is None else f"C {section.c_feed:.0f}{limit} deg/min{at}"
     time = "time not known" if section.time is None else f"{section.time:.1f} s"
     if section.time_not_known:
-        known = f"{section.time_known:.1f} s and what is" if section.time_known else "time"
-        time = f"{known} not known: {', '.join(section.time_not_known)}"
+        known = f"{section.time_known:.1f} s without" if section.time_known else "time not known:"
+        time = f"{known} {', '.join(section.time_not_known)}"
     channel = f"{section.channel}: " if section.channel else ""
     often = f" | the highest of {runs} runs" if runs > 1 else ""
     return f"{channel}{time} | {rate} | {_radius(section)}{often}"

@@ -46,8 +46,8 @@ def _section(section: PolarSection) -> str:
     if section.time is not None:
         facts.append(f"{section.time:.0f} s")
     elif section.time_not_known and section.c_feed is not None:
-        known = f"{section.time_known:.0f} s and " if section.time_known else ""
-        facts.append(f"{known}what is not known: {', '.join(section.time_not_known)}")
+        known = f"{section.time_known:.0f} s without" if section.time_known else "time not known:"
+        facts.append(f"{known} {', '.join(section.time_not_known)}")
     channel = f" in channel {section.channel}" if section.channel else ""
     return f"section of line {section.line}{channel}: {', '.join(fact for fact in facts if fact)}"
 
