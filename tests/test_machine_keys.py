@@ -312,6 +312,7 @@ USES = {
     "polar.infeed_word": Use("", INFEED, "gsk-988", ("2:radius=10",)),
     "polar.allowed_codes": Use(["G1", "G64"], inside("G64")),
     "polar.plane_before": Use(["G17"], before("G18")),
+    "polar.z_of_machine": Use(True, inside("G53 Z0")),
     "polar.engaged_behind": Use(True, ENGAGED_BEHIND, also={"m_codes": {"c_axis_on": ["M35"]}}),
     "polar.main_spindle_must_stop": Use(True, before("M3")),
     "arcs.tolerance": Use(1, ARC.format("I-10.1 J0")),

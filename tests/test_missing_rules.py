@@ -470,3 +470,15 @@ def test_what_the_program_sets_takes_the_place_of_the_job() -> None:
     assert rules("G54") == ["origin-off-center"]
     assert rules("G10 L2 P1 X0") == []
     assert rules("G10 L2 P1 U-.5") == []
+
+
+@pytest.mark.parametrize(
+    ("block", "expected"), [("G53 G0 Z0.", []), ("G53 Z0", []), ("G53 G0 X0. Z0.", ["origin-shifted-in-polar"])]
+)
+def test_z_of_the_machine_alone_may_stand_in_the_mode_of_a_haas(block: str, expected: list[str]) -> None:
+    head = "O1\nG20 G98 G97 T101\nM133 P1500\nM154\nG17\nG0 X3. Z.2 C0\nG112\nG1 X2.5 Y0. F20.\nZ-.1\nX2.\n"
+    text = f"{head}{block}\nG113\nG18\nM155\nM135\nM30\n"
+    rules = [finding.rule for finding in report_of(text, "haas-lathe", "1:radius=.25").findings]
+    assert [
+        rule for rule in rules if rule in ("origin-shifted-in-polar", "code-not-allowed-in-polar", "rapid-in-polar")
+    ] == expected

@@ -430,3 +430,29 @@ def test_a_variable_whose_number_is_known_by_the_job_is_no_question() -> None:
     report = report_of(program, "fanuc", "8:radius=4", job={"run": {"variables": {"500": 8}}})
     assert report.polar_sections[0].radius == pytest.approx(4.1)
     assert not [entry for entry in report.not_evaluated if entry.matters]
+
+
+@pytest.mark.parametrize(
+    ("calls", "number"),
+    [
+        ("T05.01 T00 M6", 5),
+        ("T05.01 T02.01 M6/T02/G43 Z5. H#3020", 5),
+        ("T012T000M6", 12),
+        ("T105 T012 M6", 105),
+        ("T05/T0 M6/T05/M6", 5),
+        ("T0505 M6", 5),
+        ("T0505", 5),
+    ],
+)
+def test_t_beside_m6_is_the_tool_of_an_integrex(calls: str, number: int) -> None:
+    """The first T of the block is the tool and the number of its R; the second one, and a T alone, prepare the next."""
+    assert taken(calls, "mazak-integrex", f"{number}:radius=5", head="O1\nG21 G40 G97 G94 G17\n") == (5, "command line")
+    program = f"O1\nG21 G40 G97 G94 G17\n{calls}\nG61.1\n{SECTION}M30\n".replace("/", "\n")
+    found = {finding.rule for finding in report_of(program, "mazak-integrex", f"{number}:radius=5").findings}
+    assert not found & {"word-repeated", "offset-number-missing", "unknown-code", "offset-changed-in-polar"}
+
+
+def test_three_tools_are_no_tool_change_and_a_quick_turn_has_none() -> None:
+    for machine, calls in (("mazak-integrex", "T1 T2 T3 M6"), ("mazak-quick-turn", "T0505 T0606")):
+        report = report_of(f"O1\nG21\n{calls}\nM30\n", machine)
+        assert [finding.rule for finding in report.findings] == ["word-repeated"]

@@ -102,6 +102,12 @@ def test_it_is_simulated(body: str) -> None:
     assert [entry.reason for entry in report.not_evaluated if entry.rule == "all"] == []
 
 
+@pytest.mark.parametrize("end", ["NEND M02", "/NEND X200 M30", "NEND M2 (END)"])
+def test_a_name_and_the_end_of_the_program_stand_in_one_block(end: str) -> None:
+    report = report_of(f"VC1=1\nG0 X200\nIF [VC1 EQ 1] NEND\nG0 X300\n{end}\n", "okuma-osp")
+    assert (said(report), report.not_evaluated) == ([], [])
+
+
 def test_values_of_a_call_are_calculated_before_it_and_gone_behind_it() -> None:
     assert path(run("VC1=1\nCALL OSUB LX=VC1+2\nX=VC1*20")[1]) == [(40, 8), (20, 8)]
     assert said(run("CALL OSUB LX=3\nX=LX")[0]) == [(FIRST + 1, "vacant-variable")]

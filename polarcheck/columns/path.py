@@ -109,7 +109,16 @@ class ProgrammedPath(Columns, frozen=True):
         """Moves in machine coordinates in the mode, where the profile allows them there."""
         allowed = set(numbers(self.machine.polar.allowed_codes))
         codes = [code for code in self.machine.codes("machine_coordinates") if allowed.issuperset(numbers([code]))]
-        return self.blocks.codes(*codes) & self.mode.in_polar
+        return (self.blocks.codes(*codes) & self.mode.in_polar) | self.of_machine_z
+
+    @cached_property
+    def of_machine_z(self) -> Mask:
+        """Blocks in the mode with Z alone in machine coordinates, where the profile allows them there."""
+        if not self.machine.polar.z_of_machine:
+            return self.blocks.nowhere
+        others = [word for word in (*self.machine.axis_words, *self.machine.polar.axis_addresses) if word not in "ZW"]
+        is_z = self.blocks.has("Z") & ~self.blocks.has(*others)
+        return self.blocks.listed("machine_coordinates") & self.mode.in_polar & is_z
 
     def _set_by(self, axis: str) -> Floats:
         """What G50 (G92) or G28 make the coordinate of an axis; NaN where that is not known."""

@@ -9,6 +9,7 @@ import numpy as np
 from polarcheck.arrays import Columns, Mask, Rows
 from polarcheck.columns.blocks import ExecutedBlocks
 from polarcheck.columns.filling import before, fill_down, happened
+from polarcheck.columns.tool_changes import OFFSET_COUNT, called_tools
 from polarcheck.execution.run import Run
 from polarcheck.machines.job import Job, Tool
 from polarcheck.machines.machine import Machine
@@ -34,8 +35,20 @@ class CalledTools(Columns, frozen=True):
     blocks: ExecutedBlocks
 
     @cached_property
+    def _called_at_changes(self) -> tuple[Mask, Rows] | None:
+        return called_tools(self.blocks) if self.machine.offsets.called_by == "tool-change" else None
+
+    @cached_property
+    def calls_tool(self) -> Mask:
+        """The row calls a tool: by T, or by the M6 for which T has prepared it."""
+        return self.blocks.has("T") if self._called_at_changes is None else self._called_at_changes[0]
+
+    @cached_property
     def _t(self) -> Rows:
-        """The number that the last T has, 0 before the first."""
+        """The number that the last T has, 0 before the first; where M6 calls, in the same form (tool_changes)."""
+        if self._called_at_changes is not None:
+            calls, number = self._called_at_changes
+            return fill_down(number, calls | self.blocks.starts, 0)
         written, called = self.blocks.has("T"), self.blocks.word("T")
         # A longer number calls nothing (too-many-digits), and none that a whole number could hold.
         value = np.where(np.abs(called) < _LONGEST_TOOL_NUMBER, called, 0).astype(np.int64)
@@ -61,7 +74,7 @@ class CalledTools(Columns, frozen=True):
     @cached_property
     def calls_offset(self) -> Mask:
         """A word stands in the row that calls a tool offset, be it the one in force: T, or D of a tool with edges."""
-        return self.blocks.has("T") | self.calls_edge
+        return self.calls_tool | self.calls_edge
 
     @cached_property
     def edge(self) -> Rows:
@@ -124,7 +137,7 @@ class CalledTools(Columns, frozen=True):
     @property
     def _most_plain(self) -> int:
         """How many numbers of offsets the digits of T leave room for."""
-        return int(10**self.machine.control.offset_digits)
+        return OFFSET_COUNT if self._called_at_changes else int(10**self.machine.control.offset_digits)
 
     @cached_property
     def _edges_called(self) -> Rows:
@@ -157,7 +170,7 @@ class CalledTools(Columns, frozen=True):
     def changes_tool(self) -> Mask:
         """A T word that names another tool than the one in force."""
         is_other = self.tool != before(self.tool, self.blocks.starts, 0)
-        return np.asarray(self.blocks.has("T") & is_other & (self.tool > 0))
+        return np.asarray(self.calls_tool & is_other & (self.tool > 0))
 
     def tool_name(self, tool: int) -> str:
         """The name or the number of a tool in force; empty for the one that is there before the first T."""

@@ -239,15 +239,15 @@ def needs_flow(text: Text, codes: Iterable[str]) -> bool:
 
 def block_text(text: Text, block: int) -> str:
     """
-    A block as the control would read it: comments, other text and stray characters blanked, digits for letters, points
-    for decimal commas.
+    A block as the control would read it: comments, other text, stray characters and the label before words blanked,
+    digits for letters, points for decimal commas.
     """
     start, end = int(text.blocks.start[block]), int(text.blocks.end[block])
     written = text.source.excerpt(start, end)
     strays = text.strays.start[slice(*stretch(text.strays.block, block, block + 1))].tolist()
     letters = text.letters[slice(*stretch(text.letters, start, end))].tolist()
     spans: list[tuple[int, int]] = []
-    for table in (text.comments, text.prose):
+    for table in (text.comments, text.prose, text.labels):
         chosen = slice(*stretch(table.block, block, block + 1))
         spans += zip(table.start[chosen].tolist(), table.end[chosen].tolist(), strict=True)
     if not (strays or letters or spans):

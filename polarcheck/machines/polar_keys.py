@@ -60,6 +60,7 @@ class Polar(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     infeed_word: address beside G12.1 of the infeed of a cycle that goes round the contour; empty without such a cycle
     allowed_codes: G codes that can be used in the mode, no others
     plane_before: planes of which one must be selected before G12.1 or right behind it; none where it does not matter
+    z_of_machine: a block of machine coordinates (G53) with Z alone may stand in the mode
     engaged_behind: the C axis may be engaged behind G12.1, before the first move there
     main_spindle_must_stop: whether a main spindle that turns at G12.1 is a fault
     """
@@ -98,6 +99,7 @@ class Polar(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     infeed_word: AddressOrNone
     allowed_codes: list[str]
     plane_before: list[str]
+    z_of_machine: bool = False
     engaged_behind: bool = False
     main_spindle_must_stop: bool
 

@@ -57,7 +57,7 @@ class ModeWords(Columns, frozen=True):
         allowed = code_set(trace.machine.polar.allowed_codes)
         found = np.zeros(len(trace.run.words), bool)
         found[trace.blocks.g_words] = ~allowed[trace.blocks.g_codes] & (trace.blocks.g_codes != NO_CODE)
-        return found & self.in_rows(trace.mode.in_polar)
+        return found & self.in_rows(trace.mode.in_polar & ~trace.path.of_machine_z)
 
     @cached_property
     def ends_drilling(self) -> Mask:

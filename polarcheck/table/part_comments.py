@@ -188,7 +188,7 @@ class PartComments(Columns, frozen=True):
     def _tool_call(self) -> Rows:
         """The row that called the tool in force; the first of the program before any call."""
         trace = self.trace
-        calls = trace.blocks.has("T") & (trace.tools.tool > 0) | trace.blocks.starts
+        calls = trace.tools.calls_tool & (trace.tools.tool > 0) | trace.blocks.starts
         return np.maximum(last_row(calls, trace.blocks.starts), 0)
 
     # ---- shapes and sizes ----

@@ -35,7 +35,7 @@ class ToolComments(Columns, frozen=True):
     @cached_property
     def _beside(self) -> tuple[Rows, Rows]:
         comment, named = np.full(len(self.run), -1, np.int64), np.full(len(self.run), -1, np.int64)
-        calls = np.flatnonzero(self.blocks.has("T") & (self.tools.tool > 0) & ~self.run.unknown)
+        calls = np.flatnonzero(self.tools.calls_tool & (self.tools.tool > 0) & ~self.run.unknown)
         if not len(calls) or not len(self.text.comments):
             return comment, named
         of_block = self._comments_of_block(self.run.block[calls])

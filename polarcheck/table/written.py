@@ -24,6 +24,8 @@ _ADDRESS_BITS[65:123] = np.uint64(1) << np.arange(58, dtype=np.uint64)
 _ADDRESS_BITS[list(b"GMN")] = 0
 #: In macro calls, argument specification II.
 _ARGUMENT_SETS = b"IJK"
+#: Tools in the block of a tool change: the one it changes to, and the next one.
+_TOOLS_OF_CHANGE = 2
 #: A fault that occurs more often than this is a habit of a post or an author, and is reported once.
 _HABIT = 5
 #: Groups whose codes have other meanings on lathes with two turrets, or take arguments.
@@ -186,10 +188,20 @@ class Written:
         suspects = self._suspects(np.arange(len(words)), _ADDRESS_BITS[words.address])
         calls = words.block[self._g_words[code_set(self.machine.macro.macro_call_codes)[self._g_codes]]]
         is_argument = np.isin(words.address[suspects], list(_ARGUMENT_SETS)) & np.isin(words.block[suspects], calls)
-        suspects = suspects[~is_argument]
+        suspects = suspects[~(is_argument | self._is_next_tool(suspects))]
         again = np.sort(self._again(suspects, words.address[suspects])[0])
         first = again[np.append(True, words.block[again][1:] != words.block[again][:-1])[: len(again)]]
         return self._habits(first, words.address[first])
+
+    def _is_next_tool(self, index: Rows) -> Mask:
+        """T of a tool change in whose block the next tool stands, too."""
+        if self.machine.offsets.called_by != "tool-change":
+            return np.zeros(len(index), bool)
+        words, m = self.words, np.flatnonzero(self.words.address == ord("M"))
+        changes = words.block[m[code_set(self.machine.m_codes.tool_change)[code_numbers(words.value[m])]]]
+        t = words.block[words.address == ord("T")]
+        changes = changes[np.bincount(t, minlength=len(self.text.blocks))[changes] == _TOOLS_OF_CHANGE]
+        return np.asarray((words.address[index] == ord("T")) & np.isin(words.block[index], changes))
 
     # ---- G codes ----
 
