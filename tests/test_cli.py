@@ -244,7 +244,7 @@ def test_a_reader_who_goes_away_changes_no_exit_code() -> None:
         (
             ["--set", "severities.rapid=off"],
             "--set: severities.rapid: unknown rule 'rapid'; did you mean "
-            "rapid-plunge-into-stock, rapid-through-part or rapid-through-stock?",
+            "rapid-along-contour, rapid-plunge-into-stock or rapid-through-part?",
         ),
         (["--machine", "haas"], "unknown machine 'haas'; did you mean haas-lathe?"),
         (["--subprograms", "gone"], "'gone' does not exist"),
@@ -285,7 +285,7 @@ def test_what_means_nothing_is_named_in_one_line(arguments: list[str], told: str
         (
             "select = ['rapid']\n",
             "polarcheck.toml:1: select: unknown rule 'rapid'; did you mean "
-            "rapid-plunge-into-stock, rapid-through-part or rapid-through-stock?",
+            "rapid-along-contour, rapid-plunge-into-stock or rapid-through-part?",
         ),
         ("tools = 3\n", "polarcheck.toml:1: tools: expected a table, found 3"),
         ("[tools.-1]\nradius = 4\n", "tools.-1: expected the number of a tool offset, 8 for T0808, found -1"),

@@ -474,7 +474,8 @@ def test_what_z_does_beside_x_hangs_on_the_lathe(
     name: str, units: str, axis: str, severity: str, said_of_z: str
 ) -> None:
     polar = machine_of(name).polar
-    program = f"{units}G98 G0 X2.4 Z.1 C0\n{polar.on[0]}\nG1 X1.5 {axis}.4 Z-.5 F40.\nX2.4\n{polar.off[0]}\n"
+    side = "G41 " if polar.other_axes == "together" else ""
+    program = f"{units}G98 G0 X2.4 Z.1 C0\n{polar.on[0]}\nG1 {side}X1.5 {axis}.4 Z-.5 F40.\nX2.4\n{polar.off[0]}\n"
     (found,) = [one for one in report_of(program, name).findings if one.rule == "z-with-plane-axis"]
     assert found.severity == severity
     assert said_of_z in found.message

@@ -42,8 +42,8 @@ SYSTEM_B = {"control": {"g_code_system": "B"}}
 JUDGED = [
     Judged("polar-gen-g12poly-hex-s27-r05-climb.nc", "fanuc", ("1:radius=0",), []),
     Judged("polar-gen-g12poly-hex-s27-r05-conv.nc", "fanuc", ("1:radius=0",), []),
-    Judged("polar-nx-nl1500y-full.nc", "fanuc", (), [(170, "warning", "z-with-plane-axis")]),
-    Judged("polar-nx-nl1500y-full-raw.nc", "fanuc", (), [(176, "warning", "z-with-plane-axis")]),
+    Judged("polar-nx-nl1500y-full.nc", "fanuc", (), []),
+    Judged("polar-nx-nl1500y-full-raw.nc", "fanuc", (), []),
     Judged("polar-seed-gsk-o0001-single.nc", "gsk-988", ("2:radius=6",), []),
     Judged("polar-seed-gsk-o0001-single.nc", "gsk-988", R10, []),
     Judged("polar-seed-gsk-o0002-cycle-e8.nc", "gsk-988", R10, []),

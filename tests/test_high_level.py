@@ -114,8 +114,6 @@ NAMED = {
     "CT X1": "CT",
     "ASPLINE X1": "ASPLINE",
     "KONT": "KONT",
-    "CFC": "CFC",
-    "CFIN": "CFIN",
     "DISC=50": "DISC=",
     "TRANSMIT(2) / TRAFOOF": "TRANSMIT(2)",
     "TRACYL(40)": "TRACYL",

@@ -90,7 +90,6 @@ OKUMA_FAULTS = {
     "no offset": ("T010101", "T000100", 18, "offset-number-missing"),
     "no offset with R": ("T010101", "T000101", 18, "offset-number-missing"),
     "surface speed": ("G97 G94", "G96 S100 G94", 14, "modal-state-wrong-at-entry"),
-    "C not known": ("X120. C0 Z5.", "X120. Z5.\nM1", 15, "c-angle-unknown-at-entry"),
     "start-up too short": ("G101 G42", "G101 X28. Y0\nG101 G42", 19, "start-up-shorter-than-radius"),
     "T in the mode": ("G101 X-25.", "T020202\nG101 X-25.", 21, "offset-changed-in-polar"),
     "zero shift in the mode": ("G101 X-25.", "G50 X100.\nG101 X-25.", 21, "origin-shifted-in-polar"),

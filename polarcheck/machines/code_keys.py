@@ -11,8 +11,8 @@ from polarcheck.machines.macro_keys import CODE_LISTS
 
 #: By the table, as in each of the mappings: lists of G codes, in which `G54-G59` is a range.
 RANGES: Final[Mapping[str, tuple[str, ...]]] = {
-    "control": ("known_codes",),
-    "polar": ("allowed_codes", "off_of_other_modes", "contours_outside"),
+    "control": ("known_codes", "units_of_lengths_alone"),
+    "polar": ("allowed_codes", "off_of_other_modes", "contours_outside", "planes_not_simulated"),
     "g_codes": GCodes.__struct_fields__,
     "g_code_system_a": GCodeSystem.__struct_fields__,
     "g_code_system_b": GCodeSystem.__struct_fields__,

@@ -121,7 +121,7 @@ def _leave_out(table: dict[str, Any], key: str, message: str) -> bool:
         return bool(named) or table.pop(group, None) is not None
     # A key may have points, and a value may be a table: the longest that there is.
     name = max((name for name in values if f"{inner}.".startswith(f"{name}.")), key=len, default="")
-    element = re.search(r": '(.*?)' is ", message)
+    element = re.search(r": '([^']*+)' is ", message)
     listed = values.get(name)
     if element and isinstance(listed, list) and element[1] in listed:
         listed.remove(element[1])

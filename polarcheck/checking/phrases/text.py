@@ -35,7 +35,7 @@ _SIGN_LENGTH = 40
 #: Of a text so much is looked at for its first words [characters].
 _LOOKED_AT = 200
 #: Digits on either side of a decimal comma, and most of them that are named.
-_LAST_DIGITS, _FIRST_DIGITS = re.compile(r"[0-9]+\Z"), re.compile(r"[0-9]+")
+_LAST_DIGITS, _FIRST_DIGITS = re.compile(r"(?<![0-9])[0-9]++\Z"), re.compile(r"[0-9]++")
 _DIGITS = 12
 _LINES_AND_BLANKS = " \t-|=:*#"
 _TAG = re.compile(r"</?\w[^<>\n]*+>")

@@ -57,6 +57,5 @@ def polar_switch_unknown(switch_slips: SwitchSlips) -> Hits:
         X60.
         G13.1
     """
-    # Compares nothing: what a code is meant for shows in the blocks behind it, which the table looks at.
     certain, begins = switch_slips.is_certain, switch_slips.begins
     return graded(error=certain, warning=begins & ~certain, at=switch_slips.words)
