@@ -63,7 +63,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         share = item.get_closest_marker("one_in")
         if cases[test] % (share.args[0] if share else SHARE if everything and count[test] > MANY_CASES else 1):
             item.add_marker("slow")
-            item.add_marker("left_out")
+            item.add_marker("uncounted")
         cases[test] += 1
 
 
@@ -76,9 +76,9 @@ def pytest_cmdline_main(config: pytest.Config) -> None:
 
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_call(item: pytest.Item) -> Generator[None, Any, Any]:
-    """Cases that the default run leaves out do not count for the coverage: measuring doubles the time of a test."""
+    """Cases that the default run leaves out, and long searches, do not count: measuring doubles the time of a test."""
     tracer = sys.gettrace()
-    if item.get_closest_marker("left_out"):
+    if item.get_closest_marker("uncounted"):
         sys.settrace(None)
     try:
         return (yield)

@@ -22,6 +22,7 @@ from polarcheck.checking.examples import Example
 from polarcheck.checking.rule import Rule, find, load_all
 from polarcheck.checking.tables import Tables
 from polarcheck.columns.trace import Trace
+from polarcheck.execution import user_task as _user_task  # noqa: F401  # late else, by a test that does not count
 from polarcheck.finding import FileReport
 from polarcheck.machines import profiles
 from polarcheck.machines.job import Job, from_table, with_tool

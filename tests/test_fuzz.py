@@ -31,6 +31,7 @@ more = settings(max_examples=100, deadline=None, suppress_health_check=list(Heal
 
 
 @pytest.mark.slow
+@pytest.mark.uncounted
 @given(strategies.sound_programs(), strategies.setups)
 @few
 def test_programs_that_look_sound(data: bytes, setup: int) -> None:
@@ -46,6 +47,7 @@ def test_wild_programs(data: bytes, setup: int) -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.uncounted
 @given(strategies.worse_programs(), strategies.setups)
 @few
 def test_mutated_programs(data: bytes, setup: int) -> None:
@@ -71,6 +73,7 @@ def test_the_reader(data: bytes, setup: int) -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.uncounted
 @given(strategies.statements(), strategies.setups)
 @more
 def test_macro_statements(data: bytes, setup: int) -> None:

@@ -225,6 +225,7 @@ def test_what_is_not_simulated_is_told_by_its_name(blocks: str) -> None:
     assert executed(f"{blocks} / M30")[-1] == "M30"
 
 
+@pytest.mark.one_in(1)
 @pytest.mark.parametrize("blocks", HARMLESS)
 @pytest.mark.parametrize("machine", [OWN, ISO])
 def test_what_has_no_bearing_is_silent(blocks: str, machine: str) -> None:

@@ -30,7 +30,7 @@ from polarcheck.reading import language_blocks, languages, surroundings, transla
 from polarcheck.reading.globs import Globs
 from polarcheck.reading.source import read_source
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.uncounted]
 
 #: What a stranger's job file may hold.
 GLOBS = ["O12*.nc", "*a*a*a*b", "lathe7/**/x?/**/*.nc", "[a-z]*[!0-9]", "**/a*b*/**", "??*??", "[[[*"]

@@ -410,7 +410,7 @@ class Clock:
         return 0.0 if self.looks <= self.last else 1e9
 
 
-@pytest.mark.one_in(5)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize("side", ["", "G42 "])
 @pytest.mark.parametrize(
     "words",

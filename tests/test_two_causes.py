@@ -35,6 +35,7 @@ def test_one_slip_is_one_finding(slip: Slip) -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.uncounted
 def test_two_slips_are_two_findings() -> None:
     found = [gives_two_findings(numbered) for numbered in enumerate(pairs(DRAWN, 40, 1))]
     known = [one for one in found if one is not None]

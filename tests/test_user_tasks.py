@@ -94,6 +94,7 @@ SIMULATED = {
 }
 
 
+@pytest.mark.one_in(1)
 @pytest.mark.parametrize("body", SIMULATED)
 def test_it_is_simulated(body: str) -> None:
     report, trace = run(body)

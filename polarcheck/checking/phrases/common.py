@@ -20,7 +20,7 @@ from polarcheck.reading.words import Text
 #: Of what is written [characters].
 _LONGEST = 40
 #: The name before = that is read as a letter: POS[C]=0 as C.
-_NAME = re.compile(r"[A-Za-z]+(?:\[\w{1,8}\])?$")
+_NAME = re.compile(r"(?<![A-Za-z])[A-Za-z]++(?:\[\w{1,8}\])?\Z")
 
 
 def short(written: str) -> str:

@@ -9,7 +9,9 @@ from polarcheck.checking.rule import ERROR, Arcs, Mask, ProgrammedPath, rule
     "arc without {machine.arcs.radius_word}, {centers}{more_arcs}",
     at=("arc_clockwise", "arc_counterclockwise", "X", "U", "C", "H"),
     once="motion",
+    subject="",
     doubts=END_IN_DOUBT,
+    follows={"block": ("arc-off-polar-plane",)},
 )
 def arc_without_center(path: ProgrammedPath, arcs: Arcs) -> Mask:
     """
