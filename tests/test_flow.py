@@ -11,6 +11,9 @@ import numpy as np
 import pytest
 from programs import report_of, said, tables_of, trace_of
 
+#: The coverage counts all of its cases: each is a way of its own through the package.
+pytestmark = pytest.mark.one_in(1)
+
 CUTTER = "1:radius=4"
 HEAD = """O0001
 T0101

@@ -9,6 +9,9 @@ from programs import moves_of, report_of, said
 
 from polarcheck.finding import FileReport
 
+#: The coverage counts all of its cases: each is a way of its own through the package.
+pytestmark = pytest.mark.one_in(1)
+
 ENTRY = "O1 T0808\nG98 G0 X60. C0\nG12.1\n"
 
 

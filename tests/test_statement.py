@@ -14,6 +14,9 @@ from polarcheck.execution.expression import Fault, decide
 from polarcheck.execution.macro import assign, word_value
 from polarcheck.execution.statement import Kind, Number, Statement
 
+#: The coverage counts all of its cases: each is a way of its own through the package.
+pytestmark = pytest.mark.one_in(1)
+
 
 def parts(block: str, statement: Statement) -> dict[str, Any]:
     """The parts of a statement, each as the characters that it points at."""

@@ -27,13 +27,16 @@ def check_codes(machine: Machine, origins: Mapping[str, Origin], chain: Sequence
             raise MachineError(first, filter(None, others))
 
 
-def _no_codes(machine: Machine, origins: Mapping[str, Origin], _: Sequence[str]) -> Iterator[str]:
+def _no_codes(machine: Machine, origins: Mapping[str, Origin], chain: Sequence[str]) -> Iterator[str]:
+    """A list that is sound in its profile has a word that is no code any more since a nearer file changes its lists."""
     for lists, is_one in _FORMS:
         for table, keys in lists.items():
             for key in keys:
                 for code in getattr(getattr(machine, table), key):
                     if isinstance(code, str) and not is_one(code):
-                        yield f"{origins[f'{table}.{key}'].profile}: {table}.{key}: {code!r} is no code"
+                        profile = origins[f"{table}.{key}"].profile
+                        of = "" if profile == chain[0] else f" of {profile}"
+                        yield f"{chain[0] if of else profile}: {table}.{key}{of}: {code!r} is no code"
 
 
 def _wrong_in_alarm_codes(machine: Machine, origins: Mapping[str, Origin], _: Sequence[str]) -> Iterator[str]:
