@@ -35,7 +35,7 @@ def _no_codes(machine: Machine, origins: Mapping[str, Origin], chain: Sequence[s
                 for code in getattr(getattr(machine, table), key):
                     if isinstance(code, str) and not is_one(code):
                         profile = origins[f"{table}.{key}"].profile
-                        of = "" if profile == chain[0] else f" of {profile}"
+                        of = f" of {profile}" if profile in chain[1:] else ""
                         yield f"{chain[0] if of else profile}: {table}.{key}{of}: {code!r} is no code"
 
 
