@@ -7,12 +7,11 @@ from typing import Any
 
 import msgspec
 
-from polarcheck.finding import SILENCED_BY, Report, Severity
+from polarcheck.finding import SCHEMA, SILENCED_BY, VERDICTS, Report, Severity
 from polarcheck.machines.job import Job
 from polarcheck.machines.machine import Machine, meanings
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
-VERDICTS = ("pass", "fail", "unverified")
 
 Schema = dict[str, Any]
 
@@ -20,7 +19,8 @@ Schema = dict[str, Any]
 def schema(name: str) -> Schema:
     """Return the schema of `report`, `job`, `machine` or `feeds`."""
     content = {"report": _report, "job": _job, "machine": _machine, "feeds": _feeds}[name]()
-    return {"$schema": DIALECT, "$id": f"urn:polarcheck:{name}:1", **content}
+    number = SCHEMA if name == "report" else 1
+    return {"$schema": DIALECT, "$id": f"urn:polarcheck:{name}:{number}", **content}
 
 
 def text(name: str) -> str:
@@ -36,7 +36,7 @@ def _report() -> Schema:
     definitions["Silenced"]["properties"]["by"] = {"enum": list(SILENCED_BY)}
     definitions["FileReport"]["properties"]["verdict"] = {"enum": list(VERDICTS)}
     del definitions["FileReport"]["properties"]["makes"]
-    definitions["Report"]["properties"]["schema"] = {"const": 1}
+    definitions["Report"]["properties"]["schema"] = {"const": SCHEMA}
     return content
 
 
