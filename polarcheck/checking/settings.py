@@ -30,7 +30,9 @@ class Settings(msgspec.Struct, frozen=True):
     strict: an unverified file fails, too.
     encoding: of the program; None to detect it.
     inline: allow comments of the program are respected.
+    deselected: lines on what keeps rules of weight from running.
     decided: what of this the user has written, for reports.
+    differs: the files of the run have different settings, so that its report says what decided for each.
     profile_sha256: of the machine.
     extras: module-level functions, since other processes import them by name; called in this order.
     """
@@ -45,6 +47,8 @@ class Settings(msgspec.Struct, frozen=True):
     strict: bool = False
     encoding: str | None = None
     inline: bool = True
+    deselected: Sequence[str] = ()
     decided: Decided = Decided()
+    differs: bool = False
     profile_sha256: str = ""
     extras: Sequence[Extra] = ()

@@ -19,7 +19,7 @@ from polarcheck.commands import (
     watching,
 )
 from polarcheck.commands.diff_base import diff_base, narrowed
-from polarcheck.commands.exit_codes import COULD_NOT_RUN
+from polarcheck.commands.exit_codes import COULD_NOT_RUN, FINDINGS
 from polarcheck.commands.options import option
 from polarcheck.commands.output import COLUMNS, columns, draws_dots, in_color, say, warn
 from polarcheck.reports import formats
@@ -103,6 +103,7 @@ def check(ctx: click.Context, /, paths: tuple[str, ...], watch: bool, **argument
     is reported.
     """
     fields = {name: arguments.pop(name) for name in _Arguments._fields if name in arguments}
+    arguments["named"] = options.variables(ctx)
     chosen = _Arguments(**fields, paths=paths, command=_command(ctx), debug=options.DEBUG in ctx.meta, more=arguments)
     run = partial(_check, chosen)
     if watch:
@@ -173,6 +174,7 @@ def _quoted(value: object) -> str:
 
 def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
     from polarcheck import reports
+    from polarcheck.batch import decisions
     from polarcheck.batch import tasks as batch
     from polarcheck.checking import rule
     from polarcheck.commands import live, overwriting, progress, signals
@@ -204,6 +206,7 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
         arguments.outputs, arguments.form == picturing.FORMAT, tasks, "-o html:"
     )
     overwriting.refuse(written, tasks)
+    run_settings, tasks = decisions.shared(tasks, arguments.diff_base)
     tasks = narrowed(tasks, arguments.diff_base, arguments.max_size, not arguments.quiet)
     is_colored = in_color(arguments.color)
     shown_in = fixing.Shown(arguments.quiet, is_colored, arguments.debug, bool(arguments.outputs))
@@ -247,8 +250,12 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
     report = batch.report(
         checked.files,
         applies.machine or (tasks[0].settings.name if tasks else profiles.DEFAULT),
+        settings=run_settings,
         interrupted=batch.interrupted(reason, checked.files, tasks) if reason else None,
     )
+    for excess in decisions.too_many_warnings(report.files, tasks):
+        say(excess)
+        status = max(status, FINDINGS)
     if checked.stopped is None and arguments.diff_base is None:
         running.warn_unused(applies.tools, checked.called)
         running.warn_without_part(applies.tolerance, tasks)

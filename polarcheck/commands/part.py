@@ -60,7 +60,11 @@ def _part(
 
     keep_within_memory()
     applies = Options(
-        use_config=not no_config, select=(_RULE, *READ_OTHERWISE), extras=(part_of, compared_in), **arguments
+        use_config=not no_config,
+        select=(_RULE, *READ_OTHERWISE),
+        gives_verdicts=False,
+        extras=(part_of, compared_in),
+        **arguments,
     )
     faults = running.Faults(debug)
     tasks = running.planned(paths, OfPrograms(applies), extensions, faults)
@@ -73,8 +77,6 @@ def _part(
         running.warn_unused(applies.tools, checked.called)
         running.warn_without_part(applies.tolerance, tasks)
     show(
-        (
-            part_lines.json(list(checked.files)) if form == "json" else part_lines.text(list(checked.files), columns())
-        ).encode()
+        (part_lines.json(checked.readable) if form == "json" else part_lines.text(checked.readable, columns())).encode()
     )
     return status
