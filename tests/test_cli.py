@@ -398,6 +398,8 @@ def test_folders_files_and_standard_input_are_checked_in_order_and_once() -> Non
         "pass": 2,
         "unverified": 0,
         "fail": 2,
+        "not_read": [],
+        "excluded": 0,
     }
 
 

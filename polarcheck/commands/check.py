@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import partial
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
@@ -14,6 +14,7 @@ from polarcheck.commands import (
     picturing,
     reporting,
     running,
+    show_files,
     silencing,
     standard_input,
     watching,
@@ -21,17 +22,33 @@ from polarcheck.commands import (
 from polarcheck.commands.diff_base import diff_base, narrowed
 from polarcheck.commands.exit_codes import COULD_NOT_RUN
 from polarcheck.commands.options import option
-from polarcheck.commands.output import COLUMNS, columns, draws_dots, in_color, say, warn
+from polarcheck.commands.output import COLUMNS, columns, draws_dots, in_color, say, show, warn
 from polarcheck.reports import formats
+
+if TYPE_CHECKING:
+    from polarcheck.reading.walking import Skipped
 
 #: With more files than this the default format is short.
 _LONG = 3
 #: Options that change the look or the destination of a report, the workers or the set of files, but no finding.
 _OF_OUTPUT = (
-    *("stdin_filename", "form", "outputs", "color", "quiet", "following", "silenced", "statistics", "shown_too"),
-    *("diff_base", "workers", "cluster", "watch", *fixing.NAMES),
+    *(
+        "stdin_filename",
+        "form",
+        "outputs",
+        "color",
+        "quiet",
+        "following",
+        "silenced",
+        "statistics",
+        "shown_too",
+        "lists_files",
+    ),
+    *("exclude", "diff_base", "workers", "cluster", "watch", *fixing.NAMES),
 )
 _FORMATS = formats()
+#: The formats that count what the walks did not read; for others standard error does.
+_WITH_SUMMARY = ("text", "short", "github", "json", "jsonl")
 
 
 def _outputs(ctx: click.Context, parameter: click.Parameter, values: tuple[str, ...]) -> list[tuple[str, Path]]:
@@ -72,6 +89,7 @@ def _outputs(ctx: click.Context, parameter: click.Parameter, values: tuple[str, 
 @diff_base
 @options.force_exclude
 @options.extensions
+@options.exclude
 @options.max_size
 @standard_input.filename
 @options.jobs
@@ -82,6 +100,7 @@ def _outputs(ctx: click.Context, parameter: click.Parameter, values: tuple[str, 
 @silencing.show_silenced
 @option("--part", "part", is_flag=True, help="In text, JSON and pages, what the program makes, too.")
 @reporting.paths
+@show_files.show_files
 @option("-q", "--quiet", is_flag=True, help="Findings only.")
 @fixing.wanted
 @options.debug
@@ -141,6 +160,7 @@ class _Arguments(NamedTuple):
     silenced: bool
     statistics: bool
     part: bool
+    lists_files: bool
     shown_too: str | None
     fixes: fixing.Wanted
     diff_base: str | None
@@ -181,6 +201,9 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
 
     keep_within_memory()
     reporting.refuse(arguments.form, arguments.statistics)
+    if arguments.lists_files:
+        needing = {"-o": arguments.outputs, "--fix": arguments.fixes.fix, "--diff": arguments.fixes.diff}
+        show_files.refuse(arguments.form, {**needing, "--watch": seen is not None})
     wants_pictures = picturing.FORMAT in (arguments.form, *(form for form, _ in arguments.outputs))
     extras = reporting.extras(arguments.shown_too, arguments.form, arguments.outputs)
     extras += picturing.extras() if wants_pictures else ()
@@ -191,6 +214,7 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
         extras = (*extras, part_of, compared_in)
     applies = settings.Options(use_config=not arguments.no_config, extras=extras, **arguments.more)
     faults = running.Faults(arguments.debug)
+    skipped: list[Skipped] = []
     tasks = running.planned(
         arguments.paths,
         settings.OfPrograms(applies),
@@ -198,12 +222,16 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
         faults,
         force_exclude=arguments.force_exclude,
         named=standard_input.judged_as(arguments.paths, arguments.stdin_filename),
+        skipped=skipped,
     )
     pictures, outputs, written = picturing.of_outputs(
         arguments.outputs, arguments.form == picturing.FORMAT, tasks, "-o html:"
     )
     overwriting.refuse(written, tasks)
     tasks = narrowed(tasks, arguments.diff_base, arguments.max_size, not arguments.quiet)
+    if arguments.lists_files:
+        show(show_files.text(arguments.form or "text", tasks, skipped).encode())
+        return faults.report()
     is_colored = in_color(arguments.color)
     shown_in = fixing.Shown(arguments.quiet, is_colored, arguments.debug, bool(arguments.outputs))
     baseline = None if applies.baseline is None else silencing.Known(applies.baseline, arguments.paths)
@@ -238,8 +266,9 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
     runner = running.Runner(arguments.max_size, arguments.workers, arguments.cluster, seen)
     pictures.begin(plain)
     checked = runner.check(tasks, bar, faults, baseline, live_report.file, pictures.split)
-    pictures.end()
-    report = batch.report(checked.files, applies.machine or (tasks[0].settings.name if tasks else profiles.DEFAULT))
+    machine = applies.machine or (tasks[0].settings.name if tasks else profiles.DEFAULT)
+    report = batch.report(checked.files, machine, skipped)
+    pictures.end(reporting.unread(report.summary))
     status = max(int(checked.failed), fixed.status, faults.report())
     failures += [*faults.failures, *faults.bugs]
     if checked.stopped is not None:
@@ -253,6 +282,9 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
         say(str(error))
         status = max(status, COULD_NOT_RUN)
     live_report.end(report, checked.lines)
+    if form not in _WITH_SUMMARY and not arguments.quiet:
+        for line in reporting.unread(report.summary):
+            warn(line)
     if form == "concise" and not arguments.quiet and any(file.verdict == "unverified" for file in report.files):
         warn("some rules could not be evaluated; --format text says which, and what to give")
     return status

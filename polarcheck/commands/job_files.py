@@ -96,6 +96,11 @@ class JobFile(msgspec.Struct, frozen=True):
         """Return the layer that sets `exclude`."""
         return next((part.values for part in reversed(self.parts) if part.exclude is not None), None)
 
+    @property
+    def naming_extensions(self) -> Layer | None:
+        """Return the layer that sets `extensions`."""
+        return next((part.values for part in reversed(self.parts) if "extensions" in part.values.keys), None)
+
     def patterns(self, layer: Layer) -> list[str]:
         """Return the patterns of an entry."""
         return [pattern for part in self.parts for entry, pattern in part.patterns if entry is layer]

@@ -88,6 +88,11 @@ class Layer:
         """Return the patterns of `exclude`."""
         return list(self._table.get("exclude", ()))
 
+    @property
+    def extensions(self) -> list[str]:
+        """Return the endings of `extensions`."""
+        return list(self._table.get("extensions", ()))
+
     def at(self, key: str) -> str:
         """Return the place of a key of this layer: `polarcheck.toml:12`."""
         return self.written.at(f"programs.{self.entry}.{key}" if self.entry else key)

@@ -310,7 +310,12 @@ def summary(report: Report, fixed: int = 0) -> str:
     facts = [severities({"error": total.errors, "warning": total.warnings, "note": total.notes})]
     facts += [f"{total.silenced} silenced"] if total.silenced else []
     facts += [f"{fixed} fixed"] if fixed else []
-    return f"{counted(len(report.files), 'file')} checked for {machine}{verdicts}; {', '.join(facts)}"
+    parts = [f"{counted(len(report.files), 'file')} checked for {machine}{verdicts}", ", ".join(facts)]
+    if total.not_read or total.excluded:
+        from polarcheck.reports.pages.unread import unread
+
+        parts += unread(total)
+    return "; ".join(parts)
 
 
 def severities(number: Mapping[str, int]) -> str:
