@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import enum
 from collections.abc import Mapping, Sequence
-from typing import Any
 
 import msgspec
 from msgspec import UNSET, UnsetType
@@ -64,7 +63,7 @@ class Finding(msgspec.Struct, frozen=True, kw_only=True):
     program: number or name of its program, as O0001.
     section_line: line of the G12.1 that begins its polar section.
     alarm: the alarm that this control shows; null if none is known.
-    values: the numbers of the message by fixed names, in fixed units.
+    values: its numbers by fixed names in fixed units, and the codes, words and names at fault (docs/values.md).
     count: how many executed blocks or words it stands for.
     source: page of the manual.
     fingerprint: recognises the finding after other blocks have changed.
@@ -84,7 +83,7 @@ class Finding(msgspec.Struct, frozen=True, kw_only=True):
     program: str | None = None
     section_line: int | None = None
     alarm: str | None = None
-    values: dict[str, Any] = {}
+    values: dict[str, int | float | str] = {}
     count: int = 1
     source: str = ""
     fingerprint: str = ""
