@@ -23,6 +23,7 @@ ORDER = (
     ("reports",),
     ("pictures",),
     ("batch",),
+    ("settings",),
     ("fixes",),
     ("rules",),
     ("parts", "feed_table"),
