@@ -8,12 +8,15 @@ from typing import Any
 
 import msgspec
 
-from polarcheck.certification.manifest import PLACE, Case, Manifest
+from polarcheck.certification.manifest import PLACE, Case, Conditions, Manifest
 from polarcheck.checking.rule import load_all
 from polarcheck.errors import CertificateError, suggestion
 from polarcheck.machines import toml_lines, toml_text
 from polarcheck.machines.fitting import MisfitError, fitted, listed, shown
 from polarcheck.reading import files
+
+#: How far a path may be from another one unless the manifest says so [mm]: ten least increments.
+_TOLERANCE = 0.01
 
 
 class Loaded(msgspec.Struct, frozen=True):
@@ -40,6 +43,18 @@ class Loaded(msgspec.Struct, frozen=True):
     def beside(self, written: str) -> Path:
         """Return the path of a file that the manifest names; backslashes count as slashes, too."""
         return _beside(self.path, written)
+
+    def tolerance(self, case: Case) -> float:
+        """Return the tolerance of paths of a case [mm]."""
+        given = (of.tolerance for of in self._nearest(case))
+        return next((tolerance for tolerance in given if tolerance is not None), _TOLERANCE)
+
+    def path_of(self, case: Case) -> str:
+        """Return which path of a case is compared: tool or programmed."""
+        return next((of.path for of in self._nearest(case) if of.path is not None), "tool")
+
+    def _nearest(self, case: Case) -> tuple[Conditions, ...]:
+        return case, self.manifest.controls[case.control], self.manifest
 
 
 def load(path: Path) -> Loaded:

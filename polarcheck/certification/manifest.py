@@ -63,13 +63,20 @@ class Conditions(OfPrograms, frozen=True, kw_only=True):
     config: a job file that applies below these values.
     part: what the programs must make.
     tolerance: how far a path may be from its golden trace, or from the path of another case [mm].
+    path: which path is compared: that of the tool center, or the programmed one.
     """
 
     config: Annotated[str, msgspec.Meta(description="job file whose values apply where none are given here")] | None = (
         None
     )
-    part: Annotated[list[Part], msgspec.Meta(description="what the programs must make, as in polarcheck.toml")] = []
+    part: Annotated[list[Part], msgspec.Meta(description="what the programs must make, as in polarcheck.toml")] = (
+        msgspec.field(default_factory=list)
+    )
     tolerance: Annotated[Tolerance | None, msgspec.Meta(description="between two paths [mm]; 0.01 unless given")] = None
+    path: (
+        Annotated[Literal["tool", "programmed"], msgspec.Meta(description="which path is compared; tool unless given")]
+        | None
+    ) = None
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -83,13 +90,13 @@ class Feature(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     A feature of a post.
 
     title: what it is, in words.
-    units: of the lengths of its parts; None for those of each program.
-    part: what the programs of all controls must make.
+    part: what the programs of all controls must make; lengths in the units of the manifest, else of each program.
     """
 
     title: str = ""
-    units: Literal["mm", "inch"] | None = None
-    part: list[Part] = []
+    part: Annotated[list[Part], msgspec.Meta(description="what the programs of all controls must make")] = (
+        msgspec.field(default_factory=list)
+    )
 
 
 class Control(Conditions, frozen=True, kw_only=True):
@@ -107,7 +114,9 @@ class Control(Conditions, frozen=True, kw_only=True):
         Annotated[str, msgspec.Meta(description="golden trace of each feature: golden/fanuc/{feature}.jsonl")] | None
     ) = None
     same_path_as: Annotated[str, msgspec.Meta(description="control that makes the same paths")] | None = None
-    not_offered: Annotated[dict[str, str], msgspec.Meta(description="reason, by feature")] = {}
+    not_offered: Annotated[dict[str, str], msgspec.Meta(description="reason, by feature")] = msgspec.field(
+        default_factory=dict
+    )
 
 
 class Case(Conditions, frozen=True, kw_only=True):
@@ -128,7 +137,7 @@ class Case(Conditions, frozen=True, kw_only=True):
     control: Name
     program: Annotated[str, msgspec.Meta(description="file, relative to the manifest")]
     verdict: Verdict | None = None
-    findings: list[ExpectedFinding] = []
+    findings: list[ExpectedFinding] = msgspec.field(default_factory=list)
     golden: str | None = None
     same_path_as: str | None = None
 
@@ -161,11 +170,17 @@ class Manifest(Conditions, frozen=True, kw_only=True):
 
     title: Annotated[str, msgspec.Meta(description="name and version of the post")] = ""
     features: Annotated[list[Name], msgspec.Meta(description="rows of the matrix; the standard ones unless given")] = (
-        list(FEATURES)
+        msgspec.field(default_factory=lambda: [*FEATURES])
     )
-    feature: Annotated[dict[Name, Feature], msgspec.Meta(description="title and part of features, by name")] = {}
-    controls: Annotated[dict[Name, Control], msgspec.Meta(description="columns of the matrix, by name")] = {}
-    case: Annotated[list[Case], msgspec.Meta(description="programs with what is expected of them")] = []
+    feature: Annotated[dict[Name, Feature], msgspec.Meta(description="title and part of features, by name")] = (
+        msgspec.field(default_factory=dict)
+    )
+    controls: Annotated[dict[Name, Control], msgspec.Meta(description="columns of the matrix, by name")] = (
+        msgspec.field(default_factory=dict)
+    )
+    case: Annotated[list[Case], msgspec.Meta(description="programs with what is expected of them")] = msgspec.field(
+        default_factory=list
+    )
 
 
 _DEFAULTS = {
