@@ -89,7 +89,7 @@ class JobFile(msgspec.Struct, frozen=True):
 
     def merged(self, layers: Sequence[tuple[int, int]]) -> Merged:
         """Return the merged job of layers. Raises JobError, which names file, line and key."""
-        return job_layers.merged([self._layer(number, entry) for number, entry in layers])
+        return job_layers.merged([self.layer(number, entry) for number, entry in layers])
 
     @property
     def excluding(self) -> Layer | None:
@@ -100,7 +100,7 @@ class JobFile(msgspec.Struct, frozen=True):
         """Return the patterns of an entry."""
         return [pattern for part in self.parts for entry, pattern in part.patterns if entry is layer]
 
-    def _layer(self, number: int, entry: int) -> Layer:
+    def layer(self, number: int, entry: int) -> Layer:
         part = self.parts[number]
         if entry < 0:
             return part.parts[-entry - 1][0]

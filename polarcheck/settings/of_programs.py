@@ -79,7 +79,7 @@ class OfPrograms:
         self._plain: dict[str, Settings] = {}
         self._settings: dict[tuple[Path | None, Layers], Settings] = {}
         self._matched: dict[Path, list[tuple[str, str]]] = {}
-        self._maker = _SettingsMaker(options)
+        self._maker = SettingsMaker(options)
 
     def __call__(self, path: str) -> Settings:
         folder, name = os.path.split(path)
@@ -194,7 +194,7 @@ class Applied(msgspec.Struct, frozen=True):
     file: JobFile
 
 
-class _SettingsMaker:
+class SettingsMaker:
     """Makes settings; settings with the same machine and rules share these."""
 
     def __init__(self, options: Options) -> None:
