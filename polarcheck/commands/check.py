@@ -136,7 +136,7 @@ class _Arguments(NamedTuple):
     The arguments of the command line.
 
     command: the command line that checks one of the files with the same options.
-    more: the options that apply to programs, for settings.Options.
+    more: the options that apply to programs, for Options.
 
     All other fields are the parameters of the command, by their names.
     """
@@ -195,9 +195,10 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
     from polarcheck import reports
     from polarcheck.batch import tasks as batch
     from polarcheck.checking import rule
-    from polarcheck.commands import live, overwriting, progress, settings, signals
+    from polarcheck.commands import live, overwriting, progress, signals
     from polarcheck.machines import profiles
     from polarcheck.memory import keep_within_memory
+    from polarcheck.settings.of_programs import OfPrograms, Options
 
     keep_within_memory()
     reporting.refuse(arguments.form, arguments.statistics)
@@ -212,12 +213,12 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
         from polarcheck.parts.part_report import part_of
 
         extras = (*extras, part_of, compared_in)
-    applies = settings.Options(use_config=not arguments.no_config, extras=extras, **arguments.more)
+    applies = Options(use_config=not arguments.no_config, extras=extras, **arguments.more)
     faults = running.Faults(arguments.debug)
     skipped: list[Skipped] = []
     tasks = running.planned(
         arguments.paths,
-        settings.OfPrograms(applies),
+        OfPrograms(applies),
         arguments.extensions,
         faults,
         force_exclude=arguments.force_exclude,
@@ -241,7 +242,6 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
     form = arguments.form or ("text" if len(tasks) <= _LONG or arguments.shown_too else "short")
     if not arguments.quiet:
         tasks = reporting.with_makes(tasks, (form, *(other for other, _ in arguments.outputs)))
-    failures: list[str] = []
     plain = reporting.background(
         reports.Background(
             rules=rule.load_all(),
@@ -256,7 +256,6 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
             drawn=pictures.drawn,
         ),
         tasks,
-        failures,
     )
     bar = progress.Bar(len(tasks), not arguments.quiet)
     shown = plain._replace(columns=columns(), color=is_colored)
@@ -266,16 +265,20 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
     runner = running.Runner(arguments.max_size, arguments.workers, arguments.cluster, seen)
     pictures.begin(plain)
     checked = runner.check(tasks, bar, faults, baseline, live_report.file, pictures.split)
-    machine = applies.machine or (tasks[0].settings.name if tasks else profiles.DEFAULT)
-    report = batch.report(checked.files, machine, skipped)
-    pictures.end(reporting.unread(report.summary))
     status = max(int(checked.failed), fixed.status, faults.report())
-    failures += [*faults.failures, *faults.bugs]
+    reason = checked.broken_off
     if checked.stopped is not None:
         status, how = signals.exit_status(checked.stopped)
-        failures.append(f"{how} after {len(checked.files)} of {len(tasks)} files; these are reported")
-        say(failures[-1])
-    elif arguments.diff_base is None:
+        reason = f"{how} after {len(checked.files)} of {len(tasks)} files; these are reported"
+        say(reason)
+    report = batch.report(
+        checked.files,
+        applies.machine or (tasks[0].settings.name if tasks else profiles.DEFAULT),
+        interrupted=batch.interrupted(reason, checked.files, tasks) if reason else None,
+        skipped=skipped,
+    )
+    pictures.end(reporting.unread(report.summary))
+    if checked.stopped is None and arguments.diff_base is None:
         running.warn_unused(applies.tools, checked.called)
         running.warn_without_part(applies.tolerance, tasks)
     for error in reporting.written(outputs, form, report, plain._replace(lines=checked.lines)):

@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import msgspec
 
 from polarcheck import bounded
-from polarcheck.commands import job_layers
-from polarcheck.commands.job_layers import Layer, Merged, PartLayer, Written
 from polarcheck.errors import JobError
 from polarcheck.machines import toml_text
 from polarcheck.machines.fitting import MisfitError, fitted, shown
 from polarcheck.machines.job import FILE_NAME, PROJECT, Job
 from polarcheck.reading.files import RealPaths
+from polarcheck.settings import job_layers
+from polarcheck.settings.job_layers import Layer, Merged, PartLayer, Written
 
 if TYPE_CHECKING:
     from polarcheck.reading.globs import Globs
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 _LONGEST_CHAIN = 10
 
 
-class _Part(NamedTuple):
+class Part(NamedTuple):
     """
     One file of a chain.
 
@@ -55,7 +55,7 @@ class JobFile(msgspec.Struct, frozen=True):
     """
 
     path: Path | None = None
-    parts: tuple[_Part, ...] = ()
+    parts: tuple[Part, ...] = ()
 
     @property
     def paths(self) -> list[Path]:
@@ -89,7 +89,7 @@ class JobFile(msgspec.Struct, frozen=True):
 
     def merged(self, layers: Sequence[tuple[int, int]]) -> Merged:
         """Return the merged job of layers. Raises JobError, which names file, line and key."""
-        return job_layers.merged([self._layer(number, entry) for number, entry in layers])
+        return job_layers.merged([self.layer(number, entry) for number, entry in layers])
 
     @property
     def excluding(self) -> Layer | None:
@@ -105,7 +105,7 @@ class JobFile(msgspec.Struct, frozen=True):
         """Return the patterns of an entry."""
         return [pattern for part in self.parts for entry, pattern in part.patterns if entry is layer]
 
-    def _layer(self, number: int, entry: int) -> Layer:
+    def layer(self, number: int, entry: int) -> Layer:
         part = self.parts[number]
         if entry < 0:
             return part.parts[-entry - 1][0]
@@ -215,7 +215,7 @@ def load(path: Path, *, pipes: bool = False) -> JobFile:
 
     pipes: the path may be a pipe, such as `<(...)` of a shell. Raises JobError with file, line and key.
     """
-    parts: list[_Part] = []
+    parts: list[Part] = []
     real: dict[str, Path] = {}
     named_by = ""
     while True:
@@ -246,7 +246,7 @@ def _extended(path: Path, written: str, named_by: str) -> Path:
     return nearest
 
 
-def _part(path: Path, named_by: str, *, pipes: bool) -> tuple[_Part, str | None]:
+def _part(path: Path, named_by: str, *, pipes: bool) -> tuple[Part, str | None]:
     """Read one file; return it and the name of the file that it extends. named_by: the place that names this file."""
     before = f"{named_by}: extend: " if named_by else ""
     try:
@@ -288,7 +288,7 @@ def _part(path: Path, named_by: str, *, pipes: bool) -> tuple[_Part, str | None]
         parts.append((layer, of_part))
     if "exclude" in table:
         exclude = _globs(base, job.exclude, lambda _: values.at("exclude"), "exclude")
-    return _Part(values, tuple(entries), tuple(parts), files, tuple(owners), exclude), job.extend
+    return Part(values, tuple(entries), tuple(parts), files, tuple(owners), exclude), job.extend
 
 
 def _place_of(layer: PartLayer) -> Callable[[int], str]:

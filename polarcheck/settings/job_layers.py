@@ -74,6 +74,12 @@ class Layer:
         return f"{self.written.path}: [[programs]] {self.entry}" if self.entry else str(self.written.path)
 
     @property
+    def machine(self) -> str | None:
+        """Return the machine as written; None if this layer names none."""
+        machine = self._table.get("machine")
+        return None if machine is None else str(machine)
+
+    @property
     def is_root(self) -> bool:
         """Return True if no job file above this one is meant."""
         return bool(self._table.get("root", False))

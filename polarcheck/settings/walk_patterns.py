@@ -6,12 +6,12 @@ import os
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
-from polarcheck.commands.job_files import JobFile
-from polarcheck.commands.job_layers import Layer
 from polarcheck.errors import UsageError
 from polarcheck.machines.fitting import shown
 from polarcheck.reading.globs import Globs, is_pattern
 from polarcheck.reading.walking import extensions
+from polarcheck.settings.job_files import JobFile
+from polarcheck.settings.job_layers import Layer
 
 
 class WalkPatterns:

@@ -14,20 +14,20 @@ import msgspec
 
 from polarcheck.checking.rule import Rule, load_all
 from polarcheck.checking.settings import Extra, Settings
-from polarcheck.commands import job_files, selection
-from polarcheck.commands.job_files import JobFile
-from polarcheck.commands.job_layers import Merged
-from polarcheck.commands.selection import Rules
 from polarcheck.errors import MachineError, UsageError
 from polarcheck.machines import profiles, toml_text
 from polarcheck.machines.job import Job, PunchedTool, Running, check_tools, check_work_offsets, with_tool
 from polarcheck.machines.machine import Machine
 from polarcheck.machines.part import Part
 from polarcheck.reading.files import STANDARD_INPUT
+from polarcheck.settings import job_files, selection
+from polarcheck.settings.job_files import JobFile
+from polarcheck.settings.job_layers import Merged
+from polarcheck.settings.selection import Rules
 
 if TYPE_CHECKING:
-    from polarcheck.commands.jobs_above import LeftBehind
-    from polarcheck.commands.walk_patterns import WalkPatterns
+    from polarcheck.settings.jobs_above import LeftBehind
+    from polarcheck.settings.walk_patterns import WalkPatterns
 
 
 class Options(msgspec.Struct, frozen=True):
@@ -82,7 +82,7 @@ class OfPrograms:
         self._plain: dict[str, Settings] = {}
         self._settings: dict[tuple[Path | None, Layers], Settings] = {}
         self._matched: dict[Path, list[tuple[str, str]]] = {}
-        self._maker = _SettingsMaker(options)
+        self._maker = SettingsMaker(options)
 
     def __call__(self, path: str) -> Settings:
         folder, name = os.path.split(path)
@@ -138,13 +138,13 @@ class OfPrograms:
         loaded = [file for file in self._loaded.values() if file.path not in (None, self._options.config)]
         if not loaded:
             return []
-        from polarcheck.commands import jobs_above
+        from polarcheck.settings import jobs_above
 
         return jobs_above.warnings(loaded, self._nearest)
 
     def behind(self, file: JobFile) -> LeftBehind | None:
         """Return what a job file leaves behind of the next one above it; nothing of one that an option names."""
-        from polarcheck.commands import jobs_above
+        from polarcheck.settings import jobs_above
 
         return None if file.path == self._options.config else jobs_above.left_behind(file, self._nearest)
 
@@ -186,7 +186,7 @@ class OfPrograms:
             }
         )
         if layers:
-            from polarcheck.commands import walk_patterns
+            from polarcheck.settings import walk_patterns
 
             of_layer: dict[Path, list[str]] = {path: [] for path in layers}
             for program in programs:
@@ -199,7 +199,7 @@ class OfPrograms:
 
     @cached_property
     def _patterns(self) -> WalkPatterns:
-        from polarcheck.commands.walk_patterns import WalkPatterns
+        from polarcheck.settings.walk_patterns import WalkPatterns
 
         return WalkPatterns(self._options.exclude)
 
@@ -242,7 +242,7 @@ class Applied(msgspec.Struct, frozen=True):
     file: JobFile
 
 
-class _SettingsMaker:
+class SettingsMaker:
     """Makes settings; settings with the same machine and rules share these."""
 
     def __init__(self, options: Options) -> None:
@@ -253,6 +253,7 @@ class _SettingsMaker:
         self._changes = changes(options.changes)
         self._profiles: dict[str, profiles.Profile] = {}
         self._rules: dict[str, tuple[list[Rule], dict[str, str]]] = {}
+        self._hashes: dict[int, str] = {}
 
     def settings(self, file: JobFile, layers: Layers) -> Settings:
         return self.applied(file, layers).settings
@@ -279,6 +280,7 @@ class _SettingsMaker:
             strict=job.strict,
             encoding=job.encoding,
             inline=job.inline,
+            profile_sha256=self._hash(machine),
             extras=options.extras,
         )
         return Applied(settings, merged, profile, file)
@@ -299,6 +301,15 @@ class _SettingsMaker:
             except MachineError as error:
                 raise MachineError(_with_line(str(error), merged)) from None
         return self._profiles[key]
+
+    def _hash(self, machine: Machine) -> str:
+        """Return the SHA-256 of all values of a machine."""
+        if id(machine) not in self._hashes:
+            import hashlib
+
+            values = msgspec.json.encode(machine, order="deterministic")
+            self._hashes[id(machine)] = hashlib.sha256(values).hexdigest()
+        return self._hashes[id(machine)]
 
     def _chosen(self, job: Job, merged: Merged, profile: profiles.Profile) -> tuple[list[Rule], dict[str, str]]:
         """Return the rules to run, and the severities that differ from the machine's."""
