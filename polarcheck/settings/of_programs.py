@@ -25,7 +25,7 @@ from polarcheck.settings.job_layers import Merged
 from polarcheck.settings.selection import Rules
 
 if TYPE_CHECKING:
-    from polarcheck.commands.jobs_above import LeftBehind
+    from polarcheck.settings.jobs_above import LeftBehind
 
 
 class Options(msgspec.Struct, frozen=True):
@@ -132,13 +132,13 @@ class OfPrograms:
         loaded = [file for file in self._loaded.values() if file.path not in (None, self._options.config)]
         if not loaded:
             return []
-        from polarcheck.commands import jobs_above
+        from polarcheck.settings import jobs_above
 
         return jobs_above.warnings(loaded, self._nearest)
 
     def behind(self, file: JobFile) -> LeftBehind | None:
         """Return what a job file leaves behind of the next one above it; nothing of one that an option names."""
-        from polarcheck.commands import jobs_above
+        from polarcheck.settings import jobs_above
 
         return None if file.path == self._options.config else jobs_above.left_behind(file, self._nearest)
 

@@ -7,9 +7,9 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from polarcheck.commands import job_files
-from polarcheck.commands.job_files import JobFile, Nearest
 from polarcheck.errors import JobError
+from polarcheck.settings import job_files
+from polarcheck.settings.job_files import JobFile, Nearest
 
 #: The most files in a line on them.
 _NAMED = 3
