@@ -29,7 +29,7 @@ _LONG = 3
 #: Options that change the look or the destination of a report, the workers or the set of files, but no finding.
 _OF_OUTPUT = (
     *("stdin_filename", "form", "outputs", "color", "quiet", "following", "silenced", "statistics", "shown_too"),
-    *("diff_base", "workers", "cluster", "watch", *fixing.NAMES),
+    *("diff_base", "workers", "cluster", "watch", "cache_dir", "no_cache", *fixing.NAMES),
 )
 _FORMATS = formats()
 
@@ -76,6 +76,8 @@ def _outputs(ctx: click.Context, parameter: click.Parameter, values: tuple[str, 
 @standard_input.filename
 @options.jobs
 @options.cluster
+@options.cache_dir
+@options.no_cache
 @watching.watch
 @option("--color", type=click.Choice(["auto", "always", "never"]), default="auto", show_default=True)
 @option("--show-following", "following", is_flag=True, help="In text, what follows from a finding, too.")
@@ -135,6 +137,8 @@ class _Arguments(NamedTuple):
     stdin_filename: str | None
     workers: int
     cluster: str | None
+    cache_dir: str | None
+    no_cache: bool
     color: str
     quiet: bool
     following: bool
@@ -235,7 +239,8 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
     live_report = live.Live(
         form, shown, len(tasks), bar.hide, in_place_of_findings=arguments.statistics, to_error=fixed.has_output
     )
-    runner = running.Runner(arguments.max_size, arguments.workers, arguments.cluster, seen)
+    cache = None if arguments.no_cache else running.cache(arguments.max_size, arguments.cache_dir)
+    runner = running.Runner(arguments.max_size, arguments.workers, arguments.cluster, seen, cache)
     pictures.begin(plain)
     checked = runner.check(tasks, bar, faults, baseline, live_report.file, pictures.split)
     pictures.end()
