@@ -17,9 +17,9 @@ if TYPE_CHECKING:
     from polarcheck.batch.cache.outcomes import Cache
     from polarcheck.batch.tasks import Checked, Outcome, Task
     from polarcheck.commands.progress import Bar
-    from polarcheck.commands.settings import OfPrograms
     from polarcheck.commands.watching import Seen
     from polarcheck.finding import FileReport
+    from polarcheck.settings.of_programs import OfPrograms
 
 #: Processes are started once they save more time than this [s]. A fork, as on Linux, costs little; a spawned process
 #: loads the libraries again.
