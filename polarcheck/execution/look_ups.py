@@ -1,4 +1,8 @@
-"""Notes which called programs were looked for in the folders of a job: a result depends on those that are not there, too."""
+"""
+Notes which called programs were looked for in the folders of a job.
+
+A result depends on those that are not there, too.
+"""
 
 from __future__ import annotations
 

@@ -44,7 +44,9 @@ def of_code() -> bytes:
         spec = find_spec(name)
         if spec is not None and spec.origin:
             status = Path(spec.origin).stat()
-            known.update(f"{name} {spec.origin} {status.st_size} {status.st_mtime_ns}\0".encode("utf-8", "surrogatepass"))
+            known.update(
+                f"{name} {spec.origin} {status.st_size} {status.st_mtime_ns}\0".encode("utf-8", "surrogatepass")
+            )
     return known.digest()
 
 
@@ -79,7 +81,7 @@ def _pieces(value: Any) -> Iterator[bytes]:
     """Yield bytes that differ for values that differ, in type or in content."""
     kind = type(value)
     yield kind.__qualname__.encode() + b":"
-    if value is None or isinstance(value, (bool, int, str, Path, bytes)) or isinstance(value, enum.Enum):
+    if value is None or isinstance(value, (bool, int, str, Path, bytes, enum.Enum)):
         text = value if isinstance(value, bytes) else repr(value).encode("utf-8", "surrogatepass")
         yield struct.pack("<q", len(text)) + text
     elif isinstance(value, float):

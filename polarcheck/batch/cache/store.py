@@ -13,7 +13,6 @@ import os
 import re
 import stat
 import sys
-from collections.abc import Mapping
 from hashlib import blake2b
 from pathlib import Path
 
