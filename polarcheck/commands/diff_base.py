@@ -21,8 +21,8 @@ diff_base = option(
 
 with_callers = option(
     "--with-callers", "with_callers", is_flag=True,
-    help="PATHs are changed files, of any kind: check the programs of the current folder that have changed, or call or are "
-    "judged by what has. Without a PATH, by what is gone from the last commit. For hooks.",
+    help="PATHs are changed files of any kind, as a hook names them: check the programs of this folder "
+    "that have changed, or call or are judged by what has.",
 )  # fmt: skip
 #: Pre-commit sets it where it compares two commits: before the first of them files may have been there.
 _FROM = "PRE_COMMIT_FROM_REF"
@@ -32,7 +32,7 @@ def changed_files(paths: Sequence[str], others: Mapping[str, object]) -> Sequenc
     """
     Return the changed files of --with-callers; others: the options that exclude it.
 
-    Raises UsageError for a folder, standard input, and a file outside of the current folder, whose programs are looked at.
+    Raises UsageError for a folder, standard input, and a file outside of the current folder.
     """
     for name, value in others.items():
         if value:

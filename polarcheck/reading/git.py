@@ -191,9 +191,7 @@ def _without_filters(root: str, ref: Reference) -> list[str]:
     options: list[str] = []
     for name in dict.fromkeys(key.rpartition(".")[0] for key in _parts(output)):
         if "=" in name:  # git -c would take what stands before it for the key
-            raise UsageError(
-                f"{ref}: {shown(root)}: rename {name} in the configuration of git: = in a name"
-            )
+            raise UsageError(f"{ref}: {shown(root)}: rename {name} in the configuration of git: = in a name")
         for setting in ("clean=", "smudge=", "process=", "required=false"):
             options += ("-c", f"{name}.{setting}")
     return options

@@ -187,6 +187,7 @@ class _SettingsMaker:
         self._changes = changes(options.changes)
         self._profiles: dict[str, profiles.Profile] = {}
         self._rules: dict[str, tuple[list[Rule], dict[str, str]]] = {}
+        self._hashes: dict[int, str] = {}
 
     def settings(self, file: JobFile, layers: Layers) -> Settings:
         return self.applied(file, layers).settings
@@ -214,6 +215,7 @@ class _SettingsMaker:
             strict=job.strict,
             encoding=job.encoding,
             inline=job.inline,
+            profile_sha256=self._hash(machine),
             extras=options.extras,
         )
         return Applied(settings, merged, profile, file)
@@ -234,6 +236,15 @@ class _SettingsMaker:
             except MachineError as error:
                 raise MachineError(_with_line(str(error), merged)) from None
         return self._profiles[key]
+
+    def _hash(self, machine: Machine) -> str:
+        """Return the SHA-256 of all values of a machine."""
+        if id(machine) not in self._hashes:
+            import hashlib
+
+            values = msgspec.json.encode(machine, order="deterministic")
+            self._hashes[id(machine)] = hashlib.sha256(values).hexdigest()
+        return self._hashes[id(machine)]
 
     def _chosen(self, job: Job, merged: Merged, profile: profiles.Profile) -> tuple[list[Rule], dict[str, str]]:
         """Return the rules to run, and the severities that differ from the machine's."""
