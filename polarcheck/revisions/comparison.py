@@ -189,9 +189,7 @@ class _Runs:
         old, new = Part(self._traces[0], self._old[number]), Part(self._traces[1], self._new[partner])
         state = [
             each
-            for each in entry_differences(
-                old, new, is_same_machine=self._is_same_machine, tolerance=self._tolerance
-            )
+            for each in entry_differences(old, new, is_same_machine=self._is_same_machine, tolerance=self._tolerance)
             # What holds for all sections stands in the first.
             if (each.what, each.old, each.new) not in known
         ]
@@ -231,7 +229,10 @@ class _Runs:
                 return f"{name}: {part.stretch.needs}"
         for what, known in (
             ("Z", [part.stretch.knows_z for part in (old, new)]),
-            ("C at its beginning", [bool(part.trace.path.knows_section_entry[part.stretch.section]) for part in (old, new)]),
+            (
+                "C at its beginning",
+                [bool(part.trace.path.knows_section_entry[part.stretch.section]) for part in (old, new)],
+            ),
         ):
             if known[0] != known[1]:
                 return f"{'new' if known[0] else 'old'}: {what} is not known"
@@ -252,7 +253,10 @@ class _Runs:
             keep_time()
             old = self._outside(0, low, high)
             new = self._outside(1, new_low, new_high)
-            why = next((f"{name}: {part.stretch.needs}" for name, part in (("old", old), ("new", new)) if part.stretch.needs), "")
+            why = next(
+                (f"{name}: {part.stretch.needs}" for name, part in (("old", old), ("new", new)) if part.stretch.needs),
+                "",
+            )
             if not why:
                 why, _, differing = self._measured(old, new)
                 found += differing

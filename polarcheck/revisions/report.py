@@ -14,7 +14,10 @@ COMPARED = (
     "the state at the beginning of sections: tool, offset, R, C, spindle, live tool, S, plane",
     "tools, S, M codes, cycles, dwells and other G codes in their order, and where they stand on the path",
 )
-NEVER_COMPARED = ("comments, block numbers and the head of the program", "how macro statements compute what is compared")
+NEVER_COMPARED = (
+    "comments, block numbers and the head of the program",
+    "how macro statements compute what is compared",
+)
 
 
 class Difference(msgspec.Struct, frozen=True):

@@ -102,7 +102,9 @@ def _stretch(
         rapid=trace.axes.motion[row] == Motion.RAPID,
         feed_mode=trace.feedrate.feed_mode[row],
         feed=np.where(
-            trace.feedrate.feed_mode[row] == FeedMode.PER_MINUTE, trace.feedrate.feed[row], trace.feedrate.feed_number[row]
+            trace.feedrate.feed_mode[row] == FeedMode.PER_MINUTE,
+            trace.feedrate.feed[row],
+            trace.feedrate.feed_number[row],
         ),
         steps=steps,
         needs=needs,
@@ -176,7 +178,9 @@ def outside(trace: Trace, tolerance: float, steps: Sequence[Step], first: int, u
     moving &= ~special_rows(trace)[rows]
     row = rows[moving]
     sides = trace.blocks.starts
-    columns = [(before(column, sides, np.nan)[row], column[row]) for column in (trace.path.x, trace.path.z, trace.path.c_angle)]
+    columns = [
+        (before(column, sides, np.nan)[row], column[row]) for column in (trace.path.x, trace.path.z, trace.path.c_angle)
+    ]
     needs = ""
     written = (("X", "U"), ("Z", "W"), trace.machine.polar.rotary_words)
     for (_, after), words in zip(columns, written, strict=True):

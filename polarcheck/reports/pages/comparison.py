@@ -8,8 +8,8 @@ import msgspec
 
 from polarcheck import __version__
 from polarcheck.checking.phrases.part import Sizes
+from polarcheck.pictures.painting import Paint
 from polarcheck.reading.excerpt import visible
-from polarcheck.reports import Paint
 from polarcheck.revisions.report import (
     DIFFERS,
     NOT_COMPARED,
@@ -64,7 +64,9 @@ def _lines(comparison: Comparison, sizes: Sizes, paint: Paint) -> Iterator[str]:
         yield "  outside of sections:"
         yield from (f"    {_difference(difference)}" for difference in comparison.outside)
     for entry in comparison.not_compared:
-        yield f"  not compared, because {visible(entry.reason)}" if entry.matters else f"  note: {visible(entry.reason)}"
+        yield (
+            f"  not compared, because {visible(entry.reason)}" if entry.matters else f"  note: {visible(entry.reason)}"
+        )
 
 
 def _headline(comparison: Comparison, sizes: Sizes) -> str:
