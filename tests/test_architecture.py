@@ -19,6 +19,7 @@ ORDER = (
     ("__main__",),
     ("commands",),
     ("server",),
+    ("api",),
     ("reports",),
     ("pictures",),
     ("batch",),
