@@ -26,6 +26,7 @@ from polarcheck.settings.selection import Rules
 
 if TYPE_CHECKING:
     from polarcheck.settings.jobs_above import LeftBehind
+    from polarcheck.settings.keywords import Keywords
 
 
 class Options(msgspec.Struct, frozen=True):
@@ -33,6 +34,7 @@ class Options(msgspec.Struct, frozen=True):
     The options of the command line, as written; empty or None if not set.
 
     extras: functions that add data to the reports of files.
+    keywords: those of a Python function, which lie over the job files.
     """
 
     machine: str | None = None
@@ -60,6 +62,11 @@ class Options(msgspec.Struct, frozen=True):
     drawing_layers: Sequence[str] = ()
     tolerance: float | None = None
     extras: Sequence[Extra] = ()
+    keywords: Keywords | None = None
+
+    def spelled(self, option: str) -> str:
+        """Return an option as its user writes it, for messages: --select, or a keyword of a Python function."""
+        return option if self.keywords is None else self.keywords.spelled(option)
 
 
 class OfPrograms:
@@ -199,10 +206,11 @@ class SettingsMaker:
 
     def __init__(self, options: Options) -> None:
         if options.drawing_layers and not options.drawings:
-            raise UsageError("--drawing-layer: give the drawing by --drawing, too; a [[part]] has layers of its own")
+            layers, drawings = options.spelled("--drawing-layer"), options.spelled("--drawing").rpartition(" ")[2]
+            raise UsageError(f"{layers}: give the drawing by {drawings}, too; a [[part]] has layers of its own")
         self._options = options
         self._known = load_all()
-        self._changes = changes(options.changes)
+        self._changes = options.keywords.changes if options.keywords else changes(options.changes)
         self._profiles: dict[str, profiles.Profile] = {}
         self._rules: dict[str, tuple[list[Rule], dict[str, str]]] = {}
         self._hashes: dict[int, str] = {}
@@ -213,7 +221,7 @@ class SettingsMaker:
     def applied(self, file: JobFile, layers: Layers) -> Applied:
         """Return the settings of layers of a job file."""
         options = self._options
-        merged = file.merged(layers)
+        merged = file.merged(layers, options.keywords.layers if options.keywords else ())
         job = _changed(merged.job, options)
         name = options.machine or job.machine or profiles.DEFAULT
         profile = self._profile(name, merged)
@@ -239,7 +247,7 @@ class SettingsMaker:
         return Applied(settings, merged, profile, file)
 
     def _profile(self, name: str, merged: Merged) -> profiles.Profile:
-        over: list[profiles.Change] = [("--set", self._changes)]
+        over: list[profiles.Change] = [(self._options.spelled("--set"), self._changes)]
         for layer in reversed(merged.layers):
             limits = layer.table.get("limits")
             if limits:
@@ -269,8 +277,9 @@ class SettingsMaker:
         options, machine = self._options, profile.machine
         key = repr((id(profile), job.select, job.ignore, list(job.severities.items())))
         if key not in self._rules:
-            levels = selection.severities(options.severities, options.select, job, merged.at, self._known, machine)
-            rules = selection.chosen(options.select, options.ignore, job, merged.at, self._known, machine)
+            names = selection.Names(options.select, options.ignore, options.severities, options.spelled)
+            levels = selection.severities(names, job, merged.at, self._known, machine)
+            rules = selection.chosen(names, job, merged.at, self._known, machine)
             self._rules[key] = rules, levels
         return self._rules[key]
 
