@@ -186,6 +186,7 @@ class Rule(Documented, frozen=True):
     follows: by span, the rules that report the same fault first. This finding is then listed under theirs.
     worst: the column whose highest value selects the hit to report, where one finding covers several.
     is_advice: the rule is off unless the machine or the user names a severity for it.
+    worse: the values of the message that grow where the fault grows worse; behind a minus those of which less is worse.
     parameters: the names of the tables that the function compares.
     """
 
@@ -202,6 +203,7 @@ class Rule(Documented, frozen=True):
     follows: Mapping[str, tuple[str, ...]]
     worst: str
     is_advice: bool
+    worse: tuple[str, ...]
     parameters: tuple[str, ...]
 
     def __reduce__(self) -> tuple[Callable[[str], Rule], tuple[str]]:
@@ -261,6 +263,7 @@ def rule(
     follows: Mapping[str, tuple[str, ...]] = MappingProxyType({}),
     worst: str = "",
     is_advice: bool = False,
+    worse: tuple[str, ...] = (),
 ) -> Callable[[Callable[..., Any]], Rule]:
     """Decorate a function as a rule; see Rule. Its parameters name the tables that it compares."""
 
@@ -294,6 +297,7 @@ def rule(
             follows,
             worst,
             is_advice,
+            worse,
             parameters,
         )
 
