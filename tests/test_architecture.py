@@ -22,6 +22,7 @@ ORDER = (
     ("reports",),
     ("pictures",),
     ("batch",),
+    ("settings",),
     ("fixes",),
     ("rules",),
     ("parts", "feed_table"),

@@ -19,8 +19,8 @@ from polarcheck.batch.baseline_file import Entry, read, text_of
 from polarcheck.checking.fingerprints import normal
 from polarcheck.commands import baseline as baseline_command
 from polarcheck.commands import main
-from polarcheck.commands.settings import Options
 from polarcheck.errors import BaselineError
+from polarcheck.settings.of_programs import Options
 
 pytestmark = pytest.mark.usefixtures("own_folder")
 

@@ -180,12 +180,12 @@ def test_a_pattern_that_matches_nothing_in_a_folder_that_was_walked_is_a_warning
 
 def test_what_applies_to_thousands_is_made_once_for_each_set_of_entries() -> None:
     from polarcheck.batch import tasks as batch
-    from polarcheck.commands import settings
+    from polarcheck.settings.of_programs import OfPrograms, Options
 
     make(*(f"O{number:04d}.nc" for number in range(60)), text="O1\nM30\n")
     job("[[programs]]\nfiles = ['O000*']\nstrict = true\n[[programs]]\nfiles = ['O0005.nc', 'O0055.nc']\nstrict = true")
     told: list[str] = []
-    tasks = batch.plan(["."], settings.OfPrograms(settings.Options()), (), told.append, told.append)
+    tasks = batch.plan(["."], OfPrograms(Options()), (), told.append, told.append)
     assert (len(tasks), told) == (60, [])
     assert len({id(task.settings) for task in tasks}) == 4
     assert len({id(task.settings.machine) for task in tasks}) == 1
@@ -746,5 +746,5 @@ def test_a_small_check_loads_nothing_for_it() -> None:
             "polarcheck.machines.offset_table",
             "polarcheck.machines.offset_page",
         ),
-        *("polarcheck.commands.origins", "polarcheck.commands.init", "polarcheck.reports.pages.new_job"),
+        *("polarcheck.settings.origins", "polarcheck.commands.init", "polarcheck.reports.pages.new_job"),
     }

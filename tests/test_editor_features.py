@@ -17,12 +17,12 @@ from test_cli import COMPENSATED, GOOD, RAPID
 
 from polarcheck.checking.rule import load_all
 from polarcheck.checking.settings import Settings
-from polarcheck.commands.settings import OfPrograms, Options
 from polarcheck.errors import StoppedError
 from polarcheck.finding import Edit, FileReport, Fix
 from polarcheck.server import actions, allowing, definition, diagnostics, hover, markdown, outline
 from polarcheck.server.judged import Judged, judge
 from polarcheck.server.open_text import OpenText, path_of
+from polarcheck.settings.of_programs import OfPrograms, Options
 
 pytestmark = pytest.mark.usefixtures("own_folder")
 

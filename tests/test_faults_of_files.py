@@ -20,10 +20,12 @@ from click.testing import CliRunner, Result
 import polarcheck
 from polarcheck import bounded
 from polarcheck.batch import tasks as batch
-from polarcheck.commands import job_files, main, settings
+from polarcheck.commands import main
 from polarcheck.errors import SourceError
 from polarcheck.reading import files
 from polarcheck.reading.excerpt import visible
+from polarcheck.settings import job_files
+from polarcheck.settings.of_programs import OfPrograms, Options
 
 IMPORTED_FROM = os.fspath(Path(polarcheck.__file__).parent.parent)
 RAPID = "G98 G0 X60. C0\nG12.1\nG1 X40. F200\nG0 C5.\nG1 C-5.\nG13.1\n"
@@ -199,7 +201,7 @@ def test_standard_input_may_be_closed() -> None:
 
 def planned(*paths: str) -> tuple[list[batch.Task], list[str]]:
     told: list[str] = []
-    return batch.plan(paths, settings.OfPrograms(settings.Options()), (), told.append, pytest.fail), told
+    return batch.plan(paths, OfPrograms(Options()), (), told.append, pytest.fail), told
 
 
 @of_posix

@@ -21,7 +21,7 @@ import polarcheck
 from polarcheck.batch import tasks as batch
 from polarcheck.checking.rule import load_all
 from polarcheck.columns.trace import Trace
-from polarcheck.commands import settings
+from polarcheck.settings.of_programs import OfPrograms, Options
 
 GOOD = "G98 G0 X60. C0\nG12.1\nG1 X40. F200\nC5.\nC-5.\nG13.1\n"
 RAPID = GOOD.replace("\nC5.", "\nG0 C5.")
@@ -322,7 +322,7 @@ def checked(bad: Exception, monkeypatch: pytest.MonkeyPatch) -> tuple[batch.Chec
     Path("c.nc").write_text(GOOD)
     told: list[str] = []
     bugs: list[Exception] = []
-    tasks = batch.plan(["a.nc", "b.nc", "c.nc"], settings.OfPrograms(settings.Options()), (), told.append, told.append)
+    tasks = batch.plan(["a.nc", "b.nc", "c.nc"], OfPrograms(Options()), (), told.append, told.append)
     return batch.gather(batch.one_by_one(tasks), told.append, bugs.append), told, bugs
 
 
@@ -356,7 +356,7 @@ def test_a_file_that_needs_more_memory_than_there_is_costs_itself_only() -> None
 @pytest.mark.slow
 def test_no_table_of_a_file_outlives_the_next() -> None:
     told: list[str] = []
-    (task,) = batch.plan(["a.nc"], settings.OfPrograms(settings.Options()), (), told.append, told.append)
+    (task,) = batch.plan(["a.nc"], OfPrograms(Options()), (), told.append, told.append)
     living = []
 
     def tasks() -> Iterator[batch.Task]:

@@ -21,13 +21,13 @@ from test_every_machine import HANDS
 
 from polarcheck.checking import check
 from polarcheck.checking.rule import load_all
-from polarcheck.commands import selection
 from polarcheck.errors import MachineError
 from polarcheck.feed_table.table import FeedReport, feed_table
 from polarcheck.machines import profiles
 from polarcheck.machines.machine import Machine
 from polarcheck.parts.part_report import part_of
 from polarcheck.reports.pages import executed, feeds, machine_check, manual, new_machine
+from polarcheck.settings import selection
 
 #: Of each type of TOML, what people write and what nobody means.
 VALUES = (

@@ -27,8 +27,9 @@ from polarcheck.batch import executors
 from polarcheck.batch import tasks as batch
 from polarcheck.checking.rule import load_all
 from polarcheck.columns.trace import Trace
-from polarcheck.commands import progress, running, settings
+from polarcheck.commands import progress, running
 from polarcheck.errors import ClusterError
+from polarcheck.settings.of_programs import OfPrograms, Options
 
 RAPID = "G98 G0 X60. C0\nG12.1\nG1 X40. F200\nG0 C5.\nG1 C-5.\nG13.1\n"
 GOOD = RAPID.replace("G0 C5.", "C5.")
@@ -66,8 +67,8 @@ def make(count: int) -> None:
 
 
 def planned(*paths: str) -> list[batch.Task]:
-    chosen = settings.Options(select=["rapid-in-polar"])
-    return batch.plan(paths, settings.OfPrograms(chosen), (), pytest.fail, pytest.fail)
+    chosen = Options(select=["rapid-in-polar"])
+    return batch.plan(paths, OfPrograms(chosen), (), pytest.fail, pytest.fail)
 
 
 def by_processes(tasks: list[batch.Task], workers: int = 2, method: str = "fork") -> list[batch.Outcome]:

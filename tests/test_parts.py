@@ -9,10 +9,10 @@ import pytest
 from click.testing import CliRunner
 
 from polarcheck.commands import main
-from polarcheck.commands.settings import OfPrograms, Options
 from polarcheck.errors import JobError
 from polarcheck.machines.job import from_table
 from polarcheck.machines.part import SIDES, Part
+from polarcheck.settings.of_programs import OfPrograms, Options
 
 HEXAGON = {"shape": "hexagon", "across_flats": 27.0}
 

@@ -98,26 +98,28 @@ class ModalStates(Lookups):
 
     def switched(self, on: list[str], off: list[str], spindle: str = "") -> Mask:
         """What M codes have switched on, in each row after its own; spindle: of which a speed of 0 (S1=0) stops it."""
-        return self._column(f"switched {on} {off}", lambda: self._switched(on, off, spindle))
+        return self._column(
+            f"switched {on} {off} {spindle}",
+            lambda: happened(self.blocks.codes(*on), self._stops(self.blocks.codes(*off), spindle)),
+        )
 
-    def _switched(self, on: list[str], off: list[str], spindle: str) -> Mask:
-        ends = self.blocks.codes(*off) | self.blocks.starts
+    def _stops(self, by_code: Mask, spindle: str) -> Mask:
+        """Rows with a code that stops a spindle, with its speed of 0, and where a program starts."""
+        ends = by_code | self.blocks.starts
         for name, of_spindle in self.machine.control.spindle_words.items():
             if of_spindle == spindle:
                 ends = ends | (self.blocks.word(name) == 0)
-        return happened(self.blocks.codes(*on), ends)
+        return ends
 
     @cached_property
     def spindle(self) -> Mask:
         """The main spindle (on many lathes the live tool too) runs: M3, M4; not by a code listed for the live tool."""
-        codes = self.machine.m_codes
+        codes, is_main = self.machine.m_codes, self.main_is_master
         on = [word for word in codes.spindle_on if word not in codes.live_tool_on]
-        if not self.main_is_master.all():
-            is_main = self.main_is_master
-            return happened(
-                self.blocks.codes(*on) & is_main, self.blocks.codes(*codes.spindle_off) & is_main | self.blocks.starts
-            )
-        return self.switched(on, codes.spindle_off, "main")
+        if is_main.all():
+            return self.switched(on, codes.spindle_off, "main")
+        stops = self._stops(self.blocks.codes(*codes.spindle_off) & is_main, "main")
+        return happened(self.blocks.codes(*on) & is_main, stops)
 
     @cached_property
     def main_is_master(self) -> Mask:

@@ -143,15 +143,16 @@ def _run(
 ) -> int:
     from polarcheck.batch import baseline_file
     from polarcheck.batch.baseline import Baseline
-    from polarcheck.commands import overwriting, running, settings, signals
+    from polarcheck.commands import overwriting, running, signals
     from polarcheck.commands.progress import Bar
     from polarcheck.memory import keep_within_memory
     from polarcheck.reading import files
+    from polarcheck.settings.of_programs import OfPrograms, Options
 
     keep_within_memory()
     faults = running.Faults(debug)
-    applies = settings.Options(use_config=not no_config, **arguments)
-    tasks = running.planned(paths, settings.OfPrograms(applies), extensions, faults)
+    applies = Options(use_config=not no_config, **arguments)
+    tasks = running.planned(paths, OfPrograms(applies), extensions, faults)
     overwriting.refuse([output], tasks)
     checked = running.Runner(max_size, workers, cluster).check(tasks, Bar(len(tasks), True), faults)
     status = faults.report()

@@ -117,7 +117,7 @@ class _Arguments(NamedTuple):
     The arguments of the command line.
 
     command: the command line that checks one of the files with the same options.
-    more: the options that apply to programs, for settings.Options.
+    more: the options that apply to programs, for Options.
 
     All other fields are the parameters of the command, by their names.
     """
@@ -175,9 +175,10 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
     from polarcheck import reports
     from polarcheck.batch import tasks as batch
     from polarcheck.checking import rule
-    from polarcheck.commands import live, overwriting, progress, settings, signals
+    from polarcheck.commands import live, overwriting, progress, signals
     from polarcheck.machines import profiles
     from polarcheck.memory import keep_within_memory
+    from polarcheck.settings.of_programs import OfPrograms, Options
 
     keep_within_memory()
     reporting.refuse(arguments.form, arguments.statistics)
@@ -189,11 +190,11 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
         from polarcheck.parts.part_report import part_of
 
         extras = (*extras, part_of, compared_in)
-    applies = settings.Options(use_config=not arguments.no_config, extras=extras, **arguments.more)
+    applies = Options(use_config=not arguments.no_config, extras=extras, **arguments.more)
     faults = running.Faults(arguments.debug)
     tasks = running.planned(
         arguments.paths,
-        settings.OfPrograms(applies),
+        OfPrograms(applies),
         arguments.extensions,
         faults,
         force_exclude=arguments.force_exclude,

@@ -108,7 +108,7 @@ def _names_of_rules() -> Iterator[tuple[str, str]]:
 
 
 def _levels(begun: str) -> Iterator[Item]:
-    from polarcheck.commands.selection import LEVELS
+    from polarcheck.settings.selection import LEVELS
 
     name, equals, level = begun.partition("=")
     if equals:

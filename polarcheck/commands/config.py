@@ -48,11 +48,12 @@ def show(ctx: click.Context, /, path: str, **arguments: Any) -> None:
 def _shown(
     ctx: click.Context, path: str, *, form: str, no_config: bool, extensions: tuple[str, ...], **arguments: Any
 ) -> str:
-    from polarcheck.commands import origins, settings
     from polarcheck.reading import files
     from polarcheck.reports.pages import applied as page
+    from polarcheck.settings import origins
+    from polarcheck.settings.of_programs import OfPrograms, Options
 
-    settings_of = settings.OfPrograms(settings.Options(use_config=not no_config, **arguments))
+    settings_of = OfPrograms(Options(use_config=not no_config, **arguments))
     applied = settings_of.applied(path)
     if path != files.STANDARD_INPUT and not os.path.lexists(path):
         warn(f"{files.shown(path)}: there is no such file; this is what would apply to it")

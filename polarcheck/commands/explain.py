@@ -34,11 +34,12 @@ def explain(rule: str, program: str | None, machine: str | None, max_size: int) 
         show(page)
         return
     from polarcheck.checking.rule import load_all
-    from polarcheck.commands import selection, settings
     from polarcheck.reports.pages import manual
+    from polarcheck.settings import selection
+    from polarcheck.settings.of_programs import OfPrograms, Options, default_machine
 
-    applied = settings.OfPrograms(settings.Options(machine=machine))(program) if program else None
-    profile = applied.machine if applied else settings.default_machine(machine)[1]
+    applied = OfPrograms(Options(machine=machine))(program) if program else None
+    profile = applied.machine if applied else default_machine(machine)[1]
     alarm = selection.of_alarm(rule, load_all(), profile)
     if alarm and applied and program:
         reported = _reported(program, applied, max_size)

@@ -39,16 +39,16 @@ def feeds(path: str, form: str, diff: bool, no_config: bool, max_size: int, **ar
     from polarcheck.checking import check
     from polarcheck.checking.causes import READ_OTHERWISE
     from polarcheck.checking.rule import load_all
-    from polarcheck.commands import settings
     from polarcheck.memory import keep_within_memory
     from polarcheck.reading import files
     from polarcheck.reports.pages import executed
+    from polarcheck.settings.of_programs import OfPrograms, Options
     from polarcheck.time_limit import seconds_for, time_limit
 
     keep_within_memory()
     if diff and form != "text":
         raise UsageError(f"--diff shows a diff: leave out --format {form}")
-    applied = settings.OfPrograms(settings.Options(use_config=not no_config, **arguments))(path)
+    applied = OfPrograms(Options(use_config=not no_config, **arguments))(path)
     data, title = files.read_program(path, max_size), files.shown(path)
     with time_limit(seconds_for(len(data), applied.job.run.max_seconds)):
         named_runs = check.read(data, applied.machine, applied.job, title, applied.encoding)

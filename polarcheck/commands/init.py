@@ -75,15 +75,16 @@ def _refuse(ctx: click.Context, names: Set[str], reason: str) -> None:
 def _parts(paths: tuple[str, ...], *, debug: bool, max_size: int, no_config: bool, **arguments: Any) -> int:
     """Show the [[part]] entries of what programs make; return the exit code."""
     from polarcheck.checking.causes import READ_OTHERWISE
-    from polarcheck.commands import progress, running, settings
+    from polarcheck.commands import progress, running
     from polarcheck.memory import keep_within_memory
     from polarcheck.parts.part_report import part_of
     from polarcheck.reports.pages import new_parts
+    from polarcheck.settings.of_programs import OfPrograms, Options
 
     keep_within_memory()
-    applies = settings.Options(use_config=not no_config, select=(*READ_OTHERWISE,), extras=(part_of,), **arguments)
+    applies = Options(use_config=not no_config, select=(*READ_OTHERWISE,), extras=(part_of,), **arguments)
     faults = running.Faults(debug)
-    tasks = running.planned(paths, settings.OfPrograms(applies), (), faults)
+    tasks = running.planned(paths, OfPrograms(applies), (), faults)
     checked = running.Runner(max_size, 1, None).check(tasks, progress.Bar(len(tasks), True), faults)
     units = {task.title: task.settings.job.units for task in tasks}
     show(new_parts.text(list(checked.files), units).encode())
@@ -93,19 +94,20 @@ def _parts(paths: tuple[str, ...], *, debug: bool, max_size: int, no_config: boo
 
 def _init(folder: str, machine: str | None, extensions: tuple[str, ...], schema: bool, quiet: bool) -> list[str]:
     from polarcheck.checking import survey
-    from polarcheck.commands import job_files, settings
     from polarcheck.commands.progress import Bar
     from polarcheck.machines.job import FILE_NAME
     from polarcheck.reading import files
     from polarcheck.reading.excerpt import visible
     from polarcheck.reports.pages import new_job
     from polarcheck.reports.pages import schema as schemas
+    from polarcheck.settings import job_files
+    from polarcheck.settings.of_programs import profile_of
 
     path = Path(folder, FILE_NAME)
     existing = job_files.in_folder(Path(folder))
     if existing is not None or os.path.lexists(path):
         raise UsageError(f"{existing or path} is there already; `polarcheck config show` tells what it says")
-    profile = settings.profile_of(machine) if machine else None
+    profile = profile_of(machine) if machine else None
     nearest = job_files.Nearest().of(Path(folder))
     outer = Path(os.path.relpath(nearest, folder)).as_posix() if nearest else None
     wanted = files.extensions(extensions) or files.EXTENSIONS

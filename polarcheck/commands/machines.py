@@ -67,9 +67,9 @@ def _profile(name: str) -> str:
 def _check(name: str) -> int:
     """Show what is to say about a sound file, or all faults of one that is not; return the exit code."""
     from polarcheck.checking.rule import load_all
-    from polarcheck.commands import selection
     from polarcheck.machines import faults, profiles
     from polarcheck.reports.pages import machine_check
+    from polarcheck.settings import selection
 
     rules = load_all()
     try:
@@ -86,9 +86,9 @@ def _check(name: str) -> int:
 
 def _loaded(name: str) -> Profile:
     """Load a profile. Raises MachineError if it cannot be used, or names unknown rules."""
-    from polarcheck.commands import settings
+    from polarcheck.settings.of_programs import profile_of
 
-    return settings.profile_of(name)
+    return profile_of(name)
 
 
 def _write(name: str, inherits: str, *, short: bool) -> Path:

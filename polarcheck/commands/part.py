@@ -50,19 +50,20 @@ def _part(
     **arguments: Any,
 ) -> int:
     from polarcheck.checking.causes import READ_OTHERWISE
-    from polarcheck.commands import progress, running, settings, signals
+    from polarcheck.commands import progress, running, signals
     from polarcheck.commands.output import columns, say, show
     from polarcheck.memory import keep_within_memory
     from polarcheck.parts.comparison import compared_in
     from polarcheck.parts.part_report import part_of
     from polarcheck.reports.pages import part_lines
+    from polarcheck.settings.of_programs import OfPrograms, Options
 
     keep_within_memory()
-    applies = settings.Options(
+    applies = Options(
         use_config=not no_config, select=(_RULE, *READ_OTHERWISE), extras=(part_of, compared_in), **arguments
     )
     faults = running.Faults(debug)
-    tasks = running.planned(paths, settings.OfPrograms(applies), extensions, faults)
+    tasks = running.planned(paths, OfPrograms(applies), extensions, faults)
     checked = running.Runner(max_size, workers, None).check(tasks, progress.Bar(len(tasks), True), faults)
     status = max(int(checked.failed), faults.report())
     if checked.stopped is not None:

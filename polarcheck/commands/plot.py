@@ -50,16 +50,17 @@ def plot(
     from polarcheck import reports
     from polarcheck.batch import tasks as batch
     from polarcheck.checking import rule
-    from polarcheck.commands import overwriting, progress, reporting, running, settings, signals
+    from polarcheck.commands import overwriting, progress, reporting, running, signals
     from polarcheck.commands.output import say, show
     from polarcheck.machines import profiles
     from polarcheck.memory import keep_within_memory
     from polarcheck.reading import files
+    from polarcheck.settings.of_programs import OfPrograms, Options
 
     keep_within_memory()
-    applies = settings.Options(use_config=not no_config, extras=picturing.extras(), **arguments)
+    applies = Options(use_config=not no_config, extras=picturing.extras(), **arguments)
     faults = running.Faults(options.DEBUG in ctx.meta)
-    tasks = running.planned(paths, settings.OfPrograms(applies), extensions, faults)
+    tasks = running.planned(paths, OfPrograms(applies), extensions, faults)
     outputs = [] if output is None else [(picturing.FORMAT, Path(output))]
     pictures, pages, written = picturing.of_outputs(outputs, output is None, tasks, "-o ")
     overwriting.refuse(written, tasks)

@@ -16,9 +16,9 @@ from polarcheck.commands.output import bug_lines, say, say_lines, warn
 if TYPE_CHECKING:
     from polarcheck.batch.tasks import Checked, Outcome, Task
     from polarcheck.commands.progress import Bar
-    from polarcheck.commands.settings import OfPrograms
     from polarcheck.commands.watching import Seen
     from polarcheck.finding import FileReport
+    from polarcheck.settings.of_programs import OfPrograms
 
 #: Processes are started once they save more time than this [s]. A fork, as on Linux, costs little; a spawned process
 #: loads the libraries again.

@@ -74,9 +74,9 @@ class _Settings:
         self._use_config, self._arguments = not no_config, arguments
 
     def __call__(self, path: Path) -> Any:
-        from polarcheck.commands import settings
+        from polarcheck.settings.of_programs import OfPrograms, Options
 
-        return settings.OfPrograms(settings.Options(use_config=self._use_config, **self._arguments))(str(path))
+        return OfPrograms(Options(use_config=self._use_config, **self._arguments))(str(path))
 
 
 def _trusted(trust: tuple[Path, ...], arguments: dict[str, Any]) -> list[Path]:

@@ -56,16 +56,16 @@ def trace(
     programmed: those moves have "programmed" under path, and a line on standard error says what to give.
     """
     from polarcheck.checking import check
-    from polarcheck.commands import settings
     from polarcheck.memory import keep_within_memory
     from polarcheck.reading import files
     from polarcheck.reports.pages import executed
+    from polarcheck.settings.of_programs import OfPrograms, Options
     from polarcheck.time_limit import seconds_for, time_limit
 
     keep_within_memory()
     if shown_too and form not in (None, "table"):
         raise UsageError(f"--show {shown_too}: expected --format table, found {form}")
-    applied = settings.OfPrograms(settings.Options(use_config=not no_config, **arguments))(path)
+    applied = OfPrograms(Options(use_config=not no_config, **arguments))(path)
     data = files.read_program(path, max_size)
     with time_limit(seconds_for(len(data), applied.job.run.max_seconds)):
         # One run for each channel, since --block-skip has a single state in this command.

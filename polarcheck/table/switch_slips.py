@@ -7,13 +7,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from polarcheck.arrays import Columns, Mask, Rows, is_among
+from polarcheck.arrays import Columns, Mask, is_among
 from polarcheck.columns.trace import Trace
 from polarcheck.machines.axes import AXES
 from polarcheck.machines.codes import code, code_set
 from polarcheck.machines.modal import Motion
 
 _AT_FEED = (Motion.LINE, Motion.CW, Motion.CCW)
+#: Characters of a code such as G121, of which the builder's other one is the number below.
+_DIGITS = 4
 
 
 class Slip(NamedTuple):
@@ -125,27 +127,15 @@ class SwitchSlips(Columns, frozen=True):
         """Per executed word: the code of a slip, and that of its answer."""
         first, second = self._forms
         codes = [*first, *second, *(f"G{int(form[1:]) - 1}" for form in first if len(form) == _DIGITS)]
-        rows = np.array([row for slip in self.slips.values() for row in (slip.row, slip.answer) if row >= 0], np.int64)
         at = self.trace.blocks.code_indices(*codes)
-        return self.trace.blocks.words_at(at[np.isin(self.trace.run.row[at], rows)]) if len(rows) else self._none
-
-    @property
-    def _none(self) -> Mask:
-        return self.trace.blocks.no_words
+        is_slip = np.zeros(len(self.trace), bool)
+        is_slip[[row for slip in self.slips.values() for row in (slip.row, slip.answer) if row >= 0]] = True
+        return self.trace.blocks.words_at(at[is_slip[self.trace.run.row[at]]])
 
     @cached_property
     def explained(self) -> Mask:
         """Per word of the file: the code of a slip or of its answer. That it is no code of this control follows."""
-        start = self.trace.text.words.start
-        mask = np.zeros(len(start), bool)
-        if self.slips:
-            mask |= np.isin(start, self._starts)
-        return mask
-
-    @property
-    def _starts(self) -> Rows:
-        return self.trace.run.words.start[self.words]
-
-
-#: Characters of a code such as G121, of which the builder's other one is the number below.
-_DIGITS = 4
+        starts = self.trace.text.words.start
+        if not self.slips:
+            return np.zeros(len(starts), bool)
+        return is_among(starts, self.trace.run.words.start[self.words].tolist())

@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import msgspec
 
 from polarcheck import bounded
-from polarcheck.commands import job_layers
-from polarcheck.commands.job_layers import Layer, Merged, PartLayer, Written
 from polarcheck.errors import JobError
 from polarcheck.machines import toml_text
 from polarcheck.machines.fitting import MisfitError, fitted, shown
 from polarcheck.machines.job import FILE_NAME, PROJECT, Job
 from polarcheck.reading.files import RealPaths
+from polarcheck.settings import job_layers
+from polarcheck.settings.job_layers import Layer, Merged, PartLayer, Written
 
 if TYPE_CHECKING:
     from polarcheck.reading.globs import Globs

@@ -7,12 +7,12 @@ from typing import Any, NamedTuple
 
 import msgspec
 
-from polarcheck.commands.job_layers import Layer, Merged, PartLayer
-from polarcheck.commands.settings import Applied
 from polarcheck.machines import profiles, toml_lines
 from polarcheck.machines.job import Job, PunchedTool
 from polarcheck.machines.parameters import Origin
 from polarcheck.machines.part import Part
+from polarcheck.settings.job_layers import Layer, Merged, PartLayer
+from polarcheck.settings.of_programs import Applied
 
 
 class Value(NamedTuple):

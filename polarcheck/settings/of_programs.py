@@ -13,16 +13,16 @@ import msgspec
 
 from polarcheck.checking.rule import Rule, load_all
 from polarcheck.checking.settings import Extra, Settings
-from polarcheck.commands import job_files, selection
-from polarcheck.commands.job_files import JobFile
-from polarcheck.commands.job_layers import Merged
-from polarcheck.commands.selection import Rules
 from polarcheck.errors import MachineError, UsageError
 from polarcheck.machines import profiles, toml_text
 from polarcheck.machines.job import Job, PunchedTool, Running, check_tools, check_work_offsets, with_tool
 from polarcheck.machines.machine import Machine
 from polarcheck.machines.part import Part
 from polarcheck.reading.files import STANDARD_INPUT
+from polarcheck.settings import job_files, selection
+from polarcheck.settings.job_files import JobFile
+from polarcheck.settings.job_layers import Merged
+from polarcheck.settings.selection import Rules
 
 
 class Options(msgspec.Struct, frozen=True):
