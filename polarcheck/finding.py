@@ -311,7 +311,7 @@ class Outline(msgspec.Struct, frozen=True):
     hashes: one per block that says something, in their order; renumbered and respaced blocks have the same.
     of: only hashes that are a multiple of this are listed, 1 for all.
     place_of_line: for lines of findings, and of the sections that they stand in, the index of the hash of the block
-    there, or of the last one that is listed before it, -1 for none. Lines without a block, as of a comment, are left out.
+    there, or of the last one that is listed before it, -1 for none. Lines without a block, as of a comment, are absent.
     """
 
     hashes: list[int]

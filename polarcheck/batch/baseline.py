@@ -246,9 +246,7 @@ class Baseline:
             now = _entries_of(report, file, reasons, reason)
             counts = _counted(now)
             new += (counts - _counted(of_file)).total()
-            unevaluated = [
-                entry for entry in of_file if not counts[entry.key] and self._may_be_there(entry, evaluated)
-            ]
+            unevaluated = [entry for entry in of_file if not counts[entry.key] and self._may_be_there(entry, evaluated)]
             entries += [*now, *(_brought_up(entry, file, both) for entry in unevaluated)]
             if isinstance(report.outline, Outline):
                 programs[file] = program_of(file, report.outline.hashes, report.outline.of)

@@ -48,7 +48,7 @@ class Place(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     at: int | None = None
     section: int | None = None
     blocks: int = 0
-    values: dict[str, float | None] = {}
+    values: dict[str, float] = {}
 
 
 class Entry(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, omit_defaults=True):

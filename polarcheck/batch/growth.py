@@ -15,17 +15,19 @@ _ROUNDING = 0.001
 #: Before the name of a number of which less is worse.
 _LESS = "-"
 
-Values = dict[str, float | None]
 
-
-def values_of(finding: Finding) -> Values:
+def values_of(finding: Finding) -> dict[str, float]:
     """Return the numbers of a finding that can grow worse; those of findings that follow behind their rule."""
+    return {name: value for name, value in _numbers(finding).items() if value is not None}
+
+
+def _numbers(finding: Finding) -> dict[str, float | None]:
     rules = load_all()
     values = dict(_of_rule(finding, rules))
     for follower in finding.follows:
         for name, value in _of_rule(follower, rules):
             whole = f"{follower.rule}.{name}"
-            if whole not in values or _is_worse(name, values[whole], value, 0, 0):
+            if whole not in values or _is_worse(_signed(whole, finding), values[whole], value, 0, 0):
                 values[whole] = value
     return values
 
@@ -53,19 +55,18 @@ def _of_numbers(place: Place, finding: Finding) -> Iterator[str]:
     blocks = blocks_of(finding)
     if place.blocks and blocks > place.blocks:
         yield f"known in {place.blocks} block{'s' * (place.blocks > 1)}, now in {blocks}"
-    now = values_of(finding)
+    now = _numbers(finding)
     for name, value in place.values.items():
         if name in now and _is_worse(_signed(name, finding), value, now[name], _SHARE, _ROUNDING):
             yield f"known with {name.replace('_', ' ')} {_shown(value)}, now {_shown(now[name])}"
 
 
 def _of_rule(finding: Finding, rules: Mapping[str, Rule]) -> Iterator[tuple[str, float | None]]:
-    """Yield the names and values of the numbers that the rule of a finding names as `worse`."""
+    """Yield the numbers that the rule of a finding names as `worse`; without a value where it is not known."""
     for signed in rules[finding.rule].worse if finding.rule in rules else ():
         name = signed.removeprefix(_LESS)
-        value = finding.values.get(name, "")
-        if value is None or (isinstance(value, int | float) and not isinstance(value, bool)):
-            yield name, value
+        value = finding.values.get(name)
+        yield name, value if isinstance(value, int | float) else None
 
 
 def _signed(name: str, finding: Finding) -> str:
@@ -76,7 +77,7 @@ def _signed(name: str, finding: Finding) -> str:
 
 
 def _is_worse(signed: str, before: float | None, now: float | None, share: float, rounding: float) -> bool:
-    """Return True for a number that is worse by more than the tolerance; None is a number without end."""
+    """Return True for a number that is worse by more than the tolerance; None is worse than any number."""
     if before is None or now is None:
         return before is not None
     grown = before - now if signed.startswith(_LESS) else now - before

@@ -152,7 +152,7 @@ def _of_entry(entry: Entry, both: Versions | None, findings: Mapping[int, Findin
 def _ways(entry: Entry, both: Versions | None) -> Iterator[_Way]:
     """Yield the ways in which findings can be those of an entry, the surest first."""
     if both is None or not entry.places:
-        yield lambda places, findings: dict.fromkeys(findings, [*places])
+        yield lambda places, findings: dict.fromkeys(findings, tuple(places))
         return
     yield lambda places, findings: _by_index(
         {at: {None} if place.at is None else both.targets(place.at) for at, place in places.items()},

@@ -23,9 +23,7 @@ class Similar:
         self._programs = programs
         self._smallest: dict[str, frozenset[int]] = {}
 
-    def among(
-        self, files: Iterable[str], outline: Outline, has_same_name: Callable[[str], bool]
-    ) -> dict[str, float]:
+    def among(self, files: Iterable[str], outline: Outline, has_same_name: Callable[[str], bool]) -> dict[str, float]:
         """Return the files whose blocks are mostly those of an outline, with the share of them."""
         smallest = _smallest(outline.hashes)
         ranked = sorted(files, key=lambda file: (-len(smallest & self._of(file)), not has_same_name(file), file))

@@ -220,6 +220,10 @@ def _check(task: Task, data: bytes) -> tuple[FileReport, Source, set[str]]:
         report = check.check_runs(found, settings.rules, settings.severities, settings.inline)
         for extra in settings.extras:
             report = extra(report, found)
+        if settings.baseline is not None:
+            from polarcheck.checking.outline import with_outline
+
+            report = with_outline(report, found)
         return report, text.source, _offsets(found) if settings.job.tools else set()
 
 

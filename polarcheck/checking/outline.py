@@ -21,12 +21,12 @@ MOST = 2000
 _LARGEST = 64_000_000
 #: A hash has so many bits, four characters of base 64.
 BITS = 24
-_BLANKS = {code: None for code in (*range(10), *range(11, 33), 127, 160, ord(";"))} | {ord(":"): "O"}
+_BLANKS = dict.fromkeys((*range(10), *range(11, 33), 127, 160, ord(";"))) | {ord(":"): "O"}
 _SEQUENCE_NUMBER = re.compile(r"^(/?)N\d+", re.MULTILINE)
 _PLUS = re.compile(r"(?<=[A-Z=])\+(?=[\d.])")
 _LEADING_ZEROS = re.compile(r"(?<![\d.])0+(?=[\d.])")
 _TRAILING_ZEROS = re.compile(r"\.\d*0(?!\d)")
-#: A line that says nothing about what is cut: a tape mark, or the number of the program, which changes when it is copied.
+#: A line that says nothing about what is cut: a tape mark, or the number of the program, which a copy changes.
 _HEAD = re.compile(r"%.*|O\d+")
 
 
