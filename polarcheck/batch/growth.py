@@ -12,8 +12,8 @@ from polarcheck.finding import SEVERITIES, Finding
 _SHARE = 0.02
 #: The same of small numbers, the last digit that messages show of a length [mm, deg, deg/min].
 _ROUNDING = 0.001
-#: Before the name of a number of which less is worse.
-_LESS = "-"
+#: Before the name of a number of which less is worse, and between two names whose distance counts (Rule.worse).
+LESS, _FROM = "-", ":"
 
 
 def values_of(finding: Finding) -> dict[str, float]:
@@ -58,29 +58,34 @@ def _of_numbers(place: Place, finding: Finding) -> Iterator[str]:
     now = _numbers(finding)
     for name, value in place.values.items():
         if name in now and _is_worse(_signed(name, finding), value, now[name], _SHARE, _ROUNDING):
-            yield f"known with {name.replace('_', ' ')} {_shown(value)}, now {_shown(now[name])}"
+            words = name.replace("_", " ").replace(_FROM, " off ")
+            yield f"known with {words}{' by' * (_FROM in name)} {_shown(value)}, now {_shown(now[name])}"
 
 
 def _of_rule(finding: Finding, rules: Mapping[str, Rule]) -> Iterator[tuple[str, float | None]]:
     """Yield the numbers that the rule of a finding names as `worse`; without a value where it is not known."""
     for signed in rules[finding.rule].worse if finding.rule in rules else ():
-        name = signed.removeprefix(_LESS)
-        value = finding.values.get(name)
-        yield name, value if isinstance(value, int | float) else None
+        name = signed.removeprefix(LESS)
+        values = [finding.values.get(part) for part in name.split(_FROM)]
+        numbers = [value for value in values if isinstance(value, int | float)]
+        if len(numbers) < len(values):
+            yield name, None
+        else:
+            yield name, numbers[0] if len(numbers) == 1 else abs(numbers[0] - numbers[1])
 
 
 def _signed(name: str, finding: Finding) -> str:
     """Return a name with the sign that its rule gives it."""
     rule, _, last = name.rpartition(".")
     signed: Iterable[str] = load_all()[rule or finding.rule].worse
-    return f"{_LESS}{last}" if f"{_LESS}{last}" in signed else last
+    return f"{LESS}{last}" if f"{LESS}{last}" in signed else last
 
 
 def _is_worse(signed: str, before: float | None, now: float | None, share: float, rounding: float) -> bool:
     """Return True for a number that is worse by more than the tolerance; None is worse than any number."""
     if before is None or now is None:
         return before is not None
-    grown = before - now if signed.startswith(_LESS) else now - before
+    grown = before - now if signed.startswith(LESS) else now - before
     return grown > share * abs(before) + rounding
 
 

@@ -186,7 +186,8 @@ class Rule(Documented, frozen=True):
     follows: by span, the rules that report the same fault first. This finding is then listed under theirs.
     worst: the column whose highest value selects the hit to report, where one finding covers several.
     is_advice: the rule is off unless the machine or the user names a severity for it.
-    worse: the values of the message that grow where the fault grows worse; behind a minus those of which less is worse.
+    worse: the values of the message that grow where the fault grows worse; behind a minus those of which less is worse,
+    and with a colon between them two whose distance counts (position:limit).
     parameters: the names of the tables that the function compares.
     """
 
