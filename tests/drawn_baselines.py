@@ -300,5 +300,5 @@ if __name__ == "__main__":
     wrong = 0
     for seed, said in faults(int(sys.argv[2]) if len(sys.argv) > 2 else 0, amount):
         wrong += 1
-        print(seed, said)  # noqa: T201
-    print(f"{amount} pairs, {wrong} wrong, {time.monotonic() - begun:.0f} s")  # noqa: T201
+        print(seed, said)
+    print(f"{amount} pairs, {wrong} wrong, {time.monotonic() - begun:.0f} s")

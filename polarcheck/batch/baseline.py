@@ -186,7 +186,7 @@ class Baseline:
         program = self._programs.get(os.path.normcase(entries[0].file)) if entries else None
         return entries, versions(program, report.outline)
 
-    def without_known(self, report: FileReport, evaluated: Collection[str], fail_on: str = "warning") -> FileReport:
+    def without_known(self, report: FileReport, evaluated: Collection[str]) -> FileReport:
         """
         Return the report with the known findings suppressed, and the verdict of the others.
 
@@ -222,7 +222,7 @@ class Baseline:
             findings=reported,
             not_evaluated=not_evaluated,
             silenced=in_order([*report.silenced, *suppressed]),
-            verdict=verdict(reported, not_evaluated, fail_on),
+            verdict=verdict(reported, not_evaluated),
         )
 
     def updated(self, reports: Iterable[tuple[FileReport, Collection[str]]], reason: str) -> Updated:

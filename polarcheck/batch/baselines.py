@@ -13,7 +13,7 @@ from polarcheck.batch.baseline_file import Contents
 from polarcheck.checking.rule import load_all
 from polarcheck.checking.settings import Settings
 from polarcheck.errors import BaselineError
-from polarcheck.finding import FileReport
+from polarcheck.finding import UNREADABLE, FileReport
 
 
 class Program(NamedTuple):
@@ -103,7 +103,7 @@ class Baselines:
         if report.path not in self._of_program:
             return report
         baseline, settings = self._of_program[report.path]
-        return baseline.without_known(report, evaluated(report, settings), settings.fail_on)
+        return baseline.without_known(report, evaluated(report, settings))
 
 
 def _read(path: Path, named_by: str) -> Contents:
@@ -119,7 +119,7 @@ def _read(path: Path, named_by: str) -> Contents:
 def evaluated(report: FileReport, settings: Settings) -> Collection[str]:
     """Return the rules that were evaluated for a file: only their known findings may have disappeared."""
     missing = {gap.rule for gap in report.not_evaluated if gap.matters}
-    if "all" in missing:
+    if "all" in missing or report.verdict == UNREADABLE:
         return ()
     levels = {**settings.machine.severities, **settings.severities}
     return {rule.name for rule in settings.rules if rule.level(levels) != "off"} - missing

@@ -9,7 +9,7 @@ import msgspec
 
 from polarcheck.checking.rule import Rule
 from polarcheck.checking.tables import Tables
-from polarcheck.finding import FileReport
+from polarcheck.finding import Decided, FileReport
 from polarcheck.machines.job import Job
 from polarcheck.machines.machine import Machine
 
@@ -32,6 +32,8 @@ class Settings(msgspec.Struct, frozen=True):
     inline: allow comments of the program are respected.
     baseline: the file of known findings.
     baseline_named_by: the place in the job file that names it; empty if an option does.
+    decided: what of this the user has written, for reports.
+    profile_sha256: of the machine.
     extras: module-level functions, since other processes import them by name; called in this order.
     """
 
@@ -47,4 +49,6 @@ class Settings(msgspec.Struct, frozen=True):
     inline: bool = True
     baseline: Path | None = None
     baseline_named_by: str = ""
+    decided: Decided = Decided()
+    profile_sha256: str = ""
     extras: Sequence[Extra] = ()

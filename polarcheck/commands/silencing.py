@@ -95,10 +95,11 @@ def without_known(outcomes: Iterable[Outcome], tasks: Sequence[Task], baselines:
     import msgspec
 
     from polarcheck.batch.tasks import fails
+    from polarcheck.finding import UNREADABLE
 
     settings = settings_of(tasks)
     for outcome in outcomes:
-        if outcome.report is None:
+        if outcome.report is None or outcome.report.verdict == UNREADABLE:
             yield outcome
         else:
             report = baselines.without_known(outcome.report)
