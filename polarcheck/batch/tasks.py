@@ -268,6 +268,10 @@ def _check(task: Task, data: bytes) -> tuple[FileReport, Source, set[str], Basis
         report = check.check_runs(found, settings.rules, settings.severities, settings.inline)
         for extra in settings.extras:
             report = extra(report, found)
+        if settings.baseline is not None:
+            from polarcheck.checking.outline import with_outline
+
+            report = with_outline(report, found)
         offsets = _offsets(found) if settings.job.tools else set()
         # Whoever has left something out because the time was over has done so before this moment.
         basis = None if limit.is_over() else Basis(digest(data), tuple(look_ups))

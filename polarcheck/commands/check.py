@@ -70,6 +70,8 @@ def _outputs(ctx: click.Context, parameter: click.Parameter, values: tuple[str, 
     help="A report in a file, too.",
 )
 @silencing.baseline
+@silencing.no_baseline
+@silencing.fail_on_stale
 @reporting.statistics
 @diff_base
 @with_callers
@@ -144,6 +146,8 @@ class _Arguments(NamedTuple):
     form: str | None
     outputs: list[tuple[str, Path]]
     no_config: bool
+    no_baseline: bool
+    fail_on_stale: bool
     force_exclude: bool
     extensions: tuple[str, ...]
     max_size: int
@@ -207,7 +211,12 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
         from polarcheck.parts.part_report import part_of
 
         extras = (*extras, part_of, compared_in)
-    applies = Options(use_config=not arguments.no_config, extras=extras, **arguments.more)
+    applies = Options(
+        use_config=not arguments.no_config,
+        use_baseline=not arguments.no_baseline,
+        extras=extras,
+        **arguments.more,
+    )
     faults = running.Faults(arguments.debug)
     tasks = running.planned(
         arguments.paths,
@@ -224,8 +233,9 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
     tasks = narrowed(tasks, arguments.diff_base, arguments.changed, arguments.max_size, not arguments.quiet)
     is_colored = in_color(arguments.color)
     shown_in = fixing.Shown(arguments.quiet, is_colored, arguments.debug, bool(arguments.outputs))
-    baseline = None if applies.baseline is None else silencing.Known(applies.baseline, arguments.paths)
-    fixed = fixing.run(arguments.fixes, tasks, arguments.max_size, shown_in, silencing.suppressor(tasks, baseline))
+    baselines = silencing.of_run(tasks, arguments.paths)
+    suppress = None if baselines is None else baselines.copy().without_known
+    fixed = fixing.run(arguments.fixes, tasks, arguments.max_size, shown_in, suppress)
     if fixed.ends:
         return max(faults.report(), fixed.status)
     form = arguments.form or ("text" if len(tasks) <= _LONG or arguments.shown_too else "short")
@@ -241,7 +251,7 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
             silenced=arguments.silenced,
             fixed=fixed.fixed,
             dots=draws_dots(),
-            has_baseline=applies.baseline is not None,
+            has_baseline=baselines is not None,
             drawn=pictures.drawn,
         ),
         tasks,
@@ -254,9 +264,10 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
     cache = None if arguments.no_cache else running.cache(arguments.max_size, arguments.cache_dir)
     runner = running.Runner(arguments.max_size, arguments.workers, arguments.cluster, seen, cache)
     pictures.begin(plain)
-    checked = runner.check(tasks, bar, faults, baseline, live_report.file, pictures.split)
+    checked = runner.check(tasks, bar, faults, baselines, live_report.file, pictures.split)
     pictures.end()
-    status = max(int(checked.failed), fixed.status, faults.report())
+    is_stale = arguments.fail_on_stale and silencing.stale(baselines)
+    status = max(int(checked.failed or is_stale), fixed.status, faults.report())
     reason = checked.broken_off
     if checked.stopped is not None:
         status, how = signals.exit_status(checked.stopped)

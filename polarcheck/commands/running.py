@@ -14,6 +14,7 @@ from polarcheck.commands.exit_codes import BUG, CLEAN, COULD_NOT_RUN
 from polarcheck.commands.output import bug_lines, say, say_lines, warn
 
 if TYPE_CHECKING:
+    from polarcheck.batch.baselines import Baselines
     from polarcheck.batch.cache.outcomes import Cache
     from polarcheck.batch.tasks import Checked, Outcome, Task
     from polarcheck.commands.progress import Bar
@@ -109,14 +110,14 @@ class Runner:
         tasks: Sequence[Task],
         bar: Bar,
         faults: Faults,
-        baseline: silencing.Known | None = None,
+        baselines: Baselines | None = None,
         show: Callable[[FileReport, Mapping[int, str]], None] | None = None,
         take: Callable[[Iterable[Outcome]], Iterator[Outcome]] | None = None,
     ) -> Checked:
         """
         Return the outcomes of the programs, up to an interrupt.
 
-        baseline: the file of known findings, which are silenced.
+        baselines: of known findings, which are silenced.
         show: takes each report in its turn.
         take: removes data from the reports that is not shown, such as pictures.
 
@@ -128,7 +129,7 @@ class Runner:
             self._outcomes(tasks) if self._before is None else self._before.outcomes(tasks, self._outcomes) as outcomes,
             contextlib.closing(bar.watched(outcomes)) as watched,
         ):
-            suppressed = silencing.without_known(watched, tasks, baseline)
+            suppressed = silencing.without_known(watched, tasks, baselines)
             reported = suppressed if take is None else take(suppressed)
             return batch.gather(reported, faults.failures.append, faults.bug, show)
 

@@ -33,6 +33,7 @@ class Options(msgspec.Struct, frozen=True):
     """
     The options of the command line, as written; empty or None if not set.
 
+    use_baseline: False to ignore the baseline that a job file names.
     extras: functions that add data to the reports of files.
     keywords: those of a Python function, which lie over the job files.
     """
@@ -58,6 +59,7 @@ class Options(msgspec.Struct, frozen=True):
     encoding: str | None = None
     inline: bool | None = None
     baseline: Path | None = None
+    use_baseline: bool = True
     drawings: Sequence[Path] = ()
     drawing_layers: Sequence[str] = ()
     tolerance: float | None = None
@@ -229,18 +231,22 @@ class SettingsMaker:
         check_tools(job, options.tools, machine, merged.at)
         check_work_offsets(job, machine, merged.at)
         rules, levels = self._chosen(job, merged, profile)
+        named = options.baseline or (None if job.baseline is None else Path(job.baseline))
+        baseline = named if options.use_baseline else None
         settings = Settings(
             name=name,
             machine=machine,
             job=job,
             rules=rules,
             severities=levels,
-            read=_files_read(options, job, profile, file),
+            read=_files_read(options, job, profile, file, baseline),
             job_file=file.path,
             fail_on=job.fail_on,
             strict=job.strict,
             encoding=job.encoding,
             inline=job.inline,
+            baseline=baseline,
+            baseline_named_by="" if baseline in (None, options.baseline) else f"{merged.at('baseline')}: baseline",
             profile_sha256=self._hash(machine),
             extras=options.extras,
         )
@@ -332,10 +338,12 @@ def _parts(parts: Sequence[Part], options: Options) -> list[Part]:
 _OVER_JOB = ("machine", "radius_from_comments", "fail_on", "strict", "encoding", "inline")
 
 
-def _files_read(options: Options, job: Job, profile: profiles.Profile, file: JobFile) -> list[Path]:
+def _files_read(
+    options: Options, job: Job, profile: profiles.Profile, file: JobFile, baseline: Path | None
+) -> list[Path]:
     """Return the job files, offset tables, drawings, the baseline and the user's machine files."""
     machines = [Path(title) for title in profile.chain if title not in profiles.names()]
-    tables = [path for path in (options.offsets, options.baseline) if path]
+    tables = [path for path in (options.offsets, baseline) if path]
     tables += [Path(part.drawing) for part in job.part if part.drawing is not None]
     return [*machines, *tables, *file.paths, *([Path(job.offsets)] if job.offsets else [])]
 
