@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import enum
 from collections.abc import Mapping, Sequence
-from typing import Any
 
 import msgspec
 from msgspec import UNSET, UnsetType
@@ -64,7 +63,7 @@ class Finding(msgspec.Struct, frozen=True, kw_only=True):
     program: number or name of its program, as O0001.
     section_line: line of the G12.1 that begins its polar section.
     alarm: the alarm that this control shows; null if none is known.
-    values: the numbers of the message by fixed names, in fixed units.
+    values: its numbers by fixed names in fixed units, and the codes, words and names at fault (docs/values.md).
     count: how many executed blocks or words it stands for.
     source: page of the manual.
     fingerprint: recognises the finding after other blocks have changed.
@@ -84,7 +83,7 @@ class Finding(msgspec.Struct, frozen=True, kw_only=True):
     program: str | None = None
     section_line: int | None = None
     alarm: str | None = None
-    values: dict[str, Any] = {}
+    values: dict[str, int | float | str] = {}
     count: int = 1
     source: str = ""
     fingerprint: str = ""
@@ -314,6 +313,21 @@ class KnownStock(msgspec.Struct, frozen=True, kw_only=True):
     face_end_line: int | None
 
 
+class Outline(msgspec.Struct, frozen=True):
+    """
+    The blocks of a file in short, by which a baseline finds its places again.
+
+    hashes: one per block that says something, in their order; renumbered and respaced blocks have the same.
+    of: only hashes that are a multiple of this are listed, 1 for all.
+    place_of_line: for lines of findings, and of the sections that they stand in, the index of the hash of the block
+    there, or of the last one that is listed before it, -1 for none. Lines without a block, as of a comment, are absent.
+    """
+
+    hashes: list[int]
+    of: int
+    place_of_line: dict[int, int]
+
+
 class Decided(msgspec.Struct, frozen=True, kw_only=True):
     """
     The settings that decided a verdict and the exit code, as the user has written them.
@@ -396,6 +410,7 @@ class FileReport(msgspec.Struct, frozen=True, kw_only=True):
     silenced: suppressed findings.
     stock: the bar before milling, if anything is known of it.
     makes: in one line what the only section makes, for text; not part of the JSON contract.
+    outline: its blocks in short, for a baseline; not part of the JSON contract.
     part: what the program makes, if requested.
     compared: its contours compared with those asked for, if requested.
     """
@@ -417,6 +432,7 @@ class FileReport(msgspec.Struct, frozen=True, kw_only=True):
     silenced: list[Silenced] = []
     stock: KnownStock | None = None
     makes: str | UnsetType = UNSET
+    outline: Outline | UnsetType = UNSET
     part: list[MadeShape] | UnsetType = UNSET
     compared: list[PartComparison] | UnsetType = UNSET
 
@@ -428,8 +444,27 @@ class Producer(msgspec.Struct, frozen=True):
     version: str
 
 
+class NotRead(msgspec.Struct, frozen=True):
+    """
+    Files of walked folders that may be NC programs by their look, and were not read.
+
+    ending: with its point, in lower case; empty for files without ending.
+    files: their number.
+    first: the path of the first of them.
+    """
+
+    ending: str
+    files: int
+    first: str
+
+
 class Summary(msgspec.Struct, frozen=True, kw_only=True):
-    """Counts over all files."""
+    """
+    Counts over all files.
+
+    not_read: of the folders that were walked, by ending.
+    excluded: programs that patterns exclude; in folders of more than 50,000 entries there may be more.
+    """
 
     files: int
     errors: int
@@ -440,6 +475,8 @@ class Summary(msgspec.Struct, frozen=True, kw_only=True):
     unverified: int
     fail: int
     unreadable: int
+    not_read: list[NotRead] = []
+    excluded: int = 0
 
 
 class Report(msgspec.Struct, frozen=True, kw_only=True):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
 from polarcheck.finding import Decided
@@ -28,12 +29,18 @@ OPTIONS = {
 
 
 def decided(
-    machine: str, options: Mapping[str, Any], named: Mapping[str, str], merged: Merged, configuration: Sequence[str]
+    machine: str,
+    baseline: Path | None,
+    options: Mapping[str, Any],
+    named: Mapping[str, str],
+    merged: Merged,
+    configuration: Sequence[str],
 ) -> Decided:
     """
     Return what decides, with the origin of each value that is not the default.
 
     machine: its name or file, as given by the user.
+    baseline: the file of known findings.
     options: values of the OPTIONS; empty or None if not set.
     named: what has set an option, where that is not the option.
     merged: the job of the job files.
@@ -54,7 +61,7 @@ def decided(
     return Decided(
         machine=shown(machine),
         changes=options["changes"],
-        baseline=None if options["baseline"] is None else shown(str(options["baseline"])),
+        baseline=None if baseline is None else shown(str(baseline)),
         configuration=[shown(path) for path in configuration],
         sources=dict(_sources(options, named, merged)),
         reasons={key: reason for key, reason in reasons.items() if reason},

@@ -16,7 +16,7 @@ from polarcheck.machines.machine import Machine
 from polarcheck.machines.profiles import Profile
 from polarcheck.reading.files import shown
 from polarcheck.settings.job_layers import Merged
-from polarcheck.settings.selection import Rules, select
+from polarcheck.settings.selection import Names, Rules, select
 
 #: Levels of rules whose findings fail a file.
 _WEIGHTY = ("error", "warning")
@@ -25,27 +25,6 @@ _NAMED = 3
 #: What to write in a job file, so that the verdict stays as it is.
 _LEVEL, _RULES = '{ level = "off", reason = "..." }', '{ rules = ["..."], reason = "..." }'
 _DESELECTED = "deselected"
-
-
-class Selection(NamedTuple):
-    """
-    The options that select rules.
-
-    selected, ignored: names of rules, groups and alarms.
-    levels: `RULE=LEVEL`.
-    origins: by `select`, `ignore` and `severities`, what has set them, as `--select ` or `POLARCHECK_SELECT=`.
-    """
-
-    selected: Sequence[str]
-    ignored: Sequence[str]
-    levels: Sequence[str]
-    origins: Mapping[str, str] = {}
-
-    def cause(self, key: str, names: Sequence[str]) -> str:
-        """Return the option or variable with its value, shortened."""
-        more = f" and {len(names) - _NAMED} more" if len(names) > _NAMED else ""
-        default = {"select": "--select ", "ignore": "--ignore ", "severities": "--severity "}[key]
-        return f"{self.origins.get(key, default)}{','.join(names[:_NAMED])}{more}"
 
 
 class _Switch(NamedTuple):
@@ -61,11 +40,19 @@ class _Switch(NamedTuple):
 
 
 def deselected(
-    options: Selection, merged: Merged, profile: Profile, known: Rules, rules: Sequence[Rule], levels: Mapping[str, str]
+    names: Names,
+    named: Mapping[str, str],
+    merged: Merged,
+    profile: Profile,
+    known: Rules,
+    rules: Sequence[Rule],
+    levels: Mapping[str, str],
 ) -> list[str]:
     """
     Return a line for each selection that keeps rules of weight from running.
 
+    names: those of the command line, or of a Python function.
+    named: what has set an option, where that is not the option: `POLARCHECK_SELECT=` by `select`.
     merged: the job.
     known, rules: all rules, and those that run.
     levels: the severities that differ from those of the profile.
@@ -74,7 +61,7 @@ def deselected(
     run = {rule.name for rule in rules if rule.level(final) in _WEIGHTY}
     if len(run) == len(known):
         return []
-    finder = _Finder(options, merged, profile, known)
+    finder = _Finder(names, named, merged, profile, known)
     switches: dict[_Switch, list[str]] = {}
     for rule in known.values():
         if rule.name not in run and (switch := finder.switch(rule)) is not None:
@@ -91,9 +78,11 @@ def _line(switch: _Switch, names: Sequence[str]) -> str:
 class _Finder:
     """Finds what keeps a rule from running; the weight of a rule is decided on the way."""
 
-    def __init__(self, options: Selection, merged: Merged, profile: Profile, known: Rules) -> None:
+    def __init__(
+        self, options: Names, named: Mapping[str, str], merged: Merged, profile: Profile, known: Rules
+    ) -> None:
         machine, job = profile.machine, merged.job
-        self._options, self._merged, self._profile = options, merged, profile
+        self._options, self._named, self._merged, self._profile = options, named, merged, profile
         self._selected = _names(options.selected, known, machine) if options.selected else None
         self._ignored = _names(options.ignored, known, machine)
         of_job = names_of(job.select)
@@ -134,12 +123,18 @@ class _Finder:
         option = self._of_options.get(name, "")
         level = option.rpartition("=")[2].strip().lower()
         if option and level not in _WEIGHTY:
-            switch = _Switch(_how(level), self._options.cause("severities", [option]))
+            switch = _Switch(_how(level), self._cause("severities", [option]))
         if self._selected is not None and name not in self._selected:
-            switch = _Switch(_DESELECTED, self._options.cause("select", self._options.selected))
+            switch = _Switch(_DESELECTED, self._cause("select", self._options.selected))
         if name in self._ignored:
-            switch = _Switch(_DESELECTED, self._options.cause("ignore", self._options.ignored))
+            switch = _Switch(_DESELECTED, self._cause("ignore", self._options.ignored))
         return switch
+
+    def _cause(self, key: str, names: Sequence[str]) -> str:
+        """Return the option or variable with its value, shortened."""
+        option = "--severity" if key == "severities" else f"--{key}"
+        more = f" and {len(names) - _NAMED} more" if len(names) > _NAMED else ""
+        return f"{self._named.get(key) or f'{self._options.spelled(option)} '}{','.join(names[:_NAMED])}{more}"
 
     def _without_reason(self, key: str, form: str) -> str:
         # The file alone: to find the line, its text would be read once more for each check.
