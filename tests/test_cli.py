@@ -813,7 +813,7 @@ def test_the_version_is_shown() -> None:
 # ---- schemas ----
 
 
-@pytest.mark.parametrize("name", ["report", "job", "machine", "feeds"])
+@pytest.mark.parametrize("name", ["report", "job", "machine", "feeds", "comparison"])
 def test_schemas_are_valid_and_say_what_they_are(name: str) -> None:
     shown = json.loads(call("schema", name).stdout, parse_constant=pytest.fail)
     jsonschema.Draft202012Validator.check_schema(shown)

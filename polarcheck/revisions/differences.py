@@ -71,7 +71,9 @@ def _of_path(old: Part, new: Part, deviation: PathDeviation) -> Difference:
         moving = old if missing[0] is new else new
         line = moving.line(int(moving.stretch.row[0]))
         text = f"the {name} revision moves nothing here"
-        return Difference("path", text, old_line=line if moving is old else None, new_line=line if moving is new else None)
+        return Difference(
+            "path", text, old_line=line if moving is old else None, new_line=line if moving is new else None
+        )
     old_row, new_row = int(old.stretch.row[place.old_move]), int(new.stretch.row[place.new_move])
     at_old = _place(old, old_row, place.old, place.old_z)
     at_new = _place(new, new_row, place.new, place.new_z)
@@ -79,10 +81,11 @@ def _of_path(old: Part, new: Part, deviation: PathDeviation) -> Difference:
     size = f"{'' if deviation.is_exact else 'up to '}{old.quantity(largest, old_row).shown('length', 1)}"
     if old.stretch.section < 0 and largest == 0:
         size = "C alone"
+    units = [part.quantity(0.0, row).unit for part, row in ((old, old_row), (new, new_row))]
+    if units[0] != units[1]:
+        at_old, at_new = f"{at_old} {units[0]}", f"{at_new} {units[1]}"
     text = f"the path differs by {size}: {at_old} | {at_new}"
-    return Difference(
-        "path", text, 0.0, rounded(largest), "mm", old.line(old_row), new.line(new_row)
-    )
+    return Difference("path", text, 0.0, rounded(largest), "mm", old.line(old_row), new.line(new_row))
 
 
 def _largest(old: Part, deviation: PathDeviation) -> float:
@@ -100,7 +103,7 @@ def length_of(part: Part, deviation: PathDeviation | None) -> float:
 
 
 def _place(part: Part, row: int, point: complex, third: float) -> str:
-    """`X60. C5. Z-2.` in the units of the program; outside of sections Z and X come as one point, and C as the third."""
+    """`X60 C5 Z-2` in the units of the program; outside of sections Z and X are the point, and C is the third."""
     trace, section = part.trace, part.stretch.section
     if section >= 0:
         point = point / turn_of(trace, section)
@@ -130,7 +133,9 @@ def _of_depth(old: Part, new: Part, tolerance: float) -> Iterator[Difference]:
     if old.stretch.section < 0 or before is None or after is None or abs(before - after) <= tolerance:
         return
     rows = [int(part.stretch.row[~part.stretch.rapid][0]) for part in (old, new)]
-    shown = [_number(part, row, z) for part, row, z in zip((old, new), rows, (before, after), strict=True)]
+    shown = [
+        part.quantity(z, row).shown("length") for part, row, z in zip((old, new), rows, (before, after), strict=True)
+    ]
     yield Difference("depth", f"the depth was Z{shown[0]} and is Z{shown[1]}", before, after, "mm")
 
 
@@ -197,9 +202,7 @@ def _feed(part: Part, move: int) -> str:
 
 def _feeds_apart(old: Part, new: Part) -> Iterator[Difference]:
     """The F of two paths that are not the same: each once."""
-    feeds = [
-        list(dict.fromkeys(_feed(part, move) for move in _changes_of_feed(part.stretch))) for part in (old, new)
-    ]
+    feeds = [list(dict.fromkeys(_feed(part, move) for move in _changes_of_feed(part.stretch))) for part in (old, new)]
     if sorted(feeds[0]) != sorted(feeds[1]):
         shown = [", ".join(each[:_LISTED]) or "none" for each in feeds]
         yield Difference("feed", f"F was {shown[0]} and is {shown[1]}", shown[0], shown[1])
@@ -262,9 +265,7 @@ def _changed_orders(old: Part, new: Part, left: Sequence[Step], right: Sequence[
     return Difference("order", text, was or None, is_now or None, "", old_line, new_line)
 
 
-def _of_pair(
-    old: Part, step: Step, new: Part, other: Step, tolerance: float, is_same_path: bool
-) -> Difference | None:
+def _of_pair(old: Part, step: Step, new: Part, other: Step, tolerance: float, is_same_path: bool) -> Difference | None:
     """Orders of the same words: their values, and where they stand on the path."""
     lines = old.line(step.row), new.line(other.row)
     for value, after in zip(step.values, other.values, strict=True):

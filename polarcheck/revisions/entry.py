@@ -84,11 +84,16 @@ def entry_differences(old: Part, new: Part, *, is_same_machine: bool, tolerance:
         if what == "c_angle":
             apart = min(apart, 360 - apart)
         least = {"c_angle": _SAME_ANGLE, "radius": tolerance}.get(what, 0.0)
-        if np.isnan(value) and np.isnan(other) or apart <= least:
+        if (np.isnan(value) and np.isnan(other)) or apart <= least:
             continue
         shown = [_shown(part, what, number) for part, number in ((old, value), (new, other))]
         yield Difference(
-            what, f"{_NAMES[what]} was {shown[0]} and is {shown[1]}", rounded(value), rounded(other), _UNITS[what], *lines
+            what,
+            f"{_NAMES[what]} was {shown[0]} and is {shown[1]}",
+            rounded(value),
+            rounded(other),
+            _UNITS[what],
+            *lines,
         )
 
 

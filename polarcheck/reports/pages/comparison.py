@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import msgspec
 
 from polarcheck import __version__
 from polarcheck.checking.phrases.part import Sizes
+from polarcheck.pictures.painting import Paint
 from polarcheck.reading.excerpt import visible
-from polarcheck.reports import Paint
 from polarcheck.revisions.report import (
     DIFFERS,
     NOT_COMPARED,
     SAME_METAL,
     SAME_WORDS,
     Comparison,
+    ComparisonReport,
     Difference,
     SectionPair,
     Side,
@@ -23,22 +24,7 @@ from polarcheck.revisions.report import (
 
 #: Times and rates that differ by less than this share are shown as one.
 _SHOWN = 0.005
-_STYLES = {DIFFERS: "bold red", NOT_COMPARED: "bold yellow", SAME_METAL: "bold green", SAME_WORDS: "bold green"}
-
-
-class ComparisonReport(msgspec.Struct, frozen=True):
-    """
-    The JSON document of `polarcheck compare`.
-
-    schema: its version. files: a comparison for each pair of files. only_old, only_new: programs of two folders that
-    the other one does not have.
-    """
-
-    schema: int
-    tool: dict[str, str]
-    files: list[Comparison]
-    only_old: list[str] = []
-    only_new: list[str] = []
+_STYLES = {DIFFERS: "fail", NOT_COMPARED: "unverified", SAME_METAL: "pass", SAME_WORDS: "pass"}
 
 
 def json(comparisons: list[Comparison], only_old: list[str], only_new: list[str]) -> bytes:
@@ -55,7 +41,8 @@ def text(comparison: Comparison, *, inch: bool, paint: Paint) -> str:
 
 def _lines(comparison: Comparison, sizes: Sizes, paint: Paint) -> Iterator[str]:
     old, new = comparison.old, comparison.new
-    yield f"{visible(old.path)} | {visible(new.path)}: {paint(_headline(comparison, sizes), _STYLES[comparison.verdict])}"
+    headline = paint(_STYLES[comparison.verdict], _headline(comparison, sizes))
+    yield f"{visible(old.path)} | {visible(new.path)}: {headline}"
     if old.machine != new.machine:
         yield f"  machines: {visible(old.machine)} | {visible(new.machine)}"
     for section in comparison.sections:
@@ -64,7 +51,9 @@ def _lines(comparison: Comparison, sizes: Sizes, paint: Paint) -> Iterator[str]:
         yield "  outside of sections:"
         yield from (f"    {_difference(difference)}" for difference in comparison.outside)
     for entry in comparison.not_compared:
-        yield f"  not compared, because {visible(entry.reason)}" if entry.matters else f"  note: {visible(entry.reason)}"
+        yield (
+            f"  not compared, because {visible(entry.reason)}" if entry.matters else f"  note: {visible(entry.reason)}"
+        )
 
 
 def _headline(comparison: Comparison, sizes: Sizes) -> str:
@@ -79,7 +68,19 @@ def _headline(comparison: Comparison, sizes: Sizes) -> str:
         return f"the same metal{f': {deviation}' if deviation else ''}"
     if comparison.verdict == NOT_COMPARED:
         return "not compared"
+    if (
+        comparison.deviation is not None
+        and comparison.deviation <= comparison.tolerance
+        and not _has_other_path(comparison)
+    ):
+        return f"differs, along the same path ({deviation})"
     return f"differs{f': {deviation}' if deviation else ''}"
+
+
+def _has_other_path(comparison: Comparison) -> bool:
+    """A path, a depth or a section differs."""
+    differing = [*comparison.outside, *(each for section in comparison.sections for each in section.differences)]
+    return any(each.what in ("path", "depth", "section", "c_angle") for each in differing)
 
 
 def _fine(value: float, sizes: Sizes) -> str:
@@ -92,7 +93,7 @@ def _section(section: SectionPair, sizes: Sizes) -> Iterator[str]:
         return
     yield f"  section {_lines_of(section.old)} | {_lines_of(section.new)}: {section.change}"
     for difference in section.differences:
-        if difference.what != "section":
+        if section.change == "changed" or difference.what != "section":
             yield f"    {_difference(difference)}"
     if section.old is not None and section.new is not None:
         changes = [
@@ -125,3 +126,9 @@ def _difference(difference: Difference) -> str:
     lines = [None if line is None else f"line {line}" for line in (difference.old_line, difference.new_line)]
     where = "" if lines == [None, None] else f"{lines[0] or '-'} | {lines[1] or '-'}: "
     return visible(f"{where}{difference.text}")
+
+
+def single_files(only_old: Sequence[str], only_new: Sequence[str]) -> str:
+    """Return a line for each program of two folders that the other one does not have."""
+    lines = [f"{visible(name)}: only in the old folder\n" for name in only_old]
+    return "".join([*lines, *(f"{visible(name)}: only in the new folder\n" for name in only_new)])

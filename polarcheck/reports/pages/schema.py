@@ -27,8 +27,8 @@ _TYPES: dict[Kind | None, str | list[str]] = {
 
 
 def schema(name: str) -> Schema:
-    """Return the schema of `report`, `job`, `machine` or `feeds`."""
-    content = {"report": _report, "job": _job, "machine": _machine, "feeds": _feeds}[name]()
+    """Return the schema of `report`, `job`, `machine`, `feeds` or `comparison`."""
+    content = {"report": _report, "job": _job, "machine": _machine, "feeds": _feeds, "comparison": _comparison}[name]()
     number = SCHEMA if name == "report" else 1
     return {"$schema": DIALECT, "$id": f"urn:polarcheck:{name}:{number}", **content}
 
@@ -68,6 +68,16 @@ def _feeds() -> Schema:
     content: Schema = msgspec.json.schema(FeedReport)
     content["$defs"]["FeedReport"]["properties"]["schema"] = {"const": 1}
     content["$defs"]["FeedRow"]["properties"]["limited_by"] = {"enum": list(LIMITED_BY)}
+    return content
+
+
+def _comparison() -> Schema:
+    from polarcheck.revisions.report import CHANGES, VERDICTS, ComparisonReport
+
+    content: Schema = msgspec.json.schema(ComparisonReport)
+    content["$defs"]["ComparisonReport"]["properties"]["schema"] = {"const": 1}
+    content["$defs"]["Comparison"]["properties"]["verdict"] = {"enum": list(VERDICTS)}
+    content["$defs"]["SectionPair"]["properties"]["change"] = {"enum": list(CHANGES)}
     return content
 
 
