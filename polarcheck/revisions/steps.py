@@ -183,5 +183,6 @@ class _Reader:
         """A letter, a letter behind a comma as `,R`, or the name of an axis."""
         if number < FIRST_NAMED:
             return f",{chr(number).upper()}" if chr(number).islower() else chr(number)
-        named = list(self._trace.machine.control.named_axes)
+        control = self._trace.machine.control
+        named = [*sorted(control.named_axes), *sorted(control.spindle_words)]
         return named[number - FIRST_NAMED] if number - FIRST_NAMED < len(named) else "?"

@@ -123,8 +123,9 @@ class Layer:
             values["work_offsets"] = {name.upper(): value for name, value in values["work_offsets"].items()}
         if "machine" in values:
             values["machine"] = _machine(values["machine"], folder)
-        if "offsets" in values:
-            values["offsets"] = str(beside(folder, values["offsets"]))
+        for key in ("offsets", "baseline"):
+            if key in values:
+                values[key] = str(beside(folder, values[key]))
         if "subprograms" in values.get("run", {}):
             folders = [self._folder(folder, written) for written in values["run"]["subprograms"]]
             values["run"] = {**values["run"], "subprograms": folders}

@@ -26,13 +26,16 @@ from polarcheck.settings.selection import Rules
 
 if TYPE_CHECKING:
     from polarcheck.settings.jobs_above import LeftBehind
+    from polarcheck.settings.keywords import Keywords
 
 
 class Options(msgspec.Struct, frozen=True):
     """
     The options of the command line, as written; empty or None if not set.
 
+    use_baseline: False to ignore the baseline that a job file names.
     extras: functions that add data to the reports of files.
+    keywords: those of a Python function, which lie over the job files.
     """
 
     machine: str | None = None
@@ -56,10 +59,16 @@ class Options(msgspec.Struct, frozen=True):
     encoding: str | None = None
     inline: bool | None = None
     baseline: Path | None = None
+    use_baseline: bool = True
     drawings: Sequence[Path] = ()
     drawing_layers: Sequence[str] = ()
     tolerance: float | None = None
     extras: Sequence[Extra] = ()
+    keywords: Keywords | None = None
+
+    def spelled(self, option: str) -> str:
+        """Return an option as its user writes it, for messages: --select, or a keyword of a Python function."""
+        return option if self.keywords is None else self.keywords.spelled(option)
 
 
 class OfPrograms:
@@ -199,10 +208,11 @@ class SettingsMaker:
 
     def __init__(self, options: Options) -> None:
         if options.drawing_layers and not options.drawings:
-            raise UsageError("--drawing-layer: give the drawing by --drawing, too; a [[part]] has layers of its own")
+            layers, drawings = options.spelled("--drawing-layer"), options.spelled("--drawing").rpartition(" ")[2]
+            raise UsageError(f"{layers}: give the drawing by {drawings}, too; a [[part]] has layers of its own")
         self._options = options
         self._known = load_all()
-        self._changes = changes(options.changes)
+        self._changes = options.keywords.changes if options.keywords else changes(options.changes)
         self._profiles: dict[str, profiles.Profile] = {}
         self._rules: dict[str, tuple[list[Rule], dict[str, str]]] = {}
         self._hashes: dict[int, str] = {}
@@ -213,7 +223,7 @@ class SettingsMaker:
     def applied(self, file: JobFile, layers: Layers) -> Applied:
         """Return the settings of layers of a job file."""
         options = self._options
-        merged = file.merged(layers)
+        merged = file.merged(layers, options.keywords.layers if options.keywords else ())
         job = _changed(merged.job, options)
         name = options.machine or job.machine or profiles.DEFAULT
         profile = self._profile(name, merged)
@@ -221,24 +231,29 @@ class SettingsMaker:
         check_tools(job, options.tools, machine, merged.at)
         check_work_offsets(job, machine, merged.at)
         rules, levels = self._chosen(job, merged, profile)
+        named = options.baseline or (None if job.baseline is None else Path(job.baseline))
+        baseline = named if options.use_baseline else None
         settings = Settings(
             name=name,
             machine=machine,
             job=job,
             rules=rules,
             severities=levels,
-            read=_files_read(options, job, profile, file),
+            read=_files_read(options, job, profile, file, baseline),
+            job_file=file.path,
             fail_on=job.fail_on,
             strict=job.strict,
             encoding=job.encoding,
             inline=job.inline,
+            baseline=baseline,
+            baseline_named_by="" if baseline in (None, options.baseline) else f"{merged.at('baseline')}: baseline",
             profile_sha256=self._hash(machine),
             extras=options.extras,
         )
         return Applied(settings, merged, profile, file)
 
     def _profile(self, name: str, merged: Merged) -> profiles.Profile:
-        over: list[profiles.Change] = [("--set", self._changes)]
+        over: list[profiles.Change] = [(self._options.spelled("--set"), self._changes)]
         for layer in reversed(merged.layers):
             limits = layer.table.get("limits")
             if limits:
@@ -268,8 +283,9 @@ class SettingsMaker:
         options, machine = self._options, profile.machine
         key = repr((id(profile), job.select, job.ignore, list(job.severities.items())))
         if key not in self._rules:
-            levels = selection.severities(options.severities, options.select, job, merged.at, self._known, machine)
-            rules = selection.chosen(options.select, options.ignore, job, merged.at, self._known, machine)
+            names = selection.Names(options.select, options.ignore, options.severities, options.spelled)
+            levels = selection.severities(names, job, merged.at, self._known, machine)
+            rules = selection.chosen(names, job, merged.at, self._known, machine)
             self._rules[key] = rules, levels
         return self._rules[key]
 
@@ -322,10 +338,12 @@ def _parts(parts: Sequence[Part], options: Options) -> list[Part]:
 _OVER_JOB = ("machine", "radius_from_comments", "fail_on", "strict", "encoding", "inline")
 
 
-def _files_read(options: Options, job: Job, profile: profiles.Profile, file: JobFile) -> list[Path]:
+def _files_read(
+    options: Options, job: Job, profile: profiles.Profile, file: JobFile, baseline: Path | None
+) -> list[Path]:
     """Return the job files, offset tables, drawings, the baseline and the user's machine files."""
     machines = [Path(title) for title in profile.chain if title not in profiles.names()]
-    tables = [path for path in (options.offsets, options.baseline) if path]
+    tables = [path for path in (options.offsets, baseline) if path]
     tables += [Path(part.drawing) for part in job.part if part.drawing is not None]
     return [*machines, *tables, *file.paths, *([Path(job.offsets)] if job.offsets else [])]
 
