@@ -151,11 +151,11 @@ class _Runs:
                 yield NotCompared(f"{name}: {entry.reason}", matters=entry.matters)
         if self._is_same_machine:
             return
-        yield NotCompared("tool numbers, planes and G codes of cycles: the machines differ", matters=False)
+        yield NotCompared("the machines differ: tool numbers, planes and G codes are not compared", matters=False)
         for name, trace in zip(("old", "new"), self._traces, strict=True):
             codes = not_comparable(trace)
             if codes:
-                reason = f"{name}: {', '.join(codes)}: the profile of its machine does not say what they do"
+                reason = f"{name}: {', '.join(codes)}: what another lathe needs in their place is not compared"
                 yield NotCompared(reason, matters=False)
 
     # ---- sections ----

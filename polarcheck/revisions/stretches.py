@@ -187,7 +187,8 @@ def outside(trace: Trace, tolerance: float, steps: Sequence[Step], first: int, u
             needs = f"{words[0]} of line {int(trace.blocks.line_in_file[row[np.argmax(lost)]])} is not known"
     (x_from, x_to), (z_from, z_to) = (_without_unknown(*column) for column in columns[:2])
     c_from, c_to = _continuous(*_without_unknown(*columns[2]), path.c_turn[row])
-    scale = tolerance / ANGLE
+    # C counts in the sense of the plane, which is not that of C on each lathe.
+    scale = tolerance / ANGLE * trace.path.c_axis.sense
     start, end = z_from + 1j * x_from, z_to + 1j * x_to
     kind = trace.axes.motion[row].astype(np.int16)
     center = _centers(trace, row, start, end, kind)

@@ -24,6 +24,8 @@ from polarcheck.revisions.report import (
 
 #: Times and rates that differ by less than this share are shown as one.
 _SHOWN = 0.005
+#: Kinds of differences, in the order of the headline; all others are states.
+_KINDS = {"section": "sections", "path": "path", "depth": "depth", "feed": "feed", "order": "orders", "place": "orders"}
 _STYLES = {DIFFERS: "fail", NOT_COMPARED: "unverified", SAME_METAL: "pass", SAME_WORDS: "pass"}
 
 
@@ -62,25 +64,21 @@ def _headline(comparison: Comparison, sizes: Sizes) -> str:
         return "the same but for block numbers, spaces and comments"
     deviation = ""
     if comparison.deviation is not None:
-        most = "" if comparison.is_exact or comparison.deviation == 0 else "at most "
+        is_bound = not comparison.is_exact and comparison.deviation > comparison.tolerance
+        most = "at most " if is_bound else ""
         deviation = f"largest deviation {most}{_fine(comparison.deviation, sizes)} {unit}"
     if comparison.verdict == SAME_METAL:
         return f"the same metal{f': {deviation}' if deviation else ''}"
     if comparison.verdict == NOT_COMPARED:
-        return "not compared"
-    if (
-        comparison.deviation is not None
-        and comparison.deviation <= comparison.tolerance
-        and not _has_other_path(comparison)
-    ):
-        return f"differs, along the same path ({deviation})"
-    return f"differs{f': {deviation}' if deviation else ''}"
+        return f"not compared{f'; what was has a {deviation}' if deviation else ''}"
+    return f"differs in {', '.join(_kinds(comparison))}{f'; {deviation} of the path' if deviation else ''}"
 
 
-def _has_other_path(comparison: Comparison) -> bool:
-    """A path, a depth or a section differs."""
+def _kinds(comparison: Comparison) -> list[str]:
+    """What differs, each kind once."""
     differing = [*comparison.outside, *(each for section in comparison.sections for each in section.differences)]
-    return any(each.what in ("path", "depth", "section", "c_angle") for each in differing)
+    kinds = {_KINDS.get(each.what, "state at entry") for each in differing}
+    return [kind for kind in dict.fromkeys((*_KINDS.values(), "state at entry")) if kind in kinds]
 
 
 def _fine(value: float, sizes: Sizes) -> str:
