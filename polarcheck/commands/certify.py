@@ -34,8 +34,8 @@ def _outputs(ctx: click.Context, parameter: click.Parameter, values: tuple[str, 
 
 
 @click.command(short_help="Check the programs of a post for each control against a manifest.")
-@click.argument("manifest", metavar="MANIFEST|init")
-@click.argument("folder", required=False, metavar="[DIR]", type=click.Path(file_okay=False, path_type=Path))
+@click.argument("manifest", metavar="FILE")
+@click.argument("folder", required=False, metavar="[FOLDER]", type=click.Path(file_okay=False, path_type=Path))
 @narrower("--format", "form", type=click.Choice(_FORMATS), default="text", show_default=True)
 @option(
     "-o",
@@ -69,7 +69,7 @@ def certify(
     max_size: int,
 ) -> None:
     """
-    Check the programs of a post against MANIFEST, which says for each feature and control what a program must do.
+    Check the programs of a post against FILE, a manifest: it says what a program of each feature and control must do.
 
     \b
     polarcheck certify post.toml
