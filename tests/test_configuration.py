@@ -257,7 +257,22 @@ def test_what_is_excluded_is_found_by_no_walk_and_checked_where_it_is_named() ->
     assert list(checked(".")) == ["a.nc", "y/e.nc"]
     assert list(checked("old/b.nc", "d.bak.nc", "y/z")) == ["old/b.nc", "d.bak.nc", "y/z/f.nc"]
     assert list(checked("a.nc", "old/b.nc", "d.bak.nc", "y/z/f.nc", "y/z", "--force-exclude")) == ["a.nc"]
-    assert call("check", "x").stderr == "polarcheck: warning: x: all NC programs in this folder are excluded\n"
+    result = call("check", "x")
+    assert result.stderr == "polarcheck: nothing to check: x: all NC programs in this folder are excluded\n"
+    assert (result.exit_code, result.stdout) == (2, "")
+
+
+@pytest.mark.parametrize(
+    ("text", "key"),
+    [
+        ("[[programs]]\nstrict = true\nfiles = []\n", "programs.1.files"),
+        ("[[part]]\nshape = 'circle'\nfiles = []\ndiameter = 20\n", "part.1.files"),
+    ],
+)
+def test_an_entry_for_no_file_at_all_is_told(text: str, key: str) -> None:
+    make("a.nc")
+    job(text)
+    assert refused("check", "a.nc") == f"polarcheck.toml:3: {key}: expected a list of texts, at least one, found []"
 
 
 @pytest.mark.parametrize("path", ["old/b.nc", "old", "old/"])
@@ -269,20 +284,100 @@ def test_where_all_is_excluded_nothing_is_checked_and_that_is_said(path: str) ->
     assert result.stderr == "polarcheck: warning: all that is named is excluded: nothing is checked\n"
 
 
+@pytest.mark.parametrize(
+    ("text", "options", "read", "count"),
+    [
+        ("", ["--exclude", "old"], ["a.nc", "sub/b.nc", "sub/c.nc"], 2),
+        ("", ["--exclude", "OLD", "--exclude", "sub/B*"], ["a.nc", "sub/c.nc"], 3),
+        ("exclude = ['old']\n", ["--exclude", "sub"], ["a.nc"], 4),
+        ("exclude = ['old']\n", ["--exclude", "a.nc"], ["sub/b.nc", "sub/c.nc"], 3),
+    ],
+)
+def test_patterns_of_the_command_line_are_added_to_those_of_the_file(
+    text: str, options: list[str], read: list[str], count: int
+) -> None:
+    make("a.nc", "old/x.nc", "old/y/z.nc", "sub/b.nc", "sub/c.nc", text="O1\nM30\n")
+    job(text)
+    result = call("check", ".", "--format", "json", *options)
+    document = json.loads(result.stdout)
+    assert ([file["path"] for file in document["files"]], document["summary"]["excluded"]) == (read, count)
+    assert result.stderr == ""
+    assert call("check", ".", *options).stdout.endswith(f"; no findings; excluded: {count}\n")
+    # They begin at the working folder, and a file that is named is read all the same.
+    assert list(checked("old/x.nc", *options)) == ["old/x.nc"]
+    assert call("check", "old/x.nc", "--force-exclude", "--exclude", "old").stdout == ""
+    assert shown("sub/c.nc", *options)["exclude"][0] == [*(["old"] if text else []), *options[1::2]]
+
+
+def test_an_option_that_is_no_pattern_is_told() -> None:
+    make("a.nc")
+    told = "--exclude: expected a pattern such as O12*.nc or lathe7/**, found '!a'"
+    assert refused("check", ".", "--exclude", "!a") == told
+
+
+@pytest.mark.parametrize(
+    ("text", "options", "told"),
+    [
+        ("exclude = ['sub', 'gone', '*.bak']\n", [], "polarcheck.toml:1: exclude: {} excludes nothing|'gone'|'*.bak'"),
+        (
+            "extensions = ['nc', '.tpa']\n",
+            [],
+            "polarcheck.toml:1: extensions: no file of this folder ends in {}|'.tpa'",
+        ),
+        ("", ["--exclude", "old/**"], "--exclude {} excludes nothing|'old/**'"),
+        ("extensions = ['tap']\n", ["--extensions", "nc,sub"], "--extensions: no file ends in {}|'sub'"),
+    ],
+)
+def test_a_pattern_of_a_walk_without_effect_is_told_once(text: str, options: list[str], told: str) -> None:
+    make("a.nc", "sub/b.nc", "sub/c.nc", text="O1\nM30\n")
+    job(text)
+    form, *names = told.split("|")
+    lines = [f"polarcheck: warning: {form.format(name)}\n" for name in names]
+    assert call("check", ".", *options).stderr == "".join(lines)
+    # Not where only some of the programs are looked at.
+    if not options:
+        assert call("check", "sub", "a.nc").stderr == ""
+
+
+def test_endings_of_a_folder_are_those_of_its_own_job_file() -> None:
+    make("a.nc", "l7/b.nc", "l7/P.SUB", "l8/c.nc", "l8/P.SUB", text="O1\nM30\n")
+    job("extensions = ['nc', 'sub']\n", "l7/polarcheck.toml")
+    assert list(checked(".")) == ["a.nc", "l7/P.SUB", "l7/b.nc", "l8/c.nc"]
+
+
+@pytest.mark.parametrize(
+    ("names", "said"),
+    [
+        (["old/a.nc", "old/b.nc"], "all NC programs in this folder are excluded"),
+        (["P.SUB", "Q.SUB", "old/a.nc"], "no NC programs in this folder, but 2 .sub; --extensions names other endings"),
+        (["old/a.B", "a.B"], "no NC programs in this folder, but 1 .b; --extensions names other endings"),
+    ],
+)
+def test_where_nothing_is_left_to_check_that_is_no_success(names: list[str], said: str) -> None:
+    make(*names, text="O1234\nG0 X1.\nM30\n")
+    job("exclude = ['old']\n")
+    assert refused("check", ".") == f"nothing to check: .: {said}"
+    # A hook names what git names: that all of it is excluded is as it should be.
+    result = call("check", ".", "--force-exclude")
+    assert (result.exit_code, result.stderr) == (0, f"polarcheck: warning: .: {said}\n")
+    make("now.nc", text="O1\nM30\n")
+    assert call("check", ".").exit_code == 0
+
+
 @pytest.mark.skipif(sys.platform == "win32", reason="rights are others there")
 def test_a_folder_that_is_excluded_is_not_entered() -> None:
     make("a.nc", "old/b.nc")
     job("exclude = ['old']\n")
     told: list[str] = []
-    from polarcheck.reading import files
+    from polarcheck.reading import walking
 
     entered: list[str] = []
 
     def excluded_in(folder: str) -> Any:
         entered.append(folder)
-        return lambda name, is_folder: is_folder and name == "old"
+        return lambda name, is_folder: "old" if is_folder and name == "old" else ""
 
-    assert list(files.walk(".", files.EXTENSIONS, told.append, excluded_in)) == ["a.nc"]
+    assert list(walking.walk(".", walking.EXTENSIONS, told.append, excluded_in)) == ["a.nc"]
     assert entered == ["."]
 
 
@@ -320,7 +415,7 @@ def test_a_file_stands_over_the_one_that_it_extends() -> None:
         ),
         (
             {"polarcheck.toml": "\nextend = 'b.toml'", "b.toml": "extend = 'polarcheck.toml'"},
-            "b.toml:1: extend: polarcheck.toml extends itself",
+            "b.toml:1: extend: polarcheck.toml extends itself, by way of b.toml",
         ),
         (
             {"polarcheck.toml": "strict = true\nextend = 'gone.toml'"},
@@ -341,6 +436,74 @@ def test_what_cannot_be_extended_is_told(files: dict[str, str], told: str) -> No
     for name, text in files.items():
         job(f"{text}\n", name)
     assert refused("check", "a.nc") == told
+
+
+@pytest.mark.parametrize("written", ["..", "../", "../..", "../polarcheck.toml"])
+def test_a_folder_can_be_extended_which_means_the_nearest_file_in_it_or_above(written: str) -> None:
+    make("shop/lathe7/jobs/a.nc")
+    job("strict = true\nexclude = ['old']\n", "shop/polarcheck.toml")
+    where = "shop/lathe7" if written == "../polarcheck.toml" else "shop/lathe7/jobs"
+    job(f"extend = '{written}'\nmachine = 'fanuc-30i'\n", f"{where}/polarcheck.toml")
+    values = shown("shop/lathe7/jobs/a.nc")
+    assert values["strict"] == (True, "file", str(Path("shop", "polarcheck.toml:1")))
+    assert values["exclude"] == (["old"], "file", str(Path("shop", "polarcheck.toml:2")))
+    assert values["machine"] == ("fanuc-30i", "file", str(Path(where, "polarcheck.toml:2")))
+
+
+def test_a_folder_without_a_job_file_cannot_be_extended() -> None:
+    make("sub/a.nc")
+    job("extend = '..'\n", "sub/polarcheck.toml")
+    told = "extend: '..': there is no polarcheck.toml in this folder or above it"
+    assert refused("check", "sub/a.nc") == f"{Path('sub', 'polarcheck.toml')}:1: {told}"
+
+
+# ---- a file below another ----
+
+
+@pytest.mark.parametrize(
+    ("outer", "inner", "left"),
+    [
+        ("machine = 'fanuc-30i'\nstrict = true\nexclude = ['old']\n", "units = 'mm'\n", "machine, strict, exclude"),
+        ("strict = true\nmachine = 'fanuc-30i'\n", "machine = 'fanuc'\n", "strict"),
+        ("[tools.8]\nradius = 4\n[severities]\npolar = 'note'\n", "strict = true\n", "tools, severities"),
+        ("select = ['polar']\n", "[[programs]]\nfiles = ['a*']\nselect = ['feed']\n", "select"),
+        ("machine = 'fanuc-30i'\n[limits]\nc_feed = 9000\n", "machine = 'fanuc-30i'\n", "limits"),
+        ("machine = 'fanuc-30i'\n[tools.8]\nradius = 4\n[limits]\nc_feed = 9000\n", "machine = 'fanuc-16i'\n", ""),
+        ("strict = true\n", "extend = '..'\n", ""),
+        ("strict = true\n", "root = true\n", ""),
+        ("strict = true\n", "strict = false\n", ""),
+        ("units = 'mm'\n[[programs]]\nfiles = ['sub/**']\nstrict = true\n", "", ""),
+        ("strict = maybe\n", "machine = 'fanuc'\n", ""),
+    ],
+)
+def test_what_a_nearer_file_leaves_behind_of_the_one_above_is_said_once(outer: str, inner: str, left: str) -> None:
+    make("sub/a.nc", "sub/b.nc", "sub/deep/c.nc", text="O1\nM30\n")
+    job(outer)
+    job(inner, "sub/polarcheck.toml")
+    result = call("check", "sub")
+    document = json.loads(call("config", "show", "sub/a.nc", "--format", "json").stdout)
+    text = call("config", "show", "sub/deep/c.nc").stdout
+    if not left:
+        assert (result.stderr, document["not_taken_over"]) == ("", None)
+        assert "not taken over" not in text
+        return
+    names = left.split(", ")
+    assert result.stderr.count("\n") == 1
+    assert all(f" {name}" in result.stderr for name in names)
+    assert 'polarcheck.toml do not apply here; extend = ".." takes' in result.stderr.replace("does", "do")
+    assert document["not_taken_over"] == {"file": "polarcheck.toml", "keys": names}
+    assert f'# not taken over from polarcheck.toml: {left}; extend = ".." would\n' in text
+
+
+def test_several_files_that_leave_the_same_behind_share_a_line() -> None:
+    make(*(f"l{number}/a.nc" for number in range(5)), text="O1\nM30\n")
+    job("strict = true\n")
+    for number in range(5):
+        job("machine = 'fanuc'\n", f"l{number}/polarcheck.toml")
+    stderr = call("check", ".").stderr
+    assert stderr.count("\n") == 1
+    assert " and 2 more: strict of polarcheck.toml does not apply here" in stderr
+    assert call("check", "l0/a.nc", "--config", "l0/polarcheck.toml").stderr == ""
 
 
 def test_paths_with_backslashes_are_found_wherever_there_are_slashes() -> None:

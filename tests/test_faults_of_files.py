@@ -22,7 +22,7 @@ from polarcheck import bounded
 from polarcheck.batch import tasks as batch
 from polarcheck.commands import main
 from polarcheck.errors import SourceError
-from polarcheck.reading import files
+from polarcheck.reading import files, walking
 from polarcheck.reading.excerpt import visible
 from polarcheck.settings import job_files
 from polarcheck.settings.of_programs import OfPrograms, Options
@@ -58,7 +58,10 @@ def check(*paths: str, **environment: str) -> tuple[int, list[str], list[str]]:
 
 def checked(report: str | bytes) -> list[str]:
     """The files of a JSON report, each with the one finding that its program has."""
-    found = json.loads(report)["files"]
+    whole = json.loads(report)
+    found = [file for file in whole["files"] if file["verdict"] != "unreadable"]
+    assert all(file["reason"] for file in whole["files"] if file["verdict"] == "unreadable")
+    assert whole["summary"]["unreadable"] == len(whole["files"]) - len(found)
     assert [[finding["rule"] for finding in file["findings"]] for file in found] == [["rapid-in-polar"]] * len(found)
     return [file["path"] for file in found]
 
@@ -212,7 +215,7 @@ def test_a_file_that_is_gone_when_its_turn_comes() -> None:
     Path("f/c.nc").unlink()
     Path("f/c.nc").mkdir()
     found = batch.gather(batch.one_by_one(tasks), told.append, lambda bug: pytest.fail(str(bug)))
-    assert [file.path for file in found.files] == ["f/a.nc", "f/d.nc"]
+    assert [file.path for file in found.files if file.verdict != "unreadable"] == ["f/a.nc", "f/d.nc"]
     assert told == ["f/b.nc: No such file or directory", "f/c.nc: is a folder, not a file"]
 
 
@@ -220,7 +223,7 @@ def test_a_file_that_is_gone_when_its_turn_comes() -> None:
 def test_a_folder_that_is_gone_when_its_turn_comes() -> None:
     make("f/a.nc", "f/sub/b.nc", "f/z.nc")
     told: list[str] = []
-    walk = files.walk("f", files.EXTENSIONS, told.append)
+    walk = walking.walk("f", walking.EXTENSIONS, told.append)
     assert Path(next(walk)).name == "a.nc"
     shutil.rmtree("f/sub")
     assert [Path(path).name for path in walk] == ["z.nc"]
@@ -238,7 +241,7 @@ def test_a_file_that_has_become_a_pipe_is_not_waited_for(monkeypatch: pytest.Mon
         return opened(*arguments)
 
     monkeypatch.setattr(os, "open", exchanged)
-    assert not files.is_program("a", files.EXTENSIONS)
+    assert not walking.is_program("a", walking.EXTENSIONS)
 
 
 def in_pieces(monkeypatch: pytest.MonkeyPatch, meanwhile: Any) -> None:
@@ -451,6 +454,7 @@ def test_names_that_no_file_can_have(name: str) -> None:
     assert [
         file.path
         for file in batch.gather(batch.one_by_one(tasks), told.append, lambda bug: pytest.fail(str(bug))).files
+        if file.verdict != "unreadable"
     ] == ["a.nc"]
     assert len(told) == 1
 

@@ -184,8 +184,11 @@ class Rule(Documented, frozen=True):
     doubts: the quantities that a finding makes doubtful, each with its span. Findings that rest on them are listed
     under this one.
     follows: by span, the rules that report the same fault first. This finding is then listed under theirs.
+    values: the values of a finding, by the names of checking/vocabulary.py, and where each comes from, as in a message.
     worst: the column whose highest value selects the hit to report, where one finding covers several.
     is_advice: the rule is off unless the machine or the user names a severity for it.
+    worse: the values of the message that grow where the fault grows worse; behind a minus those of which less is worse,
+    and with a colon between them two whose distance counts (position:limit).
     parameters: the names of the tables that the function compares.
     """
 
@@ -200,8 +203,10 @@ class Rule(Documented, frozen=True):
     subject: str
     doubts: tuple[Doubt, ...]
     follows: Mapping[str, tuple[str, ...]]
+    values: Mapping[str, str]
     worst: str
     is_advice: bool
+    worse: tuple[str, ...]
     parameters: tuple[str, ...]
 
     def __reduce__(self) -> tuple[Callable[[str], Rule], tuple[str]]:
@@ -259,8 +264,10 @@ def rule(
     subject: str | None = None,
     doubts: tuple[Doubt, ...] = (),
     follows: Mapping[str, tuple[str, ...]] = MappingProxyType({}),
+    values: Mapping[str, str] = MappingProxyType({}),
     worst: str = "",
     is_advice: bool = False,
+    worse: tuple[str, ...] = (),
 ) -> Callable[[Callable[..., Any]], Rule]:
     """Decorate a function as a rule; see Rule. Its parameters name the tables that it compares."""
 
@@ -292,8 +299,10 @@ def rule(
             judged,
             doubts,
             follows,
+            values,
             worst,
             is_advice,
+            worse,
             parameters,
         )
 

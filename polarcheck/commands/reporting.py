@@ -17,7 +17,7 @@ from polarcheck.errors import OutputError, UsageError
 if TYPE_CHECKING:
     from polarcheck.batch.tasks import Task
     from polarcheck.checking.settings import Extra, Settings
-    from polarcheck.finding import Report
+    from polarcheck.finding import Report, Summary
     from polarcheck.reports import Background
 
 #: The variable with the file of a step's summary in GitHub Actions, and the format for GitHub Actions.
@@ -68,14 +68,22 @@ def with_makes(tasks: Sequence[Task], forms: Iterable[str]) -> list[Task]:
     return [msgspec.structs.replace(task, settings=of_settings[id(task.settings)]) for task in tasks]
 
 
-def background(plain: Background, tasks: Iterable[Task], failures: Sequence[str]) -> Background:
-    """Add the settings of each file, the folders that paths are relative to, and the failures to a background."""
+def unread(summary: Summary) -> list[str]:
+    """Return what the walks through folders did not read, in words."""
+    if not (summary.not_read or summary.excluded):
+        return []
+    from polarcheck.reports.pages import unread
+
+    return unread.unread(summary)
+
+
+def background(plain: Background, tasks: Iterable[Task]) -> Background:
+    """Add the settings of each file, and the folders that paths are relative to, to a background."""
     folder = ""
     with contextlib.suppress(OSError):  # the working folder may be gone
         folder = os.getcwd()  # noqa: PTH109
     return plain._replace(
         settings=silencing.settings_of(tasks),
-        failures=failures,
         root=_root(folder).replace(os.sep, "/"),
         folder=folder.replace(os.sep, "/"),
     )

@@ -155,6 +155,10 @@ class OfPrograms(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_field
         None
     )
     inline: Annotated[bool, msgspec.Meta(description="heed comments of programs that allow a finding")] = True
+    baseline: (
+        Annotated[str, msgspec.Meta(description="file of known findings, which `polarcheck baseline create` writes")]
+        | None
+    ) = None
 
     def __post_init__(self) -> None:
         tools: dict[str, Tool] = {}
@@ -173,7 +177,8 @@ class Programs(OfPrograms, frozen=True):
     files: Annotated[
         list[str],
         msgspec.Meta(
-            description="patterns of names (O12*.nc) or paths (lathe7/**), relative to this file; capitals are ignored"
+            min_length=1,
+            description="patterns of names (O12*.nc) or paths (lathe7/**), relative to this file; capitals are ignored",
         ),
     ]
 
@@ -188,8 +193,13 @@ class Job(OfPrograms, frozen=True):
         list[str], msgspec.Meta(description="patterns of files and folders that no walk through a folder finds")
     ] = []
     extend: (
-        Annotated[str, msgspec.Meta(description="another job file, whose values apply where this one has none")] | None
+        Annotated[
+            str,
+            msgspec.Meta(description="another job file, or the folder of one, whose values apply where this has none"),
+        ]
+        | None
     ) = None
+    root: Annotated[bool, msgspec.Meta(description="no job file of a folder above is meant for these programs")] = False
     part: Annotated[
         list[Part],
         msgspec.Meta(description="what programs should make; of entries for one section and Z the last one counts"),

@@ -22,7 +22,9 @@ from polarcheck.machines.offset_keys import canonical
 from polarcheck.machines.part import LENGTHS, Part
 
 #: Keys that select files, and are no settings of a program.
-_OF_FILES = ("extend", "exclude", "programs", "files", "part")
+_OF_FILES = ("extend", "exclude", "programs", "files", "part", "root")
+#: Keys that mean nothing to the files below: how this one is read, and entries with patterns of their own.
+_OF_THE_FILE_ITSELF = ("extend", "root", "units", "programs", "part")
 #: Decimals of a converted length; further ones are rounding errors.
 _DECIMALS = 9
 #: Keys of lengths, which are in the units of their file, by table.
@@ -72,9 +74,30 @@ class Layer:
         return f"{self.written.path}: [[programs]] {self.entry}" if self.entry else str(self.written.path)
 
     @property
+    def machine(self) -> str | None:
+        """Return the machine as written; None if this layer names none."""
+        machine = self._table.get("machine")
+        return None if machine is None else str(machine)
+
+    @property
+    def is_root(self) -> bool:
+        """Return True if no job file above this one is meant."""
+        return bool(self._table.get("root", False))
+
+    @property
+    def keys(self) -> list[str]:
+        """Return the keys that decide about programs, in the order in which they are written."""
+        return [key for key in self._table if key not in _OF_THE_FILE_ITSELF]
+
+    @property
     def excluded(self) -> list[str]:
         """Return the patterns of `exclude`."""
         return list(self._table.get("exclude", ()))
+
+    @property
+    def extensions(self) -> list[str]:
+        """Return the endings of `extensions`."""
+        return list(self._table.get("extensions", ()))
 
     def at(self, key: str) -> str:
         """Return the place of a key of this layer: `polarcheck.toml:12`."""
@@ -111,8 +134,9 @@ class Layer:
             values["work_offsets"] = {name.upper(): value for name, value in values["work_offsets"].items()}
         if "machine" in values:
             values["machine"] = _machine(values["machine"], folder)
-        if "offsets" in values:
-            values["offsets"] = str(beside(folder, values["offsets"]))
+        for key in ("offsets", "baseline"):
+            if key in values:
+                values[key] = str(beside(folder, values[key]))
         if "subprograms" in values.get("run", {}):
             folders = [self._folder(folder, written) for written in values["run"]["subprograms"]]
             values["run"] = {**values["run"], "subprograms": folders}
