@@ -48,7 +48,7 @@ def _outputs(ctx: click.Context, parameter: click.Parameter, values: tuple[str, 
 )
 @option("--strict/--no-strict", default=False, help="Fail where a feature has no case on a control, too.")
 @click.option("--update", is_flag=True, help="Write the golden traces of cases that pass otherwise.")
-@option("--case", "names", multiple=True, metavar="NAME", help="Only this case; may be repeated.")
+@option("--case", "names", multiple=True, metavar="TEXT", help="Only this case; may be repeated.")
 @option("--machine", "machines", multiple=True, metavar="NAME|FILE", help="With init: a control; may be repeated.")
 @option("--color", type=click.Choice(["auto", "always", "never"]), default="auto", show_default=True)
 @options.max_size
